@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The camera: where it stands, and the window that it looks through, in float64.
+
+Right-handed, looking down its local -Z. Pixel centres lie at +0.5 and row 0 is at the bottom.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """matrix_world: (4, 4) float64, camera to world, rigid (a scale in it is taken out).
+    window: left, right, bottom, top of the picture; for a perspective camera on the plane at distance 1,
+        for an orthographic one in world units.
+    size: width, height in pixels. near, far: clip distances along -Z, world units.
+    """
+
+    matrix_world: np.ndarray
+    window: tuple[float, float, float, float]
+    size: tuple[int, int]
+    near: float = 0.1
+    far: float = 1000.0
+    is_orthographic: bool = False
+
+    def __post_init__(self):
+        matrix = np.array(self.matrix_world, np.float64)
+        if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
+            raise ValueError("The camera's matrix_world must be 4 x 4 finite numbers.")
+        lengths = np.linalg.norm(matrix[:3, :3], axis=0)
+        if not (lengths > 0).all():
+            raise ValueError("The camera's matrix_world has a zero axis; set the camera's scale to 1.")
+        matrix[:3, :3] /= lengths
+        matrix.flags.writeable = False
+        object.__setattr__(self, "matrix_world", matrix)
+        left, right, bottom, top = (float(v) for v in self.window)
+        if not (math.isfinite(right - left) and math.isfinite(top - bottom) and left < right and bottom < top):
+            raise ValueError(f"The camera's window must be left < right, bottom < top, not {self.window}.")
+        object.__setattr__(self, "window", (left, right, bottom, top))
+        width, height = self.size
+        if int(width) != width or int(height) != height or width < 1 or height < 1:
+            raise ValueError(f"A picture needs at least 1 x 1 whole pixels, not {width} x {height}.")
+        object.__setattr__(self, "size", (int(width), int(height)))
+        if not self.near < self.far < math.inf or (not self.is_orthographic and not self.near > 0):
+            raise ValueError(f"Clip distances must be 0 < near < far, not near {self.near}, far {self.far}.")
+
+    @classmethod
+    def perspective(cls, matrix_world, vertical_fov: float, size, near=0.1, far=1000.0, shift=(0.0, 0.0)) -> Camera:
+        """A pinhole camera. vertical_fov: radians, 0 to pi. shift: in picture widths, as Blender's lens shift."""
+        if not 0 < vertical_fov < math.pi:
+            raise ValueError(f"The field of view must lie between 0 and pi radians, not {vertical_fov}.")
+        half_height = math.tan(vertical_fov / 2)
+        return cls(matrix_world, _window(half_height, size, shift), size, near, far)
+
+    @classmethod
+    def orthographic(cls, matrix_world, height: float, size, near=0.1, far=1000.0, shift=(0.0, 0.0)) -> Camera:
+        """A parallel camera. height: of the window, world units."""
+        if not height > 0:
+            raise ValueError(f"An orthographic window's height must be above 0, not {height}.")
+        return cls(matrix_world, _window(height / 2, size, shift), size, near, far, is_orthographic=True)
+
+    @classmethod
+    def from_intrinsics(cls, fx, fy, cx, cy, size, matrix_world, near=0.1, far=1000.0) -> Camera:
+        """A calibrated pinhole camera. fx, fy: focal lengths; cx, cy: principal point; all in pixels.
+
+        cx, cy follow computer vision: from the top left corner, so cy counts downwards.
+        """
+        width, height = size
+        window = (-cx / fx, (width - cx) / fx, (cy - height) / fy, cy / fy)
+        return cls(matrix_world, window, size, near, far)
+
+    def cropped(self, x: int, y: int, width: int, height: int) -> Camera:
+        """The same camera looking only through the pixels x..x+width, y..y+height (from the bottom left)."""
+        left, right, bottom, top = self.window
+        step_x, step_y = (right - left) / self.size[0], (top - bottom) / self.size[1]
+        window = (left + x * step_x, left + (x + width) * step_x, bottom + y * step_y, bottom + (y + height) * step_y)
+        return replace(self, window=window, size=(width, height))
+
+    def world_to_view(self) -> np.ndarray:
+        """(4, 4) float64: the inverse of `matrix_world`, whose rotation is orthonormal."""
+        inverse = np.eye(4)
+        inverse[:3, :3] = np.linalg.inv(self.matrix_world[:3, :3])
+        inverse[:3, 3] = -inverse[:3, :3] @ self.matrix_world[:3, 3]
+        return inverse
+
+    def projection(self, near: float, far: float) -> np.ndarray:
+        """(4, 4) float64 OpenGL projection (clip z from -w to w) of this window between two depths."""
+        left, right, bottom, top = self.window
+        matrix = np.zeros((4, 4))
+        matrix[0, 0], matrix[1, 1] = 2 / (right - left), 2 / (top - bottom)
+        if self.is_orthographic:
+            matrix[0, 3], matrix[1, 3] = -(right + left) / (right - left), -(top + bottom) / (top - bottom)
+            matrix[2, 2], matrix[2, 3] = -2 / (far - near), -(far + near) / (far - near)
+            matrix[3, 3] = 1
+        else:
+            matrix[0, 2], matrix[1, 2] = (right + left) / (right - left), (top + bottom) / (top - bottom)
+            matrix[2, 2], matrix[2, 3] = -(far + near) / (far - near), -2 * far * near / (far - near)
+            matrix[3, 2] = -1
+        return matrix
+
+
+def look_at(eye, target, up=(0.0, 0.0, 1.0)) -> np.ndarray:
+    """(4, 4) float64 matrix_world of a camera at `eye` that looks at `target`."""
+    eye, target = np.asarray(eye, np.float64), np.asarray(target, np.float64)
+    z = eye - target
+    if not np.linalg.norm(z) > 0:
+        raise ValueError("A camera cannot look at the point where it stands.")
+    z = z / np.linalg.norm(z)
+    x = np.cross(up, z)
+    if np.linalg.norm(x) < 1e-9:
+        x = np.cross((0.0, 1.0, 0.0), z)
+    x /= np.linalg.norm(x)
+    matrix = np.eye(4)
+    matrix[:3] = np.stack([x, np.cross(z, x), z, eye], axis=1)
+    return matrix
+
+
+def _window(half_height: float, size, shift) -> tuple[float, float, float, float]:
+    half_width = half_height * size[0] / size[1]
+    dx, dy = shift[0] * 2 * half_width, shift[1] * 2 * half_width
+    return -half_width + dx, half_width + dx, -half_height + dy, half_height + dy

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is to be rendered: surfel objects and their instances, materials, lights and the world.
+
+Plain values, no Blender: `blender/scene_export.py` makes a `Scene` from a depsgraph, tests make one by hand.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..surfels import Surfels
+
+
+@dataclass(frozen=True)
+class Material:
+    """How a surface answers light; its base colour is the surfels' own.
+
+    roughness, metallic: 0 to 1. ior: index of refraction of the dielectric coat, which sets its
+    reflectance at normal incidence, ((ior - 1) / (ior + 1))^2.
+    """
+
+    roughness: float = 0.5
+    metallic: float = 0.0
+    ior: float = 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class Instance:
+    """Surfels placed in the world.
+
+    matrix_world: (4, 4), object to world, any invertible affine map (mirrored, non-uniform, sheared).
+    materials: what `Surfels.materials` indexes; an index past the end uses the last one.
+    """
+
+    surfels: Surfels
+    matrix_world: np.ndarray = field(default_factory=lambda: np.eye(4))
+    materials: tuple[Material, ...] = (Material(),)
+
+    def __post_init__(self):
+        matrix = np.array(self.matrix_world, np.float64)
+        if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
+            raise ValueError("An instance's matrix_world must be 4 x 4 finite numbers.")
+        matrix.flags.writeable = False
+        object.__setattr__(self, "matrix_world", matrix)
+        object.__setattr__(self, "materials", tuple(self.materials) or (Material(),))
+
+
+@dataclass(frozen=True, eq=False)
+class Light:
+    """A light without size, in Blender's units.
+
+    kind: "sun" (energy is irradiance, W/m^2, of a surface facing it) or "point" (energy is radiant power, W,
+    sent out evenly: irradiance energy / (4 pi d^2) at distance d).
+    color: (3,) linear, multiplies energy. position: (3,) world, of a point light.
+    direction: (3,) world, the way a sun's light travels.
+    """
+
+    kind: str
+    color: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    energy: float = 1.0
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    direction: tuple[float, float, float] = (0.0, 0.0, -1.0)
+
+    def __post_init__(self):
+        if self.kind not in LIGHT_KINDS:
+            raise ValueError(f"A light's kind must be one of {', '.join(LIGHT_KINDS)}, not {self.kind!r}.")
+
+
+#: The order is the number by which the shading pass knows a kind.
+LIGHT_KINDS = ("sun", "point")
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Everything that a picture depends on but its camera and settings.
+
+    surfels: `Instance`s, or bare `Surfels` standing at the world's origin.
+    world: (3,) scene-linear radiance that reaches every surface and fills the background.
+    """
+
+    surfels: tuple[Instance, ...] = ()
+    lights: tuple[Light, ...] = ()
+    world: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self):
+        instances = tuple(s if isinstance(s, Instance) else Instance(s) for s in self.surfels)
+        object.__setattr__(self, "surfels", instances)
+        object.__setattr__(self, "lights", tuple(self.lights))
+        world = tuple(float(c) for c in self.world)
+        if len(world) != 3 or not np.isfinite(world).all():
+            raise ValueError(f"The world's radiance must be 3 finite numbers, not {self.world!r}.")
+        object.__setattr__(self, "world", world)

@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The one data model that everything passes along: a set of oriented elliptical surface samples.
+
+A *surfel* keeps its ellipse (position, frame, half-axes) apart from its shading normal: the ellipse
+shapes the splat, the normal lights it. Positions are float32 relative to a float64 origin, so that
+a model far from the world's origin loses nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+#: field -> (columns, dtype); one column is stored flat.
+LAYOUT = {
+    "positions": (3, np.float32),
+    "rotations": (4, np.float32),
+    "scales": (2, np.float32),
+    "normals": (3, np.float32),
+    "colors": (4, np.float32),
+    "materials": (1, np.int32),
+}
+
+#: How far a quaternion or a normal may be from unit length before it is refused (float32 rounding is 1e-7).
+UNIT_TOLERANCE = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Surfels:
+    """A set of N surfels; C-contiguous arrays, checked once, here.
+
+    positions: (N, 3) float32, object units, relative to `origin`.
+    rotations: (N, 4) float32 unit quaternions w, x, y, z; local x and y are the ellipse's axes,
+        local z is the geometric normal.
+    scales: (N, 2) float32, half-axes of the ellipse, object units, > 0.
+    normals: (N, 3) float32, unit: the shading normal.
+    colors: (N, 4) float32, scene-linear, not premultiplied; alpha is opacity.
+    materials: (N,) int32, index into the object's material slots.
+    origin: (3,) float64, object units.
+
+    Raises ValueError with one sentence for a wrong shape, a non-finite or an out-of-range value;
+    `valid_surfels` drops and counts such rows instead.
+    """
+
+    positions: np.ndarray
+    rotations: np.ndarray
+    scales: np.ndarray
+    normals: np.ndarray
+    colors: np.ndarray
+    materials: np.ndarray
+    origin: np.ndarray = (0.0, 0.0, 0.0)
+
+    def __post_init__(self):
+        arrays = _shaped({f.name: getattr(self, f.name) for f in fields(self) if f.name in LAYOUT})
+        for name, good in _row_checks(arrays).items():
+            bad = np.flatnonzero(~good)
+            if len(bad):
+                value = arrays[name][bad[0]].tolist()
+                raise ValueError(
+                    f"{len(bad)} of {len(good)} surfels have unusable {name}, first row {bad[0]}: {value}; "
+                    f"they must be {_DEMANDS[name]} (valid_surfels drops such rows)."
+                )
+        origin = np.array(self.origin, np.float64)
+        if origin.shape != (3,) or not np.isfinite(origin).all():
+            raise ValueError(f"The surfels' origin must be 3 finite numbers, not {self.origin!r}.")
+        for name, array in (*arrays.items(), ("origin", origin)):
+            view = array.view()
+            view.flags.writeable = False
+            object.__setattr__(self, name, view)
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    @property
+    def radius(self) -> np.ndarray:
+        """(N,) float32: the larger half-axis, object units."""
+        return self.scales.max(axis=1)
+
+    def half_axes(self) -> tuple[np.ndarray, np.ndarray]:
+        """The two half-axis vectors of each ellipse: two (N, 3) float32 arrays, object units."""
+        x, y, _ = quaternion_axes(self.rotations, 2)
+        return x * self.scales[:, :1], y * self.scales[:, 1:]
+
+    def geometric_normals(self) -> np.ndarray:
+        """(N, 3) float32 unit normals of the ellipses' planes."""
+        return quaternion_axes(self.rotations)[2]
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Two (3,) float64 corners, in object units, of a box that holds every ellipse (NaN when empty)."""
+        if not len(self):
+            return np.full(3, np.nan), np.full(3, np.nan)
+        margin = float(self.scales.max())
+        low, high = self.positions.min(axis=0), self.positions.max(axis=0)
+        return self.origin + low - margin, self.origin + high + margin
+
+
+def valid_surfels(origin=(0.0, 0.0, 0.0), **arrays) -> tuple[Surfels, int]:
+    """`Surfels` of the usable rows, and how many rows were left out.
+
+    arrays: the fields of `Surfels`. Quaternions and normals of any finite, non-zero length are
+    normalised first (an attribute edited by hand or by Geometry Nodes is seldom unit); a zero or
+    non-finite normal, a non-positive half-axis or a non-finite number drops its row.
+    Raises ValueError where a whole array has the wrong shape.
+    """
+    arrays = _shaped(arrays)
+    for name in ("rotations", "normals"):
+        arrays[name] = _normalised(arrays[name])
+    good = np.logical_and.reduce(list(_row_checks(arrays).values()))
+    skipped = int(len(good) - np.count_nonzero(good))
+    if skipped:
+        arrays = {name: array[good] for name, array in arrays.items()}
+    return Surfels(origin=origin, **arrays), skipped
+
+
+def concatenate(parts: list[Surfels]) -> Surfels:
+    """One set from several that share an origin."""
+    if any((p.origin != parts[0].origin).any() for p in parts):
+        raise ValueError("Only surfels with the same origin can be joined; move them to one origin first.")
+    return Surfels(origin=parts[0].origin, **{n: np.concatenate([getattr(p, n) for p in parts]) for n in LAYOUT})
+
+
+def empty_surfels(origin=(0.0, 0.0, 0.0)) -> Surfels:
+    """A set of no surfels."""
+    return Surfels(origin=origin, **{n: np.zeros((0, c) if c > 1 else 0, t) for n, (c, t) in LAYOUT.items()})
+
+
+def quaternion_axes(quaternions: np.ndarray, count: int = 3) -> tuple[np.ndarray, ...]:
+    """Local x, y and z axes of unit quaternions.
+
+    quaternions: (N, 4) w, x, y, z. Returns three (N, 3) arrays of the same dtype; with `count` below 3
+    the later ones are None, to save the time.
+    """
+    w, x, y, z = np.ascontiguousarray(quaternions.T)
+    columns = (
+        lambda: (1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
+        lambda: (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
+        lambda: (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return tuple(np.stack(columns[k](), axis=1) if k < count else None for k in range(3))
+
+
+def axes_quaternions(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Unit quaternions (N, 4) w, x, y, z, w >= 0, of right-handed orthonormal frames given as three (N, 3) arrays.
+
+    Each quaternion component squared is known up to its sign from the trace and the diagonal; the
+    largest one is taken as the pivot (Shepperd 1978), so no component is ever divided by a small number.
+    """
+    (m00, m10, m20), (m01, m11, m21), (m02, m12, m22) = (np.ascontiguousarray(a.T) for a in (x, y, z))
+    candidates = np.stack([1 + m00 + m11 + m22, 1 + m00 - m11 - m22, 1 - m00 + m11 - m22, 1 - m00 - m11 + m22])
+    pivot = candidates.argmax(axis=0)
+    rows = np.empty((len(pivot), 4), x.dtype)
+    off_diagonals = {(0, 1): m21 - m12, (0, 2): m02 - m20, (0, 3): m10 - m01,
+                     (1, 2): m10 + m01, (1, 3): m02 + m20, (2, 3): m21 + m12}  # fmt: skip
+    for p in range(4):
+        at = np.flatnonzero(pivot == p)
+        for c in range(4):
+            rows[at, c] = candidates[p][at] if c == p else off_diagonals[min(c, p), max(c, p)][at]
+    rows /= np.linalg.norm(rows, axis=1, keepdims=True)
+    return np.where(rows[:, :1] < 0, -rows, rows)
+
+
+_DEMANDS = {
+    "positions": "finite",
+    "rotations": "unit quaternions",
+    "scales": "finite and above 0",
+    "normals": "unit vectors",
+    "colors": "finite",
+    "materials": "0 or more",
+}
+
+
+def _shaped(arrays: dict) -> dict[str, np.ndarray]:
+    missing = LAYOUT.keys() - arrays.keys()
+    if missing:
+        raise ValueError(f"Surfels need {', '.join(sorted(missing))}, which are missing.")
+    arrays = {n: np.ascontiguousarray(arrays[n], LAYOUT[n][1]) for n in LAYOUT}
+    count = len(arrays["positions"])
+    for name, array in arrays.items():
+        columns = LAYOUT[name][0]
+        wanted = (count, columns) if columns > 1 else (count,)
+        if array.shape != wanted:
+            raise ValueError(f"Surfel {name} must have shape {wanted}, not {array.shape}.")
+    return arrays
+
+
+def _row_checks(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """field -> (N,) bool: which rows are usable. Written so that NaN fails."""
+
+    def finite(a):
+        return np.isfinite(a).all(axis=1)
+
+    def unit(a):
+        return np.abs(np.einsum("ij,ij->i", a, a) - 1) < 2 * UNIT_TOLERANCE
+
+    return {
+        "positions": finite(arrays["positions"]),
+        "rotations": unit(arrays["rotations"]),
+        "scales": finite(arrays["scales"]) & (arrays["scales"] > 0).all(axis=1),
+        "normals": unit(arrays["normals"]),
+        "colors": finite(arrays["colors"]),
+        "materials": arrays["materials"] >= 0,
+    }
+
+
+def _normalised(vectors: np.ndarray) -> np.ndarray:
+    """Rows scaled to unit length where that is possible; already unit rows keep their bits."""
+    squared = np.einsum("ij,ij->i", vectors, vectors)
+    off = np.flatnonzero(~(np.abs(squared - 1) < 1e-5) & np.isfinite(vectors).all(axis=1))
+    if not len(off):
+        return vectors
+    vectors = vectors.copy()
+    rows = vectors[off].astype(np.float64)
+    length = np.linalg.norm(rows, axis=1, keepdims=True)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        vectors[off] = rows / length
+    return vectors
