@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`render_exact`: the picture by its definition, one ray for every sub-sample of every pixel.
+
+Scene -> `splats` (eye space) -> per tile: `rays` (visibility, then weighted averages) -> `shading` -> `filters` -> Frame.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..rendering.camera import Camera
+from ..rendering.frame import EMPTY_DEPTH, Frame
+from ..rendering.scene import Scene
+from ..rendering.settings import Settings
+from .filters import filter_weights, resample
+from .rays import RayGrid, Surface, visible_surface
+from .shading import eye_lights, principled_radiance
+from .splats import eye_splats
+
+#: Rays of a tile: enough for numpy to be quick, few enough that a tile's arrays stay below 100 MB.
+TILE_RAYS = 300_000
+
+DEFAULTS = Settings()
+
+
+def render_exact(
+    scene: Scene, camera: Camera, settings: Settings = DEFAULTS, *, samples: int = 8, pixel_filter: str = "box"
+) -> Frame:
+    """The picture of `scene` by definition, in float64.
+
+    samples: samples x samples rays a pixel at (i + 0.5) / samples; takes the place of `settings.supersampling`.
+    pixel_filter: a name in `filters.PIXEL_FILTERS`; always say which one a number was measured with.
+    `settings.method` has no meaning here. Opacity is ignored: surfels are opaque.
+
+    A ray sees the splats that lie no deeper than the nearest splat moved back by `settings.epsilon` of its radius
+    along the ray, mixes them with weights exp(-2 rho^2), and is shaded once (Botsch et al. 2005, deferred).
+
+    Returns a Frame: colour, normal and coverage go through the pixel filter, a depth is that of the nearest of
+    the pixel's own rays. Raises ValueError for an unknown filter or a sample count below 1.
+    """
+    weights = filter_weights(pixel_filter, samples)
+    margin = (len(weights) // samples - 1) // 2
+    splats = eye_splats(scene, camera)
+    lights = eye_lights(scene, camera)
+    width, height = camera.size
+    color, normal = np.empty((height, width, 4)), np.empty((height, width, 3))
+    depth, coverage = np.empty((height, width)), np.empty((height, width))
+    for x, y, w, h in _tiles(width, height, samples, margin):
+        grid = RayGrid.of_pixels(camera, samples, x - margin, y - margin, w + 2 * margin, h + 2 * margin)
+        surface = visible_surface(splats, grid, settings.epsilon)
+        shaded = resample(_shaded_rays(surface, grid, scene, lights, settings), weights, samples)
+        here = np.s_[y : y + h, x : x + w]
+        color[here], normal[here], coverage[here] = shaded[..., :4], shaded[..., 4:7], shaded[..., 7]
+        depth[here] = _nearest_depth(surface, grid, samples, margin)
+    normal = normal @ camera.matrix_world[:3, :3].T
+    stats = {"surfels": len(splats), "samples": samples, "pixel_filter": pixel_filter}
+    return Frame(*(a.astype(np.float32) for a in (color, depth, normal, coverage)), stats)
+
+
+def _tiles(width: int, height: int, samples: int, margin: int):
+    """x, y, w, h in pixels of rectangles that cover the picture once, each of about `TILE_RAYS` rays at most."""
+    side = max(int(TILE_RAYS**0.5 / samples) - 2 * margin, 4)
+    for y in range(0, height, side):
+        for x in range(0, width, side):
+            yield x, y, min(side, width - x), min(side, height - y)
+
+
+def _shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, lights, settings: Settings) -> np.ndarray:
+    """(rows, columns, 8): premultiplied rgba, eye-space normal and coverage of every ray."""
+    rays = np.zeros((grid.count, 8))
+    if not settings.transparent_film:
+        rays[:, :3], rays[:, 3] = scene.world, 1
+    hit = surface.rays
+    rays[hit, :3] = SHADERS[settings.shading](surface, grid, scene, lights)
+    rays[hit, 3] = rays[hit, 7] = 1
+    rays[hit, 4:7] = surface.normal
+    return rays.reshape(*grid.shape, 8)
+
+
+def _flat(surface: Surface, grid: RayGrid, scene: Scene, lights) -> np.ndarray:
+    return surface.color
+
+
+def _principled(surface: Surface, grid: RayGrid, scene: Scene, lights) -> np.ndarray:
+    origin, direction = grid.rays(surface.rays)
+    position = origin + surface.depth[:, None] * direction
+    return principled_radiance(surface, position, direction, lights, scene.world)
+
+
+#: shading -> (surface, grid, scene, lights) to (n, 3) radiance of the rays that hit
+SHADERS = {"flat": _flat, "principled": _principled}
+
+
+def _nearest_depth(surface: Surface, grid: RayGrid, samples: int, margin: int) -> np.ndarray:
+    """(h, w) depth of the nearest ray of each pixel that is not margin; `EMPTY_DEPTH` where none hit."""
+    rays = np.full(grid.count, EMPTY_DEPTH)
+    rays[surface.rays] = surface.depth
+    rows, columns = (n // samples for n in grid.shape)
+    pixels = rays.reshape(rows, samples, columns, samples).min(axis=(1, 3))
+    return pixels[margin : rows - margin, margin : columns - margin]

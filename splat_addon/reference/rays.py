@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rays against splats: what each ray sees, as weighted averages over the splats that it hits.
+
+Second step of `render_exact`. Two sweeps over the same candidates, as the engine has two passes: the
+visibility sweep finds how deep a ray may look, the attribute sweep averages what lies before that depth.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..rendering.camera import Camera
+from .splats import Splats, projected_bounds
+
+#: Splat-ray pairs handled at once: about 100 bytes each.
+CHUNK_PAIRS = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class RayGrid:
+    """The rays of a rectangle of sub-samples, numbered row by row from the bottom left.
+
+    first: column and row of its first sub-sample, counted from the picture's bottom left (may be negative).
+    shape: rows, columns. Indices are the picture's own, so a ray does not depend on the rectangle.
+    """
+
+    camera: Camera
+    samples: int
+    first: tuple[int, int]
+    shape: tuple[int, int]
+
+    @classmethod
+    def of_pixels(cls, camera: Camera, samples: int, x: int, y: int, width: int, height: int) -> RayGrid:
+        """The rays of the pixels x..x+width, y..y+height."""
+        return cls(camera, samples, (x * samples, y * samples), (height * samples, width * samples))
+
+    @property
+    def count(self) -> int:
+        return self.shape[0] * self.shape[1]
+
+    def rays(self, rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Origins and directions, two (n, 3) arrays in eye space; direction z is -1, so that a depth is a parameter."""
+        row, column = np.divmod(rays, self.shape[1])
+        left, bottom = self._corner()
+        step_x, step_y = self._steps()
+        origin, direction = np.zeros((len(rays), 3)), np.zeros((len(rays), 3))
+        across = origin if self.camera.is_orthographic else direction
+        across[:, 0] = left + (self.first[0] + column + 0.5) * step_x
+        across[:, 1] = bottom + (self.first[1] + row + 0.5) * step_y
+        direction[:, 2] = -1
+        return origin, direction
+
+    def boxes(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Window-plane boxes (N, 2) as first and end (column, row) in this grid, two (N, 2) integer arrays."""
+        limit = np.array(self.shape[::-1])
+        first = np.ceil((low - self._corner()) / self._steps() - self.first - 0.5 - 1e-6)
+        end = np.floor((high - self._corner()) / self._steps() - self.first - 0.5 + 1e-6) + 1
+        return (np.clip(edge, 0, limit).astype(np.int64) for edge in (first, end))
+
+    def _corner(self) -> np.ndarray:
+        return np.array([self.camera.window[0], self.camera.window[2]])
+
+    def _steps(self) -> np.ndarray:
+        left, right, bottom, top = self.camera.window
+        return np.array([right - left, top - bottom]) / np.array(self.camera.size) / self.samples
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """What the n rays that hit something see, averaged over the splats with their weights, eye space.
+
+    rays: (n,) numbers in the grid. color: (n, 3). normal: (n, 3) unit. depth: (n,).
+    roughness, metallic, f0: (n,).
+    """
+
+    rays: np.ndarray
+    color: np.ndarray
+    normal: np.ndarray
+    depth: np.ndarray
+    roughness: np.ndarray
+    metallic: np.ndarray
+    f0: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """M meetings of a ray with a splat: their numbers, rho^2 in the ellipse, depth along -Z, length of the direction."""
+
+    ray: np.ndarray
+    splat: np.ndarray
+    rho2: np.ndarray
+    depth: np.ndarray
+    stretch: np.ndarray
+
+
+def visible_surface(splats: Splats, grid: RayGrid, epsilon: float) -> Surface:
+    """What every ray of the grid sees. epsilon: in radii of each splat."""
+    splats, boxes = _splats_in(splats, grid)
+    push = epsilon * splats.radius()
+    visibility = np.full(grid.count, np.inf)
+    for hits in _hits(splats, boxes, grid):
+        # A point e moved back to e (1 + push / |e|) gains push / |direction| in depth, as |e| = depth |direction|.
+        np.minimum.at(visibility, hits.ray, hits.depth + push[hits.splat] / hits.stretch)
+    sums = np.zeros((11, grid.count))
+    attributes = np.concatenate([splats.color, splats.normal, splats.surface], axis=1).T
+    for hits in _hits(splats, boxes, grid):
+        seen = np.flatnonzero(hits.depth <= visibility[hits.ray])
+        ray, splat = hits.ray[seen], hits.splat[seen]
+        weight = np.exp(-2 * hits.rho2[seen])
+        sums[0] += np.bincount(ray, weight, grid.count)
+        sums[1] += np.bincount(ray, weight * hits.depth[seen], grid.count)
+        for total, values in zip(sums[2:], attributes, strict=True):
+            total += np.bincount(ray, weight * values[splat], grid.count)
+    return _averages(sums)
+
+
+def _averages(sums: np.ndarray) -> Surface:
+    rays = np.flatnonzero(sums[0] > 0)
+    depth, *columns = sums[1:, rays] / sums[0, rays]
+    color, normal = np.stack(columns[:3], axis=1), np.stack(columns[3:6], axis=1)
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+    return Surface(rays, color, normal, depth, *columns[6:])
+
+
+def _splats_in(splats: Splats, grid: RayGrid):
+    """The splats that may touch the grid, and their boxes in it."""
+    first, end = grid.boxes(*projected_bounds(splats, grid.camera))
+    rows = np.flatnonzero((first < end).all(axis=1))
+    return splats.take(rows), (first[rows], end[rows])
+
+
+def _hits(splats: Splats, boxes, grid: RayGrid):
+    """Every hit in the grid, in chunks."""
+    first, end = boxes
+    pairs = (end - first).prod(axis=1)
+    chunk = np.cumsum(pairs) // CHUNK_PAIRS
+    for rows in np.split(np.arange(len(pairs)), np.flatnonzero(np.diff(chunk)) + 1):
+        yield _intersections(splats, rows, *_candidates(rows, pairs[rows], first[rows], end[rows], grid), grid)
+
+
+def _candidates(rows, pairs, first, end, grid: RayGrid) -> tuple[np.ndarray, np.ndarray]:
+    """Ray and splat numbers of all pairs of a splat with a ray in its box, two (M,) arrays."""
+    within = np.arange(pairs.sum()) - np.repeat(np.cumsum(pairs) - pairs, pairs)
+    row, column = np.divmod(within, np.repeat(end[:, 0] - first[:, 0], pairs))
+    ray = (row + np.repeat(first[:, 1], pairs)) * grid.shape[1] + column + np.repeat(first[:, 0], pairs)
+    return ray, np.repeat(rows, pairs)
+
+
+def _intersections(splats: Splats, rows, ray, splat, grid: RayGrid) -> Hits:
+    """Ray and plane; the ellipse's coordinates by the dual basis of u and v; NaN (a ray in the plane) never hits."""
+    origin, direction = grid.rays(ray)
+    chunk = splats.take(rows)
+    local = splat - rows[0] if len(rows) else splat
+    square = np.einsum("ij,ij->i", chunk.plane, chunk.plane)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        dual_u, dual_v = np.cross(chunk.v, chunk.plane) / square, np.cross(chunk.plane, chunk.u) / square
+        plane, to_center = chunk.plane[local], chunk.center[local] - origin
+        depth = np.einsum("ij,ij->i", plane, to_center) / np.einsum("ij,ij->i", plane, direction)
+        offset = depth[:, None] * direction - to_center
+        a, b = (np.einsum("ij,ij->i", offset, dual[local]) for dual in (dual_u, dual_v))
+        rho2 = a * a + b * b
+        hit = np.flatnonzero((rho2 <= 1) & (depth >= grid.camera.near) & (depth <= grid.camera.far))
+    return Hits(ray[hit], splat[hit], rho2[hit], depth[hit], np.linalg.norm(direction[hit], axis=1))

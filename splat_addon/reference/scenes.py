@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Three scenes that the engine and the truth are compared on: numpy builders, the same for every run.
+
+Each returns a `Scene` and a `Camera`. The splats are ellipses of seeded random orientation and aspect, overlap
+about as much as converted meshes do, and carry colours with edges, so that filters have something to do.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..rendering.camera import Camera, look_at
+from ..rendering.scene import Instance, Light, Material, Scene
+from ..surfels import Surfels, axes_quaternions
+
+#: Half-axis of a splat in spacings sqrt(area / count): ellipses down to `LEAST_ASPECT` still overlap everywhere.
+OVERLAP = 1.6
+LEAST_ASPECT = 0.7
+
+SUN = Light("sun", (1.0, 0.95, 0.85), energy=2.5, direction=(0.5, 0.6, -1.0))
+LAMP = Light("point", (0.5, 0.7, 1.0), energy=120.0, position=(-2.0, -2.5, 1.5))
+WORLD = (0.05, 0.06, 0.08)
+
+
+def sphere(count: int = 20_000, size=(128, 128), seed: int = 0) -> tuple[Scene, Camera]:
+    """A unit sphere with coloured stripes of longitude and latitude, seen whole.
+
+    count: surfels, on a Fibonacci lattice (Swinbank & Purser 2006).
+    """
+    k = np.arange(count) + 0.5
+    z, longitude = 1 - 2 * k / count, k * math.pi * (3 - math.sqrt(5))
+    ring = np.sqrt(1 - z * z)
+    points = np.stack([ring * np.cos(longitude), ring * np.sin(longitude), z], axis=1)
+    stripes = (
+        np.floor(np.arctan2(points[:, 1], points[:, 0]) * 6 / math.pi) + np.floor(np.arcsin(z) * 6 / math.pi)
+    ) % 2
+    colors = _two_colors(stripes, (0.8, 0.25, 0.1), (0.85, 0.8, 0.7))
+    surfels = _surfels(points, points, colors, math.sqrt(4 * math.pi / count), seed)
+    camera = Camera.perspective(look_at((0, -3.2, 1.2), (0, 0, 0)), math.radians(42), size, near=0.1, far=10)
+    return Scene((Instance(surfels, materials=(Material(roughness=0.35),)),), (SUN, LAMP), WORLD), camera
+
+
+def checker_plane(
+    cells: int = 20, count: int = 40_000, elevation: float = 10.0, size=(128, 128), seed: int = 1
+) -> tuple[Scene, Camera]:
+    """A square of cells x cells black and white fields, seen from close by at `elevation` degrees, up to its far edge.
+
+    count: surfels, on the nearest square grid; cells smaller than a few surfels blur.
+    """
+    side = max(round(math.sqrt(count)), 1)
+    axis = (np.arange(side) + 0.5) * 2 / side - 1
+    x, y = (a.ravel() for a in np.meshgrid(axis, axis))
+    points = np.stack([x, y, np.zeros_like(x)], axis=1)
+    fields = (np.floor((x + 1) * cells / 2) + np.floor((y + 1) * cells / 2)) % 2
+    colors = _two_colors(fields, (0.02, 0.02, 0.03), (0.9, 0.88, 0.85))
+    normals = np.broadcast_to((0.0, 0.0, 1.0), points.shape)
+    surfels = _surfels(points, normals, colors, 2 / side, seed)
+    angle = math.radians(elevation)
+    eye = (0.15, -1.3 * math.cos(angle), 1.3 * math.sin(angle))
+    camera = Camera.perspective(look_at(eye, (0.0, 0.0, 0.0)), math.radians(50), size, near=0.05, far=10)
+    return Scene((surfels,), (SUN, LAMP), WORLD), camera
+
+
+def torus(count: int = 40_000, size=(128, 128), seed: int = 2) -> tuple[Scene, Camera]:
+    """Two tori one inside the other: a cut in the outer one shows the metal one, which it hides elsewhere.
+
+    count: surfels of both together, spread evenly over their area.
+    """
+    arcs = {"outer": (0.42, math.radians(-40), math.radians(250)), "inner": (0.24, 0.0, 2 * math.pi)}
+    areas = np.array([tube * (end - start) for tube, start, end in arcs.values()])
+    outer_count = round(count * areas[0] / areas.sum())
+    spacing = math.sqrt(2 * math.pi * areas.sum() / count)
+    outer = _torus_points(outer_count, *arcs["outer"])
+    inner = _torus_points(count - outer_count, *arcs["inner"])
+    stripes = np.floor(np.arctan2(outer[0][:, 1], outer[0][:, 0]) * 8 / math.pi) % 2
+    outer_surfels = _surfels(*outer, _two_colors(stripes, (0.05, 0.3, 0.5), (0.75, 0.75, 0.7)), spacing, seed)
+    inner_surfels = _surfels(*inner, np.tile((0.95, 0.6, 0.2), (len(inner[0]), 1)), spacing, seed + 1)
+    instances = (
+        Instance(outer_surfels, materials=(Material(roughness=0.5),)),
+        Instance(inner_surfels, materials=(Material(roughness=0.3, metallic=1.0),)),
+    )
+    camera = Camera.perspective(look_at((0.3, -3.6, 2.2), (0, 0, 0)), math.radians(42), size, near=0.1, far=10)
+    return Scene(instances, (SUN, LAMP), WORLD), camera
+
+
+def _torus_points(count: int, tube: float, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
+    """Points and normals, two (count, 3) arrays, of a torus of radius 1 around z between two angles.
+
+    A low-discrepancy sequence (Roberts 2018, "R2") put through the inverse of the area below an angle around
+    the tube, t + tube sin t, so that the points are even on the surface.
+    """
+    plastic = 1.32471795724474602596
+    along, around = (np.arange(count)[:, None] * (1 / plastic, 1 / plastic**2) % 1).T
+    angles = np.linspace(0, 2 * math.pi, 4097)
+    theta = np.interp(around * 2 * math.pi, angles + tube * np.sin(angles), angles)
+    phi = start + along * (end - start)
+    normals = np.stack([np.cos(theta) * np.cos(phi), np.cos(theta) * np.sin(phi), np.sin(theta)], axis=1)
+    rings = np.stack([np.cos(phi), np.sin(phi), np.zeros_like(phi)], axis=1)
+    return rings + tube * normals, normals
+
+
+def _two_colors(choice: np.ndarray, first, second) -> np.ndarray:
+    return np.where(choice[:, None] > 0, second, first)
+
+
+def _surfels(points, normals, colors, spacing: float, seed: int) -> Surfels:
+    """Ellipses in the planes of the normals, turned and stretched at random."""
+    random = np.random.default_rng(seed)
+    x, y = _tangents(normals, random.uniform(0, 2 * math.pi, len(points)))
+    long = OVERLAP * spacing * random.uniform(0.9, 1.1, len(points))
+    scales = np.stack([long, long * random.uniform(LEAST_ASPECT, 1, len(points))], axis=1)
+    return Surfels(
+        positions=points,
+        rotations=axes_quaternions(x, y, np.asarray(normals)),
+        scales=scales,
+        normals=normals,
+        colors=np.concatenate([colors, np.ones((len(points), 1))], axis=1),
+        materials=np.zeros(len(points), np.int32),
+    )
+
+
+def _tangents(normals: np.ndarray, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Right-handed unit tangents, two (N, 3) arrays, turned by angles about unit normals."""
+    across = np.where(np.abs(normals[:, :1]) < 0.9, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    x = np.cross(across, normals)
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    y = np.cross(normals, x)
+    cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
+    return x * cos + y * sin, y * cos - x * sin

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A scene's surfels as splats in eye space, and where they fall on the picture.
+
+First step of `render_exact`: everything that depends on one splat and the camera alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ..rendering.camera import Camera
+from ..rendering.scene import Instance, Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Splats:
+    """N ellipses {center + a u + b v : a^2 + b^2 <= 1} in eye space (right-handed, looking down -Z), float64.
+
+    center: (N, 3). u, v: (N, 3) conjugate half-diameters, world units. plane: (N, 3) u x v, not unit.
+    normal: (N, 3) unit shading normal turned to the viewer. color: (N, 3) scene-linear.
+    surface: (N, 3) roughness, metallic, reflectance at normal incidence.
+    """
+
+    center: np.ndarray
+    u: np.ndarray
+    v: np.ndarray
+    plane: np.ndarray
+    normal: np.ndarray
+    color: np.ndarray
+    surface: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.center)
+
+    def radius(self) -> np.ndarray:
+        """(N,) the longer half-diameter, world units: what a splat's epsilon is measured in."""
+        return np.sqrt(np.maximum(np.einsum("ij,ij->i", self.u, self.u), np.einsum("ij,ij->i", self.v, self.v)))
+
+    def take(self, rows: np.ndarray) -> Splats:
+        """The splats of some rows."""
+        return Splats(*(getattr(self, f.name)[rows] for f in fields(self)))
+
+
+def eye_splats(scene: Scene, camera: Camera) -> Splats:
+    """Every instance's surfels in the eye space of `camera`."""
+    parts = [_instance_splats(instance, camera) for instance in scene.surfels]
+    if not parts:
+        return Splats(*np.zeros((7, 0, 3)))
+    return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
+
+
+def _instance_splats(instance: Instance, camera: Camera) -> Splats:
+    surfels, matrix = instance.surfels, instance.matrix_world
+    to_view = camera.world_to_view()[:3, :3]
+    linear = to_view @ matrix[:3, :3]
+    # The camera is subtracted from the object's origin before the float32 positions are added: far from the
+    # world's origin this keeps their digits.
+    origin = to_view @ (matrix[:3, :3] @ surfels.origin + matrix[:3, 3] - camera.matrix_world[:3, 3])
+    center = surfels.positions.astype(np.float64) @ linear.T + origin
+    u, v = (axis.astype(np.float64) @ linear.T for axis in surfels.half_axes())
+    plane = np.cross(u, v)
+    normal = _facing_normals(surfels.normals.astype(np.float64) @ _cofactors(linear).T, plane, center, camera)
+    return Splats(center, u, v, plane, normal, surfels.colors[:, :3].astype(np.float64), _surface(instance))
+
+
+def _cofactors(linear: np.ndarray) -> np.ndarray:
+    """The cofactor matrix: det(linear) times the inverse transpose, and defined for singular maps too.
+
+    It carries normals just as well, because the factor's sign is undone by turning them to the viewer.
+    """
+    x, y, z = linear.T
+    return np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
+
+
+def _facing_normals(normal: np.ndarray, plane: np.ndarray, center: np.ndarray, camera: Camera) -> np.ndarray:
+    """(N, 3) unit shading normals on the side of each splat's plane that faces the viewer."""
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+    to_eye = np.broadcast_to((0.0, 0.0, 1.0), center.shape) if camera.is_orthographic else -center
+    faces_eye = np.einsum("ij,ij->i", plane, to_eye) >= 0
+    facing = np.where(faces_eye[:, None], plane, -plane)
+    return np.where(np.einsum("ij,ij->i", normal, facing)[:, None] < 0, -normal, normal)
+
+
+def _surface(instance: Instance) -> np.ndarray:
+    """(N, 3) roughness, metallic and f0 of each surfel's material."""
+    table = np.array([(m.roughness, m.metallic, ((m.ior - 1) / (m.ior + 1)) ** 2) for m in instance.materials])
+    return table[np.minimum(instance.surfels.materials, len(table) - 1)]
+
+
+def projected_bounds(splats: Splats, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
+    """Boxes on the camera's window plane that hold the projected ellipses: two (N, 2) arrays, low and high.
+
+    Exact for a splat in front of the near plane (facts on quality, section 1: centre-relative homography, the
+    extrema of m + (a cos + b sin) / (1 + g cos + h sin)); everything for one that touches it; empty
+    (low > high) for one that lies wholly before near or beyond far.
+    """
+    depth = -splats.center[:, 2]
+    reach = np.hypot(splats.u[:, 2], splats.v[:, 2])
+    middle, half = (_orthographic_boxes if camera.is_orthographic else _perspective_boxes)(splats, depth, reach)
+    # Rounding must not lose a ray at the rim.
+    half = half * (1 + 1e-9) + 1e-12 * np.abs(middle)
+    low, high = middle - half, middle + half
+    if not camera.is_orthographic:
+        everything = depth - reach * (1 + 1e-9) <= camera.near
+        low[everything], high[everything] = -np.inf, np.inf
+    outside = (depth + reach < camera.near * (1 - 1e-9)) | (depth - reach > camera.far * (1 + 1e-9))
+    low[outside], high[outside] = np.inf, -np.inf
+    return low, high
+
+
+def _orthographic_boxes(splats: Splats, depth, reach) -> tuple[np.ndarray, np.ndarray]:
+    return splats.center[:, :2], np.hypot(splats.u[:, :2], splats.v[:, :2])
+
+
+def _perspective_boxes(splats: Splats, depth, reach) -> tuple[np.ndarray, np.ndarray]:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        scale = 1 / depth[:, None]
+        middle = splats.center[:, :2] * scale
+        g, h = -splats.u[:, 2:] * scale, -splats.v[:, 2:] * scale
+        a, b = splats.u[:, :2] * scale - middle * g, splats.v[:, :2] * scale - middle * h
+        spread = 1 - g * g - h * h
+        offset = -(a * g + b * h) / spread
+        return middle + offset, np.sqrt(offset * offset + (a * a + b * b) / spread)
