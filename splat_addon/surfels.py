@@ -9,6 +9,7 @@ a model far from the world's origin loses nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 
@@ -86,13 +87,14 @@ class Surfels:
         """(N, 3) float32 unit normals of the ellipses' planes."""
         return quaternion_axes(self.rotations)[2]
 
-    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Two (3,) float64 corners, in object units, of a box that holds every ellipse (NaN when empty)."""
+    @cached_property
+    def local_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Two (3,) float64 corners, relative to `origin`, of a box that holds every ellipse (NaN when empty)."""
         if not len(self):
             return np.full(3, np.nan), np.full(3, np.nan)
         margin = float(self.scales.max())
         low, high = self.positions.min(axis=0), self.positions.max(axis=0)
-        return self.origin + low - margin, self.origin + high + margin
+        return low.astype(np.float64) - margin, high.astype(np.float64) + margin
 
 
 def valid_surfels(origin=(0.0, 0.0, 0.0), **arrays) -> tuple[Surfels, int]:

@@ -13,7 +13,7 @@ EMPTY_DEPTH = 1e10
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """float32 arrays, row 0 at the bottom.
+    """float32 arrays, row 0 at the bottom; None where `Settings.outputs` left one out.
 
     color: (h, w, 4) scene-linear, premultiplied.
     depth: (h, w) distance along the camera's -Z, world units, of the nearest sample in the pixel;
@@ -24,8 +24,8 @@ class Frame:
     stats: what was drawn, and milliseconds by pass where `Settings.profile` asked for them.
     """
 
-    color: np.ndarray
-    depth: np.ndarray
-    normal: np.ndarray
-    coverage: np.ndarray
+    color: np.ndarray | None
+    depth: np.ndarray | None
+    normal: np.ndarray | None
+    coverage: np.ndarray | None
     stats: dict = field(default_factory=dict)

@@ -14,6 +14,9 @@ SHADINGS = {
 
 MAX_SUPERSAMPLING = 16
 
+#: the arrays of a `Frame`
+OUTPUTS = ("color", "depth", "normal", "coverage")
+
 
 @dataclass(frozen=True)
 class Settings:
@@ -23,6 +26,7 @@ class Settings:
     epsilon: how far, in radii of each splat, the visibility pass moves it back along the view ray;
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
     transparent_film: leave the background out and keep its alpha at 0.
+    outputs: which arrays of the `Frame` are wanted; the others are None and cost nothing.
     profile: wait for the device after each pass, so that the frame's statistics hold a time for each.
     """
 
@@ -31,6 +35,7 @@ class Settings:
     supersampling: int = 2
     epsilon: float = 0.5
     transparent_film: bool = False
+    outputs: tuple[str, ...] = OUTPUTS
     profile: bool = False
 
     def __post_init__(self):
@@ -38,5 +43,7 @@ class Settings:
             raise ValueError(f"shading must be one of {', '.join(SHADINGS)}, not {self.shading!r}.")
         if int(self.supersampling) != self.supersampling or not 1 <= self.supersampling <= MAX_SUPERSAMPLING:
             raise ValueError(f"supersampling must be 1 to {MAX_SUPERSAMPLING}, not {self.supersampling}.")
+        if not set(self.outputs) <= set(OUTPUTS):
+            raise ValueError(f"outputs must be among {', '.join(OUTPUTS)}, not {self.outputs!r}.")
         if not (math.isfinite(self.epsilon) and self.epsilon >= 0):
             raise ValueError(f"epsilon must be 0 or more splat radii, not {self.epsilon}.")

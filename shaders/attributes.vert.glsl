@@ -1,0 +1,29 @@
+// References: Botsch et al. 2005, section 4 (deferred shading: attributes are blended, not colours).
+// Summary: each splat's corner, and its colour and shading normal turned to the viewer, whichever way it faces.
+
+#include "common/octahedron.glsl"
+#include "common/splat_fetch.glsl"
+#include "methods/{method}.glsl"
+
+void main() {
+  ivec2 texel = splat_texel(gl_VertexID >> 2);
+  vec2 corner = quad_corner(gl_VertexID);
+  vec4 position_data = texelFetch(surfels, texel, 0);
+  vec4 u_data = texelFetch(surfels, texel + ivec2(1, 0), 0);
+  vec4 v_data = texelFetch(surfels, texel + ivec2(2, 0), 0);
+  mat3 linear = mat3(splats.model_view);
+  vec3 position = (splats.model_view * vec4(position_data.xyz, 1.0)).xyz;
+  vec3 axis_u = linear * u_data.xyz;
+  vec3 axis_v = linear * v_data.xyz;
+  vec3 eye = footprint_corner(position, axis_u, axis_v, corner);
+  place_depth = vec3(corner, -eye.z);
+  color = texelFetch(surfels, texel + ivec2(3, 0), 0).rgb;
+  normal = normalize(mat3(splats.normal_matrix) * octahedral_decode(vec2(position_data.w, u_data.w)));
+  vec3 plane = cross(axis_u, axis_v);
+  float facing = splats.options.z > 0.5 ? plane.z : -dot(plane, position);
+  if (dot(normal, plane) * (facing < 0.0 ? -1.0 : 1.0) < 0.0) normal = -normal;
+#ifdef MATERIAL_TARGET
+  material = texelFetch(materials, ivec2(min(int(v_data.w), int(splats.options.w)), 0), 0).xyz;
+#endif
+  gl_Position = splats.projection * vec4(eye, 1.0);
+}

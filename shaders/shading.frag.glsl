@@ -1,0 +1,45 @@
+// References: Botsch et al. 2005, section 4 (one shading pass a frame, whatever the overdraw).
+// Summary: normalises the sums of every sample in the pixel, lights it and averages (a box filter); the depth is
+//          the nearest sample's, the normal the mean of the samples'.
+
+#include "shading/{shading}.glsl"
+
+const float EMPTY_DEPTH = 1e10;
+
+void main() {
+  int samples = int(shading.options.x);
+  ivec2 first = ivec2(gl_FragCoord.xy) * samples;
+  vec4 color_total = vec4(0.0);
+  vec4 normal_total = vec4(0.0);
+  float nearest = EMPTY_DEPTH;
+  for (int y = 0; y < samples; y++) {
+    for (int x = 0; x < samples; x++) {
+      ivec2 texel = first + ivec2(x, y);
+      vec4 c = texelFetch(color_sum, texel, 0);
+      if (c.w > 0.0) {
+        vec4 n = texelFetch(normal_sum, texel, 0) / c.w;
+        vec2 place = shading.window.xy + (vec2(texel) + 0.5) * shading.window.zw;
+        vec3 position = vec3(shading.options.y > 0.5 ? place : place * n.w, -n.w);
+        float size = length(n.xyz);
+        vec3 normal = size > 1e-6 ? n.xyz / size : vec3(0.0, 0.0, 1.0);
+#ifdef MATERIAL_TARGET
+        vec3 material = texelFetch(material_sum, texel, 0).xyz / c.w;
+#else
+        vec3 material = shading.material.xyz;
+#endif
+        color_total += vec4(shade(position, normal, c.rgb / c.w, material), 1.0);
+        normal_total += vec4(normal, 1.0);
+        nearest = min(nearest, n.w * shading.material.w);
+      }
+      else {
+        color_total += vec4(shading.world.rgb, 1.0) * shading.world.w;
+      }
+    }
+  }
+  float share = 1.0 / float(samples * samples);
+  combined = color_total * share;
+  depth = nearest;
+#ifdef NORMAL_OUTPUT
+  normal_coverage = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
+#endif
+}

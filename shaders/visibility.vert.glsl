@@ -1,0 +1,20 @@
+// References: Botsch, Hornung, Zwicker, Kobbelt, "High-Quality Surface Splatting on Today's GPUs", 2005, section 3
+//             (visibility splatting); the view-independent paper, section 5 (the offset along the view ray).
+// Summary: every splat moved away from the eye by its own epsilon, so that what lies within epsilon blends.
+
+#include "common/splat_fetch.glsl"
+#include "methods/{method}.glsl"
+
+void main() {
+  ivec2 texel = splat_texel(gl_VertexID >> 2);
+  vec2 corner = quad_corner(gl_VertexID);
+  mat3 linear = mat3(splats.model_view);
+  vec3 position = (splats.model_view * vec4(texelFetch(surfels, texel, 0).xyz, 1.0)).xyz;
+  vec3 axis_u = linear * texelFetch(surfels, texel + ivec2(1, 0), 0).xyz;
+  vec3 axis_v = linear * texelFetch(surfels, texel + ivec2(2, 0), 0).xyz;
+  vec3 eye = footprint_corner(position, axis_u, axis_v, corner);
+  place_depth = vec3(corner, -eye.z);
+  float offset = splats.options.x * sqrt(max(dot(axis_u, axis_u), dot(axis_v, axis_v)));
+  vec3 away = splats.options.z > 0.5 ? vec3(0.0, 0.0, -1.0) : eye / max(length(eye), 1e-30);
+  gl_Position = splats.projection * vec4(eye + away * offset, 1.0);
+}

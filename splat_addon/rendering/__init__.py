@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfels, camera and lights become a frame: `plan` decides the passes, `Renderer` runs them on a device.
+
+    scene, camera, settings -> plan -> view -> pipelines on a device -> Frame
+"""
+
+from .camera import Camera, look_at
+from .device import open_device
+from .frame import EMPTY_DEPTH, Frame
+from .plan import FramePlan, plan
+from .renderer import RenderCancelled, Renderer
+from .scene import Instance, Light, Material, Scene
+from .settings import Settings
+
+__all__ = (
+    "EMPTY_DEPTH",
+    "Camera",
+    "Frame",
+    "FramePlan",
+    "Instance",
+    "Light",
+    "Material",
+    "RenderCancelled",
+    "Renderer",
+    "Scene",
+    "Settings",
+    "look_at",
+    "open_device",
+    "plan",
+)

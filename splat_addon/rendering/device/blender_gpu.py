@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The device inside Blender: its `gpu` module, on whichever backend Blender runs (OpenGL, Vulkan, Metal).
+
+Two habits of that module shape this file: it keeps nothing alive that Python lets go of before the device has
+drawn (Vulkan then crashes), and its state leaks into Blender's own drawing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .interface import FORMATS, PipelineDescription
+from .quads import capacity, quad_indices
+
+_FORMAT_NAMES = {"DEPTH32F": "DEPTH_COMPONENT32F"}
+_BLEND_NAMES = {"none": "NONE", "add": "ADDITIVE_PREMULT"}
+
+
+class BlenderDevice:
+    """Usable inside RenderEngine callbacks, in the window, and (from 5.2) after gpu.init(); else RuntimeError."""
+
+    kind = "blender"
+
+    def __init__(self):
+        try:
+            import gpu
+        except ImportError as error:
+            raise RuntimeError("The blender device needs Blender's own Python (the gpu module).") from error
+        try:
+            self.backend = {"OPENGL": "OpenGL", "VULKAN": "Vulkan", "METAL": "Metal"}.get(
+                gpu.platform.backend_type_get(), gpu.platform.backend_type_get()
+            )
+            self.renderer = gpu.platform.renderer_get()
+        except SystemError as error:
+            raise RuntimeError(
+                "Blender has no graphics context here: in background mode it has one only inside a render."
+            ) from error
+        self._gpu = gpu
+        self._in_flight = []
+        self._quads = (0, None)
+        self._triangle = _batch(gpu, 3)
+
+    def texture(self, size, format, data=None):
+        return _Texture(self._gpu, size, format, data)
+
+    def target(self, colors, depth=None):
+        return _Target(self._gpu, colors, depth)
+
+    def pipeline(self, description):
+        return _Pipeline(self._gpu, description)
+
+    def draw_quads(self, pipeline, target, quads, block, textures):
+        if not quads:
+            return
+        if self._quads[0] < quads:
+            size = capacity(quads)
+            index = self._gpu.types.GPUIndexBuf(type="TRIS", seq=quad_indices(size))
+            self._quads = size, _batch(self._gpu, 4 * size, elem=index)
+        self._draw(pipeline, target, block, textures, self._quads[1], 6 * quads)
+
+    def draw_fullscreen(self, pipeline, target, block, textures):
+        self._draw(pipeline, target, block, textures, self._triangle, None)
+
+    def finish(self, target):
+        target.read_one()
+
+    def restore(self):
+        state = self._gpu.state
+        state.blend_set("NONE")
+        state.depth_test_set("NONE")
+        state.depth_mask_set(False)
+        self._in_flight.clear()
+
+    def _draw(self, pipeline, target, block, textures, batch, indices):
+        gpu, description, shader = self._gpu, pipeline.description, pipeline.shader
+        uniforms = gpu.types.GPUUniformBuf(np.ascontiguousarray(block, np.float32))
+        self._in_flight.append((uniforms, textures, pipeline, target, batch))
+        with target.framebuffer.bind():
+            gpu.state.blend_set(_BLEND_NAMES[description.blend])
+            gpu.state.depth_test_set("LESS_EQUAL" if description.depth_test else "NONE")
+            gpu.state.depth_mask_set(description.depth_write)
+            shader.bind()
+            shader.uniform_block(description.block[1], uniforms)
+            for name, texture in zip(description.samplers, textures, strict=True):
+                shader.uniform_sampler(name, texture.handle)
+            if indices is None:
+                batch.draw(shader)
+            else:
+                batch.draw_range(shader, elem_start=0, elem_count=indices)
+
+
+class _Texture:
+    def __init__(self, gpu, size, format, data):
+        self.size, self.format = tuple(size), format
+        options = {}
+        if data is not None:
+            values = np.ascontiguousarray(data, np.float32)
+            options["data"] = gpu.types.Buffer("FLOAT", values.size, values.ravel())
+        self.handle = gpu.types.GPUTexture(self.size, format=_FORMAT_NAMES.get(format, format), **options)
+
+
+class _Target:
+    def __init__(self, gpu, colors, depth):
+        self._gpu = gpu
+        self.size = (colors[0] if colors else depth).size
+        self._colors, self._depth = colors, depth  # the framebuffer does not keep them alive
+        slots = {"color_slots": [c.handle for c in colors]} if colors else {}
+        if depth:
+            slots["depth_slot"] = depth.handle
+        self.framebuffer = gpu.types.GPUFrameBuffer(**slots)
+
+    def clear(self, color=None, depth=None):
+        values = {}
+        if color is not None:
+            values["color"] = (color,) * 4
+        if depth is not None:
+            values["depth"] = depth
+        with self.framebuffer.bind():
+            self._gpu.state.depth_mask_set(True)
+            self.framebuffer.clear(**values)
+
+    def read(self, slot):
+        width, height = self.size
+        return self._read(slot, width, height, FORMATS[self._colors[slot].format])
+
+    def read_one(self):
+        """One pixel: the device must finish to hand it over."""
+        if self._colors:
+            self._read(0, 1, 1, FORMATS[self._colors[0].format])
+        else:
+            with self.framebuffer.bind():
+                self.framebuffer.read_depth(0, 0, 1, 1)
+
+    def _read(self, slot, width, height, channels):
+        # a Buffer over numpy memory: no copy, and free of the strides bug of Blender 4.5 to 5.1
+        pixels = np.empty((height, width, channels), np.float32)
+        with self.framebuffer.bind():
+            self.framebuffer.read_color(
+                0, 0, width, height, channels, slot, "FLOAT", data=self._gpu.types.Buffer("FLOAT", pixels.shape, pixels)
+            )
+        return pixels
+
+
+class _Pipeline:
+    def __init__(self, gpu, description: PipelineDescription):
+        self.description = description
+        types = gpu.types
+        info = types.GPUShaderCreateInfo()
+        struct, instance, fields = description.block
+        members = " ".join(f"{kind} {name};" for kind, name in fields)
+        info.typedef_source(f"struct {struct} {{ {members} }};\n")
+        info.uniform_buf(0, struct, instance)
+        for name in description.defines:
+            info.define(name)
+        if description.varyings:
+            interface = types.GPUStageInterfaceInfo(f"{description.name}_varyings")
+            for interpolation, kind, name in description.varyings:
+                getattr(interface, interpolation)(kind.upper(), name)
+            info.vertex_out(interface)
+        for slot, name in enumerate(description.samplers):
+            info.sampler(slot, "FLOAT_2D", name)
+        for slot, (kind, name) in enumerate(description.outputs):
+            info.fragment_out(slot, kind.upper(), name)
+        info.vertex_source(description.vertex)
+        info.fragment_source(description.fragment)
+        try:
+            self.shader = gpu.shader.create_from_info(info)
+        except Exception as error:
+            raise RuntimeError(
+                f"The shader of pipeline {description.name} does not compile ({error}); the driver's log is on stderr."
+            ) from error
+
+
+def _batch(gpu, vertices, **elements):
+    """A batch without attributes: the vertex shader pulls its data from textures."""
+    types = gpu.types
+    return types.GPUBatch(type="TRIS", buf=types.GPUVertBuf(types.GPUVertFormat(), vertices), **elements)

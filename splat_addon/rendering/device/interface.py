@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the renderer asks of a graphics API: four nouns, no hidden state.
+
+*Device* makes the other three. *Texture*: pixels on the device. *Target*: textures to draw into.
+*Pipeline*: a program together with its complete state, so no draw can be disturbed by another.
+A pipeline is described once (`PipelineDescription`); each device declares its inputs and outputs in its own
+way, and the GLSL text of `main` and its functions is the same, word for word, on both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+#: format -> channels
+FORMATS = {"RGBA32F": 4, "R32F": 1, "DEPTH32F": 1}
+
+#: blend mode -> what happens to a fragment
+BLENDS = ("none", "add")
+
+
+@dataclass(frozen=True)
+class PipelineDescription:
+    """name: for error messages. vertex, fragment: GLSL without declarations of the inputs and outputs below.
+    block: (struct name, instance name, ((type, field), ...)) of the one uniform block, std140; types mat4 and vec4 only.
+    samplers: names of 2D float textures, in slot order.
+    varyings: (interpolation "smooth" | "flat", type, name) from vertex to fragment.
+    outputs: (type, name) in slot order; empty for depth only.
+    defines: names that the text tests with #ifdef.
+    blend: "none" or "add" (all channels summed). depth_test: less or equal.
+    """
+
+    name: str
+    vertex: str
+    fragment: str
+    block: tuple[str, str, tuple[tuple[str, str], ...]]
+    samplers: tuple[str, ...] = ()
+    varyings: tuple[tuple[str, str, str], ...] = ()
+    outputs: tuple[tuple[str, str], ...] = ()
+    defines: tuple[str, ...] = ()
+    blend: str = "none"
+    depth_test: bool = False
+    depth_write: bool = False
+
+
+class Texture(Protocol):
+    """size: width, height. format: a name in `FORMATS`."""
+
+    size: tuple[int, int]
+    format: str
+
+
+class Target(Protocol):
+    """Textures to draw into, all of one size."""
+
+    size: tuple[int, int]
+
+    def clear(self, color: float | None = None, depth: float | None = None) -> None:
+        """Fill every colour texture with one value, and the depth texture with another."""
+
+    def read(self, slot: int) -> np.ndarray:
+        """The pixels of a colour texture: (h, w, channels) float32, row 0 at the bottom."""
+
+
+class Pipeline(Protocol):
+    description: PipelineDescription
+
+
+class Device(Protocol):
+    """kind: its name in `DEVICES`. backend: "OpenGL", "Vulkan" ... renderer: what the driver calls itself."""
+
+    kind: str
+    backend: str
+    renderer: str
+
+    def texture(self, size: tuple[int, int], format: str, data: np.ndarray | None = None) -> Texture:
+        """data: (h, w, channels) float32, row 0 first; without it the contents are undefined."""
+
+    def target(self, colors: list[Texture], depth: Texture | None = None) -> Target:
+        """Colour slots in order, and a depth texture. Make one per frame: framebuffers belong to one context."""
+
+    def pipeline(self, description: PipelineDescription) -> Pipeline:
+        """Compile and link. Raises RuntimeError with the pipeline's name where the driver refuses."""
+
+    def draw_quads(self, pipeline, target, quads: int, block: np.ndarray, textures: list[Texture]) -> None:
+        """Draw quads 0 to `quads`: vertex 4 q + c is corner c of quad q, triangles (0, 1, 2), (2, 1, 3).
+
+        block: the uniform block's float32 values in std140 order (matrices column by column).
+        """
+
+    def draw_fullscreen(self, pipeline, target, block: np.ndarray, textures: list[Texture]) -> None:
+        """Draw one triangle of three vertices, 0 to 2, that `fullscreen.vert.glsl` stretches over the target."""
+
+    def finish(self, target: Target) -> None:
+        """Wait until what was drawn into the target is done."""
+
+    def restore(self) -> None:
+        """Give the graphics state back as it was found and let go of what only drawing needed."""

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The device outside Blender: moderngl, on EGL where the platform has it; for scripts, measurements and tests."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+
+import numpy as np
+
+from .interface import FORMATS, PipelineDescription
+from .quads import capacity, quad_indices
+
+_GL_TEXTURE_2D, _GL_DEPTH_COMPONENT, _GL_FLOAT, _GL_DEPTH_COMPONENT32F = 0x0DE1, 0x1902, 0x1406, 0x8CAC
+
+
+class StandaloneDevice:
+    """A context of its own. Raises RuntimeError where none can be made."""
+
+    kind = "standalone"
+    backend = "OpenGL"
+
+    def __init__(self):
+        try:
+            import moderngl
+        except ImportError as error:
+            raise RuntimeError("The standalone device needs the Python package moderngl; install it with pip.") from error
+        if "bpy" in sys.modules:
+            raise RuntimeError(
+                "The standalone device takes Blender's graphics context away; open it in a process without bpy."
+            )
+        try:
+            options = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+            self._context = moderngl.create_context(standalone=True, require=330, **options)
+        except Exception as error:
+            raise RuntimeError(f"No OpenGL 3.3 context could be made without a window: {error}") from error
+        self._context.gc_mode = "auto"
+        self.renderer = self._context.info["GL_RENDERER"]
+        self._indices = None
+        self._uniforms = {}
+
+    def texture(self, size, format, data=None):
+        return _Texture(self._context, size, format, data)
+
+    def target(self, colors, depth=None):
+        return _Target(self._context, colors, depth)
+
+    def pipeline(self, description):
+        return _Pipeline(self._context, description)
+
+    def draw_quads(self, pipeline, target, quads, block, textures):
+        if not quads:
+            return
+        self._bind(pipeline, target, block, textures)
+        pipeline.vertex_array(self._quad_indices(quads)).render(vertices=6 * quads)
+
+    def draw_fullscreen(self, pipeline, target, block, textures):
+        self._bind(pipeline, target, block, textures)
+        pipeline.vertex_array(None).render(vertices=3)
+
+    def finish(self, target):
+        self._context.finish()
+
+    def restore(self):
+        self._context.gc()
+
+    def _bind(self, pipeline, target, block, textures):
+        context, description = self._context, pipeline.description
+        target.framebuffer.use()
+        context.viewport = (0, 0, *target.size)
+        context.enable_only(
+            (context.BLEND if description.blend == "add" else 0) | (context.DEPTH_TEST if description.depth_test else 0)
+        )
+        context.blend_func = context.ONE, context.ONE
+        context.depth_func = "<="
+        target.framebuffer.depth_mask = description.depth_write
+        for slot, texture in enumerate(textures):
+            texture.handle.use(slot)
+        data = np.ascontiguousarray(block, np.float32).tobytes()
+        if len(data) not in self._uniforms:
+            self._uniforms[len(data)] = context.buffer(reserve=len(data), dynamic=True)
+        self._uniforms[len(data)].orphan()
+        self._uniforms[len(data)].write(data)
+        self._uniforms[len(data)].bind_to_uniform_block(0)
+
+    def _quad_indices(self, quads):
+        if self._indices is None or self._indices.size < 24 * quads:
+            self._indices = self._context.buffer(quad_indices(capacity(quads)).tobytes())
+        return self._indices
+
+
+class _Texture:
+    def __init__(self, context, size, format, data):
+        self.size, self.format = tuple(size), format
+        if format == "DEPTH32F":
+            self.handle = context.depth_texture(self.size)
+            _respecify_depth_as_32f(context, self.handle)
+        else:
+            values = None if data is None else np.ascontiguousarray(data, np.float32).tobytes()
+            self.handle = context.texture(self.size, FORMATS[format], values, dtype="f4")
+            self.handle.filter = context.NEAREST, context.NEAREST
+
+
+class _Target:
+    def __init__(self, context, colors, depth):
+        self.size = (colors[0] if colors else depth).size
+        self._colors = colors
+        self.framebuffer = context.framebuffer([c.handle for c in colors], depth and depth.handle)
+
+    def clear(self, color=None, depth=None):
+        # moderngl clears everything at once and honours the write masks, so each half is masked by hand.
+        framebuffer = self.framebuffer
+        framebuffer.depth_mask = depth is not None
+        if self._colors:
+            framebuffer.color_mask = [(color is not None,) * 4] * len(self._colors)
+        value = color or 0.0
+        framebuffer.clear(value, value, value, value, depth=1.0 if depth is None else depth)
+        if self._colors:
+            framebuffer.color_mask = [(True,) * 4] * len(self._colors)
+
+    def read(self, slot):
+        width, height = self.size
+        channels = FORMATS[self._colors[slot].format]
+        data = self.framebuffer.read(components=channels, attachment=slot, dtype="f4", alignment=1)
+        return np.frombuffer(data, np.float32).reshape(height, width, channels)
+
+
+class _Pipeline:
+    def __init__(self, context, description: PipelineDescription):
+        self.description = description
+        self._context = context
+        self._arrays = {}
+        try:
+            self.program = context.program(
+                vertex_shader=_declared(description, description.vertex, "out"),
+                fragment_shader=_declared(description, description.fragment, "in"),
+            )
+        except Exception as error:
+            raise RuntimeError(f"The shader of pipeline {description.name} does not compile: {error}") from error
+        for slot, name in enumerate(description.samplers):
+            if name in self.program:
+                self.program[name].value = slot
+        struct = description.block[0]
+        if struct + "Block" in self.program:
+            self.program[struct + "Block"].binding = 0
+
+    def vertex_array(self, indices):
+        key = indices and indices.glo
+        if key not in self._arrays:
+            self._arrays = {key: self._context.vertex_array(self.program, [], index_buffer=indices)}
+        return self._arrays[key]
+
+
+def _declared(description: PipelineDescription, source: str, varying: str) -> str:
+    struct, instance, fields = description.block
+    lines = ["#version 330"]
+    lines += [f"#define {name}" for name in description.defines]
+    members = " ".join(f"{kind} {name};" for kind, name in fields)
+    lines += [f"struct {struct} {{ {members} }};", f"layout(std140) uniform {struct}Block {{ {struct} {instance}; }};"]
+    lines += [f"uniform sampler2D {name};" for name in description.samplers]
+    lines += [f"{interpolation} {varying} {kind} {name};" for interpolation, kind, name in description.varyings]
+    if varying == "in":
+        lines += [f"layout(location = {n}) out {kind} {name};" for n, (kind, name) in enumerate(description.outputs)]
+    return "\n".join(lines) + "\n#line 1\n" + source
+
+
+def _respecify_depth_as_32f(context, texture):
+    """moderngl makes 24-bit depth, which costs up to 50 dB at a near plane of 1e-4; Blender's is 32-bit float."""
+    load = context.mglo._context.load_opengl_function
+    integer, unsigned, pointer = ctypes.c_int, ctypes.c_uint, ctypes.c_void_p
+    bind = ctypes.CFUNCTYPE(None, unsigned, unsigned)(load("glBindTexture"))
+    image = ctypes.CFUNCTYPE(
+        None, unsigned, integer, integer, integer, integer, integer, unsigned, unsigned, pointer
+    )(load("glTexImage2D"))  # fmt: skip
+    bind(_GL_TEXTURE_2D, texture.glo)
+    image(_GL_TEXTURE_2D, 0, _GL_DEPTH_COMPONENT32F, *texture.size, 0, _GL_DEPTH_COMPONENT, _GL_FLOAT, None)

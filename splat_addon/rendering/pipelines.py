@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The inputs, outputs and state of each pass's pipeline, as values that any device can build."""
+
+from __future__ import annotations
+
+from .device.interface import PipelineDescription
+from .plan import FramePlan, PlannedPass
+from .shaders import load
+
+#: options: epsilon, near, 1 for orthographic, last material's index
+_SPLATS = (
+    "Splats",
+    "splats",
+    (("mat4", "model_view"), ("mat4", "projection"), ("mat4", "normal_matrix"), ("vec4", "options")),
+)
+#: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
+#: material: of all surfels, and in w the view-to-world length. options: samples, 1 for orthographic, lights.
+_SHADING = (
+    "Shading",
+    "shading",
+    (("mat4", "view_to_world"), ("vec4", "window"), ("vec4", "world"), ("vec4", "material"), ("vec4", "options")),
+)
+_MATERIAL_VARYING = ("flat", "vec3", "material")
+
+
+def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
+    """The pipeline of one planned pass."""
+    return _DESCRIPTIONS[planned.name](planned, frame)
+
+
+def _visibility(planned, frame):
+    return PipelineDescription(
+        name="visibility",
+        vertex=load("visibility.vert.glsl", method=frame.method),
+        fragment=load("visibility.frag.glsl", method=frame.method),
+        block=_SPLATS,
+        samplers=("surfels",),
+        varyings=(("smooth", "vec3", "place_depth"),),
+        depth_test=True,
+        depth_write=True,
+    )
+
+
+def _attributes(planned, frame):
+    with_material = "material_sum" in planned.writes
+    return PipelineDescription(
+        name="attributes",
+        vertex=load("attributes.vert.glsl", method=frame.method),
+        fragment=load("attributes.frag.glsl", method=frame.method),
+        block=_SPLATS,
+        samplers=("surfels", "materials") if with_material else ("surfels",),
+        varyings=(
+            ("smooth", "vec3", "place_depth"),
+            ("flat", "vec3", "color"),
+            ("flat", "vec3", "normal"),
+            *((_MATERIAL_VARYING,) if with_material else ()),
+        ),
+        outputs=tuple(("vec4", name) for name in planned.writes),
+        defines=("MATERIAL_TARGET",) if with_material else (),
+        blend="add",
+        depth_test=True,
+    )
+
+
+def _shading(planned, frame):
+    kinds = {"depth": "float"}
+    return PipelineDescription(
+        name="shading",
+        vertex=load("fullscreen.vert.glsl"),
+        fragment=load("shading.frag.glsl", shading=frame.shading),
+        block=_SHADING,
+        samplers=(*planned.reads, "lights"),
+        outputs=tuple((kinds.get(name, "vec4"), name) for name in planned.writes),
+        defines=(
+            *(("MATERIAL_TARGET",) if "material_sum" in planned.reads else ()),
+            *(("NORMAL_OUTPUT",) if "normal_coverage" in planned.writes else ()),
+        ),
+    )
+
+
+_DESCRIPTIONS = {"visibility": _visibility, "attributes": _attributes, "shading": _shading}

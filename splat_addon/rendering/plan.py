@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a frame needs, decided before anything is allocated: a pure function from scene, camera and settings.
+
+Nothing exists on the device that the plan does not name, each entry has its reason, and what was left out has
+one too: print the plan to read them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .camera import Camera
+from .methods import get_method
+from .packing import shared_material
+from .scene import Material, Scene
+from .settings import Settings
+
+#: A target's edge in samples; a larger picture is rendered in tiles, so that memory stays below about 1 GB.
+MAX_TARGET_EDGE = 4096
+
+#: texture -> (format, whether it holds every sample of a pixel or only the pixel)
+TEXTURES = {
+    "visibility_depth": ("DEPTH32F", True),
+    "color_sum": ("RGBA32F", True),
+    "normal_sum": ("RGBA32F", True),
+    "material_sum": ("RGBA32F", True),
+    "combined": ("RGBA32F", False),
+    "depth": ("R32F", False),
+    "normal_coverage": ("RGBA32F", False),
+}
+
+
+@dataclass(frozen=True)
+class PlannedPass:
+    """name: also of its pipeline. reads, writes: names of textures in slot order. reason: why the frame needs it."""
+
+    name: str
+    reason: str
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class FramePlan:
+    """tiles: (x, y, width, height) in pixels, each rendered with all passes.
+    samples: N of the N x N samples a pixel. material: the one that all surfels share, or None.
+    left_out: (what, why), of what other scenes or settings would need.
+    """
+
+    tiles: tuple[tuple[int, int, int, int], ...]
+    samples: int
+    method: str
+    shading: str
+    material: Material | None
+    passes: tuple[PlannedPass, ...]
+    left_out: tuple[tuple[str, str], ...]
+
+    @property
+    def textures(self) -> tuple[str, ...]:
+        """Names of every texture that some pass writes, once each."""
+        return tuple(dict.fromkeys(name for p in self.passes for name in p.writes))
+
+    def __str__(self) -> str:
+        lines = [f"{len(self.tiles)} tile(s), {self.samples} x {self.samples} samples, method {self.method}"]
+        lines += [f"  {p.name}: {', '.join(p.writes)} <- {', '.join(p.reads) or 'splats'}; {p.reason}" for p in self.passes]
+        lines += [f"  without {what}: {why}" for what, why in self.left_out]
+        return "\n".join(lines)
+
+
+def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
+    """The passes that this picture needs. Raises ValueError for an unknown method."""
+    get_method(settings.method)
+    material = shared_material(scene.surfels)
+    passes, left_out = [], []
+    if not any(len(instance.surfels) for instance in scene.surfels):
+        left_out.append(("all passes", "the scene has no surfels, so the picture is its background"))
+    else:
+        sums = ["color_sum", "normal_sum"]
+        if settings.shading == "flat":
+            left_out.append(("material_sum", "flat shading does not look at materials"))
+        elif material is not None:
+            left_out.append(("material_sum", "all surfels have one material"))
+        else:
+            sums.append("material_sum")
+        outputs = ["combined", "depth"]
+        if {"normal", "coverage"} & set(settings.outputs):
+            outputs.append("normal_coverage")
+        else:
+            left_out.append(("normal_coverage", "neither the normal nor the coverage is asked for"))
+        passes = [
+            PlannedPass("visibility", "splats may hide one another", (), ("visibility_depth",)),
+            PlannedPass("attributes", "overlapping splats blend", ("visibility_depth",), (*sums,)),
+            PlannedPass("shading", f"{settings.shading}, once a sample", (*sums,), (*outputs,)),
+        ]
+        if any((instance.surfels.colors[:, 3] < 1).any() for instance in scene.surfels):
+            left_out.append(("transparency", "surfels whose opacity is below 1 are drawn opaque"))
+    return FramePlan(
+        _tiles(camera.size, MAX_TARGET_EDGE // settings.supersampling),
+        settings.supersampling,
+        settings.method,
+        settings.shading,
+        material,
+        tuple(passes),
+        tuple(left_out),
+    )
+
+
+def _tiles(size: tuple[int, int], edge: int) -> tuple[tuple[int, int, int, int], ...]:
+    width, height = size
+    return tuple(
+        (x, y, min(edge, width - x), min(edge, height - y))
+        for y in range(0, height, edge)
+        for x in range(0, width, edge)
+    )

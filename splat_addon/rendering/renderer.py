@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs a frame's plan on a device, and keeps on the device what the next frame can use again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from time import perf_counter
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from .camera import Camera
+from .device import Device
+from .frame import EMPTY_DEPTH, Frame
+from .packing import pack_lights, pack_materials, pack_surfels
+from .pipelines import describe
+from .plan import TEXTURES, FramePlan, plan
+from .scene import Scene
+from .settings import Settings
+from .view import View, look
+
+#: Told the share done (0 to 1) and what comes next; returning False cancels.
+Progress = Callable[[float, str], bool]
+
+
+class RenderCancelled(Exception):
+    """The progress callback returned False."""
+
+
+class Renderer:
+    """Draws scenes on one device. Surfels, pipelines and textures stay on it between frames; surfels leave it with
+    their last Python reference, the rest with the renderer (or `release`).
+    """
+
+    def __init__(self, device: Device):
+        self.device = device
+        self._surfels = WeakKeyDictionary()
+        self._pipelines = {}
+        self._textures = {}
+
+    def render(self, scene: Scene, camera: Camera, settings: Settings | None = None, progress: Progress | None = None) -> Frame:
+        """The whole picture in numpy arrays.
+
+        Raises ValueError for settings that do not fit, RuntimeError where the device fails, RenderCancelled.
+        """
+        settings = settings or Settings()
+        frame_plan = plan(scene, camera, settings)
+        wanted = settings.outputs
+        width, height = camera.size
+        background = background_pixel(scene, settings)
+        frame = Frame(
+            color=np.full((height, width, 4), background, np.float32) if "color" in wanted else None,
+            depth=np.full((height, width), EMPTY_DEPTH, np.float32) if "depth" in wanted else None,
+            normal=np.zeros((height, width, 3), np.float32) if "normal" in wanted else None,
+            coverage=np.zeros((height, width), np.float32) if "coverage" in wanted else None,
+            stats=self._new_stats(frame_plan),
+        )
+        started = perf_counter()
+        try:
+            for (x, y, w, h), target in self._tiles(scene, camera, settings, frame_plan, frame.stats, progress):
+                area = slice(y, y + h), slice(x, x + w)
+                if frame.color is not None:
+                    frame.color[area] = target.read(0)
+                if frame.depth is not None:
+                    frame.depth[area] = target.read(1)[..., 0]
+                if frame.normal is not None or frame.coverage is not None:
+                    normal_coverage = target.read(2)
+                    if frame.normal is not None:
+                        frame.normal[area] = normal_coverage[..., :3]
+                    if frame.coverage is not None:
+                        frame.coverage[area] = normal_coverage[..., 3]
+        finally:
+            self.device.restore()
+        frame.stats["milliseconds"] = 1e3 * (perf_counter() - started)
+        return frame
+
+    def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[tuple[tuple[int, int, int, int], object]]:
+        """For a viewport: yields each tile, (x, y, width, height) in pixels, and the colour texture to show there.
+
+        A texture is good until the next tile is asked for.
+        """
+        frame_plan = plan(scene, camera, settings)
+        if not frame_plan.passes:
+            pixel = np.array(background_pixel(scene, settings), np.float32).reshape(1, 1, 4)
+            yield (0, 0, *camera.size), self.device.texture((1, 1), "RGBA32F", pixel)
+            return
+        try:
+            for tile, _ in self._tiles(scene, camera, settings, frame_plan, self._new_stats(frame_plan), None):
+                self.device.restore()
+                yield tile, self._texture("combined", tile[2:], 1)
+        finally:
+            self.device.restore()
+
+    def release(self) -> None:
+        """Let go of everything on the device."""
+        self._surfels.clear()
+        self._pipelines.clear()
+        self._textures.clear()
+
+    def _new_stats(self, frame_plan: FramePlan) -> dict:
+        return {
+            "backend": self.device.backend,
+            "device": self.device.renderer,
+            "plan": frame_plan,
+            "splats": 0,
+            "instances": 0,
+            "instances_outside": 0,
+            "instances_degenerate": 0,
+            "passes": {},
+        }
+
+    def _tiles(self, scene, camera, settings, frame_plan, stats, progress):
+        if not frame_plan.passes:
+            return
+        self._forget_other_sizes(frame_plan)
+        for number, tile in enumerate(frame_plan.tiles):
+            tile_camera = camera.cropped(*tile)
+            view = look(scene, tile_camera, settings.epsilon)
+            stats["splats"] += sum(len(p.instance.surfels) for p in view.placed)
+            stats["instances"] += len(view.placed)
+            stats["instances_outside"] += view.outside
+            stats["instances_degenerate"] = view.degenerate
+            target = None
+            for step, planned in enumerate(frame_plan.passes):
+                done = (number + step / len(frame_plan.passes)) / len(frame_plan.tiles)
+                if progress and progress(done, planned.name) is False:
+                    raise RenderCancelled
+                started = perf_counter()
+                target = _RUN[planned.name](self, planned, frame_plan, scene, tile_camera, settings, view)
+                if settings.profile:
+                    self.device.finish(target)
+                    elapsed = 1e3 * (perf_counter() - started)
+                    stats["passes"][planned.name] = stats["passes"].get(planned.name, 0.0) + elapsed
+            yield tile, target
+
+    def _run_visibility(self, planned, frame_plan, scene, camera, settings, view):
+        target = self.device.target([], self._texture("visibility_depth", camera.size, frame_plan.samples))
+        target.clear(depth=1.0)
+        self._draw_splats(planned, frame_plan, camera, settings, view, target)
+        return target
+
+    def _run_attributes(self, planned, frame_plan, scene, camera, settings, view):
+        size, samples = camera.size, frame_plan.samples
+        colors = [self._texture(name, size, samples) for name in planned.writes]
+        target = self.device.target(colors, self._texture("visibility_depth", size, samples))
+        target.clear(color=0.0)
+        self._draw_splats(planned, frame_plan, camera, settings, view, target)
+        return target
+
+    def _run_shading(self, planned, frame_plan, scene, camera, settings, view):
+        size, samples = camera.size, frame_plan.samples
+        target = self.device.target([self._texture(name, size, 1) for name in planned.writes])
+        lights = self.device.texture(
+            (2, max(len(scene.lights), 1)), "RGBA32F", pack_lights(scene.lights, camera.world_to_view(), view.scale)
+        )
+        reads = [self._texture(name, size, samples) for name in planned.reads]
+        block = _shading_block(scene, camera, settings, frame_plan, view)
+        self.device.draw_fullscreen(self._pipeline(planned, frame_plan), target, block, [*reads, lights])
+        return target
+
+    def _draw_splats(self, planned, frame_plan, camera, settings, view: View, target):
+        pipeline = self._pipeline(planned, frame_plan)
+        with_materials = "materials" in pipeline.description.samplers
+        for placed in view.placed:
+            instance = placed.instance
+            textures = [self._surfel_texture(instance.surfels)]
+            if with_materials:
+                data = pack_materials(instance.materials)
+                textures.append(self.device.texture((data.shape[1], 1), "RGBA32F", data))
+            options = settings.epsilon, view.near, camera.is_orthographic, len(instance.materials) - 1
+            normal_matrix = np.eye(4)
+            normal_matrix[:3, :3] = placed.normal_matrix
+            block = _block(placed.model_view, view.projection, normal_matrix, options)
+            self.device.draw_quads(pipeline, target, len(instance.surfels), block, textures)
+
+    def _surfel_texture(self, surfels):
+        if surfels not in self._surfels:
+            texels = pack_surfels(surfels)
+            self._surfels[surfels] = self.device.texture(texels.shape[1::-1], "RGBA32F", texels)
+        return self._surfels[surfels]
+
+    def _texture(self, name, size, samples):
+        format, per_sample = TEXTURES[name]
+        factor = samples if per_sample else 1
+        key = name, size[0] * factor, size[1] * factor
+        if key not in self._textures:
+            self._textures[key] = self.device.texture(key[1:], format)
+        return self._textures[key]
+
+    def _forget_other_sizes(self, frame_plan):
+        """Textures of a size or kind that this frame does not use are not kept for one that may."""
+        sizes = {tile[2:] for tile in frame_plan.tiles}
+        factor = {name: frame_plan.samples if TEXTURES[name][1] else 1 for name in frame_plan.textures}
+        wanted = {(name, w * f, h * f) for name, f in factor.items() for w, h in sizes}
+        self._textures = {key: texture for key, texture in self._textures.items() if key in wanted}
+
+    def _pipeline(self, planned, frame_plan):
+        description = describe(planned, frame_plan)
+        if description not in self._pipelines:
+            self._pipelines[description] = self.device.pipeline(description)
+        return self._pipelines[description]
+
+
+_RUN = {
+    "visibility": Renderer._run_visibility,
+    "attributes": Renderer._run_attributes,
+    "shading": Renderer._run_shading,
+}
+
+
+def background_pixel(scene: Scene, settings: Settings) -> tuple[float, float, float, float]:
+    """Premultiplied colour of a pixel that nothing covers."""
+    return (0.0, 0.0, 0.0, 0.0) if settings.transparent_film else (*scene.world, 1.0)
+
+
+def _block(*parts) -> np.ndarray:
+    """std140: matrices column by column, vectors of four."""
+    return np.concatenate([np.asarray(p, np.float64).T.ravel() for p in parts]).astype(np.float32)
+
+
+def _shading_block(scene, camera, settings, frame_plan, view):
+    left, right, bottom, top = camera.window
+    units = view.scale if camera.is_orthographic else 1.0
+    samples = frame_plan.samples
+    step_x, step_y = (right - left) / (camera.size[0] * samples), (top - bottom) / (camera.size[1] * samples)
+    view_to_world = np.eye(4)
+    view_to_world[:3, :3] = camera.matrix_world[:3, :3]
+    material = (0.0,) * 3 if frame_plan.material is None else pack_materials((frame_plan.material,))[0, 0, :3]
+    return _block(
+        view_to_world,
+        (left * units, bottom * units, step_x * units, step_y * units),
+        (*scene.world, 0.0 if settings.transparent_film else 1.0),
+        (*material, 1.0 / view.scale),
+        (samples, camera.is_orthographic, len(scene.lights), 0.0),
+    )

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the camera sees, made well-conditioned for float32: camera-relative, scaled, culled; all in float64.
+
+World positions are subtracted from the camera's before anything is rounded, and the view is scaled by a power of
+two (exact in floating point) so that the median depth is about 1. The clip range is narrowed to what is there.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .camera import Camera
+from .scene import Instance, Scene
+
+#: The clip range reaches this share of its length further than the bounds, so that rounding clips nothing.
+_MARGIN = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedInstance:
+    """model_view: (4, 4) float64, surfel positions (without origin) to scaled view space.
+    normal_matrix: (3, 3) float64, its inverse transpose up to a positive factor.
+    """
+
+    instance: Instance
+    model_view: np.ndarray
+    normal_matrix: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """scale: world to view units, a power of two. near: the camera's, scaled; the clip range may be narrower.
+    projection: (4, 4) float64 for scaled view space. outside: instances that cannot touch the picture.
+    degenerate: instances whose matrix flattens space, which have no normals.
+    """
+
+    scale: float
+    near: float
+    projection: np.ndarray
+    placed: tuple[PlacedInstance, ...]
+    outside: int
+    degenerate: int
+
+
+def look(scene: Scene, camera: Camera, epsilon: float) -> View:
+    """The scene's instances as this camera sees them. epsilon: how far visibility moves splats back, in radii."""
+    rotation = camera.matrix_world[:3, :3].T
+    seen, outside, degenerate = [], 0, 0
+    for instance in scene.surfels:
+        if not len(instance.surfels):
+            continue
+        linear = instance.matrix_world[:3, :3]
+        if not _invertible(linear):
+            degenerate += 1
+            continue
+        translation = instance.matrix_world[:3, 3] - camera.matrix_world[:3, 3] + linear @ instance.surfels.origin
+        corners = _corners(*instance.surfels.local_bounds) @ (rotation @ linear).T + rotation @ translation
+        if _outside(corners, camera):
+            outside += 1
+            continue
+        pushed = epsilon * float(instance.surfels.scales.max()) * np.linalg.norm(linear, 2)
+        seen.append((instance, rotation @ linear, rotation @ translation, -corners[:, 2], pushed))
+
+    near, far = _clip_range(camera, seen)
+    scale = _power_of_two_scale(camera, seen, near)
+    placed = []
+    for instance, linear, translation, _, _ in seen:
+        model_view = np.eye(4)
+        model_view[:3, :3], model_view[:3, 3] = linear * scale, translation * scale
+        normal_matrix = np.linalg.inv(linear).T
+        placed.append(PlacedInstance(instance, model_view, normal_matrix / np.abs(normal_matrix).max()))
+    return View(
+        scale, camera.near * scale, scaled_projection(camera, near, far, scale), tuple(placed), outside, degenerate
+    )
+
+
+def scaled_projection(camera: Camera, near: float, far: float, scale: float) -> np.ndarray:
+    """(4, 4) float64 projection of view space times `scale`."""
+    matrix = camera.projection(near, far)
+    if camera.is_orthographic:
+        matrix[:3, :3] /= scale
+    else:
+        matrix[2, 3] *= scale
+    return matrix
+
+
+def _invertible(linear: np.ndarray) -> bool:
+    size = np.abs(linear).max()
+    return bool(size > 0 and abs(np.linalg.det(linear / size)) > 1e-12)
+
+
+def _corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    pick = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
+    return np.where(pick, high, low)
+
+
+def _outside(corners: np.ndarray, camera: Camera) -> bool:
+    """Whether a box lies wholly beyond one of the six planes of the camera's view volume."""
+    x, y, depth = corners[:, 0], corners[:, 1], -corners[:, 2]
+    left, right, bottom, top = camera.window
+    spread = 1.0 if camera.is_orthographic else depth
+    beyond = (
+        depth < camera.near,
+        depth > camera.far,
+        x < left * spread,
+        x > right * spread,
+        y < bottom * spread,
+        y > top * spread,
+    )
+    return any(bool(b.all()) for b in beyond)
+
+
+def _clip_range(camera: Camera, seen) -> tuple[float, float]:
+    if not seen:
+        return camera.near, camera.far
+    nearest = min(float(depths.min()) for _, _, _, depths, _ in seen)
+    farthest = max(float(depths.max()) + pushed for _, _, _, depths, pushed in seen)
+    margin = _MARGIN * (farthest - nearest)
+    near = max(camera.near, nearest - margin if camera.is_orthographic else nearest * (1 - _MARGIN))
+    far = min(camera.far, farthest + margin)
+    return near, max(far, near + max(abs(near) * _MARGIN, 1e-300))
+
+
+def _power_of_two_scale(camera: Camera, seen, near: float) -> float:
+    """2^-k that brings the median depth, weighted by surfel count, into 0.7 to 1.4."""
+    if not seen:
+        return 1.0
+    depths = np.array([max(float(np.median(d)), near) for _, _, _, d, _ in seen])
+    if camera.is_orthographic:
+        left, right, bottom, top = camera.window
+        depths = np.maximum(np.abs(depths), max(right - left, top - bottom))
+    counts = np.array([len(instance.surfels) for instance, *_ in seen])
+    order = np.argsort(depths)
+    half = np.searchsorted(np.cumsum(counts[order]), counts.sum() / 2)
+    return math.ldexp(1.0, -round(math.log2(depths[order][min(half, len(order) - 1)])))
