@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One suite, two devices: `--device standalone` (plain Python, moderngl) or `--device blender` (inside Blender).
+
+They cannot share a process, so scripts/test.py runs pytest once for each.
+"""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+if str(ROOT) not in sys.path:
+    sys.path.insert(0, str(ROOT))
+
+
+def pytest_addoption(parser):
+    parser.addoption("--device", choices=("standalone", "blender"), default="standalone")
+
+
+@pytest.fixture(scope="session")
+def models():
+    """The folder of real meshes beside the checkout; a test that needs one is skipped where it is missing."""
+    folder = ROOT.parent / "shared" / "models"
+    if not folder.is_dir():
+        pytest.skip("the folder of test models, ../shared/models, is not here")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def pictures():
+    """Where the devices leave their pictures for one another: build/pictures, or SPLAT_PICTURES."""
+    folder = Path(os.environ.get("SPLAT_PICTURES") or ROOT / "build" / "pictures")
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def on_device(request):
+    """on_device(job) calls job(device) where that device can draw, and hands on what it returns or raises."""
+    if request.config.getoption("--device") == "blender":
+        yield _inside_a_blender_render
+    else:
+        from splat_addon.rendering import open_device
+
+        device = open_device("standalone")
+        yield lambda job: job(device)
+
+
+@pytest.fixture
+def render(on_device):
+    """render(scene, camera, settings) -> Frame, on the device under test."""
+    from splat_addon.rendering import Renderer
+
+    return lambda *arguments, **options: on_device(lambda device: Renderer(device).render(*arguments, **options))
+
+
+def _inside_a_blender_render(job):
+    """Blender has a graphics context in background mode only inside an engine's render()."""
+    import bpy
+
+    from splat_addon.rendering import open_device
+
+    outcome = {}
+
+    class JobEngine(bpy.types.RenderEngine):
+        bl_idname, bl_label, bl_use_gpu_context = "TEST_JOB", "Test job", True
+
+        def render(self, depsgraph):
+            try:
+                outcome["result"] = job(open_device("blender"))
+            except BaseException as error:
+                outcome["error"] = error
+
+    scene = bpy.data.scenes.new("job")
+    scene.camera = bpy.data.objects.new("job", bpy.data.cameras.new("job"))
+    scene.render.resolution_x = scene.render.resolution_y = 4
+    bpy.utils.register_class(JobEngine)
+    try:
+        scene.render.engine = "TEST_JOB"
+        bpy.ops.render.render(scene=scene.name)
+    finally:
+        scene.render.engine = "BLENDER_WORKBENCH"
+        bpy.utils.unregister_class(JobEngine)
+        bpy.data.scenes.remove(scene)
+    if "error" in outcome:
+        raise outcome["error"]
+    return outcome["result"]
+
+
+def pytest_sessionfinish(session, exitstatus):
+    session.config.exit_code = int(exitstatus)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_unconfigure(config):
+    """Blender 4.5 may hang and 5.0 crash while the interpreter ends, so it is left by the back door, after the summary."""
+    if "bpy" in sys.modules:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(getattr(config, "exit_code", 1))
