@@ -15,7 +15,7 @@ from ..rendering.settings import Settings
 from .filters import filter_weights, resample
 from .rays import RayGrid, Surface, visible_surface
 from .shading import eye_lights, principled_radiance
-from .splats import eye_splats
+from .splats import eye_splats, projected_bounds
 
 #: Rays of a tile: enough for numpy to be quick, few enough that a tile's arrays stay below 100 MB.
 TILE_RAYS = 300_000
@@ -41,13 +41,14 @@ def render_exact(
     weights = filter_weights(pixel_filter, samples)
     margin = (len(weights) // samples - 1) // 2
     splats = eye_splats(scene, camera)
+    bounds = projected_bounds(splats, camera)
     lights = eye_lights(scene, camera)
     width, height = camera.size
     color, normal = np.empty((height, width, 4)), np.empty((height, width, 3))
     depth, coverage = np.empty((height, width)), np.empty((height, width))
     for x, y, w, h in _tiles(width, height, samples, margin):
         grid = RayGrid.of_pixels(camera, samples, x - margin, y - margin, w + 2 * margin, h + 2 * margin)
-        surface = visible_surface(splats, grid, settings.epsilon)
+        surface = visible_surface(splats, bounds, grid, settings.epsilon)
         shaded = resample(_shaded_rays(surface, grid, scene, lights, settings), weights, samples)
         here = np.s_[y : y + h, x : x + w]
         color[here], normal[here], coverage[here] = shaded[..., :4], shaded[..., 4:7], shaded[..., 7]

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..rendering.camera import Camera
-from .splats import Splats, projected_bounds
+from .splats import Splats
 
 #: Splat-ray pairs handled at once: about 100 bytes each.
 CHUNK_PAIRS = 1_000_000
@@ -57,7 +57,7 @@ class RayGrid:
         limit = np.array(self.shape[::-1])
         first = np.ceil((low - self._corner()) / self._steps() - self.first - 0.5 - 1e-6)
         end = np.floor((high - self._corner()) / self._steps() - self.first - 0.5 + 1e-6) + 1
-        return (np.clip(edge, 0, limit).astype(np.int64) for edge in (first, end))
+        return tuple(np.clip(edge, 0, limit).astype(np.int64) for edge in (first, end))
 
     def _corner(self) -> np.ndarray:
         return np.array([self.camera.window[0], self.camera.window[2]])
@@ -95,9 +95,9 @@ class Hits:
     stretch: np.ndarray
 
 
-def visible_surface(splats: Splats, grid: RayGrid, epsilon: float) -> Surface:
-    """What every ray of the grid sees. epsilon: in radii of each splat."""
-    splats, boxes = _splats_in(splats, grid)
+def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float) -> Surface:
+    """What every ray of the grid sees. bounds: `projected_bounds` of the splats. epsilon: in radii of each splat."""
+    splats, boxes = _splats_in(splats, bounds, grid)
     push = epsilon * splats.radius()
     visibility = np.full(grid.count, np.inf)
     for hits in _hits(splats, boxes, grid):
@@ -125,9 +125,9 @@ def _averages(sums: np.ndarray) -> Surface:
     return Surface(rays, color, normal, depth, *columns[6:])
 
 
-def _splats_in(splats: Splats, grid: RayGrid):
+def _splats_in(splats: Splats, bounds, grid: RayGrid):
     """The splats that may touch the grid, and their boxes in it."""
-    first, end = grid.boxes(*projected_bounds(splats, grid.camera))
+    first, end = grid.boxes(*bounds)
     rows = np.flatnonzero((first < end).all(axis=1))
     return splats.take(rows), (first[rows], end[rows])
 

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the reference's tests are built from: ellipses by their half-axis vectors, and two plain cameras."""
+
+import math
+
+import numpy as np
+import pytest
+
+from splat_addon.rendering.camera import Camera
+from splat_addon.surfels import Surfels, axes_quaternions
+
+
+@pytest.fixture
+def ellipses():
+    """ellipses(centers, u, v, colors, normals): Surfels from rows or single vectors; u and v orthogonal half-axes."""
+
+    def build(centers, u=(1, 0, 0), v=(0, 1, 0), colors=(1, 1, 1), normals=None):
+        centers = np.atleast_2d(np.asarray(centers, float))
+        u, v, colors = (np.broadcast_to(np.asarray(a, float), centers.shape) for a in (u, v, colors))
+        lengths = np.stack([np.linalg.norm(u, axis=1), np.linalg.norm(v, axis=1)], axis=1)
+        x, y = u / lengths[:, :1], v / lengths[:, 1:]
+        z = np.cross(x, y)
+        normals = z if normals is None else np.broadcast_to(np.asarray(normals, float), centers.shape)
+        return Surfels(
+            positions=centers,
+            rotations=axes_quaternions(x, y, z),
+            scales=lengths,
+            normals=normals / np.linalg.norm(normals, axis=1, keepdims=True),
+            colors=np.concatenate([colors, np.ones((len(colors), 1))], axis=1),
+            materials=np.zeros(len(centers), int),
+        )
+
+    return build
+
+
+@pytest.fixture
+def perspective():
+    """perspective(size, near, far): at the origin, looking down -Z, window +-1 at distance 1."""
+
+    def build(size=(32, 32), near=0.1, far=100.0):
+        return Camera.perspective(np.eye(4), math.pi / 2, size, near, far)
+
+    return build
+
+
+@pytest.fixture
+def orthographic():
+    """orthographic(size, height): at the origin, looking down -Z."""
+
+    def build(size=(32, 32), height=2.0, near=0.1, far=100.0):
+        return Camera.orthographic(np.eye(4), height, size, near, far)
+
+    return build

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The principled shading against closed forms, and the laws that a BRDF obeys."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
+
+from splat_addon.reference import render_exact
+from splat_addon.reference.shading import environment_terms, specular_term
+from splat_addon.rendering.scene import Instance, Light, Material, Scene
+from splat_addon.rendering.settings import Settings
+
+#: No dielectric coat and no highlight: what is left is Lambert's law, to 0.3 %.
+CHALK = Material(roughness=1.0, ior=1.0)
+
+
+def radiance(ellipses, orthographic, *lights, world=(0, 0, 0), material=CHALK, color=(1, 1, 1), normal=(0, 0, 1)):
+    """(3,) radiance of the middle of a disc at depth 2 that faces the camera."""
+    surfels = ellipses((0, 0, -2), colors=color, normals=normal)
+    scene = Scene([Instance(surfels, materials=(material,))], lights, world)
+    return render_exact(scene, orthographic((33, 33)), samples=1).color[16, 16, :3]
+
+
+def test_a_sun_on_a_white_plane_gives_its_irradiance_over_pi(ellipses, orthographic):
+    sun = Light("sun", (1.0, 0.5, 0.25), energy=3.0, direction=(0, 0, -5))
+    expected = 3 / math.pi * np.array((1.0, 0.5, 0.25))
+    np.testing.assert_allclose(radiance(ellipses, orthographic, sun), expected, rtol=4e-3)
+
+
+@pytest.mark.parametrize("angle", [0.3, 1.0, 1.4])
+def test_a_slanting_sun_gives_the_cosine(ellipses, orthographic, angle):
+    head_on, slanting = (
+        radiance(ellipses, orthographic, Light("sun", energy=2.0, direction=(math.sin(a), 0, -math.cos(a))))
+        for a in (0, angle)
+    )
+    np.testing.assert_allclose(slanting / head_on, math.cos(angle), rtol=3e-3)
+
+
+def test_a_light_behind_the_surface_gives_nothing(ellipses, orthographic):
+    sun = Light("sun", energy=2.0, direction=(0.2, 0, 1))
+    lamp = Light("point", energy=2.0, position=(0, 0, -3))
+    assert not radiance(ellipses, orthographic, sun, lamp).any()
+
+
+@pytest.mark.parametrize("distance", [0.5, 1.0, 2.0])
+def test_a_point_light_spreads_its_power_over_a_sphere(ellipses, orthographic, distance):
+    lamp = Light("point", energy=10.0, position=(0, 0, distance - 2))
+    expected = 10 / (4 * math.pi * distance**2) / math.pi
+    np.testing.assert_allclose(radiance(ellipses, orthographic, lamp), expected, rtol=4e-3)
+
+
+def test_lights_add_up(ellipses, orthographic):
+    lights = Light("sun", energy=2.0, direction=(0.5, 0, -1)), Light("point", energy=9.0, position=(0.3, 0, 0))
+    material = Material(roughness=0.3)
+    together = radiance(ellipses, orthographic, *lights, world=(0.1, 0.2, 0.3), material=material)
+    apart = [radiance(ellipses, orthographic, light, material=material) for light in lights]
+    world = radiance(ellipses, orthographic, world=(0.1, 0.2, 0.3), material=material)
+    np.testing.assert_allclose(together, sum(apart) + world, rtol=1e-5)
+
+
+def test_flat_shading_shows_the_colour_whatever_the_light(ellipses, orthographic):
+    scene = Scene([ellipses((0, 0, -2), colors=(0.2, 0.4, 2.0))], [Light("sun", energy=50)], (3, 3, 3))
+    frame = render_exact(scene, orthographic(), Settings(shading="flat"), samples=1)
+    np.testing.assert_allclose(frame.color[16, 16], (0.2, 0.4, 2.0, 1), rtol=1e-6)
+
+
+@pytest.mark.parametrize("metallic", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("roughness", [0.0, 0.3, 0.7, 1.0])
+@pytest.mark.parametrize("tilt", [0, 40, 75])
+def test_a_white_surface_in_a_white_world_gives_back_no_more_than_it_gets(
+    ellipses, orthographic, metallic, roughness, tilt
+):
+    normal = (math.sin(math.radians(tilt)), 0, math.cos(math.radians(tilt)))
+    material = Material(roughness=roughness, metallic=metallic)
+    glow = radiance(ellipses, orthographic, world=(1, 1, 1), material=material, normal=normal)
+    assert 0.4 < glow[0] < 1.01
+
+
+@pytest.mark.parametrize("f0", [0.04, 1.0])
+@pytest.mark.parametrize("roughness", [0.3, 0.6, 1.0])
+@pytest.mark.parametrize("nv", [0.3, 0.7, 1.0])
+def test_the_analytic_albedo_is_the_integral_of_the_specular_term(f0, roughness, nv):
+    """Karis' fit is of another Smith term, so the two agree to a few hundredths."""
+    z, phi = (a.ravel() for a in np.meshgrid((np.arange(400) + 0.5) / 400, (np.arange(400) + 0.5) / 400 * 2 * np.pi))
+    ring = np.sqrt(1 - z * z)
+    light = np.stack([ring * np.cos(phi), ring * np.sin(phi), z], axis=1)
+    normal = np.broadcast_to((0.0, 0.0, 1.0), light.shape)
+    view = np.broadcast_to((math.sqrt(1 - nv * nv), 0.0, nv), light.shape)
+    values = specular_term(normal, view, light, z, np.full(len(z), nv), np.full(len(z), roughness), np.full((1, 3), f0))
+    scale, bias = environment_terms(roughness, nv)
+    assert (values[:, 0] * z).mean() * 2 * np.pi == pytest.approx(f0 * scale + bias, abs=0.07)
+
+
+angles = st.tuples(st.floats(0.05, 1.5), st.floats(0, 6.28))
+
+
+@given(view=angles, light=angles, roughness=st.floats(0.03, 1))
+@hypothesis_settings(deadline=None, max_examples=60)
+def test_light_and_viewer_can_be_swapped(view, light, roughness):
+    def vector(theta, phi):
+        return np.array([[math.sin(theta) * math.cos(phi), math.sin(theta) * math.sin(phi), math.cos(theta)]])
+
+    normal, v, to_light = np.array([[0.0, 0.0, 1.0]]), vector(*view), vector(*light)
+    rest = np.array([roughness]), np.full((1, 3), 0.04)
+    there = specular_term(normal, v, to_light, to_light[:, 2], v[:, 2], *rest)
+    back = specular_term(normal, to_light, v, v[:, 2], to_light[:, 2], *rest)
+    np.testing.assert_allclose(there, back, rtol=1e-9)
+    assert (there >= 0).all()
