@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The splat of a sample: an ellipse in the triangle's plane that covers a disc of the image's grid.
+
+Seen along the image's axis the splat is a disc of radius h. On the plane with normal N its conjugate half-diameters are
+(h, 0, dz) and (0, h, dz) with dz = -(Nx dx + Ny dy) / Nz, and its principal ones h / |N_axis| along the steepest
+direction and h across it. (Figure 6 of view-independent object-space splatting has another sign and slope; this is
+the formula that stays in the tangent plane, facts/sampling.md section 5.)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+#: The dominant axis of a unit normal has a component of at least 1 / sqrt(3). A sample of another axis is steeper,
+#: but lies between samples of the dominant one, so its splat need not stretch any farther.
+MAX_STRETCH = np.sqrt(3)
+
+
+def ellipse_scales(axis_normals: np.ndarray, half_size: float) -> np.ndarray:
+    """(t, 2) float32 half-axes: along the steepest direction, and across.
+
+    axis_normals: (t,) unit normals' component along the image's axis. half_size: h, object units.
+    """
+    with np.errstate(divide="ignore"):
+        stretch = np.minimum(1 / np.abs(axis_normals), MAX_STRETCH)
+    return np.stack([half_size * stretch, np.full_like(stretch, half_size)], axis=1).astype(np.float32)
+
+
+def ellipse_rotations(normals: np.ndarray, axis: int) -> np.ndarray:
+    """(t, 4) float32 unit quaternions w, x, y, z: local x the steepest direction, y across it, z the normal.
+
+    normals: (3, t) float64 unit normals in the order (u, v, axis) of the image.
+    With cos p, sin p the direction of (Nu, Nv) and r its length, the local axes are x = (-Na cos p, -Na sin p, r),
+    y = (sin p, -cos p, 0), z = (r cos p, r sin p, Na): half a turn about (sqrt((1-Na)/2), 0, sqrt((1+Na)/2)), then p about
+    the image's axis. No pole is special: where r is 0, p is 0.
+    """
+    u, v, a = normals
+    r = np.hypot(u, v)
+    cosine = np.divide(u, r, out=np.ones_like(r), where=r > 0)
+    half_turn = np.sqrt(np.maximum(1 + cosine, 0) / 2), np.copysign(np.sqrt(np.maximum(1 - cosine, 0) / 2), v)
+    tilt = np.sqrt(np.maximum(1 - a, 0) / 2), np.sqrt(np.maximum(1 + a, 0) / 2)
+    w, x, y, z = -half_turn[1] * tilt[1], half_turn[0] * tilt[0], half_turn[1] * tilt[0], half_turn[0] * tilt[1]
+    return np.stack(_FROM_IMAGE_ORDER[axis](w, x, y, z), axis=1).astype(np.float32)
+
+
+#: axis -> quaternion product that turns (u, v, axis) into (x, y, z): a third of a turn about (1, 1, 1), there or back.
+_FROM_IMAGE_ORDER = {
+    0: lambda w, x, y, z: (
+        (w - x - y - z) / 2,
+        (w + x - y + z) / 2,
+        (w + x + y - z) / 2,
+        (w - x + y + z) / 2,
+    ),
+    1: lambda w, x, y, z: (
+        (w + x + y + z) / 2,
+        (-w + x + y - z) / 2,
+        (-w - x + y + z) / 2,
+        (-w + x - y + z) / 2,
+    ),
+    2: lambda w, x, y, z: (w, x, y, z),
+}

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The input of sampling: triangles as plain arrays. `cleaning` makes them usable, `sample` turns them into surfels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .colors import SurfaceColor
+
+#: Triangles handled at a time: their temporaries stay in the processor's cache (facts: 32k has the lowest memory).
+CHUNK = 32768
+
+#: field -> shape of one triangle's entry and dtype.
+_PER_TRIANGLE = {
+    "corner_normals": ((3, 3), np.floating),
+    "corner_colors": ((3, 4), np.floating),
+    "corner_uvs": ((3, 2), np.floating),
+    "materials": ((), np.integer),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """T triangles over V vertices; the arrays are viewed, not copied, and must not change afterwards.
+
+    positions: (V, 3) float64, object units; values that are not finite are allowed, `drop_unusable` sorts them out.
+    triangles: (T, 3) integer vertex indices, counter-clockwise seen from outside.
+    corner_normals: (T, 3, 3) shading normals of any length; None or zero: the triangle's own normal.
+    corner_colors: (T, 3, 4) scene-linear. corner_uvs: (T, 3, 2).
+    materials: (T,) integer index into `surfaces` and into the object's material slots; None: all 0.
+    surfaces: where each material's colour comes from; an index past the end uses the last.
+    known_usable: set by `drop_unusable` alone.
+
+    Raises ValueError with one sentence for a wrong shape or type or an index out of range.
+    """
+
+    positions: np.ndarray
+    triangles: np.ndarray
+    corner_normals: np.ndarray | None = None
+    corner_colors: np.ndarray | None = None
+    corner_uvs: np.ndarray | None = None
+    materials: np.ndarray | None = None
+    surfaces: tuple[SurfaceColor, ...] = (SurfaceColor(),)
+    known_usable: bool = field(default=False, init=False, repr=False)
+
+    def __post_init__(self):
+        positions = np.ascontiguousarray(self.positions, np.float64)
+        if positions.ndim != 2 or positions.shape[1] != 3:
+            raise ValueError(f"Mesh positions must have shape (V, 3), not {positions.shape}.")
+        triangles = np.asarray(self.triangles)
+        if triangles.ndim != 2 or triangles.shape[1] != 3 or not np.issubdtype(triangles.dtype, np.integer):
+            raise ValueError(f"Triangles must be (T, 3) integers, not {triangles.shape} of {triangles.dtype}.")
+        _check_indices("triangle", triangles, len(positions))
+        object.__setattr__(self, "positions", positions)
+        object.__setattr__(self, "triangles", triangles)
+        for name, (shape, kind) in _PER_TRIANGLE.items():
+            if getattr(self, name) is not None:
+                array = np.asarray(getattr(self, name))
+                if array.shape != (len(triangles), *shape) or not np.issubdtype(array.dtype, kind):
+                    raise ValueError(
+                        f"Mesh {name} must be {kind.__name__} of shape {(len(triangles), *shape)}, "
+                        f"not {array.dtype} of shape {array.shape}."
+                    )
+                object.__setattr__(self, name, array)
+        if self.materials is not None:
+            _check_indices("material", self.materials, np.iinfo(np.int32).max)
+        object.__setattr__(self, "surfaces", tuple(self.surfaces) or (SurfaceColor(),))
+
+    def __len__(self) -> int:
+        return len(self.triangles)
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Two (3,) float64 corners of the box around all vertices; meaningful for a usable mesh."""
+        return self.positions.min(axis=0), self.positions.max(axis=0)
+
+    def per_triangle(self) -> dict[str, np.ndarray]:
+        """The arrays that hold one entry a triangle, by field name."""
+        names = ("triangles", *_PER_TRIANGLE)
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+
+def triangle_chunks(count: int, size: int = CHUNK) -> Iterator[slice]:
+    """Slices that cut `count` triangles into runs of at most `size`."""
+    return (slice(start, min(start + size, count)) for start in range(0, count, size))
+
+
+def gather_corners(components: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(3, 3, t): component, corner, triangle, from (3, V) components and (t, 3) vertex indices."""
+    indices = np.ascontiguousarray(triangles.T, np.intp)
+    corners = np.empty((3, *indices.shape), components.dtype)
+    for component, row in zip(components, corners):
+        row[...] = component.take(indices)
+    return corners
+
+
+def doubled_areas(corners: np.ndarray) -> np.ndarray:
+    """(3, t): the normal of each triangle, as long as twice its area, from (3, 3, t) corners."""
+    x, y, z = corners
+    x1, y1, z1 = x[1] - x[0], y[1] - y[0], z[1] - z[0]
+    x2, y2, z2 = x[2] - x[0], y[2] - y[0], z[2] - z[0]
+    return np.stack([y1 * z2 - z1 * y2, z1 * x2 - x1 * z2, x1 * y2 - y1 * x2])
+
+
+def _check_indices(name: str, indices: np.ndarray, limit: int):
+    if indices.size and not (indices.min() >= 0 and indices.max() < limit):
+        bad = indices[(indices < 0) | (indices >= limit)][0]
+        raise ValueError(f"A {name} index must lie between 0 and {limit - 1}, not {bad}.")
