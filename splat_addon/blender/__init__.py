@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The only folder that imports bpy: conversion, storage, engine and interface, each a module with its own pair
+`register`, `unregister`."""
+
+from __future__ import annotations
+
+from . import engine, properties, render_panels
+
+#: In the order of registration: what others refer to comes first.
+MODULES = (
+    properties,
+    engine,
+    render_panels,
+)
+
+
+def register():
+    for module in MODULES:
+        module.register()
+
+
+def unregister():
+    for module in reversed(MODULES):
+        module.unregister()

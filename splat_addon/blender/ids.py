@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every name that Blender, a .blend file or a user's script knows us by, in one place.
+
+Renaming one of these breaks saved files, key maps or scripts, so nothing else in the add-on spells them out.
+Imports nothing, stands at the bottom of `blender/`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+ENGINE = "SURFEL_SPLATTING"
+ENGINE_LABEL = "Surfel Splatting"
+#: The engine's settings: `scene.surfel_splatting`.
+RENDER_SETTINGS = "surfel_splatting"
+
+SURFELS_FROM_MESH = "object.surfels_from_mesh"
+
+SIDEBAR_TAB = "Surfels"
+SIDEBAR_PANEL = "VIEW3D_PT_surfels_from_mesh"
+
+#: How a picture is rendered: `scene.surfel_splatting`.
+RENDER_SETTINGS = "surfel_splatting"
+
+#: Where the sidebar keeps what it will convert with: `scene.surfel_conversion`.
+CONVERSION_SETTINGS = "surfel_conversion"
+
+
+class PointAttribute(NamedTuple):
+    """How one column of surfels lies on a mesh: its name, Blender's type, and what `foreach_set` takes."""
+
+    name: str
+    data_type: str
+    property: str
+    columns: int
+
+
+#: field of `Surfels` (or derived from it) -> the point attribute that stores it.
+#: The material is not called "material_index": on a mesh Blender keeps that name for faces; 4.5 and 5.0 refuse it
+#: on points, and in 5.2 it does not outlive a visit to edit mode.
+POINT_ATTRIBUTES = {
+    "positions": PointAttribute("position", "FLOAT_VECTOR", "vector", 3),
+    "rotations": PointAttribute("rotation", "QUATERNION", "value", 4),
+    "scales": PointAttribute("scale", "FLOAT_VECTOR", "vector", 3),
+    "normals": PointAttribute("normal", "FLOAT_VECTOR", "vector", 3),
+    "colors": PointAttribute("Col", "FLOAT_COLOR", "color", 4),
+    "radius": PointAttribute("radius", "FLOAT", "value", 1),
+    "materials": PointAttribute("material", "INT", "value", 1),
+}
