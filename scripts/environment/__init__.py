@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes the virtual environment that the scripts run in; the first thing that demo, test and build import.
+
+Needs nothing but a Python of 3.8 or newer; the environment's own Python may be another one.
+"""
+
+import sys
+
+if sys.version_info < (3, 8):
+    sys.exit(
+        "The scripts start with Python 3.8 or newer, and this is %d.%d: call them as `python3 scripts/NAME.py`, "
+        "or install a newer Python." % sys.version_info[:2]
+    )
+
+from .problem import Problem, exit_with_problems
+from .virtual_environment import PYTHON_FOR_BPY, ROOT, Environment, make
+
+__all__ = ("PYTHON_FOR_BPY", "ROOT", "Environment", "Problem", "exit_with_problems", "make")

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An error that the person at the keyboard can mend: one sentence instead of a traceback."""
+
+from __future__ import annotations
+
+import functools
+import os
+import sys
+from typing import Callable
+
+
+class Problem(Exception):
+    """Its text is one sentence: what, which value, what to do. `exit_code` 2 means wrong arguments, 1 anything else."""
+
+    def __init__(self, sentence: str, exit_code: int = 1):
+        super().__init__(sentence)
+        self.exit_code = exit_code
+
+
+def exit_with_problems(main: Callable[..., int]) -> Callable[..., int]:
+    """`main` with a Problem, a full disk or Ctrl-C turned into a sentence on stderr and an exit code."""
+
+    @functools.wraps(main)
+    def guarded(*arguments) -> int:
+        try:
+            return main(*arguments)
+        except Problem as problem:
+            print(f"{program_name()}: {problem}", file=sys.stderr)
+            return problem.exit_code
+        except OSError as error:
+            print(f"{program_name()}: {error}.", file=sys.stderr)
+            return 1
+        except KeyboardInterrupt:
+            print(f"{program_name()}: stopped.", file=sys.stderr)
+            return 130
+
+    return guarded
+
+
+def program_name() -> str:
+    """The name of the running script, to open its error sentences with."""
+    return os.path.basename(sys.argv[0])

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes `.venv-bpy-VERSION` in the clone, once: a venv with a wheel of Blender and a script's requirements.
+
+A stamp, written last, holds the hashes of what was installed: with it the next run starts at once, without
+it a half-made environment is made anew.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+from .diagnosis import import_problem, install_problem, last_line
+from .interpreters import INSTALL_REMEDY, find_interpreter
+from .long_step import run_showing
+from .problem import Problem
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+
+#: bpy -> the one Python that its wheel runs on.
+PYTHON_FOR_BPY = {"5.2.3": "3.13", "5.0.1": "3.11", "4.5.15": "3.11"}
+
+#: What is tried, in this order, when no version is asked for.
+DEFAULT_BPY = ("5.2.3", "5.0.1")
+
+#: purpose -> the purposes whose requirements its own file includes, itself among them.
+PURPOSES = {"demo": ("demo",), "test": ("demo", "test")}
+
+#: Leaves by os._exit, because some wheels hang or crash on their way out. The graphics libraries are
+#: loaded by name, as Blender itself does only when it renders.
+IMPORT_CHECK = """
+import ctypes, os, sys
+if sys.platform == "linux":
+    for name in ("libEGL.so.1", "libGL.so.1"):
+        ctypes.CDLL(name)
+import bpy
+os._exit(0)
+"""
+
+
+@dataclass(frozen=True)
+class Environment:
+    """python: the environment's interpreter. bpy_version: the wheel in it. folder: where it lies."""
+
+    python: Path
+    bpy_version: str
+    folder: Path
+
+
+def make(purpose: str, bpy_version: str | None = None) -> Environment:
+    """The environment for a purpose ("demo" or "test"), made first where it is not there yet.
+
+    bpy_version: a key of PYTHON_FOR_BPY; None takes the first of DEFAULT_BPY that this machine has a Python for.
+    Raises Problem with one sentence when there is no Python for it, or when it cannot be downloaded or run.
+    """
+    for version in (bpy_version,) if bpy_version else DEFAULT_BPY:
+        environment = _environment(version)
+        if not _is_ready(environment, purpose):
+            command = find_interpreter(PYTHON_FOR_BPY[version])
+            if command is None:
+                continue
+            _install(environment, purpose, command)
+        _check_import(environment)
+        return environment
+    wanted = PYTHON_FOR_BPY[bpy_version or DEFAULT_BPY[0]]
+    others = "" if bpy_version else f" or {PYTHON_FOR_BPY[DEFAULT_BPY[1]]}"
+    raise Problem(
+        f"Blender's wheel needs Python {wanted}{others}, and none that runs was found: {INSTALL_REMEDY.format(wanted)}."
+    )
+
+
+def _environment(version: str) -> Environment:
+    folder = ROOT / f".venv-bpy-{version}"
+    return Environment(folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python"), version, folder)
+
+
+def requirements_hash(path: Path) -> str:
+    """sha256 of a requirements file and of those that it includes by `-r`."""
+    text = path.read_text(encoding="utf-8")
+    included = re.findall(r"^-r\s+(\S+)", text, re.MULTILINE)
+    parts = [text, *(requirements_hash(path.parent / name) for name in included)]
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def _requirements(purpose: str) -> Path:
+    return ROOT / "requirements" / f"{purpose}.txt"
+
+
+def _stamp_line(purpose: str) -> str:
+    return f"{purpose} {requirements_hash(_requirements(purpose))}"
+
+
+def _stamp(environment: Environment) -> Path:
+    return environment.folder / "installed.txt"
+
+
+def _is_ready(environment: Environment, purpose: str) -> bool:
+    stamp = _stamp(environment)
+    return environment.python.is_file() and stamp.is_file() and _stamp_line(purpose) in stamp.read_text().splitlines()
+
+
+def _install(environment: Environment, purpose: str, command: list[str]) -> None:
+    """Makes the venv, or adds to a whole one whose requirements grew, and stamps it."""
+    folder, stamp = environment.folder, _stamp(environment)
+    print(f"Making {folder.name} with bpy {environment.bpy_version} for the {purpose}; this is done once.", flush=True)
+    if stamp.is_file() and environment.python.is_file():
+        stamp.unlink()
+    else:
+        shutil.rmtree(folder, ignore_errors=True)
+        _make_venv(folder, command)
+    wanted = [f"bpy=={environment.bpy_version}", "-r", str(_requirements(purpose))]
+    options = ["--disable-pip-version-check", "--no-input", "--progress-bar", "off", "--prefer-binary"]
+    code, output = run_showing([str(environment.python), "-m", "pip", "install", *options, *wanted], _pip_line)
+    if code:
+        raise Problem(install_problem(output) or f"pip could not install the requirements: {last_line(output)}.")
+    stamp.write_text("".join(_stamp_line(name) + "\n" for name in PURPOSES[purpose]))
+
+
+def _make_venv(folder: Path, command: list[str]) -> None:
+    made = subprocess.run([*command, "-m", "venv", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    if made.returncode:
+        text = made.stdout.decode(errors="replace")
+        raise Problem(install_problem(text) or f"{folder} could not be made with {' '.join(command)}: {last_line(text)}.")
+
+
+def _pip_line(line: str) -> str | None:
+    """pip's own lines, less the many about dependencies that are there already."""
+    match = re.match(r"\s*(Collecting \S+|Downloading \S+.*\(.*\)|Installing collected packages)", line)
+    return re.sub(r"\S*/", "", match.group(1)) if match else None
+
+
+def _check_import(environment: Environment) -> None:
+    """Tries `import bpy` in a process of its own, until it has worked once in this environment."""
+    passed = environment.folder / "imported.txt"
+    if passed.is_file():
+        return
+    checked = subprocess.run(
+        [str(environment.python), "-c", IMPORT_CHECK], stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+    )
+    if checked.returncode:
+        text = checked.stdout.decode(errors="replace")
+        raise Problem(
+            import_problem(text)
+            or f"bpy {environment.bpy_version} cannot be imported ({last_line(text)}): "
+            f"delete {environment.folder} and run this again."
+        )
+    passed.write_text("import bpy worked here\n")
