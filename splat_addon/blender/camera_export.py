@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's cameras and views -> `rendering.Camera`, in float64 as early as Blender allows."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from ..rendering import Camera
+
+
+def picture_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
+    """Width and height in pixels of the whole frame, percentage applied."""
+    share = render.resolution_percentage / 100
+    return max(int(render.resolution_x * share), 1), max(int(render.resolution_y * share), 1)
+
+
+def border(render: bpy.types.RenderSettings) -> tuple[int, int, int, int]:
+    """x, y, width, height in pixels of what is to be rendered: the border, or the whole frame."""
+    width, height = picture_size(render)
+    if not render.use_border:
+        return 0, 0, width, height
+    # truncated as Blender truncates them, so that the result has the size that it expects
+    left, right = int(render.border_min_x * width), int(render.border_max_x * width)
+    bottom, top = int(render.border_min_y * height), int(render.border_max_y * height)
+    return left, bottom, right - left, top - bottom
+
+
+def final_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object | None) -> Camera:
+    """The camera of a final render, looking through the border if there is one.
+
+    Raises ValueError where the scene has no camera, or one of a kind that cannot be rendered.
+    """
+    scene = depsgraph.scene
+    if camera_object is None:
+        raise ValueError(f"The scene {scene.name!r} has no camera; add one, or make one the active camera.")
+    data = camera_object.data
+    if camera_object.type != "CAMERA" or data.type not in {"PERSP", "ORTHO"}:
+        kind = data.type if camera_object.type == "CAMERA" else camera_object.type
+        raise ValueError(f"The camera {camera_object.name!r} is {kind}; make it perspective or orthographic.")
+    width, height = picture_size(scene.render)
+    projection = camera_object.calc_matrix_camera(
+        depsgraph, x=width, y=height, scale_x=scene.render.pixel_aspect_x, scale_y=scene.render.pixel_aspect_y
+    )
+    whole = camera_of_matrices(camera_object.matrix_world, projection, (width, height), data.clip_start, data.clip_end)
+    x, y, border_width, border_height = border(scene.render)
+    if border_width < 1 or border_height < 1:
+        raise ValueError("The render border is less than a pixel; draw a larger one or switch it off.")
+    return whole.cropped(x, y, border_width, border_height)
+
+
+def viewport_camera(context: bpy.types.Context) -> Camera:
+    """The camera that the 3D view in `context` looks through."""
+    view, space, region = context.region_data, context.space_data, context.region
+    near, far = space.clip_start, space.clip_end
+    if view.view_perspective == "CAMERA" and space.camera and space.camera.type == "CAMERA":
+        near, far = space.camera.data.clip_start, space.camera.data.clip_end
+    elif not view.is_perspective:
+        near = -far
+    matrix_world = np.linalg.inv(np.array(view.view_matrix, np.float64))
+    return camera_of_matrices(matrix_world, view.window_matrix, (region.width, region.height), near, far)
+
+
+def camera_of_matrices(matrix_world, projection, size, near: float, far: float) -> Camera:
+    """A camera from its placement and an OpenGL projection matrix, of which only the window is taken."""
+    p = np.array(projection, np.float64)
+    is_orthographic = p[3, 3] != 0
+    # the x and y that the projection maps to -1 and 1, on the plane at distance 1 or anywhere
+    offset = -p[:2, 3] if is_orthographic else p[:2, 2]
+    low, high = ((offset + side) / (p[0, 0], p[1, 1]) for side in (-1, 1))
+    window = low[0], high[0], low[1], high[1]
+    return Camera(np.array(matrix_world, np.float64), window, size, near, far, bool(is_orthographic))

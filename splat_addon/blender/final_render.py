@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""F12, animations and `blender --background`: a depsgraph becomes a RenderResult."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ..rendering import Frame, RenderCancelled, Renderer, open_device
+from .camera_export import final_camera
+from .properties import final_settings
+from .scene_export import SurfelStore, export_scene
+
+
+class RenderPass(NamedTuple):
+    """output: the array of `Frame` that fills it. flag: the view layer's property that asks for it, if any."""
+
+    name: str
+    channels: int
+    letters: str
+    kind: str
+    output: str
+    flag: str | None
+
+
+RENDER_PASSES = (
+    RenderPass("Combined", 4, "RGBA", "COLOR", "color", None),
+    RenderPass("Depth", 1, "Z", "VALUE", "depth", "use_pass_z"),
+    RenderPass("Normal", 3, "XYZ", "VECTOR", "normal", "use_pass_normal"),
+)
+
+#: Statistics of the last frame that was rendered, for scripts: see `Renderer`, plus `notes`.
+last_frame_stats: dict = {}
+
+
+def passes_of(view_layer: bpy.types.ViewLayer) -> Iterator[tuple[str, int, str, str]]:
+    """Name, channels, letters and kind of every pass that the view layer asks for."""
+    for render_pass in _asked_for(view_layer):
+        yield render_pass[:4]
+
+
+def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
+    """Render one view layer. Raises ValueError or RuntimeError with a sentence for the user."""
+    camera = final_camera(depsgraph, engine.camera_override or depsgraph.scene.camera)
+    passes = _asked_for(depsgraph.view_layer)
+    settings = final_settings(depsgraph.scene, tuple(p.output for p in passes))
+    engine.update_stats("", "Reading surfels")
+    resources = _acquire_resources()
+    try:
+        scene, notes = _read(depsgraph, resources.store)
+        for sentence in notes.sentences():
+            engine.report({"WARNING"}, sentence)
+        frame = resources.renderer.render(scene, camera, settings, progress=lambda *step: _progress(engine, *step))
+    except RenderCancelled:
+        _release_resources()
+        return
+    finally:
+        if _is_last_frame(engine, depsgraph.scene):
+            _release_resources()
+    last_frame_stats.clear()
+    last_frame_stats.update(frame.stats, notes=notes.sentences())
+    engine.update_stats("", f"{frame.stats['splats']:,} splats in {frame.stats['milliseconds']:.0f} ms")
+    _hand_over(engine, depsgraph.view_layer, camera.size, passes, frame)
+
+
+def _read(depsgraph, store: SurfelStore):
+    store.begin_frame()
+    scene, notes = export_scene(depsgraph, store)
+    store.forget_unused()
+    return scene, notes
+
+
+def report_failure(engine: bpy.types.RenderEngine, error: Exception) -> None:
+    """Tell Blender, which then writes no file and exits with 1 in background mode."""
+    if not isinstance(error, ValueError | RuntimeError):
+        traceback.print_exc()
+    engine.report({"ERROR"}, f"Surfel render failed: {error}")
+
+
+class _Resources:
+    """What the frames of an animation share.
+
+    It belongs to this module, not to the engine's instance: Blender frees that without a graphics context, and
+    4.5 aborts when textures go then. `render` lets go of it while there is one, after a still or the last frame.
+    """
+
+    def __init__(self):
+        self.store = SurfelStore()
+        self.renderer = Renderer(open_device("blender"))
+
+
+_resources: _Resources | None = None
+
+
+def _acquire_resources() -> _Resources:
+    global _resources
+    _resources = _resources or _Resources()
+    return _resources
+
+
+def _release_resources() -> None:
+    global _resources
+    if _resources:
+        _resources.renderer.release()
+    _resources = None
+
+
+def _is_last_frame(engine, scene) -> bool:
+    return not engine.is_animation or scene.frame_current + scene.frame_step > scene.frame_end
+
+
+def _asked_for(view_layer) -> list[RenderPass]:
+    return [p for p in RENDER_PASSES if p.flag is None or getattr(view_layer, p.flag)]
+
+
+def _progress(engine, done: float, step: str) -> bool:
+    engine.update_progress(done)
+    engine.update_stats("", step.title())
+    return not engine.test_break()
+
+
+def _hand_over(engine, view_layer, size, passes, frame: Frame) -> None:
+    result = engine.begin_result(0, 0, *size, layer=view_layer.name)
+    targets = result.layers[0].passes
+    for render_pass in passes:
+        values = getattr(frame, render_pass.output)
+        targets[render_pass.name].rect.foreach_set(np.ascontiguousarray(values, np.float32).ravel())
+    engine.end_result(result)

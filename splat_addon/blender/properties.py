@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render settings in a .blend: `scene.surfel_splatting`, which mirrors `rendering.Settings`."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+
+from ..rendering.settings import MAX_SUPERSAMPLING, SHADINGS, Settings
+from .ids import RENDER_SETTINGS
+
+
+class SurfelSplattingSettings(bpy.types.PropertyGroup):
+    shading: EnumProperty(
+        name="Shading",
+        description="How the surface answers light",
+        items=[(name, name.title(), description) for name, description in SHADINGS.items()],
+        default=Settings.shading,
+    )
+    supersampling: IntProperty(
+        name="Render",
+        description=(
+            "Samples along each side of a pixel in final renders, so 3 means 9 samples a pixel. "
+            "More gives smoother edges and finer textures for time and memory"
+        ),
+        min=1,
+        max=MAX_SUPERSAMPLING,
+        soft_max=8,
+        default=Settings.supersampling,
+    )
+    viewport_supersampling: IntProperty(
+        name="Viewport",
+        description="Samples along each side of a pixel in the viewport",
+        min=1,
+        max=MAX_SUPERSAMPLING,
+        soft_max=4,
+        default=1,
+    )
+    epsilon: FloatProperty(
+        name="Blend Depth",
+        description=(
+            "How far behind the front surface splats still blend with it, in splat radii. "
+            "Lower separates thin sheets, but below 0.2 the surface breaks up"
+        ),
+        min=0.0,
+        soft_max=5.0,
+        default=Settings.epsilon,
+    )
+    profile: BoolProperty(
+        name="Time Each Pass",
+        description="Wait for the graphics device after every pass, and report how long each took",
+        default=Settings.profile,
+    )
+
+
+def final_settings(scene: bpy.types.Scene, outputs: tuple[str, ...]) -> Settings:
+    """The settings of a final render that needs these arrays."""
+    properties = getattr(scene, RENDER_SETTINGS)
+    return _settings(scene, supersampling=properties.supersampling, outputs=outputs, profile=properties.profile)
+
+
+def viewport_settings(scene: bpy.types.Scene) -> Settings:
+    """The settings of the viewport."""
+    properties = getattr(scene, RENDER_SETTINGS)
+    return _settings(scene, supersampling=properties.viewport_supersampling, outputs=("color",))
+
+
+def _settings(scene, **choices) -> Settings:
+    properties = getattr(scene, RENDER_SETTINGS)
+    return Settings(
+        shading=properties.shading,
+        epsilon=properties.epsilon,
+        transparent_film=scene.render.film_transparent,
+        **choices,
+    )
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((SurfelSplattingSettings,))
+
+
+def register():
+    _register_classes()
+    setattr(bpy.types.Scene, RENDER_SETTINGS, PointerProperty(type=SurfelSplattingSettings))
+
+
+def unregister():
+    delattr(bpy.types.Scene, RENDER_SETTINGS)
+    _unregister_classes()

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The engine's settings in the render properties, and Blender's own panels that it joins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import bpy
+
+from .ids import ENGINE, RENDER_SETTINGS
+
+
+class _RenderPanel:
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "render"
+    COMPAT_ENGINES = frozenset({ENGINE})
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine in cls.COMPAT_ENGINES
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        for name in self.properties:
+            self.layout.prop(getattr(context.scene, RENDER_SETTINGS), name)
+
+
+class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
+    bl_label = "Sampling"
+    properties = ("supersampling", "viewport_supersampling")
+
+
+class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):
+    bl_label = "Surface"
+    properties = ("shading", "epsilon")
+
+
+class RENDER_PT_surfel_performance(_RenderPanel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("profile",)
+
+
+class VIEWLAYER_PT_surfel_passes(bpy.types.Panel):
+    bl_label = "Passes"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "view_layer"
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine == ENGINE
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        column = layout.column(heading="Data")
+        column.prop(context.view_layer, "use_pass_z")
+        column.prop(context.view_layer, "use_pass_normal")
+
+
+#: Blender's panels whose settings this engine does not have, or replaces with its own.
+_NOT_JOINED = frozenset(
+    {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle", "RENDER_PT_simplify"}
+)
+#: EEVEE's panels that edit the nodes which this engine reads.
+_JOINED_FROM_EEVEE = frozenset(
+    {"EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface", "EEVEE_WORLD_PT_surface"}
+)
+
+
+def stock_panels() -> Iterator[type]:
+    """Blender's panels that show settings which this engine honours."""
+    for panel in bpy.types.Panel.__subclasses__():
+        engines = getattr(panel, "COMPAT_ENGINES", ())
+        if "BLENDER_RENDER" in engines and panel.__name__ not in _NOT_JOINED:
+            yield panel
+        elif panel.__name__ in _JOINED_FROM_EEVEE:
+            yield panel
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (RENDER_PT_surfel_sampling, RENDER_PT_surfel_surface, RENDER_PT_surfel_performance, VIEWLAYER_PT_surfel_passes)
+)
+
+
+def register():
+    _register_classes()
+    for panel in stock_panels():
+        panel.COMPAT_ENGINES.add(ENGINE)
+
+
+def unregister():
+    for panel in stock_panels():
+        panel.COMPAT_ENGINES.discard(ENGINE)
+    _unregister_classes()
