@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`render_exact`: the picture by its definition, one ray for every sub-sample of every pixel.
 
-Scene -> `splats` (eye space) -> per tile: `rays` (visibility, then weighted averages) -> `shading` -> `filters` -> Frame.
+Scene -> `splats` (eye space) -> in tiles: `rays` (visibility, weighted averages) -> `shading` -> `filters` -> Frame.
 """
 
 from __future__ import annotations

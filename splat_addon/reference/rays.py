@@ -86,7 +86,7 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """M meetings of a ray with a splat: their numbers, rho^2 in the ellipse, depth along -Z, length of the direction."""
+    """M meetings of a ray with a splat: their numbers, rho^2 in the ellipse, depth along -Z, the direction's length."""
 
     ray: np.ndarray
     splat: np.ndarray

@@ -99,10 +99,12 @@ def projected_bounds(splats: Splats, camera: Camera) -> tuple[np.ndarray, np.nda
     """
     depth = -splats.center[:, 2]
     reach = np.hypot(splats.u[:, 2], splats.v[:, 2])
-    middle, half = (_orthographic_boxes if camera.is_orthographic else _perspective_boxes)(splats, depth, reach)
-    # Rounding must not lose a ray at the rim.
-    half = half * (1 + 1e-9) + 1e-12 * np.abs(middle)
-    low, high = middle - half, middle + half
+    # Boxes of splats that touch the near plane come out meaningless, and are replaced below.
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        middle, half = (_orthographic_boxes if camera.is_orthographic else _perspective_boxes)(splats, depth)
+        # Rounding must not lose a ray at the rim.
+        half = half * (1 + 1e-9) + 1e-12 * np.abs(middle)
+        low, high = middle - half, middle + half
     if not camera.is_orthographic:
         everything = depth - reach * (1 + 1e-9) <= camera.near
         low[everything], high[everything] = -np.inf, np.inf
@@ -111,16 +113,15 @@ def projected_bounds(splats: Splats, camera: Camera) -> tuple[np.ndarray, np.nda
     return low, high
 
 
-def _orthographic_boxes(splats: Splats, depth, reach) -> tuple[np.ndarray, np.ndarray]:
+def _orthographic_boxes(splats: Splats, depth) -> tuple[np.ndarray, np.ndarray]:
     return splats.center[:, :2], np.hypot(splats.u[:, :2], splats.v[:, :2])
 
 
-def _perspective_boxes(splats: Splats, depth, reach) -> tuple[np.ndarray, np.ndarray]:
-    with np.errstate(divide="ignore", invalid="ignore"):
-        scale = 1 / depth[:, None]
-        middle = splats.center[:, :2] * scale
-        g, h = -splats.u[:, 2:] * scale, -splats.v[:, 2:] * scale
-        a, b = splats.u[:, :2] * scale - middle * g, splats.v[:, :2] * scale - middle * h
-        spread = 1 - g * g - h * h
-        offset = -(a * g + b * h) / spread
-        return middle + offset, np.sqrt(offset * offset + (a * a + b * b) / spread)
+def _perspective_boxes(splats: Splats, depth) -> tuple[np.ndarray, np.ndarray]:
+    scale = 1 / depth[:, None]
+    middle = splats.center[:, :2] * scale
+    g, h = -splats.u[:, 2:] * scale, -splats.v[:, 2:] * scale
+    a, b = splats.u[:, :2] * scale - middle * g, splats.v[:, :2] * scale - middle * h
+    spread = 1 - g * g - h * h
+    offset = -(a * g + b * h) / spread
+    return middle + offset, np.sqrt(offset * offset + (a * a + b * b) / spread)

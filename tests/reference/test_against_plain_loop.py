@@ -74,4 +74,4 @@ def test_a_sheared_mirrored_cloud_around_the_eye_is_what_single_rays_see(project
             np.testing.assert_allclose(frame.color[row, column, :3], color, atol=1e-6)
             assert frame.depth[row, column] == pytest.approx(depth, rel=1e-6)
             covered += depth < EMPTY_DEPTH
-    assert 0.3 * size[0] * size[1] < covered < size[0] * size[1] or covered == size[0] * size[1]
+    assert covered > 0.3 * size[0] * size[1]

@@ -29,7 +29,7 @@ def one_splat(center, u, v) -> Splats:
 @settings(deadline=None, max_examples=150)
 def test_boxes_are_exact(kind, center, u, v):
     camera = CAMERAS[kind]
-    center = center + (0, 0, -5)
+    center = center - np.array((0, 0, 5))
     angle = np.linspace(0, 2 * math.pi, 2001)[:, None]
     rim = center + np.cos(angle) * u + np.sin(angle) * v
     assume(-rim[:, 2].max() > 0.2 and np.linalg.norm(np.cross(u, v)) > 1e-3)

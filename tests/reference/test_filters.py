@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import render_exact
-from splat_addon.reference.filters import PIXEL_FILTERS, SIGMA, filter_weights, resample
+from splat_addon.reference.filters import PIXEL_FILTERS, filter_weights, resample
 from splat_addon.rendering.scene import Scene
 from splat_addon.rendering.settings import Settings
+
+SIGMA = 0.7071
 
 every_filter = pytest.mark.parametrize("name", PIXEL_FILTERS)
 odd_and_even = pytest.mark.parametrize("samples", [1, 2, 3, 4, 7, 8])

@@ -77,12 +77,12 @@ def test_a_splat_seen_edge_on_covers_nothing(ellipses, perspective):
 
 @pytest.mark.parametrize("near", [0.01, 1.5])
 def test_ground_that_runs_behind_the_eye_is_seen_from_the_near_plane_on(ellipses, perspective, near):
-    camera = perspective(near=near, far=40.0)
+    camera = perspective(near=near, far=20.0)
     frame = render_exact(Scene([ellipses((0, -1, 0), (0, 0, 200), (200, 0, 0))]), camera, FLAT, samples=1)
     rows = (np.arange(32) + 0.5) / 16 - 1
     depth = np.full(32, np.inf)
     depth[rows < 0] = -1 / rows[rows < 0]
-    seen = (depth >= near) & (depth <= 40)
+    seen = (depth >= near) & (depth <= 20)
     np.testing.assert_array_equal(frame.coverage, np.broadcast_to(seen[:, None], (32, 32)))
     np.testing.assert_allclose(frame.depth[seen, 0], depth[seen], rtol=1e-6)
 

@@ -63,7 +63,6 @@ def test_a_sphere_of_surfels_has_the_analytic_silhouette_and_depth():
 
 def test_a_scene_far_from_the_origin_looks_the_same():
     scene, camera = scenes.torus(1500, (32, 24))
-    here = render_exact(scene, camera, samples=2)
     offset = np.array((2.0**26, -(2.0**25), 2.0**24))
     matrix, eye = np.eye(4), camera.matrix_world.copy()
     matrix[:3, 3] = offset
@@ -72,7 +71,6 @@ def test_a_scene_far_from_the_origin_looks_the_same():
     moved_camera = type(camera)(eye, camera.window, camera.size, camera.near, camera.far)
     there = render_exact(moved, moved_camera, FLAT, samples=2)
     here = render_exact(scene, camera, FLAT, samples=2)
-    np.testing.assert_allclose(there.coverage, here.coverage, atol=0.26)
     assert (there.coverage != here.coverage).sum() <= 2
     np.testing.assert_allclose(there.color[there.coverage == 1], here.color[there.coverage == 1], atol=1e-3)
 

@@ -80,11 +80,11 @@ def test_a_white_surface_in_a_white_world_gives_back_no_more_than_it_gets(
     assert 0.4 < glow[0] < 1.01
 
 
-@pytest.mark.parametrize("f0", [0.04, 1.0])
+@pytest.mark.parametrize(("f0", "tolerance"), [(0.04, 0.035), (1.0, 0.16)])
 @pytest.mark.parametrize("roughness", [0.3, 0.6, 1.0])
 @pytest.mark.parametrize("nv", [0.3, 0.7, 1.0])
-def test_the_analytic_albedo_is_the_integral_of_the_specular_term(f0, roughness, nv):
-    """Karis' fit is of another Smith term, so the two agree to a few hundredths."""
+def test_the_analytic_albedo_is_near_the_integral_of_the_specular_term(f0, tolerance, roughness, nv):
+    """Karis' fit ignores the angle at f0 = 1, so metals in a bright world are up to 0.16 too dark or too bright."""
     z, phi = (a.ravel() for a in np.meshgrid((np.arange(400) + 0.5) / 400, (np.arange(400) + 0.5) / 400 * 2 * np.pi))
     ring = np.sqrt(1 - z * z)
     light = np.stack([ring * np.cos(phi), ring * np.sin(phi), z], axis=1)
@@ -92,7 +92,7 @@ def test_the_analytic_albedo_is_the_integral_of_the_specular_term(f0, roughness,
     view = np.broadcast_to((math.sqrt(1 - nv * nv), 0.0, nv), light.shape)
     values = specular_term(normal, view, light, z, np.full(len(z), nv), np.full(len(z), roughness), np.full((1, 3), f0))
     scale, bias = environment_terms(roughness, nv)
-    assert (values[:, 0] * z).mean() * 2 * np.pi == pytest.approx(f0 * scale + bias, abs=0.07)
+    assert (values[:, 0] * z).mean() * 2 * np.pi == pytest.approx(f0 * scale + bias, abs=tolerance)
 
 
 angles = st.tuples(st.floats(0.05, 1.5), st.floats(0, 6.28))
