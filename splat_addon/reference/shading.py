@@ -73,7 +73,7 @@ def principled_radiance(surface: Surface, position, direction, lights, world) ->
     normal = surface.normal
     nv = np.maximum(_dot(normal, view), MIN_VIEW_COSINE)
     roughness = np.clip(surface.roughness, MIN_ROUGHNESS, 1)
-    metallic, f0 = surface.metallic[:, None], surface.f0[:, None]
+    metallic, f0 = np.clip(surface.metallic, 0, 1)[:, None], surface.f0[:, None]
     specular_f0 = f0 + (surface.color - f0) * metallic
     scale, bias = environment_terms(roughness, nv)
     diffuse_albedo = surface.color * (1 - metallic) * (1 - (f0 * scale[:, None] + bias[:, None]))
