@@ -39,7 +39,7 @@ class SampleFiller:
         """Writes the samples of these spans of the image along `axis` to `rows` of the arrays."""
         out = {name: array[rows] for name, array in self._arrays.items()}
         triangles, of_span = _distinct(spans.triangles)
-        corners = self._sound_corners(triangles, axis)
+        corners, normals = self._sound_corners(triangles, axis)
         u, v, depth = (corners[(axis + k) % 3] for k in (1, 2, 0))
         weights = _SpanWeights(u, v, of_span, spans)
         span, step = expand(spans.counts)
@@ -51,13 +51,10 @@ class SampleFiller:
         heights = (depth + 0.5) * self._grid.spacing
         out["positions"][:, axis] = line.samples(*weights.interpolate(heights))
 
-        geometric = doubled_areas(corners)
-        geometric /= np.sqrt((geometric * geometric).sum(axis=0))
-        image_order = geometric[[(axis + 1) % 3, (axis + 2) % 3, axis]]
-        _spread(ellipse_rotations(image_order, axis), triangle, out["rotations"])
-        _spread(ellipse_scales(geometric[axis], self._half_size), triangle, out["scales"])
+        _spread(ellipse_rotations(normals, axis), triangle, out["rotations"])
+        _spread(ellipse_scales(normals[axis], self._half_size), triangle, out["scales"])
 
-        face_normals = np.ascontiguousarray(geometric.T, np.float32)
+        face_normals = np.ascontiguousarray(normals.T, np.float32)
         if self._mesh.corner_normals is None:
             _spread(face_normals, triangle, out["normals"])
         else:
@@ -88,18 +85,24 @@ class SampleFiller:
             row[...] = line.samples(*weights.interpolate(values[:, component]))
         return result
 
-    def _sound_corners(self, triangles: np.ndarray, axis: int) -> np.ndarray:
-        """(3, 3, t) grid coordinates: the real corners, or the snapped ones of a triangle that snapping opened up.
+    def _sound_corners(self, triangles: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
+        """(3, 3, t) corners on the grid and (3, t) unit normals: the real ones, or the snapped where those have no area.
 
-        A triangle that projects to (nearly) nothing can have an area once its corners are snapped; its own
-        barycentrics would be infinite (facts/sampling.md section 1, the trap).
+        A triangle that projects to (nearly) nothing can open up once its corners are snapped; its own barycentrics
+        would be infinite (facts/sampling.md section 1, the trap).
         """
         corners = gather_corners(self._coordinates, self._mesh.triangles[triangles])
-        snapped = self._grid.snapped(corners) / self._grid.subcells
-        area, snapped_area = (doubled_areas(c)[axis] for c in (corners, snapped))
-        poor = np.flatnonzero(~(area * np.sign(snapped_area) > _LEAST_AREA_RATIO * np.abs(snapped_area)))
-        corners[:, :, poor] = snapped[:, :, poor]
-        return corners
+        normals = doubled_areas(corners)
+        u, v = (self._grid.snapped(corners[(axis + k) % 3]) for k in (1, 2))
+        snapped_area = (u[1] - u[0]) * (v[2] - v[0]) - (v[1] - v[0]) * (u[2] - u[0])
+        least = snapped_area * (_LEAST_AREA_RATIO / self._grid.subcells**2)
+        poor = np.flatnonzero(~(normals[axis] * np.sign(snapped_area) > np.abs(least)))
+        if len(poor):
+            corners[:, :, poor] = self._grid.snapped(corners[:, :, poor]) / self._grid.subcells
+            normals[:, poor] = doubled_areas(corners[:, :, poor])
+        x, y, z = normals
+        normals /= np.sqrt(x * x + y * y + z * z)
+        return corners, normals
 
 
 class _SpanWeights:

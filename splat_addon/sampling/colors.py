@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,12 +56,14 @@ class Palette:
     def _surface_colors(self, index: int, count: int, vertex_colors, uvs, uv_steps) -> np.ndarray:
         surface, pyramid = self._surfaces[index], self._pyramids[index]
         constant = np.asarray(surface.color, np.float32)
-        colors = np.broadcast_to(constant, (count, 4))
+        factors = []
         if surface.vertex_colors and vertex_colors is not None:
-            colors = colors * vertex_colors.T
+            factors.append(vertex_colors.T)
         if pyramid is not None and uvs is not None:
-            colors = colors * pyramid.lookup(uvs, pyramid.level_for(_texels_between(uv_steps, pyramid.size)))
-        return _replaced_where_not_finite(colors, constant)
+            factors.append(pyramid.lookup(uvs, pyramid.level_for(_texels_between(uv_steps, pyramid.size))))
+        if not factors:
+            return np.broadcast_to(constant, (count, 4))
+        return _replaced_where_not_finite(math.prod(factors, start=constant), constant)
 
 
 def _texels_between(uv_steps: np.ndarray, size: tuple[int, int]) -> np.ndarray:

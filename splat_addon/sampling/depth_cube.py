@@ -39,7 +39,7 @@ def depth_cube(
         kept = keeps(normals) & (normals > 0)
         for axis, spans in enumerate(images):
             picked = np.flatnonzero(kept[axis])
-            u, v = corners[(axis + 1) % 3][:, picked], corners[(axis + 2) % 3][:, picked]
+            u, v = (corners[(axis + k) % 3].take(picked, axis=1) for k in (1, 2))
             for part in scan_convert(u, v, picked + chunk.start, grid.subcells):
                 spans.append(part)
                 total += int(part.counts.sum(dtype=np.int64))

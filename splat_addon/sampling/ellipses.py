@@ -29,13 +29,13 @@ def ellipse_scales(axis_normals: np.ndarray, half_size: float) -> np.ndarray:
 def ellipse_rotations(normals: np.ndarray, axis: int) -> np.ndarray:
     """(t, 4) float32 unit quaternions w, x, y, z: local x the steepest direction, y across it, z the normal.
 
-    normals: (3, t) float64 unit normals in the order (u, v, axis) of the image.
+    normals: (3, t) float64 unit normals.
     With cos p, sin p the direction of (Nu, Nv) and r its length, the local axes are x = (-Na cos p, -Na sin p, r),
-    y = (sin p, -cos p, 0), z = (r cos p, r sin p, Na): half a turn about (sqrt((1-Na)/2), 0, sqrt((1+Na)/2)), then p about
-    the image's axis. No pole is special: where r is 0, p is 0.
+    y = (sin p, -cos p, 0), z = (r cos p, r sin p, Na): half a turn about (sqrt((1-Na)/2), 0, sqrt((1+Na)/2)), then p
+    about the image's axis. No pole is special: where r is 0, p is 0.
     """
-    u, v, a = normals
-    r = np.hypot(u, v)
+    u, v, a = (normals[(axis + k) % 3] for k in (1, 2, 0))
+    r = np.sqrt(u * u + v * v)
     cosine = np.divide(u, r, out=np.ones_like(r), where=r > 0)
     half_turn = np.sqrt(np.maximum(1 + cosine, 0) / 2), np.copysign(np.sqrt(np.maximum(1 - cosine, 0) / 2), v)
     tilt = np.sqrt(np.maximum(1 - a, 0) / 2), np.sqrt(np.maximum(1 + a, 0) / 2)

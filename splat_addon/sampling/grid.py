@@ -15,7 +15,7 @@ from .mesh import TriangleMesh
 #: float64 (proved for a product below 2^26.5, measured at 2^26; facts/sampling.md section 1).
 EXACT_BOUND = 2**25
 
-#: Sub-cells a cell: more gain nothing over the unsnapped barycentrics, fewer put slivers 1/100 of a cell off their plane.
+#: Sub-cells a cell: more gain nothing over the unsnapped barycentrics, fewer put slivers 0.01 cell off their plane.
 MAX_SUBCELLS = 16384
 MIN_SUBCELLS = 64
 
@@ -38,8 +38,12 @@ class Grid:
     size: int
 
     def coordinates(self, positions: np.ndarray) -> np.ndarray:
-        """(3, V) float64 grid coordinates of (V, 3) positions."""
-        return (positions.T - self.origin[:, None]) / self.spacing - 0.5
+        """(3, V) float64 grid coordinates of (V, 3) positions, each component contiguous."""
+        coordinates = positions.T.copy()
+        coordinates -= self.origin[:, None]
+        coordinates /= self.spacing
+        coordinates -= 0.5
+        return coordinates
 
     def snapped(self, coordinates: np.ndarray) -> np.ndarray:
         """Grid coordinates in whole sub-cells: integers held in float64."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Looking colours up in a texture: Blender's extension modes, bilinear or closest, box-filtered where it is minified."""
+"""Looks colours up in a texture: Blender's extension modes, bilinear or closest, box-filtered where it is minified."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Pyramid:
         return np.clip(wanted, 0, last).astype(np.intp)
 
     def lookup(self, uvs: np.ndarray, levels: np.ndarray) -> np.ndarray:
-        """(n, 4) float32 colours, not premultiplied, at (2, n) texture coordinates; those that are not finite count as 0."""
+        """(n, 4) float32 colours, not premultiplied, at (2, n) texture coordinates; a non-finite one counts as 0."""
         uvs = np.where(np.isfinite(uvs), uvs, 0)
         colors = np.empty((uvs.shape[1], 4), np.float32)
         for level in np.unique(levels):

@@ -62,7 +62,7 @@ def projected_area(mesh: TriangleMesh, reduction: str = "normal") -> float:
 def predict_count(
     mesh: TriangleMesh, *, spacing: float | None = None, resolution: float | None = None, reduction: str = "normal"
 ) -> int:
-    """Number of surfels that `sample_mesh` is about to make, from areas alone; 0 for a mesh without usable triangles."""
+    """Number of surfels that `sample_mesh` will make, from areas alone; 0 for a mesh without usable triangles."""
     check_fineness(spacing, resolution)
     mesh, _ = drop_unusable(mesh)
     area = projected_area(mesh, reduction)

@@ -21,7 +21,7 @@ from .reductions import find_reduction
 from .scan_conversion import BATCH, batches
 
 
-class SamplingCancelled(Exception):
+class SamplingCancelled(Exception):  # noqa: N818 - a wish of the user, not an error
     """The progress callback asked to stop."""
 
 
@@ -38,7 +38,7 @@ def sample_mesh(
 
     spacing: cell size H, object units; or resolution: cells along the longest edge of the mesh's box.
     reduction: a name in `REDUCTIONS`. splat_size: smaller half-axis of a splat, in H; 1 leaves no holes.
-    progress: called between chunks with the finished share, 0 to 1; when it returns False, `SamplingCancelled` is raised.
+    progress: called between chunks with the finished share, 0 to 1; where it returns False, `SamplingCancelled` rises.
     Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the grid's origin.
     A mesh without usable triangles, or one that lies between the rays, gives no surfels.
 

@@ -51,8 +51,8 @@ def scan_convert(u: np.ndarray, v: np.ndarray, triangles: np.ndarray, subcells: 
     triangles: (t,) the number that stands for each triangle in the result.
     """
     hit = np.flatnonzero(_has_integer(u, subcells) & _has_integer(v, subcells))
-    bottom, middle, top = _sorted_by_row(u[:, hit], v[:, hit])
-    triangles = triangles[hit]
+    bottom, middle, top = _sorted_by_row(u.take(hit, axis=1), v.take(hit, axis=1))
+    triangles = triangles.take(hit)
     long = _Edges(bottom, top, subcells)
     # The two short edges of a triangle, one after the other, cross the same rows as its long edge.
     short = _Edges(_interleaved(bottom, middle), _interleaved(middle, top), subcells)
