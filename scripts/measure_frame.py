@@ -46,7 +46,10 @@ def sphere(count: int) -> Surfels:
 #: what is timed -> lights of the scene
 CONDITIONS = {
     "world light": (),
-    "world, sun and point": (Light("sun", energy=2.0, direction=(1, 1, -1)), Light("point", energy=50.0, position=(2, -2, 2))),
+    "world, sun and point": (
+        Light("sun", energy=2.0, direction=(1, 1, -1)),
+        Light("point", energy=50.0, position=(2, -2, 2)),
+    ),
 }
 
 
@@ -85,13 +88,14 @@ def report(arguments) -> None:
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout
     print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, {device.renderer}, {device.backend}")
     print(f"Blender {bpy.app.version_string}, {datetime.date.today()}, commit {commit.strip()}")
-    print("| splats | picture | light | engine ms, median (min-max) | bare ms, median (min-max) | ratio, median of turns |")
-    print("|---|---|---|---|---|---|")
+    print("Milliseconds: median (min-max). Ratio: engine / bare, median over turns.")
+    print("| splats | picture | light | engine ms | bare ms | ratio |\n|---|---|---|---|---|---|")
     for count in arguments.splats:
         for edge in arguments.size:
             for name, engine, bare in measure(device, count, edge, arguments.rounds):
                 ratio = statistics.median(e / b for e, b in zip(engine, bare, strict=True))
-                print(f"| {count:,} | {edge} x {edge} | {name} | {spread(engine)} | {spread(bare)} | {ratio:.2f} |", flush=True)
+                cells = f"{count:,}", f"{edge} x {edge}", name, spread(engine), spread(bare), f"{ratio:.2f}"
+                print("| " + " | ".join(cells) + " |", flush=True)
 
 
 def spread(times: list[float]) -> str:

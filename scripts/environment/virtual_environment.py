@@ -31,6 +31,9 @@ DEFAULT_BPY = ("5.2.3", "5.0.1")
 #: purpose -> the purposes whose requirements its own file includes, itself among them.
 PURPOSES = {"demo": ("demo",), "test": ("demo", "test")}
 
+#: Where a venv keeps its interpreter.
+PROGRAM = Path("Scripts/python.exe" if os.name == "nt" else "bin/python")
+
 #: Leaves by os._exit, because some wheels hang or crash on their way out. The graphics libraries are
 #: loaded by name, as Blender itself does only when it renders.
 IMPORT_CHECK = """
@@ -76,7 +79,7 @@ def make(purpose: str, bpy_version: str | None = None) -> Environment:
 
 def _environment(version: str) -> Environment:
     folder = ROOT / f".venv-bpy-{version}"
-    return Environment(folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python"), version, folder)
+    return Environment(folder / PROGRAM, version, folder)
 
 
 def requirements_hash(path: Path) -> str:
@@ -115,7 +118,7 @@ def _install(environment: Environment, purpose: str, command: list[str]) -> None
         _make_venv(folder, command)
     wanted = [f"bpy=={environment.bpy_version}", "-r", str(_requirements(purpose))]
     options = ["--disable-pip-version-check", "--no-input", "--progress-bar", "off", "--prefer-binary"]
-    code, output = run_showing([str(environment.python), "-m", "pip", "install", *options, *wanted], _pip_line)
+    code, output = run_showing([str(environment.python), "-m", "pip", "install", *options, *wanted], pip_line)
     if code:
         raise Problem(install_problem(output) or f"pip could not install the requirements: {last_line(output)}.")
     stamp.write_text("".join(_stamp_line(name) + "\n" for name in PURPOSES[purpose]))
@@ -125,10 +128,11 @@ def _make_venv(folder: Path, command: list[str]) -> None:
     made = subprocess.run([*command, "-m", "venv", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if made.returncode:
         text = made.stdout.decode(errors="replace")
-        raise Problem(install_problem(text) or f"{folder} could not be made with {' '.join(command)}: {last_line(text)}.")
+        known = install_problem(text)
+        raise Problem(known or f"{folder} could not be made with {' '.join(command)}: {last_line(text)}.")
 
 
-def _pip_line(line: str) -> str | None:
+def pip_line(line: str) -> str | None:
     """pip's own lines, less the many about dependencies that are there already."""
     match = re.match(r"\s*(Collecting \S+|Downloading \S+.*\(.*\)|Installing collected packages)", line)
     return re.sub(r"\S*/", "", match.group(1)) if match else None

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs the tests inside a Blender program, whose Python is its own and may lack what they need.
+
+The missing packages are put into a folder of the build, from outside, and tests/run_in_blender.py looks there
+after the program's own: Blender's numpy is never shadowed, and nothing is installed into Blender.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+from environment import ROOT, Problem
+from environment.diagnosis import install_problem, last_line
+from environment.long_step import run_showing
+from environment.virtual_environment import pip_line, requirements_hash
+
+REQUIREMENTS = ROOT / "requirements" / "program.txt"
+
+#: The variable by which tests/run_in_blender.py learns of the folder.
+PACKAGES_VARIABLE = "SURFEL_TEST_PACKAGES"
+
+MARK = "surfel-python"
+ASK_VERSION = f"import sys; print('{MARK}', '%d.%d' % sys.version_info[:2], flush=True)"
+
+
+def prepare(program: str, python: Path) -> dict[str, str]:
+    """The environment variables for a test run in the program, after its packages are there.
+
+    python: of an environment with pip. Raises Problem where the program does not run or a package cannot be had.
+    """
+    version = _python_version(program)
+    folder = ROOT / "build" / f"packages-{version}"
+    stamp = folder / "installed.txt"
+    if not stamp.is_file() or stamp.read_text() != requirements_hash(REQUIREMENTS):
+        shutil.rmtree(folder, ignore_errors=True)
+        print(f"Fetching the tests' packages for the program's Python {version}; this is done once.", flush=True)
+        options = ["--python-version", version, "--only-binary=:all:", "--progress-bar", "off", "--no-input"]
+        command = [str(python), "-m", "pip", "install", "--target", str(folder), *options, "-r", str(REQUIREMENTS)]
+        code, output = run_showing(command, pip_line)
+        if code:
+            raise Problem(install_problem(output) or f"pip could not fetch the packages: {last_line(output)}.")
+        stamp.write_text(requirements_hash(REQUIREMENTS))
+    return {PACKAGES_VARIABLE: str(folder)}
+
+
+def test_command(program: str, gpu_backend: str | None, pytest_arguments: list[str]) -> list[str]:
+    """The command that runs pytest in the program in background mode."""
+    backend = ["--gpu-backend", gpu_backend] if gpu_backend else []
+    script = ["--python-exit-code", "1", "--python", str(ROOT / "tests" / "run_in_blender.py")]
+    return [program, "--background", "--factory-startup", *backend, *script, "--", *pytest_arguments]
+
+
+def _python_version(program: str) -> str:
+    command = [program, "--background", "--factory-startup", "--python-expr", ASK_VERSION]
+    try:
+        answer = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    except OSError as error:
+        raise Problem(f"{program} is no program that runs ({error.strerror}); name Blender's own file.", 2) from None
+    text = answer.stdout.decode(errors="replace")
+    for line in text.splitlines():
+        if line.startswith(MARK):
+            return line.split()[1]
+    raise Problem(f"{program} does not answer as Blender does: {last_line(text)}.", exit_code=2)

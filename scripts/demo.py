@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Converts a model to surfels, renders it with the engine, and leaves a picture and a .blend.
+
+    python3 scripts/demo.py [MODEL] [--resolution R] [--size WxH] [--out DIR]
+
+Runs on whatever Python starts it: makes an environment with Blender in it on first use, and hands over to
+demo_in_blender.py there. Written so that an old Python gets as far as the sentence in `environment`.
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import environment
+from demo_models import IMPORTERS, model_suffix
+from environment import Problem
+
+#: Cells along the model's longest side.
+RESOLUTIONS = 2, 8192
+DEFAULT_RESOLUTION = 384
+#: Pixels along a side of the picture; Blender's own limits.
+PIXELS = 4, 65536
+DEFAULT_SIZE = "1280x960"
+
+
+class Parser(argparse.ArgumentParser):
+    """Says one sentence where argparse would print its usage too."""
+
+    def error(self, message: str):
+        raise Problem(message.rstrip(".") + f" (see {self.prog} --help).", exit_code=2)
+
+
+def parse(arguments: list) -> argparse.Namespace:
+    """The checked arguments; raises Problem with exit code 2 for one that cannot be used."""
+    parser = Parser(prog="demo.py", description="Converts a model to surfels and renders it inside Blender.")
+    parser.add_argument(
+        "model", nargs="?", type=model, help=f"{', '.join(IMPORTERS)}, each also .gz; a painted Suzanne"
+    )
+    parser.add_argument(
+        "--resolution", type=resolution, default=DEFAULT_RESOLUTION, help="cells along the longest side"
+    )
+    parser.add_argument("--size", type=size, default=DEFAULT_SIZE, help="of the picture, WxH in pixels")
+    parser.add_argument("--out", type=folder, default=environment.ROOT / "build" / "demo", help="where the files go")
+    return parser.parse_args(arguments)
+
+
+def model(text: str) -> Path:
+    """An existing file of a kind that Blender imports."""
+    path = Path(text)
+    if not path.exists():
+        raise argparse.ArgumentTypeError(f"there is no file {text}")
+    if not path.is_file():
+        raise argparse.ArgumentTypeError(f"{text} is not a file")
+    if model_suffix(path) not in IMPORTERS:
+        raise argparse.ArgumentTypeError(f"{text} is not one of {', '.join(IMPORTERS)}, plain or with .gz added")
+    return path.resolve()
+
+
+def resolution(text: str) -> int:
+    """A whole number of cells."""
+    low, high = RESOLUTIONS
+    if not re.fullmatch(r"\d{1,9}", text) or not low <= int(text) <= high:
+        raise argparse.ArgumentTypeError(f"must be a whole number from {low} to {high}, not {text!r}")
+    return int(text)
+
+
+def size(text: str) -> tuple:
+    """(width, height) in pixels."""
+    low, high = PIXELS
+    match = re.fullmatch(r"(\d{1,9})[xX](\d{1,9})", text)
+    if not match or not all(low <= int(side) <= high for side in match.groups()):
+        raise argparse.ArgumentTypeError(
+            f"must be WIDTHxHEIGHT, each from {low} to {high}, such as 1280x960, not {text!r}"
+        )
+    return int(match.group(1)), int(match.group(2))
+
+
+def folder(text: str) -> Path:
+    """A folder, or the name of one to make."""
+    path = Path(text).resolve()
+    if path.exists() and not path.is_dir():
+        raise argparse.ArgumentTypeError(f"{text} is a file, and a folder is needed")
+    return path
+
+
+@environment.exit_with_problems
+def main(arguments: list) -> int:
+    """Exit code: 0, 1 where the demo failed, 2 for wrong arguments."""
+    options = parse(arguments)
+    python = environment.make("demo").python
+    options.out.mkdir(parents=True, exist_ok=True)
+    command = [str(python), str(Path(__file__).resolve().parent / "demo_in_blender.py")]
+    command += ["--resolution", str(options.resolution), "--size", *map(str, options.size), "--out", str(options.out)]
+    command += ["--model", str(options.model)] if options.model else []
+    return subprocess.run(command).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

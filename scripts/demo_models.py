@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A model file becomes mesh objects, through Blender's own importers; gzipped files are unpacked first."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import re
+import shutil
+import tempfile
+import urllib.parse
+import zlib
+from pathlib import Path
+
+from environment import Problem
+
+#: suffix -> the operator `bpy.ops.MODULE.NAME` that reads it, and its options.
+IMPORTERS = {
+    ".obj": ("wm", "obj_import", {}),
+    # Scanners write PLY with Y up and say so nowhere.
+    ".ply": ("wm", "ply_import", {"forward_axis": "NEGATIVE_Z", "up_axis": "Y"}),
+    ".stl": ("wm", "stl_import", {}),
+    ".glb": ("import_scene", "gltf", {}),
+    ".gltf": ("import_scene", "gltf", {}),
+}
+
+
+def model_suffix(path: Path) -> str:
+    """The kind of a model file, in lower case and without .gz."""
+    name = path.name.lower()
+    return Path(name[: -len(".gz")] if name.endswith(".gz") else name).suffix
+
+
+def import_model(path: Path) -> list:
+    """The mesh objects with faces that the file holds. Raises Problem where it cannot be read or has none."""
+    import bpy
+
+    module, name, options = IMPORTERS[model_suffix(path)]
+    with tempfile.TemporaryDirectory() as folder:
+        readable = unpack(path, Path(folder)) if path.name.lower().endswith(".gz") else path
+        try:
+            getattr(getattr(bpy.ops, module), name)(filepath=str(readable), **options)
+        except RuntimeError as error:
+            raise Problem(f"{path} cannot be read as {model_suffix(path)}: {_one_line(error)}.") from None
+        _keep_images()
+    meshes = [o for o in bpy.context.view_layer.objects if o.type == "MESH" and o.data.polygons and o.visible_get()]
+    if not meshes:
+        raise Problem(f"{path} holds no mesh with faces, and surfels are made from faces.")
+    return meshes
+
+
+def unpack(path: Path, folder: Path) -> Path:
+    """The file without .gz, in `folder`, beside copies of the files that it names (materials, textures, buffers)."""
+    target = folder / path.name[: -len(".gz")]
+    try:
+        with gzip.open(path) as packed, target.open("wb") as plain:
+            shutil.copyfileobj(packed, plain)
+    except (gzip.BadGzipFile, EOFError, zlib.error) as error:
+        raise Problem(f"{path} is not a whole gzip file: {_one_line(error)}.") from None
+    _copy_named_files(target, path.parent, folder)
+    return target
+
+
+def _copy_named_files(text_file: Path, source: Path, folder: Path) -> None:
+    """Copies what a file names from `source` to `folder`; a material library names textures in its turn."""
+    names = _NAMED_FILES.get(text_file.suffix.lower())
+    for name in names(text_file) if names else ():
+        original, copy = source / name, folder / name
+        if original.is_file() and folder.resolve() in copy.resolve().parents and not copy.exists():
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(original, copy)
+            _copy_named_files(copy, source, folder)
+
+
+def _libraries_of_obj(path: Path) -> list[str]:
+    with path.open(encoding="utf-8", errors="replace") as lines:
+        return [line.split(None, 1)[1].strip() for line in lines if re.match(r"mtllib\s+\S", line)]
+
+
+def _textures_of_mtl(path: Path) -> list[str]:
+    text = path.read_text(encoding="utf-8", errors="replace")
+    return [line.split()[-1] for line in text.splitlines() if re.match(r"\s*(map_\w+|bump|norm|refl)\s+\S", line)]
+
+
+def _files_of_gltf(path: Path) -> list[str]:
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise Problem(f"{path.name} is not a glTF file: {_one_line(error)}.") from None
+    parts = (*content.get("buffers", ()), *content.get("images", ()))
+    return [urllib.parse.unquote(p["uri"]) for p in parts if "uri" in p and not p["uri"].startswith("data:")]
+
+
+_NAMED_FILES = {".obj": _libraries_of_obj, ".mtl": _textures_of_mtl, ".gltf": _files_of_gltf}
+
+
+def _keep_images() -> None:
+    """Packs every image into the .blend, before a temporary folder that it lies in goes away."""
+    import bpy
+
+    for image in bpy.data.images:
+        if image.source == "FILE" and image.has_data and not image.packed_file:
+            image.pack()
+
+
+def _one_line(error: Exception) -> str:
+    return " ".join(str(error).replace("Error: ", "").split()).rstrip(".")

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which test belongs to which of the two processes that scripts/test.py starts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from environment import ROOT, Problem
+
+PLAIN, BLENDER = "plain", "blender"
+
+#: Folders that only Blender can run; a window's tests need a screen and are started by hand.
+ONLY_IN_BLENDER = ("tests/blender", "tests/extension")
+ONLY_IN_A_WINDOW = ("tests/window",)
+#: Folders whose tests draw, on whichever device they are given.
+ON_ANY_DEVICE = ("tests/rendering",)
+
+#: pytest's options whose value is the next word and could look like a path.
+VALUE_OPTIONS = ("-k", "-m", "-p", "-c", "-o", "-n", "-W", "-r", "--deselect", "--ignore", "--rootdir", "--confcutdir",
+                 "--basetemp", "--junitxml", "--maxfail", "--durations", "--tb", "--timeout")  # fmt: skip
+
+
+def split_arguments(arguments: list[str]) -> tuple[list[str], list[str]]:
+    """The test paths (existing ones, with or without ::test), and pytest's other arguments."""
+    paths, others = [], []
+    for before, argument in zip(["", *arguments], arguments):
+        is_path = not argument.startswith("-") and before not in VALUE_OPTIONS and _file(argument).exists()
+        (paths if is_path else others).append(argument)
+    return paths, others
+
+
+def paths_by_group(paths: list[str], only_rendering: bool = False) -> dict[str, list[str]]:
+    """group -> the arguments that name its tests; everything where no path is given.
+
+    only_rendering: the plain group's other tests have nothing to say to the Blender that is tested.
+    Raises Problem for a path that no group runs.
+    """
+    if not paths:
+        plain = list(ON_ANY_DEVICE) if only_rendering else ["tests", *_ignored()]
+        return {PLAIN: plain, BLENDER: [*ON_ANY_DEVICE, *_existing(ONLY_IN_BLENDER)]}
+    groups = {PLAIN: [], BLENDER: []}
+    for path in paths:
+        if _is_within(path, ONLY_IN_A_WINDOW):
+            raise Problem(f"{path} needs a window: open it with a Blender program on a screen.", exit_code=2)
+        if _is_within(path, (*ONLY_IN_BLENDER, *ON_ANY_DEVICE)):
+            groups[BLENDER].append(path)
+        else:
+            groups[BLENDER] += [f for f in (*ON_ANY_DEVICE, *_existing(ONLY_IN_BLENDER)) if _is_within(f, (path,))]
+        if not _is_within(path, ONLY_IN_BLENDER):
+            groups[PLAIN].append(path)
+    if groups[PLAIN]:
+        groups[PLAIN] += _ignored()
+    return groups
+
+
+def _ignored() -> list[str]:
+    return [f"--ignore={folder}" for folder in (*ONLY_IN_BLENDER, *ONLY_IN_A_WINDOW)]
+
+
+def _existing(folders: tuple[str, ...]) -> list[str]:
+    return [folder for folder in folders if (ROOT / folder).is_dir()]
+
+
+def _is_within(path: str, folders: tuple[str, ...]) -> bool:
+    inner = _file(path)
+    return any(folder == inner or folder in inner.parents for folder in map(_file, folders))
+
+
+def _file(argument: str) -> Path:
+    """The file or folder of a test path; relative ones start at the checkout, where pytest runs."""
+    return (ROOT / argument.split("::")[0]).resolve()

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""pytest inside a Blender program: `blender --background --python tests/run_in_blender.py -- PYTEST ARGUMENTS`.
+
+scripts/test.py --blender starts it, and names a folder with the packages that the program's Python lacks.
+"""
+
+import os
+import sys
+import traceback
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def run() -> int:
+    """pytest's exit code."""
+    packages = os.environ.get("SURFEL_TEST_PACKAGES")
+    if packages:
+        sys.path.append(packages)
+    sys.path.insert(0, str(ROOT))
+    os.chdir(ROOT)
+    import pytest
+
+    return int(pytest.main(sys.argv[sys.argv.index("--") + 1 :]))
+
+
+exit_code = 1
+try:
+    exit_code = run()
+except BaseException:
+    traceback.print_exc()
+sys.stdout.flush()
+sys.stderr.flush()
+# Blender would go on to end its graphics context, in which some versions hang or crash.
+os._exit(exit_code)

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The demo's arguments: each wrong one is a sentence and exit code 2, before anything is made."""
+
+import demo
+import pytest
+
+
+@pytest.fixture(autouse=True)
+def no_environment(monkeypatch):
+    monkeypatch.setattr(demo.environment, "make", lambda purpose: pytest.fail("an environment was made"))
+
+
+@pytest.fixture
+def rejected(capsys):
+    """rejected(arguments) is the sentence on stderr; anything but one line and exit code 2 fails."""
+
+    def run(*arguments):
+        assert demo.main(list(arguments)) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        return line
+
+    return run
+
+
+def test_a_file_that_is_not_there(rejected):
+    assert "nowhere.obj" in rejected("nowhere.obj")
+
+
+def test_a_folder_is_no_model(rejected, tmp_path):
+    assert "is not a file" in rejected(str(tmp_path))
+
+
+@pytest.mark.parametrize("name", ["model.fbx", "model.fbx.gz", "model", ".gz"])
+def test_a_suffix_that_no_importer_reads(rejected, tmp_path, name):
+    (tmp_path / name).touch()
+    assert ".gltf" in rejected(str(tmp_path / name))
+
+
+@pytest.mark.parametrize("text", ["0", "1", "-5", "1e3", "many", "99999", ""])
+def test_a_resolution_that_cannot_be(rejected, text):
+    assert "whole number from 2 to 8192" in rejected(f"--resolution={text}")
+
+
+@pytest.mark.parametrize("text", ["640", "0x480", "640x", "-1x5", "640*480", "70000x480"])
+def test_a_size_that_cannot_be(rejected, text):
+    assert "WIDTHxHEIGHT" in rejected(f"--size={text}")
+
+
+def test_an_output_folder_that_is_a_file(rejected, tmp_path):
+    (tmp_path / "taken").touch()
+    assert "taken is a file" in rejected("--out", str(tmp_path / "taken"))
+
+
+@pytest.mark.parametrize("name", ["a.obj", "a.PLY", "a.stl.gz", "a.b.glb", "a.gltf.GZ"])
+def test_every_kind_of_model_is_taken(tmp_path, name):
+    (tmp_path / name).touch()
+    assert demo.parse([str(tmp_path / name)]).model.name == name
+
+
+def test_without_arguments_there_is_a_picture_of_suzanne_to_make():
+    options = demo.parse([])
+    assert options.model is None and options.size == (1280, 960)
+
+
+def test_a_size_is_width_by_height():
+    assert demo.parse(["--size", "640x480"]).size == (640, 480)

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""When an environment is made, when it is used as it lies, and what is said where it cannot be made."""
+
+import sys
+
+import pytest
+from environment import Problem, virtual_environment
+from environment.virtual_environment import make
+
+
+@pytest.fixture
+def machine(tmp_path, monkeypatch):
+    """A clone in an empty folder on a machine with Python 3.13, where venv, pip and the check only leave a note."""
+    done = []
+
+    def make_venv(folder, command):
+        done.append("venv")
+        python = folder / virtual_environment.PROGRAM
+        python.parent.mkdir(parents=True)
+        python.touch()
+
+    def install(command, pick):
+        done.append("pip")
+        return machine.pip
+
+    def check(environment):
+        done.append("check")
+
+    class machine:
+        pip = 0, ""
+        folder = tmp_path / ".venv-bpy-5.2.3"
+        requirements = tmp_path / "requirements"
+
+    machine.done = done
+    machine.requirements.mkdir()
+    (machine.requirements / "demo.txt").write_text("rich\n")
+    (machine.requirements / "test.txt").write_text("-r demo.txt\npytest\n")
+    monkeypatch.setattr(virtual_environment, "ROOT", tmp_path)
+    monkeypatch.setattr(virtual_environment, "_make_venv", make_venv)
+    monkeypatch.setattr(virtual_environment, "run_showing", install)
+    monkeypatch.setattr(virtual_environment, "_check_import", check)
+    monkeypatch.setattr(virtual_environment, "find_interpreter", lambda v: [sys.executable] if v == "3.13" else None)
+    return machine
+
+
+def test_a_second_run_installs_nothing(machine):
+    make("demo")
+    machine.done.clear()
+    make("demo")
+    assert machine.done == ["check"]
+
+
+def test_the_tests_environment_serves_the_demo(machine):
+    make("test")
+    machine.done.clear()
+    make("demo")
+    assert machine.done == ["check"]
+
+
+def test_the_demos_environment_grows_for_the_tests(machine):
+    make("demo")
+    machine.done.clear()
+    make("test")
+    assert machine.done == ["pip", "check"]
+
+
+def test_changed_requirements_are_installed(machine):
+    make("test")
+    machine.done.clear()
+    (machine.requirements / "demo.txt").write_text("rich==15\n")
+    make("test")
+    assert machine.done == ["pip", "check"]
+
+
+def test_a_half_made_environment_is_made_anew(machine):
+    make("demo")
+    machine.done.clear()
+    (machine.folder / "installed.txt").unlink()
+    (machine.folder / "left over").touch()
+    make("demo")
+    assert machine.done == ["venv", "pip", "check"] and not (machine.folder / "left over").exists()
+
+
+def test_a_failed_installation_is_no_environment(machine):
+    machine.pip = 1, "ERROR: something else"
+    with pytest.raises(Problem, match="something else"):
+        make("demo")
+    assert not (machine.folder / "installed.txt").exists()
+
+
+def test_the_newest_blender_that_has_a_python_is_taken(machine, monkeypatch):
+    monkeypatch.setattr(virtual_environment, "find_interpreter", lambda v: [sys.executable] if v == "3.11" else None)
+    assert make("demo").bpy_version == "5.0.1"
+
+
+def test_no_python_at_all_is_one_sentence_for_every_system(machine, monkeypatch):
+    monkeypatch.setattr(virtual_environment, "find_interpreter", lambda version: None)
+    with pytest.raises(Problem, match=r"3\.13 or 3\.11.*Debian.*Fedora.*Windows.*macOS"):
+        make("demo")

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The code's form, and the Python that a script may be started with."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from environment.interpreters import candidate_commands, probe
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_ruff_finds_nothing():
+    done = subprocess.run([sys.executable, "-m", "ruff", "check", "."], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def start_demo(version):
+    """What the demo says to a model that is not there, on a Python that can only start it."""
+    for command in candidate_commands(version):
+        if probe(command)[:1] == (version,):
+            script = [str(ROOT / "scripts" / "demo.py"), "nowhere.obj"]
+            return subprocess.run([*command, *script], capture_output=True, text=True)
+    pytest.skip(f"there is no Python {version} on this machine")
+
+
+@pytest.mark.parametrize("version", ["3.8", "3.10"])
+def test_any_supported_python_starts_the_demo(version):
+    assert "nowhere.obj" in start_demo(version).stderr
+
+
+def test_a_python_too_old_is_told_so():
+    assert start_demo("3.6").stderr.startswith("The scripts start with Python 3.8 or newer")

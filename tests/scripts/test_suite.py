@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which tests scripts/test.py runs in which process, and what its exit code says."""
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+from environment import Problem
+from suite import BLENDER, PLAIN, paths_by_group, split_arguments
+
+
+@pytest.fixture(scope="module")
+def test_script():
+    """scripts/test.py, loaded by its path: `test` is a module of Python's own."""
+    path = Path(__file__).resolve().parents[2] / "scripts" / "test.py"
+    specification = importlib.util.spec_from_file_location("test_script", path)
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
+
+
+def named(group):
+    return [argument for argument in group if not argument.startswith("--ignore")]
+
+
+def test_without_a_path_both_groups_run():
+    groups = paths_by_group([])
+    assert named(groups[PLAIN]) == ["tests"] and "tests/rendering" in groups[BLENDER]
+
+
+def test_the_plain_group_leaves_blenders_folders_out():
+    ignored = {f"--ignore=tests/{folder}" for folder in ("blender", "extension", "window")}
+    assert ignored <= set(paths_by_group([])[PLAIN])
+
+
+def test_a_program_is_compared_with_the_plain_groups_pictures_only():
+    assert named(paths_by_group([], only_rendering=True)[PLAIN]) == ["tests/rendering"]
+
+
+@pytest.mark.parametrize(
+    ("path", "groups"),
+    [
+        ("tests/sampling", {PLAIN}),
+        ("tests/rendering", {PLAIN, BLENDER}),
+        ("tests/rendering/test_agreement.py::test_x", {PLAIN, BLENDER}),
+        ("tests/blender", {BLENDER}),
+        ("tests/extension/test_installed.py", {BLENDER}),
+    ],
+)
+def test_a_path_runs_in_the_groups_it_belongs_to(path, groups):
+    chosen = paths_by_group([path])
+    assert {group for group in chosen if path in chosen[group]} == groups
+
+
+def test_the_whole_folder_runs_in_both_groups():
+    groups = paths_by_group(["tests"])
+    assert named(groups[PLAIN]) == ["tests"] and "tests/rendering" in groups[BLENDER]
+
+
+def test_a_test_of_the_window_is_refused():
+    with pytest.raises(Problem, match="needs a window"):
+        paths_by_group(["tests/window/test_x.py"])
+
+
+def test_paths_are_told_from_pytests_arguments():
+    assert split_arguments(["-k", "tests", "tests/scripts", "-x"]) == (["tests/scripts"], ["-k", "tests", "-x"])
+
+
+@pytest.mark.parametrize(
+    ("codes", "expected"), [((0, 0), 0), ((1, 0), 1), ((0, 1), 1), ((0, 5), 0), ((5, 0), 0), ((5, 5), 5), ((-11, 0), 1)]
+)
+def test_one_exit_code_speaks_for_both_groups(test_script, codes, expected):
+    assert test_script.verdict(dict(zip((PLAIN, BLENDER), codes, strict=True))) == expected
+
+
+def test_the_second_group_runs_after_a_failure_of_the_first(test_script, monkeypatch):
+    ran = []
+    monkeypatch.setattr(test_script.environment, "make", lambda *_: test_script.environment.Environment("py", "", ""))
+    monkeypatch.setattr(test_script, "run", lambda name, command, **_: ran.append(name) or 1)
+    assert test_script.main([]) == 1 and ran == [PLAIN, BLENDER]
+
+
+def test_a_backend_without_a_program_is_refused(test_script, capsys):
+    assert test_script.main(["--gpu-backend", "vulkan"]) == 2 and "--blender" in capsys.readouterr().err
