@@ -96,7 +96,7 @@ def framing_camera(points: np.ndarray, reach: float, size: tuple[int, int]):
     distance = float(((across[:, :2] / slopes).max(axis=1) + seen[:, 2] - center[2]).max())
     distance = max(distance, reach * 1e-3)
     camera.rotation_euler = rotation.to_euler()
-    camera.location = axes @ (center + (0, 0, distance))
+    camera.location = axes @ (center + np.array((0, 0, distance)))
     data.clip_start, data.clip_end = max(distance - 2 * reach, distance * 1e-3), distance + 2 * reach
     return camera
 

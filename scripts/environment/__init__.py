@@ -6,10 +6,11 @@ Needs nothing but a Python of 3.8 or newer; the environment's own Python may be 
 
 import sys
 
-if sys.version_info < (3, 8):
+# In syntax that every Python can read.
+if sys.version_info < (3, 8):  # noqa: UP036
     sys.exit(
-        "The scripts start with Python 3.8 or newer, and this is %d.%d: call them as `python3 scripts/NAME.py`, "
-        "or install a newer Python." % sys.version_info[:2]
+        "The scripts start with Python 3.8 or newer, and this is {}.{}: call them as `python3 scripts/NAME.py`, "
+        "or install a newer Python.".format(*sys.version_info)
     )
 
 from .problem import Problem, exit_with_problems

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs in a Blender of its own: installs the zip, converts a cube, renders it, and reports what came of it.
+
+PYTHON -I session.py -- ZIP REPORT.json
+"""
+
+import json
+import os
+import sys
+import traceback
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+MODULE = "bl_ext.user_default.surfel_splatting"
+SIZE = 64
+
+
+def main(package: str, report: Path) -> dict:
+    """Facts for the tests, in the order in which they can be had."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.extensions.package_install_files(repo="user_default", filepath=package, enable_on_install=True)
+    facts = {"enabled": MODULE in bpy.context.preferences.addons, "path": list(sys.path)}
+    facts["files"] = [m.__file__ for name, m in sys.modules.items() if "splat_addon" in name and m.__file__]
+    bpy.ops.mesh.primitive_cube_add(size=2)
+    cube = bpy.context.object
+    bpy.ops.object.surfels_from_mesh(resolution=32)
+    facts["surfels"] = [len(o.data.vertices) for o in bpy.data.objects if o.type == "MESH" and o is not cube]
+    facts["pixels"] = picture(report.with_name("picture.exr")).tolist()
+    bpy.ops.preferences.addon_disable(module=MODULE)
+    facts["left"] = [name for name in ("surfel_splatting", "surfel_conversion") if hasattr(bpy.types.Scene, name)]
+    return facts
+
+
+def picture(file: Path) -> np.ndarray:
+    """(4, 4) rgba of a pixel in the middle and of three in corners, rendered from straight above the cube."""
+    scene = bpy.context.scene
+    camera = bpy.data.cameras.new("above")
+    camera.type, camera.ortho_scale = "ORTHO", 4.0
+    scene.camera = bpy.data.objects.new("above", camera)
+    scene.camera.location.z = 10
+    scene.collection.objects.link(scene.camera)
+    sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
+    scene.collection.objects.link(sun)
+    scene.render.engine = "SURFEL_SPLATTING"
+    scene.render.film_transparent = True
+    scene.render.resolution_x = scene.render.resolution_y = SIZE
+    scene.render.image_settings.file_format = "OPEN_EXR"
+    scene.render.image_settings.color_mode = "RGBA"
+    scene.render.filepath = str(file)
+    bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(str(file))
+    values = np.empty(SIZE * SIZE * 4, np.float32)
+    image.pixels.foreach_get(values)
+    return values.reshape(SIZE, SIZE, 4)[[32, 2, 2, 61], [32, 2, 61, 61]]
+
+
+exit_code = 1
+try:
+    package, report = sys.argv[sys.argv.index("--") + 1 :]
+    facts = main(package, Path(report))
+    Path(report).write_text(json.dumps(facts))
+    exit_code = 0
+except BaseException:
+    traceback.print_exc()
+sys.stdout.flush()
+sys.stderr.flush()
+# Some versions hang or crash while Blender ends.
+os._exit(exit_code)
