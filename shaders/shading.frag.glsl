@@ -7,19 +7,18 @@
 const float EMPTY_DEPTH = 1e10;
 
 void main() {
-  int samples = int(shading.options.x);
-  ivec2 first = ivec2(gl_FragCoord.xy) * samples;
+  ivec2 first = ivec2(gl_FragCoord.xy) * SAMPLES;
   vec4 color_total = vec4(0.0);
   vec4 normal_total = vec4(0.0);
   float nearest = EMPTY_DEPTH;
-  for (int y = 0; y < samples; y++) {
-    for (int x = 0; x < samples; x++) {
+  for (int y = 0; y < SAMPLES; y++) {
+    for (int x = 0; x < SAMPLES; x++) {
       ivec2 texel = first + ivec2(x, y);
       vec4 c = texelFetch(color_sum, texel, 0);
       if (c.w > 0.0) {
         vec4 n = texelFetch(normal_sum, texel, 0) / c.w;
         vec2 place = shading.window.xy + (vec2(texel) + 0.5) * shading.window.zw;
-        vec3 position = vec3(shading.options.y > 0.5 ? place : place * n.w, -n.w);
+        vec3 position = vec3(shading.options.x > 0.5 ? place : place * n.w, -n.w);
         float size = length(n.xyz);
         vec3 normal = size > 1e-6 ? n.xyz / size : vec3(0.0, 0.0, 1.0);
 #ifdef MATERIAL_TARGET
@@ -36,7 +35,7 @@ void main() {
       }
     }
   }
-  float share = 1.0 / float(samples * samples);
+  float share = 1.0 / float(SAMPLES * SAMPLES);
   combined = color_total * share;
   depth = nearest;
 #ifdef NORMAL_OUTPUT

@@ -95,7 +95,7 @@ def pytest_sessionfinish(session, exitstatus):
 
 @pytest.hookimpl(trylast=True)
 def pytest_unconfigure(config):
-    """Blender 4.5 may hang and 5.0 crash while the interpreter ends, so it is left by the back door, after the summary."""
+    """Blender 4.5 may hang and 5.0 crash while the interpreter ends: it is left by the back door, after the summary."""
     if "bpy" in sys.modules:
         sys.stdout.flush()
         sys.stderr.flush()

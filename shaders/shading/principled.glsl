@@ -10,7 +10,7 @@ const float MIN_COSINE = 1e-4;
 
 // material: roughness, metallic, reflectance at normal incidence
 vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
-  vec3 view = shading.options.y > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
+  vec3 view = shading.options.x > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
   float roughness = clamp(material.x, MIN_ROUGHNESS, 1.0);
   float metallic = clamp(material.y, 0.0, 1.0);
   vec3 f0 = mix(vec3(material.z), base, metallic);
@@ -22,8 +22,9 @@ vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
   vec3 diffuse_albedo = base * (1.0 - metallic) * (1.0 - (material.z * ab.x + ab.y));
   vec3 radiance = shading.world.rgb * (diffuse_albedo + f0 * ab.x + ab.y);
 
+#ifdef LIGHTS
   float a2 = roughness * roughness * roughness * roughness;
-  int count = int(shading.options.z);
+  int count = int(shading.options.y);
   for (int i = 0; i < count; i++) {
     vec4 place = texelFetch(lights, ivec2(0, i), 0);
     vec3 irradiance = texelFetch(lights, ivec2(1, i), 0).rgb;
@@ -39,12 +40,14 @@ vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
       vec3 halfway = normalize(view + to_light);
       float nh = clamp(dot(normal, halfway), 0.0, 1.0);
       float vh = clamp(dot(view, halfway), 0.0, 1.0);
-      float d = nh * nh * (a2 - 1.0) + 1.0;
+      vec3 sine = cross(normal, halfway);  // sin^2 + a^2 cos^2: 1 - cos^2 (1 - a^2) loses all digits on a mirror
+      float d = dot(sine, sine) + nh * nh * a2;
       float distribution = a2 / (PI * d * d);
       float masking = 0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));
       vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - vh, 5.0);
       radiance += (diffuse_albedo / PI + distribution * masking * fresnel) * irradiance * nl;
     }
   }
+#endif
   return radiance;
 }

@@ -67,13 +67,13 @@ def shared_material(instances: tuple[Instance, ...]) -> Material | None:
 
 
 def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: float) -> np.ndarray:
-    """(max(L, 1), 2, 4) float32, in scaled view space.
+    """(L, 2, 4) float32, in scaled view space.
 
     Texel 0: direction to the light (sun, w = 0) or its position (point, w = 1). Texel 1: irradiance at a surface
     that faces it; of a point light at distance 1, energy / (4 pi), in scaled units.
     """
-    texels = np.zeros((max(len(lights), 1), 2, 4))
-    for row, light in zip(texels, lights, strict=False):
+    texels = np.zeros((len(lights), 2, 4))
+    for row, light in zip(texels, lights, strict=True):
         irradiance = np.asarray(light.color, np.float64) * light.energy
         row[0], row[1, :3] = _LIGHT_TEXELS[light.kind](light, irradiance, world_to_view, scale)
     return texels.astype(np.float32)

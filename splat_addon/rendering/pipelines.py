@@ -14,7 +14,7 @@ _SPLATS = (
     (("mat4", "model_view"), ("mat4", "projection"), ("mat4", "normal_matrix"), ("vec4", "options")),
 )
 #: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
-#: material: of all surfels, and in w the view-to-world length. options: samples, 1 for orthographic, lights.
+#: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights.
 _SHADING = (
     "Shading",
     "shading",
@@ -56,7 +56,7 @@ def _attributes(planned, frame):
             *((_MATERIAL_VARYING,) if with_material else ()),
         ),
         outputs=tuple(("vec4", name) for name in planned.writes),
-        defines=("MATERIAL_TARGET",) if with_material else (),
+        defines=(("MATERIAL_TARGET", "1"),) if with_material else (),
         blend="add",
         depth_test=True,
     )
@@ -69,11 +69,13 @@ def _shading(planned, frame):
         vertex=load("fullscreen.vert.glsl"),
         fragment=load("shading.frag.glsl", shading=frame.shading),
         block=_SHADING,
-        samplers=(*planned.reads, "lights"),
+        samplers=planned.reads,
         outputs=tuple((kinds.get(name, "vec4"), name) for name in planned.writes),
         defines=(
-            *(("MATERIAL_TARGET",) if "material_sum" in planned.reads else ()),
-            *(("NORMAL_OUTPUT",) if "normal_coverage" in planned.writes else ()),
+            ("SAMPLES", str(frame.samples)),
+            *((("MATERIAL_TARGET", "1"),) if "material_sum" in planned.reads else ()),
+            *((("LIGHTS", "1"),) if "lights" in planned.reads else ()),
+            *((("NORMAL_OUTPUT", "1"),) if "normal_coverage" in planned.writes else ()),
         ),
     )
 

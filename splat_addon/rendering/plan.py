@@ -32,7 +32,9 @@ TEXTURES = {
 
 @dataclass(frozen=True)
 class PlannedPass:
-    """name: also of its pipeline. reads, writes: names of textures in slot order. reason: why the frame needs it."""
+    """name: also of its pipeline. reason: why the frame needs it.
+    reads, writes: names of textures in slot order; "lights" holds the scene's.
+    """
 
     name: str
     reason: str
@@ -62,7 +64,8 @@ class FramePlan:
 
     def __str__(self) -> str:
         lines = [f"{len(self.tiles)} tile(s), {self.samples} x {self.samples} samples, method {self.method}"]
-        lines += [f"  {p.name}: {', '.join(p.writes)} <- {', '.join(p.reads) or 'splats'}; {p.reason}" for p in self.passes]
+        for p in self.passes:
+            lines.append(f"  {p.name}: {', '.join(p.writes)} <- {', '.join(p.reads) or 'splats'}; {p.reason}")
         lines += [f"  without {what}: {why}" for what, why in self.left_out]
         return "\n".join(lines)
 
@@ -82,6 +85,13 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
             left_out.append(("material_sum", "all surfels have one material"))
         else:
             sums.append("material_sum")
+        reads = list(sums)
+        if settings.shading == "flat":
+            left_out.append(("lights", "flat shading does not look at lights"))
+        elif scene.lights:
+            reads.append("lights")
+        else:
+            left_out.append(("lights", "the scene has none"))
         outputs = ["combined", "depth"]
         if {"normal", "coverage"} & set(settings.outputs):
             outputs.append("normal_coverage")
@@ -90,7 +100,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         passes = [
             PlannedPass("visibility", "splats may hide one another", (), ("visibility_depth",)),
             PlannedPass("attributes", "overlapping splats blend", ("visibility_depth",), (*sums,)),
-            PlannedPass("shading", f"{settings.shading}, once a sample", (*sums,), (*outputs,)),
+            PlannedPass("shading", f"{settings.shading}, once a sample", (*reads,), (*outputs,)),
         ]
         if any((instance.surfels.colors[:, 3] < 1).any() for instance in scene.surfels):
             left_out.append(("transparency", "surfels whose opacity is below 1 are drawn opaque"))

@@ -16,8 +16,11 @@ from .packing import pack_lights, pack_materials, pack_surfels
 from .pipelines import describe
 from .plan import TEXTURES, FramePlan, plan
 from .scene import Scene
-from .settings import Settings
+from .settings import OUTPUTS, Settings
 from .view import View, look
+
+#: x, y, width, height in pixels.
+Tile = tuple[int, int, int, int]
 
 #: Told the share done (0 to 1) and what comes next; returning False cancels.
 Progress = Callable[[float, str], bool]
@@ -38,44 +41,30 @@ class Renderer:
         self._pipelines = {}
         self._textures = {}
 
-    def render(self, scene: Scene, camera: Camera, settings: Settings | None = None, progress: Progress | None = None) -> Frame:
+    def render(
+        self, scene: Scene, camera: Camera, settings: Settings | None = None, progress: Progress | None = None
+    ) -> Frame:
         """The whole picture in numpy arrays.
 
         Raises ValueError for settings that do not fit, RuntimeError where the device fails, RenderCancelled.
         """
         settings = settings or Settings()
         frame_plan = plan(scene, camera, settings)
-        wanted = settings.outputs
-        width, height = camera.size
-        background = background_pixel(scene, settings)
-        frame = Frame(
-            color=np.full((height, width, 4), background, np.float32) if "color" in wanted else None,
-            depth=np.full((height, width), EMPTY_DEPTH, np.float32) if "depth" in wanted else None,
-            normal=np.zeros((height, width, 3), np.float32) if "normal" in wanted else None,
-            coverage=np.zeros((height, width), np.float32) if "coverage" in wanted else None,
-            stats=self._new_stats(frame_plan),
-        )
+        stats = self._new_stats(frame_plan)
         started = perf_counter()
         try:
-            for (x, y, w, h), target in self._tiles(scene, camera, settings, frame_plan, frame.stats, progress):
-                area = slice(y, y + h), slice(x, x + w)
-                if frame.color is not None:
-                    frame.color[area] = target.read(0)
-                if frame.depth is not None:
-                    frame.depth[area] = target.read(1)[..., 0]
-                if frame.normal is not None or frame.coverage is not None:
-                    normal_coverage = target.read(2)
-                    if frame.normal is not None:
-                        frame.normal[area] = normal_coverage[..., :3]
-                    if frame.coverage is not None:
-                        frame.coverage[area] = normal_coverage[..., 3]
+            tiles = [
+                (tile, _read(target, settings.outputs))
+                for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress)
+            ]
         finally:
             self.device.restore()
-        frame.stats["milliseconds"] = 1e3 * (perf_counter() - started)
-        return frame
+        arrays = _assembled(tiles, camera.size) if tiles else _background(scene, camera.size, settings)
+        stats["milliseconds"] = 1e3 * (perf_counter() - started)
+        return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)
 
-    def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[tuple[tuple[int, int, int, int], object]]:
-        """For a viewport: yields each tile, (x, y, width, height) in pixels, and the colour texture to show there.
+    def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[tuple[Tile, object]]:
+        """For a viewport: yields each tile and the colour texture to show there.
 
         A texture is good until the next tile is asked for.
         """
@@ -150,12 +139,12 @@ class Renderer:
     def _run_shading(self, planned, frame_plan, scene, camera, settings, view):
         size, samples = camera.size, frame_plan.samples
         target = self.device.target([self._texture(name, size, 1) for name in planned.writes])
-        lights = self.device.texture(
-            (2, max(len(scene.lights), 1)), "RGBA32F", pack_lights(scene.lights, camera.world_to_view(), view.scale)
-        )
-        reads = [self._texture(name, size, samples) for name in planned.reads]
+        reads = [self._texture(name, size, samples) for name in planned.reads if name in TEXTURES]
+        if "lights" in planned.reads:
+            data = pack_lights(scene.lights, camera.world_to_view(), view.scale)
+            reads.append(self.device.texture(data.shape[1::-1], "RGBA32F", data))
         block = _shading_block(scene, camera, settings, frame_plan, view)
-        self.device.draw_fullscreen(self._pipeline(planned, frame_plan), target, block, [*reads, lights])
+        self.device.draw_fullscreen(self._pipeline(planned, frame_plan), target, block, reads)
         return target
 
     def _draw_splats(self, planned, frame_plan, camera, settings, view: View, target):
@@ -213,6 +202,41 @@ def background_pixel(scene: Scene, settings: Settings) -> tuple[float, float, fl
     return (0.0, 0.0, 0.0, 0.0) if settings.transparent_film else (*scene.world, 1.0)
 
 
+def _background(scene: Scene, size, settings: Settings) -> dict[str, np.ndarray]:
+    """The arrays of a picture without a single splat."""
+    width, height = size
+    pixels = {"color": background_pixel(scene, settings), "depth": EMPTY_DEPTH, "normal": (0.0,) * 3, "coverage": 0.0}
+    return {
+        name: np.broadcast_to(np.float32(pixels[name]), (height, width, *np.shape(pixels[name]))).copy()
+        for name in settings.outputs
+    }
+
+
+def _read(target, outputs: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """The wanted arrays of one tile."""
+    arrays = {}
+    if "color" in outputs:
+        arrays["color"] = target.read(0)
+    if "depth" in outputs:
+        arrays["depth"] = target.read(1)[..., 0]
+    if "normal" in outputs or "coverage" in outputs:
+        normal_coverage = target.read(2)
+        arrays["normal"], arrays["coverage"] = normal_coverage[..., :3], normal_coverage[..., 3]
+    return {name: np.ascontiguousarray(arrays[name]) for name in outputs}
+
+
+def _assembled(tiles, size) -> dict[str, np.ndarray]:
+    """One picture from its tiles; a single one is it already."""
+    if len(tiles) == 1:
+        return tiles[0][1]
+    width, height = size
+    whole = {name: np.empty((height, width, *part.shape[2:]), np.float32) for name, part in tiles[0][1].items()}
+    for (x, y, w, h), arrays in tiles:
+        for name, part in arrays.items():
+            whole[name][y : y + h, x : x + w] = part
+    return whole
+
+
 def _block(*parts) -> np.ndarray:
     """std140: matrices column by column, vectors of four."""
     return np.concatenate([np.asarray(p, np.float64).T.ravel() for p in parts]).astype(np.float32)
@@ -231,5 +255,5 @@ def _shading_block(scene, camera, settings, frame_plan, view):
         (left * units, bottom * units, step_x * units, step_y * units),
         (*scene.world, 0.0 if settings.transparent_film else 1.0),
         (*material, 1.0 / view.scale),
-        (samples, camera.is_orthographic, len(scene.lights), 0.0),
+        (camera.is_orthographic, len(scene.lights), 0.0, 0.0),
     )

@@ -25,6 +25,10 @@ class Material:
     metallic: float = 0.0
     ior: float = 1.5
 
+    def __post_init__(self):
+        if not (np.isfinite([self.roughness, self.metallic, self.ior]).all() and self.ior > 0):
+            raise ValueError(f"A material needs finite numbers and an index of refraction above 0, not {self}.")
+
 
 @dataclass(frozen=True, eq=False)
 class Instance:
@@ -66,6 +70,11 @@ class Light:
     def __post_init__(self):
         if self.kind not in LIGHT_KINDS:
             raise ValueError(f"A light's kind must be one of {', '.join(LIGHT_KINDS)}, not {self.kind!r}.")
+        for name in ("color", "energy", "position", "direction"):
+            if not np.isfinite(getattr(self, name)).all():
+                raise ValueError(f"A light's {name} must be finite, not {getattr(self, name)!r}.")
+        if not np.any(self.direction):
+            raise ValueError("A light's direction must not be zero.")
 
 
 #: The order is the number by which the shading pass knows a kind.

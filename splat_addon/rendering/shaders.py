@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""GLSL files to GLSL text: `#include "path"` is replaced by that file, once per text; {names} in a path are filled in."""
+"""GLSL files to GLSL text: `#include "path"` becomes that file, once a text, and {names} in a path are filled in."""
 
 from __future__ import annotations
 

@@ -150,8 +150,8 @@ class _Pipeline:
         members = " ".join(f"{kind} {name};" for kind, name in fields)
         info.typedef_source(f"struct {struct} {{ {members} }};\n")
         info.uniform_buf(0, struct, instance)
-        for name in description.defines:
-            info.define(name)
+        for name, value in description.defines:
+            info.define(name, value)
         if description.varyings:
             interface = types.GPUStageInterfaceInfo(f"{description.name}_varyings")
             for interpolation, kind, name in description.varyings:

@@ -24,11 +24,11 @@ BLENDS = ("none", "add")
 @dataclass(frozen=True)
 class PipelineDescription:
     """name: for error messages. vertex, fragment: GLSL without declarations of the inputs and outputs below.
-    block: (struct name, instance name, ((type, field), ...)) of the one uniform block, std140; types mat4 and vec4 only.
+    block: (struct name, instance name, ((type, field), ...)) of the one uniform block, std140; of mat4 and vec4 only.
     samplers: names of 2D float textures, in slot order.
     varyings: (interpolation "smooth" | "flat", type, name) from vertex to fragment.
     outputs: (type, name) in slot order; empty for depth only.
-    defines: names that the text tests with #ifdef.
+    defines: (name, value) that the text tests with #ifdef or uses as constants, which drivers fold.
     blend: "none" or "add" (all channels summed). depth_test: less or equal.
     """
 
@@ -39,7 +39,7 @@ class PipelineDescription:
     samplers: tuple[str, ...] = ()
     varyings: tuple[tuple[str, str, str], ...] = ()
     outputs: tuple[tuple[str, str], ...] = ()
-    defines: tuple[str, ...] = ()
+    defines: tuple[tuple[str, str], ...] = ()
     blend: str = "none"
     depth_test: bool = False
     depth_write: bool = False

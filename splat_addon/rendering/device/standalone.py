@@ -24,7 +24,7 @@ class StandaloneDevice:
         try:
             import moderngl
         except ImportError as error:
-            raise RuntimeError("The standalone device needs the Python package moderngl; install it with pip.") from error
+            raise RuntimeError("The standalone device needs the package moderngl; install it with pip.") from error
         if "bpy" in sys.modules:
             raise RuntimeError(
                 "The standalone device takes Blender's graphics context away; open it in a process without bpy."
@@ -154,7 +154,7 @@ class _Pipeline:
 def _declared(description: PipelineDescription, source: str, varying: str) -> str:
     struct, instance, fields = description.block
     lines = ["#version 330"]
-    lines += [f"#define {name}" for name in description.defines]
+    lines += [f"#define {name} {value}" for name, value in description.defines]
     members = " ".join(f"{kind} {name};" for kind, name in fields)
     lines += [f"struct {struct} {{ {members} }};", f"layout(std140) uniform {struct}Block {{ {struct} {instance}; }};"]
     lines += [f"uniform sampler2D {name};" for name in description.samplers]
