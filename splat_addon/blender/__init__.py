@@ -4,13 +4,17 @@
 
 from __future__ import annotations
 
-from . import engine, properties, render_panels
+from . import conversion_settings, engine, operators, prediction, properties, render_panels, sidebar
 
 #: In the order of registration: what others refer to comes first.
 MODULES = (
     properties,
     engine,
     render_panels,
+    conversion_settings,
+    operators,
+    prediction,
+    sidebar,
 )
 
 

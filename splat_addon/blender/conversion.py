@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One mesh object becomes one surfel object, in three steps: prepare, sample, place.
+
+Only `prepare` and `place` touch Blender's data, so `sample` may run in a thread of its own while the window lives.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import bpy
+from mathutils import Matrix
+
+from ..sampling import TriangleMesh, drop_unusable, grid_spacing, predict_count, sample_mesh
+from ..surfels import Surfels
+from .attributes import write_surfels
+from .mesh_extraction import extract_mesh
+from .placement import transformed, without_shear
+
+#: About 20 GB while converting; a slip in the resolution must not freeze the machine.
+MAX_SURFELS = 100_000_000
+
+
+@dataclass(frozen=True)
+class Choices:
+    """fineness: keyword and value for sampling, {"resolution": cells along the longest edge} or {"spacing": object
+    units}. splat_size: half-axis of a splat, in spacings."""
+
+    fineness: dict[str, float]
+    splat_size: float = 1.0
+
+
+@dataclass(eq=False)
+class Conversion:
+    """One source on its way, and what there is to tell about it."""
+
+    source: bpy.types.Object
+    mesh: TriangleMesh
+    matrix_world: Matrix
+    materials: tuple[bpy.types.Material | None, ...]
+    choices: Choices
+    spacing: float
+    triangles: int
+    notes: list[str]
+    seconds: float
+    surfels: Surfels | None = None
+
+    def summary(self) -> str:
+        """What was made, in one line."""
+        return (
+            f"{self.triangles:,} triangles -> {len(self.surfels):,} surfels "
+            f"in {self.seconds:.1f} s, spacing {self.spacing:.4g}"
+        )
+
+
+def prepare(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, choices: Choices) -> Conversion:
+    """Read the source, evaluated with its modifiers.
+
+    Raises ValueError with a sentence: no faces, nothing usable, an impossible fineness or transform.
+    """
+    start = time.perf_counter()
+    matrix_world, shear = without_shear(source.evaluated_get(depsgraph).matrix_world)
+    extracted = extract_mesh(source, depsgraph)
+    total = len(extracted.triangles)
+    if not total:
+        what = "has no faces" if len(extracted.triangles.positions) else "is empty"
+        raise ValueError(f"The mesh {what}, so there is no surface to sample; add faces first.")
+    mesh = extracted.triangles if shear is None else transformed(extracted.triangles, shear)
+    mesh, dropped = drop_unusable(mesh)
+    skipped = [f"{count:,} triangle{'s' * (count > 1)} {reason}" for reason, count in dropped.items()]
+    if not len(mesh):
+        raise ValueError(f"The mesh has no usable faces, only {', '.join(skipped)}; repair it first.")
+    spacing = grid_spacing(mesh, **choices.fineness)
+    predicted = predict_count(mesh, spacing=spacing)
+    if predicted > MAX_SURFELS:
+        raise ValueError(f"It would become {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
+    notes = [f"Skipped {', '.join(skipped)}", *extracted.notes] if skipped else list(extracted.notes)
+    seconds = time.perf_counter() - start
+    return Conversion(source, mesh, matrix_world, extracted.materials, choices, spacing, total, notes, seconds)
+
+
+def sample(conversion: Conversion, progress: Callable[[float], bool | None] | None = None) -> None:
+    """Make the surfels; touches nothing of Blender's.
+
+    Raises SamplingCancelled where `progress` returned False, ValueError where nothing was hit.
+    """
+    start = time.perf_counter()
+    conversion.surfels = sample_mesh(
+        conversion.mesh, spacing=conversion.spacing, splat_size=conversion.choices.splat_size, progress=progress
+    )
+    if not len(conversion.surfels):
+        raise ValueError(
+            f"The mesh lies between the rays of a grid with spacing {conversion.spacing:.4g}; sample it finer."
+        )
+    conversion.seconds += time.perf_counter() - start
+
+
+def place(conversion: Conversion, fallback: bpy.types.Collection) -> bpy.types.Object:
+    """The new object "<name> surfels" over its source, in the source's collections, with its materials.
+
+    fallback: where it goes when every collection of the source belongs to a linked library.
+    """
+    start = time.perf_counter()
+    source, surfels = conversion.source, conversion.surfels
+    mesh = write_surfels(f"{source.name} surfels", surfels)
+    for material in conversion.materials:
+        mesh.materials.append(material)
+    made = bpy.data.objects.new(mesh.name, mesh)
+    for collection in [c for c in source.users_collection if c.library is None] or [fallback]:
+        collection.objects.link(made)
+    made.matrix_world = conversion.matrix_world @ Matrix.Translation(surfels.origin)
+    conversion.seconds += time.perf_counter() - start
+    return made

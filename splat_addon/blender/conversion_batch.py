@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Several sources, one after another: what the conversion operator drives, from `execute` or from its modal timer.
+
+Nothing is added to the file until every source is sampled, so that a cancelled batch leaves no trace, and a source
+with nothing usable does not stop the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import bpy
+
+from ..sampling import SamplingCancelled
+from .conversion import Choices, Conversion, place, prepare, sample
+
+
+class ConversionBatch:
+    """refused: (object name, sentence) of each source that could not be converted. share: finished part, 0 to 1."""
+
+    def __init__(self, sources: list[bpy.types.Object], choices: Choices):
+        self._sources, self._choices = sources, choices
+        self._sampled: list[Conversion] = []
+        self._begun = 0
+        self._part = 0.0
+        self.refused: list[tuple[str, str]] = []
+        self.is_cancelled = False
+
+    @property
+    def share(self) -> float:
+        return (max(self._begun - 1, 0) + self._part) / len(self._sources)
+
+    @property
+    def has_surfels(self) -> bool:
+        return bool(self._sampled)
+
+    def prepared(self, context: bpy.types.Context) -> Iterator[Conversion]:
+        """The usable sources, each read from Blender when it is asked for; give it to `sample` before the next."""
+        for source in self._sources:
+            self._begun, self._part = self._begun + 1, 0.0
+            try:
+                yield prepare(source, context.evaluated_depsgraph_get(), self._choices)
+            except ValueError as error:
+                self.refused.append((source.name, str(error)))
+
+    def sample(self, conversion: Conversion, report=lambda share: None) -> None:
+        """Sample one source; may run in another thread. report: called with `share` now and then."""
+
+        def progress(part: float) -> bool:
+            self._part = part
+            report(self.share)
+            return not self.is_cancelled
+
+        try:
+            sample(conversion, progress)
+        except SamplingCancelled:
+            return
+        except (ValueError, MemoryError) as error:
+            sentence = str(error) or "The memory does not suffice; sample it coarser."
+            self.refused.append((conversion.source.name, sentence))
+        else:
+            self._sampled.append(conversion)
+
+    def place_all(self, context: bpy.types.Context) -> list[tuple[Conversion, bpy.types.Object]]:
+        """Add the surfel objects to the file; they are selected, and the last is active."""
+        for selected in context.selected_objects:
+            selected.select_set(False)
+        made = [(conversion, place(conversion, context.collection)) for conversion in self._sampled]
+        for _, new in made:
+            new.select_set(True)
+            context.view_layer.objects.active = new
+        return made

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A Blender object, evaluated with its modifiers -> `sampling.TriangleMesh`.
+
+Only the fast ways in: attributes and `loop_triangle_polygons` copy whole arrays, where `vertices.co`,
+`loops.vertex_index`, `polygons.material_index` and the legacy UV data take a hundred times as long.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from ..sampling import SurfaceColor, TriangleMesh
+from .surface_colors import BaseColor, base_color
+
+
+@dataclass(frozen=True, eq=False)
+class ExtractedMesh:
+    """triangles: in the object's own space. materials: of the object's slots, as they are in the file, None where
+    a slot is empty. notes: a sentence for each kind of thing that could not be read."""
+
+    triangles: TriangleMesh
+    materials: tuple[bpy.types.Material | None, ...]
+    notes: tuple[str, ...]
+
+
+def extract_mesh(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> ExtractedMesh:
+    """Everything that sampling needs of a mesh object; no triangles where it has no faces."""
+    with evaluated_mesh(source, depsgraph) as (evaluated, mesh):
+        slots = _slot_materials(evaluated, mesh)
+        corners, faces = _triangle_corners(mesh)
+        vertices = _corner_vertices(mesh)[corners]
+        indices = _material_indices(mesh, faces, max(len(slots), 1))
+        colors, notes = _base_colors(slots, np.unique(indices), mesh)
+        triangles = TriangleMesh(
+            positions=_positions(mesh),
+            triangles=vertices,
+            corner_normals=_corner_normals(mesh, corners),
+            corner_colors=_by_material(colors, indices, "color_layer", _color_reader(mesh, corners, vertices), 4),
+            corner_uvs=_by_material(colors, indices, "uv_layer", _uv_reader(mesh, corners), 2),
+            materials=indices,
+            surfaces=tuple(color.surface for color in colors),
+        )
+    return ExtractedMesh(triangles, tuple(m and m.original for m in slots), tuple(notes))
+
+
+def extract_triangles(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> TriangleMesh:
+    """Only the positions and triangles, for predictions."""
+    with evaluated_mesh(source, depsgraph) as (_, mesh):
+        return TriangleMesh(_positions(mesh), _corner_vertices(mesh)[_triangle_corners(mesh)[0]])
+
+
+@contextmanager
+def evaluated_mesh(
+    source: bpy.types.Object, depsgraph: bpy.types.Depsgraph
+) -> Iterator[tuple[bpy.types.Object, bpy.types.Mesh]]:
+    """The evaluated object and its mesh, which is gone when the context ends."""
+    evaluated = source.evaluated_get(depsgraph)
+    try:
+        yield evaluated, evaluated.to_mesh()
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def _read(collection, key: str, width: int, count: int, dtype=np.float32) -> np.ndarray:
+    """(count, width), or (count,) for width 1, from one `foreach_get`."""
+    values = np.empty(count * width, dtype)
+    if count:
+        collection.foreach_get(key, values)
+    return values.reshape(count, width) if width > 1 else values
+
+
+def _positions(mesh: bpy.types.Mesh) -> np.ndarray:
+    count = len(mesh.vertices)
+    return _read(mesh.attributes["position"].data, "vector", 3, count) if count else np.empty((0, 3), np.float32)
+
+
+def _corner_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(C,) int32 vertex of each face corner."""
+    count = len(mesh.loops)
+    return _read(mesh.attributes[".corner_vert"].data, "value", 1, count, np.int32) if count else np.empty(0, np.int32)
+
+
+def _triangle_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray | None]:
+    """(T, 3) int32 face corners of the triangles, and the (T,) faces they are of; None: each its own."""
+    if len(mesh.loops) == 3 * len(mesh.polygons):
+        return np.arange(len(mesh.loops), dtype=np.int32).reshape(-1, 3), None
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    corners = _read(mesh.loop_triangles, "loops", 3, count, np.int32)
+    return corners, _read(mesh.loop_triangle_polygons, "value", 1, count, np.int32)
+
+
+def _corner_normals(mesh: bpy.types.Mesh, corners: np.ndarray) -> np.ndarray | None:
+    """(T, 3, 3) shading normals; None where every triangle is flat, so that its own normal is meant."""
+    if not len(corners) or (mesh.normals_domain == "FACE" and len(corners) == len(mesh.polygons)):
+        return None
+    return _read(mesh.corner_normals, "vector", 3, len(mesh.loops))[corners]
+
+
+def _material_indices(mesh: bpy.types.Mesh, faces: np.ndarray | None, slots: int) -> np.ndarray:
+    """(T,) int32 slot of each triangle; like Blender, an index past the last slot means the last."""
+    attribute = mesh.attributes.get("material_index")
+    if attribute is None:
+        return np.zeros(len(mesh.polygons) if faces is None else len(faces), np.int32)
+    indices = np.clip(_read(attribute.data, "value", 1, len(mesh.polygons), np.int32), 0, slots - 1)
+    return indices if faces is None else indices[faces]
+
+
+def _slot_materials(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> list[bpy.types.Material | None]:
+    """The mesh's materials, which Geometry Nodes may have set, and over them those of slots that the object owns."""
+    slots = evaluated.material_slots
+    materials = list(mesh.materials) + [slot.material for slot in slots[len(mesh.materials) :]]
+    return [slots[k].material if k < len(slots) and slots[k].link == "OBJECT" else m for k, m in enumerate(materials)]
+
+
+def _base_colors(
+    slots: list[bpy.types.Material | None], used: np.ndarray, mesh: bpy.types.Mesh
+) -> tuple[list[BaseColor], list[str]]:
+    """One base colour a slot, at least one, plain in slots that no face uses, and what could not be read."""
+    colors, notes = [], []
+    for index, material in enumerate(slots or [None]):
+        color, unread = base_color(material, mesh) if index in used else (BaseColor(SurfaceColor()), [])
+        colors.append(color)
+        notes += [f"The material {material.name!r}'s {what}; the plain value of its socket is used" for what in unread]
+    return colors, notes
+
+
+def _by_material(colors: list[BaseColor], indices: np.ndarray, layer: str, read, width: int) -> np.ndarray | None:
+    """(T, 3, width) corner values, those of each triangle from the layer that its material names; None for none.
+
+    layer: a field of `BaseColor`. read: function of a layer's name giving (T, 3, width) values.
+    """
+    names = [getattr(color, layer) for color in colors]
+    wanted = {name for name in names if name is not None}
+    if len(wanted) == 1:
+        return read(wanted.pop())
+    values = None
+    for name in wanted:
+        values = np.zeros((len(indices), 3, width), np.float32) if values is None else values
+        at = np.flatnonzero(np.isin(indices, [k for k, other in enumerate(names) if other == name]))
+        values[at] = read(name)[at]
+    return values
+
+
+def _color_reader(mesh: bpy.types.Mesh, corners: np.ndarray, vertices: np.ndarray):
+    def read(name: str) -> np.ndarray:
+        attribute = mesh.color_attributes[name]
+        # "color" is scene-linear for both types, the 8-bit one too.
+        values = _read(attribute.data, "color", 4, len(attribute.data))
+        return values[vertices if attribute.domain == "POINT" else corners]
+
+    return read
+
+
+def _uv_reader(mesh: bpy.types.Mesh, corners: np.ndarray):
+    return lambda name: _read(mesh.uv_layers[name].uv, "vector", 2, len(mesh.loops))[corners]

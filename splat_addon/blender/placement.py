@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where a new surfel object stands, so that it lies exactly over its source.
+
+An object of its own can be moved, turned and scaled, but not sheared, as a child of a turned and unevenly scaled
+parent is. Such shear goes into the mesh before it is sampled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from mathutils import Matrix
+
+from ..sampling import TriangleMesh
+
+#: Blender's matrices are float32; a difference this small, relative to the matrix, is rounding.
+_ROUNDING = 1e-5
+
+
+def without_shear(matrix_world: Matrix) -> tuple[Matrix, np.ndarray | None]:
+    """The nearest matrix that location, rotation and scale can make, and the (3, 3) float64 rest, None for none.
+
+    Their product is `matrix_world`. Raises ValueError for a matrix that is not finite or flattens the object.
+    """
+    whole = np.array(matrix_world, np.float64)
+    if not np.isfinite(whole).all():
+        raise ValueError("The object's transform is not finite; clear its location, rotation and scale.")
+    if min(abs(s) for s in matrix_world.to_scale()) == 0.0:
+        raise ValueError("The object's scale is 0 along an axis; set all three away from 0.")
+    plain = Matrix.LocRotScale(*matrix_world.decompose())
+    made = np.array(plain, np.float64)
+    if np.abs(made - whole)[:3, :3].max() <= _ROUNDING * np.abs(whole[:3, :3]).max():
+        return matrix_world, None
+    return plain, np.linalg.solve(made[:3, :3], whole[:3, :3])
+
+
+def transformed(mesh: TriangleMesh, linear: np.ndarray) -> TriangleMesh:
+    """The mesh under a (3, 3) linear map; normals go by its inverse transpose."""
+    normals = mesh.corner_normals
+    return replace(
+        mesh,
+        positions=mesh.positions @ linear.T,
+        corner_normals=None if normals is None else normals @ np.linalg.inv(linear),
+    )

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender images as scene-linear pixels, for `surface_colors`.
+
+Blender hands out the pixels of an 8-bit image as they are encoded and straight, those of a float image linear and
+premultiplied; the sampling side wants them linear and straight, or opaque as a renderer sees an unused alpha.
+"""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+
+class UnreadableColorError(Exception):
+    """What a base colour comes from and cannot be read, as the end of the sentence "it comes from ..."."""
+
+
+def linear_pixels(image: bpy.types.Image, keep_alpha: bool) -> np.ndarray:
+    """(h, w, 4) float32, scene-linear in Rec. 709, not premultiplied, row 0 at the bottom.
+
+    keep_alpha: whether the material uses the image's alpha; otherwise the result is opaque and, as in Cycles and
+    EEVEE, its colour premultiplied, unless the image's own alpha mode says that they are not related.
+    Raises UnreadableColorError for an image without pixels, a tiled or moving one, or an encoding other than sRGB.
+    """
+    if image.source not in ("FILE", "GENERATED"):
+        raise UnreadableColorError(f"the {image.source.lower()} image {image.name!r}")
+    pixels = _rgba(_stored_pixels(image), image)
+    colors, alpha = pixels[..., :3], pixels[..., 3:]
+    if not image.is_float:
+        colors[...] = _decoded(colors, image)
+    if image.alpha_mode in _ALPHA_IS_UNRELATED or not keep_alpha:
+        if image.alpha_mode not in _ALPHA_IS_UNRELATED and not image.is_float:
+            colors *= alpha
+        alpha[...] = 1.0
+    elif image.is_float:
+        colors /= np.where(alpha == 0, 1, alpha)
+    return pixels
+
+
+_ALPHA_IS_UNRELATED = ("CHANNEL_PACKED", "NONE")
+
+#: Colour spaces of 8-bit images whose values are linear in Rec. 709 as they are.
+_LINEAR = ("Non-Color", "Linear Rec.709", "Raw", "scene_linear")
+
+
+def srgb_to_linear(encoded: np.ndarray) -> np.ndarray:
+    """IEC 61966-2-1: display-encoded values in 0..1 -> linear ones."""
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+
+
+def _stored_pixels(image: bpy.types.Image) -> np.ndarray:
+    """(h, w, channels) float32 as Blender stores them; a file is loaded from disk here, if it is not yet."""
+    width, height = image.size
+    count = len(image.pixels)
+    if not count or count != width * height * image.channels:
+        raise UnreadableColorError(f"the image {image.name!r}, which has no pixels (is its file missing?)")
+    pixels = np.empty(count, np.float32)
+    image.pixels.foreach_get(pixels)
+    return pixels.reshape(height, width, image.channels)
+
+
+def _rgba(pixels: np.ndarray, image: bpy.types.Image) -> np.ndarray:
+    """Grey and colour without alpha, opaque, too."""
+    channels = pixels.shape[2]
+    if channels not in (1, 3, 4):
+        raise UnreadableColorError(f"the image {image.name!r} with {channels} channels")
+    if channels == 4:
+        return pixels
+    rgba = np.ones((*pixels.shape[:2], 4), np.float32)
+    rgba[..., :3] = pixels
+    return rgba
+
+
+def _decoded(colors: np.ndarray, image: bpy.types.Image) -> np.ndarray:
+    """8-bit values through a table of their 256 possible results."""
+    space = image.colorspace_settings.name
+    if space in _LINEAR:
+        return colors
+    if space != "sRGB":
+        raise UnreadableColorError(f"the image {image.name!r} in the colour space {space!r}")
+    table = srgb_to_linear(np.arange(256) / 255).astype(np.float32)
+    return table.take(np.rint(colors * 255).astype(np.uint8))
