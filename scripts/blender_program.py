@@ -25,6 +25,14 @@ MARK = "surfel-python"
 ASK_VERSION = f"import sys; print('{MARK}', '%d.%d' % sys.version_info[:2], flush=True)"
 
 
+def program_file(name: str) -> str:
+    """What starts the program: a name on the PATH stays, a file is made absolute, of a macOS .app it is the inside."""
+    path = Path(name)
+    if path.suffix == ".app":
+        path = path / "Contents" / "MacOS" / "Blender"
+    return str(path.absolute()) if path.exists() else name
+
+
 def prepare(program: str, python: Path) -> dict[str, str]:
     """The environment variables for a test run in the program, after its packages are there.
 

@@ -17,7 +17,7 @@ import environment
 from demo_models import IMPORTERS, model_suffix
 from environment import Problem
 
-#: Cells along the model's longest side.
+#: Cells along the longest side of each object in the model.
 RESOLUTIONS = 2, 8192
 DEFAULT_RESOLUTION = 384
 #: Pixels along a side of the picture; Blender's own limits.
@@ -39,7 +39,7 @@ def parse(arguments: list) -> argparse.Namespace:
         "model", nargs="?", type=model, help=f"{', '.join(IMPORTERS)}, each also .gz; a painted Suzanne"
     )
     parser.add_argument(
-        "--resolution", type=resolution, default=DEFAULT_RESOLUTION, help="cells along the longest side"
+        "--resolution", type=resolution, default=DEFAULT_RESOLUTION, help="cells along an object's longest side"
     )
     parser.add_argument("--size", type=size, default=DEFAULT_SIZE, help="of the picture, WxH in pixels")
     parser.add_argument("--out", type=folder, default=environment.ROOT / "build" / "demo", help="where the files go")

@@ -80,7 +80,7 @@ def convert(meshes: list, resolution: int) -> tuple[list, float]:
     bpy.context.view_layer.objects.active = meshes[0]
     before = set(bpy.data.objects)
     started = perf_counter()
-    call("The conversion failed", bpy.ops.object.surfels_from_mesh, resolution=resolution)
+    call("The conversion failed", bpy.ops.object.surfels_from_mesh, resolution=resolution, source="HIDE")
     seconds = perf_counter() - started
     surfels = [
         o for o in bpy.data.objects if o not in before and {"rotation", "scale"} <= set(o.data.attributes.keys())

@@ -10,7 +10,7 @@ import mathutils
 import numpy as np
 
 #: Where the camera stands as seen from the model: in front, to the right and a little above.
-VIEW_FROM = mathutils.Vector((0.55, -1.0, 0.35)).normalized()
+VIEW_FROM = mathutils.Vector((0.55, -1.0, 0.22)).normalized()
 #: The share of the picture that the model may fill.
 FILL = 0.86
 
@@ -44,6 +44,8 @@ def painted_material():
 def painted_pixels(size: int) -> np.ndarray:
     """(size, size, 4) float32 in sRGB: warm and cool bands that wave, with fine checks in every other one."""
     v, u = np.mgrid[0:size, 0:size].astype(np.float32) / size
+    # Suzanne's halves lie mirrored in the image.
+    u = np.abs(u - 0.5)
     wave = 14 * v + 0.8 * np.sin(2 * math.pi * 3 * u) + 0.4 * np.sin(2 * math.pi * (7 * u + 2 * v))
     warm, cool, ink = (np.array(c, np.float32) for c in ((0.95, 0.52, 0.20), (0.13, 0.55, 0.62), (0.98, 0.90, 0.74)))
     blend = (0.5 + 0.5 * np.clip(6 * np.sin(wave * math.pi / 2), -1, 1))[..., None]
@@ -104,7 +106,7 @@ def framing_camera(points: np.ndarray, reach: float, size: tuple[int, int]):
 def add_sun(toward: mathutils.Vector) -> None:
     """The key light, shining from `toward`."""
     data = bpy.data.lights.new("Sun", "SUN")
-    data.energy, data.color = 2.6, (1.0, 0.95, 0.88)
+    data.energy, data.color = 2.2, (1.0, 0.95, 0.88)
     sun = bpy.data.objects.new("Sun", data)
     sun.rotation_euler = toward.to_track_quat("Z", "Y").to_euler()
     bpy.context.collection.objects.link(sun)
@@ -113,7 +115,7 @@ def add_sun(toward: mathutils.Vector) -> None:
 def add_point(location: mathutils.Vector, reach: float) -> None:
     """A cool fill light; its power grows with the square of the model's size, so every size is lit alike."""
     data = bpy.data.lights.new("Point", "POINT")
-    data.energy, data.color = 60 * reach**2, (0.75, 0.87, 1.0)
+    data.energy, data.color = 30 * reach**2, (0.75, 0.87, 1.0)
     point = bpy.data.objects.new("Point", data)
     point.location = location
     bpy.context.collection.objects.link(point)

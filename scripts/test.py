@@ -30,7 +30,7 @@ def parse(arguments: list) -> tuple:
         allow_abbrev=False,
     )
     parser.add_argument("--bpy", choices=sorted(environment.PYTHON_FOR_BPY), help="the wheel of Blender to test with")
-    parser.add_argument("--blender", help="a Blender program to run the Blender tests in")
+    parser.add_argument("--blender", type=blender_program.program_file, help="a program to run the Blender tests in")
     parser.add_argument("--gpu-backend", choices=("opengl", "vulkan", "metal"), help="of the program")
     options, rest = parser.parse_known_args(arguments)
     if options.gpu_backend and not options.blender:
