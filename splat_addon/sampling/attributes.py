@@ -86,7 +86,7 @@ class SampleFiller:
         return result
 
     def _sound_corners(self, triangles: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-        """(3, 3, t) corners on the grid and (3, t) unit normals: the real ones, or the snapped where those have no area.
+        """(3, 3, t) corners on the grid and (3, t) unit normals: the real ones, or snapped ones where those are flat.
 
         A triangle that projects to (nearly) nothing can open up once its corners are snapped; its own barycentrics
         would be infinite (facts/sampling.md section 1, the trap).

@@ -21,7 +21,7 @@ from .reductions import find_reduction
 from .scan_conversion import BATCH, batches
 
 
-class SamplingCancelled(Exception):  # noqa: N818 - a wish of the user, not an error
+class SamplingCancelled(Exception):
     """The progress callback asked to stop."""
 
 

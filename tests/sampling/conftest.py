@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes that the sampling tests measure, and the rays of a layered depth cube."""
+
+import gzip
+
+import numpy as np
+import pytest
+
+from splat_addon.sampling import TriangleMesh, drop_unusable
+from splat_addon.sampling.depth_cube import depth_cube
+from splat_addon.sampling.grid import grid_spacing, make_grid
+from splat_addon.sampling.reductions import REDUCTIONS
+from splat_addon.sampling.scan_conversion import expand
+
+
+@pytest.fixture
+def cube():
+    """cube(offset): the unit cube with a corner there, 12 triangles, normals outwards."""
+
+    def build(offset=0.0):
+        corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+        quads = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
+        return TriangleMesh(corners + offset, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]))
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def sphere():
+    """The unit sphere as 81,920 triangles, with its exact normals at their corners."""
+    import trimesh
+
+    ball = trimesh.creation.icosphere(subdivisions=6)
+    return TriangleMesh(ball.vertices, ball.faces, corner_normals=ball.vertices[ball.faces])
+
+
+@pytest.fixture(scope="session")
+def armadillo(models):
+    """A closed scan of 86,482 triangles."""
+    with gzip.open(models / "armadillo.obj.gz", "rt") as lines:
+        rows = [line.split() for line in lines]
+    positions = np.array([r[1:4] for r in rows if r[:1] == ["v"]], float)
+    triangles = np.array([[c.split("/")[0] for c in r[1:4]] for r in rows if r[:1] == ["f"]], int) - 1
+    return TriangleMesh(positions, triangles)
+
+
+@pytest.fixture
+def triangle():
+    """triangle(a, b, c, **fields): a mesh of one triangle."""
+    return lambda *corners, **fields: TriangleMesh(np.array(corners, float), np.array([[0, 1, 2]]), **fields)
+
+
+@pytest.fixture
+def square():
+    """square(edge, **fields): z = 0, from the origin, two triangles, normal +z."""
+
+    def build(edge=1.0, **fields):
+        positions = np.array([(0, 0, 0), (edge, 0, 0), (edge, edge, 0), (0, edge, 0)])
+        return TriangleMesh(positions, np.array([(0, 1, 2), (0, 2, 3)]), **fields)
+
+    return build
+
+
+@pytest.fixture
+def rays():
+    """rays(mesh, resolution): the grid, and for each axis the (n, 2) column and row of every sample, unreduced."""
+
+    def shoot(mesh, resolution):
+        mesh, _ = drop_unusable(mesh)
+        grid = make_grid(mesh, grid_spacing(mesh, resolution=resolution))
+        coordinates = grid.coordinates(mesh.positions)
+        images = depth_cube(coordinates, mesh.triangles, grid, REDUCTIONS["none"], lambda share: None)
+        hits = []
+        for spans in images:
+            owner, step = expand(spans.counts)
+            hits.append(np.stack([spans.columns[owner] + step, spans.rows[owner]], axis=1))
+        return grid, hits
+
+    return shoot

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How many surfels there are, against closed forms and against the prediction."""
+
+import math
+
+import numpy as np
+import pytest
+
+from splat_addon.sampling import REDUCTIONS, TriangleMesh, predict_count, projected_area, sample_mesh
+from splat_addon.sampling.depth_cube import depth_cube
+from splat_addon.sampling.grid import Grid
+
+
+@pytest.mark.parametrize("shift", [0, 0.25, 0.5])
+def test_each_face_of_a_cube_gets_one_sample_a_cell_wherever_the_grid_starts(cube, shift):
+    """At half a cell the outermost rays run along the cube's edges, and half-open rules must keep one side."""
+    mesh = cube()
+    grid = Grid(np.full(3, -shift / 32), 1 / 32, subcells=1024, size=33)
+    coordinates = grid.coordinates(mesh.positions)
+    images = depth_cube(coordinates, mesh.triangles, grid, REDUCTIONS["normal"], lambda share: None)
+    assert [spans.counts.sum() for spans in images] == [2 * 32**2] * 3
+
+
+def test_each_face_of_a_cube_gets_one_surfel_a_cell(cube):
+    assert len(sample_mesh(cube(), resolution=32)) == 6 * 32**2
+
+
+def test_a_sphere_has_the_count_of_the_closed_form(sphere):
+    """Each of six patches projects to {2 x^2 + y^2 <= 1, x^2 + 2 y^2 <= 1}, area 2 sqrt(2) atan(1 / sqrt(2))."""
+    expected = 6 * 2 * math.sqrt(2) * math.atan(1 / math.sqrt(2)) * 64**2
+    assert len(sample_mesh(sphere, resolution=128)) == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize("reduction", ["normal", "none"])
+def test_the_count_of_a_sphere_is_predicted_within_a_percent(sphere, reduction):
+    count = len(sample_mesh(sphere, resolution=100, reduction=reduction))
+    assert predict_count(sphere, resolution=100, reduction=reduction) == pytest.approx(count, rel=0.01)
+
+
+@pytest.mark.parametrize("reduction", ["normal", "none"])
+def test_the_count_of_the_armadillo_is_predicted_within_a_percent(armadillo, reduction):
+    count = len(sample_mesh(armadillo, resolution=128, reduction=reduction))
+    assert predict_count(armadillo, resolution=128, reduction=reduction) == pytest.approx(count, rel=0.01)
+
+
+def test_the_projected_area_of_a_cube_is_its_area(cube):
+    assert projected_area(cube()) == projected_area(cube(), "none") == 6
+
+
+def test_doubling_the_resolution_makes_four_times_the_surfels_of_a_cube(cube):
+    assert len(sample_mesh(cube(), resolution=64)) == 4 * len(sample_mesh(cube(), resolution=32))
+
+
+def test_spacing_and_resolution_are_two_names_of_one_grid(sphere):
+    by_resolution, by_spacing = sample_mesh(sphere, resolution=50), sample_mesh(sphere, spacing=2 / 50)
+    assert (by_resolution.positions == by_spacing.positions).all()
+
+
+def test_a_resolution_of_8192_stays_exact(cube):
+    """One face of the cube's box is a strip, so that the grid is fine and the count is small."""
+    strip = cube()
+    strip = TriangleMesh(strip.positions * (1, 8 / 8192, 8 / 8192), strip.triangles)
+    assert len(sample_mesh(strip, resolution=8192)) == 4 * 8192 * 8 + 2 * 8 * 8

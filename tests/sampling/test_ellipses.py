@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Splats lie in the triangle's plane and cover the surface without holes."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from splat_addon.sampling import sample_mesh
+from splat_addon.sampling.ellipses import ellipse_rotations, ellipse_scales
+from splat_addon.surfels import quaternion_axes
+
+
+@settings(deadline=None)
+@given(st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda n: max(map(abs, n)) > 0.1), st.integers(0, 2))
+def test_the_frame_is_the_steepest_direction_the_one_across_and_the_normal(normal, axis):
+    normal = np.array(normal) / np.linalg.norm(normal)
+    rotation = ellipse_rotations(normal[:, None], axis).astype(np.float64)
+    steepest, across, up = (a[0] for a in quaternion_axes(rotation))
+    level = np.eye(3)[axis]
+    assert np.allclose(up, normal, atol=3e-7) and abs(across @ level) < 3e-7 and steepest @ level > -3e-7
+    assert np.allclose(np.cross(steepest, across), up, atol=3e-7)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_level_surface_has_a_round_splat(axis, sign):
+    normal = sign * np.eye(3)[:, [axis]]
+    assert np.allclose(quaternion_axes(ellipse_rotations(normal, axis))[2], normal.T)
+    assert (ellipse_scales(normal[axis], 0.5) == 0.5).all()
+
+
+def test_conjugate_half_diameters_follow_the_corrected_tangent(triangle):
+    """(h, 0, dz) with dz = -Nx h / Nz, and (0, h, dz'), lie on the ellipse's rim."""
+    surfels = sample_mesh(triangle((0, 0, 0), (8, 0, 3), (0, 8, -5)), spacing=0.25, splat_size=2)
+    (x, y), (nx, ny, nz) = surfels.half_axes(), surfels.geometric_normals()[0]
+    for tangent in (0.5, 0, -0.5 * nx / nz), (0, 0.5, -0.5 * ny / nz):
+        along, across = (np.dot(tangent, a[0]) / np.dot(a[0], a[0]) for a in (x, y))
+        assert np.hypot(along, across) == pytest.approx(1, abs=1e-5)
+
+
+@pytest.mark.parametrize("reduction", ["normal", "none"])
+def test_no_splat_is_longer_than_the_square_root_of_three(sphere, reduction):
+    surfels = sample_mesh(sphere, spacing=0.05, reduction=reduction)
+    assert surfels.radius.max() <= 0.05 * np.sqrt(3) * (1 + 1e-3) and surfels.scales.min() == np.float32(0.05)
+
+
+@pytest.mark.parametrize("model, resolution", [("sphere", 40), ("armadillo", 256)])
+def test_splats_cover_the_surface(request, model, resolution):
+    assert uncovered_share(request.getfixturevalue(model), resolution, splat_size=1.0) <= 3e-4
+
+
+def test_splats_of_half_the_cell_leave_holes(sphere):
+    """The measure itself must see a hole."""
+    assert uncovered_share(sphere, 40, splat_size=0.5) > 0.01
+
+
+def uncovered_share(mesh, resolution, splat_size):
+    """Share of random points of the surface under no splat, seen along its image's axis, within half a cell of it."""
+    from scipy.spatial import cKDTree
+
+    surfels = sample_mesh(mesh, resolution=resolution, splat_size=splat_size)
+    spacing = float(np.ptp(mesh.positions, axis=0).max()) / resolution
+    points = random_points(mesh, 40_000)
+    positions, normals, (x, y) = surfels.origin + surfels.positions, surfels.geometric_normals(), surfels.half_axes()
+    axis = np.abs(normals).argmax(axis=1)
+    _, neighbours = cKDTree(positions).query(points, k=24, distance_upper_bound=2 * spacing)
+    covered = np.zeros(len(points), bool)
+    for column in neighbours.T:
+        at = np.flatnonzero(column < len(positions))
+        surfel = column[at]
+        away, normal, along = points[at] - positions[surfel], normals[surfel], np.eye(3)[axis[surfel]]
+        height = (away * normal).sum(axis=1) / (normal * along).sum(axis=1)
+        foot = away - height[:, None] * along
+        reach = sum(((foot * a[surfel]).sum(axis=1) / (a[surfel] ** 2).sum(axis=1)) ** 2 for a in (x, y))
+        covered[at] |= (reach <= 1) & (np.abs(height) <= 0.5 * spacing)
+    return 1 - covered.mean()
+
+
+def random_points(mesh, count):
+    """Evenly over the surface."""
+    random = np.random.default_rng(0)
+    a, b, c = np.moveaxis(mesh.positions[mesh.triangles], 1, 0)
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    picked = random.choice(len(areas), count, p=areas / areas.sum())
+    u, v = np.sort(random.random((2, count)), axis=0)[..., None]
+    return a[picked] * u + b[picked] * (v - u) + c[picked] * (1 - v)

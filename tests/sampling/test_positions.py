@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where surfels lie: on the surface, on the grid, wherever and however large the mesh is."""
+
+import numpy as np
+import pytest
+
+from splat_addon.sampling import TriangleMesh, sample_mesh, scan_conversion
+from splat_addon.sampling import mesh as mesh_module
+from splat_addon.sampling import sample as sample_module
+
+
+def test_surfels_lie_on_the_faceted_sphere(sphere):
+    """The facets' middles lie below the sphere by the sagitta, about edge^2 / 6 for edges of 0.02."""
+    surfels = sample_mesh(sphere, resolution=64)
+    radius = np.linalg.norm(surfels.origin + surfels.positions, axis=1)
+    assert radius.max() < 1 + 1e-6 and radius.min() > 1 - 1e-4
+
+
+def test_surfels_lie_on_their_ray_in_the_middle_of_a_cell(cube):
+    cells = sample_mesh(cube(), resolution=32).positions * 32
+    off_centre = np.abs(cells - np.floor(cells) - 0.5)
+    assert (np.sort(off_centre, axis=1)[:, :2] < 1e-5).all()
+
+
+def test_a_tilted_plane_holds_its_surfels(triangle):
+    """z = x / 3 - 4 y / 9, stored from the origin (0, 0, -4)."""
+    x, y, z = sample_mesh(triangle((0, 0, 0), (9, 0, 3), (0, 9, -4)), resolution=200).positions.T
+    assert np.abs(z - (x / 3 - y * 4 / 9 + 4)).max() < 3e-6
+
+
+@pytest.mark.parametrize("offset", [1e7, -1e7])
+def test_a_mesh_far_from_the_origin_keeps_every_bit(armadillo, offset):
+    """Vertices on multiples of 2^-20 survive the move exactly, so nothing may change but the origin."""
+    near = TriangleMesh(np.rint(armadillo.positions * 2**20) / 2**20, armadillo.triangles)
+    far = TriangleMesh(near.positions + offset, near.triangles)
+    a, b = sample_mesh(near, resolution=64), sample_mesh(far, resolution=64)
+    assert (a.positions == b.positions).all() and (a.rotations == b.rotations).all()
+    assert (b.origin - a.origin == offset).all()
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e6])
+def test_a_scaled_mesh_gives_scaled_surfels(armadillo, scale):
+    a = sample_mesh(armadillo, resolution=64)
+    b = sample_mesh(TriangleMesh(armadillo.positions * scale, armadillo.triangles), resolution=64)
+    assert len(a) == len(b)
+    assert np.abs(b.positions / scale - a.positions).max() < 1e-5 * np.abs(a.positions).max()
+
+
+def test_chunks_and_batches_of_any_size_give_the_same_surfels(armadillo, monkeypatch):
+    whole = sample_mesh(armadillo, resolution=64)
+    monkeypatch.setattr(mesh_module.triangle_chunks, "__defaults__", (1000,))
+    monkeypatch.setattr(scan_conversion, "BATCH", 777)
+    monkeypatch.setattr(sample_module, "BATCH", 501)
+    parts = sample_mesh(armadillo, resolution=64)
+    assert (whole.positions == parts.positions).all() and (whole.rotations == parts.rotations).all()
+    assert (whole.normals == parts.normals).all()
+
+
+def test_a_flat_mesh_keeps_its_exact_height(square):
+    mesh = square()
+    surfels = sample_mesh(TriangleMesh(mesh.positions + np.array([0, 0, 0.1]), mesh.triangles), resolution=10)
+    assert len(surfels) == 100 and (surfels.positions[:, 2] == 0).all() and surfels.origin[2] == 0.1
+
+
+def test_collinear_and_sliver_triangles_give_finite_surfels_near_their_plane():
+    """Slivers thinner than a sub-cell open up when snapped (the trap); Surfels refuses what is not finite."""
+    random = np.random.default_rng(3)
+    a, b = random.random((2, 4000, 3))
+    middle = a + random.random((4000, 1)) * (b - a)
+    thickness = np.repeat([0, 1e-17, 1e-9, 1e-6], 1000)[:, None]
+    corners = np.stack([a, b, middle + thickness * random.normal(size=(4000, 3))], axis=1)
+    surfels = sample_mesh(TriangleMesh(corners.reshape(-1, 3), np.arange(12000).reshape(-1, 3)), resolution=4096)
+    assert len(surfels) > 100 and (surfels.positions > -1e-3).all() and (surfels.positions < 1.001).all()
