@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Materials -> base colours, down to the surfels of a unit square whose UV map is its x and y."""
+
+import bpy
+import numpy as np
+import pytest
+
+TEXELS = 4
+ENCODED = np.random.default_rng(3).integers(0, 256, (TEXELS, TEXELS, 4)) / 255
+
+
+def decoded(encoded):
+    """sRGB to linear, written down once more."""
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+
+
+@pytest.fixture
+def image():
+    """image(values, **settings) -> a generated image of (h, w, 4) values as they are stored."""
+
+    def make(values=ENCODED, alpha_mode="STRAIGHT", **settings):
+        made = bpy.data.images.new("texture", values.shape[1], values.shape[0], alpha=True, **settings)
+        made.alpha_mode = alpha_mode
+        made.pixels.foreach_set(np.ascontiguousarray(values, np.float32).ravel())
+        made.update()
+        return made
+
+    return make
+
+
+class Nodes:
+    """A material's nodes, and shorthands to connect them."""
+
+    def __init__(self, name="material"):
+        self.material = bpy.data.materials.new(name)
+        if bpy.app.version < (5, 0, 0):
+            self.material.use_nodes = True
+        self.tree = self.material.node_tree
+        self.principled = self.tree.nodes["Principled BSDF"]
+
+    def add(self, kind, **settings):
+        node = self.tree.nodes.new(kind)
+        for key, value in settings.items():
+            setattr(node, key, value)
+        return node
+
+    def link(self, node, output, to, socket):
+        self.tree.links.new(next(s for s in node.outputs if s.identifier == output), to.inputs[socket])
+        return self
+
+    def texture(self, image):
+        return self.add("ShaderNodeTexImage", image=image, interpolation="Closest")
+
+
+@pytest.fixture
+def painted(add_square, convert, surfels_of):
+    """painted(material, ...) -> (surfels, texel of each) of the square with these materials, 4 x 4 surfels a texel."""
+
+    def make(*materials, prepare=lambda square: None):
+        square = add_square()
+        for material in materials:
+            square.data.materials.append(material)
+        prepare(square)
+        surfels = surfels_of(convert(resolution=4 * TEXELS)[0])
+        column, row = np.floor(surfels.positions[:, :2] * TEXELS).astype(int).T
+        return surfels, (row, column)
+
+    return make
+
+
+@pytest.mark.parametrize("kind", ["generated", "packed", "file"])
+def test_an_srgb_texture_gives_its_linear_texels(image, painted, kind, tmp_path):
+    texture = image()
+    if kind == "packed":
+        texture.pack()
+    if kind == "file":
+        texture.filepath_raw, texture.file_format = str(tmp_path / "texture.png"), "PNG"
+        texture.save()
+        texture = bpy.data.images.load(str(tmp_path / "texture.png"))
+    texture.alpha_mode = "CHANNEL_PACKED"
+    nodes = Nodes()
+    nodes.link(nodes.texture(texture), "Color", nodes.principled, "Base Color")
+    surfels, texel = painted(nodes.material)
+    assert np.allclose(surfels.colors[:, :3], decoded(ENCODED)[texel][:, :3], atol=1e-6)
+    assert (surfels.colors[:, 3] == 1).all()
+
+
+@pytest.mark.parametrize("settings", [{"is_data": True}, {"float_buffer": True}])
+def test_data_and_float_textures_are_taken_as_they_are(image, painted, settings):
+    nodes = Nodes()
+    texture = image(alpha_mode="CHANNEL_PACKED", **settings)
+    nodes.link(nodes.texture(texture), "Color", nodes.principled, "Base Color")
+    surfels, texel = painted(nodes.material)
+    assert np.allclose(surfels.colors[:, :3], ENCODED[texel][:, :3], atol=1e-6)
+
+
+def test_an_alpha_that_is_linked_is_the_opacity(image, painted):
+    nodes = Nodes()
+    texture = nodes.texture(image())
+    nodes.link(texture, "Color", nodes.principled, "Base Color").link(texture, "Alpha", nodes.principled, "Alpha")
+    surfels, texel = painted(nodes.material)
+    assert np.allclose(surfels.colors[:, 3], ENCODED[texel][:, 3], atol=1e-6)
+    assert np.allclose(surfels.colors[:, :3], decoded(ENCODED)[texel][:, :3], atol=1e-5)
+
+
+def test_an_alpha_that_is_not_linked_darkens_the_colour_as_in_cycles(image, painted):
+    nodes = Nodes()
+    nodes.link(nodes.texture(image()), "Color", nodes.principled, "Base Color")
+    surfels, texel = painted(nodes.material)
+    assert np.allclose(surfels.colors[:, :3], (decoded(ENCODED) * ENCODED[..., 3:])[texel][:, :3], atol=1e-6)
+    assert (surfels.colors[:, 3] == 1).all()
+
+
+def test_the_plain_colour_and_alpha_of_a_material_are_taken(painted):
+    nodes = Nodes()
+    nodes.principled.inputs["Base Color"].default_value = (0.1, 0.2, 0.3, 1)
+    nodes.principled.inputs["Alpha"].default_value = 0.25
+    surfels, _ = painted(nodes.material)
+    assert np.allclose(surfels.colors, (0.1, 0.2, 0.3, 0.25))
+
+
+def test_a_uv_map_node_chooses_the_uv_map(image, painted):
+    def swap_axes(square):
+        square.data.uv_layers.new(name="swapped").uv.foreach_set("vector", [0, 0, 0, 1, 1, 1, 1, 0])
+
+    nodes = Nodes()
+    texture = nodes.texture(image(alpha_mode="NONE"))
+    nodes.link(texture, "Color", nodes.principled, "Base Color")
+    nodes.link(nodes.add("ShaderNodeUVMap", uv_map="swapped"), "UV", texture, "Vector")
+    surfels, (row, column) = painted(nodes.material, prepare=swap_axes)
+    assert np.allclose(surfels.colors[:, :3], decoded(ENCODED)[column, row][:, :3], atol=1e-6)
+
+
+def paint(square, color, name="paint"):
+    square.data.color_attributes.new(name, "FLOAT_COLOR", "CORNER").data.foreach_set("color", [*color, 1] * 4)
+
+
+def test_a_full_multiply_of_texture_attribute_and_constant_is_their_product(image, painted):
+    nodes = Nodes()
+    inner = nodes.add("ShaderNodeMix", data_type="RGBA", blend_type="MULTIPLY")
+    outer = nodes.add("ShaderNodeMix", data_type="RGBA", blend_type="MULTIPLY")
+    inner.inputs[0].default_value = outer.inputs[0].default_value = 1.0
+    outer.inputs[7].default_value = (0.5, 0.25, 1, 1)
+    nodes.link(nodes.texture(image(alpha_mode="NONE")), "Color", inner, 6)
+    nodes.link(nodes.add("ShaderNodeVertexColor", layer_name="paint"), "Color", inner, 7)
+    nodes.link(inner, "Result_Color", outer, 6).link(outer, "Result_Color", nodes.principled, "Base Color")
+    surfels, texel = painted(nodes.material, prepare=lambda square: paint(square, (0.5, 1, 0.1)))
+    assert np.allclose(surfels.colors[:, :3], decoded(ENCODED)[texel][:, :3] * (0.25, 0.25, 0.1), atol=1e-6)
+
+
+def test_without_a_material_the_colour_attribute_is_the_colour(painted):
+    surfels, _ = painted(prepare=lambda square: paint(square, (0.1, 0.2, 0.3)))
+    assert np.allclose(surfels.colors, (0.1, 0.2, 0.3, 1))
+
+
+def test_without_material_and_attribute_the_colour_is_blenders_grey(painted):
+    surfels, _ = painted()
+    assert np.allclose(surfels.colors, (0.8, 0.8, 0.8, 1))
+
+
+def test_a_material_without_attribute_nodes_ignores_the_colour_attribute(painted):
+    nodes = Nodes()
+    nodes.principled.inputs["Base Color"].default_value = (0.5, 0.5, 0.5, 1)
+    surfels, _ = painted(nodes.material, prepare=lambda square: paint(square, (1, 0, 0)))
+    assert np.allclose(surfels.colors[:, :3], 0.5)
+
+
+def test_two_materials_each_use_their_own_layer(add_mesh, convert, surfels_of):
+    pair = add_mesh("pair", [(x, y, 0) for y in (0, 1) for x in (0, 1, 2)], [(0, 1, 4, 3), (1, 2, 5, 4)])
+    for index, (name, color) in enumerate((("red", (1, 0, 0)), ("green", (0, 1, 0)))):
+        pair.data.color_attributes.new(name, "FLOAT_COLOR", "CORNER").data.foreach_set("color", [*color, 1] * 8)
+        nodes = Nodes(name)
+        nodes.link(nodes.add("ShaderNodeVertexColor", layer_name=name), "Color", nodes.principled, "Base Color")
+        pair.data.materials.append(nodes.material)
+        pair.data.polygons[index].material_index = index
+    surfels = surfels_of(convert(resolution=8)[0])
+    right = surfels.positions[:, 0] > 1
+    assert np.array_equal(surfels.materials, right)
+    assert np.array_equal(surfels.colors[:, :2], np.stack([~right, right], axis=1))
+
+
+def procedural(nodes, image):
+    nodes.link(nodes.add("ShaderNodeTexNoise"), "Color", nodes.principled, "Base Color")
+
+
+def without_image(nodes, image):
+    nodes.link(nodes.add("ShaderNodeTexImage"), "Color", nodes.principled, "Base Color")
+
+
+def missing_file(nodes, image):
+    texture = bpy.data.images.new("gone", 1, 1)
+    texture.source, texture.filepath = "FILE", "//nowhere.png"
+    nodes.link(nodes.texture(texture), "Color", nodes.principled, "Base Color")
+
+
+def unknown_encoding(nodes, image):
+    texture = image()
+    texture.colorspace_settings.name = "Filmic sRGB"
+    nodes.link(nodes.texture(texture), "Color", nodes.principled, "Base Color")
+
+
+def missing_uv_map(nodes, image):
+    texture = nodes.texture(image())
+    nodes.link(texture, "Color", nodes.principled, "Base Color")
+    nodes.link(nodes.add("ShaderNodeUVMap", uv_map="nowhere"), "UV", texture, "Vector")
+
+
+def missing_attribute(nodes, image):
+    nodes.link(nodes.add("ShaderNodeVertexColor", layer_name="nowhere"), "Color", nodes.principled, "Base Color")
+
+
+@pytest.mark.parametrize(
+    ("build", "reason"),
+    [
+        (procedural, "Noise Texture node"),
+        (without_image, "without an image"),
+        (missing_file, "'gone', which has no pixels"),
+        (unknown_encoding, "colour space 'Filmic sRGB'"),
+        (missing_uv_map, "UV map 'nowhere'"),
+        (missing_attribute, "colour attribute 'nowhere'"),
+    ],
+)
+def test_what_cannot_be_read_falls_back_to_the_sockets_colour_and_is_reported(painted, image, capfd, build, reason):
+    nodes = Nodes("odd")
+    nodes.principled.inputs["Base Color"].default_value = (0.1, 0.2, 0.3, 1)
+    build(nodes, image)
+    surfels, _ = painted(nodes.material)
+    assert np.allclose(surfels.colors, (0.1, 0.2, 0.3, 1))
+    warning = next(line for line in capfd.readouterr().out.splitlines() if line.startswith("Warning"))
+    assert "material 'odd'" in warning and reason in warning
+
+
+def test_an_unreadable_alpha_costs_only_the_alpha(painted, image, capfd):
+    nodes = Nodes("odd")
+    nodes.link(nodes.texture(image(alpha_mode="NONE")), "Color", nodes.principled, "Base Color")
+    nodes.link(nodes.add("ShaderNodeMath"), "Value", nodes.principled, "Alpha")
+    surfels, texel = painted(nodes.material)
+    assert np.allclose(surfels.colors[:, :3], decoded(ENCODED)[texel][:, :3], atol=1e-6)
+    assert "alpha comes from a Math node" in capfd.readouterr().out
+
+
+def test_a_material_in_a_slot_that_no_face_uses_is_not_complained_about(painted, image, capfd):
+    nodes = Nodes("unused")
+    procedural(nodes, image)
+    painted(Nodes("used").material, nodes.material)
+    assert "Warning" not in capfd.readouterr().out
