@@ -87,7 +87,7 @@ def _repeats_another(positions, triangles):
         return None
     suspects = np.flatnonzero(np.isin(keys, shared))
     vertices, corners = np.unique(triangles[suspects], return_inverse=True)
-    place = _equal_rows(positions[vertices] + 0.0)
+    place = _equal_rows(positions[vertices])
     corners = np.sort(place[corners.reshape(-1, 3)], axis=1)
     group = _equal_rows(corners)
     _, first = np.unique(group, return_index=True)

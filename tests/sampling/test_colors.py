@@ -100,7 +100,8 @@ def test_each_triangle_has_its_own_material(square):
 
 
 def test_a_material_past_the_end_uses_the_last_surface_and_keeps_its_index(square):
-    surfels = sample_mesh(surfaced(square, SurfaceColor((0, 0, 1, 1)), materials=np.array([5, 5])), resolution=4)
+    surfaces = SurfaceColor((1, 0, 0, 1)), SurfaceColor((0, 0, 1, 1))
+    surfels = sample_mesh(surfaced(square, *surfaces, materials=np.array([5, 5])), resolution=4)
     assert (surfels.materials == 5).all() and (surfels.colors == (0, 0, 1, 1)).all()
 
 

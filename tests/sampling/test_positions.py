@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from splat_addon.sampling import TriangleMesh, sample_mesh, scan_conversion
+from splat_addon.sampling import SurfaceColor, TriangleMesh, sample_mesh, scan_conversion
 from splat_addon.sampling import mesh as mesh_module
 from splat_addon.sampling import sample as sample_module
 
@@ -62,12 +62,26 @@ def test_a_flat_mesh_keeps_its_exact_height(square):
     assert len(surfels) == 100 and (surfels.positions[:, 2] == 0).all() and surfels.origin[2] == 0.1
 
 
-def test_collinear_and_sliver_triangles_give_finite_surfels_near_their_plane():
-    """Slivers thinner than a sub-cell open up when snapped (the trap); Surfels refuses what is not finite."""
+def slivers(thicknesses, count=1000):
+    """Triangles of two random corners and one that far from the line between them, coloured 0 and 1 at random."""
     random = np.random.default_rng(3)
-    a, b = random.random((2, 4000, 3))
-    middle = a + random.random((4000, 1)) * (b - a)
-    thickness = np.repeat([0, 1e-17, 1e-9, 1e-6], 1000)[:, None]
-    corners = np.stack([a, b, middle + thickness * random.normal(size=(4000, 3))], axis=1)
-    surfels = sample_mesh(TriangleMesh(corners.reshape(-1, 3), np.arange(12000).reshape(-1, 3)), resolution=4096)
+    a, b = random.random((2, count * len(thicknesses), 3))
+    middle = a + random.random((len(a), 1)) * (b - a)
+    off = np.repeat(thicknesses, count)[:, None] * random.normal(size=a.shape)
+    corners = np.stack([a, b, middle + off], axis=1)
+    colors = random.integers(0, 2, (len(a), 3, 4)).astype(float)
+    surfaces = (SurfaceColor((1, 1, 1, 1), vertex_colors=True),)
+    triangles = np.arange(3 * len(a)).reshape(-1, 3)
+    return TriangleMesh(corners.reshape(-1, 3), triangles, corner_colors=colors, surfaces=surfaces)
+
+
+def test_collinear_and_sliver_triangles_give_finite_surfels_inside_the_box():
+    """Slivers thinner than a sub-cell open up when snapped (the trap); Surfels refuses what is not finite."""
+    surfels = sample_mesh(slivers([0, 1e-17, 1e-9]), resolution=4096)
     assert len(surfels) > 100 and (surfels.positions > -1e-3).all() and (surfels.positions < 1.001).all()
+
+
+def test_a_sample_beside_its_sliver_takes_no_value_beyond_the_corners():
+    """Snapping moves the outline by up to a sub-cell, a good part of these triangles' width."""
+    colors = sample_mesh(slivers([1e-6, 1e-7, 1e-8]), resolution=4096).colors
+    assert len(colors) > 1000 and colors.min() > -1e-6 and colors.max() < 1 + 1e-6

@@ -46,6 +46,16 @@ def test_an_edge_that_misses_a_cell_centre_by_the_least_fraction_is_on_the_right
 
 
 @settings(deadline=None, max_examples=200)
+@given(st.integers(-60, 60), st.integers(1, 60), st.integers(1, 30), st.sampled_from([64, 1024, 8192]))
+def test_an_edge_through_cell_centres_passes_them_exactly(columns, rows, repeats, subcells):
+    """From (2000, 0) by (columns, rows) cells, `repeats` times: each end of a step is a cell centre on the edge."""
+    u = np.array([[2000], [2000 + columns * repeats], [4000]], float) * subcells
+    v = np.array([[0], [rows * repeats], [0]], float) * subcells
+    spans = Spans.joined(list(scan_convert(u, v, np.zeros(1), subcells)))
+    assert (spans.columns[spans.rows % rows == 0] == 2000 + columns * np.arange(repeats)).all()
+
+
+@settings(deadline=None, max_examples=200)
 @given(st.lists(st.tuples(st.integers(-32, 32 * 64), st.integers(-32, 32 * 64)), min_size=4, max_size=4))
 def test_two_halves_of_a_quad_have_the_samples_of_the_whole(corners):
     """Signed by their winding, the triangles 012 and 023 have the samples of 013 and 123, each as often."""
