@@ -4,9 +4,9 @@
 #include "methods/{method}.glsl"
 
 void main() {
-  float weight = kernel_weight(place_depth.xy);
+  float weight = kernel_weight(place_depth.xy) * color_weight.w;
   if (!(weight > 0.0)) discard;
-  color_sum = vec4(color, 1.0) * weight;
+  color_sum = vec4(color_weight.rgb, 1.0) * weight;
   normal_sum = vec4(normal, place_depth.z) * weight;
 #ifdef MATERIAL_TARGET
   material_sum = vec4(material, 1.0) * weight;

@@ -1,7 +1,8 @@
 // References: Botsch et al. 2005, section 4 (deferred shading: attributes are blended, not colours).
-// Summary: each splat's corner, and its colour and shading normal turned to the viewer, whichever way it faces.
+// Summary: each splat's corner, its colour, its shading normal turned to the viewer, and what its side weighs.
 
 #include "common/octahedron.glsl"
+#include "common/sides.glsl"
 #include "common/splat_fetch.glsl"
 #include "methods/{method}.glsl"
 
@@ -17,13 +18,13 @@ void main() {
   vec3 axis_v = linear * v_data.xyz;
   vec3 eye = footprint_corner(position, axis_u, axis_v, corner);
   place_depth = vec3(corner, -eye.z);
-  color = texelFetch(surfels, texel + ivec2(3, 0), 0).rgb;
+  float cosine = outward_cosine(position, axis_u, axis_v, splats.options.w, splats.options.z > 0.5);
+  color_weight = vec4(texelFetch(surfels, texel + ivec2(3, 0), 0).rgb, cosine < 0.0 ? BACK_WEIGHT : 1.0);
   normal = normalize(mat3(splats.normal_matrix) * octahedral_decode(vec2(position_data.w, u_data.w)));
-  vec3 plane = cross(axis_u, axis_v);
-  float facing = splats.options.z > 0.5 ? plane.z : -dot(plane, position);
-  if (dot(normal, plane) * (facing < 0.0 ? -1.0 : 1.0) < 0.0) normal = -normal;
+  float side = cosine < -GRAZING_COSINE ? -splats.options.w : splats.options.w;
+  if (dot(normal, cross(axis_u, axis_v)) * side < 0.0) normal = -normal;
 #ifdef MATERIAL_TARGET
-  material = texelFetch(materials, ivec2(min(int(v_data.w), int(splats.options.w)), 0), 0).xyz;
+  material = texelFetch(materials, ivec2(min(int(v_data.w), textureSize(materials, 0).x - 1), 0), 0).xyz;
 #endif
   gl_Position = splats.projection * vec4(eye, 1.0);
 }

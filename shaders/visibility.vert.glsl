@@ -2,6 +2,7 @@
 //             (visibility splatting); the view-independent paper, section 5 (the offset along the view ray).
 // Summary: every splat moved away from the eye by its own epsilon, so that what lies within epsilon blends.
 
+#include "common/sides.glsl"
 #include "common/splat_fetch.glsl"
 #include "methods/{method}.glsl"
 
@@ -14,7 +15,9 @@ void main() {
   vec3 axis_v = linear * texelFetch(surfels, texel + ivec2(2, 0), 0).xyz;
   vec3 eye = footprint_corner(position, axis_u, axis_v, corner);
   place_depth = vec3(corner, -eye.z);
+  bool is_orthographic = splats.options.z > 0.5;
   float offset = splats.options.x * sqrt(max(dot(axis_u, axis_u), dot(axis_v, axis_v)));
-  vec3 away = splats.options.z > 0.5 ? vec3(0.0, 0.0, -1.0) : eye / max(length(eye), 1e-30);
+  if (outward_cosine(position, axis_u, axis_v, splats.options.w, is_orthographic) < 0.0) offset *= BACK_EPSILON;
+  vec3 away = is_orthographic ? vec3(0.0, 0.0, -1.0) : eye / max(length(eye), 1e-30);
   gl_Position = splats.projection * vec4(eye + away * offset, 1.0);
 }

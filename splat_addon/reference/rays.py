@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..rendering.camera import Camera
-from .splats import Splats
+from .splats import BACK_WEIGHT, Splats
 
 #: Splat-ray pairs handled at once: about 100 bytes each.
 CHUNK_PAIRS = 1_000_000
@@ -98,7 +98,7 @@ class Hits:
 def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float) -> Surface:
     """What every ray of the grid sees. bounds: `projected_bounds` of the splats. epsilon: in radii of each splat."""
     splats, boxes = _splats_in(splats, bounds, grid)
-    push = epsilon * splats.radius()
+    push, side = splats.push(epsilon), np.where(splats.is_back, BACK_WEIGHT, 1.0)
     visibility = np.full(grid.count, np.inf)
     for hits in _hits(splats, boxes, grid):
         # A point e moved back to e (1 + push / |e|) gains push / |direction| in depth, as |e| = depth |direction|.
@@ -108,7 +108,7 @@ def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float) -> Su
     for hits in _hits(splats, boxes, grid):
         seen = np.flatnonzero(hits.depth <= visibility[hits.ray])
         ray, splat = hits.ray[seen], hits.splat[seen]
-        weight = np.exp(-2 * hits.rho2[seen])
+        weight = np.exp(-2 * hits.rho2[seen]) * side[splat]
         sums[0] += np.bincount(ray, weight, grid.count)
         sums[1] += np.bincount(ray, weight * hits.depth[seen], grid.count)
         for total, values in zip(sums[2:], attributes, strict=True):

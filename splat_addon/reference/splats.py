@@ -13,6 +13,12 @@ import numpy as np
 from ..rendering.camera import Camera
 from ..rendering.scene import Instance, Scene
 
+#: What the back of a splat weighs against a front, how much further it is moved away, and how flat (cosine) a
+#: back must be seen to pass for the rim of a front, whose normal is left as it is: shaders/common/sides.glsl.
+BACK_WEIGHT = 1e-3
+BACK_EPSILON = 2.0
+GRAZING_COSINE = 0.2
+
 
 @dataclass(frozen=True, eq=False)
 class Splats:
@@ -21,6 +27,7 @@ class Splats:
     center: (N, 3). u, v: (N, 3) conjugate half-diameters, world units. plane: (N, 3) u x v, not unit.
     normal: (N, 3) unit shading normal turned to the viewer. color: (N, 3) scene-linear.
     surface: (N, 3) roughness, metallic, reflectance at normal incidence.
+    is_back: (N,) bool: its inward side is seen.
     """
 
     center: np.ndarray
@@ -30,6 +37,7 @@ class Splats:
     normal: np.ndarray
     color: np.ndarray
     surface: np.ndarray
+    is_back: np.ndarray
 
     def __len__(self) -> int:
         return len(self.center)
@@ -37,6 +45,10 @@ class Splats:
     def radius(self) -> np.ndarray:
         """(N,) the longer half-diameter, world units: what a splat's epsilon is measured in."""
         return np.sqrt(np.maximum(np.einsum("ij,ij->i", self.u, self.u), np.einsum("ij,ij->i", self.v, self.v)))
+
+    def push(self, epsilon: float) -> np.ndarray:
+        """(N,) how far each is moved away to find what hides it, world units. epsilon: in radii."""
+        return epsilon * self.radius() * np.where(self.is_back, BACK_EPSILON, 1.0)
 
     def take(self, rows: np.ndarray) -> Splats:
         """The splats of some rows."""
@@ -47,7 +59,7 @@ def eye_splats(scene: Scene, camera: Camera) -> Splats:
     """Every instance's surfels in the eye space of `camera`."""
     parts = [_instance_splats(instance, camera) for instance in scene.surfels]
     if not parts:
-        return Splats(*np.zeros((7, 0, 3)))
+        return Splats(*np.zeros((7, 0, 3)), np.zeros(0, bool))
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
 
 
@@ -61,8 +73,12 @@ def _instance_splats(instance: Instance, camera: Camera) -> Splats:
     center = surfels.positions.astype(np.float64) @ linear.T + origin
     u, v = (axis.astype(np.float64) @ linear.T for axis in surfels.half_axes())
     plane = np.cross(u, v)
-    normal = _facing_normals(surfels.normals.astype(np.float64) @ _cofactors(linear).T, plane, center, camera)
-    return Splats(center, u, v, plane, normal, surfels.colors[:, :3].astype(np.float64), _surface(instance))
+    # Mirrored objects turn u x v inside out.
+    cosine = _outward_cosine(-plane if np.linalg.det(linear) < 0 else plane, center, camera)
+    seen = np.where((cosine < -GRAZING_COSINE) == (np.linalg.det(linear) < 0), 1, -1)[:, None] * plane
+    normal = _turned(surfels.normals.astype(np.float64) @ _cofactors(linear).T, seen)
+    color = surfels.colors[:, :3].astype(np.float64)
+    return Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0)
 
 
 def _cofactors(linear: np.ndarray) -> np.ndarray:
@@ -74,14 +90,19 @@ def _cofactors(linear: np.ndarray) -> np.ndarray:
     return np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
 
 
-def _facing_normals(normal: np.ndarray, plane: np.ndarray, center: np.ndarray, camera: Camera) -> np.ndarray:
-    """(N, 3) unit shading normals on the side of each splat's plane that faces the viewer."""
+def _outward_cosine(outward: np.ndarray, center: np.ndarray, camera: Camera) -> np.ndarray:
+    """(N,) cosine between each splat's outward side and the direction to the viewer."""
+    to_eye = np.broadcast_to((0.0, 0.0, 1.0), center.shape) if camera.is_orthographic else -center
+    lengths = np.linalg.norm(outward, axis=1) * np.linalg.norm(to_eye, axis=1)
+    dot = np.einsum("ij,ij->i", outward, to_eye)
+    return np.divide(dot, lengths, out=np.zeros_like(dot), where=lengths > 0)
+
+
+def _turned(normal: np.ndarray, side: np.ndarray) -> np.ndarray:
+    """(N, 3) unit shading normals on the given sides of the splats' planes."""
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
-    to_eye = np.broadcast_to((0.0, 0.0, 1.0), center.shape) if camera.is_orthographic else -center
-    faces_eye = np.einsum("ij,ij->i", plane, to_eye) >= 0
-    facing = np.where(faces_eye[:, None], plane, -plane)
-    return np.where(np.einsum("ij,ij->i", normal, facing)[:, None] < 0, -normal, normal)
+    return np.where(np.einsum("ij,ij->i", normal, side)[:, None] < 0, -normal, normal)
 
 
 def _surface(instance: Instance) -> np.ndarray:

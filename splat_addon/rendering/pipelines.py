@@ -7,7 +7,7 @@ from .device.interface import PipelineDescription
 from .plan import FramePlan, PlannedPass
 from .shaders import load
 
-#: options: epsilon, near, 1 for orthographic, last material's index
+#: options: epsilon, near, 1 for orthographic, -1 for a mirrored object and 1 for others
 _SPLATS = (
     "Splats",
     "splats",
@@ -51,7 +51,7 @@ def _attributes(planned, frame):
         samplers=("surfels", "materials") if with_material else ("surfels",),
         varyings=(
             ("smooth", "vec3", "place_depth"),
-            ("flat", "vec3", "color"),
+            ("flat", "vec4", "color_weight"),
             ("flat", "vec3", "normal"),
             *((_MATERIAL_VARYING,) if with_material else ()),
         ),

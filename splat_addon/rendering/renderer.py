@@ -156,7 +156,8 @@ class Renderer:
             if with_materials:
                 data = pack_materials(instance.materials)
                 textures.append(self.device.texture((data.shape[1], 1), "RGBA32F", data))
-            options = settings.epsilon, view.near, camera.is_orthographic, len(instance.materials) - 1
+            orientation = np.sign(np.linalg.det(placed.normal_matrix))
+            options = settings.epsilon, view.near, camera.is_orthographic, orientation
             normal_matrix = np.eye(4)
             normal_matrix[:3, :3] = placed.normal_matrix
             block = _block(placed.model_view, view.projection, normal_matrix, options)

@@ -32,13 +32,14 @@ def plain_ray(origin, direction, forward, camera, splats, epsilon):
     """Colour and depth of one ray in world space: its ellipse coordinates from a 3 x 3 linear system."""
     hits = []
     for center, u, v, color in splats:
+        is_back = np.dot(-np.cross(u, v), forward if camera.is_orthographic else center - origin) > 0  # mirrored
         matrix = np.stack([u, v, -direction], axis=1)
         a, b, t = np.linalg.solve(matrix, origin - center)
         depth = t * (direction @ forward)
         if a * a + b * b <= 1 and camera.near <= depth <= camera.far:
-            point, push = t * direction, epsilon * max(np.linalg.norm(u), np.linalg.norm(v))
+            point, push = t * direction, epsilon * (1 + is_back) * max(np.linalg.norm(u), np.linalg.norm(v))
             pushed = (point + push * direction / np.linalg.norm(direction)) @ forward
-            hits.append((depth, pushed, np.exp(-2 * (a * a + b * b)), color))
+            hits.append((depth, pushed, np.exp(-2 * (a * a + b * b)) * (1e-3 if is_back else 1), color))
     if not hits:
         return np.zeros(3), EMPTY_DEPTH
     limit = min(hit[1] for hit in hits)

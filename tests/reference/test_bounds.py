@@ -20,8 +20,8 @@ vectors = st.tuples(numbers, numbers, numbers).map(np.array)
 
 
 def one_splat(center, u, v) -> Splats:
-    rest = np.zeros((4, 1, 3))
-    return Splats(center[None], u[None], v[None], np.cross(u, v)[None], *rest[:3])
+    rest = np.zeros((3, 1, 3))
+    return Splats(center[None], u[None], v[None], np.cross(u, v)[None], *rest, np.zeros(1, bool))
 
 
 @pytest.mark.parametrize("kind", CAMERAS)

@@ -77,3 +77,25 @@ def test_a_shading_normal_may_lean_away_from_the_viewer(ellipses, perspective):
     bent = (0, np.sin(np.radians(100)), np.cos(np.radians(100)))
     frame = render_exact(Scene([ellipses((0, 0, -4), u, v, normals=bent)]), perspective((33, 33)), samples=1)
     np.testing.assert_allclose(frame.normal[16, 16], bent, atol=1e-6)
+
+
+def test_a_front_hides_the_back_of_a_splat_in_its_place(ellipses, orthographic):
+    """Behind a silhouette splats stick out by their radius; the front that they overlap must win."""
+    surfels = ellipses([(0, 0, -4), (0, 0, -4.2)], (1, 0, 0), [(0, -1, 0), (0, 1, 0)], [RED, GREEN])
+    frame = render_exact(Scene([surfels]), orthographic((33, 33)), Settings(shading="flat"), samples=1)
+    np.testing.assert_allclose(frame.color[16, 16, :3], GREEN, atol=2e-3)
+
+
+def test_a_back_alone_is_drawn_as_any_splat(ellipses, orthographic):
+    back, front = ((ellipses((0, 0, -4), (1, 0, 0), (0, y, 0), RED)) for y in (-1, 1))
+    frames = [render_exact(Scene([s]), orthographic((33, 33)), Settings(shading="flat")) for s in (back, front)]
+    np.testing.assert_allclose(frames[0].color, frames[1].color, atol=1e-6)
+
+
+@pytest.mark.parametrize("degrees, kept", [(95, True), (110, False)])
+def test_a_back_seen_almost_edge_on_keeps_its_normal(ellipses, orthographic, degrees, kept):
+    """It is the rim of a front, and would be lit from the far side if it were turned."""
+    outward = np.array((0, np.sin(np.radians(degrees)), np.cos(np.radians(degrees))))
+    surfels = ellipses((0, 0, -4), (1, 0, 0), np.cross(outward, (1, 0, 0)))
+    normal = render_exact(Scene([surfels]), orthographic((33, 33)), samples=1).normal[16, 16]
+    np.testing.assert_allclose(normal, outward if kept else -outward, atol=1e-6)
