@@ -5,7 +5,7 @@
 
 const float BACK_WEIGHT = 1e-3;     // of a back against a front
 const float BACK_EPSILON = 2.0;     // a back is moved away that much further
-const float GRAZING_COSINE = 0.2;   // a back seen this flat is the rim of a front: its normal is left as it is
+const float GRAZING_COSINE = 0.3;   // a back seen this flat is the rim of a front: its normal is left as it is
 
 // Cosine between the splat's outward side and the direction to the viewer; orientation is -1 in a mirrored object.
 float outward_cosine(vec3 position, vec3 axis_u, vec3 axis_v, float orientation, bool is_orthographic) {

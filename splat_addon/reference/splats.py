@@ -17,7 +17,7 @@ from ..rendering.scene import Instance, Scene
 #: back must be seen to pass for the rim of a front, whose normal is left as it is: shaders/common/sides.glsl.
 BACK_WEIGHT = 1e-3
 BACK_EPSILON = 2.0
-GRAZING_COSINE = 0.2
+GRAZING_COSINE = 0.3
 
 
 @dataclass(frozen=True, eq=False)
