@@ -24,6 +24,8 @@ PROBE = (
 )
 PROBE_SECONDS = 60
 
+WINDOWS = os.name == "nt"
+
 INSTALL_REMEDY = (
     "install it with `sudo apt install python{0} python{0}-venv` on Debian, `sudo dnf install python{0}` on Fedora, "
     "`winget install Python.Python.{0}` on Windows or `brew install python@{0}` on macOS"
@@ -84,7 +86,7 @@ def running(version: str) -> Iterator[list[str]]:
 
 def on_path(version: str) -> Iterator[list[str]]:
     """Every such name in every folder of PATH: the first one may be a shim that refuses, a later one real."""
-    suffix = ".exe" if os.name == "nt" else ""
+    suffix = ".exe" if WINDOWS else ""
     folders = [Path(folder) for folder in os.environ.get("PATH", "").split(os.pathsep) if folder]
     for name in (f"python{version}", "python3", "python"):
         for folder in folders:
@@ -94,7 +96,7 @@ def on_path(version: str) -> Iterator[list[str]]:
 
 def windows_launcher(version: str) -> Iterator[list[str]]:
     """`py -3.13`, which knows the installations that are not on the PATH."""
-    if os.name == "nt":
+    if WINDOWS:
         yield ["py", f"-{version}"]
 
 
@@ -102,7 +104,7 @@ def pyenv(version: str) -> Iterator[list[str]]:
     """The installations in the folder of pyenv or pyenv-win."""
     home = Path.home() / ".pyenv"
     roots = (os.environ.get("PYENV_ROOT"), os.environ.get("PYENV"), home, home / "pyenv-win")
-    program = "python.exe" if os.name == "nt" else "bin/python"
+    program = "python.exe" if WINDOWS else "bin/python"
     for root in filter(None, roots):
         for folder in sorted((Path(root) / "versions").glob(f"{version}*"), reverse=True):
             if (folder / program).is_file():

@@ -134,6 +134,8 @@ def _make_venv(folder: Path, command: list[str]) -> None:
 
 def pip_line(line: str) -> str | None:
     """pip's own lines, less the many about dependencies that are there already."""
+    if "Retrying" in line:
+        return "Waiting for the package index, which does not answer"
     match = re.match(r"\s*(Collecting \S+|Downloading \S+.*\(.*\)|Installing collected packages)", line)
     return re.sub(r"\S*/", "", match.group(1)) if match else None
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The demo's arguments: each wrong one is a sentence and exit code 2, before anything is made."""
 
+import sys
+
 import demo
 import pytest
 
@@ -64,3 +66,10 @@ def test_without_arguments_there_is_a_picture_of_suzanne_to_make():
 
 def test_a_size_is_width_by_height():
     assert demo.parse(["--size", "640x480"]).size == (640, 480)
+
+
+def test_errors_of_blender_are_seen_and_its_noise_is_not(capfdbinary):
+    noise = "EGL Error (0x3009): EGL_BAD_MATCH: Arguments are inconsistent"
+    code = f"import sys; sys.stderr.write({noise!r} + '\\nreal trouble\\n'); sys.exit(3)"
+    assert demo.run_without_noise([sys.executable, "-c", code]) == 3
+    assert capfdbinary.readouterr().err.splitlines() == [b"real trouble"]
