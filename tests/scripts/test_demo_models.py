@@ -46,11 +46,14 @@ def test_a_gltfs_buffer_comes_along(unpacked, tmp_path):
     assert (target / "two words.bin").read_bytes() == b"data"
 
 
-def test_nothing_is_written_outside_the_folder(unpacked, tmp_path):
-    (tmp_path / "secret.mtl").write_text("newmtl x\n")
-    (tmp_path / "source" / "deep").mkdir()
-    unpacked("cow.obj", b"mtllib ../secret.mtl\n")
-    assert sorted(p.name for p in (tmp_path / "target").iterdir()) == ["cow.obj"]
+def test_nothing_is_written_outside_the_folder(tmp_path):
+    (tmp_path / "models" / "cows").mkdir(parents=True)
+    (tmp_path / "models" / "shared.mtl").write_text("newmtl x\n")
+    (tmp_path / "target").mkdir()
+    path = tmp_path / "models" / "cows" / "cow.obj.gz"
+    path.write_bytes(gzip.compress(b"mtllib ../shared.mtl\n"))
+    unpack(path, tmp_path / "target")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["models", "target"]
 
 
 PACKED = gzip.compress(b"v 0 0 0\n" * 99)

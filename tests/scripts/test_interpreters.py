@@ -27,6 +27,10 @@ def test_a_shim_that_refuses_is_passed_over(candidate):
     assert find_interpreter("3.13", [shim, good]) == good
 
 
+def test_a_python_that_fails_after_its_answer_is_passed_over(candidate):
+    assert find_interpreter("3.13", [candidate("print('surfel 3.13 CPython True True'); raise SystemExit(1)")]) is None
+
+
 def test_a_program_that_is_not_there_is_passed_over(candidate, tmp_path):
     good = candidate("print('surfel 3.13 CPython True True')")
     assert find_interpreter("3.13", [[str(tmp_path / "nothing")], good]) == good
