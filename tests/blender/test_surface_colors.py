@@ -18,9 +18,9 @@ def decoded(encoded):
 def image():
     """image(values, **settings) -> a generated image of (h, w, 4) values as they are stored."""
 
-    def make(values=ENCODED, alpha_mode="STRAIGHT", **settings):
+    def make(values=ENCODED, alpha_mode="STRAIGHT", space="sRGB", **settings):
         made = bpy.data.images.new("texture", values.shape[1], values.shape[0], alpha=True, **settings)
-        made.alpha_mode = alpha_mode
+        made.alpha_mode, made.colorspace_settings.name = alpha_mode, space
         made.pixels.foreach_set(np.ascontiguousarray(values, np.float32).ravel())
         made.update()
         return made
@@ -85,10 +85,10 @@ def test_an_srgb_texture_gives_its_linear_texels(image, painted, kind, tmp_path)
     assert (surfels.colors[:, 3] == 1).all()
 
 
-@pytest.mark.parametrize("settings", [{"is_data": True}, {"float_buffer": True}])
-def test_data_and_float_textures_are_taken_as_they_are(image, painted, settings):
+@pytest.mark.parametrize(("settings", "space"), [({}, "Non-Color"), ({"float_buffer": True}, "sRGB")])
+def test_data_and_float_textures_are_taken_as_they_are(image, painted, settings, space):
     nodes = Nodes()
-    texture = image(alpha_mode="CHANNEL_PACKED", **settings)
+    texture = image(alpha_mode="CHANNEL_PACKED", space=space, **settings)
     nodes.link(nodes.texture(texture), "Color", nodes.principled, "Base Color")
     surfels, texel = painted(nodes.material)
     assert np.allclose(surfels.colors[:, :3], ENCODED[texel][:, :3], atol=1e-6)
@@ -194,8 +194,7 @@ def missing_file(nodes, image):
 
 
 def unknown_encoding(nodes, image):
-    texture = image()
-    texture.colorspace_settings.name = "Filmic sRGB"
+    texture = image(space="Filmic sRGB")
     nodes.link(nodes.texture(texture), "Color", nodes.principled, "Base Color")
 
 
