@@ -29,10 +29,10 @@ def drop_unusable(mesh: TriangleMesh) -> tuple[TriangleMesh, dict[str, int]]:
         if bad is not None and bad.any():
             good = np.flatnonzero(~bad)
             dropped[reason] = int(len(bad) - len(good))
-            kept = good if kept is None else kept[good]
-            triangles = triangles[good]
+            kept = good if kept is None else kept.take(good)
+            triangles = triangles.take(good, axis=0)
     if kept is not None:
-        mesh = replace(mesh, **{name: array[kept] for name, array in mesh.per_triangle().items()})
+        mesh = replace(mesh, **{name: array.take(kept, axis=0) for name, array in mesh.per_triangle().items()})
     return _without_unused_vertices(mesh), dropped
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 #: Rows, or samples, that are expanded at a time.
-BATCH = 131072
+BATCH = 65536
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Seconds and memory of converting real meshes, against the cost model of 0.25 us a triangle + 0.1 us a surfel.
+
+    PYTHON scripts/measure_conversion.py [--models DIR] [--rounds 7] [--case armadillo.obj.gz 256] ...
+
+PYTHON must have numpy, trimesh and rich (the environment that scripts/test.py makes). All cases run once a round, so
+that a busy moment of the machine does not fall on one alone. Meshes are smooth-shaded, without colours.
+"""
+
+import argparse
+import datetime
+import gzip
+import io
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import time
+import tracemalloc
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+import numpy as np  # noqa: E402
+import trimesh  # noqa: E402
+from rich.console import Console  # noqa: E402
+from rich.progress import track  # noqa: E402
+
+from splat_addon.sampling import TriangleMesh, drop_unusable, sample_mesh  # noqa: E402
+from splat_addon.surfels import LAYOUT  # noqa: E402
+
+#: The cost model: seconds a triangle, seconds a surfel.
+TRIANGLE_COST, SURFEL_COST = 0.25e-6, 0.1e-6
+
+SURFEL_BYTES = sum(columns * np.dtype(dtype).itemsize for columns, dtype in LAYOUT.values())
+
+CASES = (
+    ("armadillo.obj.gz", 256),
+    ("armadillo.obj.gz", 1024),
+    ("dragon_vrip.ply.gz", 512),
+    ("dragon_vrip.ply.gz", 1024),
+)
+
+
+HEADER = (
+    "model", "resolution", "triangles", "surfels", "cleaning s", "sampling s", "M surfels/s", "ratio", "with cleaning",
+    "extra bytes a surfel",
+)  # fmt: skip
+
+
+def load(path: Path) -> TriangleMesh:
+    """A gzipped model with smooth normals at its corners."""
+    kind = path.name.split(".")[1]
+    loaded = trimesh.load(io.BytesIO(gzip.decompress(path.read_bytes())), file_type=kind, force="mesh", process=False)
+    corner_normals = np.asarray(loaded.vertex_normals, np.float32)[loaded.faces]
+    return TriangleMesh(loaded.vertices, np.asarray(loaded.faces, np.int32), corner_normals=corner_normals)
+
+
+def time_round(mesh: TriangleMesh, resolution: int) -> tuple[float, float, int]:
+    """Seconds of cleaning, seconds of sampling the clean mesh, surfels."""
+    started = time.perf_counter()
+    usable, _ = drop_unusable(mesh)
+    cleaned = time.perf_counter()
+    count = len(sample_mesh(usable, resolution=resolution))
+    return cleaned - started, time.perf_counter() - cleaned, count
+
+
+def extra_bytes(mesh: TriangleMesh, resolution: int) -> float:
+    """Peak bytes a surfel above the mesh and the result, cleaning included."""
+    tracemalloc.start()
+    count = len(sample_mesh(mesh, resolution=resolution))
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    return peak / count - SURFEL_BYTES
+
+
+def report(models: Path, cases, rounds: int) -> None:
+    console = Console(stderr=True)
+    names = list(dict.fromkeys(name for name, _ in cases))
+    meshes = {name: load(models / name) for name in track(names, "Loading", console=console)}
+    times = {case: [] for case in cases}
+    for _ in track(range(rounds), "Converting", console=console):
+        for name, resolution in cases:
+            times[name, resolution].append(time_round(meshes[name], resolution))
+
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout
+    print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, {datetime.date.today()}")
+    print(f"Python {platform.python_version()}, numpy {np.__version__}, commit {commit.strip()}")
+    print(f"Seconds: median (min-max) of {rounds} rounds. Ratio: seconds / (0.25 us a triangle + 0.1 us a surfel).")
+    print("Extra bytes: the peak above the mesh and the result. Sampling includes the check at the door of Surfels.")
+    print(f"| {' | '.join(HEADER)} |\n{'|---' * len(HEADER)}|")
+    for (name, resolution), rows in times.items():
+        mesh, count = meshes[name], rows[0][2]
+        cleaning, sampling = ([row[k] for row in rows] for k in (0, 1))
+        model = TRIANGLE_COST * len(mesh) + SURFEL_COST * count
+        middle, whole = statistics.median(sampling), statistics.median(c + s for c, s, _ in rows)
+        cells = (
+            name.split(".")[0], f"{resolution}", f"{len(mesh):,}", f"{count:,}", spread(cleaning), spread(sampling),
+            f"{count / middle / 1e6:.2f}", f"{middle / model:.2f}", f"{whole / model:.2f}",
+            f"{extra_bytes(mesh, resolution):.0f}",
+        )  # fmt: skip
+        print("| " + " | ".join(cells) + " |", flush=True)
+
+
+def spread(times: list) -> str:
+    return f"{statistics.median(times):.3f} ({min(times):.3f}-{max(times):.3f})"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--models", type=Path, default=ROOT.parent / "shared" / "models")
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--case", nargs=2, action="append", metavar=("FILE", "RESOLUTION"))
+    arguments = parser.parse_args()
+    cases = [(name, int(resolution)) for name, resolution in arguments.case or CASES]
+    missing = [name for name, _ in cases if not (arguments.models / name).is_file()]
+    if missing:
+        sys.exit(f"{arguments.models} has no {missing[0]}; name the folder of models with --models.")
+    report(arguments.models, cases, arguments.rounds)
+
+
+if __name__ == "__main__":
+    main()
