@@ -25,7 +25,7 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         if sources and context.mode == "OBJECT":
             text = prediction_text(known_extents(sources), choices(settings).fineness)
         else:
-            text = "Select a mesh in object mode"
+            text = "Select a mesh with faces, in object mode"
         self.layout.label(text=text, icon="INFO")
         button = self.layout.operator(SURFELS_FROM_MESH, icon="OUTLINER_OB_POINTCLOUD")
         for name in PROPERTY_NAMES:
@@ -37,6 +37,8 @@ def prediction_text(extents: list[Extent] | None, fineness: dict[str, float]) ->
     if extents is None:
         return "Counting …"
     counts, spacings = zip(*(extent.predict(fineness) for extent in extents), strict=True)
+    if not sum(counts):
+        return "Nothing to sample: no faces, or a density of 0"
     low, high = (f"{bound(spacings):.3g}" for bound in (min, max))
     return f"≈ {sum(counts):,} surfels, spacing {low if low == high else f'{low} to {high}'}"
 

@@ -78,5 +78,9 @@ def test_the_text_sums_over_the_selected_meshes():
     assert prediction_text(extents, {"resolution": 10}) == "≈ 11,250 surfels, spacing 0.1 to 0.2"
 
 
+def test_the_text_says_that_there_is_nothing_to_sample():
+    assert prediction_text([prediction.Extent(0.0, 0.0)], {"resolution": 10}).startswith("Nothing to sample")
+
+
 def test_the_text_says_when_the_count_is_still_to_come():
     assert prediction_text(None, {"resolution": 10}) == "Counting …"

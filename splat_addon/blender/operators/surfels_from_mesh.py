@@ -11,6 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import bpy
 
+from ..attributes import has_surfels
 from ..conversion_batch import ConversionBatch
 from ..conversion_settings import ConversionProperties, choices, draw_properties
 from ..ids import SURFELS_FROM_MESH
@@ -19,8 +20,8 @@ _TIMER_SECONDS = 0.05
 
 
 def selected_meshes(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """What the operator converts."""
-    return [selected for selected in context.selected_objects if selected.type == "MESH"]
+    """What the operator converts: all meshes that are not surfels already."""
+    return [s for s in context.selected_objects if s.type == "MESH" and not has_surfels(s.data)]
 
 
 class OBJECT_OT_surfels_from_mesh(ConversionProperties, bpy.types.Operator):
@@ -35,7 +36,7 @@ class OBJECT_OT_surfels_from_mesh(ConversionProperties, bpy.types.Operator):
         if context.mode != "OBJECT":
             cls.poll_message_set("Meshes are converted in object mode; leave the current mode first")
         elif not selected_meshes(context):
-            cls.poll_message_set("Select a mesh object to convert")
+            cls.poll_message_set("Select a mesh object to convert, one that is not surfels already")
         else:
             return True
         return False

@@ -74,6 +74,13 @@ def test_every_selected_mesh_is_converted(convert, add_square, add_object):
     assert [made.name for made in convert(resolution=4)] == ["a surfels", "b surfels"]
 
 
+def test_surfels_are_not_converted_again(cube, convert):
+    convert(resolution=4)
+    assert not bpy.ops.object.surfels_from_mesh.poll()
+    cube.select_set(True)
+    assert [made.name for made in convert(resolution=4)] == ["Box surfels.001"]
+
+
 def test_the_report_counts_triangles_and_surfels(cube, convert, capfd):
     convert(resolution=16)
     report = capfd.readouterr().out

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A small scene of surfels, rendered by the engine as a user would, and its picture read back from the file."""
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender.attributes import write_surfels
+from splat_addon.surfels import Surfels, axes_quaternions
+
+IMAGE_FORMATS = {"OPEN_EXR": "IMAGE", "OPEN_EXR_MULTILAYER": "MULTI_LAYER_IMAGE"}
+
+
+@pytest.fixture
+def scene(empty_file, tmp_path):
+    """An empty scene for our engine: 32 x 32 pixels, one sample each, unlit, transparent film, exact file."""
+    made = bpy.context.scene
+    made.render.engine = "SURFEL_SPLATTING"
+    made.render.resolution_x = made.render.resolution_y = 32
+    made.render.film_transparent = True
+    made.surfel_splatting.shading = "flat"
+    made.surfel_splatting.supersampling = 1
+    made.render.filepath = str(tmp_path / "picture.exr")
+    set_format(made.render, "OPEN_EXR")
+    return made
+
+
+def set_format(render: bpy.types.RenderSettings, file_format: str) -> None:
+    """Float files, with alpha; from 5.0 the kind of media comes first."""
+    if hasattr(render.image_settings, "media_type"):
+        render.image_settings.media_type = IMAGE_FORMATS[file_format]
+    render.image_settings.file_format = file_format
+    render.image_settings.color_depth = "32"
+    if file_format == "OPEN_EXR":
+        render.image_settings.color_mode = "RGBA"
+
+
+@pytest.fixture
+def add_camera(scene):
+    """add_camera(location, rotation, **data properties) -> the scene's camera; without a rotation it looks down."""
+
+    def add(location=(0, 0, 10), rotation=(0, 0, 0), **properties) -> bpy.types.Object:
+        data = bpy.data.cameras.new("camera")
+        for name, value in properties.items():
+            setattr(data, name, value)
+        camera = bpy.data.objects.new("camera", data)
+        camera.location, camera.rotation_euler = location, rotation
+        scene.collection.objects.link(camera)
+        scene.camera = camera
+        return camera
+
+    return add
+
+
+@pytest.fixture
+def add_surfels(add_object):
+    """add_surfels(positions, normals, size, colors) -> an object of surfels; one normal, size or colour serves all."""
+
+    def add(positions, normals=(0, 0, 1), size=0.1, colors=(1, 1, 1, 1), name="surfels") -> bpy.types.Object:
+        return add_object(write_surfels(name, make_surfels(positions, normals, size, colors)))
+
+    return add
+
+
+def make_surfels(positions, normals, size, colors) -> Surfels:
+    """positions: (N, 3). normals: (N, 3) or (3,). size: half-axes, (N, 2) or one number. colors: (N, 4) or (4,)."""
+    positions = np.atleast_2d(np.asarray(positions, np.float64))
+    count = len(positions)
+    z = np.broadcast_to(np.asarray(normals, np.float64), (count, 3))
+    z = z / np.linalg.norm(z, axis=1, keepdims=True)
+    x = np.cross(np.where(np.abs(z[:, :1]) < 0.9, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), z)
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    return Surfels(
+        positions=positions,
+        rotations=axes_quaternions(x, np.cross(z, x), z),
+        scales=np.broadcast_to(size, (count, 2)),
+        normals=z,
+        colors=np.broadcast_to(colors, (count, 4)),
+        materials=np.zeros(count),
+    )
+
+
+@pytest.fixture
+def add_sheet(add_surfels):
+    """add_sheet(side, count) -> count x count surfels over a square of that side around the origin, facing up."""
+
+    def add(side=2.0, count=40, **options) -> bpy.types.Object:
+        axis = (np.arange(count) + 0.5) * side / count - side / 2
+        x, y = (a.ravel() for a in np.meshgrid(axis, axis))
+        return add_surfels(np.stack([x, y, 0 * x], axis=1), size=1.5 * side / count, **options)
+
+    return add
+
+
+@pytest.fixture
+def picture(scene):
+    """picture() -> (h, w, 4) float32 as the file has it, row 0 at the bottom."""
+
+    def render() -> np.ndarray:
+        bpy.ops.render.render(write_still=True)
+        return read_picture(scene.render.filepath)
+
+    return render
+
+
+def read_picture(path) -> np.ndarray:
+    """(h, w, 4) float32 of a file with one picture, row 0 at the bottom."""
+    (part,) = read_passes(path).values()
+    return part
+
+
+@pytest.fixture
+def passes(scene):
+    """passes() -> the pictures in the multilayer file that a render writes: name of layer and pass -> array."""
+
+    def render() -> dict[str, np.ndarray]:
+        set_format(scene.render, "OPEN_EXR_MULTILAYER")
+        bpy.ops.render.render(write_still=True)
+        return read_passes(scene.render.filepath)
+
+    return render
+
+
+def read_passes(path) -> dict[str, np.ndarray]:
+    """"Layer.Pass" (or "" in a file of one picture) -> (h, w) or (h, w, channels) float32, row 0 at the bottom."""
+    import OpenEXR
+
+    channels = {}
+    for part in OpenEXR.File(str(path), separate_channels=True).parts:
+        for name, channel in part.channels.items():
+            layer, _, letter = name.rpartition(".")
+            channels.setdefault(layer, {})[letter] = channel.pixels[::-1]
+    return {layer: _joined(letters) for layer, letters in channels.items()}
+
+
+def _joined(letters: dict[str, np.ndarray]) -> np.ndarray:
+    order = sorted(letters, key="RGBAXYZ".index)
+    return np.ascontiguousarray(np.squeeze(np.stack([letters[k] for k in order], axis=-1), axis=-1)
+                                if len(order) == 1 else np.stack([letters[k] for k in order], axis=-1))
+
+
+@pytest.fixture
+def said(capfd):
+    """said() -> what Blender has reported so far, as a user reads it in the console."""
+    return lambda: capfd.readouterr().out
