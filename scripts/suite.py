@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from environment import ROOT, Problem
+from environment import ROOT
 
 PLAIN, BLENDER = "plain", "blender"
 
-#: Folders that only Blender can run; a window's tests need a screen and are started by hand.
+#: Folders that only Blender can run; a window's tests need a screen, and run only where they are named.
 ONLY_IN_BLENDER = ("tests/blender", "tests/extension")
 ONLY_IN_A_WINDOW = ("tests/window",)
 #: Folders whose tests draw, on whichever device they are given.
@@ -33,22 +33,19 @@ def paths_by_group(paths: list[str], only_rendering: bool = False) -> dict[str, 
     """group -> the arguments that name its tests; everything where no path is given.
 
     only_rendering: the plain group's other tests have nothing to say to the Blender that is tested.
-    Raises Problem for a path that no group runs.
     """
     if not paths:
         plain = list(ON_ANY_DEVICE) if only_rendering else ["tests", *_ignored()]
         return {PLAIN: plain, BLENDER: [*ON_ANY_DEVICE, *_existing(ONLY_IN_BLENDER)]}
     groups = {PLAIN: [], BLENDER: []}
     for path in paths:
-        if _is_within(path, ONLY_IN_A_WINDOW):
-            raise Problem(f"{path} needs a window: open it with a Blender program on a screen.", exit_code=2)
         if _is_within(path, (*ONLY_IN_BLENDER, *ON_ANY_DEVICE)):
             groups[BLENDER].append(path)
         else:
             groups[BLENDER] += [f for f in (*ON_ANY_DEVICE, *_existing(ONLY_IN_BLENDER)) if _is_within(f, (path,))]
         if not _is_within(path, ONLY_IN_BLENDER):
             groups[PLAIN].append(path)
-    if groups[PLAIN]:
+    if groups[PLAIN] and not any(_is_within(path, ONLY_IN_A_WINDOW) for path in paths):
         groups[PLAIN] += _ignored()
     return groups
 

@@ -5,7 +5,6 @@ import importlib.util
 from pathlib import Path
 
 import pytest
-from environment import Problem
 from suite import BLENDER, PLAIN, paths_by_group, split_arguments
 
 
@@ -57,9 +56,9 @@ def test_the_whole_folder_runs_in_both_groups():
     assert named(groups[PLAIN]) == ["tests"] and "tests/rendering" in groups[BLENDER]
 
 
-def test_a_test_of_the_window_is_refused():
-    with pytest.raises(Problem, match="needs a window"):
-        paths_by_group(["tests/window/test_x.py"])
+def test_a_test_of_the_window_runs_only_where_it_is_named():
+    groups = paths_by_group(["tests/window"])
+    assert groups[PLAIN] == ["tests/window"] and not groups[BLENDER]
 
 
 def test_paths_are_told_from_pytests_arguments():
