@@ -11,8 +11,8 @@ from ..rendering import Camera
 
 def picture_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
     """Width and height in pixels of the whole frame, percentage applied."""
-    share = render.resolution_percentage / 100
-    return max(int(render.resolution_x * share), 1), max(int(render.resolution_y * share), 1)
+    share = render.resolution_percentage
+    return max(render.resolution_x * share // 100, 1), max(render.resolution_y * share // 100, 1)
 
 
 def border(render: bpy.types.RenderSettings) -> tuple[int, int, int, int]:
@@ -20,9 +20,10 @@ def border(render: bpy.types.RenderSettings) -> tuple[int, int, int, int]:
     width, height = picture_size(render)
     if not render.use_border:
         return 0, 0, width, height
-    # truncated as Blender truncates them, so that the result has the size that it expects
-    left, right = int(render.border_min_x * width), int(render.border_max_x * width)
-    bottom, top = int(render.border_min_y * height), int(render.border_max_y * height)
+    # multiplied in float32 and truncated as Blender does it: it shows no picture of another size, and says nothing
+    low = np.float32((render.border_min_x, render.border_min_y)) * np.float32((width, height))
+    high = np.float32((render.border_max_x, render.border_max_y)) * np.float32((width, height))
+    (left, bottom), (right, top) = low.astype(int).tolist(), high.astype(int).tolist()
     return left, bottom, right - left, top - bottom
 
 

@@ -134,9 +134,8 @@ def read_passes(path) -> dict[str, np.ndarray]:
 
 
 def _joined(letters: dict[str, np.ndarray]) -> np.ndarray:
-    order = sorted(letters, key="RGBAXYZ".index)
-    return np.ascontiguousarray(np.squeeze(np.stack([letters[k] for k in order], axis=-1), axis=-1)
-                                if len(order) == 1 else np.stack([letters[k] for k in order], axis=-1))
+    channels = [letters[letter] for letter in sorted(letters, key="RGBAXYZ".index)]
+    return np.stack(channels, axis=-1) if len(channels) > 1 else channels[0]
 
 
 @pytest.fixture
