@@ -68,7 +68,8 @@ def time_round(mesh: TriangleMesh, resolution: int) -> tuple[float, float, int]:
 
 
 def extra_bytes(mesh: TriangleMesh, resolution: int) -> float:
-    """Peak bytes a surfel above the mesh and the result, cleaning included."""
+    """Peak bytes a surfel while sampling, above the cleaned mesh and the result."""
+    mesh, _ = drop_unusable(mesh)
     tracemalloc.start()
     count = len(sample_mesh(mesh, resolution=resolution))
     _, peak = tracemalloc.get_traced_memory()
@@ -88,24 +89,25 @@ def report(models: Path, cases, rounds: int) -> None:
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout
     print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, {datetime.date.today()}")
     print(f"Python {platform.python_version()}, numpy {np.__version__}, commit {commit.strip()}")
-    print(f"Seconds: median (min-max) of {rounds} rounds. Ratio: seconds / (0.25 us a triangle + 0.1 us a surfel).")
-    print("Extra bytes: the peak above the mesh and the result. Sampling includes the check at the door of Surfels.")
+    print(f"Median (min-max) of {rounds} rounds. Ratio: seconds / (0.25 us a triangle + 0.1 us a surfel).")
+    print("Sampling includes the check at the door of Surfels. Extra bytes: the peak while sampling, above the")
+    print("cleaned mesh and the result.")
     print(f"| {' | '.join(HEADER)} |\n{'|---' * len(HEADER)}|")
     for (name, resolution), rows in times.items():
         mesh, count = meshes[name], rows[0][2]
         cleaning, sampling = ([row[k] for row in rows] for k in (0, 1))
         model = TRIANGLE_COST * len(mesh) + SURFEL_COST * count
-        middle, whole = statistics.median(sampling), statistics.median(c + s for c, s, _ in rows)
+        ratios, whole = [s / model for s in sampling], [(c + s) / model for c, s, _ in rows]
+        speed = count / statistics.median(sampling) / 1e6
         cells = (
             name.split(".")[0], f"{resolution}", f"{len(mesh):,}", f"{count:,}", spread(cleaning), spread(sampling),
-            f"{count / middle / 1e6:.2f}", f"{middle / model:.2f}", f"{whole / model:.2f}",
-            f"{extra_bytes(mesh, resolution):.0f}",
+            f"{speed:.2f}", spread(ratios), spread(whole), f"{extra_bytes(mesh, resolution):.0f}",
         )  # fmt: skip
         print("| " + " | ".join(cells) + " |", flush=True)
 
 
-def spread(times: list) -> str:
-    return f"{statistics.median(times):.3f} ({min(times):.3f}-{max(times):.3f})"
+def spread(values: list) -> str:
+    return f"{statistics.median(values):.3g} ({min(values):.3g}-{max(values):.3g})"
 
 
 def main() -> None:

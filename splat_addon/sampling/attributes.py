@@ -22,6 +22,10 @@ _LEAST_AREA_RATIO = 1e-6
 _USABLE_SQUARES = (1e-30, 1e30)
 
 
+#: What a mesh stores at its corners may be infinite or NaN; the result is looked at, so the way there need not warn.
+_quietly = np.errstate(over="ignore", invalid="ignore")
+
+
 class SampleFiller:
     """Fills the rows of preallocated arrays, span after span.
 
@@ -62,6 +66,7 @@ class SampleFiller:
             _write_unit(vectors, face_normals, triangle, out["normals"])
         self._color(out, triangles, triangle, weights, line)
 
+    @_quietly
     def _color(self, out: dict, triangles: np.ndarray, triangle: np.ndarray, weights: _SpanWeights, line: _Lines):
         mesh, palette = self._mesh, self._palette
         if mesh.materials is None:
@@ -77,6 +82,7 @@ class SampleFiller:
             uv_steps = weights.gradients(np.moveaxis(corner_uvs, 0, 2)).take(triangle, axis=2)
         out["colors"][...] = palette.colors(out["materials"], vertex_colors, uvs, uv_steps)
 
+    @_quietly
     def _samples(self, corner_values: np.ndarray, weights: _SpanWeights, line: _Lines) -> np.ndarray:
         """(c, n) float32 interpolated values of (t, 3, c) ones at the corners."""
         values = np.ascontiguousarray(np.moveaxis(corner_values, 0, 2), np.float32)

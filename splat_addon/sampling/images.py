@@ -122,6 +122,7 @@ def _closest_taps(coordinate: np.ndarray, size: int):
     return ((np.floor(position).astype(np.intp), np.ones(len(position), np.float32)),)
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def _premultiplied(colors: np.ndarray) -> np.ndarray:
     return np.concatenate([colors[..., :3] * colors[..., 3:], colors[..., 3:]], axis=-1)
 

@@ -111,15 +111,28 @@ def test_a_factor_that_the_mesh_lacks_is_left_out(square):
     assert (surfels.colors == (0.5, 0.5, 0.5, 1)).all()
 
 
-def test_a_broken_colour_falls_back_to_the_materials_own(square):
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("broken", [np.nan, np.inf, 1e300])
+def test_a_broken_colour_falls_back_to_the_materials_own(square, broken):
     corners = np.ones((2, 3, 4))
-    corners[0, 0, 0] = np.nan
+    corners[:, :, 0] = broken
     surfels = sample_mesh(
         surfaced(square, SurfaceColor((0.5, 0, 0, 1), vertex_colors=True), corner_colors=corners), resolution=4
     )
     assert np.allclose(surfels.colors, (0.5, 0, 0, 1))
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("resolution", [1, 8])
+def test_a_broken_pixel_falls_back_to_the_materials_own(square, resolution):
+    pixels = np.full((4, 4, 4), np.inf)
+    pixels[:2] = np.nan
+    pixels[3, :, 3] = 0
+    surface = SurfaceColor((0.5, 0, 0, 1), Image(pixels))
+    assert np.allclose(sample_mesh(surfaced(square, surface), resolution=resolution).colors, (0.5, 0, 0, 1))
+
+
+@pytest.mark.filterwarnings("error")
 def test_broken_texture_coordinates_look_up_the_corner(square):
     image = Image(np.array([[(0.5, 0, 0, 1)]]))
     uvs = np.full((2, 3, 2), np.nan)

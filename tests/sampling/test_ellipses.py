@@ -41,13 +41,16 @@ def test_conjugate_half_diameters_follow_the_corrected_tangent(triangle):
 
 @pytest.mark.parametrize("reduction", ["normal", "none"])
 def test_no_splat_is_longer_than_the_square_root_of_three(sphere, reduction):
-    surfels = sample_mesh(sphere, spacing=0.05, reduction=reduction)
+    surfels = sample_mesh(sphere, spacing=0.05, reduction=reduction, splat_size=1)
     assert surfels.radius.max() <= 0.05 * np.sqrt(3) * (1 + 1e-3) and surfels.scales.min() == np.float32(0.05)
 
 
-@pytest.mark.parametrize("model, resolution", [("sphere", 40), ("armadillo", 256)])
-def test_splats_cover_the_surface(request, model, resolution):
-    assert uncovered_share(request.getfixturevalue(model), resolution, splat_size=1.0) <= 3e-4
+@pytest.mark.parametrize(
+    "model, resolution, splat_size", [("sphere", 40, 1), ("armadillo", 256, 1), ("armadillo", 64, 1.25)]
+)
+def test_splats_cover_all_but_a_few_ten_thousandths_of_the_surface(request, model, resolution, splat_size):
+    """What is left lies at the seams between the regions of two axes; its share falls as 1 / resolution."""
+    assert uncovered_share(request.getfixturevalue(model), resolution, splat_size) <= 3e-4
 
 
 def test_splats_of_half_the_cell_leave_holes(sphere):

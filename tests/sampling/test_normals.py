@@ -2,6 +2,7 @@
 """Shading normals are interpolated between corners, geometric ones follow the winding."""
 
 import numpy as np
+import pytest
 
 from splat_addon.sampling import TriangleMesh, sample_mesh
 
@@ -30,9 +31,11 @@ def test_a_turned_triangle_turns_its_geometric_normal(triangle):
     assert np.allclose(surfels.geometric_normals(), (0, 0, -1))
 
 
-def test_a_zero_or_broken_corner_normal_falls_back_to_the_faces(square):
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("broken", [0, np.nan, np.inf, 1e300])
+def test_a_zero_or_broken_corner_normal_falls_back_to_the_faces(square, broken):
     normals = np.zeros((2, 3, 3))
-    normals[1] = np.nan
+    normals[1] = broken
     surfels = sample_mesh(square(corner_normals=normals), resolution=8)
     assert len(surfels) == 64 and (surfels.normals == (0, 0, 1)).all()
 
