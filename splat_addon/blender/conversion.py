@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import bpy
 from mathutils import Matrix
 
-from ..sampling import TriangleMesh, drop_unusable, grid_spacing, predict_count, sample_mesh
+from ..sampling import DEFAULT_SPLAT_SIZE, TriangleMesh, drop_unusable, grid_spacing, predict_count, sample_mesh
 from ..surfels import Surfels
 from .attributes import write_surfels
 from .mesh_extraction import extract_mesh
@@ -29,7 +29,7 @@ class Choices:
     units}. splat_size: half-axis of a splat, in spacings."""
 
     fineness: dict[str, float]
-    splat_size: float = 1.0
+    splat_size: float = DEFAULT_SPLAT_SIZE
 
 
 @dataclass(eq=False)
@@ -108,6 +108,8 @@ def place(conversion: Conversion, fallback: bpy.types.Collection) -> bpy.types.O
     for material in conversion.materials:
         mesh.materials.append(material)
     made = bpy.data.objects.new(mesh.name, mesh)
+    # a mesh of loose points would be covered by Blender's black vertex overlay, in the rendered view too
+    made.display_type = "BOUNDS"
     for collection in [c for c in source.users_collection if c.library is None] or [fallback]:
         collection.objects.link(made)
     made.matrix_world = conversion.matrix_world @ Matrix.Translation(surfels.origin)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty
 
+from ..sampling import DEFAULT_SPLAT_SIZE
 from .conversion import Choices
 from .ids import CONVERSION_SETTINGS
 
@@ -52,10 +53,10 @@ class ConversionProperties:
     splat_size: FloatProperty(
         name="Splat Size",
         description=(
-            "Half-axis of a splat, in spacings. 1 covers the surface without holes; "
-            "less is sharper and faster to draw but opens holes, more is smoother and slower"
+            "Half-axis of a splat, in spacings. 1.25 covers every surface without holes; 1 is sharper, "
+            "but leaves 1 point of the surface in 3,000 uncovered, as single dark specks"
         ),
-        default=1.0,
+        default=DEFAULT_SPLAT_SIZE,
         min=0.0,
         soft_min=0.5,
         soft_max=2.0,

@@ -11,9 +11,10 @@ from .grid import grid_spacing
 from .images import Image
 from .mesh import TriangleMesh
 from .reductions import REDUCTIONS, predict_count, projected_area
-from .sample import SamplingCancelled, sample_mesh
+from .sample import DEFAULT_SPLAT_SIZE, SamplingCancelled, sample_mesh
 
 __all__ = [
+    "DEFAULT_SPLAT_SIZE",
     "REDUCTIONS",
     "Image",
     "SamplingCancelled",

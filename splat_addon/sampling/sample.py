@@ -20,6 +20,10 @@ from .mesh import TriangleMesh
 from .reductions import find_reduction
 from .scan_conversion import BATCH, batches
 
+#: Half-axis of a splat in H. At 1 the seams between the regions of two axes leave 0.025 % of the armadillo uncovered
+#: at resolution 256, single dark specks in a picture; at 1.25 none of 200,000 points on it was uncovered.
+DEFAULT_SPLAT_SIZE = 1.25
+
 
 class SamplingCancelled(Exception):
     """The progress callback asked to stop."""
@@ -31,13 +35,13 @@ def sample_mesh(
     spacing: float | None = None,
     resolution: float | None = None,
     reduction: str = "normal",
-    splat_size: float = 1.0,
+    splat_size: float = DEFAULT_SPLAT_SIZE,
     progress: Callable[[float], bool | None] | None = None,
 ) -> Surfels:
     """Surfels of a mesh on a grid of exact rays, in the order of axis, triangle, row, column.
 
     spacing: cell size H, object units; or resolution: cells along the longest edge of the mesh's box.
-    reduction: a name in `REDUCTIONS`. splat_size: smaller half-axis of a splat, in H; 1 leaves no holes.
+    reduction: a name in `REDUCTIONS`. splat_size: smaller half-axis of a splat, in H.
     progress: called between chunks with the finished share, 0 to 1; where it returns False, `SamplingCancelled` rises.
     Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the grid's origin.
     A mesh without usable triangles, or one that lies between the rays, gives no surfels.

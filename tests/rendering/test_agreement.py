@@ -9,17 +9,21 @@ from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import EMPTY_DEPTH, Settings
 
 TOLERANCE = 1e-4
+#: A normal is a sum brought to unit length: where front and back of a fold nearly cancel, that magnifies rounding.
+NORMAL_TOLERANCE = 5e-4
+#: The share of samples in which a splat's rim, or two depths, may tie and fall either way.
 TIES = 1 / 20_000
+SIZE = (256, 256)
 SCENES = {
-    "sphere": lambda: scenes.sphere(size=(256, 256)),
-    "checker_plane": lambda: scenes.checker_plane(size=(256, 256)),
-    "torus": lambda: scenes.torus(size=(256, 256)),
+    "sphere": lambda: scenes.sphere(size=SIZE),
+    "checker_plane": lambda: scenes.checker_plane(size=SIZE),
+    "torus": lambda: scenes.torus(size=SIZE),
 }
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_picture_is_the_same_on_every_device(name, render, pictures, request):
-    frame = render(*SCENES[name](), Settings(supersampling=2))
+    frame = render(*SCENES[name](), Settings(supersampling=1))
     path = pictures / f"{name}.npz"
     if request.config.getoption("--device") == "standalone":
         np.savez(path, color=frame.color, depth=frame.depth, normal=frame.normal, coverage=frame.coverage)
@@ -27,10 +31,10 @@ def test_picture_is_the_same_on_every_device(name, render, pictures, request):
     assert path.exists(), f"{path} is missing: run the tests with --device standalone first (scripts/test.py does)"
     standalone = np.load(path)
     hit = (frame.depth < EMPTY_DEPTH) & (standalone["depth"] < EMPTY_DEPTH)
-    assert_same_pixels(frame.color, standalone["color"])
-    assert_same_pixels(frame.normal, standalone["normal"])
-    assert_same_pixels(frame.coverage[..., None], standalone["coverage"][..., None])
-    assert_same_pixels(np.where(hit, frame.depth, 0)[..., None], np.where(hit, standalone["depth"], 0)[..., None])
+    assert_few(ties(frame.color, standalone["color"]), samples=1)
+    assert_few(ties(frame.normal, standalone["normal"], NORMAL_TOLERANCE), samples=1)
+    assert_few(frame.coverage != standalone["coverage"], samples=1)
+    assert_few(hit & (np.abs(frame.depth - standalone["depth"]) > TOLERANCE), samples=1)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -38,14 +42,18 @@ def test_picture_is_the_exact_one(name, render):
     scene, camera = SCENES[name]()
     settings = Settings(supersampling=2)
     frame, exact = render(scene, camera, settings), render_exact(scene, camera, settings, samples=2)
-    assert psnr(frame.color, exact.color) > 75
-    assert_same_pixels(frame.coverage[..., None], exact.coverage[..., None])
-    assert np.mean(np.abs(frame.color - exact.color).max(axis=2) > 1e-3) < 1e-3
+    tied = ties(frame.color, exact.color)
+    assert_few(tied, samples=4)
+    assert_few(frame.coverage != exact.coverage, samples=4)
+    assert psnr(frame.color[~tied][None], exact.color[~tied][None]) > 95
 
 
-def assert_same_pixels(picture, other):
-    """Equal within 1e-4 but for a counted handful: splats' edges and depths that tie may fall either way."""
-    different = np.abs(picture - other).max(axis=2) > TOLERANCE
-    assert np.count_nonzero(different) <= max(TIES * different.size, 1), (
-        f"{np.count_nonzero(different)} of {different.size} pixels differ by more than {TOLERANCE}"
-    )
+def ties(picture, other, tolerance=TOLERANCE):
+    """(h, w) bool: where two pictures are not equal within the tolerance."""
+    return np.abs(picture - other).max(axis=2) > tolerance
+
+
+def assert_few(tied, samples):
+    """At most a counted handful of pixels, each of `samples` samples."""
+    allowed = max(TIES * samples * tied.size, 1)
+    assert np.count_nonzero(tied) <= allowed, f"{np.count_nonzero(tied)} of {tied.size} pixels differ, not {allowed:.0f}"
