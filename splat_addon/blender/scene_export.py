@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import bpy
 import numpy as np
 
-from ..rendering import Instance, Light, Scene
+from ..rendering import Instance, Scene
 from ..surfels import LAYOUT, Surfels
 from .attributes import has_surfels, read_surfels
 from .shading_export import light_of, shading_material, world_radiance
@@ -29,32 +30,39 @@ class Notes:
         return [text if count == 1 else f"{text} ({count} times)" for text, count in self.counts.items()]
 
 
+class _Kept(NamedTuple):
+    name: str
+    surfels: Surfels
+    skipped: int
+
+
 class SurfelStore:
     """Keeps the `Surfels` of meshes between frames, the same object as long as the values are the same.
 
     What is drawn from is cached by that identity. The values are compared, since a final render tells of no
     change: reading and comparing a million surfels takes a tenth of packing and uploading them again.
+
+    A mesh is known by its session_uid: objects that share a mesh and differ in modifiers have evaluated meshes of
+    one name, and a new evaluation by modifiers is a new mesh of the old name.
     """
 
     def __init__(self):
-        self._kept: dict[str, tuple[Surfels, int]] = {}
-        self._current: set[str] = set()
+        self._kept: dict[int, _Kept] = {}
+        self._current: set[int] = set()
 
     def get(self, mesh: bpy.types.Mesh) -> tuple[Surfels, int]:
         """As `attributes.read_surfels`; once a mesh and frame."""
-        key = mesh.original.name_full if mesh.original else mesh.name_full
-        if key in self._current:
-            return self._kept[key]
-        surfels, skipped = read_surfels(mesh)
-        kept = self._kept.get(key)
-        if kept is None or not _same(kept[0], surfels):
-            self._kept[key] = surfels, skipped
-        self._current.add(key)
-        return self._kept[key]
+        key = mesh.session_uid
+        if key not in self._current:
+            surfels, skipped = read_surfels(mesh)
+            known = (k.surfels for k in self._kept.values() if k.name == mesh.name_full and _same(k.surfels, surfels))
+            self._kept[key] = _Kept(mesh.name_full, next(known, surfels), skipped)
+            self._current.add(key)
+        return self._kept[key][1:]
 
     def begin_frame(self, changed: set[str] | None = None) -> None:
         """Meshes named in `changed` (None: all) are read again the next time they are asked for."""
-        self._current = set() if changed is None else self._current - changed
+        self._current = {k for k in self._current if changed is not None and self._kept[k].name not in changed}
 
     def forget_unused(self) -> None:
         """Let go of meshes that this frame did not ask for."""
@@ -66,38 +74,36 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore) -> tuple[Sc
     notes = Notes()
     surfels, lights = [], []
     for entry in depsgraph.object_instances:
+        object_, matrix = entry.object, np.array(entry.matrix_world, np.float64)
         if not entry.show_self:
             continue
-        object_ = entry.object
-        if object_.type == "LIGHT":
-            lights += _light(object_, entry.matrix_world, notes)
-        elif object_.type == "MESH" and len(object_.data.vertices):
-            surfels += _instance(object_, entry.matrix_world, store, notes)
-    return Scene(tuple(surfels), tuple(lights), world_radiance(depsgraph.scene.world, notes)), notes
+        try:
+            if object_.type == "LIGHT":
+                lights.append(light_of(object_.data, matrix, notes))
+            elif object_.type == "MESH" and len(object_.data.vertices):
+                surfels.append(_instance(object_, matrix, store, notes))
+            elif object_.type in _NOT_DRAWN:
+                notes.add(f"Objects of type {_NOT_DRAWN[object_.type]} are not drawn; convert them to meshes first")
+        except ValueError as error:
+            notes.add(f"{object_.name} is left out: {error}")
+    world = world_radiance(depsgraph.scene.world, notes)
+    return Scene(tuple(filter(None, surfels)), tuple(filter(None, lights)), world), notes
 
 
-def _instance(object_, matrix_world, store: SurfelStore, notes: Notes) -> list[Instance]:
+#: Blender's type -> its name, of what could be seen but is no mesh. Curves and texts come as meshes.
+_NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "volume", "GREASEPENCIL": "grease pencil"}
+
+
+def _instance(object_, matrix_world: np.ndarray, store: SurfelStore, notes: Notes) -> Instance | None:
+    """None for a mesh without surfels. Raises ValueError for broken attributes or an unusable matrix."""
     mesh = object_.data
     if not has_surfels(mesh):
         notes.add("Meshes without surfels are not drawn; convert them with Object > Convert to Surfels")
-        return []
-    try:
-        surfels, skipped = store.get(mesh)
-    except ValueError as error:
-        notes.add(f"{object_.name}: {error}")
-        return []
+        return None
+    surfels, skipped = store.get(mesh)
     if skipped:
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
-    materials = tuple(shading_material(slot.material, notes) for slot in object_.material_slots)
-    return [Instance(surfels, np.array(matrix_world, np.float64), materials)]
-
-
-def _light(object_, matrix_world, notes: Notes) -> list[Light]:
-    light = light_of(object_.data, np.array(matrix_world, np.float64))
-    if light is None:
-        notes.add(f"Lights of type {object_.data.type.title()} give no light yet; use a sun or a point")
-        return []
-    return [light]
+    return Instance(surfels, matrix_world, tuple(shading_material(s.material, notes) for s in object_.material_slots))
 
 
 def _same(a: Surfels, b: Surfels) -> bool:

@@ -3,29 +3,52 @@
 
 from __future__ import annotations
 
+import math
+
 import bpy
 import numpy as np
 
 from ..rendering import Light, Material
+from ..rendering.packing import reflectance
 
 #: Blender's light type -> the renderer's kind
 _LIGHT_KINDS = {"SUN": "sun", "POINT": "point"}
 
+#: Blender's light type -> its emitting area, which multiplies the energy of a light that is not normalised (as
+#: Cycles measures it: a sun's disc at distance 1, a point's sphere).
+_AREAS = {
+    "SUN": lambda light: math.pi * math.sin(light.angle / 2) ** 2,
+    "POINT": lambda light: 4 * math.pi * light.shadow_soft_size**2,
+}
 
-def light_of(light: bpy.types.Light, matrix_world: np.ndarray) -> Light | None:
+
+def light_of(light: bpy.types.Light, matrix_world: np.ndarray, notes) -> Light | None:
     """None for a type that the renderer has not. matrix_world: (4, 4), of the light's object."""
     if light.type not in _LIGHT_KINDS:
+        notes.add(f"Lights of type {light.type.title()} give no light yet; use a sun or a point")
         return None
-    color = np.array(light.color, np.float64)
-    if getattr(light, "use_temperature", False):
+    color = np.array(light.color, np.float64) * _emission(light, notes)
+    if light.use_temperature:
         color = color * np.array(light.temperature_color, np.float64)
+    area = 1.0 if light.normalize else _AREAS[light.type](light)
     return Light(
         _LIGHT_KINDS[light.type],
         tuple(color),
-        light.energy * 2.0 ** getattr(light, "exposure", 0.0),
+        light.energy * 2.0**light.exposure * area,
         position=tuple(matrix_world[:3, 3]),
         direction=tuple(-matrix_world[:3, 2]),
     )
+
+
+def _emission(light: bpy.types.Light, notes) -> np.ndarray:
+    """(3,) colour times strength of the light's Emission node, which scales the light's own; 1 without nodes."""
+    if not light.use_nodes:
+        return np.ones(3)
+    node = _output_source(light.node_tree, "OUTPUT_LIGHT", "EMISSION")
+    if node is None:
+        notes.add(f"The light {light.name!r} has no Emission node at its output; its nodes are passed over")
+        return np.ones(3)
+    return np.array(_color_times_strength(node, f"The light {light.name!r}", notes))
 
 
 def world_radiance(world: bpy.types.World | None, notes) -> tuple[float, float, float]:
@@ -35,28 +58,37 @@ def world_radiance(world: bpy.types.World | None, notes) -> tuple[float, float, 
     node = _output_source(world.node_tree, "OUTPUT_WORLD", "BACKGROUND") if world.use_nodes else None
     if node is None:
         return (0.0, 0.0, 0.0) if world.use_nodes else tuple(world.color)
-    if node.inputs["Color"].is_linked or node.inputs["Strength"].is_linked:
-        notes.add(f"The world {world.name!r} is textured; its Background node's plain colour and strength are used")
-    strength = node.inputs["Strength"].default_value
-    return tuple(c * strength for c in node.inputs["Color"].default_value[:3])
+    return _color_times_strength(node, f"The world {world.name!r}", notes)
+
+
+def _color_times_strength(node: bpy.types.Node, owner: str, notes) -> tuple[float, float, float]:
+    """Of a Background or an Emission node."""
+    color, strength = node.inputs["Color"], node.inputs["Strength"]
+    if color.is_linked or strength.is_linked:
+        notes.add(f"{owner} is textured; its {node.bl_label} node's plain colour and strength are used")
+    return tuple(c * strength.default_value for c in color.default_value[:3])
 
 
 def shading_material(material: bpy.types.Material | None, notes) -> Material:
-    """Roughness, metallic and index of refraction of the material's Principled node; the defaults without one."""
+    """Roughness, metallic and specular reflectance of the material's Principled node; the defaults without one."""
     if material is None or not material.use_nodes:
         return Material()
     node = _output_source(material.node_tree, "OUTPUT_MATERIAL", "BSDF_PRINCIPLED")
     if node is None:
         notes.add(f"The material {material.name!r} has no Principled BSDF at its output; it is shaded as a default one")
         return Material()
-    values = {field: node.inputs[socket] for field, socket in _SOCKETS.items()}
-    linked = [s.name for s in values.values() if s.is_linked]
+    sockets = {name: node.inputs[name] for name in ("Roughness", "Metallic", "IOR", "Specular IOR Level")}
+    linked = [name for name, socket in sockets.items() if socket.is_linked]
     if linked:
         notes.add(f"The material {material.name!r} textures {', '.join(linked)}; the sockets' plain values are used")
-    return Material(**{field: float(socket.default_value) for field, socket in values.items()})
+    roughness, metallic, ior, level = (float(socket.default_value) for socket in sockets.values())
+    return Material(roughness, metallic, _levelled(ior, level))
 
 
-_SOCKETS = {"roughness": "Roughness", "metallic": "Metallic", "ior": "IOR"}
+def _levelled(ior: float, level: float) -> float:
+    """The index whose reflectance at normal incidence is that of `ior` times 2 `level`, as Cycles takes it."""
+    root = min(2 * level * reflectance(ior), 0.999) ** 0.5
+    return (1 + root) / (1 - root)
 
 
 def _output_source(tree: bpy.types.NodeTree, output_type: str, wanted: str) -> bpy.types.Node | None:

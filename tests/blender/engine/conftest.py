@@ -122,7 +122,7 @@ def passes(scene):
 
 
 def read_passes(path) -> dict[str, np.ndarray]:
-    """"Layer.Pass" (or "" in a file of one picture) -> (h, w) or (h, w, channels) float32, row 0 at the bottom."""
+    """ "Layer.Pass" (or "" in a file of one picture) -> (h, w) or (h, w, channels) float32, row 0 at the bottom."""
     import OpenEXR
 
     channels = {}
@@ -142,3 +142,15 @@ def _joined(letters: dict[str, np.ndarray]) -> np.ndarray:
 def said(capfd):
     """said() -> what Blender has reported so far, as a user reads it in the console."""
     return lambda: capfd.readouterr().out
+
+
+@pytest.fixture
+def switch_to_cycles(scene):
+    """switch_to_cycles(samples, filter_width): the truth from outside."""
+
+    def switch(samples=1, filter_width=1.5):
+        scene.render.engine = "CYCLES"
+        scene.cycles.samples, scene.cycles.use_denoising = samples, False
+        scene.cycles.filter_width = filter_width
+
+    return switch

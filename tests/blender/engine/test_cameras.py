@@ -88,7 +88,7 @@ def assert_in_place(scene, add_surfels, picture):
             pixel = project(scene, to_world @ Vector(place)) * size
             apart = all(np.abs(pixel - other).max() > 4 * RADIUS for other in predicted)
             if apart and (pixel > 2 * RADIUS).all() and (pixel < size - 2 * RADIUS).all():
-                beside = project(scene, to_world @ Vector(place + (1e-2, 1e-2, 0))) * size
+                beside = project(scene, to_world @ Vector(place + 1e-2)) * size
                 places.append(to_world @ Vector(place))
                 predicted.append(pixel)
                 sizes.append(1e-2 * RADIUS / np.abs(beside - pixel).max())

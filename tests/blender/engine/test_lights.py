@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A sheet of surfels answers Blender's lights as Cycles' mesh of the same material does, within 3 %."""
+
+import bpy
+import numpy as np
+import pytest
+
+BASE = (0.8, 0.5, 0.3, 1.0)
+#: name: type, energy, location, rotation, properties of the light's data
+LIGHTS = {
+    "sun from above": ("SUN", 3, (0, 0, 0), (0, 0, 0), {}),
+    "tilted sun": ("SUN", 3, (0, 0, 0), (0.9, 0.3, 0), {}),
+    "coloured sun": ("SUN", 3, (0, 0, 0), (0.3, 0.6, 0), {"color": (1, 0.5, 0.2)}),
+    "sun with exposure": ("SUN", 3, (0, 0, 0), (0.3, 0, 0), {"exposure": 1.5}),
+    "warm sun": ("SUN", 3, (0, 0, 0), (0.3, 0, 0), {"use_temperature": True, "temperature": 3000}),
+    "sun by radiance": ("SUN", 3e4, (0, 0, 0), (0.3, 0, 0), {"normalize": False}),
+    "wide sun by radiance": ("SUN", 3, (0, 0, 0), (0, 0, 0), {"normalize": False, "angle": 1.0}),
+    "near point": ("POINT", 100, (0.5, -0.4, 1), (0, 0, 0), {}),
+    "far point": ("POINT", 5000, (3, 2, 9), (0, 0, 0), {"color": (0.3, 0.6, 1)}),
+    "warm point with exposure": ("POINT", 100, (0, 1, 2), (0, 0, 0), {"use_temperature": True, "exposure": -1}),
+    "point by radiance": ("POINT", 100, (0, 1, 2), (0, 0, 0), {"normalize": False, "shadow_soft_size": 0.2}),
+}
+
+
+@pytest.fixture
+def add_light(scene):
+    """add_light(type, energy, location, rotation, properties) -> an object."""
+
+    def add(kind, energy, location, rotation, properties) -> bpy.types.Object:
+        data = bpy.data.lights.new("light", kind)
+        data.energy = energy
+        for name, value in properties.items():
+            setattr(data, name, value)
+        light = bpy.data.objects.new("light", data)
+        light.location, light.rotation_euler = location, rotation
+        scene.collection.objects.link(light)
+        return light
+
+    return add
+
+
+@pytest.fixture
+def assert_as_cycles(scene, switch_to_cycles, add_camera, add_sheet, picture):
+    """Renders a sheet of a matt material by both engines, and holds the pictures to each other."""
+
+    def check(**sockets):
+        scene.render.resolution_x = scene.render.resolution_y = 16
+        scene.surfel_splatting.shading = "principled"
+        add_camera((0, 0, 4))
+        material = principled(**{"Base Color": BASE, **sockets})
+        sheet = add_sheet(side=8, count=60, colors=BASE)
+        sheet.data.materials.append(material)
+        ours = picture()
+        sheet.hide_render = True
+        bpy.ops.mesh.primitive_plane_add(size=8)
+        bpy.context.object.data.materials.append(material)
+        switch_to_cycles(samples=16)
+        theirs = picture()
+        assert theirs[..., :3].max() > 0.05
+        np.testing.assert_allclose(ours, theirs, rtol=0.03)
+
+    return check
+
+
+def principled(**sockets) -> bpy.types.Material:
+    material = bpy.data.materials.new("material")
+    material.use_nodes = True
+    for name, value in sockets.items():
+        material.node_tree.nodes["Principled BSDF"].inputs[name].default_value = value
+    return material
+
+
+@pytest.mark.parametrize("name", LIGHTS)
+def test_a_light_gives_what_it_gives_in_cycles(name, add_light, assert_as_cycles):
+    add_light(*LIGHTS[name])
+    assert_as_cycles(IOR=1.0)
+
+
+@pytest.mark.parametrize("kind", ["SUN", "POINT"])
+def test_a_light_s_emission_node_scales_it_as_in_cycles(kind, add_light, assert_as_cycles):
+    light = add_light(kind, 20, (0, 1, 2), (0.3, 0, 0), {"use_nodes": True}).data
+    emission = light.node_tree.nodes["Emission"].inputs
+    emission["Strength"].default_value, emission["Color"].default_value = 2.5, (0.9, 0.4, 0.1, 1)
+    assert_as_cycles(IOR=1.0)
+
+
+def test_lights_add_up(scene, add_light, add_camera, add_sheet, picture):
+    scene.surfel_splatting.shading = "principled"
+    add_camera((0, 0, 1))
+    add_sheet()
+    lights = [add_light(*LIGHTS[name]) for name in ("near point", "tilted sun", "far point")]
+    together = picture()
+    alone = []
+    for light in lights:
+        for other in lights:
+            other.hide_render = other != light
+        alone.append(picture()[..., :3])
+    np.testing.assert_allclose(together[..., :3], sum(alone), rtol=1e-5)
+
+
+def test_the_world_lights_the_surface(scene, assert_as_cycles):
+    scene.world = bpy.data.worlds.new("world")
+    scene.world.use_nodes = True
+    background = scene.world.node_tree.nodes["Background"].inputs
+    background["Color"].default_value, background["Strength"].default_value = (0.2, 0.4, 0.6, 1), 1.5
+    assert_as_cycles(IOR=1.0)
+
+
+def test_a_scaled_parent_moves_a_light_but_does_not_dim_it(scene, add_light, assert_as_cycles):
+    parent = bpy.data.objects.new("parent", None)
+    parent.location, parent.rotation_euler, parent.scale = (0, 0, 1), (0.4, 0, 0), (2, 2, 2)
+    scene.collection.objects.link(parent)
+    add_light(*LIGHTS["near point"]).parent = parent
+    add_light(*LIGHTS["tilted sun"]).parent = parent
+    assert_as_cycles(IOR=1.0)
+
+
+def test_a_specular_level_of_0_takes_the_coat_away(add_light, assert_as_cycles):
+    add_light(*LIGHTS["tilted sun"])
+    assert_as_cycles(**{"Specular IOR Level": 0.0})
+
+
+@pytest.mark.parametrize("level", [0.25, 0.5, 1.0])
+def test_a_rough_coat_is_as_bright_as_in_cycles(level, add_light, assert_as_cycles):
+    add_light(*LIGHTS["sun from above"])
+    assert_as_cycles(**{"Specular IOR Level": level, "Roughness": 0.6})
+
+
+def test_a_light_hidden_from_render_gives_nothing(scene, add_light, add_camera, add_sheet, picture):
+    scene.surfel_splatting.shading = "principled"
+    add_camera((0, 0, 1))
+    add_sheet()
+    add_light(*LIGHTS["near point"]).hide_render = True
+    assert picture()[..., :3].max() == 0
+
+
+def test_a_light_of_a_kind_that_gives_nothing_yet_is_named(add_camera, add_light, picture, said):
+    add_camera()
+    add_light("AREA", 10, (0, 0, 1), (0, 0, 0), {})
+    picture()
+    assert "Warning: Lights of type Area give no light yet; use a sun or a point" in said()

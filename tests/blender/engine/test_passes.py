@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Combined, Depth and Normal: as Cycles' passes of the same surface, and exact in a multilayer file."""
+
+import bmesh
+import bpy
+import numpy as np
+import pytest
+from mathutils import Matrix
+
+from splat_addon.rendering import EMPTY_DEPTH, Renderer
+
+
+@pytest.fixture
+def layer(scene):
+    """The view layer, with all three passes."""
+    layer = scene.view_layers[0]
+    layer.use_pass_z = layer.use_pass_normal = True
+    return layer
+
+
+@pytest.fixture
+def frames(monkeypatch):
+    """Every Frame that the renderer has given out."""
+    given, render = [], Renderer.render
+
+    def recorded(self, *arguments, **options):
+        given.append(render(self, *arguments, **options))
+        return given[-1]
+
+    monkeypatch.setattr(Renderer, "render", recorded)
+    return given
+
+
+@pytest.fixture
+def cycles_passes(switch_to_cycles, passes):
+    """Cycles' passes, each pixel seen through its centre."""
+
+    def render() -> dict[str, np.ndarray]:
+        switch_to_cycles(filter_width=0.01)
+        return passes()
+
+    return render
+
+
+def test_depth_on_a_tilted_plane_is_cycles_depth(layer, add_camera, add_sheet, passes, cycles_passes):
+    add_camera((0.5, -0.4, 5), (0.2, 0.1, 0), shift_x=0.1)
+    tilt = Matrix.Translation((0.3, 0.2, 0)) @ Matrix.Rotation(0.8, 4, (1, 2, 0))
+    sheet = add_sheet(side=8, count=60)
+    sheet.matrix_world = tilt
+    ours = passes()["ViewLayer.Depth"]
+    sheet.hide_render = True
+    bpy.ops.mesh.primitive_plane_add(size=8)
+    bpy.context.object.matrix_world = tilt
+    theirs = cycles_passes()["ViewLayer.Depth"]
+    both = (ours < EMPTY_DEPTH) & (theirs < EMPTY_DEPTH)
+    assert both.mean() > 0.6 and np.ptp(theirs[both]) > 1.5
+    np.testing.assert_allclose(ours[both], theirs[both], rtol=1e-3)
+
+
+def test_depth_of_nothing_is_cycles_depth_of_nothing(layer, add_camera, passes, cycles_passes):
+    add_camera()
+    assert np.array_equal(passes()["ViewLayer.Depth"], cycles_passes()["ViewLayer.Depth"])
+
+
+def test_normals_on_a_sphere_are_cycles_normals(layer, add_camera, add_surfels, add_object, passes, cycles_passes):
+    """World space, and from a camera and an object that are both turned: within a degree."""
+    add_camera((0, -6, 0.5), (1.5, 0.1, 0), type="ORTHO", ortho_scale=2.4)
+    turn = Matrix.Rotation(0.7, 4, (1, 2, 3)) @ Matrix.Diagonal((1, 0.8, 0.6, 1))
+    k = np.arange(8000) + 0.5
+    ring, angle = np.sqrt(1 - (1 - k / 4000) ** 2), k * np.pi * (3 - np.sqrt(5))
+    points = np.stack([ring * np.cos(angle), ring * np.sin(angle), 1 - k / 4000], axis=1)
+    surfels = add_surfels(points, points, 0.06)
+    surfels.matrix_world = turn
+    ours = passes()["ViewLayer.Normal"]
+    surfels.hide_render = True
+    add_object(smooth_sphere()).matrix_world = turn
+    theirs = cycles_passes()["ViewLayer.Normal"]
+    inside = np.linalg.norm(theirs, axis=2) * np.linalg.norm(ours, axis=2) > 0.5
+    cosine = (ours * theirs).sum(axis=2)[inside]
+    assert inside.sum() > 250
+    angles = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+    assert np.median(angles) < 0.5 and np.percentile(angles, 95) < 1.5
+
+
+def smooth_sphere() -> bpy.types.Mesh:
+    mesh, build = bpy.data.meshes.new("sphere"), bmesh.new()
+    bmesh.ops.create_icosphere(build, subdivisions=6, radius=1)
+    build.to_mesh(mesh)
+    build.free()
+    mesh.shade_smooth()
+    return mesh
+
+
+def test_the_file_holds_the_frame_bit_for_bit(layer, add_camera, add_sheet, passes, frames):
+    add_camera((1, 0, 3), (0.1, 0.3, 0.2))
+    add_sheet(colors=(0.1, 0.7, 1 / 3, 1))
+    stored = passes()
+    (frame,) = frames
+    assert np.array_equal(stored["ViewLayer.Combined"], frame.color)
+    assert np.array_equal(stored["ViewLayer.Depth"], frame.depth)
+    assert np.array_equal(stored["ViewLayer.Normal"], frame.normal)
+    assert frame.color.any() and np.ptp(frame.depth) > 0 and frame.normal.any()
+
+
+@pytest.mark.parametrize(
+    ("depth", "normal", "names"),
+    [(False, False, {"Combined"}), (True, False, {"Combined", "Depth"}), (False, True, {"Combined", "Normal"})],
+)
+def test_only_passes_that_are_asked_for_are_made(depth, normal, names, scene, add_camera, add_sheet, passes, frames):
+    scene.view_layers[0].use_pass_z, scene.view_layers[0].use_pass_normal = depth, normal
+    add_camera()
+    add_sheet()
+    assert passes().keys() == {f"ViewLayer.{name}" for name in names}
+    assert (frames[0].depth is not None, frames[0].normal is not None) == (depth, normal)
+
+
+def test_every_view_layer_has_its_own_objects_and_passes(scene, layer, add_camera, add_surfels, passes):
+    add_camera()
+    left, right = add_surfels((-2, 0, 0), size=1), add_surfels((2, 0, 0), size=1)
+    second = scene.view_layers.new("Second")
+    second.use_pass_z, second.use_pass_normal = True, False
+    for made, other in ((left, second), (right, layer)):
+        collection = bpy.data.collections.new(made.name)
+        scene.collection.children.link(collection)
+        collection.objects.link(made)
+        scene.collection.objects.unlink(made)
+        other.layer_collection.children[collection.name].exclude = True
+    stored = passes()
+    assert stored.keys() == {"ViewLayer.Combined", "ViewLayer.Depth", "ViewLayer.Normal",
+                             "Second.Combined", "Second.Depth"}  # fmt: skip
+    for name, drawn in (("ViewLayer", np.s_[:, :16]), ("Second", np.s_[:, 16:])):
+        hit = stored[f"{name}.Depth"] < EMPTY_DEPTH
+        assert hit.any() and hit[drawn].sum() == hit.sum()
+        assert np.array_equal(hit, stored[f"{name}.Combined"][..., 3] > 0)
