@@ -29,12 +29,8 @@ def session(request):
     for old in (shot, report):
         old.unlink(missing_ok=True)
     script = Path(__file__).with_name("convert_and_view.py")
-    subprocess.run(
-        [str(WINDOW), str(shot), str(SECONDS), "--factory-startup", "--gpu-backend", request.param, "--python"]
-        + [str(script), "--", str(report)],  # noqa: RUF005 - reads better than stars
-        cwd=ROOT,
-        check=True,
-    )
+    blender_arguments = ["--factory-startup", "--gpu-backend", request.param, "--python", script, "--", report]
+    subprocess.run([WINDOW, shot, str(SECONDS), *blender_arguments], cwd=ROOT, check=True)
     assert report.exists(), "the script inside Blender did not come to its end"
     return json.loads(report.read_text()), np.asarray(Image.open(shot).convert("RGB"), np.float32) / 255
 
