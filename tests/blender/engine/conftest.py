@@ -154,3 +154,30 @@ def switch_to_cycles(scene):
         scene.cycles.filter_width = filter_width
 
     return switch
+
+
+@pytest.fixture
+def add_nodes():
+    """add_nodes(object, build): a Geometry Nodes modifier that build(tree, input socket, output socket) fills."""
+
+    def add(owner: bpy.types.Object, build) -> None:
+        tree = bpy.data.node_groups.new("nodes", "GeometryNodeTree")
+        for direction in ("INPUT", "OUTPUT"):
+            tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+        start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+        build(tree, start.outputs[0], end.inputs[0])
+        owner.modifiers.new("nodes", "NODES").node_group = tree
+
+    return add
+
+
+@pytest.fixture
+def assert_same_picture():
+    """assert_same_picture(a, b, ties): equal within 1e-4, save a counted handful of pixels on a splat's edge."""
+
+    def check(a: np.ndarray, b: np.ndarray, ties: int = 0) -> None:
+        assert a.shape == b.shape and bool(a.any()) and bool(b.any())
+        different = np.count_nonzero(np.abs(a - b).max(axis=2) > 1e-4)
+        assert different <= ties
+
+    return check
