@@ -18,13 +18,13 @@ void main() {
   vec3 axis_v = linear * v_data.xyz;
   vec3 eye = footprint_corner(position, axis_u, axis_v, corner);
   place_depth = vec3(corner, -eye.z);
-  float cosine = outward_cosine(position, axis_u, axis_v, splats.options.w, splats.options.z > 0.5);
+  float cosine = outward_cosine(position, axis_u, axis_v, splats.sides.x, splats.options.z > 0.5);
   color_weight = vec4(texelFetch(surfels, texel + ivec2(3, 0), 0).rgb, cosine < 0.0 ? BACK_WEIGHT : 1.0);
   normal = normalize(mat3(splats.normal_matrix) * octahedral_decode(vec2(position_data.w, u_data.w)));
-  float side = cosine < -GRAZING_COSINE ? -splats.options.w : splats.options.w;
+  float side = cosine < -GRAZING_COSINE ? -splats.sides.x : splats.sides.x;
   if (dot(normal, cross(axis_u, axis_v)) * side < 0.0) normal = -normal;
 #ifdef MATERIAL_TARGET
   material = texelFetch(materials, ivec2(min(int(v_data.w), textureSize(materials, 0).x - 1), 0), 0).xyz;
 #endif
-  gl_Position = splats.projection * vec4(eye, 1.0);
+  gl_Position = cosine < 0.0 && splats.sides.y > 0.5 ? NOWHERE : splats.projection * vec4(eye, 1.0);
 }

@@ -17,7 +17,8 @@ void main() {
   place_depth = vec3(corner, -eye.z);
   bool is_orthographic = splats.options.z > 0.5;
   float offset = splats.options.x * sqrt(max(dot(axis_u, axis_u), dot(axis_v, axis_v)));
-  if (outward_cosine(position, axis_u, axis_v, splats.options.w, is_orthographic) < 0.0) offset *= BACK_EPSILON;
+  bool is_back = outward_cosine(position, axis_u, axis_v, splats.sides.x, is_orthographic) < 0.0;
+  if (is_back) offset *= BACK_EPSILON;
   vec3 away = is_orthographic ? vec3(0.0, 0.0, -1.0) : eye / max(length(eye), 1e-30);
-  gl_Position = splats.projection * vec4(eye + away * offset, 1.0);
+  gl_Position = is_back && splats.sides.y > 0.5 ? NOWHERE : splats.projection * vec4(eye + away * offset, 1.0);
 }

@@ -8,6 +8,7 @@ a model far from the world's origin loses nothing.
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, fields
 from functools import cached_property
 
@@ -39,6 +40,7 @@ class Surfels:
     colors: (N, 4) float32, scene-linear, not premultiplied; alpha is opacity.
     materials: (N,) int32, index into the object's material slots.
     origin: (3,) float64, object units.
+    is_solid: they bound solids, so that from outside no surfel's back is ever seen (`sampling.is_solid`).
 
     Raises ValueError with one sentence for a wrong shape, a non-finite or an out-of-range value;
     `valid_surfels` drops and counts such rows instead.
@@ -51,6 +53,7 @@ class Surfels:
     colors: np.ndarray
     materials: np.ndarray
     origin: np.ndarray = (0.0, 0.0, 0.0)
+    is_solid: bool = False
 
     def __post_init__(self):
         arrays = _shaped({f.name: getattr(self, f.name) for f in fields(self) if f.name in LAYOUT})
@@ -83,6 +86,12 @@ class Surfels:
         x, y, _ = quaternion_axes(self.rotations, 2)
         return x * self.scales[:, :1], y * self.scales[:, 1:]
 
+    def as_solid(self) -> Surfels:
+        """The same surfels, said to be solid; the arrays are shared."""
+        solid = copy(self)
+        object.__setattr__(solid, "is_solid", True)
+        return solid
+
     def geometric_normals(self) -> np.ndarray:
         """(N, 3) float32 unit normals of the ellipses' planes."""
         return quaternion_axes(self.rotations)[2]
@@ -98,7 +107,7 @@ class Surfels:
         return low - margin, high + margin
 
 
-def valid_surfels(origin=(0.0, 0.0, 0.0), **arrays) -> tuple[Surfels, int]:
+def valid_surfels(origin=(0.0, 0.0, 0.0), is_solid=False, **arrays) -> tuple[Surfels, int]:
     """`Surfels` of the usable rows, and how many rows were left out.
 
     arrays: the fields of `Surfels`. Quaternions and normals of any finite, non-zero length are
@@ -113,14 +122,15 @@ def valid_surfels(origin=(0.0, 0.0, 0.0), **arrays) -> tuple[Surfels, int]:
     skipped = int(len(good) - np.count_nonzero(good))
     if skipped:
         arrays = {name: array[good] for name, array in arrays.items()}
-    return Surfels(origin=origin, **arrays), skipped
+    return Surfels(origin=origin, is_solid=is_solid and not skipped, **arrays), skipped
 
 
 def concatenate(parts: list[Surfels]) -> Surfels:
     """One set from several that share an origin."""
     if any((p.origin != parts[0].origin).any() for p in parts):
         raise ValueError("Only surfels with the same origin can be joined; move them to one origin first.")
-    return Surfels(origin=parts[0].origin, **{n: np.concatenate([getattr(p, n) for p in parts]) for n in LAYOUT})
+    joined = {n: np.concatenate([getattr(p, n) for p in parts]) for n in LAYOUT}
+    return Surfels(origin=parts[0].origin, is_solid=all(p.is_solid for p in parts), **joined)
 
 
 def empty_surfels(origin=(0.0, 0.0, 0.0)) -> Surfels:

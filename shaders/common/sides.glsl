@@ -1,4 +1,4 @@
-// References: this project; docs/sides.md shows the picture with and without.
+// References: this project; docs/rendering.md shows pictures with and without.
 // Summary: which side of a splat the viewer sees. A splat's back counts for little where the front of another lies
 //          in its place: behind a silhouette splats stick out by their radius, and would rim it with the light of
 //          the far side. Alone, a back is drawn as any splat. The twin of reference/splats.py.
@@ -6,6 +6,9 @@
 const float BACK_WEIGHT = 1e-3;     // of a back against a front
 const float BACK_EPSILON = 2.0;     // a back is moved away that much further
 const float GRAZING_COSINE = 0.3;   // a back seen this flat is the rim of a front: its normal is left as it is
+
+// Where backs are hidden, every corner of such a splat goes here, beyond the near plane.
+const vec4 NOWHERE = vec4(0.0, 0.0, -2.0, 1.0);
 
 // Cosine between the splat's outward side and the direction to the viewer; orientation is -1 in a mirrored object.
 float outward_cosine(vec3 position, vec3 axis_u, vec3 axis_v, float orientation, bool is_orthographic) {

@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 
 from ..surfels import LAYOUT, Surfels, valid_surfels
-from .ids import POINT_ATTRIBUTES, PointAttribute
+from .ids import POINT_ATTRIBUTES, SOLID, PointAttribute
 
 #: An attribute by either name on a mesh without faces says "these points are surfels".
 MARKS = tuple(POINT_ATTRIBUTES[field].name for field in ("rotations", "scales"))
@@ -37,6 +37,8 @@ def write_surfels(name: str, surfels: Surfels) -> bpy.types.Mesh:
         # "position" is there as soon as there are vertices, and its name is reserved.
         attribute = mesh.attributes.get(layout.name) or mesh.attributes.new(layout.name, layout.data_type, "POINT")
         attribute.data.foreach_set(layout.property, _padded(getattr(surfels, field), layout.columns))
+    if surfels.is_solid:
+        mesh[SOLID] = True
     mesh.update()
     return mesh
 
@@ -54,7 +56,7 @@ def read_surfels(mesh: bpy.types.Mesh) -> tuple[Surfels, int]:
         )
     arrays = {field: _read(mesh, POINT_ATTRIBUTES[field]) for field in LAYOUT}
     arrays["scales"] = arrays["scales"][:, :2]
-    return valid_surfels(**arrays)
+    return valid_surfels(is_solid=bool(mesh.get(SOLID)), **arrays)
 
 
 def _padded(values: np.ndarray, columns: int) -> np.ndarray:

@@ -14,6 +14,7 @@ import bpy
 from mathutils import Matrix
 
 from ..sampling import DEFAULT_SPLAT_SIZE, TriangleMesh, drop_unusable, grid_spacing, predict_count, sample_mesh
+from ..sampling.solid import is_solid
 from ..surfels import Surfels
 from .attributes import write_surfels
 from .mesh_extraction import extract_mesh
@@ -34,9 +35,13 @@ class Choices:
 
 @dataclass(eq=False)
 class Conversion:
-    """One source on its way, and what there is to tell about it."""
+    """One source on its way, and what there is to tell about it.
+
+    whole: as it was read; mesh: without its unusable triangles.
+    """
 
     source: bpy.types.Object
+    whole: TriangleMesh
     mesh: TriangleMesh
     matrix_world: Matrix
     materials: tuple[bpy.types.Material | None, ...]
@@ -67,8 +72,8 @@ def prepare(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, choices: C
     if not total:
         what = "has no faces" if len(extracted.triangles.positions) else "is empty"
         raise ValueError(f"The mesh {what}, so there is no surface to sample; add faces first.")
-    mesh = extracted.triangles if shear is None else transformed(extracted.triangles, shear)
-    mesh, dropped = drop_unusable(mesh)
+    whole = extracted.triangles if shear is None else transformed(extracted.triangles, shear)
+    mesh, dropped = drop_unusable(whole)
     skipped = [f"{count:,} triangle{'s' * (count > 1)} {reason}" for reason, count in dropped.items()]
     if not len(mesh):
         raise ValueError(f"The mesh has no usable faces, only {', '.join(skipped)}; repair it first.")
@@ -78,7 +83,7 @@ def prepare(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, choices: C
         raise ValueError(f"It would become {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
     notes = [f"Skipped {', '.join(skipped)}", *extracted.notes] if skipped else list(extracted.notes)
     seconds = time.perf_counter() - start
-    return Conversion(source, mesh, matrix_world, extracted.materials, choices, spacing, total, notes, seconds)
+    return Conversion(source, whole, mesh, matrix_world, extracted.materials, choices, spacing, total, notes, seconds)
 
 
 def sample(conversion: Conversion, progress: Callable[[float], bool | None] | None = None) -> None:
@@ -87,9 +92,10 @@ def sample(conversion: Conversion, progress: Callable[[float], bool | None] | No
     Raises SamplingCancelled where `progress` returned False, ValueError where nothing was hit.
     """
     start = time.perf_counter()
-    conversion.surfels = sample_mesh(
+    surfels = sample_mesh(
         conversion.mesh, spacing=conversion.spacing, splat_size=conversion.choices.splat_size, progress=progress
     )
+    conversion.surfels = surfels.as_solid() if is_solid(conversion.whole) else surfels
     if not len(conversion.surfels):
         raise ValueError(
             f"The mesh lies between the rays of a grid with spacing {conversion.spacing:.4g}; sample it finer."

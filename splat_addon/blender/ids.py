@@ -19,6 +19,10 @@ SURFELS_FROM_MESH = "object.surfels_from_mesh"
 SIDEBAR_TAB = "Surfels"
 SIDEBAR_PANEL = "VIEW3D_PT_surfels_from_mesh"
 
+#: Custom property of a surfel mesh: true where no back is ever seen from outside (`Surfels.is_solid`). Geometry
+#: Nodes drop it, which is right: what they make may be open.
+SOLID = "surfels_solid"
+
 #: How a picture is rendered: `scene.surfel_splatting`.
 RENDER_SETTINGS = "surfel_splatting"
 

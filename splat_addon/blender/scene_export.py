@@ -107,4 +107,4 @@ def _instance(object_, matrix_world: np.ndarray, store: SurfelStore, notes: Note
 
 
 def _same(a: Surfels, b: Surfels) -> bool:
-    return all(np.array_equal(getattr(a, name), getattr(b, name)) for name in LAYOUT)
+    return a.is_solid == b.is_solid and all(np.array_equal(getattr(a, n), getattr(b, n)) for n in LAYOUT)

@@ -78,7 +78,8 @@ def _instance_splats(instance: Instance, camera: Camera) -> Splats:
     seen = np.where((cosine < -GRAZING_COSINE) == (np.linalg.det(linear) < 0), 1, -1)[:, None] * plane
     normal = _turned(surfels.normals.astype(np.float64) @ _cofactors(linear).T, seen)
     color = surfels.colors[:, :3].astype(np.float64)
-    return Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0)
+    splats = Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0)
+    return splats.take(np.flatnonzero(cosine >= 0)) if instance.hides_backs(camera) else splats
 
 
 def _cofactors(linear: np.ndarray) -> np.ndarray:

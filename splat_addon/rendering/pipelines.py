@@ -7,11 +7,12 @@ from .device.interface import PipelineDescription
 from .plan import FramePlan, PlannedPass
 from .shaders import load
 
-#: options: epsilon, near, 1 for orthographic, -1 for a mirrored object and 1 for others
+#: options: epsilon, near, 1 for orthographic.
+#: sides: -1 for a mirrored object and 1 for others, 1 where backs are hidden.
 _SPLATS = (
     "Splats",
     "splats",
-    (("mat4", "model_view"), ("mat4", "projection"), ("mat4", "normal_matrix"), ("vec4", "options")),
+    (("mat4", "model_view"), ("mat4", "projection"), ("mat4", "normal_matrix"), ("vec4", "options"), ("vec4", "sides")),
 )
 #: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
 #: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights.

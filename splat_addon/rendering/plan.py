@@ -102,6 +102,9 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
             PlannedPass("attributes", "overlapping splats blend", ("visibility_depth",), (*sums,)),
             PlannedPass("shading", f"{settings.shading}, once a sample", (*reads,), (*outputs,)),
         ]
+        solid = sum(instance.hides_backs(camera) for instance in scene.surfels)
+        if solid:
+            left_out.append(("backs of splats", f"{solid} of {len(scene.surfels)} instances are solid"))
         if any((instance.surfels.colors[:, 3] < 1).any() for instance in scene.surfels):
             left_out.append(("transparency", "surfels whose opacity is below 1 are drawn opaque"))
     return FramePlan(

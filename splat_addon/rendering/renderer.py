@@ -157,10 +157,11 @@ class Renderer:
                 data = pack_materials(instance.materials)
                 textures.append(self.device.texture((data.shape[1], 1), "RGBA32F", data))
             orientation = np.sign(np.linalg.det(placed.normal_matrix))
-            options = settings.epsilon, view.near, camera.is_orthographic, orientation
+            options = settings.epsilon, view.near, camera.is_orthographic, 0.0
+            sides = orientation, placed.hides_backs, 0.0, 0.0
             normal_matrix = np.eye(4)
             normal_matrix[:3, :3] = placed.normal_matrix
-            block = _block(placed.model_view, view.projection, normal_matrix, options)
+            block = _block(placed.model_view, view.projection, normal_matrix, options, sides)
             self.device.draw_quads(pipeline, target, len(instance.surfels), block, textures)
 
     def _surfel_texture(self, surfels):

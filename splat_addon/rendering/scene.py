@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..surfels import Surfels
+from .camera import Camera
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,30 @@ class Instance:
         matrix.flags.writeable = False
         object.__setattr__(self, "matrix_world", matrix)
         object.__setattr__(self, "materials", tuple(self.materials) or (Material(),))
+
+    def model_view(self, camera: Camera) -> np.ndarray:
+        """(4, 4) float64, surfel positions (without origin) to the camera's view space.
+
+        The camera is subtracted from the origin before anything else, so that both may be far from the world's.
+        """
+        rotation, linear = camera.matrix_world[:3, :3].T, self.matrix_world[:3, :3]
+        matrix = np.eye(4)
+        matrix[:3, :3] = rotation @ linear
+        matrix[:3, 3] = rotation @ (
+            self.matrix_world[:3, 3] - camera.matrix_world[:3, 3] + linear @ self.surfels.origin
+        )
+        return matrix
+
+    def corners(self, camera: Camera) -> np.ndarray:
+        """(8, 3) float64 corners of a box around every ellipse, in the camera's view space."""
+        low, high = self.surfels.local_bounds
+        pick = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
+        model_view = self.model_view(camera)
+        return np.where(pick, high, low) @ model_view[:3, :3].T + model_view[:3, 3]
+
+    def hides_backs(self, camera: Camera) -> bool:
+        """Whether no back can be seen: solid, and wholly beyond the near plane, so that the camera is outside."""
+        return self.surfels.is_solid and bool((-self.corners(camera)[:, 2] >= camera.near).all())
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,11 +23,13 @@ _MARGIN = 1e-3
 class PlacedInstance:
     """model_view: (4, 4) float64, surfel positions (without origin) to scaled view space.
     normal_matrix: (3, 3) float64, its inverse transpose up to a positive factor.
+    hides_backs: splats that show their back are left out.
     """
 
     instance: Instance
     model_view: np.ndarray
     normal_matrix: np.ndarray
+    hides_backs: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +49,6 @@ class View:
 
 def look(scene: Scene, camera: Camera, epsilon: float) -> View:
     """The scene's instances as this camera sees them. epsilon: how far visibility moves splats back, in radii."""
-    rotation = camera.matrix_world[:3, :3].T
     seen, outside, degenerate = [], 0, 0
     for instance in scene.surfels:
         if not len(instance.surfels):
@@ -56,22 +57,22 @@ def look(scene: Scene, camera: Camera, epsilon: float) -> View:
         if not _invertible(linear):
             degenerate += 1
             continue
-        translation = instance.matrix_world[:3, 3] - camera.matrix_world[:3, 3] + linear @ instance.surfels.origin
-        corners = _corners(*instance.surfels.local_bounds) @ (rotation @ linear).T + rotation @ translation
+        corners = instance.corners(camera)
         if _outside(corners, camera):
             outside += 1
             continue
         pushed = epsilon * float(instance.surfels.scales.max()) * np.linalg.norm(linear, 2)
-        seen.append((instance, rotation @ linear, rotation @ translation, -corners[:, 2], pushed))
+        seen.append((instance, -corners[:, 2], pushed))
 
     near, far = _clip_range(camera, seen)
     scale = _power_of_two_scale(camera, seen, near)
     placed = []
-    for instance, linear, translation, _, _ in seen:
-        model_view = np.eye(4)
-        model_view[:3, :3], model_view[:3, 3] = linear * scale, translation * scale
-        normal_matrix = np.linalg.inv(linear).T
-        placed.append(PlacedInstance(instance, model_view, normal_matrix / np.abs(normal_matrix).max()))
+    for instance, _, _ in seen:
+        model_view = instance.model_view(camera)
+        normal_matrix = np.linalg.inv(model_view[:3, :3]).T
+        normal_matrix /= np.abs(normal_matrix).max()
+        model_view[:3] *= scale
+        placed.append(PlacedInstance(instance, model_view, normal_matrix, instance.hides_backs(camera)))
     return View(
         scale, camera.near * scale, scaled_projection(camera, near, far, scale), tuple(placed), outside, degenerate
     )
@@ -90,11 +91,6 @@ def scaled_projection(camera: Camera, near: float, far: float, scale: float) -> 
 def _invertible(linear: np.ndarray) -> bool:
     size = np.abs(linear).max()
     return bool(size > 0 and abs(np.linalg.det(linear / size)) > 1e-12)
-
-
-def _corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    pick = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
-    return np.where(pick, high, low)
 
 
 def _outside(corners: np.ndarray, camera: Camera) -> bool:
@@ -116,8 +112,8 @@ def _outside(corners: np.ndarray, camera: Camera) -> bool:
 def _clip_range(camera: Camera, seen) -> tuple[float, float]:
     if not seen:
         return camera.near, camera.far
-    nearest = min(float(depths.min()) for _, _, _, depths, _ in seen)
-    farthest = max(float(depths.max()) + pushed for _, _, _, depths, pushed in seen)
+    nearest = min(float(depths.min()) for _, depths, _ in seen)
+    farthest = max(float(depths.max()) + pushed for _, depths, pushed in seen)
     margin = _MARGIN * (farthest - nearest)
     near = max(camera.near, nearest - margin if camera.is_orthographic else nearest * (1 - _MARGIN))
     far = min(camera.far, farthest + margin)
@@ -128,7 +124,7 @@ def _power_of_two_scale(camera: Camera, seen, near: float) -> float:
     """2^-k that brings the median depth, weighted by surfel count, into 0.7 to 1.4."""
     if not seen:
         return 1.0
-    depths = np.array([max(float(np.median(d)), near) for _, _, _, d, _ in seen])
+    depths = np.array([max(float(np.median(d)), near) for _, d, _ in seen])
     if camera.is_orthographic:
         left, right, bottom, top = camera.window
         depths = np.maximum(np.abs(depths), max(right - left, top - bottom))

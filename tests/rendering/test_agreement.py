@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The same scene gives the same picture on every device and backend, and that picture is the true one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,10 +16,19 @@ NORMAL_TOLERANCE = 5e-4
 #: The share of samples in which a splat's rim, or two depths, may tie and fall either way.
 TIES = 1 / 20_000
 SIZE = (256, 256)
+
+
+def solid(scene, camera):
+    """The scene with its instances declared solid."""
+    instances = (replace(i, surfels=i.surfels.as_solid()) for i in scene.surfels)
+    return replace(scene, surfels=tuple(instances)), camera
+
+
 SCENES = {
     "sphere": lambda: scenes.sphere(size=SIZE),
     "checker_plane": lambda: scenes.checker_plane(size=SIZE),
     "torus": lambda: scenes.torus(size=SIZE),
+    "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),
 }
 
 

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The floors of the house: imports never go up, and each foreign module is known in one room only."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = ROOT / "splat_addon"
+FILES = sorted(PACKAGE.rglob("*.py"))
+
+#: room -> the rooms that it may import
+MAY_IMPORT = {
+    "surfels": set(),
+    "sampling": {"surfels"},
+    "rendering": {"surfels"},
+    "interchange": {"surfels"},
+    "reference": {"surfels", "rendering"},
+    "blender": {"surfels", "sampling", "rendering", "interchange"},
+}
+#: `reference` reads rendering's data, never its passes.
+RENDERING_DATA = {"camera", "scene", "settings", "frame"}
+#: foreign module -> where it may be imported
+HOMES = {
+    "bpy": ("blender/",),
+    "mathutils": ("blender/",),
+    "gpu": ("rendering/device/blender_gpu.py", "blender/viewport.py"),
+    "gpu_extras": ("blender/viewport.py",),
+    "moderngl": ("rendering/device/standalone.py",),
+}
+
+
+def imports(file: Path):
+    """(level, dotted name) of every import statement; level 0 is absolute."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from ((0, alias.name) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            names = [node.module] if node.module else [alias.name for alias in node.names]
+            yield from ((node.level, name) for name in names)
+
+
+def resolved(file: Path, level: int, name: str) -> tuple[str, ...]:
+    """Path inside the package of a relative import."""
+    folder = file.relative_to(PACKAGE).parent.parts
+    return (*folder[: len(folder) - (level - 1)], *name.split("."))
+
+
+def room(parts: tuple[str, ...]) -> str:
+    return parts[0].removesuffix(".py")
+
+
+@pytest.mark.parametrize("file", [f for f in FILES if f.parent != PACKAGE or f.name == "surfels.py"], ids=str)
+def test_imports_never_go_up(file):
+    here = room(file.relative_to(PACKAGE).parts)
+    for level, name in imports(file):
+        if level:
+            there = resolved(file, level, name)
+            assert room(there) in MAY_IMPORT[here] | {here}, f"{file.name} imports {'.'.join(there)}"
+            if (here, room(there)) == ("reference", "rendering"):
+                assert there[1] in RENDERING_DATA, f"{file.name} imports {'.'.join(there)}"
+
+
+@pytest.mark.parametrize("file", FILES, ids=str)
+def test_a_foreign_module_is_known_in_its_own_room_only(file):
+    place = file.relative_to(PACKAGE).as_posix()
+    for level, name in imports(file):
+        module = name.split(".")[0]
+        if level == 0 and module in HOMES:
+            assert place.startswith(HOMES[module]), f"{place} imports {module}"
+
+
+def test_every_python_file_says_what_it_is_for():
+    silent = [f.name for f in FILES if not ast.get_docstring(ast.parse(f.read_text(encoding="utf-8")))]
+    assert not silent
+
+
+def test_every_shader_opens_with_references_and_summary():
+    for file in (ROOT / "shaders").rglob("*.glsl"):
+        head = file.read_text(encoding="utf-8").splitlines()
+        assert head[0].startswith("// References: "), file
+        assert any(line.startswith("// Summary: ") for line in head[:8]), file
