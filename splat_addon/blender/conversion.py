@@ -89,17 +89,13 @@ def prepare(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, choices: C
 def sample(conversion: Conversion, progress: Callable[[float], bool | None] | None = None) -> None:
     """Make the surfels; touches nothing of Blender's.
 
-    Raises SamplingCancelled where `progress` returned False, ValueError where nothing was hit.
+    Raises SamplingCancelled where `progress` returned False, ValueError for a choice that sampling cannot meet.
     """
     start = time.perf_counter()
     surfels = sample_mesh(
         conversion.mesh, spacing=conversion.spacing, splat_size=conversion.choices.splat_size, progress=progress
     )
     conversion.surfels = surfels.as_solid() if is_solid(conversion.whole) else surfels
-    if not len(conversion.surfels):
-        raise ValueError(
-            f"The mesh lies between the rays of a grid with spacing {conversion.spacing:.4g}; sample it finer."
-        )
     conversion.seconds += time.perf_counter() - start
 
 

@@ -1,28 +1,34 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sampling: a mesh becomes surfels by exact scan conversion onto a layered depth cube. Numpy only.
 
-Flow: `mesh` -> `cleaning` -> `grid` -> `depth_cube` (`reductions`, `scan_conversion`) -> `attributes` (`ellipses`,
-`colors`, `images`) -> `Surfels`; `sample` puts them in order.
+Flow: `mesh` -> `cleaning` -> `fineness`, `grid` -> `depth_cube` (`reductions`, `scan_conversion`) -> `attributes`
+(`ellipses`, `colors`, `images`) -> `merging` -> `lost_parts`, `part_surfels` -> `Surfels`; `sample` puts them in order.
 """
 
 from .cleaning import drop_unusable
 from .colors import SurfaceColor
-from .grid import grid_spacing
+from .fineness import grid_spacing, predict_count
 from .images import Image
 from .mesh import TriangleMesh
-from .reductions import REDUCTIONS, predict_count, projected_area
-from .sample import DEFAULT_SPLAT_SIZE, SamplingCancelled, sample_mesh
+from .reductions import DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS, projected_area
+from .sample import DEFAULT_SPLAT_SIZE, Sampling, SamplingCancelled, sample_mesh, sample_surface
+from .solid import is_solid
 
 __all__ = [
+    "DEFAULT_GRAZING_ANGLE",
     "DEFAULT_SPLAT_SIZE",
+    "LEAST_GRAZING_ANGLE",
     "REDUCTIONS",
     "Image",
+    "Sampling",
     "SamplingCancelled",
     "SurfaceColor",
     "TriangleMesh",
     "drop_unusable",
     "grid_spacing",
+    "is_solid",
     "predict_count",
     "projected_area",
     "sample_mesh",
+    "sample_surface",
 ]

@@ -37,7 +37,7 @@ class SampleFiller:
         self._mesh, self._coordinates, self._grid = mesh, coordinates, grid
         self._half_size, self._arrays = half_size, arrays
         self._centres = grid.centres()
-        self._palette = Palette(mesh.surfaces)
+        self.palette = Palette(mesh.surfaces)
 
     def fill(self, spans: Spans, axis: int, rows: slice):
         """Writes the samples of these spans of the image along `axis` to `rows` of the arrays."""
@@ -68,7 +68,7 @@ class SampleFiller:
 
     @_quietly
     def _color(self, out: dict, triangles: np.ndarray, triangle: np.ndarray, weights: _SpanWeights, line: _Lines):
-        mesh, palette = self._mesh, self._palette
+        mesh, palette = self._mesh, self.palette
         if mesh.materials is None:
             out["materials"][...] = 0
         else:

@@ -79,7 +79,7 @@ def _repeats_another(positions, triangles):
 
     Sums of 64-bit vertex hashes find the suspects in one sort; only those are compared exactly.
     """
-    keys = _vertex_hashes(positions)
+    keys = vertex_hashes(positions)
     keys = keys[triangles[:, 0]] + keys[triangles[:, 1]] + keys[triangles[:, 2]]
     ordered = np.sort(keys)
     shared = ordered[1:][ordered[1:] == ordered[:-1]]
@@ -97,7 +97,7 @@ def _repeats_another(positions, triangles):
     return bad
 
 
-def _vertex_hashes(positions: np.ndarray) -> np.ndarray:
+def vertex_hashes(positions: np.ndarray) -> np.ndarray:
     """(V,) uint64 that are equal for equal positions; adding 0.0 turns -0.0 into 0.0."""
     keys = np.zeros(len(positions), np.uint64)
     for column in positions.T:

@@ -27,7 +27,8 @@ def depth_cube(
 ) -> tuple[Spans, Spans, Spans]:
     """One `Spans` for the image along each of x, y, z.
 
-    coordinates: (3, V) float64, of the vertices on the grid. triangles: (T, 3). keeps: a reduction.
+    coordinates: (3, V) float64, of the vertices on the grid. triangles: (T, 3).
+    keeps: (3, t) absolute normal components -> the (3, t) images that sample a triangle.
     report: called with the finished share, 0 to 1. The axis is chosen from the snapped corners, whose normal is exact.
     Raises ValueError with one sentence where there would be more samples than `MAX_SAMPLES`.
     """

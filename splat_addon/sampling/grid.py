@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .cleaning import drop_unusable
 from .mesh import TriangleMesh
 
 #: Cells along the longest edge times sub-cells a cell: up to this every step of the scan conversion is exact in
@@ -54,31 +53,6 @@ class Grid:
         return ((np.arange(self.size + 1) + 0.5) * self.spacing).astype(np.float32)
 
 
-def check_fineness(spacing: float | None, resolution: float | None):
-    """Raises ValueError with one sentence unless exactly one of the two is given, finite and above 0."""
-    given = {n: v for n, v in (("spacing", spacing), ("resolution", resolution)) if v is not None}
-    if len(given) != 1:
-        raise ValueError(f"Give either a spacing or a resolution, not {'both' if given else 'neither'}.")
-    for name, value in given.items():
-        if not (math.isfinite(value) and value > 0):
-            raise ValueError(f"The {name} must be a finite number above 0, not {value}.")
-
-
-def grid_spacing(mesh: TriangleMesh, *, spacing: float | None = None, resolution: float | None = None) -> float:
-    """Cell size H, object units: `spacing` itself, or the longest edge of the usable triangles' box / `resolution`.
-
-    Raises ValueError with one sentence for a value that is not above 0, for both or neither, and for a
-    resolution of a mesh without usable triangles.
-    """
-    check_fineness(spacing, resolution)
-    if spacing is not None:
-        return float(spacing)
-    mesh, _ = drop_unusable(mesh)
-    if not len(mesh):
-        raise ValueError("A resolution means nothing for a mesh without usable triangles; give a spacing instead.")
-    return _longest_edge(mesh) / resolution
-
-
 def make_grid(mesh: TriangleMesh, spacing: float) -> Grid:
     """The grid of a usable, non-empty mesh; it starts at the corner of the mesh's box.
 
@@ -86,17 +60,18 @@ def make_grid(mesh: TriangleMesh, spacing: float) -> Grid:
     """
     if not spacing >= MIN_SPACING:
         raise ValueError(f"A spacing of {spacing:g} is below {MIN_SPACING:g}; scale the object up first.")
-    cells = _longest_edge(mesh) / spacing
+    cells = longest_edge(mesh) / spacing
     finest = EXACT_BOUND // MIN_SUBCELLS
     if cells > finest:
         raise ValueError(
             f"The grid would have {cells:,.0f} cells along its longest edge and is exact up to {finest:,}; "
-            f"use a spacing of at least {_longest_edge(mesh) / finest:g}."
+            f"use a spacing of at least {longest_edge(mesh) / finest:g}."
         )
     subcells = 2 ** math.floor(math.log2(min(EXACT_BOUND / max(cells, 1.0), MAX_SUBCELLS)))
     return Grid(mesh.bounds()[0], float(spacing), subcells, math.ceil(cells))
 
 
-def _longest_edge(mesh: TriangleMesh) -> float:
+def longest_edge(mesh: TriangleMesh) -> float:
+    """Of the box around a usable mesh, object units."""
     low, high = mesh.bounds()
     return float((high - low).max())

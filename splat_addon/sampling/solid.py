@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from .connectivity import part_labels, welded
 from .mesh import TriangleMesh
-
-_MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
 
 
 def is_solid(mesh: TriangleMesh) -> bool:
@@ -23,18 +22,8 @@ def is_solid(mesh: TriangleMesh) -> bool:
     """
     if not len(mesh) or not np.isfinite(mesh.positions).all():
         return False
-    corners = _welded(mesh.positions)[mesh.triangles]
+    corners = welded(mesh.positions)[mesh.triangles]
     return _is_closed(corners) and bool((_part_volumes(mesh, corners) > 0).all())
-
-
-def _welded(positions: np.ndarray) -> np.ndarray:
-    """(V,) int64 numbers that vertices at the same place share; -0.0 is 0.0."""
-    mixed = np.zeros(len(positions), np.uint64)
-    for column, factor in zip(positions.T, _MIX, strict=True):
-        bits = np.ascontiguousarray(column + 0.0).view(np.uint64)
-        mixed = (mixed ^ bits) * factor
-        mixed ^= mixed >> np.uint64(29)
-    return np.unique(mixed, return_inverse=True)[1].reshape(-1)
 
 
 def _is_closed(corners: np.ndarray) -> bool:
@@ -61,26 +50,5 @@ def _part_volumes(mesh: TriangleMesh, corners: np.ndarray) -> np.ndarray:
     points = (mesh.positions - (low + high) / 2) / scale
     a, b, c = (points[mesh.triangles[:, k]] for k in range(3))
     volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
-    parts = np.unique(_part_labels(corners)[corners[:, 0]], return_inverse=True)[1].reshape(-1)
+    parts = np.unique(part_labels(corners)[corners[:, 0]], return_inverse=True)[1].reshape(-1)
     return np.bincount(parts, volumes)
-
-
-def _part_labels(corners: np.ndarray) -> np.ndarray:
-    """(count,) a number for each welded vertex that those connected by triangles share.
-
-    Every round hooks each triangle's roots onto their smallest and halves the paths (Shiloach & Vishkin 1982).
-    """
-    labels = np.arange(int(corners.max()) + 1)
-    while len(corners):
-        roots = labels[corners]
-        lowest = roots.min(axis=1)
-        for k in range(3):
-            np.minimum.at(labels, roots[:, k], lowest)
-        while True:
-            shorter = labels[labels]
-            if np.array_equal(shorter, labels):
-                break
-            labels = shorter
-        roots = labels[corners]
-        corners = corners[(roots[:, 0] != roots[:, 1]) | (roots[:, 0] != roots[:, 2])]
-    return labels

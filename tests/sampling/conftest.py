@@ -6,10 +6,9 @@ import gzip
 import numpy as np
 import pytest
 
-from splat_addon.sampling import TriangleMesh, drop_unusable
+from splat_addon.sampling import TriangleMesh, drop_unusable, grid_spacing
 from splat_addon.sampling.depth_cube import depth_cube
-from splat_addon.sampling.grid import grid_spacing, make_grid
-from splat_addon.sampling.reductions import REDUCTIONS
+from splat_addon.sampling.grid import make_grid
 from splat_addon.sampling.scan_conversion import expand
 
 
@@ -69,7 +68,7 @@ def rays():
         mesh, _ = drop_unusable(mesh)
         grid = make_grid(mesh, grid_spacing(mesh, resolution=resolution))
         coordinates = grid.coordinates(mesh.positions)
-        images = depth_cube(coordinates, mesh.triangles, grid, REDUCTIONS["none"], lambda share: None)
+        images = depth_cube(coordinates, mesh.triangles, grid, lambda normals: normals > 0, lambda share: None)
         hits = []
         for spans in images:
             owner, step = expand(spans.counts)

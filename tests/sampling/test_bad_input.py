@@ -92,10 +92,6 @@ def test_a_mesh_of_bad_triangles_alone_gives_no_surfels(triangle):
     assert len(sample_mesh(triangle((0, 0, 0), (1, 1, 1), (2, 2, 2)), resolution=8)) == 0
 
 
-def test_a_mesh_between_the_rays_gives_no_surfels(triangle):
-    assert len(sample_mesh(triangle((0, 0, 0), (1, 0, 0), (0, 1, 0)), spacing=1000)) == 0
-
-
 def test_a_single_triangle_is_sampled(triangle):
     assert len(sample_mesh(triangle((0, 0, 0), (1, 0, 0), (0, 1, 0)), resolution=10)) in (45, 55)
 
@@ -108,12 +104,13 @@ def test_one_vertex_far_off_leaves_few_samples_and_no_error(cube):
 @pytest.mark.parametrize(
     "fineness, sentence",
     [
-        ({}, "not neither"),
-        ({"spacing": 0.1, "resolution": 8}, "not both"),
+        ({}, "not none of them"),
+        ({"spacing": 0.1, "resolution": 8}, "not spacing and resolution"),
         ({"spacing": 0}, "spacing must be a finite number above 0, not 0"),
         ({"spacing": -1.0}, "spacing must be a finite number above 0, not -1.0"),
         ({"resolution": 0}, "resolution must be a finite number above 0, not 0"),
         ({"resolution": float("nan")}, "resolution must be a finite number above 0, not nan"),
+        ({"count": -5}, "count must be a finite number above 0, not -5"),
         ({"spacing": float("inf")}, "spacing must be a finite number above 0, not inf"),
         ({"spacing": 1e-9}, "exact up to 524,288"),
         ({"resolution": 600_000}, "exact up to 524,288"),
@@ -124,14 +121,25 @@ def test_an_unusable_fineness_is_refused_in_a_sentence(cube, fineness, sentence)
         sample_mesh(cube(), **fineness)
 
 
-def test_a_resolution_of_an_empty_mesh_is_refused_in_a_sentence():
-    with pytest.raises(ValueError, match="give a spacing instead"):
-        grid_spacing(EMPTY, resolution=8)
+@pytest.mark.parametrize("what", ["resolution", "count"])
+def test_what_an_empty_mesh_cannot_mean_is_refused_in_a_sentence(what):
+    with pytest.raises(ValueError, match=f"A {what} means nothing .*; give a spacing instead"):
+        grid_spacing(EMPTY, **{what: 8})
 
 
-@pytest.mark.parametrize("option", [{"reduction": "best"}, {"splat_size": 0}, {"splat_size": float("nan")}])
+@pytest.mark.parametrize(
+    "option",
+    [
+        {"reduction": "best"},
+        {"splat_size": 0},
+        {"splat_size": float("nan")},
+        {"grazing_angle": 0.9},
+        {"grazing_angle": 1.6},
+        {"grazing_angle": float("nan")},
+    ],
+)
 def test_an_unusable_option_is_refused_in_a_sentence(cube, option):
-    with pytest.raises(ValueError, match=r"must be .*, not .*\."):
+    with pytest.raises(ValueError, match=r"must .*, not .*\."):
         sample_mesh(cube(), resolution=8, **option)
 
 

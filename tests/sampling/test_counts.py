@@ -2,13 +2,15 @@
 """How many surfels there are, against closed forms and against the prediction."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 
-from splat_addon.sampling import REDUCTIONS, TriangleMesh, predict_count, projected_area, sample_mesh
+from splat_addon.sampling import TriangleMesh, predict_count, projected_area, sample_mesh
 from splat_addon.sampling.depth_cube import depth_cube
 from splat_addon.sampling.grid import Grid
+from splat_addon.sampling.reductions import keep_dominant
 
 
 @pytest.mark.parametrize("shift", [0, 0.25, 0.5])
@@ -17,7 +19,8 @@ def test_each_face_of_a_cube_gets_one_sample_a_cell_wherever_the_grid_starts(cub
     mesh = cube()
     grid = Grid(np.full(3, -shift / 32), 1 / 32, subcells=1024, size=33)
     coordinates = grid.coordinates(mesh.positions)
-    images = depth_cube(coordinates, mesh.triangles, grid, REDUCTIONS["normal"], lambda share: None)
+    keeps = partial(keep_dominant, grazing_angle=0)
+    images = depth_cube(coordinates, mesh.triangles, grid, keeps, lambda share: None)
     assert [spans.counts.sum() for spans in images] == [2 * 32**2] * 3
 
 
@@ -29,12 +32,6 @@ def test_a_sphere_has_the_count_of_the_closed_form(sphere):
     """Each of six patches projects to {2 x^2 + y^2 <= 1, x^2 + 2 y^2 <= 1}, area 2 sqrt(2) atan(1 / sqrt(2))."""
     expected = 6 * 2 * math.sqrt(2) * math.atan(1 / math.sqrt(2)) * 64**2
     assert len(sample_mesh(sphere, resolution=128)) == pytest.approx(expected, rel=2e-3)
-
-
-@pytest.mark.parametrize("reduction", ["normal", "none"])
-def test_the_count_of_a_sphere_is_predicted_within_a_percent(sphere, reduction):
-    count = len(sample_mesh(sphere, resolution=100, reduction=reduction))
-    assert predict_count(sphere, resolution=100, reduction=reduction) == pytest.approx(count, rel=0.01)
 
 
 @pytest.mark.parametrize("reduction", ["normal", "none"])
@@ -61,3 +58,11 @@ def test_a_resolution_of_8192_stays_exact(cube):
     strip = cube()
     strip = TriangleMesh(strip.positions * (1, 8 / 8192, 8 / 8192), strip.triangles)
     assert len(sample_mesh(strip, resolution=8192)) == 4 * 8192 * 8 + 2 * 8 * 8
+
+
+def test_a_wanted_count_is_met_within_a_percent(armadillo):
+    assert len(sample_mesh(armadillo, count=20_000)) == pytest.approx(20_000, rel=0.01)
+
+
+def test_a_wanted_count_is_of_what_the_reduction_leaves(sphere):
+    assert len(sample_mesh(sphere, count=20_000, reduction="none")) == pytest.approx(20_000, rel=0.01)

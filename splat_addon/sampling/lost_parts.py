@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Finds the connected parts of a mesh that lie between all rays: bolts, wires, dust smaller than a cell.
+
+Cheap where nothing is lost: only triangles without a sample are looked at, and the sampled surface grows over nearly
+all of them in a few steps. Only what it does not reach is welded and labelled.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .cleaning import vertex_hashes
+from .connectivity import part_labels
+from .mesh import TriangleMesh
+
+#: The sampled surface stops growing when a step takes less than this share of what is left; labels do the rest.
+_WORTHWHILE_SHARE = 0.1
+
+
+def lost_parts(mesh: TriangleMesh, is_sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The triangles of all parts without a sample, and the part of each, numbered from 0: two (m,) intp arrays.
+
+    is_sampled: (T,) bool. Triangles that share the position of a corner are one part.
+    """
+    reached = np.zeros(len(mesh.positions), bool)
+    reached[mesh.triangles.take(np.flatnonzero(is_sampled), axis=0).ravel()] = True
+    rest = np.flatnonzero(~is_sampled)
+    corners, rest = _unreached(mesh.triangles.take(rest, axis=0), rest, reached)
+    if len(rest):
+        corners, reached = _welded(mesh.positions, corners, reached)
+        corners, rest = _unreached(corners, rest, reached)
+    if not len(rest):
+        return rest, rest
+    labels = part_labels(corners)
+    is_found = np.zeros(len(reached), bool)
+    is_found[labels[np.flatnonzero(reached[: len(labels)])]] = True
+    part = labels[corners[:, 0]]
+    lost = ~is_found[part]
+    return rest[lost], np.unique(part[lost], return_inverse=True)[1].reshape(-1)
+
+
+def _welded(positions: np.ndarray, corners: np.ndarray, reached: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(m, 3) corners that name places instead of vertices, and the (p,) places where a reached vertex is."""
+    keys = vertex_hashes(positions)
+    places, named = np.unique(keys[corners], return_inverse=True)
+    others = keys[reached]
+    place = np.minimum(np.searchsorted(places, others), len(places) - 1)
+    is_reached = np.zeros(len(places), bool)
+    is_reached[place[places[place] == others]] = True
+    return named.reshape(-1, 3), is_reached
+
+
+def _unreached(corners: np.ndarray, rest: np.ndarray, reached: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What the reached vertices, (V,) bool, do not grow over of (m, 3) corners and their (m,) triangles."""
+    while len(rest) and not reached.all():
+        a, b, c = reached.take(corners).T
+        touched = a | b | c
+        left = np.flatnonzero(~touched)
+        reached[corners.compress(touched, axis=0).ravel()] = True
+        before, corners, rest = len(rest), corners.take(left, axis=0), rest.take(left)
+        if before - len(rest) < _WORTHWHILE_SHARE * before:
+            return corners, rest
+    return (corners, rest) if not reached.all() else (corners[:0], rest[:0])
