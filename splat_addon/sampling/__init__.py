@@ -3,9 +3,11 @@
 
 Flow: `mesh` -> `cleaning` -> `fineness`, `grid` -> `depth_cube` (`reductions`, `scan_conversion`) -> `attributes`
 (`ellipses`, `colors`, `images`) -> `merging` -> `lost_parts`, `part_surfels` -> `Surfels`; `sample` puts them in order.
+`closest_approach` says how fine a camera needs it.
 """
 
 from .cleaning import drop_unusable
+from .closest_approach import Outline, camera_spacing, outline
 from .colors import SurfaceColor
 from .fineness import grid_spacing, predict_count
 from .images import Image
@@ -20,13 +22,16 @@ __all__ = [
     "LEAST_GRAZING_ANGLE",
     "REDUCTIONS",
     "Image",
+    "Outline",
     "Sampling",
     "SamplingCancelled",
     "SurfaceColor",
     "TriangleMesh",
+    "camera_spacing",
     "drop_unusable",
     "grid_spacing",
     "is_solid",
+    "outline",
     "predict_count",
     "projected_area",
     "sample_mesh",

@@ -58,6 +58,7 @@ class Reduction:
         that sample a triangle.
     counts: the same, for the images whose samples count in the end, where a merge makes them fewer.
     merge: from the arrays of `Surfels` by field and the spacing to those that stay, or None.
+    has_angle: whether the grazing angle makes a difference.
     """
 
     label: str
@@ -65,6 +66,7 @@ class Reduction:
     keeps: Callable[[np.ndarray, float], np.ndarray]
     counts: Callable[[np.ndarray, float], np.ndarray]
     merge: Callable[[dict[str, np.ndarray], float], dict[str, np.ndarray]] | None = None
+    has_angle: bool = False
 
 
 REDUCTIONS: dict[str, Reduction] = {
@@ -79,6 +81,7 @@ REDUCTIONS: dict[str, Reduction] = {
         "Sample along all three axes, but not where the surface is seen at a grazing angle (Zwicker's reduction)",
         keeps=keep_facing,
         counts=keep_facing,
+        has_angle=True,
     ),
     # A plane passes within half a cell of A max|n| / H^2 lattice nodes: the count of the dominant images.
     "three_to_one": Reduction(
