@@ -19,7 +19,7 @@ from environment import Problem
 
 #: Cells along the longest side of each object in the model.
 RESOLUTIONS = 2, 8192
-DEFAULT_RESOLUTION = 384
+DEFAULT_RESOLUTION = 640
 #: Pixels along a side of the picture; Blender's own limits.
 PIXELS = 4, 65536
 DEFAULT_SIZE = "1280x960"
