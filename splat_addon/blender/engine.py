@@ -35,4 +35,14 @@ class SurfelSplattingEngine(bpy.types.RenderEngine):
         viewport.guarded(self, viewport.draw, context, depsgraph)
 
 
-register, unregister = bpy.utils.register_classes_factory((SurfelSplattingEngine,))
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((SurfelSplattingEngine,))
+
+
+def register():
+    _register_classes()
+    final_render.register()
+
+
+def unregister():
+    final_render.unregister()
+    _unregister_classes()

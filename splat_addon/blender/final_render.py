@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
+from bpy.app.handlers import persistent
 
 from ..rendering import Frame, RenderCancelled, Renderer, open_device
 from .camera_export import final_camera
@@ -56,10 +57,9 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
             engine.report({"WARNING"}, sentence)
         frame = resources.renderer.render(scene, camera, settings, progress=lambda *step: _progress(engine, *step))
     except RenderCancelled:
-        _release_resources()
         return
     finally:
-        if _is_last_frame(engine, depsgraph.scene):
+        if _RELEASED_IN_RENDER and _is_last_frame(engine, depsgraph.scene):
             _release_resources()
     last_frame_stats.clear()
     last_frame_stats.update(frame.stats, notes=notes.sentences())
@@ -75,23 +75,26 @@ def _read(depsgraph, store: SurfelStore):
 
 
 def report_failure(engine: bpy.types.RenderEngine, error: Exception) -> None:
-    """Tell Blender, which then writes no file and exits with 1 in background mode."""
+    """Tell Blender, which then writes no file, renders no further frame and exits with 1 in background mode."""
+    _release_resources()
     if not isinstance(error, ValueError | RuntimeError):
         traceback.print_exc()
     engine.report({"ERROR"}, f"Surfel render failed: {error}")
 
 
 class _Resources:
-    """What the frames of an animation share.
+    """What the frames and view layers of one render share, until Blender says that it has ended.
 
-    It belongs to this module, not to the engine's instance: Blender frees that without a graphics context, and
-    4.5 aborts when textures go then. `render` lets go of it while there is one, after a still or the last frame.
+    It belongs to this module and not to the engine's instance, which Blender frees without a graphics context.
     """
 
     def __init__(self):
         self.store = SurfelStore()
         self.renderer = Renderer(open_device("blender"))
 
+
+#: Blender 4.5 aborts where textures go without a graphics context, and has one only while render() runs.
+_RELEASED_IN_RENDER = bpy.app.version < (5, 0, 0)
 
 _resources: _Resources | None = None
 
@@ -111,6 +114,25 @@ def _release_resources() -> None:
 
 def _is_last_frame(engine, scene) -> bool:
     return not engine.is_animation or scene.frame_current + scene.frame_step > scene.frame_end
+
+
+@persistent
+def _on_render_end(*_) -> None:
+    if not _RELEASED_IN_RENDER:
+        _release_resources()
+
+
+_END_HANDLERS = (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel)
+
+
+def register():
+    for handlers in _END_HANDLERS:
+        handlers.append(_on_render_end)
+
+
+def unregister():
+    for handlers in _END_HANDLERS:
+        handlers.remove(_on_render_end)
 
 
 def _asked_for(view_layer) -> list[RenderPass]:

@@ -93,20 +93,25 @@ def add_sheet(add_surfels):
 
 
 @pytest.fixture
-def picture(scene):
-    """picture() -> (h, w, 4) float32 as the file has it, row 0 at the bottom."""
+def read_picture():
+    """read_picture(path) -> (h, w, 4) float32 of a file with one picture, row 0 at the bottom."""
+
+    def read(path) -> np.ndarray:
+        (only,) = read_passes(path).values()
+        return only
+
+    return read
+
+
+@pytest.fixture
+def picture(scene, read_picture):
+    """picture() -> (h, w, 4) float32: a still, as its file has it."""
 
     def render() -> np.ndarray:
         bpy.ops.render.render(write_still=True)
         return read_picture(scene.render.filepath)
 
     return render
-
-
-def read_picture(path) -> np.ndarray:
-    """(h, w, 4) float32 of a file with one picture, row 0 at the bottom."""
-    (part,) = read_passes(path).values()
-    return part
 
 
 @pytest.fixture
