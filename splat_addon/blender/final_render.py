@@ -53,18 +53,22 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
     resources = _acquire_resources()
     try:
         scene, notes = _read(depsgraph, resources.store)
-        for sentence in notes.sentences():
-            engine.report({"WARNING"}, sentence)
         frame = resources.renderer.render(scene, camera, settings, progress=lambda *step: _progress(engine, *step))
     except RenderCancelled:
         return
     finally:
         if _RELEASED_IN_RENDER and _is_last_frame(engine, depsgraph.scene):
             _release_resources()
+    notes.add(_FLATTENED, frame.stats["instances_degenerate"])
+    for sentence in notes.sentences():
+        engine.report({"WARNING"}, sentence)
     last_frame_stats.clear()
     last_frame_stats.update(frame.stats, notes=notes.sentences())
     engine.update_stats("", f"{frame.stats['splats']:,} splats in {frame.stats['milliseconds']:.0f} ms")
     _hand_over(engine, depsgraph.view_layer, camera.size, passes, frame)
+
+
+_FLATTENED = "Surfel objects with a scale of 0 on some axis are left out; give every axis a scale"
 
 
 def _read(depsgraph, store: SurfelStore):

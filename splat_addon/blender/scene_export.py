@@ -23,7 +23,8 @@ class Notes:
     counts: Counter = field(default_factory=Counter)
 
     def add(self, sentence: str, count: int = 1) -> None:
-        self.counts[sentence] += count
+        if count:
+            self.counts[sentence] += count
 
     def sentences(self) -> list[str]:
         """One sentence each, with its count where it happened more than once."""
@@ -80,7 +81,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore) -> tuple[Sc
         try:
             if object_.type == "LIGHT":
                 lights.append(light_of(object_.data, matrix, notes))
-            elif object_.type == "MESH" and len(object_.data.vertices):
+            elif object_.type == "MESH":
                 surfels.append(_instance(object_, matrix, store, notes))
             elif object_.type in _NOT_DRAWN:
                 notes.add(f"Objects of type {_NOT_DRAWN[object_.type]} are not drawn; convert them to meshes first")
@@ -96,11 +97,17 @@ _NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "v
 
 def _instance(object_, matrix_world: np.ndarray, store: SurfelStore, notes: Notes) -> Instance | None:
     """None for a mesh without surfels. Raises ValueError for broken attributes or an unusable matrix."""
-    mesh = object_.data
-    if not has_surfels(mesh):
-        notes.add("Meshes without surfels are not drawn; convert them with Object > Convert to Surfels")
-        return None
-    surfels, skipped = store.get(mesh)
+    # the evaluated mesh of an object in edit mode is empty
+    mesh = object_.to_mesh() if object_.data.is_editmode else object_.data
+    try:
+        if not len(mesh.vertices):
+            return None
+        if not has_surfels(mesh):
+            notes.add("Meshes without surfels are not drawn; convert them with Object > Convert to Surfels")
+            return None
+        surfels, skipped = store.get(mesh)
+    finally:
+        object_.to_mesh_clear()
     if skipped:
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
     return Instance(surfels, matrix_world, tuple(shading_material(s.material, notes) for s in object_.material_slots))

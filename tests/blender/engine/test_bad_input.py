@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bad input: a sentence that names it, nothing crashes, what was skipped is counted, and the rest is rendered."""
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender.attributes import write_surfels
+from splat_addon.surfels import empty_surfels
+
+NAN, INFINITE = float("nan"), float("inf")
+
+
+@pytest.fixture
+def good(add_camera, add_surfels):
+    """A disc in the middle of the picture, whose pixel (16, 16) is green."""
+    add_camera()
+    return add_surfels([(0, 0, 0)], size=1, colors=(0, 1, 0, 1), name="good")
+
+
+@pytest.fixture
+def assert_good_is_drawn(good, picture):
+    """... as if nothing else were there."""
+
+    def check():
+        drawn = picture()
+        others = [made for made in bpy.data.objects if made.type in {"MESH", "LIGHT"} and made != good]
+        for other in others:
+            other.hide_render = True
+        assert np.array_equal(drawn[16, 16], (0, 1, 0, 1))
+        assert np.array_equal(drawn, picture())
+
+    return check
+
+
+def test_a_scene_without_a_camera_is_refused(scene, add_surfels):
+    add_surfels([(0, 0, 0)])
+    with pytest.raises(RuntimeError, match="no camera"):
+        bpy.ops.render.render(write_still=True)
+
+
+def test_a_panoramic_camera_is_refused(scene, add_camera):
+    add_camera(type="PANO")
+    with pytest.raises(RuntimeError, match="The camera 'camera' is PANO; make it perspective or orthographic"):
+        bpy.ops.render.render(write_still=True)
+
+
+def test_clip_distances_in_the_wrong_order_are_refused(scene, add_camera):
+    add_camera(clip_start=10, clip_end=5)
+    with pytest.raises(RuntimeError, match=r"0 < near < far, not near 10\.0, far 5\.0"):
+        bpy.ops.render.render(write_still=True)
+
+
+def test_a_camera_without_extent_is_refused(scene, add_camera):
+    add_camera().scale = (1, 0, 1)
+    with pytest.raises(RuntimeError, match=r"[Ss]et the camera's scale to 1"):
+        bpy.ops.render.render(write_still=True)
+
+
+def test_after_a_refusal_the_next_render_works(good, scene, picture):
+    scene.camera.data.type = "PANO"
+    with pytest.raises(RuntimeError):
+        picture()
+    scene.camera.data.type = "PERSP"
+    assert picture().any()
+
+
+@pytest.mark.parametrize("name", ["rotation", "scale", "normal", "Col", "material"])
+def test_an_object_that_lost_an_attribute_is_named_and_left_out(name, add_surfels, assert_good_is_drawn, said):
+    torn = add_surfels([(0, 0, 1)], name="torn")
+    torn.data.attributes.remove(torn.data.attributes[name])
+    assert_good_is_drawn()
+    assert f"Warning: torn is left out: The surfel mesh 'torn' has no attribute '{name}'" in said()
+
+
+def test_an_attribute_of_the_wrong_type_is_named_and_its_object_left_out(add_surfels, assert_good_is_drawn, said):
+    wrong = add_surfels([(0, 0, 1)], name="wrong")
+    wrong.data.attributes.remove(wrong.data.attributes["scale"])
+    wrong.data.attributes.new("scale", "FLOAT", "POINT")
+    assert_good_is_drawn()
+    assert "The attribute 'scale' of the surfel mesh 'wrong' is FLOAT on POINT; convert it to FLOAT_VECTOR" in said()
+
+
+@pytest.mark.parametrize(
+    ("name", "field", "values"),
+    [
+        ("position", "vector", (NAN, 0, 0)),
+        ("position", "vector", (0, INFINITE, 0)),
+        ("rotation", "value", (0, 0, 0, 0)),
+        ("rotation", "value", (NAN, 0, 0, 1)),
+        ("scale", "vector", (0, 1, 0)),
+        ("scale", "vector", (1, -1, 0)),
+        ("scale", "vector", (INFINITE, 1, 0)),
+        ("normal", "vector", (0, 0, 0)),
+        ("normal", "vector", (0, NAN, 0)),
+        ("Col", "color", (0, NAN, 0, 1)),
+        ("material", "value", -1),
+    ],
+)
+def test_unusable_rows_are_counted_and_left_out(name, field, values, add_surfels, assert_good_is_drawn, said):
+    damaged = add_surfels([(0, 0, 1), (0, 0, 2)], size=2, name="damaged")
+    # not assigned one by one, which would make an infinite number a merely huge one
+    kind = np.int32 if name == "material" else np.float32
+    damaged.data.attributes[name].data.foreach_set(field, np.tile(values, 2).astype(kind))
+    assert_good_is_drawn()
+    assert "Warning: damaged: 2 surfels with unusable values are left out" in said()
+
+
+def test_a_good_row_among_unusable_ones_is_drawn(add_camera, add_surfels, picture, said):
+    add_camera()
+    mixed = add_surfels([(0, 0, 0), (1, 0, 1), (0, 1, 1)], size=1, colors=(0, 1, 0, 1), name="mixed")
+    for row in (1, 2):
+        mixed.data.attributes["scale"].data[row].vector = (NAN, 1, 0)
+    drawn = picture()
+    assert np.array_equal(drawn[16, 16], (0, 1, 0, 1)) and not drawn[:, 20:].any()
+    assert "mixed: 2 surfels with unusable values" in said()
+
+
+@pytest.mark.parametrize("scale", [(0, 0, 0), (1, 1, 0)])
+def test_flattened_objects_are_counted_and_left_out(scale, add_surfels, assert_good_is_drawn, said):
+    for x in (0, 0.1):
+        add_surfels([(x, 0, 1)], size=2).scale = scale
+    assert_good_is_drawn()
+    assert "Surfel objects with a scale of 0 on some axis are left out; give every axis a scale (2 times)" in said()
+
+
+def test_an_object_at_an_unusable_place_is_named_and_left_out(add_surfels, assert_good_is_drawn, said):
+    add_surfels([(0, 0, 1)], size=2, name="lost").location.x = NAN
+    assert_good_is_drawn()
+    assert "Warning: lost is left out: An instance's matrix_world must be 4 x 4 finite numbers" in said()
+
+
+@pytest.mark.parametrize("size", [1e20, 1e30, 3e38])
+def test_huge_coordinates_beside_usable_ones_do_no_harm(size, good, add_surfels, picture, assert_same_picture):
+    """In the same object, so that the bounds reach from one end of float32 to the other."""
+    alone = picture()
+    good.hide_render = True
+    signs = np.stack(np.meshgrid(*[(-1, 1)] * 3), axis=-1).reshape(-1, 3)
+    add_surfels(np.concatenate([[(0, 0, 0)], size * signs]), size=1, colors=(0, 1, 0, 1))
+    assert_same_picture(alone, picture())
+
+
+@pytest.mark.parametrize("size", [1e20, 1e30])
+@pytest.mark.parametrize("axis", [0, 2])
+def test_a_huge_object_beside_usable_ones_does_no_harm(size, axis, add_surfels, assert_good_is_drawn):
+    add_surfels([(0, 0, 1)], size=0.1).location[axis] = -size
+    assert_good_is_drawn()
+
+
+def test_a_huge_surfel_behind_usable_ones_fills_the_picture(good, add_surfels, picture):
+    add_surfels([(0, 0, -5)], size=1e15, colors=(1, 0, 0, 1))
+    drawn = picture()
+    assert np.allclose(drawn[16, 16], (0, 1, 0, 1)) and np.allclose(drawn[2, 2], (1, 0, 0, 1), atol=1e-4)
+
+
+def test_no_surfels_at_all_are_no_mishap(good, add_object, assert_good_is_drawn, said):
+    add_object(write_surfels("none", empty_surfels()))
+    assert_good_is_drawn()
+    assert "Warning" not in said()
+
+
+def test_meshes_without_surfels_are_counted(good, assert_good_is_drawn, said):
+    for x in (-5, 5):
+        bpy.ops.mesh.primitive_cube_add(location=(x, 0, 1))
+    assert_good_is_drawn()
+    assert (
+        "Warning: Meshes without surfels are not drawn; convert them with Object > Convert to Surfels (2 times)"
+        in said()
+    )
+
+
+def test_point_clouds_are_said_to_be_left_out(good, add_surfels, add_nodes, picture, said):
+    def to_points(tree, start, end):
+        convert = tree.nodes.new("GeometryNodeMeshToPoints")
+        tree.links.new(start, convert.inputs[0])
+        tree.links.new(convert.outputs[0], end)
+
+    add_nodes(add_surfels([(0, 0, 1)]), to_points)
+    assert np.array_equal(picture()[16, 16], (0, 1, 0, 1))
+    assert "Objects of type point cloud are not drawn; convert them to meshes first" in said()
+
+
+@pytest.mark.parametrize("modifier", [None, "SMOOTH"])
+def test_surfels_in_edit_mode_are_drawn(modifier, good, add_surfels, picture):
+    edited = add_surfels([(2, 0, 0)], size=1, name="edited")
+    if modifier:
+        edited.modifiers.new("modifier", modifier).show_in_editmode = True
+    apart = picture()
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert np.array_equal(picture(), apart)
+
+
+def test_a_mesh_in_edit_mode_is_no_mishap(assert_good_is_drawn):
+    bpy.ops.mesh.primitive_cube_add(location=(0, 0, 1))
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert_good_is_drawn()
+
+
+@pytest.mark.parametrize("kind", ["SUN", "POINT"])
+def test_a_light_of_zero_scale_does_no_harm(kind, scene, assert_good_is_drawn):
+    light = bpy.data.objects.new("light", bpy.data.lights.new("light", kind))
+    light.scale = (0, 0, 0)
+    scene.collection.objects.link(light)
+    assert_good_is_drawn()
+
+
+def test_a_light_with_an_unusable_energy_is_named_and_left_out(scene, assert_good_is_drawn, said):
+    light = bpy.data.objects.new("dim", bpy.data.lights.new("dim", "POINT"))
+    light.data.energy = NAN
+    scene.collection.objects.link(light)
+    assert_good_is_drawn()
+    assert "Warning: dim is left out: A light's energy must be finite, not nan" in said()
+
+
+def test_a_material_without_a_principled_node_is_named(good, assert_good_is_drawn, said):
+    material = bpy.data.materials.new("bare")
+    material.use_nodes = True
+    material.node_tree.nodes.clear()
+    good.data.materials.append(material)
+    assert_good_is_drawn()
+    assert "The material 'bare' has no Principled BSDF at its output" in said()
+
+
+def test_an_empty_material_slot_is_no_mishap(good, assert_good_is_drawn, said):
+    good.data.materials.append(None)
+    assert_good_is_drawn()
+    assert "Warning" not in said()
+
+
+def test_a_material_index_past_the_slots_is_no_mishap(good, assert_good_is_drawn):
+    good.data.attributes["material"].data[0].value = 1000
+    assert_good_is_drawn()
