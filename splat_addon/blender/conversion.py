@@ -13,10 +13,20 @@ from dataclasses import dataclass
 import bpy
 from mathutils import Matrix
 
-from ..sampling import DEFAULT_SPLAT_SIZE, TriangleMesh, drop_unusable, grid_spacing, predict_count, sample_mesh
-from ..sampling.solid import is_solid
+from ..sampling import (
+    DEFAULT_GRAZING_ANGLE,
+    DEFAULT_SPLAT_SIZE,
+    TriangleMesh,
+    drop_unusable,
+    grid_spacing,
+    is_solid,
+    outline,
+    predict_count,
+    sample_surface,
+)
 from ..surfels import Surfels
 from .attributes import write_surfels
+from .camera_density import without_camera
 from .mesh_extraction import extract_mesh
 from .placement import transformed, without_shear
 
@@ -26,11 +36,14 @@ MAX_SURFELS = 100_000_000
 
 @dataclass(frozen=True)
 class Choices:
-    """fineness: keyword and value for sampling, {"resolution": cells along the longest edge} or {"spacing": object
-    units}. splat_size: half-axis of a splat, in spacings."""
+    """fineness: one keyword and value: "resolution", "spacing" or "count" as sampling takes them, or "pixels" that a
+    surfel may cover for the scene's camera. reduction, grazing_angle: as sampling takes them. splat_size: half-axis of
+    a splat, in spacings."""
 
     fineness: dict[str, float]
     splat_size: float = DEFAULT_SPLAT_SIZE
+    reduction: str = "normal"
+    grazing_angle: float = DEFAULT_GRAZING_ANGLE
 
 
 @dataclass(eq=False)
@@ -51,12 +64,14 @@ class Conversion:
     notes: list[str]
     seconds: float
     surfels: Surfels | None = None
+    small_parts: int = 0
 
     def summary(self) -> str:
         """What was made, in one line."""
+        parts = f"; {self.small_parts:,} small part{'s' * (self.small_parts > 1)} got one surfel each"
         return (
             f"{self.triangles:,} triangles -> {len(self.surfels):,} surfels "
-            f"in {self.seconds:.1f} s, spacing {self.spacing:.4g}"
+            f"in {self.seconds:.1f} s, spacing {self.spacing:.4g}{parts if self.small_parts else ''}"
         )
 
 
@@ -77,8 +92,10 @@ def prepare(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, choices: C
     skipped = [f"{count:,} triangle{'s' * (count > 1)} {reason}" for reason, count in dropped.items()]
     if not len(mesh):
         raise ValueError(f"The mesh has no usable faces, only {', '.join(skipped)}; repair it first.")
-    spacing = grid_spacing(mesh, **choices.fineness)
-    predicted = predict_count(mesh, spacing=spacing)
+    how = {"reduction": choices.reduction, "grazing_angle": choices.grazing_angle}
+    fineness = without_camera(choices.fineness, lambda: outline(mesh), matrix_world, depsgraph)
+    spacing = grid_spacing(mesh, **fineness, **how)
+    predicted = predict_count(mesh, spacing=spacing, **how)
     if predicted > MAX_SURFELS:
         raise ValueError(f"It would become {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
     notes = [f"Skipped {', '.join(skipped)}", *extracted.notes] if skipped else list(extracted.notes)
@@ -92,10 +109,18 @@ def sample(conversion: Conversion, progress: Callable[[float], bool | None] | No
     Raises SamplingCancelled where `progress` returned False, ValueError for a choice that sampling cannot meet.
     """
     start = time.perf_counter()
-    surfels = sample_mesh(
-        conversion.mesh, spacing=conversion.spacing, splat_size=conversion.choices.splat_size, progress=progress
+    choices = conversion.choices
+    sampling = sample_surface(
+        conversion.mesh,
+        spacing=conversion.spacing,
+        reduction=choices.reduction,
+        grazing_angle=choices.grazing_angle,
+        splat_size=choices.splat_size,
+        progress=progress,
     )
-    conversion.surfels = surfels.as_solid() if is_solid(conversion.whole) else surfels
+    solid = sampling.keeps_both_sides and is_solid(conversion.whole)
+    conversion.surfels = sampling.surfels.as_solid() if solid else sampling.surfels
+    conversion.small_parts = sampling.small_parts
     conversion.seconds += time.perf_counter() - start
 
 

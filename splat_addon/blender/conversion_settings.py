@@ -3,12 +3,37 @@
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty
 
-from ..sampling import DEFAULT_SPLAT_SIZE
+from ..sampling import DEFAULT_GRAZING_ANGLE, DEFAULT_SPLAT_SIZE, LEAST_GRAZING_ANGLE, REDUCTIONS
 from .conversion import Choices
 from .ids import CONVERSION_SETTINGS
+
+
+class Density(NamedTuple):
+    """A way to say how close surfels lie: for people, and the property that holds the number."""
+
+    label: str
+    description: str
+    property: str
+
+
+DENSITIES = {
+    "RESOLUTION": Density(
+        "Resolution", "The same number of surfels along the longest edge, whatever the object's size", "resolution"
+    ),
+    "SPACING": Density("Spacing", "The same distance between surfels in every object", "spacing"),
+    "COUNT": Density("Count", "The same number of surfels for each object", "count"),
+    "CAMERA": Density(
+        "Camera",
+        "As fine as the scene's camera and resolution need on the current frame, where each object comes closest",
+        "pixels",
+    ),
+}
 
 
 class ConversionProperties:
@@ -17,14 +42,7 @@ class ConversionProperties:
     density: EnumProperty(
         name="Density",
         description="How it is said how close the surfels lie",
-        items=(
-            (
-                "RESOLUTION",
-                "Resolution",
-                "The same number of surfels along the longest edge, whatever the object's size",
-            ),
-            ("SPACING", "Spacing", "The same distance between surfels in every object"),
-        ),
+        items=[(name, density.label, density.description) for name, density in DENSITIES.items()],
         default="RESOLUTION",
     )
     resolution: IntProperty(
@@ -49,6 +67,42 @@ class ConversionProperties:
         soft_max=10.0,
         precision=4,
         step=0.1,
+    )
+    count: IntProperty(
+        name="Count",
+        description="How many surfels each object becomes, within about 1 in 100",
+        default=100_000,
+        min=0,
+        soft_min=1_000,
+        soft_max=10_000_000,
+    )
+    pixels: FloatProperty(
+        name="Pixels per Surfel",
+        description=(
+            "Distance between surfels in pixels of the render, where the object comes closest to the scene's camera. "
+            "Twice as many pixels make a quarter of the surfels"
+        ),
+        default=1.0,
+        min=0.0,
+        soft_min=0.25,
+        soft_max=10.0,
+    )
+    reduction: EnumProperty(
+        name="Reduction",
+        description="Which samples of the three axes become surfels",
+        items=[(name.upper(), reduction.label, reduction.description) for name, reduction in REDUCTIONS.items()],
+        default="NORMAL",
+    )
+    grazing_angle: FloatProperty(
+        name="Grazing Angle",
+        description=(
+            "Samples are left out where the surface is turned farther than this from their axis. 54.7 degrees keeps "
+            "hardly more than one axis everywhere, 90 degrees keeps everything"
+        ),
+        subtype="ANGLE",
+        default=DEFAULT_GRAZING_ANGLE,
+        min=LEAST_GRAZING_ANGLE,
+        max=math.pi / 2,
     )
     splat_size: FloatProperty(
         name="Splat Size",
@@ -78,16 +132,24 @@ PROPERTY_NAMES = tuple(ConversionProperties.__annotations__)
 
 def choices(properties: ConversionProperties) -> Choices:
     """What the properties ask for."""
-    key = properties.density.lower()
-    return Choices({key: getattr(properties, key)}, properties.splat_size)
+    key = DENSITIES[properties.density].property
+    return Choices(
+        fineness={key: getattr(properties, key)},
+        splat_size=properties.splat_size,
+        reduction=properties.reduction.lower(),
+        grazing_angle=properties.grazing_angle,
+    )
 
 
 def draw_properties(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
     """The settings in Blender's own style, for the sidebar and the redo panel."""
     layout.use_property_split = True
     layout.use_property_decorate = False
-    layout.row().prop(properties, "density", expand=True)
-    layout.prop(properties, properties.density.lower())
+    layout.prop(properties, "density")
+    layout.prop(properties, DENSITIES[properties.density].property)
+    layout.prop(properties, "reduction")
+    if REDUCTIONS[properties.reduction.lower()].has_angle:
+        layout.prop(properties, "grazing_angle")
     layout.prop(properties, "splat_size")
     layout.row().prop(properties, "source", expand=True)
 

@@ -2,66 +2,91 @@
 """How many surfels a mesh will become, known before the conversion and cheap enough for the sidebar.
 
 The count is a projected area over the spacing squared, so only the area and the longest edge of each evaluated mesh
-are kept. They are measured by a timer shortly after they are first asked for, never while drawing, and forgotten
-when the depsgraph tells that the geometry changed.
+are kept, and a coarse outline where a camera is to decide. They are measured by a timer shortly after they are first
+asked for, never while drawing, and forgotten when the depsgraph tells that the geometry changed.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import bpy
 from bpy.app.handlers import persistent
 
-from ..sampling import drop_unusable, grid_spacing, projected_area
+from ..sampling import Outline, drop_unusable, grid_spacing, outline, projected_area
+from .conversion import Choices
 from .mesh_extraction import extract_triangles
 
 #: Waiting this long gathers the changes of a stroke or a drag into one measurement.
 _DELAY_SECONDS = 0.2
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Extent:
-    """area: projected area, longest_edge: of the bounding box; object units, both 0 for nothing usable."""
+    """area: projected area. longest_edge: of the bounding box. Object units, both 0 for nothing usable.
+    surface: its outline, where the choices need it."""
 
     area: float
     longest_edge: float
+    surface: Outline | None = None
 
     def predict(self, fineness: dict[str, float]) -> tuple[int, float]:
-        """(surfels, spacing) for {"resolution": r} or {"spacing": h}; both 0 where that is 0 or nothing is usable."""
-        spacing = fineness.get("spacing") or self.longest_edge / (fineness.get("resolution") or float("inf"))
+        """(surfels, spacing) for a resolution, spacing or count; both 0 where that is 0 or nothing is usable."""
+        ((kind, value),) = fineness.items()
+        spacing = _SPACINGS[kind](self, value) if value > 0 else 0.0
         return (round(self.area / spacing**2), spacing) if spacing > 0 else (0, 0.0)
 
 
-def measure(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Extent:
+#: kind of fineness -> spacing from the extent and a value above 0
+_SPACINGS = {
+    "resolution": lambda extent, value: extent.longest_edge / value,
+    "spacing": lambda extent, value: value,
+    "count": lambda extent, value: math.sqrt(extent.area / value),
+}
+
+
+def measure(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, choices: Choices) -> Extent:
     """The extent of a mesh object with its modifiers; not fast: 0.3 s for a million triangles."""
     mesh, _ = drop_unusable(extract_triangles(source, depsgraph))
-    return Extent(projected_area(mesh), grid_spacing(mesh, resolution=1)) if len(mesh) else Extent(0.0, 0.0)
+    surface = outline(mesh) if "pixels" in choices.fineness else None
+    if not len(mesh):
+        return Extent(0.0, 0.0, surface)
+    area = projected_area(mesh, choices.reduction, choices.grazing_angle)
+    return Extent(area, grid_spacing(mesh, resolution=1), surface)
 
 
-def known_extents(sources: list[bpy.types.Object]) -> list[Extent] | None:
+def known_extents(sources: list[bpy.types.Object], choices: Choices) -> list[Extent] | None:
     """Those of all sources, or None while some are still to be measured, for which the timer is started."""
-    missing = [source.session_uid for source in sources if source.session_uid not in _extents]
+    keys = [_key(source, choices) for source in sources]
+    missing = [key for key in keys if key not in _extents]
     if not missing:
-        return [_extents[source.session_uid] for source in sources]
-    _wanted.update(missing)
+        return [_extents[key] for key in keys]
+    _wanted.update({key: choices for key in missing})
     if not bpy.app.timers.is_registered(_measure_wanted):
         bpy.app.timers.register(_measure_wanted, first_interval=_DELAY_SECONDS)
     return None
 
 
-#: session_uid of an object -> its extent, as long as that is true
-_extents: dict[int, Extent] = {}
+def _key(source: bpy.types.Object, choices: Choices) -> tuple:
+    """The object's session_uid, and the choices that make a difference to its extent."""
+    return source.session_uid, choices.reduction, choices.grazing_angle, "pixels" in choices.fineness
 
-#: session_uids that the sidebar asked for
-_wanted: set[int] = set()
+
+#: key of an object and choices -> its extent, as long as that is true
+_extents: dict[tuple, Extent] = {}
+
+#: keys that the sidebar asked for, and the choices that they were made of
+_wanted: dict[tuple, Choices] = {}
 
 
 def _measure_wanted() -> None:
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    for source in bpy.context.view_layer.objects:
-        if source.session_uid in _wanted and source.type == "MESH" and source.mode == "OBJECT":
-            _extents[source.session_uid] = measure(source, depsgraph)
+    sources = {source.session_uid: source for source in bpy.context.view_layer.objects}
+    for key, choices in _wanted.items():
+        source = sources.get(key[0])
+        if source is not None and source.type == "MESH" and source.mode == "OBJECT":
+            _extents[key] = measure(source, depsgraph, choices)
     _wanted.clear()
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
@@ -72,9 +97,13 @@ def _measure_wanted() -> None:
 @persistent
 def forget_changed(scene, depsgraph):
     """Drop what a depsgraph update made untrue."""
-    for update in depsgraph.updates:
-        if update.is_updated_geometry and isinstance(update.id, bpy.types.Object):
-            _extents.pop(update.id.original.session_uid, None)
+    changed = {
+        update.id.original.session_uid
+        for update in depsgraph.updates
+        if update.is_updated_geometry and isinstance(update.id, bpy.types.Object)
+    }
+    for key in [key for key in _extents if key[0] in changed]:
+        del _extents[key]
 
 
 @persistent

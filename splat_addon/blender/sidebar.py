@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import bpy
 
+from .camera_density import without_camera
+from .conversion import Choices
 from .conversion_settings import PROPERTY_NAMES, choices, draw_properties
 from .ids import CONVERSION_SETTINGS, SIDEBAR_PANEL, SIDEBAR_TAB, SURFELS_FROM_MESH
 from .operators.surfels_from_mesh import selected_meshes
-from .prediction import Extent, known_extents
+from .prediction import known_extents
 
 
 class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
@@ -23,7 +25,7 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         draw_properties(self.layout, settings)
         sources = selected_meshes(context)
         if sources and context.mode == "OBJECT":
-            text = prediction_text(known_extents(sources), choices(settings).fineness)
+            text = prediction(context, sources, choices(settings))
         else:
             text = "Select a mesh with faces, in object mode"
         self.layout.label(text=text, icon="INFO")
@@ -32,11 +34,25 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
             setattr(button, name, getattr(settings, name))
 
 
-def prediction_text(extents: list[Extent] | None, fineness: dict[str, float]) -> str:
-    """One line: the number of surfels that the sources will become, and how far apart those will lie."""
+def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], asked: Choices) -> str:
+    """One line on what the sources will become, or why they cannot."""
+    extents = known_extents(sources, asked)
     if extents is None:
         return "Counting …"
-    counts, spacings = zip(*(extent.predict(fineness) for extent in extents), strict=True)
+    depsgraph = context.view_layer.depsgraph
+    try:
+        finenesses = [
+            without_camera(asked.fineness, lambda e=extent: e.surface, source.matrix_world, depsgraph)
+            for source, extent in zip(sources, extents, strict=True)
+        ]
+    except ValueError as error:
+        return str(error)
+    return prediction_text([extent.predict(f) for extent, f in zip(extents, finenesses, strict=True)])
+
+
+def prediction_text(predictions: list[tuple[int, float]]) -> str:
+    """The number of surfels that the sources will become together, and how far apart those will lie."""
+    counts, spacings = zip(*predictions, strict=True)
     if not sum(counts):
         return "Nothing to sample: no faces, or a density of 0"
     low, high = (f"{bound(spacings):.3g}" for bound in (min, max))

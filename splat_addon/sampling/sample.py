@@ -39,10 +39,12 @@ class Sampling:
     """What came of a mesh.
 
     small_parts: how many parts lay between all rays; each has one surfel, and these come last.
+    keeps_both_sides: the surfels of a solid are solid. Not where two sides were merged, or a part has one disc.
     """
 
     surfels: Surfels
     small_parts: int = 0
+    keeps_both_sides: bool = True
 
 
 def sample_mesh(mesh: TriangleMesh, **options) -> Surfels:
@@ -59,7 +61,6 @@ def sample_surface(
     reduction: str = "normal",
     grazing_angle: float = DEFAULT_GRAZING_ANGLE,
     splat_size: float = DEFAULT_SPLAT_SIZE,
-    is_solid: bool = False,
     progress: Callable[[float], bool | None] | None = None,
 ) -> Sampling:
     """Surfels of a mesh on a grid of exact rays, in the order of axis, triangle, row, column.
@@ -68,7 +69,6 @@ def sample_surface(
     count: surfels wanted, met within the accuracy of `predict_count`.
     reduction: a name in `REDUCTIONS`. grazing_angle: radians between a normal and the axis beyond which the reduction
     "grazing" refuses a sample. splat_size: smaller half-axis of a splat, in H.
-    is_solid: what the function of that name says of the mesh; the surfels are solid where each part kept both sides.
     progress: called between chunks with the finished share, 0 to 1; where it returns False, `SamplingCancelled` rises.
     Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the grid's origin.
     A connected part that lies between the rays gets one surfel. A mesh without usable triangles gives none.
@@ -100,8 +100,8 @@ def sample_surface(
     if small_parts:
         extra = part_surfels(mesh, coordinates, grid, lost, splat_size, filler.palette)
         arrays = {name: np.concatenate([array, extra[name]]) for name, array in arrays.items()}
-    is_solid = is_solid and chosen.merge is None and not small_parts
-    return Sampling(Surfels(origin=grid.origin, is_solid=is_solid, **arrays), small_parts)
+    surfels = Surfels(origin=grid.origin, **arrays)
+    return Sampling(surfels, small_parts, keeps_both_sides=chosen.merge is None and not small_parts)
 
 
 def _is_sampled(images: tuple[Spans, ...], count: int) -> np.ndarray:

@@ -5,9 +5,13 @@ import bpy
 import pytest
 
 from splat_addon.blender import prediction
+from splat_addon.blender.conversion import Choices
 from splat_addon.blender.mesh_extraction import extract_mesh
+from splat_addon.blender.sidebar import prediction as sidebar_text
 from splat_addon.blender.sidebar import prediction_text
-from splat_addon.sampling import predict_count
+from splat_addon.sampling import REDUCTIONS, predict_count
+
+PLAIN = Choices({"resolution": 16})
 
 
 @pytest.fixture
@@ -17,12 +21,23 @@ def cube():
 
 
 @pytest.fixture
+def camera():
+    """The scene's camera, 10 above the origin, looking down."""
+    made = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    bpy.context.collection.objects.link(made)
+    made.location.z = 10
+    bpy.context.scene.camera = made
+    bpy.context.view_layer.update()
+    return made
+
+
+@pytest.fixture
 def known(cube):
     """The extent of the cube, measured as the timer does it."""
     bpy.context.view_layer.update()
-    assert prediction.known_extents([cube]) is None
+    assert prediction.known_extents([cube], PLAIN) is None
     prediction._measure_wanted()
-    return prediction.known_extents([cube])[0]
+    return prediction.known_extents([cube], PLAIN)[0]
 
 
 def test_a_cube_is_predicted_exactly(known):
@@ -33,7 +48,7 @@ def test_a_cube_is_predicted_exactly(known):
 def test_it_is_the_count_that_sampling_predicts(cube):
     cube.modifiers.new("round", "SUBSURF").levels = 3
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    count, spacing = prediction.measure(cube, depsgraph).predict({"resolution": 100})
+    count, spacing = prediction.measure(cube, depsgraph, PLAIN).predict({"resolution": 100})
     assert count == predict_count(extract_mesh(cube, depsgraph).triangles, spacing=spacing)
 
 
@@ -44,27 +59,27 @@ def test_a_setting_of_zero_predicts_nothing(known, fineness):
 
 def test_a_mesh_without_faces_predicts_nothing(add_mesh):
     points = add_mesh("points", [(0, 0, 0)], [])
-    extent = prediction.measure(points, bpy.context.evaluated_depsgraph_get())
+    extent = prediction.measure(points, bpy.context.evaluated_depsgraph_get(), PLAIN)
     assert (extent.predict({"resolution": 16})[0], extent.predict({"spacing": 0.1})[0]) == (0, 0)
 
 
 def test_a_changed_modifier_forgets_the_count(cube, known):
     cube.modifiers.new("array", "ARRAY")
     bpy.context.view_layer.update()
-    assert prediction.known_extents([cube]) is None
+    assert prediction.known_extents([cube], PLAIN) is None
 
 
 def test_a_changed_mesh_forgets_the_count(cube, known):
     cube.data.vertices[0].co.x = 5
     cube.data.update()
     bpy.context.view_layer.update()
-    assert prediction.known_extents([cube]) is None
+    assert prediction.known_extents([cube], PLAIN) is None
 
 
 def test_a_moved_object_keeps_its_count(cube, known):
     cube.location.x = 5
     bpy.context.view_layer.update()
-    assert prediction.known_extents([cube]) == [known]
+    assert prediction.known_extents([cube], PLAIN) == [known]
 
 
 def test_another_file_forgets_all_counts(cube, known):
@@ -72,15 +87,50 @@ def test_another_file_forgets_all_counts(cube, known):
     assert prediction._extents == {}
 
 
+def test_a_count_predicts_itself(known):
+    assert known.predict({"count": 1500}) == (1500, pytest.approx((24 / 1500) ** 0.5))
+
+
+@pytest.mark.parametrize("reduction", REDUCTIONS)
+def test_every_reduction_has_its_own_count(cube, reduction):
+    cube.rotation_euler = (0.3, 0.5, 0.7)
+    bpy.ops.object.transform_apply(rotation=True)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    extent = prediction.measure(cube, depsgraph, Choices({"resolution": 16}, reduction=reduction))
+    mesh = extract_mesh(cube, depsgraph).triangles
+    assert extent.predict({"spacing": 0.1})[0] == predict_count(mesh, spacing=0.1, reduction=reduction)
+
+
+def test_another_reduction_is_measured_anew(cube, known):
+    assert prediction.known_extents([cube], Choices({"resolution": 16}, reduction="none")) is None
+    assert prediction.known_extents([cube], Choices({"spacing": 0.5})) == [known]
+
+
 def test_the_text_sums_over_the_selected_meshes():
-    extents = [prediction.Extent(100.0, 1.0), prediction.Extent(50.0, 2.0)]
-    assert prediction_text(extents, {"spacing": 0.1}) == "≈ 15,000 surfels, spacing 0.1"
-    assert prediction_text(extents, {"resolution": 10}) == "≈ 11,250 surfels, spacing 0.1 to 0.2"
+    assert prediction_text([(10_000, 0.1), (5_000, 0.1)]) == "≈ 15,000 surfels, spacing 0.1"
+    assert prediction_text([(10_000, 0.1), (1_250, 0.2)]) == "≈ 11,250 surfels, spacing 0.1 to 0.2"
 
 
 def test_the_text_says_that_there_is_nothing_to_sample():
-    assert prediction_text([prediction.Extent(0.0, 0.0)], {"resolution": 10}).startswith("Nothing to sample")
+    assert prediction_text([(0, 0.0)]).startswith("Nothing to sample")
 
 
-def test_the_text_says_when_the_count_is_still_to_come():
-    assert prediction_text(None, {"resolution": 10}) == "Counting …"
+def test_the_text_says_when_the_count_is_still_to_come(cube):
+    assert sidebar_text(bpy.context, [cube], PLAIN) == "Counting …"
+
+
+def test_for_a_camera_the_text_has_the_count_of_the_conversion(cube, camera, convert):
+    asked = Choices({"pixels": 8.0})
+    sidebar_text(bpy.context, [cube], asked)
+    prediction._measure_wanted()
+    text = sidebar_text(bpy.context, [cube], asked)
+    made = convert(density="CAMERA", pixels=8.0)[0]
+    assert int(text.split()[1].replace(",", "")) == pytest.approx(len(made.data.vertices), rel=0.01)
+
+
+def test_for_a_camera_that_sees_nothing_the_text_says_so(cube, camera):
+    camera.rotation_euler = (3.1, 0, 0)
+    bpy.context.view_layer.update()
+    sidebar_text(bpy.context, [cube], Choices({"pixels": 1.0}))
+    prediction._measure_wanted()
+    assert "does not see the object" in sidebar_text(bpy.context, [cube], Choices({"pixels": 1.0}))

@@ -26,6 +26,54 @@ def test_a_spacing_in_object_units_gives_the_same_as_its_resolution(cube, conver
     assert len(surfels_of(by_spacing)) == 6 * 16 * 16
 
 
+def test_a_count_is_met(cube, convert, surfels_of):
+    assert len(surfels_of(convert(density="COUNT", count=6 * 20 * 20)[0])) == 6 * 20 * 20
+
+
+def test_for_the_camera_surfels_lie_as_many_pixels_apart_as_asked(cube, convert):
+    """The cube's top is 9 under a camera whose picture is 1 wide at distance 1; its scale does not matter."""
+    bpy.ops.object.camera_add(location=(0, 0, 10))
+    camera, scene = bpy.context.object, bpy.context.scene
+    camera.data.sensor_width = camera.data.lens = 36
+    scene.camera, scene.render.resolution_x, scene.render.resolution_y = camera, 300, 200
+    cube.scale = (0.5, 0.5, 1)
+    camera.select_set(False)
+    cube.select_set(True)
+    made = convert(density="CAMERA", pixels=4)[0]
+    assert 4 * 9 / 300 == pytest.approx(made.data.attributes["scale"].data[0].vector[1] / 1.25, rel=0.01)
+
+
+def test_a_reduction_is_chosen_by_its_name(cube, convert, surfels_of):
+    cube.rotation_euler = (0.4, 0.7, 0)
+    bpy.ops.object.transform_apply(rotation=True)
+    counts = {}
+    for name in ("NONE", "GRAZING", "NORMAL", "THREE_TO_ONE"):
+        cube.select_set(True)
+        bpy.context.view_layer.objects.active = cube
+        [made] = [o for o in convert(resolution=32, reduction=name) if o is not cube]
+        counts[name] = len(surfels_of(made))
+    assert counts["NONE"] > counts["GRAZING"] > counts["NORMAL"] > counts["THREE_TO_ONE"]
+
+
+def test_a_wider_grazing_angle_keeps_more(cube, convert, surfels_of):
+    cube.rotation_euler = (0.4, 0.7, 0)
+    bpy.ops.object.transform_apply(rotation=True)
+    counts = []
+    for degrees in (60, 80):
+        cube.select_set(True)
+        made = convert(resolution=32, reduction="GRAZING", grazing_angle=np.radians(degrees))[0]
+        counts.append(len(surfels_of(made)))
+    assert counts[0] < counts[1]
+
+
+def test_small_parts_get_a_surfel_and_are_counted(add_mesh, convert, capfd):
+    big = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)]
+    bolts = [(x + dx, 0.1 + dy, 1) for x in (1, 3) for dx, dy in ((0.6, 0), (0.7, 0), (0.6, 0.1))]
+    add_mesh("Part", big + bolts, [(0, 1, 2, 3), (4, 5, 6), (7, 8, 9)])
+    assert len(convert(density="SPACING", spacing=1)[0].data.vertices) == 100 + 2
+    assert "; 2 small parts got one surfel each" in capfd.readouterr().out
+
+
 def test_the_splat_size_is_in_spacings(cube, convert, surfels_of):
     assert np.allclose(surfels_of(convert(resolution=16, splat_size=1.5)[0]).scales, 1.5 * 2 / 16)
 

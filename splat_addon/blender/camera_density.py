@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How fine to sample for the scene's camera and resolution: `sampling.camera_spacing` asked with Blender's camera."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ..sampling import Outline, camera_spacing
+from .camera_export import final_camera
+
+
+def without_camera(
+    fineness: dict[str, float], surface: Callable[[], Outline], matrix_world: Matrix, depsgraph: bpy.types.Depsgraph
+) -> dict[str, float]:
+    """The same fineness in terms that sampling knows: {"pixels": p} becomes a spacing in object units.
+
+    surface: gives the outline of the object, and is called only if it is needed. matrix_world: of the object.
+    Raises ValueError with a sentence where there is no camera, or none that sees the object.
+    """
+    if "pixels" not in fineness:
+        return fineness
+    camera = final_camera(depsgraph, depsgraph.scene.camera)
+    spacing = camera_spacing(
+        surface(),
+        fineness["pixels"],
+        object_to_view=camera.world_to_view() @ np.array(matrix_world, np.float64),
+        window=camera.window,
+        size=camera.size,
+        near=camera.near,
+        is_orthographic=camera.is_orthographic,
+    )
+    return {"spacing": spacing}
