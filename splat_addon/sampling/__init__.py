@@ -3,7 +3,7 @@
 
 Flow: `mesh` -> `cleaning` -> `fineness`, `grid` -> `depth_cube` (`reductions`, `scan_conversion`) -> `attributes`
 (`ellipses`, `colors`, `images`) -> `merging` -> `lost_parts`, `part_surfels` -> `Surfels`; `sample` puts them in order.
-`closest_approach` says how fine a camera needs it.
+`closest_approach` says how fine a camera needs it. Points without faces become surfels in `points`.
 """
 
 from .cleaning import drop_unusable
@@ -12,6 +12,7 @@ from .colors import SurfaceColor
 from .fineness import grid_spacing, predict_count
 from .images import Image
 from .mesh import TriangleMesh
+from .points import PointsReport, surfels_from_points
 from .reductions import DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS, projected_area
 from .sample import DEFAULT_SPLAT_SIZE, Sampling, SamplingCancelled, sample_mesh, sample_surface
 from .solid import is_solid
@@ -23,6 +24,7 @@ __all__ = [
     "REDUCTIONS",
     "Image",
     "Outline",
+    "PointsReport",
     "Sampling",
     "SamplingCancelled",
     "SurfaceColor",
@@ -36,4 +38,5 @@ __all__ = [
     "projected_area",
     "sample_mesh",
     "sample_surface",
+    "surfels_from_points",
 ]

@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bare points become surfels: what a scan lacks, normals, radii and axes, is estimated from each point's neighbours.
+
+Flow: `cleanup` -> `neighbours` (over `cells`) -> `normals` -> `orientation` -> `footprints` -> `Surfels`;
+`from_points` puts them in order, `report` counts what was skipped and estimated.
+"""
+
+from .from_points import DEFAULT_COLOR, DEFAULT_NEIGHBOURS, ISOLATED_CHOICES, surfels_from_points
+from .report import PointsReport
+
+__all__ = ["DEFAULT_COLOR", "DEFAULT_NEIGHBOURS", "ISOLATED_CHOICES", "PointsReport", "surfels_from_points"]

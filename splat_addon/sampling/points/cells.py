@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points sorted into cubic cells, and the candidates in the 27 cells around one: what `neighbours` searches."""
+
+from __future__ import annotations
+
+import numpy as np
+
+#: Cell numbers up to here can be added and multiplied in int64 without a thought.
+_MAX_KEY = 2**62
+
+#: Cells along the longest edge of the points' box at most; what lies closer together than one is told apart later.
+_MAX_CELLS = 2**50
+
+
+class Cells:
+    """N points in cells of one size, and which of them are asked for.
+
+    order: (N,) int32 points, cell by cell; a *place* is an index into it. columns: x, y and z by place in units of
+    the cell, each with an infinite one at the end for the place N of no point. queries: (Q,) the points asked for, in
+    ascending order of the points; cell_of_query, place_of_query: (Q,).
+    """
+
+    def __init__(self, positions: np.ndarray, size: float, queries: np.ndarray):
+        self.size = size
+        scaled = [column / size for column in positions.T]
+        keys, self._strides = _cell_keys(scaled)
+        self.order = np.argsort(keys, kind="stable").astype(np.int32)
+        keys = keys[self.order]
+        self._first = np.flatnonzero(np.diff(keys, prepend=-1))
+        self._keys = keys[self._first]
+        self._first = np.append(self._first, len(keys))
+        self.columns = [np.append(column[self.order], np.inf) for column in scaled]
+        self.queries = queries
+        self.query_columns = [column[queries] for column in scaled]
+        place_of_point = np.empty(len(keys), np.int32)
+        place_of_point[self.order] = np.arange(len(keys), dtype=np.int32)
+        self.place_of_query = place_of_point[queries]
+        cell_of_place = np.repeat(np.arange(len(self._keys)), np.diff(self._first))
+        self._cells, self.cell_of_query = np.unique(cell_of_place[self.place_of_query], return_inverse=True)
+        self._starts, self._counts = self._rows_of_blocks()
+
+    def candidate_counts(self) -> np.ndarray:
+        """(C,) points in the block around each cell that holds a query."""
+        return self._counts.sum(axis=1)
+
+    def candidates(self, cells: np.ndarray) -> np.ndarray:
+        """(c, m) places of the points in the blocks around cells (by `cell_of_query`), filled up with N."""
+        starts, counts = self._starts[cells].ravel(), self._counts[cells].ravel()
+        sums = self._counts[cells].sum(axis=1)
+        begins = np.cumsum(counts) - counts
+        places = np.full((len(cells), sums.max()), len(self.order), np.int64)
+        flat = np.arange(counts.sum()) + np.repeat(starts - begins, counts)
+        places[np.arange(places.shape[1]) < sums[:, None]] = flat
+        return places
+
+    def certain_squares(self, queries: np.ndarray) -> np.ndarray:
+        """(q,) squared distance, in cells, within which the block misses no point; a little less for rounding."""
+        walls = np.full(len(queries), np.inf)
+        for column in self.query_columns:
+            inside = column[queries] % 1.0
+            walls = np.minimum(walls, np.minimum(inside, 1.0 - inside))
+        return (1.0 + walls) ** 2 * (1 - 1e-6)
+
+    def _rows_of_blocks(self) -> tuple[np.ndarray, np.ndarray]:
+        """(C, 9) first place and number of points of each row of three cells in the block around a query's cell."""
+        keys = self._keys[self._cells]
+        shape = (len(keys), 9)
+        starts, counts = np.empty(shape, np.int64), np.empty(shape, np.int64)
+        steps = [dx * self._strides[0] + dy * self._strides[1] for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
+        for row, step in enumerate(steps):
+            starts[:, row] = self._first[np.searchsorted(self._keys, keys + (step - 1))]
+            counts[:, row] = self._first[np.searchsorted(self._keys, keys + (step + 1), "right")] - starts[:, row]
+        return starts, counts
+
+
+def fine_cell_size(positions: np.ndarray, wanted: float) -> float:
+    """A cell size at which an average point shares its cell with about `wanted` points, itself included, or fewer.
+
+    positions: (N, 3) with the least coordinates at 0. The average is over points, so one dense cluster counts.
+    """
+    extent = float(positions.max())
+    size = 4 * extent / np.sqrt(len(positions))
+    while size > extent / _MAX_CELLS:
+        keys = np.sort(_cell_keys([column / size for column in positions.T])[0])
+        counts = np.diff(np.flatnonzero(np.diff(keys, prepend=-1, append=-1)))
+        company = np.square(counts, dtype=np.float64).sum() / len(keys)
+        if company <= 1.5 * wanted:
+            break
+        # On a surface the number grows with the square of the size.
+        size *= np.sqrt(wanted / company)
+    return size
+
+
+def _cell_keys(scaled: list[np.ndarray]) -> tuple[np.ndarray, tuple[int, int]]:
+    """(N,) int64 number of each point's cell, and how much it grows a cell along x and along y (1 along z)."""
+    cells = [np.floor(column).astype(np.int64) + 1 for column in scaled]
+    lengths = [int(column.max()) + 2 for column in cells]
+    if lengths[0] * lengths[1] * lengths[2] > _MAX_KEY:
+        cells = [_without_gaps(column) for column in cells]
+        lengths = [int(column.max()) + 2 for column in cells]
+    strides = lengths[1] * lengths[2], lengths[2]
+    return cells[0] * strides[0] + cells[1] * strides[1] + cells[2], strides
+
+
+def _without_gaps(column: np.ndarray) -> np.ndarray:
+    """Cell numbers along one axis, renumbered so that neighbours stay neighbours and any gap is a single cell."""
+    used, inverse = np.unique(column, return_inverse=True)
+    return np.cumsum(np.minimum(np.diff(used, prepend=0), 2))[inverse]
+
+
+def spatial_order(positions: np.ndarray) -> np.ndarray:
+    """(N,) order in which points that are close in space are close in memory; (N, 3), finite.
+
+    Gathering neighbours of points in random order waits for memory most of the time.
+    """
+    corner = positions.min(axis=0)
+    extent = float((positions - corner).max())
+    size = 8 * extent / np.sqrt(len(positions)) if extent > 0 else 1.0
+    return np.argsort(_cell_keys([column / size for column in (positions - corner).T])[0], kind="stable")

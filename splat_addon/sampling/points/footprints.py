@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The ellipse of a bare point: in its tangent plane, over the region that is nearer to it than to its neighbours.
+
+Splats that cover their own Voronoi regions leave no hole between them. The region is known by how far it reaches in
+16 directions; its second moments give the ellipse's axes, and its farthest reach the least size.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .normals import CHUNK
+
+#: Directions in which a region's reach is found; even, so that each has an opposite.
+DIRECTIONS = 16
+
+#: A direction is open, at a border or a gap, where no neighbour lies within this cosine of it (60 degrees).
+_OPEN_COSINE = 0.5
+
+#: A neighbour that lies steeper than this over the tangent plane, or whose normal differs by more than this cosine,
+#: is on another sheet and bounds nothing.
+_STEEPEST_SLOPE = 2.0
+_SAME_SHEET_COSINE = 0.3
+
+#: What a region reaches is held to this many spacings: what is farther is a gap in the scan. A rectangle of 1 by 8
+#: reaches 2.5, counting as spacing what `_spacings` does, the regions of random points seldom more than 1.5.
+_LONGEST = 2.5
+
+#: The spacing around a point is that of its neighbours up to this one or more, whichever is least, so that a few stray
+#: points together are not taken for a sparse surface.
+_FEWEST = 4
+
+#: No ellipse is longer than this many times its width, in case a point's neighbours lie on one line.
+_MAX_STRETCH = 8.0
+
+
+def tangent_ellipses(
+    positions: np.ndarray, normals: np.ndarray, neighbours: np.ndarray, splat_size: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The ellipses' longer axes, (N, 3) float64 unit vectors, their half-axes, (N, 2) float64, and which are known.
+
+    positions, normals: (N, 3) float64, normals unit. neighbours: (n, k) indices of the first n points' neighbours.
+    splat_size: half-axis in units of the spacing, which is the edge of a square or rectangular region. An ellipse
+    that would not cover its region is enlarged until it does. Known, (n,) bool, are those with a neighbour beside them.
+    """
+    count = len(neighbours)
+    axes, half_axes, known = np.empty((count, 3)), np.empty((count, 2)), np.empty(count, bool)
+    columns, normal_columns = np.ascontiguousarray(positions.T), np.ascontiguousarray(normals.T)
+    for start in range(0, count, CHUNK):
+        part = slice(start, min(start + CHUNK, count))
+        near, own = np.ascontiguousarray(neighbours[part].T), normal_columns[:, part]
+        frame = (*tangent_frames(normals[part]), normals[part])
+        away = [column[near] - column[part] for column in columns]
+        along_u, along_v, height = (sum(a * n for a, n in zip(away, w.T, strict=True)) for w in frame)
+        bounds = sum(column[near] * n for column, n in zip(normal_columns, own, strict=True)) > _SAME_SHEET_COSINE
+        bounds &= np.abs(height) <= _STEEPEST_SLOPE * np.hypot(along_u, along_v)
+        spacing, known[part] = _spacings(along_u, along_v, bounds)
+        angle, ellipses = _ellipses(_reaches(along_u / spacing, along_v / spacing, bounds), splat_size)
+        half_axes[part] = ellipses * spacing[:, None]
+        axes[part] = frame[0] * np.cos(angle)[:, None] + frame[1] * np.sin(angle)[:, None]
+    return axes, half_axes, known
+
+
+def tangent_frames(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Two (N, 3) unit vectors that make a right-handed frame with unit normals (Duff et al. 2017)."""
+    x, y, z = normals.T
+    sign = np.copysign(1.0, z)
+    a = -1 / (sign + z)
+    b = x * y * a
+    return np.stack([1 + sign * x * x * a, sign * b, -sign * x], 1), np.stack([b, sign + y * y * a, -y], 1)
+
+
+def _spacings(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) edge of the square that each point of a disc around it has on average, and whether there is a neighbour.
+
+    A disc that reaches to the j-th neighbour holds j + 1 points. u, v, bounds: (k, n), nearest first.
+    """
+    farthest = np.sqrt(np.maximum.accumulate(np.where(bounds, u * u + v * v, 0), axis=0))
+    counts = np.cumsum(bounds, axis=0)
+    spacing = farthest * np.sqrt(np.pi / (counts + 1))
+    spacing[:-1][counts[:-1] < _FEWEST] = np.inf
+    spacing, known = spacing.min(axis=0), farthest[-1] > 0
+    return np.where(known, spacing, 1), known
+
+
+def _reaches(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> np.ndarray:
+    """(D, n) distance to the region's border in each direction.
+
+    u, v: (k, n) neighbours in the tangent plane, in spacings. bounds: (k, n) which of them count. The border towards
+    a neighbour at d is the bisector, met in direction e at |d|^2 / (2 d.e). An open direction takes its opposite's
+    reach, so that a splat at a border does not bulge into the open.
+    """
+    u, v = np.float32(u), np.float32(v)
+    square = u * u + v * v
+    bounds = bounds & (square > 0)
+    # Inverse reach, so that a neighbour sideways or behind gives 0 or less and the largest wins.
+    inverse, unit = (np.divide(bounds, w, out=np.zeros_like(u), where=bounds) for w in (square / 2, np.sqrt(square)))
+    half = DIRECTIONS // 2
+    reach, cosine = np.empty((DIRECTIONS, u.shape[1]), np.float32), np.empty((DIRECTIONS, u.shape[1]), np.float32)
+    for row, angle in enumerate(np.arange(half) * np.float32(2 * np.pi / DIRECTIONS)):
+        along = np.cos(angle) * u + np.sin(angle) * v
+        for values, weight in ((reach, inverse), (cosine, unit)):
+            weighted = along * weight
+            values[row], values[row + half] = weighted.max(axis=0), -weighted.min(axis=0)
+    with np.errstate(divide="ignore"):
+        reach = np.where(cosine >= _OPEN_COSINE, 1 / np.maximum(reach, 0), np.inf)
+    reach = np.where(np.isinf(reach), np.roll(reach, half, axis=0), reach)
+    return np.minimum(np.where(np.isinf(reach), 0.5, reach), _LONGEST)
+
+
+def _ellipses(reach: np.ndarray, splat_size: float) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) angle of the longer axis in the tangent plane, and (n, 2) half-axes, from (D, n) reaches.
+
+    Second moments of the region over its area: the integral of r^4 / 4 e e^T over r^2 / 2. A rectangle has
+    edge^2 / 12 along each edge, so sqrt(12 moment) is the spacing.
+    """
+    angles = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
+    cosine, sine = np.cos(angles), np.sin(angles)
+    second, fourth = reach**2, reach**4
+    area = 2 * second.sum(axis=0)
+    xx, yy, xy = ((w @ fourth) / area for w in (cosine**2, sine**2, cosine * sine))
+    angle = np.arctan2(2 * xy, xx - yy) / 2
+    half, spread = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
+    spacing = np.sqrt(12 * np.stack([half + spread, np.maximum(half - spread, 0)]))
+    spacing[1] = np.maximum(spacing[1], spacing[0] / _MAX_STRETCH)
+    half_axes = splat_size * spacing
+    across, along = angles[:, None] - angle, reach
+    farthest = np.hypot(along * np.cos(across) / half_axes[0], along * np.sin(across) / half_axes[1]).max(axis=0)
+    return angle, (half_axes * np.maximum(farthest, 1)).T

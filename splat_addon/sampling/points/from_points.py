@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bare points become surfels: sort out, find neighbours, then estimate what is missing. The door of this room."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ...surfels import Surfels, axes_quaternions, empty_surfels
+from ..sample import DEFAULT_SPLAT_SIZE
+from .cells import spatial_order
+from .cleanup import finite_points, first_of_each, isolated_points
+from .footprints import tangent_ellipses, tangent_frames
+from .neighbours import nearest_neighbours
+from .normals import plane_normals
+from .orientation import consistent_signs, facing_outward, facing_viewpoint
+from .report import PointsReport
+
+#: Neighbours of each point: enough to average noise away, few enough to follow the surface; on a grid the two
+#: rings around a point and a little more.
+DEFAULT_NEIGHBOURS = 16
+_FEWEST_NEIGHBOURS = 3
+
+DEFAULT_COLOR = (0.8, 0.8, 0.8, 1.0)
+
+#: What becomes of points that stand alone.
+ISOLATED_CHOICES = {
+    "drop": "Leave them out: they are mostly errors of the scanner",
+    "keep": "Keep them, with the size of their nearest neighbours",
+}
+
+
+def surfels_from_points(
+    positions: np.ndarray,
+    normals: np.ndarray | None = None,
+    radii: np.ndarray | None = None,
+    colors: np.ndarray | None = None,
+    *,
+    neighbours: int = DEFAULT_NEIGHBOURS,
+    splat_size: float = DEFAULT_SPLAT_SIZE,
+    isolated: str = "drop",
+    viewpoint: tuple[float, float, float] | None = None,
+) -> tuple[Surfels, PointsReport]:
+    """Surfels of N points in the order of the points, and a report of what was left out and what was estimated.
+
+    positions: (N, 3), object units. normals: (N, 3) of any length, used where they are finite and not zero.
+    radii: (N,) object units, used as both half-axes where they are finite and above 0. colors: (N, 3) or (N, 4)
+    scene-linear, used where they are finite. neighbours: of each point, from which the rest is estimated.
+    splat_size: half-axis of an estimated splat, in spacings. isolated: a name in `ISOLATED_CHOICES`.
+    viewpoint: (3,), object units, where the scanner stood: estimated normals face it; None: they face outward.
+
+    Raises ValueError with one sentence for wrong shapes or settings, and for too few usable points.
+    """
+    given = _checked(positions, normals, radii, colors)
+    _check_settings(neighbours, splat_size, isolated, viewpoint)
+    report = PointsReport(len(given["positions"]), kept_isolated=isolated == "keep")
+    usable = np.flatnonzero(finite_points(given["positions"]))
+    report = replace(report, non_finite=report.points - len(usable))
+    if not report.points:
+        return empty_surfels(), report
+    if not len(usable):
+        raise ValueError(f"None of the {report.points:,} points has finite coordinates; check where they come from.")
+    kept = usable[first_of_each(given["positions"][usable])]
+    report = replace(report, duplicates=len(usable) - len(kept))
+    order = kept[spatial_order(given["positions"][kept])]
+    given = {name: values[order] for name, values in given.items() if values is not None}
+    surfels, keep, report = _estimate(given, neighbours, splat_size, isolated, viewpoint, report)
+    rank = np.argsort(order[keep], kind="stable")
+    arrays = {name: array[keep][rank] for name, array in surfels.items()}
+    middle = (given["positions"].min(axis=0) + given["positions"].max(axis=0)) / 2
+    arrays["positions"] = given["positions"][keep][rank] - middle
+    return Surfels(origin=middle, **arrays), replace(report, surfels=len(rank))
+
+
+def _estimate(given, neighbours, splat_size, isolated, viewpoint, report):
+    """Fields of `Surfels` but the positions, indices of the points to keep, and the report."""
+    positions = given["positions"]
+    positions = positions - positions.mean(axis=0)
+    missing_normals, missing_radii = ~_usable_normals(given), ~_usable_radii(given)
+    estimates = missing_normals.any() or missing_radii.any()
+    if estimates and len(positions) <= _FEWEST_NEIGHBOURS:
+        raise ValueError(
+            f"{len(positions)} usable points are too few to estimate normals and radii from, "
+            f"which takes {_FEWEST_NEIGHBOURS + 1}; give them normals and radii."
+        )
+    alone = np.zeros(len(positions), bool)
+    nearest, distances = np.empty((len(positions), 0), np.int32), np.empty((len(positions), 0), np.float32)
+    if len(positions) > _FEWEST_NEIGHBOURS:
+        nearest, distances = nearest_neighbours(positions, min(neighbours, len(positions) - 1))
+        alone = isolated_points(nearest, distances)
+    normals, parts = _normals(given, positions, missing_normals, nearest, viewpoint)
+    axes, scales = _ellipses(given, positions, normals, missing_radii, nearest, distances, alone, splat_size)
+    colors, default_colors = _colors(given, len(positions))
+    fields = {
+        "rotations": axes_quaternions(axes, np.cross(normals, axes), normals),
+        "scales": scales,
+        "normals": normals,
+        "colors": colors,
+        "materials": np.zeros(len(positions), np.int32),
+    }
+    keep = np.flatnonzero(~alone) if isolated == "drop" else np.arange(len(positions))
+    return fields, keep, replace(
+        report,
+        isolated=int(alone.sum()),
+        estimated_normals=int(missing_normals[keep].sum()),
+        estimated_radii=int(missing_radii[keep].sum()),
+        default_colors=int(default_colors[keep].sum()),
+        parts=parts,
+    )  # fmt: skip
+
+
+def _normals(given, positions, missing, nearest, viewpoint) -> tuple[np.ndarray, int]:
+    """(N, 3) float64 unit normals, and the connected parts that were oriented."""
+    if not missing.any():
+        return _unit(given["normals"]), 0
+    normals = plane_normals(positions, nearest)
+    signs, part = consistent_signs(positions, normals, nearest)
+    normals *= signs[:, None]
+    if viewpoint is None:
+        normals *= facing_outward(positions, normals, part)[:, None]
+    else:
+        centre = given["positions"].mean(axis=0)
+        normals *= facing_viewpoint(positions, normals, part, np.asarray(viewpoint, np.float64) - centre)[:, None]
+    if not missing.all():
+        own = np.flatnonzero(~missing)
+        normals[own] = _unit(given["normals"][own])
+    return normals, int(part.max()) + 1
+
+
+def _ellipses(
+    given, positions, normals, missing, nearest, distances, alone, splat_size
+) -> tuple[np.ndarray, np.ndarray]:
+    """(N, 3) unit directions of the first half-axis, and (N, 2) half-axes."""
+    if not missing.any():
+        return tangent_frames(normals)[0], np.repeat(given["radii"][:, None], 2, axis=1)
+    axes, scales, known = tangent_ellipses(positions, normals, nearest, splat_size)
+    # Nothing beside it in its own plane, or nothing near it at all: it is as large as the nearest that is better off.
+    stray = alone | ~known
+    at = np.flatnonzero(stray)
+    example = nearest[at, (~stray[nearest[at]]).argmax(axis=1)]
+    scales[at] = np.where(stray[example], splat_size * distances[at, 0], scales[example].mean(axis=1))[:, None]
+    if not missing.all():
+        own = np.flatnonzero(~missing)
+        scales[own] = given["radii"][own, None]
+    return axes, scales
+
+
+def _colors(given, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """(N, 4) float32 colours, and (N,) which of them are the default."""
+    colors = np.tile(np.float32(DEFAULT_COLOR), (count, 1))
+    if "colors" not in given:
+        return colors, np.zeros(count, bool)
+    usable = np.isfinite(given["colors"]).all(axis=1)
+    columns = given["colors"].shape[1]
+    colors[usable, :columns] = given["colors"][usable]
+    return colors, ~usable
+
+
+def _usable_normals(given) -> np.ndarray:
+    if "normals" not in given:
+        return np.zeros(len(given["positions"]), bool)
+    length = np.abs(given["normals"]).max(axis=1)
+    return np.isfinite(length) & (length > 0)
+
+
+def _usable_radii(given) -> np.ndarray:
+    if "radii" not in given:
+        return np.zeros(len(given["positions"]), bool)
+    return np.isfinite(given["radii"]) & (given["radii"] > 0)
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    # By the largest component first: squares of very short or long vectors leave the range.
+    vectors = vectors / np.abs(vectors).max(axis=1, keepdims=True)
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def _checked(positions, normals, radii, colors) -> dict[str, np.ndarray | None]:
+    """The arrays as float64, colours as float32; raises ValueError for a wrong shape."""
+    count = len(positions)
+    shapes = {
+        "positions": (positions, [(count, 3)], np.float64),
+        "normals": (normals, [(count, 3)], np.float64),
+        "radii": (radii, [(count,)], np.float64),
+        "colors": (colors, [(count, 3), (count, 4)], np.float32),
+    }
+    arrays = {}
+    for name, (values, allowed, dtype) in shapes.items():
+        array = None if values is None else np.asarray(values, dtype)
+        if array is not None and array.shape not in allowed:
+            wanted = " or ".join(map(str, allowed))
+            raise ValueError(f"The points' {name} must have shape {wanted}, not {array.shape}.")
+        arrays[name] = array
+    return arrays
+
+
+def _check_settings(neighbours, splat_size, isolated, viewpoint):
+    if neighbours < _FEWEST_NEIGHBOURS or neighbours != int(neighbours):
+        raise ValueError(f"The neighbours must be a whole number of {_FEWEST_NEIGHBOURS} or more, not {neighbours}.")
+    if not (math.isfinite(splat_size) and splat_size > 0):
+        raise ValueError(f"The splat size must be a finite number above 0, not {splat_size}.")
+    if isolated not in ISOLATED_CHOICES:
+        raise ValueError(f"isolated must be one of {', '.join(ISOLATED_CHOICES)}, not {isolated!r}.")
+    if viewpoint is not None and not (np.shape(viewpoint) == (3,) and np.isfinite(viewpoint).all()):
+        raise ValueError(f"The viewpoint must be 3 finite numbers, not {viewpoint!r}.")

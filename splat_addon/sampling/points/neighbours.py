@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The k nearest neighbours of every point, exactly, in numpy: what a kd-tree gives, for all points at once.
+
+Points are sorted into cubic cells; a point's neighbours are sought in its own cell and the 26 around it. They are
+right once the k-th is no farther than the nearest wall of that block. Points for which it is farther go on to cells
+twice as large: dense regions are finished while the cells are small, sparse ones when they have become large.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .cells import Cells, fine_cell_size
+
+#: Distances computed at a time: their temporaries stay in the processor's cache.
+_BLOCK = 1 << 17
+
+#: A block of cells with fewer candidates than this many times k is not worth the look: on a surface about a third of
+#: the block's points lie in the ball that is certain.
+_WORTH_LOOKING = 2.5
+
+#: The last few points, mostly far from all others, are compared with every point.
+_FEW = 16
+
+
+def nearest_neighbours(positions: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """(N, k) int32 indices and (N, k) float32 distances of each point's nearest others, nearest first.
+
+    positions: (N, 3) float64, finite and pairwise different. count: k, at most N - 1. Distances are compared in
+    float32, so the order of neighbours that are equally far to 7 digits is arbitrary.
+    Raises ValueError where there are too few points.
+    """
+    total = len(positions)
+    if not 1 <= count < total:
+        raise ValueError(f"{total} points do not have {count} neighbours each; ask for 1 to {total - 1}.")
+    positions = positions - positions.min(axis=0)
+    neighbours, squares = np.empty((total, count), np.int32), np.empty((total, count), np.float32)
+    size = fine_cell_size(positions, (count + 1) / 2)
+    waiting = np.arange(total)
+    while len(waiting) > _FEW:
+        cells = Cells(positions, size, waiting)
+        waiting = waiting[~_search(cells, count, neighbours, squares)]
+        size *= 2
+    _compare_with_all(positions, waiting, count, neighbours, squares)
+    return neighbours, np.sqrt(squares)
+
+
+def _search(cells: Cells, count: int, neighbours: np.ndarray, squares: np.ndarray) -> np.ndarray:
+    """Fills the rows of the cells' queries that are certain, and says which of them are, (Q,) bool."""
+    candidates = cells.candidate_counts()
+    certain = np.zeros(len(cells.queries), bool)
+    worth = min(_WORTH_LOOKING * (count + 1), len(cells.order))
+    queries = np.flatnonzero(candidates[cells.cell_of_query] >= worth)
+    queries = queries[np.argsort(candidates[cells.cell_of_query[queries]], kind="stable")]
+    for part in _blocks(candidates[cells.cell_of_query[queries]]):
+        of = queries[part]
+        found, square = _nearest_in_block(cells, of, count)
+        has_all = candidates[cells.cell_of_query[of]] == len(cells.order)
+        good = has_all | (square[:, -1] < cells.certain_squares(of))
+        rows = cells.queries[of[good]]
+        neighbours[rows] = found[good]
+        squares[rows] = square[good] * np.float32(cells.size) ** 2
+        certain[of] = good
+    return certain
+
+
+def _blocks(costs: np.ndarray):
+    """Slices of consecutive queries with about `_BLOCK` candidates in each; costs: (Q,) candidates, ascending."""
+    ends = np.cumsum(costs, dtype=np.int64)
+    start = 0
+    while start < len(costs):
+        done = ends[start - 1] if start else 0
+        stop = max(int(np.searchsorted(ends, done + _BLOCK, "right")), start + 1)
+        yield slice(start, stop)
+        start = stop
+
+
+def _nearest_in_block(cells: Cells, queries: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """(q, k) point indices and (q, k) float32 squared distances, in cells, of the nearest candidates."""
+    # Queries of one cell are consecutive and share their candidates.
+    changes = np.flatnonzero(np.diff(cells.cell_of_query[queries], prepend=-1))
+    repeats = np.diff(changes, append=len(queries))
+    candidates = cells.candidates(cells.cell_of_query[queries[changes]])
+    squared = np.zeros((len(queries), candidates.shape[1]))
+    for column, at in zip(cells.columns, cells.query_columns, strict=True):
+        away = np.repeat(column[candidates], repeats, axis=0)
+        away -= at[queries, None]
+        away *= away
+        squared += away
+    own = cells.place_of_query[queries]
+    places, squares = _smallest(squared, np.repeat(candidates, repeats, axis=0), own, count)
+    return cells.order[places], squares
+
+
+def _smallest(squared: np.ndarray, places: np.ndarray, own: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """The `count` places with the smallest squares of each row, ascending, without `own`; squared is (q, m).
+
+    A float32 that is not negative orders like its bits, so square and place sort as one 64-bit integer.
+    """
+    keys = squared.astype(np.float32).view(np.uint32).astype(np.uint64)
+    keys <<= np.uint64(32)
+    keys |= places.astype(np.uint64)
+    keys = np.partition(keys, count, axis=1)[:, : count + 1]
+    keys.sort(axis=1)
+    found = (keys & np.uint64(0xFFFFFFFF)).astype(np.intp)
+    squares = (keys >> np.uint64(32)).astype(np.uint32).view(np.float32)
+    # A point is its own nearest; where others are as near, it may stand behind them.
+    found[np.arange(len(own)), (found == own[:, None]).argmax(axis=1)] = found[:, 0]
+    return found[:, 1:], squares[:, 1:]
+
+
+def _compare_with_all(positions, queries, count, neighbours, squares):
+    for query in queries:
+        squared = ((positions - positions[query]) ** 2).sum(axis=1)
+        squared[query] = np.inf
+        nearest = np.argpartition(squared, count - 1)[:count]
+        nearest = nearest[np.argsort(squared[nearest], kind="stable")]
+        neighbours[query], squares[query] = nearest, squared[nearest]

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which side of the surface a normal is on: one choice for each connected part, carried from neighbour to neighbour.
+
+Hoppe et al. 1992, section 3.3, with the flip criterion of Xie et al. 2003 at sharp edges: along the minimum spanning
+tree of the neighbour graph, where an edge is cheap if the two tangent planes agree. The tree is grown by Boruvka's
+rounds instead of Prim's queue: in each, every part takes its best edge to another part, all at once in numpy.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+#: Neighbours that the graph connects: more cost time, and bridge thin gaps.
+GRAPH_NEIGHBOURS = 8
+
+#: Edges handled at a time.
+_CHUNK = 1 << 16
+
+
+def consistent_signs(
+    positions: np.ndarray, normals: np.ndarray, neighbours: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(N,) int8 signs, 1 or -1, that turn neighbouring normals to one side, and the (N,) connected part of each point.
+
+    positions, normals: (N, 3) float64. neighbours: (N, k) indices. Parts are numbered from 0 without gaps.
+    """
+    ends = _edges(neighbours[:, :GRAPH_NEIGHBOURS])
+    agreement = _agreement(positions, normals, ends)
+    # 16 bits tell a good edge from a bad one, and are sorted by radix.
+    order = np.argsort((65535 * (1 - np.minimum(np.abs(agreement), 1))).astype(np.uint16), kind="stable")
+    ends, turned = ends[:, order], (agreement[order] < 0)
+    part = np.arange(len(positions))
+    flipped = np.zeros(len(positions), bool)
+    while ends.shape[1]:
+        parent, flip = _merge(part[ends], turned ^ flipped[ends[0]] ^ flipped[ends[1]], len(positions))
+        flipped ^= flip[part]
+        part = parent[part]
+        between = np.flatnonzero(part[ends[0]] != part[ends[1]])
+        ends, turned = ends[:, between], turned[between]
+    return np.where(flipped, -1, 1).astype(np.int8), np.unique(part, return_inverse=True)[1]
+
+
+def facing_outward(positions: np.ndarray, normals: np.ndarray, part: np.ndarray) -> np.ndarray:
+    """(N,) int8 signs, one for each part, so that its normals point away from the part's middle on the whole.
+
+    The sum over (p - middle) . n is, for evenly spread points of a closed surface, proportional to its volume. On a
+    plane it is 0 and says nothing; there a part's mean normal points up, or failing that along y or x.
+    """
+    sizes = np.bincount(part)
+    middles = np.stack([np.bincount(part, column) / sizes for column in positions.T], axis=1)
+    away = positions - middles[part]
+    votes = np.bincount(part, np.einsum("ij,ij->i", away, normals))
+    scale = np.bincount(part, np.linalg.norm(away, axis=1))
+    up = np.bincount(part, normals @ (1e-2, 1e-1, 1.0))
+    votes = np.where(np.abs(votes) > 1e-6 * scale, votes, up)
+    return np.where(votes[part] < 0, -1, 1).astype(np.int8)
+
+
+def facing_viewpoint(positions: np.ndarray, normals: np.ndarray, part: np.ndarray, viewpoint) -> np.ndarray:
+    """(N,) int8 signs, one for each part, so that most of its normals face `viewpoint`, (3,) in the points' units."""
+    towards = np.asarray(viewpoint, np.float64) - positions
+    length = np.linalg.norm(towards, axis=1)
+    cosines = np.einsum("ij,ij->i", towards, normals) / np.where(length > 0, length, 1)
+    return np.where(np.bincount(part, cosines)[part] < 0, -1, 1).astype(np.int8)
+
+
+def _edges(neighbours: np.ndarray) -> np.ndarray:
+    """(2, E) int32 pairs of neighbours; a pair that is found from both ends is kept once."""
+    count = len(neighbours)
+    own, other = np.arange(count, dtype=np.int64)[:, None], neighbours.astype(np.int64)
+    keys = (np.minimum(own, other) * count + np.maximum(own, other)).ravel()
+    keys.sort()
+    keys = keys[np.diff(keys, prepend=-1) > 0]
+    return np.stack(np.divmod(keys, count)).astype(np.int32)
+
+
+def _agreement(positions: np.ndarray, normals: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """(E,) from 1 for neighbours in one plane with the same normal to -1 for opposite ones; near 0 tells little.
+
+    Where the normals are within 60 degrees of one line, their cosine, the less the steeper the edge stands on the
+    planes: a steep one is noise, or leads to another sheet. Else the points are across a sharp edge, and half the
+    cosine after the second normal is reflected in the plane halfway between them tells.
+    """
+    agreement = np.empty(ends.shape[1], np.float32)
+    for start in range(0, ends.shape[1], _CHUNK):
+        part = slice(start, start + _CHUNK)
+        a, b = ends[:, part]
+        along, na, nb = positions[b] - positions[a], normals[a], normals[b]
+        length, da, db, dot = (np.einsum("ij,ij->i", *p) for p in ((along, along), (na, along), (nb, along), (na, nb)))
+        length = np.sqrt(np.where(length > 0, length, 1))
+        da, db = da / length, db / length
+        in_plane = dot * (1 - np.maximum(np.abs(da), np.abs(db)))
+        agreement[part] = np.where(np.abs(dot) >= 0.5, in_plane, (dot - 2 * da * db) / 2)
+    return agreement
+
+
+def _merge(parts: np.ndarray, turned: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Joins every part to another along its best edge.
+
+    parts: (2, E) different parts at the ends of each edge, best edge first. turned: (E,) whether their normals
+    disagree across it. Returns (count,) the root of each part, and (count,) whether it flips to agree with the root.
+    """
+    best = np.full(count, parts.shape[1])
+    for end in parts:
+        first = np.full(count, parts.shape[1])
+        # Of several assignments to one part the last stays: the best edge, when they come in reverse.
+        first[end[::-1]] = np.arange(parts.shape[1])[::-1]
+        best = np.minimum(best, first)
+    joined = np.flatnonzero(best < parts.shape[1])
+    edge = best[joined]
+    parent, flip = np.arange(count), np.zeros(count, bool)
+    parent[joined] = parts[0, edge] + parts[1, edge] - joined
+    flip[joined] = turned[edge]
+    # Two parts that chose the same edge point at each other: the smaller is the root.
+    root = (parent[parent] == np.arange(count)) & (np.arange(count) < parent)
+    parent[root], flip[root] = np.flatnonzero(root), False
+    while True:
+        grandparent = parent[parent]
+        if (grandparent == parent).all():
+            return parent, flip
+        flip ^= flip[parent]
+        parent = grandparent

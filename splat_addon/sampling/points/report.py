@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What happened to bare points on their way to surfels: nothing is left out or made up in silence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class PointsReport:
+    """points: given; surfels: made. non_finite, duplicates: left out. isolated: found, and left out unless
+    `kept_isolated`. estimated_normals, estimated_radii, default_colors: surfels whose own value was missing or
+    unusable. parts: connected parts, each oriented as a whole; 0 where no normal was estimated.
+    """
+
+    points: int
+    surfels: int = 0
+    non_finite: int = 0
+    duplicates: int = 0
+    isolated: int = 0
+    kept_isolated: bool = False
+    estimated_normals: int = 0
+    estimated_radii: int = 0
+    default_colors: int = 0
+    parts: int = 0
+
+    def skipped(self) -> dict[str, int]:
+        """reason -> points left out for it; only reasons that occurred."""
+        reasons = {
+            "that are not finite": self.non_finite,
+            "that repeat another": self.duplicates,
+            "that stand alone": 0 if self.kept_isolated else self.isolated,
+        }
+        return {reason: count for reason, count in reasons.items() if count}
+
+    def notes(self) -> tuple[str, ...]:
+        """A sentence for what was left out, and one for each thing that was estimated."""
+        skipped = ", ".join(f"{count:,} points {reason}" for reason, count in self.skipped().items())
+        made_up = {
+            f"normals of {self.estimated_normals:,} points from their neighbours, in {self.parts:,} connected parts": (
+                self.estimated_normals
+            ),
+            f"radii of {self.estimated_radii:,} points from their neighbours": self.estimated_radii,
+            f"the colour of {self.default_colors:,} points, which have none": self.default_colors,
+        }
+        estimated = "; ".join(what for what, count in made_up.items() if count)
+        return tuple(f"{verb} {what}" for verb, what in (("Skipped", skipped), ("Estimated", estimated)) if what)

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is left out is counted, what is given is used, what cannot be done is a sentence."""
+
+import numpy as np
+import pytest
+
+from splat_addon.sampling import surfels_from_points
+
+
+def test_points_that_are_not_finite_are_counted_and_left_out(grid_points):
+    points = grid_points(20, 20)
+    points[:4, 0] = np.nan, np.inf, -np.inf, 1e30
+    surfels, report = surfels_from_points(points)
+    assert (report.non_finite, report.surfels, len(surfels)) == (4, 396, 396)
+
+
+def test_points_that_repeat_another_are_counted_and_the_first_is_kept(grid_points):
+    points = grid_points(20, 20)
+    colors = np.zeros((440, 3))
+    colors[:400] = 1
+    surfels, report = surfels_from_points(np.concatenate([points, points[::10]]), colors=colors)
+    assert report.duplicates == 40 and len(surfels) == 400
+    assert (surfels.colors[:, :3] == 1).all()
+
+
+@pytest.mark.parametrize(("choice", "kept"), [("drop", 400), ("keep", 402)])
+def test_points_that_stand_alone_are_counted_and_left_out_or_kept(grid_points, choice, kept):
+    points = np.concatenate([grid_points(20, 20), [(10, 10, 30), (0, 0, -1e9)]])
+    surfels, report = surfels_from_points(points, isolated=choice)
+    assert report.isolated == 2 and len(surfels) == kept
+    assert surfels.radius.max() < 2
+    assert report.skipped() == ({"that stand alone": 2} if choice == "drop" else {})
+
+
+def test_surfels_are_in_the_order_of_the_points(sphere_points):
+    points, _ = sphere_points(3000)
+    surfels, _ = surfels_from_points(points, isolated="keep")
+    assert np.allclose(surfels.origin + surfels.positions, points, atol=1e-6)
+
+
+def test_positions_far_from_the_origin_lose_nothing(grid_points):
+    points = grid_points(20, 20) + 1e7
+    surfels, _ = surfels_from_points(points)
+    assert np.array_equal(surfels.origin + surfels.positions, points)
+
+
+def test_colours_are_used_and_unusable_ones_are_counted(grid_points):
+    colors = np.tile([0.1, 0.2, 5.0, 0.5], (400, 1))
+    colors[7, 2] = np.nan
+    surfels, report = surfels_from_points(grid_points(20, 20), colors=colors)
+    assert np.allclose(np.delete(surfels.colors, 7, axis=0), (0.1, 0.2, 5.0, 0.5))
+    assert report.default_colors == 1
+
+
+def test_one_point_with_everything_given_is_enough():
+    surfels, report = surfels_from_points([(1, 2, 3)], [(0, 0, 2)], [0.5])
+    assert len(surfels) == 1 and report.notes() == ()
+    assert np.allclose(surfels.scales, 0.5) and np.allclose(surfels.geometric_normals(), (0, 0, 1))
+
+
+def test_no_points_give_no_surfels():
+    surfels, report = surfels_from_points(np.empty((0, 3)))
+    assert len(surfels) == report.points == 0
+
+
+def test_the_notes_name_every_number(grid_points):
+    points = np.concatenate([grid_points(20, 20), [(np.nan, 0, 0), (0, 0, 0)]])
+    _, report = surfels_from_points(points)
+    assert report.notes() == (
+        "Skipped 1 points that are not finite, 1 points that repeat another",
+        "Estimated normals of 400 points from their neighbours, in 1 connected parts; "
+        "radii of 400 points from their neighbours",
+    )
+
+
+@pytest.mark.parametrize(
+    ("points", "settings", "sentence"),
+    [
+        (np.zeros((4, 2)), {}, r"positions must have shape \(4, 3\), not \(4, 2\)"),
+        (np.eye(3), {"normals": np.eye(2)}, r"normals must have shape \(3, 3\)"),
+        (np.eye(3), {"colors": np.ones((3, 2))}, r"colors must have shape \(3, 3\) or \(3, 4\)"),
+        (np.eye(3), {}, "3 usable points are too few"),
+        (np.ones((9, 3)), {}, "1 usable points are too few"),
+        (np.full((9, 3), np.nan), {}, "None of the 9 points has finite coordinates"),
+        (np.eye(3), {"neighbours": 2}, "whole number of 3 or more, not 2"),
+        (np.eye(3), {"splat_size": 0}, "splat size must be a finite number above 0, not 0"),
+        (np.eye(3), {"isolated": "maybe"}, "must be one of drop, keep, not 'maybe'"),
+        (np.eye(3), {"viewpoint": (0, 0, np.nan)}, "viewpoint must be 3 finite numbers"),
+    ],
+)
+def test_what_cannot_be_done_is_a_sentence(points, settings, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        surfels_from_points(points, **settings)
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        np.outer(np.arange(50.0), (1, 2, 3)),
+        np.arange(6.0)[:, None] % 2 + 1e-9 * np.random.default_rng(0).random((6, 3)),
+        1e-30 * np.random.default_rng(0).random((50, 3)),
+        1e17 * np.random.default_rng(0).random((50, 3)),
+    ],
+    ids=["on a line", "in two places", "very small", "very large"],
+)
+def test_degenerate_points_become_usable_surfels(points):
+    surfels, _ = surfels_from_points(points, isolated="keep")
+    assert len(surfels) == len(points)

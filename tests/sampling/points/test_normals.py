@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Estimated normals against those of a sphere, a torus and a scanned mesh, and the side they are on."""
+
+import numpy as np
+import pytest
+
+from splat_addon.sampling import surfels_from_points
+from splat_addon.sampling.points.normals import plane_normals
+
+
+def angles(surfels, normals):
+    """Degrees between the estimated normals and the true ones, side included."""
+    return np.degrees(np.arccos(np.clip((surfels.normals * normals).sum(axis=1), -1, 1)))
+
+
+@pytest.mark.parametrize("shape", ["sphere_points", "torus_points"])
+@pytest.mark.parametrize(("noise", "typical", "worst"), [(0.0, 1.1, 10.0), (0.003, 2.5, 15.0)])
+def test_normals_are_close_to_the_true_ones_and_all_outward(request, shape, noise, typical, worst):
+    points, normals = request.getfixturevalue(shape)(20_000, noise)
+    surfels, _ = surfels_from_points(points, isolated="keep")
+    error = angles(surfels, normals)
+    assert np.median(error) < typical and error.max() < worst
+
+
+def test_two_parts_are_each_outward(sphere_points):
+    points, normals = sphere_points(5000)
+    surfels, report = surfels_from_points(np.concatenate([points, 0.1 * points + 5]))
+    assert report.parts == 2
+    assert (angles(surfels, np.concatenate([normals, normals])) < 30).all()
+
+
+def test_from_a_viewpoint_inside_normals_face_inward(sphere_points):
+    points, normals = sphere_points(5000)
+    surfels, _ = surfels_from_points(points + 1e4, viewpoint=(1e4, 1e4, 1e4))
+    assert (angles(surfels, -normals) < 30).all()
+
+
+def test_a_flat_sheet_faces_up(grid_points):
+    surfels, _ = surfels_from_points(grid_points(20, 20))
+    assert np.allclose(surfels.normals, (0, 0, 1))
+
+
+def test_normals_turn_with_a_sharp_edge():
+    """Neighbouring normals there are at right angles, which says nothing about their sides; the reflection does."""
+    side = (np.stack(np.meshgrid(np.arange(20), np.arange(20)), -1).reshape(-1, 2) + 0.5) / 20
+    faces = [np.insert(side, axis, end, axis=1) for axis in range(3) for end in (0.0, 1.0)]
+    points = np.concatenate(faces)
+    surfels, _ = surfels_from_points(points)
+    assert ((surfels.normals * (points - 0.5)).sum(axis=1) > 0).all()
+
+
+def test_the_range_map_faces_its_scanner(range_map):
+    surfels, report = surfels_from_points(range_map, viewpoint=(0, 0, 0))
+    towards = -(surfels.origin + surfels.positions)
+    assert ((surfels.normals * towards).sum(axis=1) > 0).mean() > 0.999
+    assert report.isolated == 41
+
+
+def test_given_normals_are_used_where_they_are_usable(sphere_points):
+    points, normals = sphere_points(2000)
+    given = -3 * normals
+    given[:10], given[10:20] = 0, np.nan
+    surfels, report = surfels_from_points(points, given, isolated="keep")
+    assert np.allclose(surfels.normals[20:], -normals[20:], atol=1e-6)
+    assert report.estimated_normals == 20
+
+
+@pytest.mark.parametrize("scale", [1e-150, 1e-6, 1.0, 1e100])
+def test_a_plane_is_found_at_any_scale(scale):
+    points = scale * np.random.default_rng(2).normal(size=(9, 3)) @ np.diag([1, 1, 0])
+    assert np.allclose(np.abs(plane_normals(points, np.arange(1, 9)[None])), (0, 0, 1))
+
+
+def test_points_on_a_line_get_a_normal_across_it():
+    points = np.outer(np.arange(9.0), (1, 2, 3))
+    (normal,) = plane_normals(points, np.arange(1, 9)[None])
+    assert np.linalg.norm(normal) == pytest.approx(1) and abs(normal @ (1, 2, 3)) < 1e-6
