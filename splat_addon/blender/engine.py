@@ -35,14 +35,4 @@ class SurfelSplattingEngine(bpy.types.RenderEngine):
         viewport.guarded(self, viewport.draw, context, depsgraph)
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((SurfelSplattingEngine,))
-
-
-def register():
-    _register_classes()
-    final_render.register()
-
-
-def unregister():
-    final_render.unregister()
-    _unregister_classes()
+register, unregister = bpy.utils.register_classes_factory((SurfelSplattingEngine,))

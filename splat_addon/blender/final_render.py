@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
+import sys
 import traceback
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import bpy
 import numpy as np
-from bpy.app.handlers import persistent
 
 from ..rendering import Frame, RenderCancelled, Renderer, open_device
 from .camera_export import final_camera
@@ -55,9 +55,10 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
         scene, notes = _read(depsgraph, resources.store)
         frame = resources.renderer.render(scene, camera, settings, progress=lambda *step: _progress(engine, *step))
     except RenderCancelled:
+        _release_resources()
         return
     finally:
-        if _RELEASED_IN_RENDER and _is_last_frame(engine, depsgraph.scene):
+        if _is_last_of_render(engine, depsgraph):
             _release_resources()
     notes.add(_FLATTENED, frame.stats["instances_degenerate"])
     for sentence in notes.sentences():
@@ -87,18 +88,18 @@ def report_failure(engine: bpy.types.RenderEngine, error: Exception) -> None:
 
 
 class _Resources:
-    """What the frames and view layers of one render share, until Blender says that it has ended.
+    """What the frames and view layers of one render share.
 
-    It belongs to this module and not to the engine's instance, which Blender frees without a graphics context.
+    It belongs to this module and not to the engine's instance, which Blender frees without a graphics context, as it
+    calls its handlers. Textures that go then abort Blender 4.5, and spoil the next render on 5.2's OpenGL; so they go
+    in `render`, with the last picture. A render that ends before its scene's last frame, by Esc between two frames
+    or because the operator was given a shorter range, leaves them to the next one.
     """
 
     def __init__(self):
         self.store = SurfelStore()
         self.renderer = Renderer(open_device("blender"))
 
-
-#: Blender 4.5 aborts where textures go without a graphics context, and has one only while render() runs.
-_RELEASED_IN_RENDER = bpy.app.version < (5, 0, 0)
 
 _resources: _Resources | None = None
 
@@ -116,27 +117,17 @@ def _release_resources() -> None:
     _resources = None
 
 
-def _is_last_frame(engine, scene) -> bool:
-    return not engine.is_animation or scene.frame_current + scene.frame_step > scene.frame_end
+def _is_last_of_render(engine, depsgraph) -> bool:
+    scene = depsgraph.scene
+    later_frames = engine.is_animation and scene.frame_current + scene.frame_step <= scene.frame_end
+    if later_frames and not _ARE_FRAMES_NAMED:
+        return False
+    layers = [layer.name for layer in scene.view_layers if layer.use]
+    return scene.render.use_single_layer or depsgraph.view_layer.name in layers[-1:]
 
 
-@persistent
-def _on_render_end(*_) -> None:
-    if not _RELEASED_IN_RENDER:
-        _release_resources()
-
-
-_END_HANDLERS = (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel)
-
-
-def register():
-    for handlers in _END_HANDLERS:
-        handlers.append(_on_render_end)
-
-
-def unregister():
-    for handlers in _END_HANDLERS:
-        handlers.remove(_on_render_end)
+#: `blender --background -f 1,5` calls each of its frames an animation, and none of them the last.
+_ARE_FRAMES_NAMED = bool({"-f", "--render-frame"} & set(sys.argv))
 
 
 def _asked_for(view_layer) -> list[RenderPass]:

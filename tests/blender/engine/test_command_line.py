@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`blender --background file.blend -E SURFEL_SPLATTING -o //frame_ -f 1`: files and exit codes."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import bpy
+import pytest
+
+import splat_addon
+
+pytestmark = pytest.mark.skipif(not bpy.app.binary_path, reason="the bpy wheel has no command line; use a program")
+
+MODULE = "surfel_splatting_checkout"
+INSTALL = """
+import addon_utils, bpy
+bpy.ops.wm.read_factory_settings(use_empty=True)
+addon_utils.enable({module!r}, default_set=True)
+bpy.ops.wm.save_userpref()
+"""
+
+
+@pytest.fixture(scope="module")
+def user_folder(tmp_path_factory):
+    """A user's folder in which the checkout is an enabled add-on."""
+    folder = tmp_path_factory.mktemp("user")
+    add_ons = folder / "scripts" / "addons"
+    add_ons.mkdir(parents=True)
+    checkout = Path(splat_addon.__file__).resolve().parent.parent
+    text = f"import sys\nsys.path.insert(0, {str(checkout)!r})\nfrom splat_addon import register, unregister\n"
+    (add_ons / f"{MODULE}.py").write_text(f'bl_info = {{"name": "checkout", "blender": (4, 5, 0)}}\n{text}')
+    result = blender(folder, "--python-expr", INSTALL.format(module=MODULE))
+    assert result.returncode == 0, result.stdout
+    return folder
+
+
+def blender(user_folder, *arguments) -> subprocess.CompletedProcess:
+    """This program, with the graphics backend that it was started with."""
+    before = sys.argv[: sys.argv.index("--")]
+    at = before.index("--gpu-backend") if "--gpu-backend" in before else len(before)
+    return subprocess.run(
+        [bpy.app.binary_path, "--background", *before[at : at + 2], "--python-exit-code", "1", *map(str, arguments)],
+        env={**os.environ, "BLENDER_USER_RESOURCES": str(user_folder)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=120,
+    )
+
+
+@pytest.fixture
+def render_file(user_folder, scene, add_surfels, tmp_path):
+    """render_file(arguments) -> what became of the scene's file, saved for another engine, on the command line."""
+
+    def run(*arguments) -> subprocess.CompletedProcess:
+        scene.render.engine = "BLENDER_WORKBENCH"
+        path = tmp_path / "scene.blend"
+        bpy.ops.wm.save_as_mainfile(filepath=str(path))
+        return blender(user_folder, path, "-E", "SURFEL_SPLATTING", "-o", "//frame_", *arguments)
+
+    return run
+
+
+@pytest.fixture
+def surfels(add_surfels):
+    return add_surfels([(0, 0, 0)], size=1)
+
+
+def test_a_frame_is_written_and_the_exit_code_is_0(render_file, surfels, add_camera, tmp_path, read_picture):
+    add_camera()
+    result = render_file("-f", "1")
+    assert result.returncode == 0, result.stdout
+    drawn = read_picture(tmp_path / "frame_0001.exr")
+    assert tuple(drawn[16, 16]) == (1, 1, 1, 1) and not drawn[0, 0].any()
+
+
+def test_an_animation_is_written_frame_by_frame(render_file, surfels, add_camera, tmp_path, read_picture):
+    add_camera()
+    surfels.keyframe_insert("location", frame=1)
+    surfels.location.x = 2
+    surfels.keyframe_insert("location", frame=2)
+    result = render_file("-s", "1", "-e", "2", "-a")
+    assert result.returncode == 0, result.stdout
+    first, second = (read_picture(tmp_path / f"frame_000{number}.exr")[..., 3] for number in (1, 2))
+    assert first[16, 16] == 1 and second[16, 16] == 0 and second[16, 25] == 1
+
+
+def test_without_a_camera_no_frame_is_written_and_the_exit_code_is_1(render_file, surfels, tmp_path):
+    result = render_file("-f", "1")
+    assert result.returncode == 1 and "no camera" in result.stdout
+    assert not list(tmp_path.glob("frame_*"))
+
+
+def test_a_camera_that_cannot_be_rendered_is_named_and_the_exit_code_is_1(render_file, surfels, add_camera, tmp_path):
+    add_camera(type="PANO")
+    result = render_file("-f", "1")
+    assert result.returncode == 1
+    assert "Surfel render failed: The camera 'camera' is PANO; make it perspective or orthographic." in result.stdout
+    assert not list(tmp_path.glob("frame_*"))
