@@ -72,13 +72,14 @@ class Reduction:
 REDUCTIONS: dict[str, Reduction] = {
     "normal": Reduction(
         "Normal",
-        "Sample every face along the axis that it faces most. No holes, nothing twice",
+        "Sample each face along the axis that it faces most. Leaves 56 to 92 of 100 samples, and no holes",
         keeps=keep_dominant,
         counts=keep_dominant,
     ),
     "grazing": Reduction(
         "Grazing Rejection",
-        "Sample along all three axes, but not where the surface is seen at a grazing angle (Zwicker's reduction)",
+        "Sample along all three axes, but not where a face is seen at a grazing angle (Zwicker's reduction). "
+        "Leaves 86 to 98 of 100 samples at 70 degrees; most surfaces are sampled more than once",
         keeps=keep_facing,
         counts=keep_facing,
         has_angle=True,
@@ -87,7 +88,8 @@ REDUCTIONS: dict[str, Reduction] = {
     "three_to_one": Reduction(
         "3-to-1",
         "Sample along all three axes, move each surfel to the nearest node of a lattice and keep one a node "
-        "(Pfister's reduction)",
+        "(Pfister's reduction). Leaves 45 to 89 of 100 samples, up to half a spacing off the surface, and makes one "
+        "sheet of two that lie closer than a spacing",
         keeps=keep_all,
         counts=keep_dominant,
         merge=nearest_to_lattice,

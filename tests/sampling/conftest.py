@@ -36,7 +36,17 @@ def sphere():
 @pytest.fixture(scope="session")
 def armadillo(models):
     """A closed scan of 86,482 triangles."""
-    with gzip.open(models / "armadillo.obj.gz", "rt") as lines:
+    return read_obj(models / "armadillo.obj.gz")
+
+
+@pytest.fixture(scope="session")
+def truck(models):
+    """4,770 triangles in 50 parts, many open and thin."""
+    return read_obj(models / "truck.obj.gz")
+
+
+def read_obj(path):
+    with gzip.open(path, "rt") as lines:
         rows = [line.split() for line in lines]
     positions = np.array([r[1:4] for r in rows if r[:1] == ["v"]], float)
     triangles = np.array([[c.split("/")[0] for c in r[1:4]] for r in rows if r[:1] == ["f"]], int) - 1
