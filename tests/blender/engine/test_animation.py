@@ -84,6 +84,21 @@ def test_surfels_whose_values_change_are_uploaded_again(two, frames, uploads):
     assert not np.array_equal(shot[0][16:], shot[2][16:])
 
 
+def test_values_that_a_script_changes_before_a_frame_are_seen(two, frames):
+    standing, _ = two
+
+    def move(scene, *_):
+        standing.data.attributes["position"].data[0].vector = (scene.frame_current, 3, 0)
+
+    bpy.app.handlers.frame_change_pre.append(move)
+    try:
+        shot = frames()
+    finally:
+        bpy.app.handlers.frame_change_pre.remove(move)
+    columns = [np.average(np.arange(32), weights=picture[20:, :, 3].sum(axis=0)) for picture in shot]
+    assert np.diff(columns) == pytest.approx([4.4, 4.4], abs=0.5)
+
+
 def test_surfels_under_unchanging_modifiers_are_uploaded_once(two, frames, uploads, add_nodes):
     """Blender evaluates them anew for each frame, if anything of theirs moves."""
     for made in two:

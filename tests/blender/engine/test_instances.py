@@ -96,14 +96,32 @@ def test_linked_duplicates_are_drawn_in_their_own_places(scene, motif, picture, 
     assert_same_picture(whole, sum(alone))
 
 
-def test_duplicates_of_one_mesh_keep_their_own_modifiers(scene, motif, add_nodes, picture):
+def test_duplicates_of_one_mesh_keep_their_own_modifiers(scene, motif, add_nodes, picture, assert_same_picture):
     """Their evaluated meshes have one name."""
-    emptied = place(motif.copy(), (2.5, 0, 0))
-    scene.collection.objects.link(emptied)
     motif.location.x = -2.5
-    add_nodes(emptied, lambda tree, start, end: None)
-    drawn = picture()[..., 3]
-    assert drawn[:, :16].any() and not drawn[:, 16:].any()
+    alone = picture()
+    moved = motif.copy()
+    scene.collection.objects.link(moved)
+    add_nodes(moved, moved_by_five)
+    both = picture()
+    assert_same_picture(both[:, :16], alone[:, :16])
+    motif.hide_render = True
+    assert_same_picture(both[:, 16:], picture()[:, 16:])
+
+
+def moved_by_five(tree, start, end):
+    move = tree.nodes.new("GeometryNodeTransform")
+    move.inputs["Translation"].default_value = (5, 0, 0)
+    tree.links.new(start, move.inputs["Geometry"])
+    tree.links.new(move.outputs["Geometry"], end)
+
+
+def test_an_instancer_that_hides_itself_shows_only_its_instances(motif, add_surfels, picture, assert_same_picture):
+    alone = picture()
+    instancer = add_surfels([(0, 0, 0)], size=2)
+    instancer.instance_type, instancer.show_instancer_for_render = "VERTS", False
+    motif.parent = instancer
+    assert_same_picture(alone, picture())
 
 
 def test_what_is_hidden_from_render_is_not_drawn(scene, motif, picture):

@@ -55,6 +55,16 @@ def test_a_transform_moves_every_surfel(name, scene, shell, add_object, picture,
     assert_same_picture(drawn, picture(), ties=np.count_nonzero(drawn[..., 3]) // 50)
 
 
+@pytest.mark.parametrize("size", [1e-5, 1e-3, 1e5, 1e14])
+def test_a_scene_of_any_size_looks_the_same(size, scene, shell, picture, assert_same_picture):
+    scene.camera.location = (0, 0, 0)
+    shell.location = (0.1, 0.2, -10)
+    expected = picture()
+    shell.location, shell.scale = np.multiply(size, (0.1, 0.2, -10)), (size,) * 3
+    scene.camera.data.clip_start, scene.camera.data.clip_end = 1e-6 * max(size, 1), 20 * size
+    assert_same_picture(expected, picture(), ties=3)
+
+
 def mapped(surfels: Surfels, linear: np.ndarray) -> Surfels:
     """An ellipse's image under a (3, 3) map is an ellipse, whose axes are the singular vectors of the mapped ones."""
     axes = np.stack(surfels.half_axes(), axis=2).astype(np.float64)
