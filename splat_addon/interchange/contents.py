@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a PLY file holds, by its properties: surfels, Gaussians, or points that have yet to become surfels."""
+
+from __future__ import annotations
+
+import os
+
+from .gaussian_ply import DEFAULT_FLATNESS, Gaussians, gaussians, is_gaussians
+from .ply_file import read_vertices
+from .point_ply import Points, points
+from .surfel_ply import StoredSurfels, is_surfels, stored_surfels
+
+
+def read_contents(
+    path: str | os.PathLike, flatness: float = DEFAULT_FLATNESS
+) -> StoredSurfels | Gaussians | Points:
+    """The vertices of any PLY file; faces are passed over.
+
+    flatness: how thick a Gaussian may be, in its middle sigma, to pass as a surfel.
+    Raises ValueError with one sentence for a file that is not PLY, is damaged or has no positions; OSError.
+    """
+    columns, comments = read_vertices(path)
+    if is_gaussians(columns):
+        return gaussians(columns, flatness)
+    if is_surfels(columns):
+        return stored_surfels(columns, comments)
+    return points(columns)

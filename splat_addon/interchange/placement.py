@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfels moved by an affine map, as a file in world coordinates needs them, and several sets as one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..surfels import Surfels, axes_quaternions, concatenate, empty_surfels
+
+
+def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
+    """The surfels under a (4, 4) affine map: exactly the ellipses that the map makes of theirs.
+
+    The images of the half-axes are conjugate half-diameters p, q; the principal axes are p cos t + q sin t and
+    q cos t - p sin t where tan 2t = 2 p.q / (p.p - q.q). Normals go by the inverse transpose.
+    Raises ValueError for a map that is not finite or flattens everything.
+    """
+    matrix = np.asarray(matrix, np.float64)
+    linear, shift = matrix[:3, :3], matrix[:3, 3]
+    if not np.isfinite(matrix).all() or np.linalg.det(linear) == 0:
+        raise ValueError("The surfels cannot be moved by a transform that is not finite or has a scale of 0.")
+    origin = linear @ surfels.origin + shift
+    if (linear == np.eye(3)).all():
+        return _replaced(surfels, origin=origin)
+    p, q = (axis.astype(np.float64) @ linear.T for axis in surfels.half_axes())
+    pp, qq, pq = (np.einsum("ij,ij->i", a, b)[:, None] for a, b in ((p, p), (q, q), (p, q)))
+    angle = np.arctan2(2 * pq, pp - qq) / 2
+    # Axes that are still at right angles, as after a rotation, stay the axes, whichever is longer.
+    angle[np.abs(pq) < 1e-6 * np.sqrt(pp * qq)] = 0
+    long, short = p * np.cos(angle) + q * np.sin(angle), q * np.cos(angle) - p * np.sin(angle)
+    normals, geometric = (
+        _unit(n.astype(np.float64) @ np.linalg.inv(linear)) for n in (surfels.normals, surfels.geometric_normals())
+    )
+    x = _unit(long)
+    return _replaced(
+        surfels,
+        origin=origin,
+        positions=surfels.positions.astype(np.float64) @ linear.T,
+        rotations=axes_quaternions(x, np.cross(geometric, x), geometric),
+        scales=np.stack([np.linalg.norm(axis, axis=1) for axis in (long, short)], axis=1),
+        normals=normals,
+    )
+
+
+def joined(parts: list[Surfels]) -> Surfels:
+    """One set of several; where their origins differ, all are moved to the first one's."""
+    if not parts:
+        return empty_surfels()
+    origin = parts[0].origin
+    return concatenate([_replaced(p, origin=origin, positions=p.positions + (p.origin - origin)) for p in parts])
+
+
+def _replaced(surfels: Surfels, **changes) -> Surfels:
+    names = ("positions", "rotations", "scales", "normals", "colors", "materials", "origin", "is_solid")
+    return Surfels(**({name: getattr(surfels, name) for name in names} | changes))
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfels as a PLY file that keeps every bit of them, in properties that other programs know where there are such.
+
+| property | type | meaning |
+|---|---|---|
+| x y z | float; double where the surfels' origin is not 0 | position, origin included |
+| nx ny nz | float | shading normal |
+| red green blue alpha | uchar | colour as other programs show it: sRGB, opacity |
+| color_0 .. color_3 | float | colour, scene-linear, and opacity: the exact one |
+| rot_0 .. rot_3 | float | quaternion w x y z; its z axis is the geometric normal |
+| scale_0 scale_1 | float | half-axes along the quaternion's x and y axes, not logarithms |
+| radius | float | the larger half-axis |
+| material | int | index of the material slot |
+
+Comments: "surfel_splatting 1", "origin X Y Z" where it is not 0, "solid" where the surfels are.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..surfels import LAYOUT, Surfels, valid_surfels
+from .columns import NORMAL, POSITION, ROTATION, display_color, has, linear_to_srgb, matrix, split
+from .ply_file import read_vertices, write_vertices
+
+_VERSION, _ORIGIN, _SOLID = "surfel_splatting 1", "origin", "solid"
+_SCALE = ("scale_0", "scale_1")
+_COLOR = ("color_0", "color_1", "color_2", "color_3")
+_DISPLAY_COLOR = ("red", "green", "blue", "alpha")
+_WHITE = (1.0, 1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class StoredSurfels:
+    """Surfels as a file has them, and how many of its rows were not usable."""
+
+    surfels: Surfels
+    unusable: int
+
+
+def write_ply(path: str | os.PathLike, surfels: Surfels, ascii: bool = False) -> None:
+    """Write `surfels` with everything that they have; see the layout above. Raises OSError where that is impossible."""
+    has_origin = bool(surfels.origin.any())
+    positions = surfels.positions + surfels.origin if has_origin else surfels.positions
+    shown = np.clip(surfels.colors.astype(np.float64), 0, 1)
+    shown[:, :3] = linear_to_srgb(shown[:, :3])
+    columns = {
+        **split(POSITION, positions),
+        **split(NORMAL, surfels.normals),
+        **split(_DISPLAY_COLOR, np.rint(255 * shown).astype(np.uint8)),
+        **split(_COLOR, surfels.colors),
+        **split(ROTATION, surfels.rotations),
+        **split(_SCALE, surfels.scales),
+        "radius": surfels.radius,
+        "material": surfels.materials,
+    }
+    origin = " ".join(repr(float(value)) for value in surfels.origin)
+    comments = [_VERSION, *([f"{_ORIGIN} {origin}"] * has_origin), *([_SOLID] * surfels.is_solid)]
+    write_vertices(path, columns, tuple(comments), ascii)
+
+
+def read_ply(path: str | os.PathLike) -> Surfels:
+    """The surfels of a file that `write_ply` made: the same bits, where the origin is 0; else positions may lose what
+    is below the 16th digit of the coordinate.
+
+    Raises ValueError with one sentence for a damaged file, one of another layout, or rows that are no surfels.
+    """
+    columns, comments = read_vertices(path)
+    if not is_surfels(columns):
+        raise ValueError("The PLY file does not hold surfels: of x y z, nx ny nz, rot_0..3, scale_0..1 one is missing.")
+    return Surfels(**_fields(columns, comments))
+
+
+def is_surfels(columns: dict[str, np.ndarray]) -> bool:
+    """Whether the columns are laid out as here; the scales of Gaussians are another thing under the same name."""
+    return has(columns, POSITION, NORMAL, ROTATION, _SCALE) and not has(columns, ("opacity",))
+
+
+def stored_surfels(columns: dict[str, np.ndarray], comments: tuple[str, ...]) -> StoredSurfels:
+    """The usable rows. Raises ValueError where a comment is damaged."""
+    return StoredSurfels(*valid_surfels(**_fields(columns, comments)))
+
+
+def _fields(columns: dict[str, np.ndarray], comments: tuple[str, ...]) -> dict:
+    origin = _origin(comments)
+    positions = matrix(columns, POSITION, np.float64)
+    # Infinite rows stay so, or become NaN, and are counted as unusable.
+    with np.errstate(over="ignore", invalid="ignore"):
+        positions = (positions - origin).astype(np.float32)
+    colors = matrix(columns, _COLOR) if has(columns, _COLOR) else display_color(columns)
+    material = columns.get("material", np.zeros(len(positions)))
+    return {
+        "positions": positions,
+        "rotations": matrix(columns, ROTATION),
+        "scales": matrix(columns, _SCALE),
+        "normals": matrix(columns, NORMAL),
+        "colors": np.tile(np.float32(_WHITE), (len(positions), 1)) if colors is None else colors,
+        "materials": np.clip(np.nan_to_num(material), -1, 2**31 - 1).astype(LAYOUT["materials"][1]),
+        "origin": origin,
+        "is_solid": _SOLID in comments,
+    }
+
+
+def _origin(comments: tuple[str, ...]) -> np.ndarray:
+    for comment in comments:
+        word, *values = comment.split()[:5] or [""]
+        if word == _ORIGIN and _VERSION in comments:
+            try:
+                origin = np.array([float(value) for value in values])
+            except ValueError:
+                origin = np.empty(0)
+            if origin.shape != (3,) or not np.isfinite(origin).all():
+                raise ValueError(f"The PLY file's comment {comment[:80]!r} must hold 3 finite numbers; correct it.")
+            return origin
+    return np.zeros(3)

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfels of random values, files of given bytes, and a comparison of every bit."""
+
+import numpy as np
+import pytest
+
+from splat_addon.surfels import LAYOUT, Surfels
+
+
+@pytest.fixture
+def surfels():
+    """surfels(n, **fields) -> n surfels of random values, the same every time."""
+
+    def make(count, **fields):
+        random = np.random.default_rng(7)
+        rotations, normals = random.normal(size=(count, 4)), random.normal(size=(count, 3))
+        values = {
+            "positions": random.normal(size=(count, 3)),
+            "rotations": rotations / np.linalg.norm(rotations, axis=1, keepdims=True),
+            "scales": random.uniform(0.1, 2.0, (count, 2)),
+            "normals": normals / np.linalg.norm(normals, axis=1, keepdims=True),
+            "colors": random.uniform(size=(count, 4)),
+            "materials": random.integers(0, 9, count),
+        }
+        return Surfels(**(values | fields))
+
+    return make
+
+
+@pytest.fixture
+def assert_same_bits():
+    """assert_same_bits(a, b): every array of two sets of surfels, and what else they hold."""
+
+    def check(a, b):
+        for name in LAYOUT:
+            assert getattr(a, name).tobytes() == getattr(b, name).tobytes(), name
+        assert (a.origin == b.origin).all() and a.is_solid == b.is_solid
+
+    return check
+
+
+@pytest.fixture
+def ply(tmp_path):
+    """ply(head, body=b"") -> the path of a file with these lines between "ply" and "end_header", and these bytes."""
+
+    def write(head, body=b""):
+        path = tmp_path / "given.ply"
+        path.write_bytes("\n".join(["ply", *head, "end_header", ""]).encode("latin-1") + body)
+        return path
+
+    return write

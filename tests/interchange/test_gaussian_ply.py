@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfels as flat Gaussians and back, and the Gaussians of other writers."""
+
+import numpy as np
+import plyfile
+import pytest
+
+from splat_addon.interchange import Gaussians, read_contents, write_gaussian_ply
+from splat_addon.surfels import quaternion_axes
+
+NAMES = ("x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2",
+         "rot_0", "rot_1", "rot_2", "rot_3")  # fmt: skip
+
+
+@pytest.fixture
+def gaussian_file(tmp_path):
+    """gaussian_file(rows, leave_out=()) -> path of a file with a Gaussian for each dict of properties, the rest 0."""
+
+    def write(rows, leave_out=(), extra=()):
+        names = [n for n in (*NAMES, *extra) if n not in leave_out]
+        filled = [tuple({"rot_0": 1, **row}.get(n, 0) for n in names) for row in rows]
+        values = np.array(filled, [(n, "f4") for n in names])
+        plyfile.PlyData([plyfile.PlyElement.describe(values, "vertex")]).write(tmp_path / "g.ply")
+        return tmp_path / "g.ply"
+
+    return write
+
+
+def test_plyfile_reads_the_conventional_values(surfels, tmp_path):
+    written = surfels(50, scales=[(0.5, 0.02)] * 50, colors=[(0.2158605, 1, 0, 0.25)] * 50)
+    write_gaussian_ply(tmp_path / "g.ply", written)
+    vertex = plyfile.PlyData.read(tmp_path / "g.ply")["vertex"]
+    assert tuple(p.name for p in vertex.properties) == NAMES
+    assert all(p.val_dtype == "f4" for p in vertex.properties)
+    shown = [0.5 + 0.28209479177387814 * vertex[f"f_dc_{k}"][0] for k in range(3)]
+    assert np.allclose(shown, (128 / 255, 1, 0), atol=1e-3)
+    assert np.allclose(1 / (1 + np.exp(-vertex["opacity"])), 0.25)
+    assert np.allclose(np.exp(vertex["scale_0"]), 0.25) and np.allclose(np.exp(vertex["scale_1"]), 0.01)
+    assert np.allclose(np.exp(vertex["scale_2"]), 1e-5)
+
+
+@pytest.mark.parametrize("count", [0, 1, 500])
+def test_surfels_come_back_to_float32(surfels, tmp_path, count):
+    written = surfels(count, materials=np.zeros(count))
+    write_gaussian_ply(tmp_path / "g.ply", written)
+    read = read_contents(tmp_path / "g.ply")
+    assert isinstance(read, Gaussians) and (read.total, read.not_flat, read.unusable) == (count, 0, 0)
+    for exact in ("positions", "rotations", "normals"):
+        assert np.array_equal(getattr(read.surfels, exact), getattr(written, exact)), exact
+    assert np.allclose(read.surfels.scales, written.scales, rtol=1e-6, atol=0)
+    assert np.allclose(read.surfels.colors, written.colors, rtol=2e-6, atol=1e-7)
+
+
+def test_opaque_surfels_come_back_opaque(surfels, tmp_path):
+    write_gaussian_ply(tmp_path / "g.ply", surfels(2, colors=[(1, 1, 1, 1), (1, 1, 1, 0)]))
+    assert np.allclose(read_contents(tmp_path / "g.ply").surfels.colors[:, 3], (1, 0), atol=3e-9)
+    assert np.isfinite(plyfile.PlyData.read(tmp_path / "g.ply")["vertex"]["opacity"]).all()
+
+
+@pytest.mark.parametrize("thin", [0, 1, 2])
+def test_the_thin_axis_becomes_the_normal(gaussian_file, thin):
+    sigmas = np.roll([1e-3, 0.5, 2.0], thin)
+    rotation = np.array([0.5, 0.1, -0.7, 0.3]) / np.sqrt(0.84)
+    row = {f"scale_{k}": np.log(s) for k, s in enumerate(sigmas)} | {f"rot_{k}": r for k, r in enumerate(rotation)}
+    surfels = read_contents(gaussian_file([row])).surfels
+    axes = np.array(quaternion_axes(rotation[None]))[:, 0]
+    for half_axis, axis in zip(surfels.half_axes(), np.roll(np.arange(3), -thin)[1:], strict=True):
+        assert np.allclose(half_axis[0], 2 * sigmas[axis] * axes[axis], atol=1e-5)
+    assert np.allclose(surfels.normals, axes[thin], atol=1e-6)
+
+
+@pytest.mark.parametrize(("flatness", "kept"), [(0.05, 1), (0.15, 2), (1.0, 3)])
+def test_only_gaussians_flat_enough_are_kept_and_the_others_counted(gaussian_file, flatness, kept):
+    path = gaussian_file([{"scale_2": np.log(ratio)} for ratio in (0.01, 0.1, 0.9)])
+    read = read_contents(path, flatness)
+    assert (len(read.surfels), read.not_flat) == (kept, 3 - kept)
+
+
+def test_gaussians_with_two_scales_are_all_flat(gaussian_file):
+    read = read_contents(gaussian_file([{"scale_0": -3, "scale_1": -4}], leave_out=("scale_2", "nx", "ny", "nz")), 0.0)
+    assert np.allclose(read.surfels.scales, 2 * np.exp([-3, -4]))
+    assert np.allclose(read.surfels.normals, (0, 0, 1))
+
+
+def test_numbers_that_cannot_be_are_counted(gaussian_file):
+    bad = [{"scale_0": 1e30}, {"scale_1": np.nan}, {"rot_0": 0}, {"x": np.inf}, {"f_dc_0": np.nan}]
+    flat = {"scale_2": -9}
+    read = read_contents(gaussian_file([flat, *({**flat, **row} for row in bad)]))
+    assert (read.total, len(read.surfels), read.unusable, read.not_flat) == (6, 1, 5, 0)
+
+
+def test_view_dependent_colour_is_reported(gaussian_file):
+    path = gaussian_file([{"scale_2": -9}], extra=[f"f_rest_{k}" for k in range(45)])
+    assert read_contents(path).view_dependent == 45
+
+
+def test_a_flatness_outside_its_range_is_an_error(gaussian_file):
+    with pytest.raises(ValueError, match="flatness must be a number from 0 to 1, not 2"):
+        read_contents(gaussian_file([{}]), 2)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Damaged and hostile files: one sentence each, and no large memory, whatever they claim."""
+
+import tracemalloc
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from splat_addon.interchange import read_contents, write_gaussian_ply, write_ply
+
+XYZ = [f"property float {n}" for n in "xyz"]
+LIST = "property list uchar int i"
+BINARY, TEXT = "format binary_little_endian 1.0", "format ascii 1.0"
+
+
+@pytest.mark.parametrize(
+    ("head", "body", "sentence"),
+    [
+        ([BINARY, "element vertex 999999999999", *XYZ], b"\0" * 24, "999,999,999,999 points of 12 bytes, but only 24"),
+        ([TEXT, "element vertex 999999999999", *XYZ], b"1 2 3\n", "999,999,999,999 points of 3 numbers"),
+        ([TEXT, "element face 99999999999", "element vertex 1", *XYZ], b"1 2 3\n", "cut off or damaged"),
+        ([BINARY, "element vertex 2", *XYZ], b"\0" * 23, "cut off or damaged"),
+        ([TEXT, "element vertex 2", *XYZ], b"1 2 3\n1 2        \n", "cut off or damaged|cannot be read"),
+        ([TEXT, "element vertex 2", *XYZ], b"1 2 3 4 5 6\n       ", "1 of 6 were found"),
+        ([TEXT, "element vertex 2", *XYZ], b"              \n\n", "0 of"),
+        ([TEXT, "element vertex 1", *XYZ], b"1 two 3\n", "cannot be read"),
+        ([BINARY, "element vertex -1", *XYZ], b"", "a count of 0 or more, not 'element vertex -1'"),
+        ([BINARY, "element vertex 1e9", *XYZ], b"", "a count of 0 or more"),
+        ([BINARY, "element vertex " + "9" * 5000, *XYZ], b"", "a count of 0 or more"),
+        ([BINARY, "element vertex"], b"", "a count of 0 or more"),
+        ([BINARY, "element face 0"], b"", "no element 'vertex'"),
+        ([BINARY, "element vertex 0"], b"", "have no properties"),
+        ([BINARY, "element vertex 0", "property float x"], b"", "have no y and no z"),
+        ([BINARY, "element vertex 1", *XYZ, LIST], b"\0" * 99, "'i' of the PLY file's points is a list"),
+        ([BINARY, "element face 1", LIST, "element vertex 1", *XYZ], b"\0" * 99, "has lists and stands before"),
+        ([BINARY, "element vertex 1", *XYZ, "property float x"], b"\0" * 99, "two properties 'x'"),
+        ([BINARY, "element vertex 1", *XYZ, "element vertex 1"], b"\0" * 99, "names an element twice"),
+        ([BINARY, "element vertex 1", "property object x"], b"\0" * 99, "cannot be read, 'property object x'"),
+        ([BINARY, "element vertex 1", "property float"], b"\0" * 99, "cannot be read, 'property float'"),
+        ([BINARY, "element vertex 1", "property"], b"\0" * 99, "cannot be read, 'property'"),
+        ([BINARY, "property float x"], b"", "cannot be read"),
+        (["format binary 1.0", "element vertex 0", *XYZ], b"", "format must be one of"),
+        (["element vertex 0", *XYZ], b"", "no line 'format'"),
+        ([BINARY, "hello"], b"", "no PLY file has, 'hello'"),
+    ],
+)
+def test_a_damaged_file_is_one_sentence(ply, head, body, sentence):
+    with pytest.raises(ValueError, match=sentence) as raised:
+        read_contents(ply(head, body))
+    assert len(str(raised.value)) < 300 and "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("content", [b"", b"plyish\n", b"\x89PNG\r\n", b"\0" * 1000])
+def test_another_kind_of_file_is_told_so(tmp_path, content):
+    (tmp_path / "a.ply").write_bytes(content)
+    with pytest.raises(ValueError, match="does not begin with the line 'ply'"):
+        read_contents(tmp_path / "a.ply")
+
+
+@pytest.mark.parametrize("content", [b"ply\n", b"ply\ncomment " + b"x" * 10**6, b"ply\n" + b"comment\n" * 10**5])
+def test_a_header_without_an_end_is_told_so(tmp_path, content):
+    (tmp_path / "a.ply").write_bytes(content)
+    with pytest.raises(ValueError, match="does not end with the line 'end_header'"):
+        read_contents(tmp_path / "a.ply")
+
+
+@pytest.mark.parametrize("form", [BINARY, TEXT])
+def test_a_small_file_that_claims_much_takes_little_memory(ply, form):
+    path = ply([form, "element vertex 4000000000", *XYZ], b"1 2 3\n" * 100)
+    tracemalloc.start()
+    with pytest.raises(ValueError, match="cut off or damaged"):
+        read_contents(path)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 2e6
+
+
+def test_numbers_beyond_float32_are_counted_not_warned_of(ply, recwarn):
+    names = ["x", "y", "z", "nx", "ny", "nz", *(f"rot_{k}" for k in range(4)), "scale_0", "scale_1", "material"]
+    head = [TEXT, "element vertex 2", *(f"property double {n}" for n in names)]
+    body = b"1e300 0 0 0 0 1 1 0 0 0 1 1 nan\n0 0 0 0 0 1 1 0 0 0 1 1 1e300\n"
+    stored = read_contents(ply(head, body))
+    assert (len(stored.surfels), stored.unusable) == (1, 1) and not recwarn.list
+
+
+@settings(deadline=None, max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data(), gaussian=st.booleans())
+def test_bytes_changed_anywhere_give_surfels_or_one_sentence(surfels, tmp_path, data, gaussian):
+    path = tmp_path / "a.ply"
+    (write_gaussian_ply if gaussian else write_ply)(path, surfels(3))
+    content = bytearray(path.read_bytes())
+    for _ in range(data.draw(st.integers(1, 4))):
+        at = data.draw(st.integers(0, len(content) - 1))
+        content[at : at + data.draw(st.integers(0, 3))] = data.draw(st.binary(max_size=4))
+    path.write_bytes(content)
+    try:
+        read = read_contents(path)
+    except ValueError as error:
+        assert "\n" not in str(error) and str(error).endswith(".")
+    else:
+        assert np.isfinite(read.surfels.positions).all() if hasattr(read, "surfels") else len(read.positions) <= 3

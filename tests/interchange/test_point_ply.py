@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ordinary point files, as other programs write them."""
+
+import gzip
+
+import numpy as np
+import plyfile
+import pytest
+
+from splat_addon.interchange import Points, read_contents
+
+
+@pytest.mark.parametrize("text", [False, True])
+@pytest.mark.parametrize("byte_order", ["<", ">"])
+def test_positions_normals_radii_and_byte_colours_are_read(tmp_path, text, byte_order):
+    row = [(n, "f4") for n in ("x", "y", "z", "nx", "ny", "nz", "radius")]
+    row += [(n, "u1") for n in ("red", "green", "blue")]
+    rows = np.array([(1, 2, 3, 0, 0, 1, 0.5, 0, 188, 255), (4, 5, 6, 1, 0, 0, 0.25, 255, 0, 0)], row)
+    face = np.array([([0, 1, 1],)], [("vertex_indices", "i4", (3,))])
+    elements = [plyfile.PlyElement.describe(rows, "vertex"), plyfile.PlyElement.describe(face, "face")]
+    plyfile.PlyData(elements, text=text, byte_order=byte_order).write(tmp_path / "p.ply")
+    points = read_contents(tmp_path / "p.ply")
+    assert isinstance(points, Points)
+    assert points.positions.tolist() == [[1, 2, 3], [4, 5, 6]]
+    assert points.normals.tolist() == [[0, 0, 1], [1, 0, 0]]
+    assert points.radii.tolist() == [0.5, 0.25]
+    assert np.allclose(points.colors, [(0, 0.5028865, 1, 1), (1, 0, 0, 1)])
+
+
+def test_what_is_not_in_the_file_is_none(ply):
+    head = ["format ascii 1.0", "element vertex 1", *(f"property double {n}" for n in "xyz")]
+    points = read_contents(ply(head, b"1 2 3"))
+    assert points.normals is points.radii is points.colors is None
+
+
+def test_float_colours_are_scene_linear(ply):
+    head = ["format ascii 1.0", "element vertex 1", *(f"property float {n}" for n in "xyzrgba")]
+    assert np.allclose(read_contents(ply(head, b"0 0 0 0.25 2 0 0.5\n")).colors, (0.25, 2, 0, 0.5))
+
+
+def test_points_after_other_elements_are_found(models, tmp_path):
+    """A camera stands before them, and faces with lists behind."""
+    (tmp_path / "map.ply").write_bytes(gzip.decompress((models / "rangemap_lato315.ply.gz").read_bytes()))
+    vertex = plyfile.PlyData.read(tmp_path / "map.ply")["vertex"]
+    assert np.array_equal(read_contents(tmp_path / "map.ply").positions, np.stack([vertex[n] for n in "xyz"], axis=1))
+
+
+def test_lists_before_the_points_of_a_text_file_are_passed_over(ply):
+    head = ["format ascii 1.0", "element face 2", "property list uchar int i", "element vertex 1"]
+    head += [f"property float {n}" for n in "xyz"]
+    assert read_contents(ply(head, b"3 0 0 0\n4 0 0 0 0\n7 8 9\n")).positions.tolist() == [[7, 8, 9]]
