@@ -55,7 +55,7 @@ def test_a_transform_moves_every_surfel(name, scene, shell, add_object, picture,
     assert_same_picture(drawn, picture(), ties=np.count_nonzero(drawn[..., 3]) // 50)
 
 
-@pytest.mark.parametrize("size", [1e-5, 1e-3, 1e5, 1e14])
+@pytest.mark.parametrize("size", [1e-5, 1e-3, 1e5, 1e25])
 def test_a_scene_of_any_size_looks_the_same(size, scene, shell, picture, assert_same_picture):
     scene.camera.location = (0, 0, 0)
     shell.location = (0.1, 0.2, -10)
