@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seconds and memory of converting real meshes, against the cost model of 0.25 us a triangle + 0.1 us a surfel.
+"""Seconds and memory of converting real meshes, against a cost model and against other ways to sample a mesh.
 
     PYTHON scripts/measure_conversion.py [--models DIR] [--rounds 7] [--case armadillo.obj.gz 256] ...
 
-PYTHON must have numpy, trimesh and rich (the environment that scripts/test.py makes). All cases run once a round, so
-that a busy moment of the machine does not fall on one alone. Meshes are smooth-shaded, without colours.
+PYTHON must have numpy, trimesh and rich (the environment that scripts/test.py makes). The cost model is 0.25 us a
+triangle + 0.1 us a surfel. The others (`sampling_rivals.py`) are taken where they are installed: Open3D, trimesh, and
+in a PYTHON with bpy Geometry Nodes. Everything runs once a round, so that a busy moment of the machine does not fall
+on one alone. Meshes are smooth-shaded, without colours.
 """
 
 import argparse
@@ -28,6 +30,7 @@ import trimesh  # noqa: E402
 from rich.console import Console  # noqa: E402
 from rich.progress import track  # noqa: E402
 
+from scripts.sampling_rivals import RIVALS  # noqa: E402
 from splat_addon.sampling import TriangleMesh, drop_unusable, sample_mesh  # noqa: E402
 from splat_addon.surfels import LAYOUT  # noqa: E402
 
@@ -82,9 +85,15 @@ def report(models: Path, cases, rounds: int) -> None:
     names = list(dict.fromkeys(name for name, _ in cases))
     meshes = {name: load(models / name) for name in track(names, "Loading", console=console)}
     times = {case: [] for case in cases}
+    rivals = {case: prepared_rivals(meshes[case[0]], case[1]) for case in cases}
+    rival_times = {case: {name: [] for name in rivals[case]} for case in cases}
     for _ in track(range(rounds), "Converting", console=console):
-        for name, resolution in cases:
-            times[name, resolution].append(time_round(meshes[name], resolution))
+        for case in cases:
+            times[case].append(time_round(meshes[case[0]], case[1]))
+            for name, job in rivals[case].items():
+                started = time.perf_counter()
+                count = job()
+                rival_times[case][name].append((time.perf_counter() - started, count))
 
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout
     print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, {datetime.date.today()}")
@@ -104,6 +113,28 @@ def report(models: Path, cases, rounds: int) -> None:
             f"{speed:.2f}", spread(ratios), spread(whole), f"{extra_bytes(mesh, resolution):.0f}",
         )  # fmt: skip
         print("| " + " | ".join(cells) + " |", flush=True)
+    print_rivals(times, rival_times)
+
+
+def prepared_rivals(mesh: TriangleMesh, resolution: int) -> dict:
+    """name -> function that samples the same mesh and returns its number of samples; only those that are installed."""
+    usable, _ = drop_unusable(mesh)
+    count = len(sample_mesh(usable, resolution=resolution))
+    return {name: job for name, prepare in RIVALS.items() if (job := prepare(usable, resolution, count)) is not None}
+
+
+def print_rivals(times: dict, rival_times: dict) -> None:
+    """Their seconds over ours, turn by turn, for the whole job and for a sample."""
+    print("\nOthers: how many times longer they take than our sampling (without cleaning), turn by turn.\n")
+    print("| model | other | its samples | its seconds | for the whole | for a sample |\n|---|---|---|---|---|---|")
+    for case, others in rival_times.items():
+        for name, rows in others.items():
+            whole = [theirs[0] / ours[1] for ours, theirs in zip(times[case], rows)]
+            each = [ratio * ours[2] / theirs[1] for ratio, ours, theirs in zip(whole, times[case], rows)]
+            label = f"{case[0].split('.')[0]} at {case[1]}"
+            seconds = spread([row[0] for row in rows])
+            cells = (label, name, f"{rows[0][1]:,}", seconds, spread(whole), spread(each))
+            print("| " + " | ".join(cells) + " |", flush=True)
 
 
 def spread(values: list) -> str:
