@@ -13,7 +13,9 @@ PLAIN, BLENDER = "plain", "blender"
 ONLY_IN_BLENDER = ("tests/blender", "tests/extension")
 ONLY_IN_A_WINDOW = ("tests/window",)
 #: Folders whose tests draw, on whichever device they are given.
-ON_ANY_DEVICE = ("tests/rendering",)
+ON_ANY_DEVICE = ("tests/rendering", "tests/extremes")
+#: Those of them that leave pictures on the standalone device, which are compared with Blender's.
+LEAVES_PICTURES = ("tests/rendering",)
 
 #: pytest's options whose value is the next word and could look like a path.
 VALUE_OPTIONS = ("-k", "-m", "-p", "-c", "-o", "-n", "-W", "-r", "--deselect", "--ignore", "--rootdir", "--confcutdir",
@@ -35,7 +37,7 @@ def paths_by_group(paths: list[str], only_rendering: bool = False) -> dict[str, 
     only_rendering: the plain group's other tests have nothing to say to the Blender that is tested.
     """
     if not paths:
-        plain = list(ON_ANY_DEVICE) if only_rendering else ["tests", *_ignored()]
+        plain = list(LEAVES_PICTURES) if only_rendering else ["tests", *_ignored()]
         return {PLAIN: plain, BLENDER: [*ON_ANY_DEVICE, *_existing(ONLY_IN_BLENDER)]}
     groups = {PLAIN: [], BLENDER: []}
     for path in paths:

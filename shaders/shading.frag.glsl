@@ -5,12 +5,13 @@
 #include "shading/{shading}.glsl"
 
 const float EMPTY_DEPTH = 1e10;
+const float FARTHEST = 3.4e38;
 
 void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * SAMPLES;
   vec4 color_total = vec4(0.0);
   vec4 normal_total = vec4(0.0);
-  float nearest = EMPTY_DEPTH;
+  float nearest = FARTHEST;
   for (int y = 0; y < SAMPLES; y++) {
     for (int x = 0; x < SAMPLES; x++) {
       ivec2 texel = first + ivec2(x, y);
@@ -37,7 +38,7 @@ void main() {
   }
   float share = 1.0 / float(SAMPLES * SAMPLES);
   combined = color_total * share;
-  depth = nearest;
+  depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
 #ifdef NORMAL_OUTPUT
   normal_coverage = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
 #endif

@@ -2,8 +2,13 @@
 // Summary: depth only; what lies outside the ellipse, or before the near plane (where only the offset brought it
 //          into view), leaves none.
 
+#include "common/depth.glsl"
 #include "methods/{method}.glsl"
 
 void main() {
   if (!(kernel_weight(place_depth.xy) > 0.0 && place_depth.z >= splats.options.y)) discard;
+#ifdef LINEAR_DEPTH
+  float distance = length(vec3(across_offset.xy, place_depth.z));
+  write_depth(place_depth.z * (1.0 + max(across_offset.z / distance, splats.sides.z)));
+#endif
 }

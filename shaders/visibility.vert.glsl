@@ -1,6 +1,8 @@
 // References: Botsch, Hornung, Zwicker, Kobbelt, "High-Quality Surface Splatting on Today's GPUs", 2005, section 3
 //             (visibility splatting); the view-independent paper, section 5 (the offset along the view ray).
-// Summary: every splat moved away from the eye by its own epsilon, so that what lies within epsilon blends.
+// Summary: every splat moved away from the eye by its own epsilon, so that what lies within epsilon blends; by no less
+//          than the depth can resolve, or rounding would let a splat hide itself. The corners are moved, which is
+//          right for splats of a small angle; where linear depth is planned, every fragment is.
 
 #include "common/sides.glsl"
 #include "common/splat_fetch.glsl"
@@ -19,6 +21,11 @@ void main() {
   float offset = splats.options.x * sqrt(max(dot(axis_u, axis_u), dot(axis_v, axis_v)));
   bool is_back = outward_cosine(position, axis_u, axis_v, splats.sides.x, is_orthographic) < 0.0;
   if (is_back) offset *= BACK_EPSILON;
-  vec3 away = is_orthographic ? vec3(0.0, 0.0, -1.0) : eye / max(length(eye), 1e-30);
-  gl_Position = is_back && splats.sides.y > 0.5 ? NOWHERE : splats.projection * vec4(eye + away * offset, 1.0);
+#ifdef LINEAR_DEPTH
+  across_offset = vec3(eye.xy, offset);
+#else
+  offset = max(offset, splats.sides.z * (is_orthographic ? 1.0 : length(eye)));
+  eye += offset * (is_orthographic ? vec3(0.0, 0.0, -1.0) : eye / max(length(eye), 1e-30));
+#endif
+  gl_Position = is_back && splats.sides.y > 0.5 ? NOWHERE : splats.projection * vec4(eye, 1.0);
 }

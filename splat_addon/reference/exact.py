@@ -94,8 +94,9 @@ SHADERS = {"flat": _flat, "principled": _principled}
 
 def _nearest_depth(surface: Surface, grid: RayGrid, samples: int, margin: int) -> np.ndarray:
     """(h, w) depth of the nearest ray of each pixel that is not margin; `EMPTY_DEPTH` where none hit."""
-    rays = np.full(grid.count, EMPTY_DEPTH)
+    rays = np.full(grid.count, np.inf)
     rays[surface.rays] = surface.depth
     rows, columns = (n // samples for n in grid.shape)
     pixels = rays.reshape(rows, samples, columns, samples).min(axis=(1, 3))
+    pixels = np.where(np.isfinite(pixels), pixels, EMPTY_DEPTH)
     return pixels[margin : rows - margin, margin : columns - margin]

@@ -17,6 +17,10 @@ from .splats import BACK_WEIGHT, Splats
 #: Splat-ray pairs handled at once: about 100 bytes each.
 CHUNK_PAIRS = 1_000_000
 
+#: A mean of unit normals this short is what rounding left of normals that cancel; the surface then faces the viewer.
+CANCELLED = 1e-6
+TO_VIEWER = (0.0, 0.0, 1.0)
+
 
 @dataclass(frozen=True, eq=False)
 class RayGrid:
@@ -121,7 +125,7 @@ def _averages(sums: np.ndarray) -> Surface:
     depth, *columns = sums[1:, rays] / sums[0, rays]
     color, normal = np.stack(columns[:3], axis=1), np.stack(columns[3:6], axis=1)
     length = np.linalg.norm(normal, axis=1, keepdims=True)
-    normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+    normal = np.where(length > CANCELLED, normal / np.maximum(length, CANCELLED), TO_VIEWER)
     return Surface(rays, color, normal, depth, *columns[6:])
 
 

@@ -7,8 +7,9 @@ from .device.interface import PipelineDescription
 from .plan import FramePlan, PlannedPass
 from .shaders import load
 
-#: options: epsilon, near, 1 for orthographic.
-#: sides: -1 for a mirrored object and 1 for others, 1 where backs are hidden.
+#: options: epsilon, near, 1 for orthographic, 1 / far.
+#: sides: -1 for a mirrored object and 1 for others, 1 where backs are hidden, the least offset of visibility (as a
+#:     share of the distance; of an orthographic camera a length).
 _SPLATS = (
     "Splats",
     "splats",
@@ -22,6 +23,7 @@ _SHADING = (
     (("mat4", "view_to_world"), ("vec4", "window"), ("vec4", "world"), ("vec4", "material"), ("vec4", "options")),
 )
 _MATERIAL_VARYING = ("flat", "vec3", "material")
+_LINEAR_DEPTH = (("LINEAR_DEPTH", "1"),)
 
 
 def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
@@ -36,9 +38,14 @@ def _visibility(planned, frame):
         fragment=load("visibility.frag.glsl", method=frame.method),
         block=_SPLATS,
         samplers=("surfels",),
-        varyings=(("smooth", "vec3", "place_depth"),),
+        varyings=(
+            ("smooth", "vec3", "place_depth"),
+            *((("smooth", "vec3", "across_offset"),) if frame.linear_depth else ()),
+        ),
+        defines=_LINEAR_DEPTH if frame.linear_depth else (),
         depth_test=True,
         depth_write=True,
+        fragment_depth=frame.linear_depth,
     )
 
 
@@ -57,9 +64,13 @@ def _attributes(planned, frame):
             *((_MATERIAL_VARYING,) if with_material else ()),
         ),
         outputs=tuple(("vec4", name) for name in planned.writes),
-        defines=(("MATERIAL_TARGET", "1"),) if with_material else (),
+        defines=(
+            *((("MATERIAL_TARGET", "1"),) if with_material else ()),
+            *(_LINEAR_DEPTH if frame.linear_depth else ()),
+        ),
         blend="add",
         depth_test=True,
+        fragment_depth=frame.linear_depth,
     )
 
 

@@ -14,9 +14,17 @@ from .methods import get_method
 from .packing import shared_material
 from .scene import Material, Scene
 from .settings import Settings
+from .view import depth_ratios
 
 #: A target's edge in samples; a larger picture is rendered in tiles, so that memory stays below about 1 GB.
 MAX_TARGET_EDGE = 4096
+
+#: Up to this ratio of the farthest depth to the nearest, the hardware's depth resolves 128 / 2^24 = 8e-6 of it: 1.5 %
+#: of the epsilon of a splat as small as a pixel of a 1000-pixel picture.
+MAX_HARDWARE_DEPTH_RATIO = 128
+
+#: Up to this radius of a splat at distance 1 its corners may be moved back instead of every fragment.
+MAX_HARDWARE_DEPTH_RADIUS = 0.25
 
 #: texture -> (format, whether it holds every sample of a pixel or only the pixel)
 TEXTURES = {
@@ -46,6 +54,7 @@ class PlannedPass:
 class FramePlan:
     """tiles: (x, y, width, height) in pixels, each rendered with all passes.
     samples: N of the N x N samples a pixel. material: the one that all surfels share, or None.
+    linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
     left_out: (what, why), of what other scenes or settings would need.
     """
 
@@ -54,6 +63,7 @@ class FramePlan:
     method: str
     shading: str
     material: Material | None
+    linear_depth: bool
     passes: tuple[PlannedPass, ...]
     left_out: tuple[tuple[str, str], ...]
 
@@ -63,7 +73,10 @@ class FramePlan:
         return tuple(dict.fromkeys(name for p in self.passes for name in p.writes))
 
     def __str__(self) -> str:
-        lines = [f"{len(self.tiles)} tile(s), {self.samples} x {self.samples} samples, method {self.method}"]
+        depth = "linear" if self.linear_depth else "hardware"
+        lines = [
+            f"{len(self.tiles)} tile(s), {self.samples} x {self.samples} samples, method {self.method}, {depth} depth"
+        ]
         for p in self.passes:
             lines.append(f"  {p.name}: {', '.join(p.writes)} <- {', '.join(p.reads) or 'splats'}; {p.reason}")
         lines += [f"  without {what}: {why}" for what, why in self.left_out]
@@ -74,7 +87,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
     """The passes that this picture needs. Raises ValueError for an unknown method."""
     get_method(settings.method)
     material = shared_material(scene.surfels)
-    passes, left_out = [], []
+    passes, left_out, linear_depth = [], [], False
     if not any(len(instance.surfels) for instance in scene.surfels):
         left_out.append(("all passes", "the scene has no surfels, so the picture is its background"))
     else:
@@ -97,8 +110,11 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
             outputs.append("normal_coverage")
         else:
             left_out.append(("normal_coverage", "neither the normal nor the coverage is asked for"))
+        linear_depth, why_depth = _linear_depth(scene, camera, settings)
+        if not linear_depth:
+            left_out.append(("linear depth", why_depth))
         passes = [
-            PlannedPass("visibility", "splats may hide one another", (), ("visibility_depth",)),
+            PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
             PlannedPass("attributes", "overlapping splats blend", ("visibility_depth",), (*sums,)),
             PlannedPass("shading", f"{settings.shading}, once a sample", (*reads,), (*outputs,)),
         ]
@@ -113,9 +129,22 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         settings.method,
         settings.shading,
         material,
+        linear_depth,
         tuple(passes),
         tuple(left_out),
     )
+
+
+def _linear_depth(scene: Scene, camera: Camera, settings: Settings) -> tuple[bool, str]:
+    """Whether fragments must write their own depth, which costs the early depth test, and why."""
+    if camera.is_orthographic:
+        return False, "an orthographic camera's depth is linear"
+    ratio, radius = depth_ratios(scene, camera, settings.epsilon)
+    if ratio > MAX_HARDWARE_DEPTH_RATIO:
+        return True, f"far / near of what is seen is {ratio:.3g}, too much for the hardware's depth"
+    if radius > MAX_HARDWARE_DEPTH_RADIUS:
+        return True, f"a splat's radius may be {radius:.3g} of its distance, too much to move its corners back"
+    return False, f"far / near of what is seen is {ratio:.3g} and the hardware's depth serves"
 
 
 def _tiles(size: tuple[int, int], edge: int) -> tuple[tuple[int, int, int, int], ...]:

@@ -150,6 +150,8 @@ class Renderer:
     def _draw_splats(self, planned, frame_plan, camera, settings, view: View, target):
         pipeline = self._pipeline(planned, frame_plan)
         with_materials = "materials" in pipeline.description.samplers
+        depth_unit = 1.0 / view.far if frame_plan.linear_depth else 0.0
+        least_offset = view.least_offset(frame_plan.linear_depth)
         for placed in view.placed:
             instance = placed.instance
             textures = [self._surfel_texture(instance.surfels)]
@@ -157,8 +159,8 @@ class Renderer:
                 data = pack_materials(instance.materials)
                 textures.append(self.device.texture((data.shape[1], 1), "RGBA32F", data))
             orientation = np.sign(np.linalg.det(placed.normal_matrix))
-            options = settings.epsilon, view.near, camera.is_orthographic, 0.0
-            sides = orientation, placed.hides_backs, 0.0, 0.0
+            options = settings.epsilon, view.near, camera.is_orthographic, depth_unit
+            sides = orientation, placed.hides_backs, least_offset, 0.0
             normal_matrix = np.eye(4)
             normal_matrix[:3, :3] = placed.normal_matrix
             block = _block(placed.model_view, view.projection, normal_matrix, options, sides)

@@ -18,6 +18,16 @@ from .scene import Instance, Scene
 #: The clip range reaches this share of its length further than the bounds, so that rounding clips nothing.
 _MARGIN = 1e-3
 
+#: A matrix whose shortest axis is this share of its longest leaves no direction for a normal.
+_FLATTEST = 1e-12
+
+#: Steps of the depth's resolution by which visibility moves every splat back at least: rounding in the rasteriser's
+#: interpolation is one or two.
+_LEAST_STEPS = 16
+
+#: Of how many surfels an instance's median depth is taken.
+_DEPTH_SAMPLES = 256
+
 
 @dataclass(frozen=True, eq=False)
 class PlacedInstance:
@@ -35,36 +45,33 @@ class PlacedInstance:
 @dataclass(frozen=True, eq=False)
 class View:
     """scale: world to view units, a power of two. near: the camera's, scaled; the clip range may be narrower.
+    far: of the clip range, scaled.
     projection: (4, 4) float64 for scaled view space. outside: instances that cannot touch the picture.
     degenerate: instances whose matrix flattens space, which have no normals.
+    depth_span: how many times the resolution of float32 the hardware's depth resolves at its farthest: far / near, of
+        an orthographic camera far - near in view units.
     """
 
     scale: float
     near: float
+    far: float
     projection: np.ndarray
     placed: tuple[PlacedInstance, ...]
     outside: int
     degenerate: int
+    depth_span: float
+
+    def least_offset(self, linear_depth: bool) -> float:
+        """What moves a splat back by a few steps of the depth's resolution: a share of its distance, or for an
+        orthographic camera a length in view units.
+        """
+        return _LEAST_STEPS / 2**24 * (1.0 if linear_depth else self.depth_span)
 
 
 def look(scene: Scene, camera: Camera, epsilon: float) -> View:
     """The scene's instances as this camera sees them. epsilon: how far visibility moves splats back, in radii."""
-    seen, outside, degenerate = [], 0, 0
-    for instance in scene.surfels:
-        if not len(instance.surfels):
-            continue
-        linear = instance.matrix_world[:3, :3]
-        if not _invertible(linear):
-            degenerate += 1
-            continue
-        corners = instance.corners(camera)
-        if _outside(corners, camera):
-            outside += 1
-            continue
-        pushed = epsilon * float(instance.surfels.scales.max()) * np.linalg.norm(linear, 2)
-        seen.append((instance, -corners[:, 2], pushed))
-
-    near, far = _clip_range(camera, seen)
+    seen, outside, degenerate = _seen(scene, camera)
+    near, far = _clip_range(camera, seen, epsilon)
     scale = _power_of_two_scale(camera, seen, near)
     placed = []
     for instance, _, _ in seen:
@@ -73,9 +80,16 @@ def look(scene: Scene, camera: Camera, epsilon: float) -> View:
         normal_matrix /= np.abs(normal_matrix).max()
         model_view[:3] *= scale
         placed.append(PlacedInstance(instance, model_view, normal_matrix, instance.hides_backs(camera)))
-    return View(
-        scale, camera.near * scale, scaled_projection(camera, near, far, scale), tuple(placed), outside, degenerate
-    )
+    projection = scaled_projection(camera, near, far, scale)
+    span = (far - near) * scale if camera.is_orthographic else far / near
+    return View(scale, camera.near * scale, far * scale, projection, tuple(placed), outside, degenerate, span)
+
+
+def depth_ratios(scene: Scene, camera: Camera, epsilon: float) -> tuple[float, float]:
+    """Farthest depth over nearest of what a perspective camera sees, and the largest splat's radius over it."""
+    seen, _, _ = _seen(scene, camera)
+    near, far = _clip_range(camera, seen, epsilon)
+    return far / near, max((radius for *_, radius in seen), default=0.0) / near
 
 
 def scaled_projection(camera: Camera, near: float, far: float, scale: float) -> np.ndarray:
@@ -88,9 +102,30 @@ def scaled_projection(camera: Camera, near: float, far: float, scale: float) -> 
     return matrix
 
 
+def _seen(scene: Scene, camera: Camera) -> tuple[list, int, int]:
+    """(instance, depths of its box's corners, its largest splat's radius) of what may touch the picture; the numbers
+    of instances that cannot, and of those that flatten space.
+    """
+    seen, outside, degenerate = [], 0, 0
+    for instance in scene.surfels:
+        if not len(instance.surfels):
+            continue
+        linear = instance.matrix_world[:3, :3]
+        if not _invertible(linear):
+            degenerate += 1
+            continue
+        corners = instance.corners(camera)
+        if _outside(corners, camera):
+            outside += 1
+            continue
+        radius = float(instance.surfels.scales.max()) * float(np.linalg.norm(linear, 2))
+        seen.append((instance, -corners[:, 2], radius))
+    return seen, outside, degenerate
+
+
 def _invertible(linear: np.ndarray) -> bool:
-    size = np.abs(linear).max()
-    return bool(size > 0 and abs(np.linalg.det(linear / size)) > 1e-12)
+    lengths = np.linalg.svd(linear, compute_uv=False)
+    return bool(lengths[2] > _FLATTEST * lengths[0])
 
 
 def _outside(corners: np.ndarray, camera: Camera) -> bool:
@@ -109,11 +144,11 @@ def _outside(corners: np.ndarray, camera: Camera) -> bool:
     return any(bool(b.all()) for b in beyond)
 
 
-def _clip_range(camera: Camera, seen) -> tuple[float, float]:
+def _clip_range(camera: Camera, seen, epsilon: float) -> tuple[float, float]:
     if not seen:
         return camera.near, camera.far
     nearest = min(float(depths.min()) for _, depths, _ in seen)
-    farthest = max(float(depths.max()) + pushed for _, depths, pushed in seen)
+    farthest = max(float(depths.max()) + epsilon * radius for _, depths, radius in seen)
     margin = _MARGIN * (farthest - nearest)
     near = max(camera.near, nearest - margin if camera.is_orthographic else nearest * (1 - _MARGIN))
     far = min(camera.far, farthest + margin)
@@ -124,7 +159,7 @@ def _power_of_two_scale(camera: Camera, seen, near: float) -> float:
     """2^-k that brings the median depth, weighted by surfel count, into 0.7 to 1.4."""
     if not seen:
         return 1.0
-    depths = np.array([max(float(np.median(d)), near) for _, d, _ in seen])
+    depths = np.array([_median_depth(instance, camera, near) for instance, *_ in seen])
     if camera.is_orthographic:
         left, right, bottom, top = camera.window
         depths = np.maximum(np.abs(depths), max(right - left, top - bottom))
@@ -132,3 +167,12 @@ def _power_of_two_scale(camera: Camera, seen, near: float) -> float:
     order = np.argsort(depths)
     half = np.searchsorted(np.cumsum(counts[order]), counts.sum() / 2)
     return math.ldexp(1.0, -round(math.log2(depths[order][min(half, len(order) - 1)])))
+
+
+def _median_depth(instance: Instance, camera: Camera, near: float) -> float:
+    """Of some surfels, those before the near plane left out: a few stray ones far away do not count for more."""
+    positions = instance.surfels.positions[:: -(-len(instance.surfels) // _DEPTH_SAMPLES)]
+    axis = -instance.model_view(camera)[2]
+    depths = positions @ axis[:3] + axis[3]
+    depths = depths[depths > near]
+    return float(np.median(depths)) if len(depths) else near

@@ -41,6 +41,7 @@ def test_a_program_is_compared_with_the_plain_groups_pictures_only():
     [
         ("tests/sampling", {PLAIN}),
         ("tests/rendering", {PLAIN, BLENDER}),
+        ("tests/extremes", {PLAIN, BLENDER}),
         ("tests/rendering/test_agreement.py::test_x", {PLAIN, BLENDER}),
         ("tests/blender", {BLENDER}),
         ("tests/extension/test_installed.py", {BLENDER}),

@@ -161,6 +161,8 @@ class _Pipeline:
             info.sampler(slot, "FLOAT_2D", name)
         for slot, (kind, name) in enumerate(description.outputs):
             info.fragment_out(slot, kind.upper(), name)
+        if description.fragment_depth:
+            info.depth_write("ANY")
         info.vertex_source(description.vertex)
         info.fragment_source(description.fragment)
         try:

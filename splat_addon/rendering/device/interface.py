@@ -29,7 +29,8 @@ class PipelineDescription:
     varyings: (interpolation "smooth" | "flat", type, name) from vertex to fragment.
     outputs: (type, name) in slot order; empty for depth only.
     defines: (name, value) that the text tests with #ifdef or uses as constants, which drivers fold.
-    blend: "none" or "add" (all channels summed). depth_test: less or equal.
+    blend: "none" or "add" (all channels summed). depth_test: less or equal. fragment_depth: the fragment
+        shader says what the depth is (gl_FragDepth).
     """
 
     name: str
@@ -43,6 +44,7 @@ class PipelineDescription:
     blend: str = "none"
     depth_test: bool = False
     depth_write: bool = False
+    fragment_depth: bool = False
 
 
 class Texture(Protocol):

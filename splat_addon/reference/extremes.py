@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scenes at the edges of arithmetic: sheets seen edge-on, specks at the near plane, worlds moved and scaled.
+
+Builders that tests/extremes and scripts/measure_numerics.py share; `scenes` holds the everyday ones.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ..rendering.camera import Camera
+from ..rendering.scene import Instance, Light, Scene
+from ..surfels import Surfels, axes_quaternions
+
+#: Half-diagonals of its cell by which a sheet's disc reaches: neighbours overlap at the corners.
+SHEET_OVERLAP = 1.2
+
+
+def discs(centers, u=(1, 0, 0), v=(0, 1, 0), colors=None, normals=None) -> Surfels:
+    """Ellipses by their centres and orthogonal half-axes, (N, 3) or one row; random colours without `colors`."""
+    centers = np.atleast_2d(np.asarray(centers, np.float64))
+    u, v = (np.broadcast_to(np.asarray(a, np.float64), centers.shape) for a in (u, v))
+    lengths = np.stack([np.linalg.norm(a, axis=1) for a in (u, v)], axis=1)
+    x, y = u / lengths[:, :1], v / lengths[:, 1:]
+    z = np.cross(x, y)
+    if colors is None:
+        colors = np.random.default_rng(0).random(centers.shape)
+    normals = z if normals is None else np.broadcast_to(np.asarray(normals, np.float64), centers.shape)
+    return Surfels(
+        positions=centers,
+        rotations=axes_quaternions(x, y, z),
+        scales=lengths,
+        normals=normals / np.linalg.norm(normals, axis=1, keepdims=True),
+        colors=np.concatenate([np.broadcast_to(colors, centers.shape), np.ones((len(centers), 1))], axis=1),
+        materials=np.zeros(len(centers), np.int32),
+    )
+
+
+def sheet(side: int, half: float, tilt: float, depth: float, colors=None) -> Surfels:
+    """A square of side x side discs around (0, 0, -depth), `half` to each side; tilt: degrees from facing +Z."""
+    axis = ((np.arange(side) + 0.5) * 2 / side - 1) * half
+    x, y = (a.reshape(-1, 1) for a in np.meshgrid(axis, axis))
+    angle = math.radians(tilt)
+    along = np.array((0, math.cos(angle), -math.sin(angle)))
+    radius = SHEET_OVERLAP * math.sqrt(2) * half / side
+    return discs(x * (1, 0, 0) + y * along + (0, 0, -depth), (radius, 0, 0), along * radius, colors)
+
+
+def speck(camera: Camera, depth: float) -> Instance:
+    """One red disc a little right of the camera's axis at a depth, a thirtieth of it wide."""
+    matrix = camera.matrix_world.copy()
+    matrix[:3, 3] += (0.25 * matrix[:3, 0] - matrix[:3, 2]) * depth
+    return Instance(discs((0, 0, 0), (depth / 30, 0, 0), (0, depth / 30, 0), (1, 0, 0)), matrix)
+
+
+def transformed(scene: Scene, camera: Camera, matrix: np.ndarray) -> tuple[Scene, Camera]:
+    """The whole world, camera and lights included, moved by a (4, 4) similarity: its picture must stay the same."""
+    scale = float(np.cbrt(np.linalg.det(matrix[:3, :3])))
+    instances = tuple(replace(i, matrix_world=matrix @ i.matrix_world) for i in scene.surfels)
+    lights = tuple(_transformed_light(light, matrix, scale) for light in scene.lights)
+    moved = replace(camera, matrix_world=matrix @ camera.matrix_world, near=camera.near * scale, far=camera.far * scale)
+    if camera.is_orthographic:
+        moved = replace(moved, window=tuple(edge * scale for edge in camera.window))
+    return replace(scene, surfels=instances, lights=lights), moved
+
+
+def _transformed_light(light: Light, matrix: np.ndarray, scale: float) -> Light:
+    """A point light's irradiance falls with the square of the distance, so its power grows with it."""
+    position = tuple((matrix @ (*light.position, 1.0))[:3])
+    direction = tuple(matrix[:3, :3] @ light.direction / scale)
+    energy = light.energy * scale**2 if light.kind == "point" else light.energy
+    return replace(light, position=position, direction=direction, energy=energy)

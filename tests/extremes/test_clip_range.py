@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Near and far planes from 1e-6 to 1e6: the depth resolves splats wherever they lie between them."""
+
+from dataclasses import replace
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import scenes
+from splat_addon.reference.extremes import discs, speck
+from splat_addon.reference.metrics import psnr
+from splat_addon.rendering import Settings, plan
+
+NEARS = [1e-1, 1e-2, 1e-4, 1e-6]
+WORLDS = {
+    "torus": lambda: scenes.torus(6000, (64, 64)),
+    "checker": lambda: scenes.checker_plane(count=6000, size=(64, 64)),
+}
+
+
+@pytest.fixture(params=WORLDS)
+def world(request):
+    return WORLDS[request.param]()
+
+
+def with_speck(scene, camera, near):
+    """Something right behind the near plane, which keeps the clip range from being narrowed to the rest."""
+    camera = replace(camera, near=near, far=1e6)
+    return replace(scene, surfels=(*scene.surfels, speck(camera, 1.5 * near))), camera
+
+
+def test_a_wide_clip_range_alone_costs_nothing(world, render_all):
+    scene, camera = world
+    base, wide = render_all([(scene, camera, None), (scene, replace(camera, near=1e-6, far=1e6), None)])
+    np.testing.assert_array_equal(wide.color, base.color)
+
+
+def test_something_at_the_near_plane_costs_nothing(world, hold):
+    hold({f"near {near}": with_speck(*world, near) for near in NEARS}, least=60)
+
+
+def test_hardware_depth_serves_where_it_is_fine_enough():
+    assert not plan(*WORLDS["torus"](), Settings()).linear_depth
+
+
+def test_linear_depth_is_planned_where_the_hardwares_is_too_coarse(world):
+    assert plan(*with_speck(*world, 1e-3), Settings()).linear_depth
+
+
+def test_linear_depth_is_planned_where_a_splat_is_wide(lit, camera):
+    """Its corners, moved back along their own rays, would not be the splat moved back."""
+    assert plan(lit(discs((0, 0, -3), (2, 0, 0), (0, 2, 0))), camera(), Settings()).linear_depth
+
+
+def test_both_depths_give_one_picture(render_all, monkeypatch):
+    scene, camera = WORLDS["torus"]()
+    (hardware,) = render_all([(scene, camera, None)])
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_HARDWARE_DEPTH_RATIO", 0)
+    (linear,) = render_all([(scene, camera, None)])
+    assert psnr(linear.color, hardware.color) > 60

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Splats across the near plane or the eye's plane, also with their centre behind the camera, keep what is before it."""
+
+from splat_addon.reference.extremes import discs
+
+SPLATS = {
+    "cut by the near plane": discs((0.1, -0.05, -0.011), (1, 0, 0), (0, 0.3, -1)),
+    "through the eye's plane": discs((0.1, -0.2, 0), (2, 0, 0), (0, 0.3, -2)),
+    "centre behind the camera": discs((0.1, -0.2, 0.5), (2, 0, 0), (0, 0.2, -2)),
+    "centre far behind": discs((0.1, -0.2, 90), (50, 0, 0), (0, 1, -100)),
+    "through the eye": discs((0, 0, 0), (2, 0, 0), (0, 0.3, -2)),
+    "wholly behind": discs((0, 0, 3), (1, 0, 0), (0, 1, 0)),
+}
+
+
+def test_what_lies_before_the_near_plane_alone_is_cut(hold, lit, camera):
+    results = hold({name: (lit(splat), camera(near=1e-2)) for name, splat in SPLATS.items()})
+    seen = {name for name, (frame, _) in results.items() if frame.coverage.any()}
+    assert seen == SPLATS.keys() - {"through the eye", "wholly behind"}
+
+
+def test_a_splat_across_the_eye_hides_nothing_beyond_its_rim(hold, lit, camera):
+    beyond = discs((0, 0, -30), (40, 0, 0), (0, 40, 0), (0, 1, 0))
+    hold({name: (lit(splat, beyond), camera(near=1e-2)) for name, splat in SPLATS.items()})

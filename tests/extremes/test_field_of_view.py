@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fields of view from 1 to 170 degrees, and windows far off the axis."""
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import scenes
+from splat_addon.reference.extremes import sheet
+from splat_addon.rendering import Camera, look_at
+
+SIZE = (64, 64)
+ANGLES = [1, 10, 60, 120, 150, 165, 170]
+SHIFTS = [0.5, 2, 5, 20, 100]
+
+
+@pytest.fixture
+def sphere():
+    return scenes.sphere(6000, SIZE)[0]
+
+
+def filling(angle):
+    """A camera that the unit sphere fills, as far as one can come near it."""
+    distance = max(1.1 / np.sin(np.radians(angle / 2)), 1.3)
+    eye = distance * np.array((0, -1, 0.1))
+    return Camera.perspective(look_at(eye, (0, 0, 0)), np.radians(angle), SIZE, distance / 100, 10 * distance)
+
+
+def shifted(shift):
+    """A camera far to the side whose window is shifted back, in picture widths."""
+    matrix = look_at((0, -4, 0), (0, 0, 0))
+    width = 4 * 2 * np.tan(np.radians(30))
+    matrix[:3, 3] -= shift * width * matrix[:3, 0]
+    return Camera.perspective(matrix, np.radians(60), SIZE, 0.1, 100, shift=(shift, 0))
+
+
+def test_any_field_of_view_is_the_true_one(hold, sphere):
+    hold({f"{angle} degrees": (sphere, filling(angle)) for angle in ANGLES})
+
+
+def test_a_window_far_off_the_axis_is_the_true_one(hold, sphere):
+    results = hold({f"shift {shift}": (sphere, shifted(shift)) for shift in SHIFTS})
+    assert all(frame.coverage.any() for frame, _ in results.values())
+
+
+def test_splats_across_a_wide_field_are_the_true_ones(hold, lit, camera):
+    """At 170 degrees the outermost pixels look 85 degrees off the axis: affine approximations fail there."""
+    hold({f"{angle} degrees": (lit(sheet(40, 8.0, 0, 1.0)), camera(angle)) for angle in (120, 150, 170)})

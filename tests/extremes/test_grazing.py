@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A surface seen from 60 degrees to edge-on: no hole, no spill, no NaN; edge-on it is not there."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from splat_addon.reference.extremes import sheet
+
+ANGLES = [*range(60, 85, 5), *range(85, 90), 89.2, 89.4, 89.6, 89.8, 89.9, 89.99, 89.999]
+
+
+def test_a_grazing_sheet_is_the_true_one(hold, lit, camera):
+    hold({f"{angle} degrees": (lit(sheet(30, 1.0, angle, 2.0)), camera()) for angle in ANGLES})
+
+
+def test_a_sheet_that_reaches_past_the_viewer_has_no_holes(hold, lit, camera):
+    """A floor from under the eye to the distance, lower and lower."""
+    shots = {}
+    for height in (0.3, 0.1, 0.03, 0.01):
+        floor = replace(sheet(24, 2.0, 90.0, 0.0), origin=(0.0, -height, 0.0))
+        shots[f"height {height}"] = lit(floor), camera(near=1e-4)
+    hold(shots)
+
+
+def test_edge_on_nothing_is_drawn(render_all, lit, camera):
+    (frame,) = render_all([(lit(sheet(30, 1.0, 90.0, 2.0)), camera(), None)])
+    assert not np.any(frame.coverage)

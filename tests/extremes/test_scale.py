@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The picture of a world does not depend on its unit: 1e-18 to 1e18."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import scenes
+from splat_addon.reference.extremes import transformed
+from splat_addon.reference.metrics import psnr
+from splat_addon.rendering import Camera, look_at
+
+SCALES = [1e-18, 1e-12, 1e-6, 1e6, 1e12, 1e18]
+SIZE = (64, 64)
+
+
+def perspective():
+    return scenes.torus(6000, SIZE)
+
+
+def orthographic():
+    scene, _ = perspective()
+    return scene, Camera.orthographic(look_at((0.3, -3.6, 2.2), (0, 0, 0)), 3.2, SIZE, 0.1, 10)
+
+
+def scaled(scale):
+    return np.diag([scale, scale, scale, 1.0])
+
+
+@pytest.mark.parametrize("world", [perspective, orthographic])
+def test_a_scaled_world_looks_the_same(world, render_all):
+    scene, camera = world()
+    base, *others = render_all([(*transformed(scene, camera, scaled(s)), None) for s in (1.0, *SCALES)])
+    for scale, frame in zip(SCALES, others, strict=True):
+        assert psnr(frame.color, base.color) > 60, scale
+        assert np.abs(frame.normal - base.normal).max() < 1e-3, scale
+
+
+def test_surfels_may_be_stored_at_any_scale(render_all):
+    scene, camera = perspective()
+    shots = [(scene, camera, None)]
+    for scale in SCALES:
+        lights, moved = transformed(scene, camera, scaled(scale))
+        instances = [replace(i, surfels=stored_at(i.surfels, np.float32(scale))) for i in scene.surfels]
+        shots.append((replace(scene, surfels=instances, lights=lights.lights), moved, None))
+    base, *others = render_all(shots)
+    assert [scale for scale, f in zip(SCALES, others, strict=True) if psnr(f.color, base.color) < 60] == []
+
+
+def stored_at(surfels, scale):
+    return replace(surfels, positions=surfels.positions * scale, scales=surfels.scales * scale)
+
+
+def test_a_depth_beyond_that_of_nothing_is_kept(hold):
+    """1e10 marks an empty pixel; what is farther still has its depth, and the coverage says that it is there."""
+    ((frame, truth),) = hold({"1e12": transformed(*perspective(), scaled(1e12))}).values()
+    hit = (frame.coverage > 0) & (truth.coverage > 0)
+    assert np.median(np.abs(frame.depth[hit] / truth.depth[hit] - 1)) < 1e-6

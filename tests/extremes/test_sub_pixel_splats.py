@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A million splats on one pixel: their mean, without loss in the sums; below the rasteriser's grid they vanish."""
+
+import numpy as np
+import pytest
+
+from splat_addon.reference.extremes import discs
+from splat_addon.rendering import Scene, Settings
+
+COUNT = 1_000_000
+DEPTH = 3.0
+FLAT = Settings(shading="flat")
+
+
+def crowd(camera, count, radius):
+    """Splats of a radius in pixels, spread over the pixel right above the middle."""
+    pixel = DEPTH * (camera.window[1] - camera.window[0]) / camera.size[0]
+    random = np.random.default_rng(1)
+    centers = random.random((count, 3)) * (pixel, pixel, 1e-3) - (0, 0, DEPTH)
+    return Scene((discs(centers, (radius * pixel, 0, 0), (0, radius * pixel, 0)),))
+
+
+def test_a_million_splats_give_their_mean(hold, camera):
+    camera = camera(size=(4, 4))
+    hold({"0.2 pixels": (crowd(camera, COUNT, 0.2), camera, FLAT)}, least=100)
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.01])
+def test_splats_of_a_hundredth_of_a_pixel_are_still_found(radius, hold, camera):
+    """By those whose ellipse holds a sample; the quad's corners are known to 1/256 pixel."""
+    camera = camera(size=(4, 4))
+    hold({f"{radius} pixels": (crowd(camera, COUNT // 4, radius), camera, FLAT)})
+
+
+def test_splats_below_the_rasterisers_grid_break_nothing(render_all, camera):
+    camera = camera(size=(4, 4))
+    (frame,) = render_all([(crowd(camera, 10_000, 1e-6), camera, FLAT)])
+    assert np.isfinite(frame.color).all()

@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A sample that only rims of splats or their backs reach, with weights near zero, has their colour all the same."""
+
+import numpy as np
+import pytest
+
+from splat_addon.reference.extremes import discs
+from splat_addon.rendering import Scene, Settings
+
+COLOR = np.array((0.3, 0.6, 0.9), np.float32)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("radius", [0.02, 0.2, 1.0])
+def test_one_splat_has_its_own_colour_up_to_its_rim(side, radius, render_all, camera):
+    splat = discs((0.01, 0.02, -3), (radius, 0, 0), (0, side * radius, 0), COLOR)
+    (frame,) = render_all([(Scene((splat,)), camera(), Settings(shading="flat", transparent_film=True))])
+    covered = frame.coverage > 0
+    assert covered.any()
+    colors = frame.color[covered][:, :3] / frame.color[covered][:, 3:]
+    np.testing.assert_allclose(colors, np.broadcast_to(COLOR, colors.shape), rtol=1e-5)
