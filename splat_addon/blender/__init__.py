@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from . import conversion_settings, engine, operators, prediction, properties, render_panels, sidebar
+from . import conversion_settings, engine, operators, points_panel, prediction, properties, render_panels, sidebar
 
 #: In the order of registration: what others refer to comes first.
 MODULES = (
@@ -15,6 +15,7 @@ MODULES = (
     operators,
     prediction,
     sidebar,
+    points_panel,
 )
 
 

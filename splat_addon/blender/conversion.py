@@ -25,10 +25,10 @@ from ..sampling import (
     sample_surface,
 )
 from ..surfels import Surfels
-from .attributes import write_surfels
 from .camera_density import without_camera
 from .mesh_extraction import extract_mesh
 from .placement import transformed, without_shear
+from .surfel_objects import add_surfel_object, collections_of
 
 #: About 20 GB while converting; a slip in the resolution must not freeze the machine.
 MAX_SURFELS = 100_000_000
@@ -130,15 +130,8 @@ def place(conversion: Conversion, fallback: bpy.types.Collection) -> bpy.types.O
     fallback: where it goes when every collection of the source belongs to a linked library.
     """
     start = time.perf_counter()
-    source, surfels = conversion.source, conversion.surfels
-    mesh = write_surfels(f"{source.name} surfels", surfels)
-    for material in conversion.materials:
-        mesh.materials.append(material)
-    made = bpy.data.objects.new(mesh.name, mesh)
-    # a mesh of loose points would be covered by Blender's black vertex overlay, in the rendered view too
-    made.display_type = "BOUNDS"
-    for collection in [c for c in source.users_collection if c.library is None] or [fallback]:
-        collection.objects.link(made)
-    made.matrix_world = conversion.matrix_world @ Matrix.Translation(surfels.origin)
+    source, collections = conversion.source, collections_of(conversion.source, fallback)
+    name, matrix_world = f"{source.name} surfels", conversion.matrix_world
+    made = add_surfel_object(name, conversion.surfels, matrix_world, collections, conversion.materials)
     conversion.seconds += time.perf_counter() - start
     return made

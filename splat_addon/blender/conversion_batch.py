@@ -13,6 +13,7 @@ import bpy
 
 from ..sampling import SamplingCancelled
 from .conversion import Choices, Conversion, place, prepare, sample
+from .surfel_objects import select_only
 
 
 class ConversionBatch:
@@ -63,10 +64,6 @@ class ConversionBatch:
 
     def place_all(self, context: bpy.types.Context) -> list[tuple[Conversion, bpy.types.Object]]:
         """Add the surfel objects to the file; they are selected, and the last is active."""
-        for selected in context.selected_objects:
-            selected.select_set(False)
         made = [(conversion, place(conversion, context.collection)) for conversion in self._sampled]
-        for _, new in made:
-            new.select_set(True)
-            context.view_layer.objects.active = new
+        select_only(context, [new for _, new in made])
         return made

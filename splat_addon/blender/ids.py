@@ -15,9 +15,13 @@ ENGINE_LABEL = "Surfel Splatting"
 RENDER_SETTINGS = "surfel_splatting"
 
 SURFELS_FROM_MESH = "object.surfels_from_mesh"
+SURFELS_FROM_POINTS = "object.surfels_from_points"
+EXPORT_PLY = "export_scene.surfels_ply"
+IMPORT_PLY = "import_scene.surfels_ply"
 
 SIDEBAR_TAB = "Surfels"
 SIDEBAR_PANEL = "VIEW3D_PT_surfels_from_mesh"
+POINTS_PANEL = "VIEW3D_PT_surfels_from_points"
 
 #: Custom property of a surfel mesh: true where no back is ever seen from outside (`Surfels.is_solid`). Geometry
 #: Nodes drop it, which is right: what they make may be open.

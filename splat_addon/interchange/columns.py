@@ -23,7 +23,7 @@ def has(columns: dict[str, np.ndarray], *groups: tuple[str, ...]) -> bool:
 
 def matrix(columns: dict[str, np.ndarray], names: tuple[str, ...], dtype=np.float32) -> np.ndarray:
     """(N, len(names)); a number too large for `dtype` becomes infinite, to be counted where infinite ones are."""
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore", invalid="ignore"):
         return np.stack([columns[name].astype(dtype) for name in names], axis=1)
 
 

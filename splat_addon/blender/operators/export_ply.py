@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""File > Export > Surfels (.ply): surfel objects, as their modifiers make them, in world coordinates."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, StringProperty
+from bpy_extras.io_utils import ExportHelper
+
+from ...interchange import joined, transformed, write_gaussian_ply, write_ply
+from ...surfels import Surfels
+from ..attributes import has_surfels, read_surfels
+from ..ids import EXPORT_PLY
+from ..mesh_extraction import evaluated_mesh
+
+#: The operator's choice -> function of path, surfels and whether to write text.
+_WRITERS = {
+    "SURFELS": write_ply,
+    "GAUSSIANS": lambda path, surfels, ascii: write_gaussian_ply(path, surfels),
+}
+
+
+class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
+    """Write surfels to a PLY file, with everything that they have or as Gaussian splats"""
+
+    bl_idname = EXPORT_PLY
+    bl_label = "Export Surfels"
+    bl_options = {"PRESET"}  # noqa: RUF012 - Blender reads a set
+
+    filename_ext = ".ply"
+    filter_glob: StringProperty(default="*.ply", options={"HIDDEN"})
+    layout_kind: EnumProperty(
+        name="Layout",
+        description="What the file holds",
+        items=(
+            ("SURFELS", "Surfels", "All properties, exactly; other programs read the positions, normals and colours"),
+            ("GAUSSIANS", "Gaussian Splats", "Flat 3D Gaussians, which viewers of Gaussian splats read"),
+        ),
+        default="SURFELS",
+    )
+    ascii: BoolProperty(
+        name="Text",
+        description="Write numbers that a text editor shows: a file several times as large. Surfels only",
+        default=False,
+    )
+    use_selection: BoolProperty(
+        name="Selected Only",
+        description="Write the selected surfel objects, and not all visible ones",
+        default=False,
+    )
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        for name in ("layout_kind", "use_selection"):
+            self.layout.prop(self, name)
+        row = self.layout.row()
+        row.active = self.layout_kind == "SURFELS"
+        row.prop(self, "ascii")
+
+    def execute(self, context):
+        candidates = context.selected_objects if self.use_selection else context.visible_objects
+        try:
+            parts, unusable = _world_surfels(candidates, context.evaluated_depsgraph_get())
+            if not parts:
+                which = "selected" if self.use_selection else "visible"
+                raise ValueError(f"No {which} object is surfels; convert one first, or choose others.")
+            surfels = joined(parts)
+            _WRITERS[self.layout_kind](self.filepath, surfels, self.ascii)
+        except (ValueError, OSError, MemoryError) as error:
+            self.report({"ERROR"}, str(error) or "The memory does not suffice; export fewer surfels.")
+            return {"CANCELLED"}
+        if unusable:
+            self.report({"WARNING"}, f"Skipped {unusable:,} unusable surfels")
+        self.report({"INFO"}, f"{len(surfels):,} surfels of {len(parts)} objects -> {self.filepath}")
+        return {"FINISHED"}
+
+
+def _world_surfels(candidates: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> tuple[list[Surfels], int]:
+    """The surfels of those objects that are surfels, in the world, each with materials of its own, and the unusable."""
+    parts, unusable, slots = [], 0, 0
+    for candidate in candidates:
+        if candidate.type != "MESH":
+            continue
+        with evaluated_mesh(candidate, depsgraph) as (evaluated, mesh):
+            if not has_surfels(mesh):
+                continue
+            surfels, skipped = read_surfels(mesh)
+            surfels = replace(surfels, materials=surfels.materials + np.int32(slots))
+            parts.append(transformed(surfels, np.array(evaluated.matrix_world, np.float64)))
+        unusable += skipped
+        slots += max(len(candidate.material_slots), 1)
+    return parts, unusable
+
+
+def draw_menu_entry(menu, context):
+    menu.layout.operator(EXPORT_PLY, text="Surfels (.ply)")
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((EXPORT_SCENE_OT_surfels_ply,))
+
+
+def register():
+    _register_classes()
+    bpy.types.TOPBAR_MT_file_export.append(draw_menu_entry)
+
+
+def unregister():
+    bpy.types.TOPBAR_MT_file_export.remove(draw_menu_entry)
+    _unregister_classes()

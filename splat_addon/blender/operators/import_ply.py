@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""File > Import > Surfels (.ply): a file of surfels, of Gaussian splats or of bare points becomes a surfel object."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import bpy
+from bpy.props import FloatProperty, StringProperty
+from bpy_extras.io_utils import ImportHelper
+from mathutils import Matrix
+
+from ...interchange import DEFAULT_FLATNESS, Gaussians, Points, StoredSurfels, read_contents
+from ...sampling import surfels_from_points
+from ...surfels import Surfels
+from ..ids import IMPORT_PLY
+from ..points_settings import PointsProperties, draw_points_properties, keywords, viewpoint
+from ..surfel_objects import add_surfel_object, select_only
+
+
+class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Operator):
+    """Read a PLY file as surfels: one that this extension wrote, flat Gaussian splats, or the points of any other"""
+
+    bl_idname = IMPORT_PLY
+    bl_label = "Import Surfels"
+    bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 - Blender reads a set
+
+    filename_ext = ".ply"
+    filter_glob: StringProperty(default="*.ply", options={"HIDDEN"})
+    flatness: FloatProperty(
+        name="Flatness",
+        description=(
+            "How thick a Gaussian may be, in its middle radius, to become a surfel; thicker ones are left out. "
+            "1 takes all"
+        ),
+        default=DEFAULT_FLATNESS,
+        min=0.0,
+        max=1.0,
+    )
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        header, body = self.layout.panel("surfels_ply_gaussians")
+        header.label(text="Gaussian Splats")
+        if body:
+            body.prop(self, "flatness")
+        header, body = self.layout.panel("surfels_ply_points")
+        header.label(text="Points")
+        if body:
+            draw_points_properties(body, self)
+
+    def execute(self, context):
+        try:
+            contents = read_contents(self.filepath, self.flatness)
+            surfels, notes = _READERS[type(contents)](contents, self, context)
+            if not len(surfels):
+                raise ValueError(f"The file gives no surfels{': ' if notes else ''}{'; '.join(notes)}.")
+        except (ValueError, OSError, MemoryError) as error:
+            sentence = str(error) or "The memory does not suffice for this file."
+            self.report({"ERROR"}, f"{Path(self.filepath).name}: {sentence}")
+            return {"CANCELLED"}
+        made = add_surfel_object(Path(self.filepath).stem, surfels, Matrix(), [context.collection])
+        select_only(context, [made])
+        self.report({"INFO"}, f"{Path(self.filepath).name}: {len(surfels):,} surfels")
+        for note in notes:
+            self.report({"WARNING" if note.startswith("Skipped") else "INFO"}, note)
+        return {"FINISHED"}
+
+
+def _from_surfels(contents: StoredSurfels, properties, context) -> tuple[Surfels, list[str]]:
+    return contents.surfels, [f"Skipped {contents.unusable:,} unusable surfels"] * bool(contents.unusable)
+
+
+def _from_gaussians(contents: Gaussians, properties, context) -> tuple[Surfels, list[str]]:
+    skipped = {
+        "thicker than the flatness allows": contents.not_flat,
+        "with unusable numbers": contents.unusable,
+    }
+    notes = [f"Skipped {count:,} of {contents.total:,} Gaussians {why}" for why, count in skipped.items() if count]
+    if contents.view_dependent:
+        notes.append("Skipped the part of the colours that changes with the view, which surfels do not have")
+    return contents.surfels, notes
+
+
+def _from_points(contents: Points, properties, context) -> tuple[Surfels, list[str]]:
+    eye = viewpoint(properties, context)
+    surfels, report = surfels_from_points(
+        contents.positions,
+        contents.normals,
+        contents.radii,
+        contents.colors,
+        viewpoint=None if eye is None else tuple(eye),
+        **keywords(properties),
+    )
+    return surfels, list(report.notes())
+
+
+#: What a file can hold -> function of it, the operator and the context, giving surfels and notes.
+_READERS = {StoredSurfels: _from_surfels, Gaussians: _from_gaussians, Points: _from_points}
+
+
+def draw_menu_entry(menu, context):
+    menu.layout.operator(IMPORT_PLY, text="Surfels (.ply)")
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((IMPORT_SCENE_OT_surfels_ply,))
+
+
+def register():
+    _register_classes()
+    bpy.types.TOPBAR_MT_file_import.append(draw_menu_entry)
+
+
+def unregister():
+    bpy.types.TOPBAR_MT_file_import.remove(draw_menu_entry)
+    _unregister_classes()

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The points of a Blender object, evaluated: a mesh's vertices or a point cloud, with what attributes they have.
+
+The twin of `mesh_extraction` for things without a surface; `sampling.surfels_from_points` takes what it gives.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import bpy
+import numpy as np
+
+from .attributes import has_surfels
+from .mesh_extraction import evaluated_mesh
+
+#: Blender's attribute type -> what `foreach_get` takes, and numbers a value. "color" is scene-linear for both.
+_READS = {
+    "FLOAT": ("value", 1),
+    "FLOAT_VECTOR": ("vector", 3),
+    "FLOAT_COLOR": ("color", 4),
+    "BYTE_COLOR": ("color", 4),
+}
+_COLOR_TYPES = ("FLOAT_COLOR", "BYTE_COLOR")
+#: Names under which importers and add-ons keep a point's colour, the usual one first.
+_COLOR_NAMES = ("Col", "color", "Color")
+
+
+@dataclass(frozen=True, eq=False)
+class ExtractedPoints:
+    """positions: (N, 3) float32; normals: (N, 3), radii: (N,), colors: (N, 4) float32 or None. Object units.
+    materials: the object's, None where a slot is empty."""
+
+    positions: np.ndarray
+    normals: np.ndarray | None
+    radii: np.ndarray | None
+    colors: np.ndarray | None
+    materials: tuple[bpy.types.Material | None, ...]
+
+
+def has_points(source: bpy.types.Object) -> bool:
+    """Whether `extract_points` reads this kind of object: a point cloud, or a mesh that is not surfels already."""
+    return source.type == "POINTCLOUD" or (source.type == "MESH" and not has_surfels(source.data))
+
+
+def extract_points(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> ExtractedPoints:
+    """The points of an object as its modifiers make them."""
+    evaluated = source.evaluated_get(depsgraph)
+    materials = tuple(slot.material and slot.material.original for slot in evaluated.material_slots)
+    cloud = _evaluated_cloud(evaluated)
+    if cloud is not None:
+        return _read_points(cloud.attributes, len(cloud.points), materials)
+    with evaluated_mesh(source, depsgraph) as (_, mesh):
+        points = _read_points(mesh.attributes, len(mesh.vertices), materials)
+        if points.normals is None and mesh.polygons:
+            points = replace(points, normals=_values(mesh.vertex_normals, "vector", 3, len(mesh.vertices)))
+    return points
+
+
+def sheared(points: ExtractedPoints, linear: np.ndarray) -> ExtractedPoints:
+    """The points under a (3, 3) linear map; normals go by its inverse transpose, radii stay."""
+    normals = points.normals
+    return replace(
+        points,
+        positions=points.positions @ linear.T,
+        normals=None if normals is None else normals @ np.linalg.inv(linear),
+    )
+
+
+def _evaluated_cloud(evaluated: bpy.types.Object) -> bpy.types.PointCloud | None:
+    """A point cloud's own data, or the points that Geometry Nodes made of a mesh, whose data is then empty."""
+    if evaluated.type == "POINTCLOUD":
+        return evaluated.data
+    if len(evaluated.data.vertices) or not hasattr(evaluated, "evaluated_geometry"):
+        return None
+    return evaluated.evaluated_geometry().pointcloud
+
+
+def _read_points(attributes, count: int, materials) -> ExtractedPoints:
+    def read(name: str, *types: str) -> np.ndarray | None:
+        attribute = attributes.get(name)
+        if attribute is None or attribute.domain != "POINT" or attribute.data_type not in types:
+            return None
+        return _values(attribute.data, *_READS[attribute.data_type], count)
+
+    positions = read("position", "FLOAT_VECTOR")
+    colors = (read(name, *_COLOR_TYPES) for name in (*_COLOR_NAMES, *(a.name for a in attributes)))
+    return ExtractedPoints(
+        positions=np.empty((0, 3), np.float32) if positions is None else positions,
+        normals=read("normal", "FLOAT_VECTOR"),
+        radii=read("radius", "FLOAT"),
+        colors=next((values for values in colors if values is not None), None),
+        materials=materials,
+    )
+
+
+def _values(collection, key: str, width: int, count: int) -> np.ndarray:
+    """(count, width) or (count,) float32 from one `foreach_get`."""
+    values = np.empty((count, width) if width > 1 else count, np.float32)
+    if count:
+        collection.foreach_get(key, values.ravel())
+    return values

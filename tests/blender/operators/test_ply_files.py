@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""File > Export and Import of surfels."""
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender.attributes import write_surfels
+from splat_addon.interchange import read_ply, write_ply
+from splat_addon.surfels import LAYOUT
+
+
+@pytest.fixture
+def stored(add_object, random_surfels):
+    """An object of 200 random surfels at the world's origin."""
+    return add_object(write_surfels("Statue", random_surfels(200)))
+
+
+@pytest.fixture
+def import_ply():
+    """import_ply(path, **settings) -> the new object."""
+
+    def run(path, **settings):
+        bpy.ops.import_scene.surfels_ply(filepath=str(path), **settings)
+        return bpy.context.object
+
+    return run
+
+
+def test_surfels_leave_and_return_bit_for_bit(stored, random_surfels, import_ply, surfels_of, tmp_path):
+    bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "a.ply"))
+    made = import_ply(tmp_path / "a.ply")
+    assert made.name == "a" and bpy.context.selected_objects == [made]
+    for name in LAYOUT:
+        assert np.array_equal(getattr(surfels_of(made), name), getattr(random_surfels(200), name)), name
+
+
+def test_gaussians_leave_and_return_as_surfels(stored, random_surfels, import_ply, surfels_of, tmp_path):
+    bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "a.ply"), layout_kind="GAUSSIANS")
+    read, written = surfels_of(import_ply(tmp_path / "a.ply")), random_surfels(200)
+    assert np.array_equal(read.rotations, written.rotations)
+    assert np.allclose(read.scales, written.scales, rtol=1e-6)
+    assert np.allclose(read.colors, written.colors, rtol=1e-5, atol=1e-6)
+
+
+def test_files_hold_world_coordinates(stored, random_surfels, tmp_path):
+    stored.location, stored.scale = (100, 0, 0), (2, 2, 2)
+    bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "a.ply"))
+    read, written = read_ply(tmp_path / "a.ply"), random_surfels(200)
+    assert np.allclose(read.origin + read.positions, 2 * written.positions + (100, 0, 0), atol=1e-5)
+    assert np.allclose(read.scales, 2 * written.scales, rtol=1e-5)
+
+
+def test_a_far_object_returns_to_its_place_without_loss(stored, world_positions, import_ply, tmp_path):
+    stored.location = (2**20, 0, 0)
+    before = world_positions(stored)
+    bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "a.ply"))
+    made = import_ply(tmp_path / "a.ply")
+    assert tuple(made.location) == (2**20, 0, 0)
+    assert np.array_equal(world_positions(made), before)
+
+
+def test_several_objects_become_one_file_with_materials_apart(stored, add_object, random_surfels, tmp_path):
+    for name in "ab":
+        stored.data.materials.append(bpy.data.materials.new(name))
+    add_object(write_surfels("Other", random_surfels(50)))
+    bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "a.ply"))
+    read = read_ply(tmp_path / "a.ply")
+    assert sorted(read.materials) == sorted([*random_surfels(200).materials, *(random_surfels(50).materials + 2)])
+
+
+def test_only_the_selected_are_written_when_asked(stored, add_object, random_surfels, tmp_path):
+    add_object(write_surfels("Other", random_surfels(50)))
+    bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "a.ply"), use_selection=True)
+    assert len(read_ply(tmp_path / "a.ply")) == 50
+
+
+def test_bare_points_become_surfels(import_ply, surfels_of, tmp_path):
+    points = np.random.default_rng(3).normal(size=(500, 3))
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    head = ["ply", "format ascii 1.0", "element vertex 500", *(f"property float {n}" for n in "xyz"), "end_header"]
+    (tmp_path / "scan.ply").write_text("\n".join([*head, *(" ".join(map(str, p)) for p in points)]))
+    surfels = surfels_of(import_ply(tmp_path / "scan.ply", isolated="KEEP"))
+    assert len(surfels) == 500 and ((surfels.normals * points).sum(axis=1) > 0.8).all()
+
+
+def test_thick_gaussians_are_counted_and_left_out(import_ply, surfels_of, tmp_path, capfd):
+    names = ["x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "f_rest_0",
+             "rot_0", "rot_1", "rot_2", "rot_3"]  # fmt: skip
+    head = ["ply", "format ascii 1.0", "element vertex 2", *(f"property float {n}" for n in names), "end_header"]
+    rows = [f"{x} 0 0 0 0 0 9 0 0 {thickness} 0 1 0 0 0" for x, thickness in ((1, -5), (2, 0))]
+    (tmp_path / "g.ply").write_text("\n".join([*head, *rows, ""]))
+    assert len(surfels_of(import_ply(tmp_path / "g.ply"))) == 1
+    report = capfd.readouterr().out
+    assert "Skipped 1 of 2 Gaussians thicker than the flatness allows" in report
+    assert "changes with the view" in report
+    assert len(surfels_of(import_ply(tmp_path / "g.ply", flatness=1.0))) == 2
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        ("hello", "h.ply: This is not a PLY file"),
+        ("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n",
+         "h.ply: The file gives no surfels"),
+        (None, "h.ply: .*No such file"),
+    ],
+)  # fmt: skip
+def test_a_file_that_cannot_be_read_is_an_error_and_adds_nothing(tmp_path, content, sentence):
+    if content is not None:
+        (tmp_path / "h.ply").write_text(content)
+    with pytest.raises(RuntimeError, match=sentence):
+        bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "h.ply"))
+    assert not bpy.data.objects and not bpy.data.meshes
+
+
+def test_nothing_to_export_is_an_error(add_square, tmp_path):
+    add_square()
+    with pytest.raises(RuntimeError, match="No visible object is surfels"):
+        bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "a.ply"))
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_that_cannot_be_written_is_an_error(stored, tmp_path):
+    with pytest.raises(RuntimeError, match="No such file or directory"):
+        bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "nowhere" / "a.ply"))
+
+
+def test_undo_takes_an_import_back(random_surfels, tmp_path):
+    write_ply(tmp_path / "a.ply", random_surfels(9))
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.import_scene.surfels_ply("EXEC_DEFAULT", True, filepath=str(tmp_path / "a.ply"))
+    bpy.ops.ed.undo()
+    assert not bpy.data.objects
+
+
+@pytest.mark.parametrize("menu", ["TOPBAR_MT_file_import", "TOPBAR_MT_file_export"])
+def test_both_stand_in_the_file_menu(menu):
+    functions = [function.__name__ for function in getattr(bpy.types, menu)._dyn_ui_initialize()]
+    assert functions.count("draw_menu_entry") == 1

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What Object > Convert Points to Surfels makes of vertex-only meshes, meshes and point clouds."""
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender.attributes import has_surfels
+
+
+def sphere(count=2000):
+    points = np.random.default_rng(3).normal(size=(count, 3))
+    return points / np.linalg.norm(points, axis=1, keepdims=True)
+
+
+@pytest.fixture
+def scan(add_mesh):
+    """The unit sphere as 2,000 loose vertices."""
+    return add_mesh("Scan", sphere().tolist(), [])
+
+
+@pytest.fixture
+def convert_points():
+    """convert_points(**settings) -> the one new object."""
+
+    def run(**settings):
+        before = set(bpy.data.objects)
+        bpy.ops.object.surfels_from_points(**settings)
+        (made,) = set(bpy.data.objects) - before
+        return made
+
+    return run
+
+
+def set_attribute(data, name, data_type, key, values):
+    attribute = data.attributes.new(name, data_type, "POINT")
+    attribute.data.foreach_set(key, np.ravel(np.asarray(values, np.float32)))
+
+
+def test_loose_vertices_become_surfels_with_outward_normals(scan, convert_points, surfels_of):
+    surfels = surfels_of(convert_points(isolated="KEEP"))
+    assert len(surfels) == 2000
+    assert ((surfels.normals * sphere()).sum(axis=1) > 0.9).all()
+
+
+def test_the_result_lies_over_its_source_under_any_transform(scan, convert_points, world_positions):
+    parent = bpy.data.objects.new("parent", None)
+    bpy.context.collection.objects.link(parent)
+    parent.scale, scan.parent = (1, 2, -3), parent
+    scan.location, scan.rotation_euler = (10, 20, 30), (1, 2, 3)
+    made = convert_points(isolated="KEEP")
+    bpy.context.view_layer.update()
+    matrix = np.array(scan.matrix_world)
+    assert np.allclose(world_positions(made), sphere() @ matrix[:3, :3].T + matrix[:3, 3], atol=1e-4)
+
+
+def test_the_result_is_named_placed_and_selected_as_a_converted_mesh_is(scan, convert_points):
+    other = bpy.data.collections.new("other")
+    bpy.context.scene.collection.children.link(other)
+    other.objects.link(scan)
+    scan.data.materials.append(bpy.data.materials.new("paint"))
+    made = convert_points()
+    assert made.name == "Scan surfels" and has_surfels(made.data)
+    assert bpy.context.selected_objects == [made] and bpy.context.view_layer.objects.active == made
+    assert made.users_collection == scan.users_collection and len(scan.users_collection) == 2
+    assert [slot.material.name for slot in made.material_slots] == ["paint"]
+
+
+def test_attributes_are_used(scan, convert_points, surfels_of):
+    set_attribute(scan.data, "normal", "FLOAT_VECTOR", "vector", -sphere())
+    set_attribute(scan.data, "radius", "FLOAT", "value", np.full(2000, 0.125))
+    set_attribute(scan.data, "Col", "FLOAT_COLOR", "color", np.tile((0.1, 2.0, 0.3, 0.5), (2000, 1)))
+    surfels = surfels_of(convert_points(isolated="KEEP"))
+    assert np.allclose(surfels.normals, -sphere(), atol=1e-5)
+    assert (surfels.scales == 0.125).all()
+    assert np.allclose(surfels.colors, (0.1, 2.0, 0.3, 0.5))
+
+
+def test_a_mesh_with_faces_gives_its_vertices_with_their_normals(convert_points, surfels_of):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16)
+    surfels = surfels_of(convert_points(isolated="KEEP"))
+    assert len(surfels) == 32 * 15 + 2
+    assert ((surfels.normals * (surfels.positions)).sum(axis=1) > 0.9).all()
+
+
+def test_modifiers_shape_the_points(scan, convert_points, surfels_of):
+    scan.modifiers.new("array", "ARRAY").relative_offset_displace = (2, 0, 0)
+    assert len(surfels_of(convert_points(isolated="KEEP"))) == 4000
+
+
+def test_a_point_cloud_is_converted(scan, convert_points, surfels_of):
+    bpy.ops.object.convert(target="POINTCLOUD")
+    assert bpy.context.object.type == "POINTCLOUD"
+    set_attribute(bpy.context.object.data, "color", "FLOAT_COLOR", "color", np.tile((1, 0, 0, 1), (2000, 1)))
+    surfels = surfels_of(convert_points(isolated="KEEP"))
+    assert len(surfels) == 2000 and np.allclose(surfels.colors, (1, 0, 0, 1))
+
+
+@pytest.mark.parametrize(("facing", "inward"), [("OUTWARD", False), ("CURSOR", True), ("CAMERA", True)])
+def test_normals_face_where_they_are_told(scan, convert_points, surfels_of, facing, inward):
+    scan.location = (7, 0, 0)
+    bpy.context.scene.cursor.location = (7, 0, 0)
+    camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    bpy.context.collection.objects.link(camera)
+    camera.location, bpy.context.scene.camera = (7, 0, 0), camera
+    bpy.context.view_layer.update()
+    surfels = surfels_of(convert_points(facing=facing, isolated="KEEP"))
+    assert (((surfels.normals * sphere()).sum(axis=1) < 0) == inward).all()
+
+
+def test_what_was_skipped_and_estimated_is_reported(add_mesh, convert_points, capfd):
+    points = sphere()
+    points[0], points[1] = points[2], (np.nan, 0, 0)
+    add_mesh("Scan", [*points.tolist(), (50, 0, 0)], [])
+    convert_points()
+    report = capfd.readouterr().out
+    assert "Scan: 2,001 points -> " in report
+    assert "Warning: Scan: Skipped 1 points that are not finite, 1 points that repeat another" in report
+    assert "Info: Scan: Estimated normals of " in report
+
+
+@pytest.mark.parametrize(("source", "hidden"), [("KEEP", False), ("HIDE", True)])
+def test_the_source_is_kept_or_hidden_as_asked(scan, convert_points, source, hidden):
+    convert_points(source=source)
+    assert (scan.hide_get(), scan.hide_render) == (hidden, hidden)
+
+
+def test_undo_takes_the_surfels_back(scan):
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.object.surfels_from_points("EXEC_DEFAULT", True)
+    assert "Scan surfels" in bpy.data.objects
+    bpy.ops.ed.undo()
+    assert "Scan surfels" not in bpy.data.objects
+
+
+@pytest.mark.parametrize(
+    ("vertices", "settings", "sentence"),
+    [
+        ([], {}, "It has no points"),
+        ([(0, 0, 0), (1, 0, 0)], {}, "2 usable points are too few"),
+        ([(float("nan"), 0, 0)] * 9, {}, "None of the 9 points has finite coordinates"),
+        (sphere(9).tolist(), {"neighbours": 1}, "whole number of 3 or more, not 1"),
+        (sphere(9).tolist(), {"splat_size": 0.0}, "splat size must be a finite number above 0, not 0"),
+        (sphere(9).tolist(), {"facing": "CAMERA"}, "The scene has no camera"),
+    ],
+)
+def test_what_cannot_be_done_is_an_error_with_the_objects_name(add_mesh, vertices, settings, sentence):
+    add_mesh("Scan", vertices, [])
+    with pytest.raises(RuntimeError, match=f"Scan: .*{sentence}"):
+        bpy.ops.object.surfels_from_points(**settings)
+    assert len(bpy.data.objects) == 1
+
+
+def test_one_source_without_points_does_not_stop_the_others(scan, add_mesh, convert_points, capfd):
+    add_mesh("Empty", [], [])
+    scan.select_set(True)
+    assert convert_points().name == "Scan surfels"
+    assert "Warning: Empty: It has no points" in capfd.readouterr().out
+
+
+def test_surfels_are_not_converted_again(scan, convert_points):
+    convert_points()
+    assert not bpy.ops.object.surfels_from_points.poll()
