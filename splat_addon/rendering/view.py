@@ -170,9 +170,9 @@ def _power_of_two_scale(camera: Camera, seen, near: float) -> float:
 
 
 def _median_depth(instance: Instance, camera: Camera, near: float) -> float:
-    """Of some surfels, those before the near plane left out: a few stray ones far away do not count for more."""
+    """Of some surfels between the clip planes: stray ones far away do not count for more."""
     positions = instance.surfels.positions[:: -(-len(instance.surfels) // _DEPTH_SAMPLES)]
     axis = -instance.model_view(camera)[2]
     depths = positions @ axis[:3] + axis[3]
-    depths = depths[depths > near]
+    depths = depths[(depths > near) & (depths < camera.far)]
     return float(np.median(depths)) if len(depths) else near
