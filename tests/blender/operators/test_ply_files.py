@@ -51,6 +51,21 @@ def test_files_hold_world_coordinates(stored, random_surfels, tmp_path):
     assert np.allclose(read.scales, 2 * written.scales, rtol=1e-5)
 
 
+def test_blenders_own_importer_reads_colour_normal_and_radius(stored, random_surfels, tmp_path):
+    bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "a.ply"))
+    bpy.ops.wm.ply_import(filepath=str(tmp_path / "a.ply"), import_attributes=True)
+    attributes, written = bpy.context.object.data.attributes, random_surfels(200)
+    for name, key, wanted in (
+        ("Col", "color", written.colors),
+        ("normal", "vector", written.normals),
+        ("radius", "value", written.radius),
+    ):
+        values = np.empty(wanted.shape, np.float32)
+        attributes[name].data.foreach_get(key, values.ravel())
+        # eight bits of display colour, so coarser towards white
+        assert np.allclose(values, wanted, atol=5e-3), name
+
+
 def test_a_far_object_returns_to_its_place_without_loss(stored, world_positions, import_ply, tmp_path):
     stored.location = (2**20, 0, 0)
     before = world_positions(stored)

@@ -46,11 +46,19 @@ def grid_points():
 
 
 @pytest.fixture(scope="session")
-def range_map(models):
-    """(62702, 3) vertices of a range map, seen by a scanner at the origin, without its faces."""
+def range_map_mesh(models):
+    """(62702, 3) vertices of a range map, seen by a scanner at the origin, and its (120995, 3) faces."""
     data = gzip.decompress((models / "rangemap_lato315.ply.gz").read_bytes())
     head, body = data.split(b"end_header\n", 1)
-    assert b"element vertex 62702" in head
+    assert b"element vertex 62702" in head and b"element face 120995" in head
     camera = 23 * 4
     row = np.dtype([("position", "<f4", 3), ("flags", "<i4"), ("quality", "<f4")])
-    return np.frombuffer(body, row, 62702, camera)["position"].astype(float)
+    face = np.dtype([("corners", "u1"), ("indices", "<i4", 3), ("flags", "<i4"), ("quality", "<f4")])
+    vertices = np.frombuffer(body, row, 62702, camera)["position"].astype(float)
+    return vertices, np.frombuffer(body, face, 120995, camera + 62702 * row.itemsize)["indices"]
+
+
+@pytest.fixture(scope="session")
+def range_map(range_map_mesh):
+    """The vertices without the faces."""
+    return range_map_mesh[0]

@@ -52,6 +52,25 @@ def test_random_points_of_a_sphere_are_covered(sphere_points):
     assert uncovered_share(surfels_from_points(points)[0], random, random) == 0
 
 
+def test_the_range_map_has_no_hole_where_its_mesh_has_none(range_map_mesh):
+    """Random points of the faces, which the surfels never knew, without those that bridge a step in depth."""
+    vertices, faces = range_map_mesh
+    surfels, _ = surfels_from_points(vertices, viewpoint=(0, 0, 0))
+    random = np.random.default_rng(8)
+    a, b, c = vertices[faces[random.choice(len(faces), 20_000)]].transpose(1, 0, 2)
+    u, v = np.sort(random.random((2, len(a), 1)), axis=0)
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    short = max_edge(a, b, c) < 3 * np.median(max_edge(a, b, c))
+    points = a * u + b * (v - u) + c * (1 - v)
+    assert short.mean() > 0.98
+    assert uncovered_share(surfels, points[short], normals[short]) < 1e-3
+
+
+def max_edge(a, b, c):
+    return np.max([np.linalg.norm(p - q, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=0)
+
+
 def test_half_the_splat_size_of_a_grid_is_enlarged_until_it_covers(grid_points):
     surfels, _ = surfels_from_points(grid_points(20, 20), splat_size=0.5)
     assert np.allclose(surfels.scales.reshape(20, 20, 2)[3:-3, 3:-3], np.sqrt(0.5), rtol=0.01)

@@ -38,6 +38,22 @@ def test_surfels_are_in_the_order_of_the_points(sphere_points):
     assert np.allclose(surfels.origin + surfels.positions, points, atol=1e-6)
 
 
+def test_the_order_of_the_points_changes_nothing(sphere_points):
+    points, _ = sphere_points(3000)
+    order = np.random.default_rng(1).permutation(3000)
+    plain, shuffled = (surfels_from_points(p, isolated="keep")[0] for p in (points, points[order]))
+    assert np.allclose(shuffled.normals, plain.normals[order], atol=1e-5)
+    assert np.allclose(shuffled.scales, plain.scales[order], rtol=1e-4)
+
+
+@pytest.mark.parametrize("scale", [2.0**-40, 2.0**40])
+def test_all_lengths_scale_with_the_points(sphere_points, scale):
+    points, _ = sphere_points(3000)
+    plain, scaled = (surfels_from_points(p, isolated="keep")[0] for p in (points, scale * points))
+    assert np.allclose(scaled.normals, plain.normals, atol=1e-5)
+    assert np.allclose(scaled.scales, scale * plain.scales, rtol=1e-4)
+
+
 def test_positions_far_from_the_origin_lose_nothing(grid_points):
     points = grid_points(20, 20) + 1e7
     surfels, _ = surfels_from_points(points)
