@@ -3,7 +3,7 @@
 //          into view), leaves none.
 
 #include "common/depth.glsl"
-#include "methods/{method}.glsl"
+#include "methods/quad.glsl"
 
 void main() {
   if (!(kernel_weight(place_depth.xy) > 0.0 && place_depth.z >= splats.options.y)) discard;

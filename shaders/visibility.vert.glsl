@@ -6,7 +6,7 @@
 
 #include "common/sides.glsl"
 #include "common/splat_fetch.glsl"
-#include "methods/{method}.glsl"
+#include "methods/quad.glsl"
 
 void main() {
   ivec2 texel = splat_texel(gl_VertexID >> 2);

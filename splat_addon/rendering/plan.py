@@ -26,15 +26,17 @@ MAX_HARDWARE_DEPTH_RATIO = 128
 #: Up to this radius of a splat at distance 1 its corners may be moved back instead of every fragment.
 MAX_HARDWARE_DEPTH_RADIUS = 0.25
 
-#: texture -> (format, whether it holds every sample of a pixel or only the pixel)
+#: texture -> (format, what it holds one value for)
 TEXTURES = {
-    "visibility_depth": ("DEPTH32F", True),
-    "color_sum": ("RGBA32F", True),
-    "normal_sum": ("RGBA32F", True),
-    "material_sum": ("RGBA32F", True),
-    "combined": ("RGBA32F", False),
-    "depth": ("R32F", False),
-    "normal_coverage": ("RGBA32F", False),
+    "visibility_depth": ("DEPTH32F", "visibility sample"),
+    "color_sum": ("RGBA32F", "sample"),
+    "normal_sum": ("RGBA32F", "sample"),
+    "material_sum": ("RGBA32F", "sample"),
+    "shaded": ("RGBA32F", "sample"),
+    "surface": ("RGBA32F", "sample"),
+    "combined": ("RGBA32F", "pixel"),
+    "depth": ("R32F", "pixel"),
+    "normal_coverage": ("RGBA32F", "pixel"),
 }
 
 
@@ -53,19 +55,29 @@ class PlannedPass:
 @dataclass(frozen=True)
 class FramePlan:
     """tiles: (x, y, width, height) in pixels, each rendered with all passes.
-    samples: N of the N x N samples a pixel. material: the one that all surfels share, or None.
+    samples: N of the N x N samples a pixel. visibility_samples: V of the V x V a sample.
+    material: the one that all surfels share, or None.
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
     left_out: (what, why), of what other scenes or settings would need.
     """
 
     tiles: tuple[tuple[int, int, int, int], ...]
     samples: int
+    visibility_samples: int
     method: str
     shading: str
     material: Material | None
     linear_depth: bool
     passes: tuple[PlannedPass, ...]
     left_out: tuple[tuple[str, str], ...]
+
+    def scale(self, texture: str) -> int:
+        """Values along each side of a pixel."""
+        return {
+            "pixel": 1,
+            "sample": self.samples,
+            "visibility sample": self.samples * self.visibility_samples,
+        }[TEXTURES[texture][1]]
 
     @property
     def textures(self) -> tuple[str, ...]:
@@ -85,7 +97,7 @@ class FramePlan:
 
 def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
     """The passes that this picture needs. Raises ValueError for an unknown method."""
-    get_method(settings.method)
+    method = get_method(settings.method)
     material = shared_material(scene.surfels)
     passes, left_out, linear_depth = [], [], False
     if not any(len(instance.surfels) for instance in scene.surfels):
@@ -115,17 +127,25 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
             left_out.append(("linear depth", why_depth))
         passes = [
             PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
-            PlannedPass("attributes", "overlapping splats blend", ("visibility_depth",), (*sums,)),
-            PlannedPass("shading", f"{settings.shading}, once a sample", (*reads,), (*outputs,)),
+            PlannedPass("attributes", f"overlapping splats blend by {method.name}", ("visibility_depth",), (*sums,)),
         ]
+        if method.visibility_samples > 1:
+            kept = ("shaded", "surface")
+            passes += [
+                PlannedPass("sample_shading", f"{settings.shading}, once a sample", (*reads,), kept),
+                PlannedPass("resolve", "silhouettes are filtered", (*kept, "visibility_depth"), (*outputs,)),
+            ]
+        else:
+            passes.append(PlannedPass("shading", f"{settings.shading}, once a sample", (*reads,), (*outputs,)))
         solid = sum(instance.hides_backs(camera) for instance in scene.surfels)
         if solid:
             left_out.append(("backs of splats", f"{solid} of {len(scene.surfels)} instances are solid"))
         if any((instance.surfels.colors[:, 3] < 1).any() for instance in scene.surfels):
             left_out.append(("transparency", "surfels whose opacity is below 1 are drawn opaque"))
     return FramePlan(
-        _tiles(camera.size, MAX_TARGET_EDGE // settings.supersampling),
+        _tiles(camera.size, max(MAX_TARGET_EDGE // (settings.supersampling * method.visibility_samples), 1)),
         settings.supersampling,
+        method.visibility_samples,
         settings.method,
         settings.shading,
         material,

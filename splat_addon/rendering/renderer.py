@@ -76,7 +76,7 @@ class Renderer:
         try:
             for tile, _ in self._tiles(scene, camera, settings, frame_plan, self._new_stats(frame_plan), None):
                 self.device.restore()
-                yield tile, self._texture("combined", tile[2:], 1)
+                yield tile, self._texture("combined", tile[2:], frame_plan)
         finally:
             self.device.restore()
 
@@ -123,48 +123,61 @@ class Renderer:
             yield tile, target
 
     def _run_visibility(self, planned, frame_plan, scene, camera, settings, view):
-        target = self.device.target([], self._texture("visibility_depth", camera.size, frame_plan.samples))
+        target = self.device.target([], self._texture("visibility_depth", camera.size, frame_plan))
         target.clear(depth=1.0)
         self._draw_splats(planned, frame_plan, camera, settings, view, target)
         return target
 
     def _run_attributes(self, planned, frame_plan, scene, camera, settings, view):
-        size, samples = camera.size, frame_plan.samples
-        colors = [self._texture(name, size, samples) for name in planned.writes]
-        target = self.device.target(colors, self._texture("visibility_depth", size, samples))
+        colors = [self._texture(name, camera.size, frame_plan) for name in planned.writes]
+        is_tested_by_hardware = self._pipeline(planned, frame_plan).description.depth_test
+        depth = self._texture("visibility_depth", camera.size, frame_plan) if is_tested_by_hardware else None
+        target = self.device.target(colors, depth)
         target.clear(color=0.0)
         self._draw_splats(planned, frame_plan, camera, settings, view, target)
         return target
 
-    def _run_shading(self, planned, frame_plan, scene, camera, settings, view):
-        size, samples = camera.size, frame_plan.samples
-        target = self.device.target([self._texture(name, size, 1) for name in planned.writes])
-        reads = [self._texture(name, size, samples) for name in planned.reads if name in TEXTURES]
-        if "lights" in planned.reads:
-            data = pack_lights(scene.lights, camera.world_to_view(), view.scale)
-            reads.append(self.device.texture(data.shape[1::-1], "RGBA32F", data))
+    def _run_fullscreen(self, planned, frame_plan, scene, camera, settings, view):
+        target = self.device.target([self._texture(name, camera.size, frame_plan) for name in planned.writes])
+        made_here = {"lights": lambda: self._light_texture(scene, camera, view)}
+        reads = [
+            made_here[name]() if name in made_here else self._texture(name, camera.size, frame_plan)
+            for name in planned.reads
+        ]
         block = _shading_block(scene, camera, settings, frame_plan, view)
         self.device.draw_fullscreen(self._pipeline(planned, frame_plan), target, block, reads)
         return target
 
     def _draw_splats(self, planned, frame_plan, camera, settings, view: View, target):
         pipeline = self._pipeline(planned, frame_plan)
-        with_materials = "materials" in pipeline.description.samplers
         depth_unit = 1.0 / view.far if frame_plan.linear_depth else 0.0
         least_offset = view.least_offset(frame_plan.linear_depth)
+        window = _window(camera, frame_plan, view)
         for placed in view.placed:
             instance = placed.instance
-            textures = [self._surfel_texture(instance.surfels)]
-            if with_materials:
-                data = pack_materials(instance.materials)
-                textures.append(self.device.texture((data.shape[1], 1), "RGBA32F", data))
+            made_here = {
+                "surfels": lambda i=instance: self._surfel_texture(i.surfels),
+                "materials": lambda i=instance: self._material_texture(i.materials),
+            }
+            textures = [
+                made_here[name]() if name in made_here else self._texture(name, camera.size, frame_plan)
+                for name in pipeline.description.samplers
+            ]
             orientation = np.sign(np.linalg.det(placed.normal_matrix))
             options = settings.epsilon, view.near, camera.is_orthographic, depth_unit
             sides = orientation, placed.hides_backs, least_offset, 0.0
             normal_matrix = np.eye(4)
             normal_matrix[:3, :3] = placed.normal_matrix
-            block = _block(placed.model_view, view.projection, normal_matrix, options, sides)
+            block = _block(placed.model_view, view.projection, normal_matrix, options, sides, window)
             self.device.draw_quads(pipeline, target, len(instance.surfels), block, textures)
+
+    def _light_texture(self, scene, camera, view):
+        data = pack_lights(scene.lights, camera.world_to_view(), view.scale)
+        return self.device.texture(data.shape[1::-1], "RGBA32F", data)
+
+    def _material_texture(self, materials):
+        data = pack_materials(materials)
+        return self.device.texture(data.shape[1::-1], "RGBA32F", data)
 
     def _surfel_texture(self, surfels):
         if surfels not in self._surfels:
@@ -172,19 +185,18 @@ class Renderer:
             self._surfels[surfels] = self.device.texture(texels.shape[1::-1], "RGBA32F", texels)
         return self._surfels[surfels]
 
-    def _texture(self, name, size, samples):
-        format, per_sample = TEXTURES[name]
-        factor = samples if per_sample else 1
-        key = name, size[0] * factor, size[1] * factor
+    def _texture(self, name, size, frame_plan):
+        scale = frame_plan.scale(name)
+        key = name, size[0] * scale, size[1] * scale
         if key not in self._textures:
-            self._textures[key] = self.device.texture(key[1:], format)
+            self._textures[key] = self.device.texture(key[1:], TEXTURES[name][0])
         return self._textures[key]
 
     def _forget_other_sizes(self, frame_plan):
         """Textures of a size or kind that this frame does not use are not kept for one that may."""
         sizes = {tile[2:] for tile in frame_plan.tiles}
-        factor = {name: frame_plan.samples if TEXTURES[name][1] else 1 for name in frame_plan.textures}
-        wanted = {(name, w * f, h * f) for name, f in factor.items() for w, h in sizes}
+        scales = {name: frame_plan.scale(name) for name in frame_plan.textures}
+        wanted = {(name, w * scale, h * scale) for name, scale in scales.items() for w, h in sizes}
         self._textures = {key: texture for key, texture in self._textures.items() if key in wanted}
 
     def _pipeline(self, planned, frame_plan):
@@ -197,7 +209,9 @@ class Renderer:
 _RUN = {
     "visibility": Renderer._run_visibility,
     "attributes": Renderer._run_attributes,
-    "shading": Renderer._run_shading,
+    "shading": Renderer._run_fullscreen,
+    "sample_shading": Renderer._run_fullscreen,
+    "resolve": Renderer._run_fullscreen,
 }
 
 
@@ -246,18 +260,23 @@ def _block(*parts) -> np.ndarray:
     return np.concatenate([np.asarray(p, np.float64).T.ravel() for p in parts]).astype(np.float32)
 
 
-def _shading_block(scene, camera, settings, frame_plan, view):
+def _window(camera, frame_plan, view) -> tuple[float, float, float, float]:
+    """Left, bottom and step of one sample, on the plane at depth 1 or (parallel cameras) in scaled units."""
     left, right, bottom, top = camera.window
     units = view.scale if camera.is_orthographic else 1.0
-    samples = frame_plan.samples
-    step_x, step_y = (right - left) / (camera.size[0] * samples), (top - bottom) / (camera.size[1] * samples)
+    across, up = (n * frame_plan.samples for n in camera.size)
+    return left * units, bottom * units, (right - left) / across * units, (top - bottom) / up * units
+
+
+def _shading_block(scene, camera, settings, frame_plan, view):
     view_to_world = np.eye(4)
     view_to_world[:3, :3] = camera.matrix_world[:3, :3]
     material = (0.0,) * 3 if frame_plan.material is None else pack_materials((frame_plan.material,))[0, 0, :3]
     return _block(
         view_to_world,
-        (left * units, bottom * units, step_x * units, step_y * units),
+        view.projection,
+        _window(camera, frame_plan, view),
         (*scene.world, 0.0 if settings.transparent_film else 1.0),
         (*material, 1.0 / view.scale),
-        (camera.is_orthographic, len(scene.lights), 0.0, 0.0),
+        (camera.is_orthographic, len(scene.lights), 1.0 / view.far if frame_plan.linear_depth else 0.0, 0.0),
     )

@@ -5,14 +5,13 @@ from __future__ import annotations
 
 import numpy as np
 
-
-def footprint_corner(position: np.ndarray, axis_u: np.ndarray, axis_v: np.ndarray, corner: np.ndarray) -> np.ndarray:
-    """(..., 3) corner of the quad. position, axes: (..., 3), corner: (..., 2) of -1 or 1."""
-    return position + axis_u * corner[..., :1] + axis_v * corner[..., 1:]
+from .plane import Plane, places
 
 
-def kernel_weight(place: np.ndarray) -> np.ndarray:
-    """(...,) Gaussian of sigma 1/2 at (..., 2) places in units of the half-axes; 0 outside the ellipse."""
-    rho2 = np.einsum("...i,...i->...", place, place)
-    with np.errstate(invalid="ignore"):
-        return np.where(rho2 <= 1.0, np.exp(-2.0 * rho2), 0.0)
+def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(M,) weights, a Gaussian of sigma 1/2 cut at the ellipse, and (M,) depths, at (M, 2) picture points."""
+    at = places(plane, points)
+    rho2 = np.einsum("ij,ij->i", at.uv, at.uv)
+    with np.errstate(invalid="ignore", over="ignore"):
+        weights = np.where((rho2 <= 1) & (at.k > 0), np.exp(-2 * rho2), 0.0)
+    return weights, plane.depth + at.uv @ plane.slope

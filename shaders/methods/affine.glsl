@@ -1,0 +1,31 @@
+// References: Botsch, Kobbelt, "High-Quality Point-Based Rendering on Modern GPUs", 2003, section 4 (a disc in a point
+//             sprite: the depth offset of its plane bounds the ellipse, the affine approximation of its shape).
+// Summary: discs only; the offset in the picture, in radii, and the depth offset of the plane there make the place.
+//          The twin of rendering/methods/affine.py.
+
+const float LEAST_COSINE = 0.1;  // a disc seen flatter is drawn as one seen at this angle
+
+#ifdef VERTEX_STAGE
+void adjust(inout Splat splat, bool straddles) {}
+
+
+vec2 footprint_box(Plane plane, out vec2 middle) {
+  middle = plane.center;
+  float scale = splats.options.z > 0.5 ? 1.0 : 1.0 / plane.depth;
+  return vec2(plane.radius * scale);
+}
+#else
+// Weight and depth.
+vec2 splat_sample(Plane plane, vec2 point) {
+  float scale = splats.options.z > 0.5 ? 1.0 : 1.0 / plane.depth;
+  float radius = plane.radius;
+  vec3 axis_u = vec3((plane.a + plane.center * plane.gh.x) / scale, -plane.slope.x);
+  vec3 axis_v = vec3((plane.b + plane.center * plane.gh.y) / scale, -plane.slope.y);
+  vec3 disc = normalize(cross(axis_u, axis_v));
+  disc *= disc.z < 0.0 ? -1.0 : 1.0;
+  vec2 q = (point - plane.center) / (radius * scale);
+  float offset = -dot(disc.xy, q) / max(disc.z, LEAST_COSINE);
+  float rho2 = dot(q, q) + offset * offset;
+  return vec2(rho2 <= 1.0 ? exp(-2.0 * rho2) : 0.0, plane.depth - radius * offset);
+}
+#endif

@@ -1,0 +1,47 @@
+// References: Guennebaud, Barthe, Paulin 2006, section 3: equations 8 to 10 (tangents lengthened until the splat is
+//             as large as the pixel's filter), their projections exact and perspective.
+// Summary: where a half-axis would be shorter than sqrt(2) pixels in the picture, it is replaced by one of that
+//          length, parallel to the picture; then the kernel is evaluated as ever, at its own depth.
+//          The twin of rendering/methods/homogeneous.py.
+
+const float FILTER_RADIUS = 1.41421356;  // pixels
+
+#ifdef VERTEX_STAGE
+// Half-axis `axis` no shorter in the picture than the filter.
+vec3 at_least_filter(vec3 axis, vec3 position, bool is_orthographic) {
+  vec2 pixel = splats.window.zw;
+  float depth = is_orthographic ? 1.0 : -position.z;
+  vec2 across = is_orthographic ? axis.xy : (axis.xy * depth + axis.z * position.xy) / (depth * depth - axis.z * axis.z);
+  vec2 pixels = across / pixel;
+  float size = length(pixels);
+  return size < FILTER_RADIUS && size > 0.0 ? vec3(pixels / size * FILTER_RADIUS * pixel * depth, 0.0) : axis;
+}
+
+// The tangents of the paper: across the ray and along it. It has discs, so their radius is the longer half-axis; for
+// a disc that faces the ray (p x n = 0) the stored axes stay.
+void adjust(inout Splat splat, bool straddles) {
+  if (straddles) return;
+  bool is_orthographic = splats.options.z > 0.5;
+  vec3 ray = is_orthographic ? vec3(0.0, 0.0, -1.0) : splat.position;
+  vec3 plane = normalize(cross(splat.axis_u, splat.axis_v));
+  vec3 across = cross(ray, plane);
+  float radius = sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
+  if (length(across) > 1e-4 * length(ray)) {
+    splat.axis_u = radius * normalize(across);
+    splat.axis_v = radius * normalize(cross(plane, across));
+  }
+  splat.axis_u = at_least_filter(splat.axis_u, splat.position, is_orthographic);
+  splat.axis_v = at_least_filter(splat.axis_v, splat.position, is_orthographic);
+}
+
+vec2 footprint_box(Plane plane, out vec2 middle) {
+  return projected_box(plane, middle);
+}
+#else
+// Weight and depth.
+vec2 splat_sample(Plane plane, vec2 point) {
+  Place place = place_at(plane, point);
+  float rho2 = dot(place.uv, place.uv);
+  return vec2(rho2 <= 1.0 && place.k > 0.0 ? exp(-2.0 * rho2) : 0.0, plane.depth + dot(plane.slope, place.uv));
+}
+#endif

@@ -1,0 +1,36 @@
+// References: Zwicker et al. 2001 (the resampling filter), taken to the splat's plane with the exact Jacobian of
+//             every pixel, in the style of AA-2DGS (arXiv 2506.11252); this project.
+// Summary: the pixel's Gaussian is mapped into the splat's plane, joined with the kernel there and scaled to keep
+//          its integral: neither a vanishing splat nor a stretched one loses or gains weight.
+//          The twin of rendering/methods/mip.py.
+
+const float KERNEL_VARIANCE = 0.25;
+const float FILTER_SIGMA = 0.70710678;  // pixels
+const float FILTER_VARIANCE = FILTER_SIGMA * FILTER_SIGMA;
+
+#ifdef VERTEX_STAGE
+void adjust(inout Splat splat, bool straddles) {}
+
+vec2 footprint_box(Plane plane, out vec2 middle) {
+  vec2 exact = projected_box(plane, middle), pixel = splats.window.zw;
+  return max(sqrt(exact * exact + 4.0 * FILTER_VARIANCE * pixel * pixel), exact + pixel);
+}
+#else
+// Weight and depth.
+vec2 splat_sample(Plane plane, vec2 point) {
+  Place place = place_at(plane, point);
+  mat2 j = place_gradient(plane, place);
+  float xx = j[0].x * j[0].x + j[1].x * j[1].x;
+  float yy = j[0].y * j[0].y + j[1].y * j[1].y;
+  float xy = j[0].x * j[0].y + j[1].x * j[1].y;
+  float spread = FILTER_VARIANCE * determinant(j);
+  float det = spread * spread + KERNEL_VARIANCE * (FILTER_VARIANCE * (xx + yy) + KERNEL_VARIANCE);
+  vec2 q = place.uv;
+  float rho2 = KERNEL_VARIANCE / det * (q.x * q.x * (KERNEL_VARIANCE + FILTER_VARIANCE * yy)
+      - 2.0 * q.x * q.y * FILTER_VARIANCE * xy + q.y * q.y * (KERNEL_VARIANCE + FILTER_VARIANCE * xx));
+  // The kernel goes on for the filter's reach beyond its rim, where pixels are still covered in part.
+  float limit = 1.0 + 2.0 * FILTER_SIGMA * length(q * j) / max(length(q), 1e-30);
+  float weight = rho2 <= limit * limit ? KERNEL_VARIANCE * inversesqrt(det) * exp(-2.0 * rho2) : 0.0;
+  return vec2(place.k > 0.0 ? weight : 0.0, plane_depth(plane, place, FILTER_SIGMA));
+}
+#endif

@@ -1,0 +1,29 @@
+// References: Botsch, Hornung, Zwicker, Kobbelt 2005, section 3 (ray casting a splat) and section 5 (the union of the
+//             kernel and the pixel's low-pass as an approximation of EWA).
+// Summary: the exact place in the ellipse, or the distance from the centre in pixels if that is less.
+//          The twin of rendering/methods/raycast.py.
+
+#ifdef VERTEX_STAGE
+void adjust(inout Splat splat, bool straddles) {}
+
+// At least the low-pass's radius of sqrt(2) pixels around the centre.
+vec2 footprint_box(Plane plane, out vec2 middle) {
+  vec2 half_size = projected_box(plane, middle);
+  vec2 filter_size = 1.41421356 * splats.window.zw;
+  vec2 low = min(middle - half_size, plane.center - filter_size);
+  vec2 high = max(middle + half_size, plane.center + filter_size);
+  middle = 0.5 * (low + high);
+  return 0.5 * (high - low);
+}
+#else
+// Weight and depth: the plane's inside the ellipse, the centre's where only the low-pass reaches.
+vec2 splat_sample(Plane plane, vec2 point) {
+  Place place = place_at(plane, point);
+  vec2 pixels = place.d / splats.window.zw;
+  float inside = dot(place.uv, place.uv);
+  bool is_inside = inside <= 1.0 && place.k > 0.0;
+  float rho2 = min(is_inside ? inside : 2.0, 0.5 * dot(pixels, pixels));
+  float depth = plane.depth + (is_inside ? dot(plane.slope, place.uv) : 0.0);
+  return vec2(rho2 <= 1.0 ? exp(-2.0 * rho2) : 0.0, depth);
+}
+#endif

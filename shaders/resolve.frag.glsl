@@ -1,0 +1,104 @@
+// References: this project; the idea of taking the colour of a sub-sample from the nearest pixel that sees its surface
+//             is Chajdas, McGuire, Luebke, "Subpixel Reconstruction Antialiasing", I3D 2011.
+// Summary: colours inside a surface were filtered with their splats; here its silhouettes are. The visibility pass has
+//          several samples to each shaded one. Those around a pixel that see the pixel's own surface take its colour,
+//          others the colour of the pixel they lie in, empty ones the background, all under the pixel's Gaussian.
+
+#define PROJECTION shading.projection
+#define PARALLEL (shading.options.x > 0.5)
+#define DEPTH_UNIT shading.options.z
+#include "common/stored_depth.glsl"
+
+const float EMPTY_DEPTH = 1e10;
+const float FILTER_VARIANCE = 0.5;  // of the Gaussian, in samples
+const int FILTER_REACH = 2 * VISIBILITY_SAMPLES - VISIBILITY_SAMPLES / 2;
+// The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes.
+const float STEP = 1.0 / float(VISIBILITY_SAMPLES);
+const float START = (0.5 - float(FILTER_REACH)) * STEP;
+const float FIRST_WEIGHT = exp(-0.5 * START * START / FILTER_VARIANCE);
+const float FIRST_RATIO = exp(-(START * STEP + 0.5 * STEP * STEP) / FILTER_VARIANCE);
+const float RATIO_RATIO = exp(-STEP * STEP / FILTER_VARIANCE);
+
+float depth_at(ivec2 texel, ivec2 size, float otherwise) {
+  vec4 s = texelFetch(surface, clamp(texel, ivec2(0), size - 1), 0);
+  return s.w > 0.0 ? s.w : otherwise;
+}
+
+// How far depths of one surface may lie apart within the filter: twice its slope, and twice what the visibility pass
+// moved it back here. The slope is the lesser one of both sides, which a silhouette on one side does not spoil.
+float same_surface(ivec2 texel, ivec2 size, float depth) {
+  ivec2 at = texel * VISIBILITY_SAMPLES + VISIBILITY_SAMPLES / 2;
+  float moved = abs(view_depth(texelFetch(visibility_depth, at, 0).r) - depth);
+  vec2 before = vec2(depth_at(texel - ivec2(1, 0), size, 1e30), depth_at(texel - ivec2(0, 1), size, 1e30));
+  vec2 after = vec2(depth_at(texel + ivec2(1, 0), size, 1e30), depth_at(texel + ivec2(0, 1), size, 1e30));
+  vec2 slope = min(abs(before - depth), abs(after - depth));
+  slope = mix(slope, vec2(0.0), greaterThan(slope, vec2(1e29)));
+  return 2.0 * (moved + slope.x + slope.y);
+}
+
+vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit) {
+  ivec2 size = textureSize(shaded, 0);
+  vec4 own = texelFetch(shaded, texel, 0);
+  float depth = texelFetch(surface, texel, 0).w;
+  // The range of stored depths that see the same surface; none where there is none.
+  vec2 range = vec2(2.0, -1.0);
+  if (own.w > 0.0) {
+    float tolerance = same_surface(texel, size, depth);
+    range = vec2(stored_depth(max(depth - tolerance, 0.5 * depth)), stored_depth(depth + tolerance));
+  }
+  vec4 background = vec4(shading.world.rgb, 1.0) * shading.world.w;
+  vec4 color = vec4(0.0);
+  float total = 0.0;
+  coverage = 0.0;
+  is_hit = false;
+  ivec2 first = texel * VISIBILITY_SAMPLES;
+  float row = FIRST_WEIGHT, row_ratio = FIRST_RATIO;
+  for (int y = 0; y < 2 * FILTER_REACH; y++) {
+    float weight = row * FIRST_WEIGHT, ratio = FIRST_RATIO;
+    for (int x = 0; x < 2 * FILTER_REACH; x++) {
+      ivec2 at = first + ivec2(x, y) - FILTER_REACH + VISIBILITY_SAMPLES / 2;
+      float seen = texelFetch(visibility_depth, clamp(at, ivec2(0), size * VISIBILITY_SAMPLES - 1), 0).r;
+      vec4 here = background;
+      if (seen < 1.0) {
+        ivec2 home = clamp(at / VISIBILITY_SAMPLES, ivec2(0), size - 1);
+        here = seen >= range.x && seen <= range.y ? own : texelFetch(shaded, home, 0);
+        here = here.w > 0.0 ? here : own;
+        here = here.w > 0.0 ? here : background;
+        coverage += weight;
+        is_hit = is_hit || home == texel;
+      }
+      color += weight * here;
+      total += weight;
+      weight *= ratio;
+      ratio *= RATIO_RATIO;
+    }
+    row *= row_ratio;
+    row_ratio *= RATIO_RATIO;
+  }
+  coverage /= total;
+  return color / total;
+}
+
+void main() {
+  ivec2 first = ivec2(gl_FragCoord.xy) * SAMPLES;
+  vec4 color_total = vec4(0.0);
+  vec4 normal_total = vec4(0.0);
+  float nearest = EMPTY_DEPTH;
+  for (int y = 0; y < SAMPLES; y++) {
+    for (int x = 0; x < SAMPLES; x++) {
+      ivec2 texel = first + ivec2(x, y);
+      float coverage;
+      bool is_hit;
+      color_total += resolve_sample(texel, coverage, is_hit);
+      vec4 s = texelFetch(surface, texel, 0);
+      normal_total += vec4(s.xyz, 1.0) * coverage;
+      if (is_hit && s.w > 0.0) nearest = min(nearest, s.w * shading.material.w);
+    }
+  }
+  float share = 1.0 / float(SAMPLES * SAMPLES);
+  combined = color_total * share;
+  depth = nearest;
+#ifdef NORMAL_OUTPUT
+  normal_coverage = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
+#endif
+}

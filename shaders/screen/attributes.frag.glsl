@@ -1,0 +1,52 @@
+// References: as attributes.vert.glsl; adj(M) for straddling splats: Guennebaud et al. 2006, equation 5.
+// Summary: asks the method for weight and depth, and adds what is not hidden at the sample's centre. Depth is compared here with the visibility pass's, since a rectangle in the picture has none.
+
+#define PROJECTION splats.projection
+#define PARALLEL (splats.options.z > 0.5)
+#define DEPTH_UNIT splats.options.w
+#include "common/stored_depth.glsl"
+#include "screen/place.glsl"
+#include "methods/{method}.glsl"
+
+// Weight and depth of a splat that reaches the near plane, unfiltered.
+vec2 straddling_sample(vec2 point) {
+  bool is_orthographic = splats.options.z > 0.5;
+  vec3 forward = vec3(1.0, 1.0, -1.0);
+  vec3 p = plane_ab.xyz * forward, s = plane_center_gh.xyz * forward, t = plane_depths.xyz * forward;
+  vec3 direction = is_orthographic ? vec3(0.0, 0.0, 1.0) : vec3(point, 1.0);
+  if (is_orthographic) p.xy -= point;
+  float w = dot(cross(s, t), direction);
+  vec2 uv = vec2(dot(cross(t, p), direction), dot(cross(p, s), direction)) / w;
+  float depth = dot(cross(s, t), p) / w;
+  float rho2 = dot(uv, uv);
+  return vec2(rho2 <= 1.0 && depth >= splats.options.y ? exp(-2.0 * rho2) : 0.0, depth);
+}
+
+void main() {
+  vec2 point = picture_point();
+  Plane plane = Plane(plane_center_gh.xy, plane_ab.xy, plane_ab.zw, plane_center_gh.zw, plane_depths.xy, plane_depths.z,
+                      plane_gradient, plane_depths.w);
+  vec2 weight_depth = straddling > 0.5 ? straddling_sample(point) : splat_sample(plane, point);
+  float weight = weight_depth.x * color_weight.w;
+  if (!(weight > 0.0 && weight_depth.y >= splats.options.y)) discard;
+  ivec2 nearest = ivec2(gl_FragCoord.xy) * VISIBILITY_SAMPLES + VISIBILITY_SAMPLES / 2;
+  float seen = texelFetch(visibility_depth, nearest, 0).r;
+#if VISIBILITY_SAMPLES > 1
+  // That sample lies beside the centre, and so does the splat's depth to compare.
+  vec2 beside = 0.5 * float(1 - VISIBILITY_SAMPLES % 2) / float(VISIBILITY_SAMPLES) * splats.window.zw;
+  float depth = weight_depth.y + (straddling > 0.5 ? 0.0 : dot(plane.gradient, beside));
+#else
+  float depth = weight_depth.y;
+#endif
+  if (stored_depth(depth) > seen) discard;
+#if VISIBILITY_SAMPLES > 1
+  // Where the filter reaches past a silhouette, what is seen behind it is another surface, which keeps the sample: its
+  // depth, moved back by up to 2 epsilon, is more than that and a radius behind this splat's.
+  if (seen < 1.0 && straddling < 0.5 && view_depth(seen) - depth > (1.0 + 4.0 * splats.options.x) * plane.radius) discard;
+#endif
+  color_sum = vec4(color_weight.rgb, 1.0) * weight;
+  normal_sum = vec4(normal, weight_depth.y) * weight;
+#ifdef MATERIAL_TARGET
+  material_sum = vec4(material, 1.0) * weight;
+#endif
+}

@@ -1,0 +1,44 @@
+// References: Botsch et al. 2005, section 4; Guennebaud et al. 2006, section 3.3 (the splat's exact box).
+// Summary: for methods that work in the picture: a rectangle around the splat's footprint, and its attributes.
+//          A splat that reaches the near plane is drawn as a quad in space instead, which the hardware clips.
+
+#define VERTEX_STAGE
+#include "common/splat_attributes.glsl"
+#include "screen/plane.glsl"
+#include "methods/{method}.glsl"
+
+const float STRADDLING_MARGIN = 1.02;
+
+void main() {
+  Splat splat = fetch_splat(gl_VertexID >> 2);
+  vec2 corner = quad_corner(gl_VertexID);
+  bool is_orthographic = splats.options.z > 0.5;
+  float reach = length(vec2(splat.axis_u.z, splat.axis_v.z));
+  bool straddles = -splat.position.z - reach <= splats.options.y;
+  adjust(splat, straddles);
+  Plane plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic);
+  straddling = straddles ? 1.0 : 0.0;
+  // The same three varyings carry the plane of a splat before the eye, or centre and half-axes of a straddling one.
+  plane_ab = straddles ? vec4(splat.position, 0.0) : vec4(plane.a, plane.b);
+  plane_center_gh = straddles ? vec4(splat.axis_u, 0.0) : vec4(plane.center, plane.gh);
+  plane_depths = straddles ? vec4(splat.axis_v, 0.0) : vec4(plane.slope, plane.depth, plane.radius);
+  plane_gradient = plane.gradient;
+  color_weight = splat.color_weight;
+  normal = splat.normal;
+#ifdef MATERIAL_TARGET
+  material = texelFetch(materials, ivec2(min(int(splat.material), textureSize(materials, 0).x - 1), 0), 0).xyz;
+#endif
+  if (splat.is_hidden) {
+    gl_Position = NOWHERE;
+  }
+  else if (straddles) {
+    vec2 grown = corner * STRADDLING_MARGIN;
+    gl_Position = splats.projection * vec4(splat.position + splat.axis_u * grown.x + splat.axis_v * grown.y, 1.0);
+  }
+  else {
+    vec2 middle;
+    vec2 half_size = footprint_box(plane, middle);
+    vec4 clip = splats.projection * vec4(middle + half_size * corner, -1.0, 1.0);
+    gl_Position = vec4(clip.xy / clip.w, 0.0, 1.0);
+  }
+}

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The numpy twin of shaders/methods/homogeneous.glsl: tangents lengthened to the size of the pixel's filter."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from . import quad
+from .plane import Plane, splat_plane
+
+FILTER_RADIUS = 2**0.5
+
+
+def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(M,) weights and (M,) depths at (M, 2) picture points (Guennebaud et al. 2006, equations 8 to 10)."""
+    return quad.samples(adjusted(plane, pixel), points, pixel)
+
+
+def adjusted(plane: Plane, pixel: np.ndarray) -> Plane:
+    """The plane of the disc whose half-axes are no shorter than the filter."""
+    is_orthographic = plane.scale == 1.0 and not plane.gh.any() and plane.slope.any()
+    depth = 1.0 if is_orthographic else plane.depth
+    position = np.array([*(plane.center / plane.scale), -plane.depth])
+    ray = np.array((0.0, 0.0, -1.0)) if is_orthographic else position
+    normal = plane.normal / np.linalg.norm(plane.normal)
+    across = np.cross(ray, normal)
+    axes = _axes(plane)
+    if np.linalg.norm(across) > 1e-4 * np.linalg.norm(ray):
+        axes = [plane.radius * v / np.linalg.norm(v) for v in (across, np.cross(normal, across))]
+    axes = [_at_least_filter(axis, position, pixel, depth, is_orthographic) for axis in axes]
+    return replace(splat_plane(position, *axes, is_orthographic), normal=plane.normal)
+
+
+def _axes(plane: Plane) -> list[np.ndarray]:
+    pairs = ((plane.a, 0), (plane.b, 1))
+    return [np.array([*((a + plane.center * plane.gh[k]) / plane.scale), -plane.slope[k]]) for a, k in pairs]
+
+
+def _at_least_filter(axis, position, pixel, depth, is_orthographic) -> np.ndarray:
+    if is_orthographic:
+        across = axis[:2]
+    else:
+        across = (axis[:2] * depth + axis[2] * position[:2]) / (depth**2 - axis[2] ** 2)
+    pixels = across / pixel
+    size = np.linalg.norm(pixels)
+    if 0 < size < FILTER_RADIUS:
+        return np.array([*(pixels / size * FILTER_RADIUS * pixel * depth), 0.0])
+    return axis

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The numpy twin of shaders/methods/mip.glsl: the pixel's Gaussian taken into the splat's plane."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .plane import Plane, gradients, places, plane_depth, projected_box
+
+KERNEL_VARIANCE = 0.25
+FILTER_SIGMA = 0.5**0.5
+
+
+def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(M,) weights and (M,) depths at (M, 2) picture points; pixel: (2,) its size in the picture.
+
+    Sigma = kernel + filter J J^T (Zwicker et al. 2001, in object space); the amplitude keeps the integral.
+    """
+    at = places(plane, points)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        j = gradients(plane, at, pixel)
+        sigma = KERNEL_VARIANCE * np.eye(2) + FILTER_SIGMA**2 * j @ np.swapaxes(j, 1, 2)
+        det = sigma[:, 0, 0] * sigma[:, 1, 1] - sigma[:, 0, 1] ** 2
+        u, v = at.uv.T
+        across = u * u * sigma[:, 1, 1] - 2 * u * v * sigma[:, 0, 1] + v * v * sigma[:, 0, 0]
+        rho2 = KERNEL_VARIANCE * across / det
+        along = np.einsum("ni,nij->nj", at.uv, j)
+        size = np.maximum(np.linalg.norm(at.uv, axis=1), 1e-30)
+        limit = 1 + 2 * FILTER_SIGMA * np.linalg.norm(along, axis=1) / size
+        is_inside = (rho2 <= limit**2) & (at.k > 0) & _in_box(plane, points, pixel)
+        weights = np.where(is_inside, KERNEL_VARIANCE / np.sqrt(det) * np.exp(-2 * rho2), 0.0)
+        return weights, plane_depth(plane, at, pixel, FILTER_SIGMA)
+
+
+def _in_box(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> np.ndarray:
+    """(M,) bool: the filtered ellipse's box, at least a pixel around the ellipse's own."""
+    middle, exact = projected_box(plane)
+    half_size = np.maximum(np.sqrt(exact**2 + (2 * FILTER_SIGMA * pixel) ** 2), exact + pixel)
+    return (np.abs(points - middle) <= half_size).all(axis=1)

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The numpy twin of shaders/screen/plane.glsl and place.glsl: one splat's plane as the picture shows it.
+
+Positions and axes are in view space (looking down -Z); depth counts forwards. A picture point is x / z, y / z
+(perspective) or x, y (parallel cameras).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """center: (2,) of the splat in the picture. a, b: (2,) what its half-axes move it. gh: (2,) relative and slope:
+    (2,) absolute change of depth along them. depth: at the centre. gradient: (2,) change of depth with the picture
+    point. radius: the longer half-axis. scale: picture units per view unit at the centre. normal: (3,).
+    """
+
+    center: np.ndarray
+    a: np.ndarray
+    b: np.ndarray
+    gh: np.ndarray
+    slope: np.ndarray
+    depth: float
+    gradient: np.ndarray
+    radius: float
+    scale: float
+    normal: np.ndarray
+
+
+def projected_box(plane: Plane) -> tuple[np.ndarray, np.ndarray]:
+    """Centre and half-size, two (2,) arrays, of the ellipse's exact box in the picture."""
+    spread = 1 - plane.gh @ plane.gh
+    offset = -(plane.a * plane.gh[0] + plane.b * plane.gh[1]) / spread
+    return plane.center + offset, np.sqrt(offset**2 + (plane.a**2 + plane.b**2) / spread)
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Where M picture points lie in the plane: uv (M, 2) in half-axes, k (M,) depth over the centre's, det (M,),
+    d (M, 2) from the centre in the picture."""
+
+    uv: np.ndarray
+    k: np.ndarray
+    det: np.ndarray
+    d: np.ndarray
+
+
+def splat_plane(position, axis_u, axis_v, is_orthographic: bool = False) -> Plane:
+    """position, axes: (3,) view space, in front of the eye."""
+    position, axis_u, axis_v = (np.asarray(a, np.float64) for a in (position, axis_u, axis_v))
+    depth = -position[2]
+    slope = -np.array([axis_u[2], axis_v[2]])
+    scale = 1.0 if is_orthographic else 1.0 / depth
+    center = position[:2] * scale
+    gh = np.zeros(2) if is_orthographic else slope * scale
+    a, b = axis_u[:2] * scale - center * gh[0], axis_v[:2] * scale - center * gh[1]
+    det = a[0] * b[1] - a[1] * b[0]
+    gradient = np.array([slope[0] * b[1] - slope[1] * a[1], slope[1] * a[0] - slope[0] * b[0]]) / det
+    radius = max(np.linalg.norm(axis_u), np.linalg.norm(axis_v))
+    return Plane(center, a, b, gh, slope, depth, gradient, radius, scale, np.cross(axis_u, axis_v))
+
+
+def places(plane: Plane, points: np.ndarray) -> Places:
+    """Guennebaud et al. 2006, section 3, relative to the centre. points: (M, 2)."""
+    (ax, ay), (bx, by), (g, h) = plane.a, plane.b, plane.gh
+    d = points - plane.center
+    dx, dy = d.T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        det = ax * by - ay * bx - dx * (g * by - h * ay) - dy * (h * ax - g * bx)
+        uv = np.stack([dx * by - dy * bx, ax * dy - ay * dx], axis=1) / det[:, None]
+    return Places(uv, 1 + uv @ plane.gh, det, d)
+
+
+def gradients(plane: Plane, at: Places, pixel: np.ndarray) -> np.ndarray:
+    """(M, 2, 2) d(uv) / d(pixel). pixel: (2,) its size in the picture."""
+    (ax, ay), (bx, by), (g, h) = plane.a, plane.b, plane.gh
+    dx, dy = at.d.T
+    rows = np.array([[by - h * dy, -(bx - h * dx)], [-(ay - g * dy), ax - g * dx]])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.moveaxis(rows * (at.k / at.det), -1, 0) * pixel
+
+
+def plane_depth(plane: Plane, at: Places, pixel: np.ndarray, filter_pixels: float) -> np.ndarray:
+    """(M,) depth of the plane, held near the splat."""
+    steepest = np.linalg.norm(plane.gradient * pixel)
+    reach = np.linalg.norm(plane.slope) + min(2 * filter_pixels * steepest, 16 * plane.radius)
+    depth = np.clip(plane.depth + at.uv @ plane.slope, plane.depth - reach, plane.depth + reach)
+    return np.where(at.k > 0, depth, plane.depth)
