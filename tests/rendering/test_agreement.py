@@ -9,6 +9,7 @@ import pytest
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import EMPTY_DEPTH, Settings
+from splat_addon.rendering.methods import METHODS
 
 TOLERANCE = 1e-4
 #: A normal is a sum brought to unit length: where front and back of a fold nearly cancel, that magnifies rounding.
@@ -32,10 +33,10 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
-def test_picture_is_the_same_on_every_device(name, render, pictures, request):
-    frame = render(*SCENES[name](), Settings(supersampling=1))
-    path = pictures / f"{name}.npz"
+@pytest.mark.parametrize(("name", "method"), [(n, "quad") for n in SCENES] + [("torus", m) for m in METHODS if m != "quad"])
+def test_picture_is_the_same_on_every_device(name, method, render, pictures, request):
+    frame = render(*SCENES[name](), Settings(method=method, supersampling=1))
+    path = pictures / f"{name}-{method}.npz"
     if request.config.getoption("--device") == "standalone":
         np.savez(path, color=frame.color, depth=frame.depth, normal=frame.normal, coverage=frame.coverage)
         return
