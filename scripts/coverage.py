@@ -14,11 +14,21 @@ def uncovered_points(mesh, surfels, spacing: float, count: int = 40_000) -> np.n
 
     A splat covers a point whose foot on the splat's plane is inside the ellipse, within half a cell of the plane.
     """
+    points = random_points(mesh, count)
+    sizes = np.rint(np.log2(surfels.scales[:, 1]))
+    # each size apart: many small neighbours must not hide a large one that reaches farther
+    for size in np.unique(sizes):
+        points = points[~_covered(points, surfels, np.flatnonzero(sizes == size), spacing)]
+    return points
+
+
+def _covered(points, surfels, rows, spacing) -> np.ndarray:
+    """(n,) bool: which points lie under one of these surfels."""
     from scipy.spatial import cKDTree
 
-    points = random_points(mesh, count)
-    positions, normals, (x, y) = surfels.origin + surfels.positions, surfels.geometric_normals(), surfels.half_axes()
-    reach = 1.001 * float(surfels.radius.max()) + 0.5 * spacing
+    positions, normals = surfels.origin + surfels.positions[rows], surfels.geometric_normals()[rows]
+    axes = [axis[rows] for axis in surfels.half_axes()]
+    reach = 1.001 * float(surfels.radius[rows].max()) + 0.5 * spacing
     _, neighbours = cKDTree(positions).query(points, k=NEIGHBOURS, distance_upper_bound=reach)
     covered = np.zeros(len(points), bool)
     for column in neighbours.T:
@@ -26,9 +36,9 @@ def uncovered_points(mesh, surfels, spacing: float, count: int = 40_000) -> np.n
         surfel = column[at]
         away = points[at] - positions[surfel]
         height = (away * normals[surfel]).sum(axis=1)
-        outside = sum(((away * a[surfel]).sum(axis=1) / (a[surfel] ** 2).sum(axis=1)) ** 2 for a in (x, y))
+        outside = sum(((away * a[surfel]).sum(axis=1) / (a[surfel] ** 2).sum(axis=1)) ** 2 for a in axes)
         covered[at] |= (outside <= 1) & (np.abs(height) <= 0.5 * spacing)
-    return points[~covered]
+    return covered
 
 
 def random_points(mesh, count: int) -> np.ndarray:

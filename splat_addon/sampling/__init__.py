@@ -2,10 +2,12 @@
 """Sampling: a mesh becomes surfels by exact scan conversion onto a layered depth cube. Numpy only.
 
 Flow: `mesh` -> `cleaning` -> `fineness`, `grid` -> `depth_cube` (`reductions`, `scan_conversion`) -> `attributes`
-(`ellipses`, `colors`, `images`) -> `merging` -> `lost_parts`, `part_surfels` -> `Surfels`; `sample` puts them in order.
+(`ellipses`, `colors`, `images`) -> `merging`, `adaptive` -> `lost_parts`, `part_surfels` -> `Surfels`; `sample` puts
+them in order.
 `closest_approach` says how fine a camera needs it. Points without faces become surfels in `points`.
 """
 
+from .adaptive import Tolerance
 from .cleaning import drop_unusable
 from .closest_approach import Outline, camera_spacing, outline
 from .colors import SurfaceColor
@@ -28,6 +30,7 @@ __all__ = [
     "Sampling",
     "SamplingCancelled",
     "SurfaceColor",
+    "Tolerance",
     "TriangleMesh",
     "camera_spacing",
     "drop_unusable",

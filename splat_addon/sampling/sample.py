@@ -14,6 +14,7 @@ from functools import partial
 import numpy as np
 
 from ..surfels import LAYOUT, Surfels, empty_surfels
+from .adaptive import Tolerance, merge_flat
 from .attributes import SampleFiller
 from .cleaning import drop_unusable
 from .depth_cube import depth_cube
@@ -40,11 +41,15 @@ class Sampling:
 
     small_parts: how many parts lay between all rays; each has one surfel, and these come last.
     keeps_both_sides: the surfels of a solid are solid. Not where two sides were merged, or a part has one disc.
+    saved: how many fewer surfels there are than without a tolerance. error: the largest distance of a merged surfel's
+        plane from those that it replaces, object units.
     """
 
     surfels: Surfels
     small_parts: int = 0
     keeps_both_sides: bool = True
+    saved: int = 0
+    error: float = 0.0
 
 
 def sample_mesh(mesh: TriangleMesh, **options) -> Surfels:
@@ -61,6 +66,7 @@ def sample_surface(
     reduction: str = "normal",
     grazing_angle: float = DEFAULT_GRAZING_ANGLE,
     splat_size: float = DEFAULT_SPLAT_SIZE,
+    tolerance: Tolerance | None = None,
     progress: Callable[[float], bool | None] | None = None,
 ) -> Sampling:
     """Surfels of a mesh on a grid of exact rays, in the order of axis, triangle, row, column.
@@ -69,6 +75,7 @@ def sample_surface(
     count: surfels wanted, met within the accuracy of `predict_count`.
     reduction: a name in `REDUCTIONS`. grazing_angle: radians between a normal and the axis beyond which the reduction
     "grazing" refuses a sample. splat_size: smaller half-axis of a splat, in H.
+    tolerance: how far from flat the surface may be where larger surfels take the place of several; None: all alike.
     progress: called between chunks with the finished share, 0 to 1; where it returns False, `SamplingCancelled` rises.
     Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the grid's origin.
     A connected part that lies between the rays gets one surfel. A mesh without usable triangles gives none.
@@ -80,6 +87,8 @@ def sample_surface(
     check_grazing_angle(grazing_angle)
     if not (math.isfinite(splat_size) and splat_size > 0):
         raise ValueError(f"The splat size must be a finite number above 0, not {splat_size}.")
+    if tolerance is not None and chosen.merge is not None:
+        raise ValueError(f"The reduction {reduction!r} leaves nothing flat to merge; choose another, or no tolerance.")
     mesh, _ = drop_unusable(mesh)
     if not len(mesh):
         return Sampling(empty_surfels())
@@ -96,12 +105,17 @@ def sample_surface(
     _fill(filler, images, _stage(progress, 0.5, 1.0))
     if chosen.merge is not None:
         arrays = chosen.merge(arrays, grid.spacing)
+    saved, error = 0, 0.0
+    if tolerance is not None:
+        axes = np.repeat(np.arange(3), [int(spans.counts.sum(dtype=np.int64)) for spans in images])
+        arrays, error = merge_flat(arrays, axes, grid.spacing, tolerance)
+        saved = total - len(arrays["positions"])
     small_parts = int(lost[1].max(initial=-1)) + 1
     if small_parts:
         extra = part_surfels(mesh, coordinates, grid, lost, splat_size, filler.palette)
         arrays = {name: np.concatenate([array, extra[name]]) for name, array in arrays.items()}
     surfels = Surfels(origin=grid.origin, **arrays)
-    return Sampling(surfels, small_parts, keeps_both_sides=chosen.merge is None and not small_parts)
+    return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error)
 
 
 def _is_sampled(images: tuple[Spans, ...], count: int) -> np.ndarray:

@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Adaptive sampling: where the surface is flat, one larger surfel takes the place of 4, 16 or 64.
+
+On the quadtree of each layered depth image four blocks become one where their surfels lie in one plane within a
+tolerance, with like normals and colours (facts/sampling.md section 8). Only whole blocks merge, so every cell stays
+covered, and a large disc is only laid where the same plane goes on around its block, so that it never sticks out over
+an edge: towards creases and borders the surfels become small again.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ..surfels import quaternion_axes
+from .ellipses import ellipse_rotations, ellipse_scales
+
+#: Doublings of the spacing. The renderer tells surfaces apart at half a splat's radius, so larger discs would show
+#: what lies several spacings behind them.
+LEVELS = 3
+
+#: Half-axis of a merged disc in edges of its block, whose corners lie at 0.707.
+MERGED_SIZE = 0.75
+
+#: Bits of a block's coordinate in a key; a grid has at most 2^19 cells along an edge, and 2 are added to stay above 0.
+_BITS = 21
+
+#: Four blocks of one layer meet over their middle within this many tolerances: one to each side, and sqrt(3) for tilt.
+_SPREAD = 2 * math.sqrt(3)
+
+#: Layers of surface over one block that a search looks at.
+_LAYERS = 4
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """distance: from the sampled planes, object units. angle: between shading normals, radians. color: the largest
+    difference of a component, scene-linear."""
+
+    distance: float
+    angle: float = math.radians(8)
+    color: float = 0.02
+
+    def __post_init__(self):
+        for name in ("distance", "angle", "color"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0):
+                raise ValueError(f"The tolerance of the {name} must be a finite number, 0 or more, not {value}.")
+
+
+@dataclass(frozen=True, eq=False)
+class _Nodes:
+    """n blocks of one level in the order of their keys, each full of one layer of surface.
+
+    keys: (n,) int64: image, side and block. planes: (n, 3): depth over the block's middle and its change per column and
+    row, in cells. shading: (n, 3) unit. colors: (n, 4). materials: (n,). errors, bends, tints: (n,) bounds of what its
+    samples differ by from it: depth in cells, radians, colour. children: (n, 4) rows of the level below.
+    """
+
+    keys: np.ndarray
+    planes: np.ndarray
+    shading: np.ndarray
+    colors: np.ndarray
+    materials: np.ndarray
+    errors: np.ndarray
+    bends: np.ndarray
+    tints: np.ndarray
+    children: np.ndarray
+
+    def take(self, rows: np.ndarray) -> _Nodes:
+        return _Nodes(*(getattr(self, f.name)[rows] for f in fields(self)))
+
+
+def merge_flat(
+    arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float, tolerance: Tolerance
+) -> tuple[dict[str, np.ndarray], float]:
+    """The surfels that are left, those that were not merged first, and the largest error in object units.
+
+    arrays: by field of `Surfels`, positions relative to the grid's origin. axes: (N,) the image of each sample.
+    """
+    base, order = _samples(arrays, axes, spacing)
+    levels = [base]
+    while len(levels) <= LEVELS and len(levels[-1].keys):
+        levels.append(_parents(levels[-1], 2 ** (len(levels) - 1), spacing, tolerance))
+    parts, error = [], 0.0
+    wanted = np.arange(len(levels[-1].keys))
+    for level in range(len(levels) - 1, 0, -1):
+        nodes = levels[level].take(wanted)
+        alone = _goes_on_around(nodes, level, levels[max(level - 2, 0)], spacing, tolerance)
+        parts.append(_discs(nodes.take(np.flatnonzero(alone)), level, spacing))
+        error = max(error, float((nodes.errors * _cosines(nodes.planes))[alone].max(initial=0.0)))
+        free = np.ones(len(levels[level - 1].keys), bool)
+        free[levels[level].children.ravel()] = False
+        free[nodes.children[~alone].ravel()] = True
+        wanted = np.flatnonzero(free)
+    rest = np.sort(order[wanted])
+    parts.append({name: array[rest] for name, array in arrays.items()})
+    return {name: np.concatenate([part[name] for part in parts[::-1]]) for name in arrays}, error * spacing
+
+
+def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
+    """The samples as nodes of one cell, and the (N,) surfel of each."""
+    position = arrays["positions"].astype(np.float64) / spacing
+    normal = quaternion_axes(arrays["rotations"])[2].astype(np.float64)
+    rows = np.arange(len(axes))
+    (pu, pv, pw), (nu, nv, nw) = ([a[rows, (axes + k) % 3] for k in (1, 2, 0)] for a in (position, normal))
+    keys = _key(axes * 2 + (nw > 0), np.floor(pu).astype(np.int64), np.floor(pv).astype(np.int64))
+    planes = np.stack([pw, -nu / nw, -nv / nw], axis=1)
+    order = np.lexsort((pw, keys))
+    zeros = np.zeros(len(axes))
+    nodes = _Nodes(
+        keys, planes, arrays["normals"], arrays["colors"], arrays["materials"], zeros, zeros, zeros, zeros[:, None]
+    )
+    return nodes.take(order), order
+
+
+def _key(side: np.ndarray, column: np.ndarray, row: np.ndarray) -> np.ndarray:
+    return (side.astype(np.int64) << 2 * _BITS) | (column + 2 << _BITS) | (row + 2)
+
+
+def _block(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What `_key` was made of."""
+    mask = (1 << _BITS) - 1
+    return keys >> 2 * _BITS, (keys >> _BITS & mask) - 2, (keys & mask) - 2
+
+
+def _parents(nodes: _Nodes, edge: int, spacing: float, tolerance: Tolerance) -> _Nodes:
+    """The blocks of 2 x 2 `nodes`, whose edge is given in cells, that stay within the tolerance."""
+    side, column, row = _block(nodes.keys)
+    keys = _key(side, column >> 1, row >> 1)
+    corner = (column & 1) | (row & 1) << 1
+    to_middle = edge / 2 * (1 - 2 * np.stack([corner & 1, corner >> 1], axis=1))
+    depth = nodes.planes[:, 0] + (nodes.planes[:, 1:] * to_middle).sum(axis=1)
+    order = np.lexsort((depth, keys))
+    four = order[np.arange(max(len(order) - 3, 0))[:, None] + np.arange(4)]
+    spread = (depth[four[:, 3]] - depth[four[:, 0]]) * spacing
+    whole = (keys[four[:, 0]] == keys[four[:, 3]]) & (spread <= _SPREAD * tolerance.distance)
+    whole &= (1 << corner[four]).sum(axis=1) == 15
+    four = four[_every_fourth(whole)]
+    four = np.take_along_axis(four, corner[four].argsort(axis=1), axis=1)
+
+    depths = nodes.planes[four, 0]
+    along_u = (depths[:, 1] - depths[:, 0] + depths[:, 3] - depths[:, 2]) / (2 * edge)
+    along_v = (depths[:, 2] - depths[:, 0] + depths[:, 3] - depths[:, 1]) / (2 * edge)
+    planes = np.stack([depths.mean(axis=1), along_u, along_v], axis=1)
+    shading = nodes.shading[four].mean(axis=1)
+    shading = shading / np.maximum(np.linalg.norm(shading, axis=1, keepdims=True), 1e-30)
+    colors = nodes.colors[four].mean(axis=1)
+    cosines = (nodes.shading[four] * shading[:, None]).sum(axis=2)
+    parents = _Nodes(
+        keys[four[:, 0]],
+        planes,
+        shading,
+        colors,
+        nodes.materials[four[:, 0]],
+        (_plane_distances(planes, nodes.planes[four], edge) + nodes.errors[four]).max(axis=1),
+        (np.arccos(np.clip(cosines, -1, 1)) + nodes.bends[four]).max(axis=1),
+        (np.abs(nodes.colors[four] - colors[:, None]).max(axis=2) + nodes.tints[four]).max(axis=1),
+        four,
+    )
+    good = (
+        (parents.errors * _cosines(planes) * spacing <= tolerance.distance)
+        & (parents.bends <= tolerance.angle)
+        & (parents.tints <= tolerance.color)
+        & (nodes.materials[four] == parents.materials[:, None]).all(axis=1)
+    )
+    return parents.take(np.flatnonzero(good))
+
+
+def _every_fourth(whole: np.ndarray) -> np.ndarray:
+    """(n,) bool: of each run of True the 1st, 5th, 9th, so that no two windows of four share an element."""
+    place = np.arange(len(whole))
+    starts = np.where(whole, 0, place + 1)
+    return whole & ((place - np.maximum.accumulate(starts)) % 4 == 0)
+
+
+def _plane_distances(planes: np.ndarray, children: np.ndarray, edge: int) -> np.ndarray:
+    """(n, 4) largest difference in depth of (n, 4, 3) children's planes from their (n, 3) parent's in their blocks."""
+    corner = np.arange(4)
+    centre = edge / 2 * (2 * np.stack([corner & 1, corner >> 1], axis=1) - 1)
+    middle = children[:, :, 0] - planes[:, None, 0] - (planes[:, None, 1:] * centre).sum(axis=2)
+    # a difference of planes is largest at a corner: half an edge along both axes
+    return np.abs(middle) + edge / 2 * np.abs(children[:, :, 1:] - planes[:, None, 1:]).sum(axis=2)
+
+
+def _cosines(planes: np.ndarray) -> np.ndarray:
+    """(n,) distance from a plane over difference in depth; also the normal's component along the image's axis."""
+    return 1 / np.sqrt(1 + (planes[:, 1:] ** 2).sum(axis=1))
+
+
+def _goes_on_around(nodes: _Nodes, level: int, finer: _Nodes, spacing: float, tolerance: Tolerance) -> np.ndarray:
+    """(n,) bool: whether the ring of blocks of the level of `finer` around each block is whole and like it."""
+    count = min(4, 2**level)
+    share = 2**level / count
+    side, column, row = _block(nodes.keys)
+    inside = range(count)
+    ring = [(c, r) for c in range(-1, count + 1) for r in range(-1, count + 1) if (c in inside) != (r in inside)]
+    result = np.ones(len(nodes.keys), bool)
+    for across, along in ring:
+        at = np.flatnonzero(result)
+        keys = _key(side[at], column[at] * count + across, row[at] * count + along)
+        away = share * (np.array((across, along)) + 0.5 - count / 2)
+        depth = nodes.planes[at, 0] + (nodes.planes[at, 1:] * away).sum(axis=1)
+        limit = tolerance.distance / spacing / _cosines(nodes.planes[at])
+        start, found = np.searchsorted(finer.keys, keys), np.zeros(len(at), bool)
+        for layer in range(_LAYERS):
+            other = np.minimum(start + layer, len(finer.keys) - 1)
+            cosines = (finer.shading[other] * nodes.shading[at]).sum(axis=1)
+            found |= (
+                (finer.keys[other] == keys)
+                & (np.abs(finer.planes[other, 0] - depth) <= limit)
+                & (cosines >= math.cos(tolerance.angle))
+                & (np.abs(finer.colors[other] - nodes.colors[at]).max(axis=1) <= tolerance.color)
+                & (finer.materials[other] == nodes.materials[at])
+            )
+        result[at[~found]] = False
+    return result
+
+
+def _discs(nodes: _Nodes, level: int, spacing: float) -> dict[str, np.ndarray]:
+    """The arrays of `Surfels` of merged blocks."""
+    count, edge = len(nodes.keys), 2**level
+    side, column, row = _block(nodes.keys)
+    cosines = _cosines(nodes.planes)
+    sign = np.where(side & 1, 1.0, -1.0)
+    # in the image's own order u, v, axis
+    positions = np.stack([(column + 0.5) * edge, (row + 0.5) * edge, nodes.planes[:, 0]]) * spacing
+    normals = np.stack([-nodes.planes[:, 1], -nodes.planes[:, 2], np.ones(count)]) * cosines * sign
+    made = {
+        "positions": np.empty((count, 3), np.float32),
+        "rotations": np.empty((count, 4), np.float32),
+        "scales": ellipse_scales(cosines, MERGED_SIZE * edge * spacing),
+        "normals": nodes.shading.astype(np.float32),
+        "colors": nodes.colors.astype(np.float32),
+        "materials": nodes.materials.astype(np.int32),
+    }
+    for axis in range(3):
+        at = np.flatnonzero(side >> 1 == axis)
+        order = [(k - axis - 1) % 3 for k in range(3)]
+        made["positions"][at] = positions[order][:, at].T
+        made["rotations"][at] = ellipse_rotations(normals[order][:, at], axis)
+    return made

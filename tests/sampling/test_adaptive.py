@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Larger surfels where the surface is flat: fewer, within the tolerance, without holes, and never over an edge."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from scripts.coverage import uncovered_points
+from splat_addon.sampling import SurfaceColor, Tolerance, TriangleMesh, grid_spacing, sample_surface
+
+
+def adaptive(mesh, resolution, cells=0.1, **limits):
+    """Sampled with a tolerance in cells."""
+    spacing = grid_spacing(mesh, resolution=resolution)
+    return sample_surface(mesh, resolution=resolution, tolerance=Tolerance(cells * spacing, **limits))
+
+
+def turned(mesh, angles):
+    """The mesh turned by three angles, so that no face lies along the grid."""
+    from scipy.spatial.transform import Rotation
+
+    return TriangleMesh(Rotation.from_euler("xyz", angles).apply(mesh.positions), mesh.triangles)
+
+
+def test_a_flat_square_keeps_small_surfels_along_its_border_alone(square):
+    """64 x 64 cells: 8 x 8 blocks of 8 inside, one block of the ring less at each side, then 4, 2 and 1."""
+    sampling = adaptive(square(), 64)
+    surfels = sampling.surfels
+    middle = np.abs(surfels.positions[:, :2] - 0.5).max(axis=1) < 0.3
+    assert np.allclose(surfels.scales[middle], 0.75 * 8 / 64)
+    assert len(surfels) + sampling.saved == 64**2 and len(surfels) < 64**2 / 4
+
+
+def test_no_disc_sticks_out_farther_than_a_single_splat(square):
+    surfels = adaptive(square(), 64).surfels
+    reach = surfels.positions[:, :2] + surfels.scales[:, :1]
+    assert reach.max() <= 1 + 0.7501 / 64 + 1e-6
+
+
+def test_a_cube_in_any_position_has_no_holes(cube):
+    box = turned(cube(), (0.4, 0.7, 0.2))
+    sampling = adaptive(box, 64)
+    assert sampling.saved > len(sampling.surfels)
+    assert len(uncovered_points(box, sampling.surfels, grid_spacing(box, resolution=64))) == 0
+
+
+@settings(deadline=None, max_examples=15)
+@given(st.tuples(*[st.floats(-3, 3)] * 3))
+def test_merged_surfels_lie_on_flat_faces_in_every_position(angles):
+    """A plane through the origin stays one: every surfel is on it and faces along it."""
+    import trimesh
+
+    sheet = TriangleMesh(np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0.0)]), np.array([(0, 1, 2), (0, 2, 3)]))
+    sheet = turned(sheet, angles)
+    normal = trimesh.Trimesh(sheet.positions, sheet.triangles).face_normals[0]
+    sampling = adaptive(sheet, 48)
+    surfels = sampling.surfels
+    assert sampling.saved > 0
+    assert np.abs((surfels.origin + surfels.positions) @ normal).max() < 1e-5
+    assert (surfels.geometric_normals() @ normal > 1 - 1e-5).all()
+
+
+@pytest.mark.parametrize("cells", [0.05, 0.2, 0.5])
+def test_the_error_stays_within_the_tolerance_on_a_sphere(sphere, cells):
+    """The sphere's own distance is measured, not the bound that is reported."""
+    spacing = grid_spacing(sphere, resolution=200)
+    sampling = adaptive(sphere, 200, cells, angle=1.0)
+    off = np.abs(np.linalg.norm(sampling.surfels.origin + sampling.surfels.positions, axis=1) - 1)
+    assert sampling.saved > 0 and off.max() <= sampling.error + 1e-4 * spacing + 1e-4
+    assert sampling.error <= cells * spacing
+
+
+def test_a_larger_tolerance_leaves_fewer(sphere):
+    counts = [len(adaptive(sphere, 200, cells, angle=1.0).surfels) for cells in (0.05, 0.2, 0.5)]
+    assert counts[0] > counts[1] > counts[2]
+
+
+def test_normals_that_turn_are_not_merged(sphere):
+    """2 cells of 200 along the radius turn by 0.02."""
+    assert adaptive(sphere, 200, 0.5, angle=0.001).saved == 0
+
+
+def test_colours_that_differ_are_not_merged(square):
+    ramp = np.array([0, 1, 1, 0])[[[0, 1, 2], [0, 2, 3]]][..., None] * np.ones(4)
+    mesh = square(corner_colors=ramp, surfaces=(SurfaceColor((1, 1, 1, 1), vertex_colors=True),))
+    assert adaptive(mesh, 64, color=1e-4).saved == 0 and adaptive(mesh, 64, color=1.0).saved > 0
+
+
+def test_materials_are_not_merged(square):
+    two = square(materials=np.array([0, 1]), surfaces=(SurfaceColor(), SurfaceColor()))
+    surfels = adaptive(two, 64).surfels
+    x, y = surfels.positions[:, :2].T
+    assert set(surfels.materials) == {0, 1}
+    assert (surfels.materials[x > y + 0.02] == 0).all() and (surfels.materials[x < y - 0.02] == 1).all()
+
+
+def test_two_sheets_closer_than_a_cell_stay_two(square):
+    near = square()
+    both = TriangleMesh(
+        np.concatenate([near.positions, near.positions + np.array([0, 0, 0.005])]),
+        np.concatenate([near.triangles, near.triangles + 4]),
+    )
+    one, two = adaptive(near, 64), adaptive(both, 64)
+    assert len(two.surfels) == 2 * len(one.surfels)
+
+
+def test_what_cannot_be_merged_is_left_bit_by_bit(armadillo):
+    plain = sample_surface(armadillo, resolution=64).surfels
+    merged = sample_surface(armadillo, resolution=64, tolerance=Tolerance(0.0)).surfels
+    assert sorted(map(bytes, plain.positions)) == sorted(map(bytes, merged.positions))
+
+
+def test_the_armadillo_has_no_holes(armadillo):
+    sampling = adaptive(armadillo, 128, 0.5, angle=1.0)
+    bare = uncovered_points(armadillo, sampling.surfels, grid_spacing(armadillo, resolution=128))
+    assert sampling.saved > 1000 and len(bare) <= 4
+
+
+@pytest.mark.parametrize("limits", [{"distance": -1}, {"distance": float("nan")}, {"distance": 0, "angle": -1}])
+def test_an_unusable_tolerance_is_refused_in_a_sentence(limits):
+    with pytest.raises(ValueError, match="must be a finite number, 0 or more, not"):
+        Tolerance(**limits)
+
+
+def test_3_to_1_cannot_be_adaptive(cube):
+    with pytest.raises(ValueError, match="choose another, or no tolerance"):
+        sample_surface(cube(), resolution=8, reduction="three_to_one", tolerance=Tolerance(0.1))
