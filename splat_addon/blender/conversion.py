@@ -16,6 +16,8 @@ from mathutils import Matrix
 from ..sampling import (
     DEFAULT_GRAZING_ANGLE,
     DEFAULT_SPLAT_SIZE,
+    Sampling,
+    Tolerance,
     TriangleMesh,
     drop_unusable,
     grid_spacing,
@@ -38,12 +40,13 @@ MAX_SURFELS = 100_000_000
 class Choices:
     """fineness: one keyword and value: "resolution", "spacing" or "count" as sampling takes them, or "pixels" that a
     surfel may cover for the scene's camera. reduction, grazing_angle: as sampling takes them. splat_size: half-axis of
-    a splat, in spacings."""
+    a splat, in spacings. tolerance: how far from flat, object units, where surfels may become larger, or None."""
 
     fineness: dict[str, float]
     splat_size: float = DEFAULT_SPLAT_SIZE
     reduction: str = "normal"
     grazing_angle: float = DEFAULT_GRAZING_ANGLE
+    tolerance: float | None = None
 
 
 @dataclass(eq=False)
@@ -64,14 +67,20 @@ class Conversion:
     notes: list[str]
     seconds: float
     surfels: Surfels | None = None
-    small_parts: int = 0
+    sampling: Sampling | None = None
 
     def summary(self) -> str:
         """What was made, in one line."""
-        parts = f"; {self.small_parts:,} small part{'s' * (self.small_parts > 1)} got one surfel each"
-        return (
-            f"{self.triangles:,} triangles -> {len(self.surfels):,} surfels "
-            f"in {self.seconds:.1f} s, spacing {self.spacing:.4g}{parts if self.small_parts else ''}"
+        parts, saved = self.sampling.small_parts, self.sampling.saved
+        details = [f"{parts:,} small part{'s' * (parts > 1)} got one surfel each"] if parts else []
+        if self.choices.tolerance is not None:
+            details.append(f"flat places saved {saved:,} surfels and are off by {self.sampling.error:.2g} at most")
+        return "; ".join(
+            [
+                f"{self.triangles:,} triangles -> {len(self.surfels):,} surfels "
+                f"in {self.seconds:.1f} s, spacing {self.spacing:.4g}",
+                *details,
+            ]
         )
 
 
@@ -116,11 +125,12 @@ def sample(conversion: Conversion, progress: Callable[[float], bool | None] | No
         reduction=choices.reduction,
         grazing_angle=choices.grazing_angle,
         splat_size=choices.splat_size,
+        tolerance=None if choices.tolerance is None else Tolerance(choices.tolerance),
         progress=progress,
     )
     solid = sampling.keeps_both_sides and is_solid(conversion.whole)
     conversion.surfels = sampling.surfels.as_solid() if solid else sampling.surfels
-    conversion.small_parts = sampling.small_parts
+    conversion.sampling = sampling
     conversion.seconds += time.perf_counter() - start
 
 

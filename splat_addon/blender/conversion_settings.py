@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 from ..sampling import DEFAULT_GRAZING_ANGLE, DEFAULT_SPLAT_SIZE, LEAST_GRAZING_ANGLE, REDUCTIONS
 from .conversion import Choices
@@ -104,6 +104,26 @@ class ConversionProperties:
         min=LEAST_GRAZING_ANGLE,
         max=math.pi / 2,
     )
+    use_adaptive: BoolProperty(
+        name="Adaptive",
+        description=(
+            "Larger surfels, up to 8 spacings, where the surface is flat and its colour even. Leaves a third of the "
+            "surfels of a building or a machine and nearly all of a scan. It takes two to four times as long"
+        ),
+        default=False,
+    )
+    tolerance: FloatProperty(
+        name="Tolerance",
+        description=(
+            "How far the surface may be from flat where surfels become larger, in the object's own units, before its "
+            "scale"
+        ),
+        default=0.001,
+        min=0.0,
+        soft_max=1.0,
+        precision=5,
+        step=0.01,
+    )
     splat_size: FloatProperty(
         name="Splat Size",
         description=(
@@ -138,6 +158,7 @@ def choices(properties: ConversionProperties) -> Choices:
         splat_size=properties.splat_size,
         reduction=properties.reduction.lower(),
         grazing_angle=properties.grazing_angle,
+        tolerance=properties.tolerance if properties.use_adaptive else None,
     )
 
 
@@ -150,6 +171,9 @@ def draw_properties(layout: bpy.types.UILayout, properties: ConversionProperties
     layout.prop(properties, "reduction")
     if REDUCTIONS[properties.reduction.lower()].has_angle:
         layout.prop(properties, "grazing_angle")
+    layout.prop(properties, "use_adaptive")
+    if properties.use_adaptive:
+        layout.prop(properties, "tolerance")
     layout.prop(properties, "splat_size")
     layout.row().prop(properties, "source", expand=True)
 

@@ -47,7 +47,8 @@ def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], aske
         ]
     except ValueError as error:
         return str(error)
-    return prediction_text([extent.predict(f) for extent, f in zip(extents, finenesses, strict=True)])
+    text = prediction_text([extent.predict(f) for extent, f in zip(extents, finenesses, strict=True)])
+    return text if asked.tolerance is None else f"{text}, less where flat"
 
 
 def prediction_text(predictions: list[tuple[int, float]]) -> str:

@@ -74,6 +74,13 @@ def test_small_parts_get_a_surfel_and_are_counted(add_mesh, convert, capfd):
     assert "; 2 small parts got one surfel each" in capfd.readouterr().out
 
 
+def test_adaptive_surfels_are_fewer_and_the_report_says_how_far_off(cube, convert, surfels_of, capfd):
+    surfels = surfels_of(convert(resolution=64, use_adaptive=True, tolerance=1e-4)[0])
+    assert len(surfels) < 6 * 64 * 64 / 3
+    saved = 6 * 64 * 64 - len(surfels)
+    assert f"; flat places saved {saved:,} surfels and are off by 0 at most" in capfd.readouterr().out
+
+
 def test_the_splat_size_is_in_spacings(cube, convert, surfels_of):
     assert np.allclose(surfels_of(convert(resolution=16, splat_size=1.5)[0]).scales, 1.5 * 2 / 16)
 
