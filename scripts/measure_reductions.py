@@ -3,7 +3,7 @@
 
     PYTHON scripts/measure_reductions.py [--models DIR] [--resolution 256] [--out docs/conversion]
 
-PYTHON must have numpy, scipy, trimesh, Pillow and moderngl (the environment that scripts/test.py makes). Prints two
+PYTHON must have numpy, scipy, trimesh, Pillow and moderngl (the environment that scripts/test.py makes). Prints three
 Markdown tables and renders docs/conversion's pictures. Choosing by the shading normal is here as a counter-example
 alone; the product has no such reduction.
 """
@@ -35,6 +35,7 @@ from splat_addon.rendering import Camera, Renderer, Scene, Settings, look_at, op
 from splat_addon.sampling import (  # noqa: E402
     REDUCTIONS,
     SurfaceColor,
+    Tolerance,
     TriangleMesh,
     drop_unusable,
     grid_spacing,
@@ -72,6 +73,8 @@ COLUMNS = {
 
 #: The models whose errors are measured, for each kind of failure one.
 ERROR_MODELS = ("armadillo.obj.gz", "fandisk.obj.gz", "truck.obj.gz", "phoenix_bird.glb")
+ADAPTIVE_MODELS = ("fandisk.obj.gz", "CesiumMilkTruck.glb", "truck.obj.gz", "spot.obj.gz", "armadillo.obj.gz")
+ADAPTIVE_TOLERANCES = (0.05, 0.25)
 ERROR_POINTS, DISTANCE_POINTS = 40_000, 4_000
 
 
@@ -144,6 +147,29 @@ def print_errors(meshes: dict, resolution: float) -> None:
         print(f"| {name.split('.')[0]} | {' | '.join(cells)} |", flush=True)
 
 
+def print_adaptive(meshes: dict, resolution: float) -> None:
+    """Surfels left by adaptive sampling of the normal reduction, the bound it reports, and what is true of it."""
+    heads = "model", "tolerance", "surfels", "times fewer", "error reported", "largest distance found", "bare"
+    print(f"| {' | '.join(heads)} |\n{'|---' * len(heads)}|")
+    for name in (n for n in ADAPTIVE_MODELS if n in meshes):
+        mesh = meshes[name]
+        spacing = grid_spacing(mesh, resolution=resolution)
+        exact = trimesh.Trimesh(mesh.positions, mesh.triangles, process=False)
+        for cells in ADAPTIVE_TOLERANCES:
+            sampling = sample_surface(mesh, resolution=resolution, tolerance=Tolerance(cells * spacing))
+            surfels, left = sampling.surfels, len(sampling.surfels)
+            merged = np.flatnonzero(surfels.scales[:, 1] > 1.3 * spacing)[:DISTANCE_POINTS]
+            points = surfels.origin + surfels.positions[merged].astype(np.float64)
+            distance = trimesh.proximity.closest_point(exact, points)[1].max() / spacing
+            bare = len(uncovered_points(mesh, surfels, spacing, ERROR_POINTS)) / ERROR_POINTS
+            cells_of_row = (
+                name.split(".")[0], f"{cells} H", f"{left:,} of {left + sampling.saved:,}",
+                f"{(left + sampling.saved) / left:.2f}", f"{sampling.error / spacing:.3f} H", f"{distance:.3f} H",
+                f"{100 * bare:.3f} %",
+            )  # fmt: skip
+            print(f"| {' | '.join(cells_of_row)} |", flush=True)
+
+
 def smooth_cube() -> TriangleMesh:
     """A cube coloured by face; its vertex normals are means over triangles, as many exporters write them."""
     box = trimesh.creation.box()
@@ -210,6 +236,8 @@ def main() -> None:
     print_counts(meshes, options.resolution)
     print("\nBare surface at the default splat size, and distance of the surfels from the surface (rms):\n")
     print_errors(meshes, options.resolution)
+    print("\nAdaptive:\n")
+    print_adaptive(meshes, options.resolution)
 
 
 if __name__ == "__main__":

@@ -132,13 +132,15 @@ def _parents(nodes: _Nodes, edge: int, spacing: float, tolerance: Tolerance) -> 
     keys = _key(side, column >> 1, row >> 1)
     corner = (column & 1) | (row & 1) << 1
     to_middle = edge / 2 * (1 - 2 * np.stack([corner & 1, corner >> 1], axis=1))
-    depth = nodes.planes[:, 0] + (nodes.planes[:, 1:] * to_middle).sum(axis=1)
+    depth = nodes.planes[:, 0] + nodes.planes[:, 1] * to_middle[:, 0] + nodes.planes[:, 2] * to_middle[:, 1]
     order = np.lexsort((depth, keys))
-    four = order[np.arange(max(len(order) - 3, 0))[:, None] + np.arange(4)]
-    spread = (depth[four[:, 3]] - depth[four[:, 0]]) * spacing
-    whole = (keys[four[:, 0]] == keys[four[:, 3]]) & (spread <= _SPREAD * tolerance.distance)
-    whole &= (1 << corner[four]).sum(axis=1) == 15
-    four = four[_every_fourth(whole)]
+    count = max(len(order) - 3, 0)
+    windows = [order[k : k + count] for k in range(4)]
+    whole = keys[windows[0]] == keys[windows[3]]
+    whole &= (depth[windows[3]] - depth[windows[0]]) * spacing <= _SPREAD * tolerance.distance
+    whole &= np.bitwise_or.reduce([1 << corner[window] for window in windows]) == 15
+    first = np.flatnonzero(_every_fourth(whole))
+    four = np.stack([window[first] for window in windows], axis=1)
     four = np.take_along_axis(four, corner[four].argsort(axis=1), axis=1)
 
     depths = nodes.planes[four, 0]
@@ -187,7 +189,7 @@ def _plane_distances(planes: np.ndarray, children: np.ndarray, edge: int) -> np.
 
 def _cosines(planes: np.ndarray) -> np.ndarray:
     """(n,) distance from a plane over difference in depth; also the normal's component along the image's axis."""
-    return 1 / np.sqrt(1 + (planes[:, 1:] ** 2).sum(axis=1))
+    return 1 / np.sqrt(1 + planes[:, 1] ** 2 + planes[:, 2] ** 2)
 
 
 def _goes_on_around(nodes: _Nodes, level: int, finer: _Nodes, spacing: float, tolerance: Tolerance) -> np.ndarray:
@@ -197,26 +199,30 @@ def _goes_on_around(nodes: _Nodes, level: int, finer: _Nodes, spacing: float, to
     side, column, row = _block(nodes.keys)
     inside = range(count)
     ring = [(c, r) for c in range(-1, count + 1) for r in range(-1, count + 1) if (c in inside) != (r in inside)]
+    limits = tolerance.distance / spacing / _cosines(nodes.planes)
     result = np.ones(len(nodes.keys), bool)
     for across, along in ring:
         at = np.flatnonzero(result)
         keys = _key(side[at], column[at] * count + across, row[at] * count + along)
-        away = share * (np.array((across, along)) + 0.5 - count / 2)
-        depth = nodes.planes[at, 0] + (nodes.planes[at, 1:] * away).sum(axis=1)
-        limit = tolerance.distance / spacing / _cosines(nodes.planes[at])
-        start, found = np.searchsorted(finer.keys, keys), np.zeros(len(at), bool)
+        plane, aside = nodes.planes[at], (across + 0.5 - count / 2, along + 0.5 - count / 2)
+        depth = plane[:, 0] + share * (plane[:, 1] * aside[0] + plane[:, 2] * aside[1])
+        start = np.searchsorted(finer.keys, keys)
         for layer in range(_LAYERS):
             other = np.minimum(start + layer, len(finer.keys) - 1)
-            cosines = (finer.shading[other] * nodes.shading[at]).sum(axis=1)
-            found |= (
-                (finer.keys[other] == keys)
-                & (np.abs(finer.planes[other, 0] - depth) <= limit)
-                & (cosines >= math.cos(tolerance.angle))
-                & (np.abs(finer.colors[other] - nodes.colors[at]).max(axis=1) <= tolerance.color)
-                & (finer.materials[other] == nodes.materials[at])
-            )
-        result[at[~found]] = False
+            is_like = (finer.keys[other] == keys) & (np.abs(finer.planes[other, 0] - depth) <= limits[at])
+            is_like &= _are_alike(finer, other, nodes, at, tolerance)
+            at, keys, depth, start = (array[~is_like] for array in (at, keys, depth, start))
+        result[at] = False
     return result
+
+
+def _are_alike(a: _Nodes, i: np.ndarray, b: _Nodes, k: np.ndarray, tolerance: Tolerance) -> np.ndarray:
+    """(n,) bool: whether rows i of a and k of b have one material and nearly one shading normal and colour."""
+    alike = a.materials[i] == b.materials[k]
+    alike &= sum(a.shading[i, c] * b.shading[k, c] for c in range(3)) >= math.cos(tolerance.angle)
+    for c in range(4):
+        alike &= np.abs(a.colors[i, c] - b.colors[k, c]) <= tolerance.color
+    return alike
 
 
 def _discs(nodes: _Nodes, level: int, spacing: float) -> dict[str, np.ndarray]:
