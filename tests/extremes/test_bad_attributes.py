@@ -44,7 +44,7 @@ def test_unusable_surfels_are_counted_and_the_rest_is_drawn(field, value, world,
 def test_one_stray_position_leaves_the_others_as_they_are(value, world, hold):
     """It must not drag the view's scale after it."""
     scene, camera, arrays = world
-    arrays["positions"][7] = value
+    arrays["positions"][0] = value
     surfels, _ = valid_surfels(**arrays)
     hold({f"{value:g}": shot(scene, camera, surfels)[:2]}, least=60)
 
@@ -52,9 +52,9 @@ def test_one_stray_position_leaves_the_others_as_they_are(value, world, hold):
 @pytest.mark.parametrize("value", ABSURD)
 def test_one_absurd_size_leaves_what_lies_before_it_as_it_is(value, world, render_all):
     scene, camera, arrays = world
-    arrays["positions"][7], arrays["rotations"][7] = (0, 6, 0), (np.sqrt(0.5), np.sqrt(0.5), 0, 0)
+    arrays["positions"][0], arrays["rotations"][0] = (0, 6, 0), (np.sqrt(0.5), np.sqrt(0.5), 0, 0)
     usual, _ = valid_surfels(**arrays)
-    arrays["scales"][7] = value
+    arrays["scales"][0] = value
     absurd, _ = valid_surfels(**arrays)
     without, frame = render_all([shot(scene, camera, surfels) for surfels in (usual, absurd)])
     whole = without.coverage == 1

@@ -44,8 +44,11 @@ def test_hardware_depth_serves_where_it_is_fine_enough():
     assert not plan(*WORLDS["torus"](), Settings()).linear_depth
 
 
-def test_linear_depth_is_planned_where_the_hardwares_is_too_coarse(world):
-    assert plan(*with_speck(*world, 1e-3), Settings()).linear_depth
+@pytest.mark.parametrize(("nearest", "is_linear"), [(0.05, False), (0.02, True)])
+def test_linear_depth_is_planned_where_the_hardwares_is_too_coarse(nearest, is_linear, lit, camera):
+    """Splats as far as 3, each far smaller than its distance."""
+    tiny = discs([(0, 0, -nearest), (0, 0, -3)], (1e-3, 0, 0), (0, 1e-3, 0))
+    assert plan(lit(tiny), camera(near=1e-6), Settings()).linear_depth == is_linear
 
 
 def test_linear_depth_is_planned_where_a_splat_is_wide(lit, camera):
