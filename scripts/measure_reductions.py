@@ -30,8 +30,8 @@ import trimesh  # noqa: E402
 from PIL import Image  # noqa: E402
 
 from scripts.coverage import uncovered_points  # noqa: E402
-from splat_addon.reference.metrics import srgb  # noqa: E402
-from splat_addon.rendering import Camera, Renderer, Scene, Settings, look_at, open_device  # noqa: E402
+from splat_addon.reference.metrics import psnr, srgb  # noqa: E402
+from splat_addon.rendering import Camera, Light, Renderer, Scene, Settings, look_at, open_device  # noqa: E402
 from splat_addon.sampling import (  # noqa: E402
     REDUCTIONS,
     SurfaceColor,
@@ -41,6 +41,7 @@ from splat_addon.sampling import (  # noqa: E402
     grid_spacing,
     sample_surface,
 )
+from splat_addon.sampling.adaptive import MERGED_SIZE  # noqa: E402
 from splat_addon.sampling.reductions import Reduction  # noqa: E402
 from splat_addon.surfels import LAYOUT, Surfels  # noqa: E402
 
@@ -201,15 +202,36 @@ def pictures(meshes: dict) -> dict:
     return shots
 
 
-def render(renderer: Renderer, surfels: Surfels, toward, up, distance: float, size: int = 400) -> np.ndarray:
-    """(size, size, 3) uint8: the surfels in their own colours over white."""
-    low, high = (surfels.origin + corner for corner in surfels.local_bounds)
+def render(renderer: Renderer, surfels: Surfels, box, toward, up, distance: float, sun: bool = False) -> np.ndarray:
+    """(400, 400, 4) of the surfels in their own colours, or under a sun; the eye is set by the box of the mesh."""
+    (low, high), shading = box, "principled" if sun else "flat"
     middle, diagonal = (low + high) / 2, float(np.linalg.norm(high - low))
     eye = middle + diagonal * distance * np.array(toward) / np.linalg.norm(toward)
-    camera = Camera.perspective(look_at(eye, middle, up), 0.6, (size, size), diagonal / 100, diagonal * 10)
-    scene = Scene((surfels,), world=(1.0, 1.0, 1.0))
-    frame = renderer.render(scene, camera, Settings(shading="flat", supersampling=3))
-    return (255 * srgb(frame.color[::-1, :, :3]) + 0.5).astype(np.uint8)
+    camera = Camera.perspective(look_at(eye, middle, up), 0.6, (400, 400), diagonal / 100, diagonal * 10)
+    lights = (Light("sun", energy=2.0, direction=(-0.7, -0.8, -0.4)),) if sun else ()
+    scene = Scene((surfels,), lights, (0.3, 0.3, 0.3) if sun else (1.0, 1.0, 1.0))
+    return renderer.render(scene, camera, Settings(shading=shading, supersampling=3)).color
+
+
+def save(views: list, path: Path) -> None:
+    """Linear pictures side by side, as a PNG of 128 colours."""
+    pixels = (255 * srgb(np.concatenate(views, axis=1)[::-1, :, :3]) + 0.5).astype(np.uint8)
+    Image.fromarray(pixels).quantize(128).save(path, optimize=True)
+
+
+def save_adaptive(renderer: Renderer, mesh: TriangleMesh, path: Path) -> None:
+    """The same mesh sampled plainly, adaptively, and adaptively with the surfels coloured by size."""
+    spacing = grid_spacing(mesh, resolution=200)
+    options = {"resolution": 200, "tolerance": Tolerance(0.1 * spacing)}
+    plain, merged = sample_surface(mesh, resolution=200).surfels, sample_surface(mesh, **options).surfels
+    sizes = np.rint(np.log2(merged.scales[:, 1] / (MERGED_SIZE * spacing))).clip(0).astype(int)
+    shade = np.random.default_rng(0).uniform(0.6, 1, (len(merged), 1))
+    by_size = np.array([(0.6, 0.6, 0.6), (0.1, 0.5, 0.8), (0.1, 0.7, 0.2), (0.9, 0.4, 0.05)])[sizes] * shade
+    shown = replace(merged, colors=np.concatenate([by_size, np.ones_like(shade)], axis=1))
+    view = mesh.bounds(), (0.9, 0.5, 0.9), (0, 1, 0), 1.45
+    views = [render(renderer, plain, *view, sun=True), render(renderer, merged, *view, sun=True)]
+    print(f"{path.stem}: {len(plain):,} and {len(merged):,} surfels, PSNR {psnr(*views):.1f} dB")
+    save([*views, render(renderer, shown, *view)], path)
 
 
 def main() -> None:
@@ -225,8 +247,10 @@ def main() -> None:
         print(f"{name} is left out: it is not in {options.models}.", file=sys.stderr)
     renderer = Renderer(open_device("standalone"))
     for name, (mesh, resolution, reductions, toward, up, distance) in pictures(meshes).items():
-        views = [render(renderer, sampled(mesh, resolution, r), toward, up, distance) for r in reductions]
-        Image.fromarray(np.concatenate(views, axis=1)).quantize(128).save(options.out / f"{name}.png", optimize=True)
+        view = mesh.bounds(), toward, up, distance
+        save([render(renderer, sampled(mesh, resolution, r), *view) for r in reductions], options.out / f"{name}.png")
+    if "CesiumMilkTruck.glb" in meshes:
+        save_adaptive(renderer, meshes["CesiumMilkTruck.glb"], options.out / "adaptive.png")
     if options.pictures_only:
         return
     git = ["git", "rev-parse", "--short", "HEAD"]
