@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seconds and memory of making surfels from bare points, beside a twin that finds neighbours with scipy's kd-tree.
+"""Processor time and memory of making surfels from bare points, beside a twin that has scipy's kd-tree.
 
     PYTHON scripts/measure_points.py [--models DIR] [--rounds 5] [--points 1000000] [--picture PNG]
 
 PYTHON must have numpy, scipy, rich, and for the picture moderngl and Pillow (the environment that scripts/test.py
-makes). Twin and original run in turns; the twin differs in one function. The picture shows the range map of --models.
+makes). All of it runs in one thread, so its processor time is about what a quiet machine takes. Twin and original run
+in turns; the twin differs in one function. The picture shows the range map of --models.
 """
 
 import argparse
@@ -33,7 +34,8 @@ from splat_addon.sampling.points import from_points  # noqa: E402
 from splat_addon.sampling.points.neighbours import nearest_neighbours  # noqa: E402
 
 HEADER = (
-    "points", "surfels", "seconds", "points/s", "neighbours s", "kd-tree s", "twin / original", "peak bytes a point",
+    "points", "surfels", "CPU s", "points/CPU s", "neighbours CPU s", "kd-tree CPU s", "twin / original",
+    "peak bytes a point",
 )  # fmt: skip
 
 
@@ -57,20 +59,20 @@ def by_kd_tree(positions: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarra
 
 
 def timed(search, points: np.ndarray) -> tuple[float, float, int]:
-    """Seconds of everything, seconds of the search, surfels."""
+    """Processor seconds of everything, of the search alone, and surfels."""
     seconds = []
 
     def watched(*arguments):
-        started = time.perf_counter()
+        started = time.process_time()
         found = search(*arguments)
-        seconds.append(time.perf_counter() - started)
+        seconds.append(time.process_time() - started)
         return found
 
     from_points.nearest_neighbours = watched
     try:
-        started = time.perf_counter()
+        started = time.process_time()
         count = len(surfels_from_points(points)[0])
-        return time.perf_counter() - started, sum(seconds), count
+        return time.process_time() - started, sum(seconds), count
     finally:
         from_points.nearest_neighbours = nearest_neighbours
 

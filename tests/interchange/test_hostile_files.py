@@ -21,6 +21,7 @@ BINARY, TEXT = "format binary_little_endian 1.0", "format ascii 1.0"
         ([BINARY, "element vertex 999999999999", *XYZ], b"\0" * 24, "999,999,999,999 points of 12 bytes, but only 24"),
         ([TEXT, "element vertex 999999999999", *XYZ], b"1 2 3\n", "999,999,999,999 points of 3 numbers"),
         ([TEXT, "element face 99999999999", "element vertex 1", *XYZ], b"1 2 3\n", "cut off or damaged"),
+        ([TEXT, *(f"element e{k} {10**18 - 1}" for k in range(12)), "element vertex 1", *XYZ], b"1 2 3\n", "cut off"),
         ([BINARY, "element vertex 2", *XYZ], b"\0" * 23, "cut off or damaged"),
         ([TEXT, "element vertex 2", *XYZ], b"1 2 3\n1 2        \n", "cut off or damaged|cannot be read"),
         ([TEXT, "element vertex 2", *XYZ], b"1 2 3 4 5 6\n       ", "1 of 6 were found"),

@@ -112,11 +112,14 @@ def _ellipses(reach: np.ndarray, splat_size: float) -> tuple[np.ndarray, np.ndar
     """(n,) angle of the longer axis in the tangent plane, and (n, 2) half-axes, from (D, n) reaches.
 
     Second moments of the region over its area: the integral of r^4 / 4 e e^T over r^2 / 2. A rectangle has
-    edge^2 / 12 along each edge, so sqrt(12 moment) is the spacing.
+    edge^2 / 12 along each edge, so sqrt(12 moment) is the spacing. A region that reaches farther to one side counts as
+    one of the same width around the point; only the cover is asked for the side itself.
     """
     angles = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
-    cosine, sine = np.cos(angles), np.sin(angles)
-    second, fourth = reach**2, reach**4
+    cosine, sine = np.float32(np.cos(angles)), np.float32(np.sin(angles))
+    width = (reach + np.roll(reach, DIRECTIONS // 2, axis=0)) / 2
+    second = width * width
+    fourth = second * second
     area = 2 * second.sum(axis=0)
     xx, yy, xy = ((w @ fourth) / area for w in (cosine**2, sine**2, cosine * sine))
     angle = np.arctan2(2 * xy, xx - yy) / 2
@@ -124,6 +127,7 @@ def _ellipses(reach: np.ndarray, splat_size: float) -> tuple[np.ndarray, np.ndar
     spacing = np.sqrt(12 * np.stack([half + spread, np.maximum(half - spread, 0)]))
     spacing[1] = np.maximum(spacing[1], spacing[0] / _MAX_STRETCH)
     half_axes = splat_size * spacing
-    across, along = angles[:, None] - angle, reach
-    farthest = np.hypot(along * np.cos(across) / half_axes[0], along * np.sin(across) / half_axes[1]).max(axis=0)
-    return angle, (half_axes * np.maximum(farthest, 1)).T
+    along = cosine[:, None] * np.cos(angle) + sine[:, None] * np.sin(angle)
+    across = sine[:, None] * np.cos(angle) - cosine[:, None] * np.sin(angle)
+    squares = reach * reach * ((along / half_axes[0]) ** 2 + (across / half_axes[1]) ** 2)
+    return angle, (half_axes * np.sqrt(np.maximum(squares.max(axis=0), 1))).T

@@ -88,6 +88,14 @@ def test_a_gap_is_not_filled(grid_points):
     assert surfels.radius.max() < 2.5
 
 
+def test_a_gap_that_neighbours_bridge_is_not_filled(grid_points):
+    """With 80 of them, a border sees the points on the far side, at a distance of 7."""
+    points = grid_points(40, 20)
+    points[:, 0] += 6 * (points[:, 0] >= 20)
+    surfels, _ = surfels_from_points(points, neighbours=80)
+    assert surfels.radius.max() < 6
+
+
 def test_the_other_side_of_a_thin_sheet_does_not_narrow_a_splat(grid_points):
     sheet = grid_points(20, 20)
     points = np.concatenate([sheet, np.add(sheet, (0.4, 0.3, -0.01))])

@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 from splat_addon.sampling import surfels_from_points
+from splat_addon.sampling.points.neighbours import nearest_neighbours
 from splat_addon.sampling.points.normals import plane_normals
+from splat_addon.sampling.points.orientation import consistent_signs
 
 
 def angles(surfels, normals):
@@ -49,11 +51,34 @@ def test_normals_turn_with_a_sharp_edge():
     assert ((surfels.normals * (points - 0.5)).sum(axis=1) > 0).all()
 
 
+def test_exact_normals_of_a_tetrahedron_turn_with_its_edges():
+    """Across them the normals are 109 degrees apart, so that their cosine alone is on the wrong side."""
+    corners = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], float)
+    random = np.random.default_rng(0)
+    faces = [random.dirichlet((1, 1, 1), 500) @ np.delete(corners, k, axis=0) for k in range(4)]
+    points, outward = np.concatenate(faces), np.repeat(-corners / np.sqrt(3), 500, axis=0)
+    normals = outward * random.choice((-1, 1), (2000, 1))
+    signs, part = consistent_signs(points, normals, nearest_neighbours(points, 8)[0])
+    assert part.max() == 0
+    assert abs(((signs[:, None] * normals) * outward).sum()) == pytest.approx(2000)
+
+
 def test_the_range_map_faces_its_scanner(range_map):
     surfels, report = surfels_from_points(range_map, viewpoint=(0, 0, 0))
     towards = -(surfels.origin + surfels.positions)
     assert ((surfels.normals * towards).sum(axis=1) > 0).mean() > 0.999
     assert report.isolated == 41
+
+
+def test_the_range_map_has_the_normals_of_its_mesh(range_map_mesh):
+    vertices, faces = range_map_mesh
+    a, b, c = vertices[faces].transpose(1, 0, 2)
+    weighted = np.repeat(np.cross(b - a, c - a), 3, axis=0)
+    normals = np.stack([np.bincount(faces.ravel(), column, len(vertices)) for column in weighted.T], axis=1)
+    length = np.linalg.norm(normals, axis=1)
+    surfels, _ = surfels_from_points(vertices, viewpoint=(0, 0, 0), isolated="keep")
+    cosines = (surfels.normals * normals).sum(axis=1)[length > 0] / length[length > 0]
+    assert np.degrees(np.arccos(np.median(cosines))) < 2 and (cosines < 0).sum() < 10
 
 
 def test_given_normals_are_used_where_they_are_usable(sphere_points):
