@@ -5,6 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
+import splat_addon
+from splat_addon.blender import ids
 from splat_addon.blender.attributes import write_surfels
 from splat_addon.interchange import read_ply, write_ply
 from splat_addon.surfels import LAYOUT
@@ -153,3 +155,14 @@ def test_undo_takes_an_import_back(random_surfels, tmp_path):
 def test_both_stand_in_the_file_menu(menu):
     functions = [function.__name__ for function in getattr(bpy.types, menu)._dyn_ui_initialize()]
     assert functions.count("draw_menu_entry") == 1
+
+
+def test_unregistering_takes_the_operators_and_the_panel_away():
+    splat_addon.unregister()
+    try:
+        assert "surfels_ply" not in dir(bpy.ops.import_scene) + dir(bpy.ops.export_scene)
+        assert "surfels_from_points" not in dir(bpy.ops.object)
+        assert not hasattr(bpy.types, ids.POINTS_PANEL)
+    finally:
+        splat_addon.register()
+    assert hasattr(bpy.types, ids.POINTS_PANEL)
