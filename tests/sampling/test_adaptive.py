@@ -95,6 +95,62 @@ def test_materials_are_not_merged(square):
     assert (surfels.materials[x > y + 0.02] == 0).all() and (surfels.materials[x < y - 0.02] == 1).all()
 
 
+@pytest.mark.parametrize("field", ["materials", "colors", "normals"])
+def test_odd_cells_inside_a_block_are_not_merged(field):
+    """Neither is its block's first; colours and normals of the two cancel out, so that the block's mean is even."""
+    x, y = (a.ravel() for a in np.meshgrid(np.arange(33), np.arange(33)))
+    corner = (np.arange(32)[:, None] * 33 + np.arange(32)).ravel()[:, None]
+    triangles = np.concatenate([corner + np.array(step) for step in ((0, 1, 34), (0, 34, 33))])
+    odd = np.zeros((2, 32, 32), int)
+    odd[:, 12, 13], odd[:, 13, 12] = 1, 1 if field == "materials" else -1
+    odd = odd.ravel()
+    tilted = np.array([(0, 0, 1), (0.6, 0, 0.8), (-0.6, 0, 0.8)])[odd]
+    values = {
+        "materials": {"materials": odd},
+        "colors": {"corner_colors": np.repeat(0.5 + 0.4 * odd, 12).reshape(-1, 3, 4)},
+        "normals": {"corner_normals": tilted[:, None].repeat(3, axis=1)},
+    }[field]
+    surfaces = (SurfaceColor((1, 1, 1, 1), vertex_colors=True),)
+    mesh = TriangleMesh(np.stack([x, y, 0 * x], axis=1) / 32, triangles, surfaces=surfaces, **values)
+    surfels = adaptive(mesh, 32).surfels
+    stored = getattr(surfels, field).reshape(len(surfels), -1)[:, 0]
+    assert np.count_nonzero(np.abs(stored - np.median(stored)) > 0.3) == 2 and len(surfels) < 700
+
+
+@pytest.mark.parametrize(("cells", "angle", "color"), [(9, 9, 0.06), (9, 0.06, 9), (0.1, 9, 9)])
+def test_each_sample_is_within_the_tolerances_of_the_surfel_in_its_place(sphere, cells, angle, color):
+    """A coloured sphere of radius 50 cells; each bound in turn is the one that counts."""
+    from scipy.spatial import cKDTree
+
+    colors = np.concatenate([sphere.positions, np.ones((len(sphere.positions), 1))], axis=1)[sphere.triangles]
+    ball = TriangleMesh(
+        sphere.positions,
+        sphere.triangles,
+        corner_normals=sphere.corner_normals,
+        corner_colors=colors,
+        surfaces=(SurfaceColor((1, 1, 1, 1), vertex_colors=True),),
+    )
+    spacing = grid_spacing(ball, resolution=100)
+    plain = sample_surface(ball, resolution=100).surfels
+    merged = adaptive(ball, 100, cells, angle=angle, color=color).surfels
+    edges = np.exp2(np.rint(np.log2(merged.scales[:, 1] / (0.75 * spacing)))) * spacing
+    merged_rows = np.flatnonzero(merged.scales[:, 1] > 1.3 * spacing)
+    tree, axis = cKDTree(plain.positions), np.abs(plain.geometric_normals()).argmax(axis=1)
+    checked = 0
+    for row in merged_rows[:: len(merged_rows) // 200 + 1]:
+        normal = merged.geometric_normals()[row]
+        image = np.abs(normal).argmax()
+        near = np.array(tree.query_ball_point(merged.positions[row], 2 * edges[row]))
+        away = plain.positions[near] - merged.positions[row]
+        inside = (np.abs(np.delete(away, image, axis=1)) < edges[row] / 2).all(axis=1) & (axis[near] == image)
+        near, away = near[inside], away[inside]
+        checked += len(near)
+        assert np.abs(away @ normal).max() <= cells * spacing + 1e-6
+        assert (plain.normals[near] @ merged.normals[row]).min() >= np.cos(min(angle, 3)) - 1e-6
+        assert np.abs(plain.colors[near] - merged.colors[row]).max() <= color + 1e-6
+    assert checked >= 4 * 50
+
+
 def test_two_sheets_closer_than_a_cell_stay_two(square):
     near = square()
     both = TriangleMesh(

@@ -33,6 +33,15 @@ def test_a_patch_between_the_rays_gets_one_disc_of_its_area_at_its_centroid(squa
     assert np.pi * surfels.radius[0] ** 2 == pytest.approx(0.2**2, rel=1e-5)
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_disc_faces_the_way_of_the_winding(square, axis, sign):
+    turned = np.roll(square(0.2).positions, axis + 1, axis=1)
+    patch = TriangleMesh(turned, square().triangles[:, ::sign])
+    normal = sample_surface(patch, spacing=SPACING).surfels.geometric_normals()
+    assert np.allclose(normal, sign * np.eye(3)[axis], atol=1e-6)
+
+
 def test_a_closed_part_gets_a_disc_as_large_as_it_is_seen(cube):
     """Seen along an axis, a cube is one face; its mean normal is zero."""
     surfels = sample_surface(placed(cube(), 0.2, 0.1), spacing=SPACING).surfels
