@@ -10,6 +10,7 @@
 #include "common/stored_depth.glsl"
 
 const float EMPTY_DEPTH = 1e10;
+const float FARTHEST = 3.4e38;
 const float FILTER_VARIANCE = 0.5;  // of the Gaussian, in samples
 const int FILTER_REACH = 2 * VISIBILITY_SAMPLES - VISIBILITY_SAMPLES / 2;
 // The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes.
@@ -83,7 +84,7 @@ void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * SAMPLES;
   vec4 color_total = vec4(0.0);
   vec4 normal_total = vec4(0.0);
-  float nearest = EMPTY_DEPTH;
+  float nearest = FARTHEST;
   for (int y = 0; y < SAMPLES; y++) {
     for (int x = 0; x < SAMPLES; x++) {
       ivec2 texel = first + ivec2(x, y);
@@ -97,7 +98,7 @@ void main() {
   }
   float share = 1.0 / float(SAMPLES * SAMPLES);
   combined = color_total * share;
-  depth = nearest;
+  depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
 #ifdef NORMAL_OUTPUT
   normal_coverage = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
 #endif

@@ -52,8 +52,8 @@ def stored_at(surfels, scale):
     return replace(surfels, positions=surfels.positions * scale, scales=surfels.scales * scale)
 
 
-def test_a_depth_beyond_that_of_nothing_is_kept(hold):
+def test_a_depth_beyond_that_of_nothing_is_kept(hold, is_unfiltered):
     """1e10 marks an empty pixel; what is farther still has its depth, and the coverage says that it is there."""
     ((frame, truth),) = hold({"1e12": transformed(*perspective(), scaled(1e12))}).values()
     hit = (frame.coverage > 0) & (truth.coverage > 0)
-    assert np.median(np.abs(frame.depth[hit] / truth.depth[hit] - 1)) < 1e-6
+    assert np.median(np.abs(frame.depth[hit] / truth.depth[hit] - 1)) < (1e-6 if is_unfiltered else 1e-2)
