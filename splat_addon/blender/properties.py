@@ -6,11 +6,18 @@ from __future__ import annotations
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
+from ..rendering.methods import METHODS
 from ..rendering.settings import MAX_SUPERSAMPLING, SHADINGS, Settings
 from .ids import RENDER_SETTINGS
 
 
 class SurfelSplattingSettings(bpy.types.PropertyGroup):
+    method: EnumProperty(
+        name="Method",
+        description="How a splat is drawn and filtered",
+        items=[(m.name, m.label, f"{m.summary} ({m.paper})") for m in METHODS.values()],
+        default=Settings.method,
+    )
     shading: EnumProperty(
         name="Shading",
         description="How the surface answers light",
@@ -68,6 +75,7 @@ def viewport_settings(scene: bpy.types.Scene) -> Settings:
 def _settings(scene, **choices) -> Settings:
     properties = getattr(scene, RENDER_SETTINGS)
     return Settings(
+        method=properties.method,
         shading=properties.shading,
         epsilon=properties.epsilon,
         transparent_film=scene.render.film_transparent,

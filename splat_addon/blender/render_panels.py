@@ -29,7 +29,7 @@ class _RenderPanel:
 
 class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
-    properties = ("supersampling", "viewport_supersampling")
+    properties = ("method", "supersampling", "viewport_supersampling")
 
 
 class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):

@@ -26,6 +26,9 @@ MAX_HARDWARE_DEPTH_RATIO = 128
 #: Up to this radius of a splat at distance 1 its corners may be moved back instead of every fragment.
 MAX_HARDWARE_DEPTH_RADIUS = 0.25
 
+#: Pixels that shaders/resolve.frag.glsl reads to each side.
+FILTER_MARGIN = 2
+
 #: texture -> (format, what it holds one value for)
 TEXTURES = {
     "visibility_depth": ("DEPTH32F", "visibility sample"),
@@ -54,7 +57,8 @@ class PlannedPass:
 
 @dataclass(frozen=True)
 class FramePlan:
-    """tiles: (x, y, width, height) in pixels, each rendered with all passes.
+    """tiles: (x, y, width, height) in pixels, each rendered with all passes and, where silhouettes are filtered, with a
+        margin that the filter reads.
     samples: N of the N x N samples a pixel. visibility_samples: V of the V x V a sample.
     material: the one that all surfels share, or None.
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
@@ -70,6 +74,11 @@ class FramePlan:
     linear_depth: bool
     passes: tuple[PlannedPass, ...]
     left_out: tuple[tuple[str, str], ...]
+
+    @property
+    def margin(self) -> int:
+        """Pixels drawn around a tile and not kept."""
+        return FILTER_MARGIN if self.visibility_samples > 1 else 0
 
     def scale(self, texture: str) -> int:
         """Values along each side of a pixel."""

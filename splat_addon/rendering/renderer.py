@@ -54,7 +54,7 @@ class Renderer:
         started = perf_counter()
         try:
             tiles = [
-                (tile, _read(target, settings.outputs))
+                (tile, _read(target, settings.outputs, frame_plan.margin))
                 for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress)
             ]
         finally:
@@ -64,7 +64,7 @@ class Renderer:
         return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[tuple[Tile, object]]:
-        """For a viewport: yields each tile and the colour texture to show there.
+        """For a viewport: yields each tile (with its margin) and the colour texture to show there.
 
         A texture is good until the next tile is asked for.
         """
@@ -76,7 +76,8 @@ class Renderer:
         try:
             for tile, _ in self._tiles(scene, camera, settings, frame_plan, self._new_stats(frame_plan), None):
                 self.device.restore()
-                yield tile, self._texture("combined", tile[2:], frame_plan)
+                drawn = _drawn(tile, frame_plan)
+                yield drawn, self._texture("combined", drawn[2:], frame_plan)
         finally:
             self.device.restore()
 
@@ -103,7 +104,7 @@ class Renderer:
             return
         self._forget_other_sizes(frame_plan)
         for number, tile in enumerate(frame_plan.tiles):
-            tile_camera = camera.cropped(*tile)
+            tile_camera = camera.cropped(*_drawn(tile, frame_plan))
             view = look(scene, tile_camera, settings.epsilon)
             stats["splats"] += sum(len(p.instance.surfels) for p in view.placed)
             stats["instances"] += len(view.placed)
@@ -194,7 +195,7 @@ class Renderer:
 
     def _forget_other_sizes(self, frame_plan):
         """Textures of a size or kind that this frame does not use are not kept for one that may."""
-        sizes = {tile[2:] for tile in frame_plan.tiles}
+        sizes = {_drawn(tile, frame_plan)[2:] for tile in frame_plan.tiles}
         scales = {name: frame_plan.scale(name) for name in frame_plan.textures}
         wanted = {(name, w * scale, h * scale) for name, scale in scales.items() for w, h in sizes}
         self._textures = {key: texture for key, texture in self._textures.items() if key in wanted}
@@ -230,8 +231,15 @@ def _background(scene: Scene, size, settings: Settings) -> dict[str, np.ndarray]
     }
 
 
-def _read(target, outputs: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """The wanted arrays of one tile."""
+def _drawn(tile: Tile, frame_plan: FramePlan) -> Tile:
+    """A tile with its margin."""
+    (x, y, width, height), margin = tile, frame_plan.margin
+    return x - margin, y - margin, width + 2 * margin, height + 2 * margin
+
+
+def _read(target, outputs: tuple[str, ...], margin: int) -> dict[str, np.ndarray]:
+    """The wanted arrays of one tile, without its margin."""
+    kept = slice(margin, -margin or None)
     arrays = {}
     if "color" in outputs:
         arrays["color"] = target.read(0)
@@ -240,7 +248,7 @@ def _read(target, outputs: tuple[str, ...]) -> dict[str, np.ndarray]:
     if "normal" in outputs or "coverage" in outputs:
         normal_coverage = target.read(2)
         arrays["normal"], arrays["coverage"] = normal_coverage[..., :3], normal_coverage[..., 3]
-    return {name: np.ascontiguousarray(arrays[name]) for name in outputs}
+    return {name: np.ascontiguousarray(arrays[name][kept, kept]) for name in outputs}
 
 
 def _assembled(tiles, size) -> dict[str, np.ndarray]:

@@ -32,8 +32,10 @@ SCENES = {
     "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),
 }
 
+CASES = [*((name, "quad") for name in SCENES), *(("torus", method) for method in METHODS if method != "quad")]
 
-@pytest.mark.parametrize(("name", "method"), [(n, "quad") for n in SCENES] + [("torus", m) for m in METHODS if m != "quad"])
+
+@pytest.mark.parametrize(("name", "method"), CASES)
 def test_picture_is_the_same_on_every_device(name, method, render, pictures, request):
     frame = render(*SCENES[name](), Settings(method=method, supersampling=1))
     path = pictures / f"{name}-{method}.npz"

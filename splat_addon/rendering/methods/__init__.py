@@ -11,7 +11,8 @@ from . import affine, ewa, homogeneous, mip, quad, raycast
 
 @dataclass(frozen=True)
 class Method:
-    """name: also of shaders/methods/<name>.glsl. paper: its source. summary: what it gains and costs, for users.
+    """name: also of shaders/methods/<name>.glsl. label: for users. paper: its source.
+    summary: what it gains and costs.
 
     works_in: "space" (quads that the hardware clips, interpolates and hides) or "picture" (a rectangle around each
         footprint, every pixel computed).
@@ -21,6 +22,7 @@ class Method:
     """
 
     name: str
+    label: str
     paper: str
     summary: str
     twin: ModuleType
@@ -33,6 +35,7 @@ METHODS = {
     for method in (
         Method(
             "mip",
+            "Mip Filter",
             "this project, after Zwicker et al. 2001",
             "Filters every splat for the pixel in its own plane: smooth at one sample a pixel",
             mip,
@@ -40,20 +43,40 @@ METHODS = {
         ),
         Method(
             "quad",
+            "Quads",
             "View-independent object-space surface splatting, section 4",
             "No filter: the fastest, and with many samples the sharpest",
             quad,
             works_in="space",
         ),
-        Method("ewa", "Zwicker et al. 2001, Ren et al. 2002", "Affine filter in the picture: the classic", ewa),
-        Method("raycast", "Botsch et al. 2005, sections 3 and 5", "Ray cast, or a disc of the pixel's size", raycast),
+        Method(
+            "ewa",
+            "EWA",
+            "Zwicker et al. 2001, Ren et al. 2002",
+            "The classic filter, in the picture; blurs silhouettes",
+            ewa,
+        ),
+        Method(
+            "raycast",
+            "Ray Cast",
+            "Botsch et al. 2005, sections 3 and 5",
+            "Exact ellipses, no smaller than the pixel's disc",
+            raycast,
+        ),
         Method(
             "homogeneous",
+            "Homogeneous",
             "Guennebaud et al. 2006, section 3",
-            "Small splats are enlarged to the pixel's size",
+            "Exact discs, their tangents no shorter than the pixel's filter",
             homogeneous,
         ),
-        Method("affine", "Botsch and Kobbelt 2003, section 4", "Point sprites: discs, holes at flat angles", affine),
+        Method(
+            "affine",
+            "Affine",
+            "Botsch and Kobbelt 2003, section 4",
+            "Discs in point sprites; opens holes at flat angles",
+            affine,
+        ),
     )
 }
 
