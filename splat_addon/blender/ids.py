@@ -11,8 +11,6 @@ from typing import NamedTuple
 
 ENGINE = "SURFEL_SPLATTING"
 ENGINE_LABEL = "Surfel Splatting"
-#: The engine's settings: `scene.surfel_splatting`.
-RENDER_SETTINGS = "surfel_splatting"
 
 SURFELS_FROM_MESH = "object.surfels_from_mesh"
 SURFELS_FROM_POINTS = "object.surfels_from_points"

@@ -41,7 +41,8 @@ def gpu_weights(device, method, surfels, camera):
     renderer = Renderer(device)
     renderer.render(Scene((surfels,)), camera, Settings(method=method, supersampling=1, shading="flat", epsilon=50))
     sums = next(texture for key, texture in renderer._textures.items() if key[0] == "color_sum")
-    return device.target([sums]).read(0)[..., 3]
+    margin = (sums.size[0] - SIZE) // 2
+    return device.target([sums]).read(0)[margin : margin + SIZE, margin : margin + SIZE, 3]
 
 
 def twin_weights(method, surfels, camera, shift=(0.0, 0.0)):
