@@ -37,7 +37,7 @@ METHODS = {
             "mip",
             "Mip Filter",
             "this project, after Zwicker et al. 2001",
-            "Filters every splat for the pixel in its own plane: smooth at one sample a pixel",
+            "Smooth and still at one sample a pixel: 37 to 50 dB, twice the time of Quads",
             mip,
             visibility_samples=2,
         ),
