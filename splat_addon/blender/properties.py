@@ -27,8 +27,8 @@ class SurfelSplattingSettings(bpy.types.PropertyGroup):
     supersampling: IntProperty(
         name="Render",
         description=(
-            "Samples along each side of a pixel in final renders, so 3 means 9 samples a pixel. With Quads, 2 takes 1.5 "
-            "times as long as 1 and is 9 dB truer, 4 takes 2.8 times as long and is 18 dB truer (box-filtered pixels)"
+            "Samples along each side of a pixel in final renders, so 3 means 9 samples a pixel. With Quads, 2 is "
+            "9 dB truer than 1 for about 1.5 times the time, 4 is 18 dB truer for 2 to 4 times (box-filtered pixels)"
         ),
         min=1,
         max=MAX_SUPERSAMPLING,
