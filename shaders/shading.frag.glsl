@@ -3,6 +3,7 @@
 //          the nearest sample's, the normal the mean of the samples'.
 
 #include "shading/{shading}.glsl"
+#include "common/shaded_sample.glsl"
 
 const float EMPTY_DEPTH = 1e10;
 const float FARTHEST = 3.4e38;
@@ -15,21 +16,11 @@ void main() {
   for (int y = 0; y < SAMPLES; y++) {
     for (int x = 0; x < SAMPLES; x++) {
       ivec2 texel = first + ivec2(x, y);
-      vec4 c = texelFetch(color_sum, texel, 0);
-      if (c.w > 0.0) {
-        vec4 n = texelFetch(normal_sum, texel, 0) / c.w;
-        vec2 place = shading.window.xy + (vec2(texel) + 0.5) * shading.window.zw;
-        vec3 position = vec3(shading.options.x > 0.5 ? place : place * n.w, -n.w);
-        float size = length(n.xyz);
-        vec3 normal = size > 1e-6 ? n.xyz / size : vec3(0.0, 0.0, 1.0);
-#ifdef MATERIAL_TARGET
-        vec3 material = texelFetch(material_sum, texel, 0).xyz / c.w;
-#else
-        vec3 material = shading.material.xyz;
-#endif
-        color_total += vec4(shade(position, normal, c.rgb / c.w, material), 1.0);
-        normal_total += vec4(normal, 1.0);
-        nearest = min(nearest, n.w * shading.material.w);
+      if (texelFetch(color_sum, texel, 0).w > 0.0) {
+        ShadedSample here = shaded_sample(texel);
+        color_total += vec4(here.color, 1.0);
+        normal_total += vec4(here.normal, 1.0);
+        nearest = min(nearest, here.depth * shading.material.w);
       }
       else {
         color_total += vec4(shading.world.rgb, 1.0) * shading.world.w;
