@@ -61,6 +61,8 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
         if _is_last_of_render(engine, depsgraph):
             _release_resources()
     notes.add(_FLATTENED, frame.stats["instances_degenerate"])
+    if "transparency" in dict(frame.stats["plan"].left_out):
+        notes.add(_OPAQUE)
     for sentence in notes.sentences():
         engine.report({"WARNING"}, sentence)
     last_frame_stats.clear()
@@ -69,6 +71,7 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
     _hand_over(engine, depsgraph.view_layer, camera.size, passes, frame)
 
 
+_OPAQUE = "Surfels whose opacity, the alpha of Col, is below 1 are drawn opaque"
 _FLATTENED = "Surfel objects with a scale of 0 on some axis are left out; give every axis a scale"
 
 

@@ -230,3 +230,9 @@ def test_an_empty_material_slot_is_no_mishap(good, assert_good_is_drawn, said):
 def test_a_material_index_past_the_slots_is_no_mishap(good, assert_good_is_drawn):
     good.data.attributes["material"].data[0].value = 1000
     assert_good_is_drawn()
+
+
+def test_opacity_below_one_is_said_to_be_ignored(add_surfels, assert_good_is_drawn, said):
+    add_surfels([(-1, 0, 0)], colors=(1, 1, 1, 0.5))
+    assert_good_is_drawn()
+    assert "drawn opaque" in said()
