@@ -26,6 +26,9 @@ MAX_HARDWARE_DEPTH_RATIO = 128
 #: Up to this radius of a splat at distance 1 its corners may be moved back instead of every fragment.
 MAX_HARDWARE_DEPTH_RADIUS = 0.25
 
+#: Least alpha of an opaque surfel: filtering an image of ones leaves them a few roundings short of 1.
+OPAQUE = 0.999
+
 #: Pixels that shaders/resolve.frag.glsl reads to each side.
 FILTER_MARGIN = 2
 
@@ -149,7 +152,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         solid = sum(instance.hides_backs(camera) for instance in scene.surfels)
         if solid:
             left_out.append(("backs of splats", f"{solid} of {len(scene.surfels)} instances are solid"))
-        if any((instance.surfels.colors[:, 3] < 1).any() for instance in scene.surfels):
+        if any((instance.surfels.colors[:, 3] < OPAQUE).any() for instance in scene.surfels):
             left_out.append(("transparency", "surfels whose opacity is below 1 are drawn opaque"))
     return FramePlan(
         _tiles(camera.size, max(MAX_TARGET_EDGE // (settings.supersampling * method.visibility_samples), 1)),
