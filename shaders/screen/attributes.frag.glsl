@@ -1,5 +1,6 @@
 // References: as attributes.vert.glsl; adj(M) for straddling splats: Guennebaud et al. 2006, equation 5.
-// Summary: asks the method for weight and depth, and adds what is not hidden at the sample's centre. Depth is compared here with the visibility pass's, since a rectangle in the picture has none.
+// Summary: asks the method for weight and depth, and adds what is not hidden at the sample's centre. Depth is compared
+//          here with the visibility pass's, since a rectangle in the picture has none.
 
 #define PROJECTION splats.projection
 #define PARALLEL (splats.options.z > 0.5)

@@ -16,8 +16,8 @@ class Method:
 
     works_in: "space" (quads that the hardware clips, interpolates and hides) or "picture" (a rectangle around each
         footprint, every pixel computed).
-    visibility_samples: along each side of a sample, of the visibility pass; above 1 splats are hidden by shares,
-        and coverage is filtered as the colours are.
+    visibility_samples: along each side of a sample, of the visibility pass; above 1 a resolve pass
+        filters silhouettes as the colours are.
     twin: the same functions in numpy.
     """
 
