@@ -43,7 +43,7 @@ from splat_addon.sampling import (  # noqa: E402
 )
 from splat_addon.sampling.adaptive import MERGED_SIZE  # noqa: E402
 from splat_addon.sampling.reductions import Reduction  # noqa: E402
-from splat_addon.surfels import LAYOUT, Surfels  # noqa: E402
+from splat_addon.surfels import Surfels  # noqa: E402
 
 MODELS = (
     "armadillo.obj.gz",
@@ -107,11 +107,11 @@ def sampled_by_shading_normal(mesh: TriangleMesh, resolution: float) -> Surfels:
         with patch.dict(REDUCTIONS, alone=Reduction("", "", keeps, keeps)):
             whole = sampled(mesh, resolution, "alone")
         parts.append(kept(whole, np.abs(whole.normals).argmax(axis=1) == axis))
-    return replace(parts[0], **{name: np.concatenate([getattr(p, name) for p in parts]) for name in LAYOUT})
+    return replace(parts[0], **{name: np.concatenate([p.arrays()[name] for p in parts]) for name in parts[0].arrays()})
 
 
 def kept(surfels: Surfels, rows) -> Surfels:
-    return replace(surfels, **{name: getattr(surfels, name)[rows] for name in LAYOUT})
+    return replace(surfels, **{name: array[rows] for name, array in surfels.arrays().items()})
 
 
 def print_counts(meshes: dict, resolution: float) -> None:

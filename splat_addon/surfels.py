@@ -9,7 +9,7 @@ a model far from the world's origin loses nothing.
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +22,14 @@ LAYOUT = {
     "normals": (3, np.float32),
     "colors": (4, np.float32),
     "materials": (1, np.int32),
+}
+
+#: Fields that are there only where the scene needs them, None otherwise: field -> (columns, dtype, what a set without
+#: it means, as one number for all columns: Principled's own default).
+OPTIONAL_LAYOUT = {
+    "roughness": (1, np.float32, 0.5),
+    "metallic": (1, np.float32, 0.0),
+    "emission": (3, np.float32, 0.0),
 }
 
 #: How far a quaternion or a normal may be from unit length before it is refused (float32 rounding is 1e-7).
@@ -41,6 +49,8 @@ class Surfels:
     materials: (N,) int32, index into the object's material slots.
     origin: (3,) float64, object units.
     is_solid: they bound solids, so that from outside no surfel's back is ever seen (`sampling.is_solid`).
+    roughness, metallic: (N,) float32, 0 to 1, in place of their material's; None: the material's.
+    emission: (N, 3) float32, scene-linear radiance, in place of their material's; None: the material's.
 
     Raises ValueError with one sentence for a wrong shape, a non-finite or an out-of-range value;
     `valid_surfels` drops and counts such rows instead.
@@ -54,16 +64,19 @@ class Surfels:
     materials: np.ndarray
     origin: np.ndarray = (0.0, 0.0, 0.0)
     is_solid: bool = False
+    roughness: np.ndarray | None = None
+    metallic: np.ndarray | None = None
+    emission: np.ndarray | None = None
 
     def __post_init__(self):
-        arrays = _shaped({f.name: getattr(self, f.name) for f in fields(self) if f.name in LAYOUT})
+        arrays = _shaped(self.arrays())
         for name, good in _row_checks(arrays).items():
             bad = np.flatnonzero(~good)
             if len(bad):
-                value = arrays[name][bad[0]].tolist()
+                value, demand = arrays[name][bad[0]].tolist(), _DEMANDS.get(name, "finite")
                 raise ValueError(
                     f"{len(bad)} of {len(good)} surfels have unusable {name}, first row {bad[0]}: {value}; "
-                    f"they must be {_DEMANDS[name]} (valid_surfels drops such rows)."
+                    f"they must be {demand} (valid_surfels drops such rows)."
                 )
         origin = np.array(self.origin, np.float64)
         if origin.shape != (3,) or not np.isfinite(origin).all():
@@ -75,6 +88,11 @@ class Surfels:
 
     def __len__(self) -> int:
         return len(self.positions)
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """The arrays by field, in the order of the layouts, without the optional ones that are not there."""
+        names = (*LAYOUT, *OPTIONAL_LAYOUT)
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
     @property
     def radius(self) -> np.ndarray:
@@ -110,8 +128,8 @@ class Surfels:
 def valid_surfels(origin=(0.0, 0.0, 0.0), is_solid=False, **arrays) -> tuple[Surfels, int]:
     """`Surfels` of the usable rows, and how many rows were left out.
 
-    arrays: the fields of `Surfels`. Quaternions and normals of any finite, non-zero length are
-    normalised first (an attribute edited by hand or by Geometry Nodes is seldom unit); a zero or
+    arrays: the fields of `Surfels`, with or without the optional ones. Quaternions and normals of any finite,
+    non-zero length are normalised first (an attribute edited by hand or by Geometry Nodes is seldom unit); a zero or
     non-finite normal, a non-positive half-axis or a non-finite number drops its row.
     Raises ValueError where a whole array has the wrong shape.
     """
@@ -126,10 +144,14 @@ def valid_surfels(origin=(0.0, 0.0, 0.0), is_solid=False, **arrays) -> tuple[Sur
 
 
 def concatenate(parts: list[Surfels]) -> Surfels:
-    """One set from several that share an origin."""
+    """One set from several that share an origin.
+
+    An optional field is there when one of the parts has it; the others are filled with its default, OPTIONAL_LAYOUT's.
+    """
     if any((p.origin != parts[0].origin).any() for p in parts):
         raise ValueError("Only surfels with the same origin can be joined; move them to one origin first.")
-    joined = {n: np.concatenate([getattr(p, n) for p in parts]) for n in LAYOUT}
+    there = [n for n in OPTIONAL_LAYOUT if any(getattr(p, n) is not None for p in parts)]
+    joined = {n: np.concatenate([_or_default(p, n) for p in parts]) for n in (*LAYOUT, *there)}
     return Surfels(origin=parts[0].origin, is_solid=all(p.is_solid for p in parts), **joined)
 
 
@@ -173,24 +195,35 @@ def axes_quaternions(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
     return np.where(rows[:, :1] < 0, -rows, rows)
 
 
+#: Of the fields that must be more than finite.
 _DEMANDS = {
-    "positions": "finite",
     "rotations": "unit quaternions",
     "scales": "finite and above 0",
     "normals": "unit vectors",
-    "colors": "finite",
     "materials": "0 or more",
 }
+
+
+def _or_default(surfels: Surfels, name: str) -> np.ndarray:
+    """A field, filled with its default where it is an optional one that these surfels do not have."""
+    if getattr(surfels, name) is not None:
+        return getattr(surfels, name)
+    columns, dtype, value = OPTIONAL_LAYOUT[name]
+    return np.full((len(surfels), columns) if columns > 1 else len(surfels), value, dtype)
 
 
 def _shaped(arrays: dict) -> dict[str, np.ndarray]:
     missing = LAYOUT.keys() - arrays.keys()
     if missing:
         raise ValueError(f"Surfels need {', '.join(sorted(missing))}, which are missing.")
-    arrays = {n: np.ascontiguousarray(arrays[n], LAYOUT[n][1]) for n in LAYOUT}
+    unknown = arrays.keys() - LAYOUT.keys() - OPTIONAL_LAYOUT.keys()
+    if unknown:
+        raise ValueError(f"Surfels have no {', '.join(sorted(unknown))}.")
+    layouts = {n: layout for n, layout in (LAYOUT | OPTIONAL_LAYOUT).items() if arrays.get(n) is not None}
+    arrays = {n: np.ascontiguousarray(arrays[n], layout[1]) for n, layout in layouts.items()}
     count = len(arrays["positions"])
     for name, array in arrays.items():
-        columns = LAYOUT[name][0]
+        columns = layouts[name][0]
         wanted = (count, columns) if columns > 1 else (count,)
         if array.shape != wanted:
             raise ValueError(f"Surfel {name} must have shape {wanted}, not {array.shape}.")
@@ -202,7 +235,7 @@ def _row_checks(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
     # By columns: numpy is many times slower along an axis of three or four.
     def finite(a):
-        return np.logical_and.reduce([np.isfinite(column) for column in a.T])
+        return np.logical_and.reduce([np.isfinite(column) for column in np.atleast_2d(a.T)])
 
     def unit(a):
         return np.abs(sum(column * column for column in a.T) - 1) < 2 * UNIT_TOLERANCE
@@ -215,6 +248,7 @@ def _row_checks(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         "normals": unit(arrays["normals"]),
         "colors": finite(arrays["colors"]),
         "materials": arrays["materials"] >= 0,
+        **{name: finite(arrays[name]) for name in OPTIONAL_LAYOUT if name in arrays},
     }
 
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ..surfels import LAYOUT, Surfels, valid_surfels
+from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
 from .ids import POINT_ATTRIBUTES, SOLID, PointAttribute
 
 #: An attribute by either name on a mesh without faces says "these points are surfels".
@@ -34,9 +34,12 @@ def write_surfels(name: str, surfels: Surfels) -> bpy.types.Mesh:
     mesh = bpy.data.meshes.new(name)
     mesh.vertices.add(len(surfels))
     for field, layout in POINT_ATTRIBUTES.items():
+        values = getattr(surfels, field)
+        if values is None:
+            continue
         # "position" is there as soon as there are vertices, and its name is reserved.
         attribute = mesh.attributes.get(layout.name) or mesh.attributes.new(layout.name, layout.data_type, "POINT")
-        attribute.data.foreach_set(layout.property, _padded(getattr(surfels, field), layout.columns))
+        attribute.data.foreach_set(layout.property, _padded(values, layout.columns))
     if surfels.is_solid:
         mesh[SOLID] = True
     mesh.update()
@@ -46,15 +49,17 @@ def write_surfels(name: str, surfels: Surfels) -> bpy.types.Mesh:
 def read_surfels(mesh: bpy.types.Mesh) -> tuple[Surfels, int]:
     """The surfels that `mesh` stores, with origin (0, 0, 0), and how many unusable points were left out.
 
-    Attributes are found by name. Raises ValueError where one is missing or is not of the stored type, and for a
-    mesh in edit mode, whose points are not in its attributes then (`Object.to_mesh()` has them); NaN, zero and
-    negative sizes and the like only cost their own point (see `valid_surfels`).
+    Attributes are found by name; optional ones need not be there. Raises ValueError where another is missing or one is
+    not of the stored type, and for a mesh in edit mode, whose points are not in its attributes then
+    (`Object.to_mesh()` has them); NaN, zero and negative sizes and the like only cost their own point (see
+    `valid_surfels`).
     """
     if mesh.is_editmode:
         raise ValueError(
             f"The surfel mesh {mesh.name!r} is in edit mode, where its points cannot be read; leave edit mode."
         )
-    arrays = {field: _read(mesh, POINT_ATTRIBUTES[field]) for field in LAYOUT}
+    there = [field for field in OPTIONAL_LAYOUT if POINT_ATTRIBUTES[field].name in mesh.attributes]
+    arrays = {field: _read(mesh, POINT_ATTRIBUTES[field]) for field in (*LAYOUT, *there)}
     arrays["scales"] = arrays["scales"][:, :2]
     return valid_surfels(is_solid=bool(mesh.get(SOLID)), **arrays)
 

@@ -52,4 +52,8 @@ POINT_ATTRIBUTES = {
     "colors": PointAttribute("Col", "FLOAT_COLOR", "color", 4),
     "radius": PointAttribute("radius", "FLOAT", "value", 1),
     "materials": PointAttribute("material", "INT", "value", 1),
+    # Optional ones. Emission is a vector: as a colour it would be one more that may become the active one.
+    "roughness": PointAttribute("roughness", "FLOAT", "value", 1),
+    "metallic": PointAttribute("metallic", "FLOAT", "value", 1),
+    "emission": PointAttribute("emission", "FLOAT_VECTOR", "vector", 3),
 }

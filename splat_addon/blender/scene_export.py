@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from ..rendering import Instance, Scene
-from ..surfels import LAYOUT, Surfels
+from ..surfels import Surfels
 from .attributes import has_surfels, read_surfels
 from .shading_export import light_of, shading_material, world_radiance
 
@@ -114,4 +114,6 @@ def _instance(object_, matrix_world: np.ndarray, store: SurfelStore, notes: Note
 
 
 def _same(a: Surfels, b: Surfels) -> bool:
-    return a.is_solid == b.is_solid and all(np.array_equal(getattr(a, n), getattr(b, n)) for n in LAYOUT)
+    mine, other = a.arrays(), b.arrays()
+    same_fields = a.is_solid == b.is_solid and mine.keys() == other.keys()
+    return same_fields and all(np.array_equal(mine[name], other[name]) for name in mine)

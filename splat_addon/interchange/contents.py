@@ -11,9 +11,7 @@ from .point_ply import Points, points
 from .surfel_ply import StoredSurfels, is_surfels, stored_surfels
 
 
-def read_contents(
-    path: str | os.PathLike, flatness: float = DEFAULT_FLATNESS
-) -> StoredSurfels | Gaussians | Points:
+def read_contents(path: str | os.PathLike, flatness: float = DEFAULT_FLATNESS) -> StoredSurfels | Gaussians | Points:
     """The vertices of any PLY file; faces are passed over.
 
     flatness: how thick a Gaussian may be, in its middle sigma, to pass as a surfel.

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..surfels import Surfels, axes_quaternions, concatenate, empty_surfels
@@ -21,7 +23,7 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
         raise ValueError("The surfels cannot be moved by a transform that is not finite or has a scale of 0.")
     origin = linear @ surfels.origin + shift
     if (linear == np.eye(3)).all():
-        return _replaced(surfels, origin=origin)
+        return replace(surfels, origin=origin)
     p, q = (axis.astype(np.float64) @ linear.T for axis in surfels.half_axes())
     pp, qq, pq = (np.einsum("ij,ij->i", a, b)[:, None] for a, b in ((p, p), (q, q), (p, q)))
     angle = np.arctan2(2 * pq, pp - qq) / 2
@@ -32,7 +34,7 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
         _unit(n.astype(np.float64) @ np.linalg.inv(linear)) for n in (surfels.normals, surfels.geometric_normals())
     )
     x = _unit(long)
-    return _replaced(
+    return replace(
         surfels,
         origin=origin,
         positions=surfels.positions.astype(np.float64) @ linear.T,
@@ -47,12 +49,7 @@ def joined(parts: list[Surfels]) -> Surfels:
     if not parts:
         return empty_surfels()
     origin = parts[0].origin
-    return concatenate([_replaced(p, origin=origin, positions=p.positions + (p.origin - origin)) for p in parts])
-
-
-def _replaced(surfels: Surfels, **changes) -> Surfels:
-    names = ("positions", "rotations", "scales", "normals", "colors", "materials", "origin", "is_solid")
-    return Surfels(**({name: getattr(surfels, name) for name in names} | changes))
+    return concatenate([replace(p, origin=origin, positions=p.positions + (p.origin - origin)) for p in parts])
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@
 | scale_0 scale_1 | float | half-axes along the quaternion's x and y axes, not logarithms |
 | radius | float | the larger half-axis |
 | material | int | index of the material slot |
+| roughness, metallic, emission_0 .. emission_2 | float | where the surfels have them (`OPTIONAL_LAYOUT`) |
 
 Comments: "surfel_splatting 1", "origin X Y Z" where it is not 0, "solid" where the surfels are.
 """
@@ -22,7 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..surfels import LAYOUT, Surfels, valid_surfels
+from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
 from .columns import NORMAL, POSITION, ROTATION, display_color, has, linear_to_srgb, matrix, split
 from .ply_file import read_vertices, write_vertices
 
@@ -31,6 +32,12 @@ _SCALE = ("scale_0", "scale_1")
 _COLOR = ("color_0", "color_1", "color_2", "color_3")
 _DISPLAY_COLOR = ("red", "green", "blue", "alpha")
 _WHITE = (1.0, 1.0, 1.0, 1.0)
+
+#: optional field -> its properties
+_OPTIONAL = {
+    name: tuple(f"{name}_{k}" for k in range(columns)) if columns > 1 else (name,)
+    for name, (columns, _, _) in OPTIONAL_LAYOUT.items()
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +64,10 @@ def write_ply(path: str | os.PathLike, surfels: Surfels, ascii: bool = False) ->
         "radius": surfels.radius,
         "material": surfels.materials,
     }
+    for name, properties in _OPTIONAL.items():
+        values = getattr(surfels, name)
+        if values is not None:
+            columns |= split(properties, values.reshape(len(surfels), -1))
     origin = " ".join(repr(float(value)) for value in surfels.origin)
     comments = [_VERSION, *([f"{_ORIGIN} {origin}"] * has_origin), *([_SOLID] * surfels.is_solid)]
     write_vertices(path, columns, tuple(comments), ascii)
@@ -92,6 +103,7 @@ def _fields(columns: dict[str, np.ndarray], comments: tuple[str, ...]) -> dict:
         positions = (positions - origin).astype(np.float32)
     colors = matrix(columns, _COLOR) if has(columns, _COLOR) else display_color(columns)
     material = columns.get("material", np.zeros(len(positions)))
+    optional = {name: matrix(columns, group) for name, group in _OPTIONAL.items() if has(columns, group)}
     return {
         "positions": positions,
         "rotations": matrix(columns, ROTATION),
@@ -101,6 +113,7 @@ def _fields(columns: dict[str, np.ndarray], comments: tuple[str, ...]) -> dict:
         "materials": np.clip(np.nan_to_num(material), -1, 2**31 - 1).astype(LAYOUT["materials"][1]),
         "origin": origin,
         "is_solid": _SOLID in comments,
+        **{name: values if len(_OPTIONAL[name]) > 1 else values[:, 0] for name, values in optional.items()},
     }
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..surfels import quaternion_axes
+from ..surfels import LAYOUT, quaternion_axes
 from .ellipses import ellipse_rotations, ellipse_scales
 
 #: Doublings of the spacing. The renderer tells surfaces apart at half a splat's radius, so larger discs would show
@@ -37,7 +37,7 @@ _LAYERS = 4
 @dataclass(frozen=True)
 class Tolerance:
     """distance: from the sampled planes, object units. angle: between shading normals, radians. color: the largest
-    difference of a component, scene-linear."""
+    difference of a component, scene-linear, and of any optional field of `Surfels` that is there."""
 
     distance: float
     angle: float = math.radians(8)
@@ -55,8 +55,9 @@ class _Nodes:
     """n blocks of one level in the order of their keys, each full of one layer of surface.
 
     keys: (n,) int64: image, side and block. planes: (n, 3): depth over the block's middle and its change per column and
-    row, in cells. shading: (n, 3) unit. colors: (n, 4). materials: (n,). errors, bends, tints: (n,) bounds of what its
-    samples differ by from it: depth in cells, radians, colour. children: (n, 4) rows of the level below.
+    row, in cells. shading: (n, 3) unit. colors: (n, 4 or more): what is averaged, the optional fields of `Surfels`
+    after the colour. materials: (n,). errors, bends, tints: (n,) bounds of what its samples differ by from it: depth in
+    cells, radians, colour. children: (n, 4) rows of the level below.
     """
 
     keys: np.ndarray
@@ -85,11 +86,13 @@ def merge_flat(
     while len(levels) <= LEVELS and len(levels[-1].keys):
         levels.append(_parents(levels[-1], 2 ** (len(levels) - 1), spacing, tolerance))
     parts, error = [], 0.0
+    optional = {name: array for name, array in arrays.items() if name not in LAYOUT}
     wanted = np.arange(len(levels[-1].keys))
     for level in range(len(levels) - 1, 0, -1):
         nodes = levels[level].take(wanted)
         alone = _goes_on_around(nodes, level, levels[max(level - 2, 0)], spacing, tolerance)
-        parts.append(_discs(nodes.take(np.flatnonzero(alone)), level, spacing))
+        discs = nodes.take(np.flatnonzero(alone))
+        parts.append(_discs(discs, level, spacing) | _unstacked(discs.colors[:, 4:], optional))
         error = max(error, float((nodes.errors * _cosines(nodes.planes))[alone].max(initial=0.0)))
         free = np.ones(len(levels[level - 1].keys), bool)
         free[levels[level].children.ravel()] = False
@@ -110,9 +113,8 @@ def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
     planes = np.stack([pw, -nu / nw, -nv / nw], axis=1)
     order = np.lexsort((pw, keys))
     zeros = np.zeros(len(axes))
-    nodes = _Nodes(
-        keys, planes, arrays["normals"], arrays["colors"], arrays["materials"], zeros, zeros, zeros, zeros[:, None]
-    )
+    colors = np.column_stack([arrays["colors"], *(array for name, array in arrays.items() if name not in LAYOUT)])
+    nodes = _Nodes(keys, planes, arrays["normals"], colors, arrays["materials"], zeros, zeros, zeros, zeros[:, None])
     return nodes.take(order), order
 
 
@@ -220,9 +222,19 @@ def _are_alike(a: _Nodes, i: np.ndarray, b: _Nodes, k: np.ndarray, tolerance: To
     """(n,) bool: whether rows i of a and k of b have one material and nearly one shading normal and colour."""
     alike = a.materials[i] == b.materials[k]
     alike &= sum(a.shading[i, c] * b.shading[k, c] for c in range(3)) >= math.cos(tolerance.angle)
-    for c in range(4):
+    for c in range(a.colors.shape[1]):
         alike &= np.abs(a.colors[i, c] - b.colors[k, c]) <= tolerance.color
     return alike
+
+
+def _unstacked(columns: np.ndarray, like: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """(n, k) columns as arrays of the names, widths and types of `like`, in its order."""
+    made, start = {}, 0
+    for name, array in like.items():
+        width = math.prod(array.shape[1:])
+        made[name] = columns[:, start : start + width].reshape(len(columns), *array.shape[1:]).astype(array.dtype)
+        start += width
+    return made
 
 
 def _discs(nodes: _Nodes, level: int, spacing: float) -> dict[str, np.ndarray]:
@@ -239,7 +251,7 @@ def _discs(nodes: _Nodes, level: int, spacing: float) -> dict[str, np.ndarray]:
         "rotations": np.empty((count, 4), np.float32),
         "scales": ellipse_scales(cosines, MERGED_SIZE * edge * spacing),
         "normals": nodes.shading.astype(np.float32),
-        "colors": nodes.colors.astype(np.float32),
+        "colors": nodes.colors[:, :4].astype(np.float32),
         "materials": nodes.materials.astype(np.int32),
     }
     for axis in range(3):

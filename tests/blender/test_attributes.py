@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfels on a vertex-only mesh: named, typed, exact, and met with a sentence where they are broken."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
 
 from splat_addon.blender.attributes import has_surfels, read_surfels, write_surfels
-from splat_addon.surfels import LAYOUT, empty_surfels
+from splat_addon.surfels import LAYOUT, OPTIONAL_LAYOUT, empty_surfels
 
 NAMES_AND_TYPES = {
     "position": "FLOAT_VECTOR",
@@ -36,6 +38,21 @@ def test_what_is_written_is_read_bit_for_bit(random_surfels):
     read, skipped = read_surfels(write_surfels("surfels", surfels))
     assert skipped == 0
     assert_same_bits(read, surfels)
+
+
+def test_optional_fields_have_attributes_only_where_they_are_there(random_surfels):
+    surfels = random_surfels(100)
+    plain = write_surfels("plain", surfels)
+    assert not set(OPTIONAL_LAYOUT) & set(plain.attributes.keys())
+    assert all(getattr(read_surfels(plain)[0], name) is None for name in OPTIONAL_LAYOUT)
+    values = {
+        name: np.random.default_rng(5).uniform(size=(100, columns) if columns > 1 else 100)
+        for name, (columns, _, _) in OPTIONAL_LAYOUT.items()
+    }
+    rich = replace(surfels, **values)
+    read, _ = read_surfels(write_surfels("rich", rich))
+    for name in (*LAYOUT, *OPTIONAL_LAYOUT):
+        assert getattr(read, name).tobytes() == getattr(rich, name).tobytes(), name
 
 
 def test_surfels_survive_saving_and_loading_bit_for_bit(random_surfels, add_object, tmp_path):
