@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .camera import Camera
-from .methods import get_method
+from .methods import Method, get_method
 from .packing import shared_material
 from .scene import Material, Scene
 from .settings import Settings
@@ -111,49 +111,20 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
     """The passes that this picture needs. Raises ValueError for an unknown method."""
     method = get_method(settings.method)
     material = shared_material(scene.surfels)
-    passes, left_out, linear_depth = [], [], False
+    linear_depth, passes, left_out = False, (), []
     if not any(len(instance.surfels) for instance in scene.surfels):
         left_out.append(("all passes", "the scene has no surfels, so the picture is its background"))
     else:
-        sums = ["color_sum", "normal_sum"]
-        if settings.shading == "flat":
-            left_out.append(("material_sum", "flat shading does not look at materials"))
-        elif material is not None:
-            left_out.append(("material_sum", "all surfels have one material"))
-        else:
-            sums.append("material_sum")
-        reads = list(sums)
-        if settings.shading == "flat":
-            left_out.append(("lights", "flat shading does not look at lights"))
-        elif scene.lights:
-            reads.append("lights")
-        else:
-            left_out.append(("lights", "the scene has none"))
-        outputs = ["combined", "depth"]
-        if {"normal", "coverage"} & set(settings.outputs):
-            outputs.append("normal_coverage")
-        else:
-            left_out.append(("normal_coverage", "neither the normal nor the coverage is asked for"))
         linear_depth, why_depth = _linear_depth(scene, camera, settings)
+        sums = _sums(settings, material, left_out)
+        passes = (
+            PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
+            PlannedPass("attributes", f"overlapping splats blend by {method.name}", ("visibility_depth",), sums),
+            *_shading_passes(settings, method, _read_by_shading(scene, settings, sums, left_out), left_out),
+        )
         if not linear_depth:
             left_out.append(("linear depth", why_depth))
-        passes = [
-            PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
-            PlannedPass("attributes", f"overlapping splats blend by {method.name}", ("visibility_depth",), (*sums,)),
-        ]
-        if method.visibility_samples > 1:
-            kept = ("shaded", "surface")
-            passes += [
-                PlannedPass("sample_shading", f"{settings.shading}, once a sample", (*reads,), kept),
-                PlannedPass("resolve", "silhouettes are filtered", (*kept, "visibility_depth"), (*outputs,)),
-            ]
-        else:
-            passes.append(PlannedPass("shading", f"{settings.shading}, once a sample", (*reads,), (*outputs,)))
-        solid = sum(instance.hides_backs(camera) for instance in scene.surfels)
-        if solid:
-            left_out.append(("backs of splats", f"{solid} of {len(scene.surfels)} instances are solid"))
-        if any((instance.surfels.colors[:, 3] < OPAQUE).any() for instance in scene.surfels):
-            left_out.append(("transparency", "surfels whose opacity is below 1 are drawn opaque"))
+        _say_what_surfels_lack(scene, camera, left_out)
     return FramePlan(
         _tiles(camera.size, max(MAX_TARGET_EDGE // (settings.supersampling * method.visibility_samples), 1)),
         settings.supersampling,
@@ -162,9 +133,59 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         settings.shading,
         material,
         linear_depth,
-        tuple(passes),
+        passes,
         tuple(left_out),
     )
+
+
+# What follows decides one thing each, and appends to `left_out` what it decided against.
+
+
+def _sums(settings: Settings, material: Material | None, left_out: list) -> tuple[str, ...]:
+    """What the attribute pass adds up."""
+    sums = ["color_sum", "normal_sum"]
+    if settings.shading == "flat":
+        left_out.append(("material_sum", "flat shading does not look at materials"))
+    elif material is not None:
+        left_out.append(("material_sum", "all surfels have one material"))
+    else:
+        sums.append("material_sum")
+    return tuple(sums)
+
+
+def _read_by_shading(scene: Scene, settings: Settings, sums: tuple[str, ...], left_out: list) -> tuple[str, ...]:
+    if settings.shading == "flat":
+        left_out.append(("lights", "flat shading does not look at lights"))
+    elif scene.lights:
+        return *sums, "lights"
+    else:
+        left_out.append(("lights", "the scene has none"))
+    return sums
+
+
+def _shading_passes(settings: Settings, method: Method, reads: tuple[str, ...], left_out: list):
+    """From sums to pixels: in one pass, or in two where silhouettes are filtered."""
+    outputs = ["combined", "depth"]
+    if {"normal", "coverage"} & set(settings.outputs):
+        outputs.append("normal_coverage")
+    else:
+        left_out.append(("normal_coverage", "neither the normal nor the coverage is asked for"))
+    once = f"{settings.shading}, once a sample"
+    if method.visibility_samples == 1:
+        return (PlannedPass("shading", once, reads, tuple(outputs)),)
+    kept = ("shaded", "surface")
+    return (
+        PlannedPass("sample_shading", once, reads, kept),
+        PlannedPass("resolve", "silhouettes are filtered", (*kept, "visibility_depth"), tuple(outputs)),
+    )
+
+
+def _say_what_surfels_lack(scene: Scene, camera: Camera, left_out: list) -> None:
+    solid = sum(instance.hides_backs(camera) for instance in scene.surfels)
+    if solid:
+        left_out.append(("backs of splats", f"{solid} of {len(scene.surfels)} instances are solid"))
+    if any((instance.surfels.colors[:, 3] < OPAQUE).any() for instance in scene.surfels):
+        left_out.append(("transparency", "surfels whose opacity is below 1 are drawn opaque"))
 
 
 def _linear_depth(scene: Scene, camera: Camera, settings: Settings) -> tuple[bool, str]:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from splat_addon.blender import final_render
-from splat_addon.rendering import renderer
+from splat_addon.rendering import resources
 
 
 @pytest.fixture
@@ -28,8 +28,8 @@ def frames(scene, read_picture):
 @pytest.fixture
 def uploads(monkeypatch):
     """The surfels that were packed for the device, one entry each time."""
-    packed, pack = [], renderer.pack_surfels
-    monkeypatch.setattr(renderer, "pack_surfels", lambda surfels: packed.append(surfels) or pack(surfels))
+    packed, pack = [], resources.pack_surfels
+    monkeypatch.setattr(resources, "pack_surfels", lambda surfels: packed.append(surfels) or pack(surfels))
     return packed
 
 

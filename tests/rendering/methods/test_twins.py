@@ -40,7 +40,7 @@ def gpu_weights(device, method, surfels, camera):
     """(SIZE, SIZE) sums of weights that the attribute pass leaves."""
     renderer = Renderer(device)
     renderer.render(Scene((surfels,)), camera, Settings(method=method, supersampling=1, shading="flat", epsilon=50))
-    sums = next(texture for key, texture in renderer._textures.items() if key[0] == "color_sum")
+    sums = next(texture for key, texture in renderer.resources.textures.items() if key[0] == "color_sum")
     margin = (sums.size[0] - SIZE) // 2
     return device.target([sums]).read(0)[margin : margin + SIZE, margin : margin + SIZE, 3]
 

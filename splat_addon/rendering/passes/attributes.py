@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The attribute pass: what is visible adds its weighted attributes to their sums (Botsch et al. 2005, section 4)."""
+
+from __future__ import annotations
+
+from ..device.interface import PipelineDescription, Target
+from ..methods import get_method
+from ..plan import FramePlan, PlannedPass
+from ..shaders import load
+from .blocks import LINEAR_DEPTH
+from .splats import SPLATS_BLOCK, draw_splats
+from .tile import TileContext
+
+_MATERIAL_VARYING = ("flat", "vec3", "material")
+
+
+def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
+    """What the pass draws with, by the space that the method works in."""
+    return _MAKERS[get_method(frame.method).works_in](planned, frame)
+
+
+def _in_space(planned, frame):
+    with_material = "material_sum" in planned.writes
+    return PipelineDescription(
+        name="attributes",
+        vertex=load("attributes.vert.glsl", method=frame.method),
+        fragment=load("attributes.frag.glsl", method=frame.method),
+        block=SPLATS_BLOCK,
+        samplers=("surfels", "materials") if with_material else ("surfels",),
+        varyings=(
+            ("smooth", "vec3", "place_depth"),
+            ("flat", "vec4", "color_weight"),
+            ("flat", "vec3", "normal"),
+            *((_MATERIAL_VARYING,) if with_material else ()),
+        ),
+        outputs=tuple(("vec4", name) for name in planned.writes),
+        defines=(
+            *((("MATERIAL_TARGET", "1"),) if with_material else ()),
+            *(LINEAR_DEPTH if frame.linear_depth else ()),
+        ),
+        blend="add",
+        depth_test=True,
+        fragment_depth=frame.linear_depth,
+    )
+
+
+def _in_picture(planned, frame):
+    with_material = "material_sum" in planned.writes
+    return PipelineDescription(
+        name="attributes",
+        vertex=load("screen/attributes.vert.glsl", method=frame.method),
+        fragment=load("screen/attributes.frag.glsl", method=frame.method),
+        block=SPLATS_BLOCK,
+        samplers=("surfels", *(("materials",) if with_material else ()), "visibility_depth"),
+        varyings=(
+            ("flat", "float", "straddling"),
+            ("flat", "vec4", "plane_ab"),
+            ("flat", "vec4", "plane_center_gh"),
+            ("flat", "vec4", "plane_depths"),
+            ("flat", "vec2", "plane_gradient"),
+            ("flat", "vec4", "color_weight"),
+            ("flat", "vec3", "normal"),
+            *((_MATERIAL_VARYING,) if with_material else ()),
+        ),
+        outputs=tuple(("vec4", name) for name in planned.writes),
+        defines=(
+            ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
+            *((("MATERIAL_TARGET", "1"),) if with_material else ()),
+            *(LINEAR_DEPTH if frame.linear_depth else ()),
+        ),
+        blend="add",
+    )
+
+
+_MAKERS = {"space": _in_space, "picture": _in_picture}
+
+
+def run(tile: TileContext, planned: PlannedPass) -> Target:
+    """Fill the sums. A method that works in the picture compares depths itself and needs no depth buffer."""
+    pipeline = tile.resources.pipeline(describe(planned, tile.plan))
+    target = tile.target(planned.writes, "visibility_depth" if pipeline.description.depth_test else None)
+    target.clear(color=0.0)
+    draw_splats(tile, pipeline, target)
+    return target

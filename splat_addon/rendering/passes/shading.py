@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The passes that end a frame: each sample is lit once, and the samples of a pixel become the pixel."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..device.interface import PipelineDescription, Target
+from ..packing import pack_lights, pack_materials
+from ..plan import FramePlan, PlannedPass
+from ..shaders import load
+from .blocks import LINEAR_DEPTH, std140
+from .tile import TileContext
+
+#: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
+#: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights, 1 / far.
+SHADING_BLOCK = (
+    "Shading",
+    "shading",
+    (
+        ("mat4", "view_to_world"),
+        ("mat4", "projection"),
+        ("vec4", "window"),
+        ("vec4", "world"),
+        ("vec4", "material"),
+        ("vec4", "options"),
+    ),
+)
+
+
+def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
+    """What the pass draws with; its fragment shader has its name."""
+    kinds = {"depth": "float"}
+    return PipelineDescription(
+        name=planned.name,
+        vertex=load("fullscreen.vert.glsl"),
+        fragment=load(f"{planned.name}.frag.glsl", shading=frame.shading),
+        block=SHADING_BLOCK,
+        samplers=planned.reads,
+        outputs=tuple((kinds.get(name, "vec4"), name) for name in planned.writes),
+        defines=(
+            ("SAMPLES", str(frame.samples)),
+            ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
+            *((("MATERIAL_TARGET", "1"),) if "material_sum" in planned.reads else ()),
+            *((("LIGHTS", "1"),) if "lights" in planned.reads else ()),
+            *((("NORMAL_OUTPUT", "1"),) if "normal_coverage" in planned.writes else ()),
+            *(LINEAR_DEPTH if frame.linear_depth else ()),
+        ),
+    )
+
+
+def run(tile: TileContext, planned: PlannedPass) -> Target:
+    """Fill the textures of the plan's last passes."""
+    target = tile.target(planned.writes)
+    reads = tile.textures(planned.reads, {"lights": lambda: _lights(tile)})
+    pipeline = tile.resources.pipeline(describe(planned, tile.plan))
+    tile.resources.device.draw_fullscreen(pipeline, target, _block(tile), reads)
+    return target
+
+
+def _lights(tile: TileContext):
+    return tile.resources.data(pack_lights(tile.scene.lights, tile.camera.world_to_view(), tile.view.scale))
+
+
+def _block(tile: TileContext) -> np.ndarray:
+    frame, scene, camera, view = tile.plan, tile.scene, tile.camera, tile.view
+    view_to_world = np.eye(4)
+    view_to_world[:3, :3] = camera.matrix_world[:3, :3]
+    material = (0.0,) * 3 if frame.material is None else pack_materials((frame.material,))[0, 0, :3]
+    return std140(
+        view_to_world,
+        view.projection,
+        tile.window,
+        (*scene.world, 0.0 if tile.settings.transparent_film else 1.0),
+        (*material, 1.0 / view.scale),
+        (camera.is_orthographic, len(scene.lights), tile.depth_unit, 0.0),
+    )

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws every splat of a view: what the visibility and the attribute pass share."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..device.interface import Pipeline, Target
+from ..packing import pack_materials
+from .blocks import std140
+from .tile import TileContext
+
+#: options: epsilon, near, 1 for orthographic, 1 / far.
+#: sides: -1 for a mirrored object and 1 for others, 1 where backs are hidden, the least offset of visibility (as a
+#:     share of the distance; of an orthographic camera a length).
+#: window: left, bottom and step of one sample on the plane at depth 1.
+SPLATS_BLOCK = (
+    "Splats",
+    "splats",
+    (
+        ("mat4", "model_view"),
+        ("mat4", "projection"),
+        ("mat4", "normal_matrix"),
+        ("vec4", "options"),
+        ("vec4", "sides"),
+        ("vec4", "window"),
+    ),
+)
+
+
+def draw_splats(tile: TileContext, pipeline: Pipeline, target: Target) -> None:
+    """One draw call an instance."""
+    resources, view = tile.resources, tile.view
+    least_offset = view.least_offset(tile.plan.linear_depth)
+    options = tile.settings.epsilon, view.near, tile.camera.is_orthographic, tile.depth_unit
+    for placed in view.placed:
+        instance = placed.instance
+        made_here = {
+            "surfels": lambda i=instance: resources.surfels(i.surfels),
+            "materials": lambda i=instance: resources.data(pack_materials(i.materials)),
+        }
+        textures = tile.textures(pipeline.description.samplers, made_here)
+        orientation = np.sign(np.linalg.det(placed.normal_matrix))
+        sides = orientation, placed.hides_backs, least_offset, 0.0
+        normal_matrix = np.eye(4)
+        normal_matrix[:3, :3] = placed.normal_matrix
+        block = std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window)
+        resources.device.draw_quads(pipeline, target, len(instance.surfels), block, textures)

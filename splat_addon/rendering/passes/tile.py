@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What every pass is given: one tile of the picture, and what is drawn into it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..camera import Camera
+from ..device.interface import Texture
+from ..plan import TEXTURES, FramePlan
+from ..resources import Resources, TextureKey
+from ..scene import Scene
+from ..settings import Settings
+from ..view import View
+
+
+@dataclass(frozen=True, eq=False)
+class TileContext:
+    """camera: of the tile with its margin. view: the scene as that camera sees it."""
+
+    resources: Resources
+    plan: FramePlan
+    scene: Scene
+    camera: Camera
+    settings: Settings
+    view: View
+
+    def texture(self, name: str) -> Texture:
+        """One that the plan names."""
+        return self.resources.texture(texture_key(name, self.camera.size, self.plan))
+
+    def textures(self, names: tuple[str, ...], made_here: dict[str, Callable[[], Texture]]) -> list[Texture]:
+        """Those that the plan names and those that `made_here` makes, in the order of `names`."""
+        return [made_here[name]() if name in made_here else self.texture(name) for name in names]
+
+    def target(self, colors: tuple[str, ...], depth: str | None = None):
+        """The named textures to draw into."""
+        return self.resources.device.target([self.texture(name) for name in colors], depth and self.texture(depth))
+
+    @property
+    def depth_unit(self) -> float:
+        """What turns a depth of the view into a stored linear one; 0 where the hardware's depth is stored."""
+        return 1.0 / self.view.far if self.plan.linear_depth else 0.0
+
+    @property
+    def window(self) -> tuple[float, float, float, float]:
+        """Left, bottom and step of one sample, on the plane at depth 1 or (parallel cameras) in scaled units."""
+        left, right, bottom, top = self.camera.window
+        units = self.view.scale if self.camera.is_orthographic else 1.0
+        across, up = (n * self.plan.samples for n in self.camera.size)
+        return left * units, bottom * units, (right - left) / across * units, (top - bottom) / up * units
+
+
+def texture_key(name: str, size: tuple[int, int], plan: FramePlan) -> TextureKey:
+    """Of a texture of the plan, for a tile of `size` pixels."""
+    scale = plan.scale(name)
+    return name, size[0] * scale, size[1] * scale, TEXTURES[name][0]

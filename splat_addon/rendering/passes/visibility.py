@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The visibility pass: depth only, every splat moved back by its epsilon (Botsch et al. 2005, section 3)."""
+
+from __future__ import annotations
+
+from ..device.interface import PipelineDescription, Target
+from ..plan import FramePlan, PlannedPass
+from ..shaders import load
+from .blocks import LINEAR_DEPTH
+from .splats import SPLATS_BLOCK, draw_splats
+from .tile import TileContext
+
+
+def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
+    """What the pass draws with."""
+    return PipelineDescription(
+        name="visibility",
+        vertex=load("visibility.vert.glsl"),
+        fragment=load("visibility.frag.glsl"),
+        block=SPLATS_BLOCK,
+        samplers=("surfels",),
+        varyings=(
+            ("smooth", "vec3", "place_depth"),
+            *((("smooth", "vec3", "across_offset"),) if frame.linear_depth else ()),
+        ),
+        defines=LINEAR_DEPTH if frame.linear_depth else (),
+        depth_test=True,
+        depth_write=True,
+        fragment_depth=frame.linear_depth,
+    )
+
+
+def run(tile: TileContext, planned: PlannedPass) -> Target:
+    """Fill the depth texture."""
+    target = tile.target((), planned.writes[0])
+    target.clear(depth=1.0)
+    draw_splats(tile, tile.resources.pipeline(describe(planned, tile.plan)), target)
+    return target

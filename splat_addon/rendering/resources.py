@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What stays on a device between frames: surfels, pipelines and the textures that passes write."""
+
+from __future__ import annotations
+
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from ..surfels import Surfels
+from .device import Device
+from .device.interface import Pipeline, PipelineDescription, Texture
+from .packing import pack_surfels
+
+#: name, width, height, format of a texture that a pass writes.
+TextureKey = tuple[str, int, int, str]
+
+
+class Resources:
+    """Surfels leave the device with their last Python reference, textures with the first frame that does not use
+    them, everything with `release`. textures: those that passes wrote last, by key.
+    """
+
+    def __init__(self, device: Device):
+        self.device = device
+        self._surfels = WeakKeyDictionary()
+        self._pipelines = {}
+        self.textures = {}
+
+    def surfels(self, surfels: Surfels) -> Texture:
+        """Their texels, uploaded once."""
+        if surfels not in self._surfels:
+            self._surfels[surfels] = self.data(pack_surfels(surfels))
+        return self._surfels[surfels]
+
+    def data(self, texels: np.ndarray) -> Texture:
+        """A texture of (h, w, 4) float32 texels that nothing here keeps."""
+        return self.device.texture(texels.shape[1::-1], "RGBA32F", texels)
+
+    def texture(self, key: TextureKey) -> Texture:
+        """The texture of that name, size and format, made when it is first asked for."""
+        if key not in self.textures:
+            _, width, height, format = key
+            self.textures[key] = self.device.texture((width, height), format)
+        return self.textures[key]
+
+    def forget_textures_but(self, wanted: set[TextureKey]) -> None:
+        """Let go of textures of a size or kind that this frame does not use: they are not kept for one that may."""
+        self.textures = {key: texture for key, texture in self.textures.items() if key in wanted}
+
+    def pipeline(self, description: PipelineDescription) -> Pipeline:
+        """Compiled when it is first asked for."""
+        if description not in self._pipelines:
+            self._pipelines[description] = self.device.pipeline(description)
+        return self._pipelines[description]
+
+    def release(self) -> None:
+        """Let go of everything on the device."""
+        self._surfels.clear()
+        self._pipelines.clear()
+        self.textures.clear()
