@@ -2,17 +2,17 @@
 """Sampling: a mesh becomes surfels by exact scan conversion onto a layered depth cube. Numpy only.
 
 Flow: `mesh` -> `cleaning` -> `fineness`, `grid` -> `depth_cube` (`reductions`, `scan_conversion`) -> `attributes`
-(`ellipses`, `colors`, `images`) -> `merging`, `adaptive` -> `lost_parts`, `part_surfels` -> `Surfels`; `sample` puts
+(`ellipses`, `colors`) -> `merging`, `adaptive` -> `lost_parts`, `part_surfels` -> `Surfels`; `sample` puts
 them in order.
 `closest_approach` says how fine a camera needs it. Points without faces become surfels in `points`.
 """
 
+from ..images import Image
 from .adaptive import Tolerance
 from .cleaning import drop_unusable
 from .closest_approach import Outline, camera_spacing, outline
 from .colors import SurfaceColor
 from .fineness import grid_spacing, predict_count
-from .images import Image
 from .mesh import TriangleMesh
 from .points import PointsReport, surfels_from_points
 from .reductions import DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS, projected_area

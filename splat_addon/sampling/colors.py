@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .images import Image, Pyramid
+from ..images import Image, Pyramid
 
 
 @dataclass(frozen=True, eq=False)

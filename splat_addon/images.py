@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Looks colours up in a texture: Blender's extension modes, bilinear or closest, box-filtered where it is minified."""
+"""Looks colours up in a texture: Blender's extension modes, bilinear or closest, box-filtered where it is minified.
+
+On the ground floor, beside `surfels`: sampling gives surfels a texture's colours, rendering looks it up per pixel.
+"""
 
 from __future__ import annotations
 
@@ -51,15 +54,25 @@ class Pyramid:
         self._levels = [pixels if self._is_opaque else _premultiplied(pixels)]
         self.size = pixels.shape[1], pixels.shape[0]
 
+    @property
+    def count(self) -> int:
+        """Of levels, down to one pixel."""
+        return max(self.size).bit_length()
+
+    def level(self, level: int) -> np.ndarray:
+        """(h, w, 4) float32 pixels, premultiplied; level 0 is the image itself."""
+        while len(self._levels) <= level:
+            self._levels.append(_halved(_halved(self._levels[-1], 0), 1))
+        return self._levels[level]
+
     def level_for(self, texels: np.ndarray) -> np.ndarray:
         """(n,) intp level whose pixels are at least as far apart as the samples.
 
         texels: (n,) full-size pixels between neighbouring samples. The tolerance keeps a power of two at its level.
         """
-        last = max(self.size).bit_length() - 1
         with np.errstate(divide="ignore"):
             wanted = np.ceil(np.log2(np.nan_to_num(texels, nan=1.0)) - 1e-3)
-        return np.clip(wanted, 0, last).astype(np.intp)
+        return np.clip(wanted, 0, self.count - 1).astype(np.intp)
 
     def lookup(self, uvs: np.ndarray, levels: np.ndarray) -> np.ndarray:
         """(n, 4) float32 colours, not premultiplied, at (2, n) texture coordinates; a non-finite one counts as 0."""
@@ -71,9 +84,7 @@ class Pyramid:
         return colors if self._is_opaque else _straight(colors)
 
     def _lookup_level(self, level: int, uvs: np.ndarray) -> np.ndarray:
-        while len(self._levels) <= level:
-            self._levels.append(_halved(_halved(self._levels[-1], 0), 1))
-        pixels = self._levels[level]
+        pixels = self.level(level)
         height, width = pixels.shape[:2]
         flat = pixels.reshape(-1, 4)
         total = np.zeros((uvs.shape[1], 4), np.float32)
