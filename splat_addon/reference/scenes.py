@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Three scenes that the engine and the truth are compared on: numpy builders, the same for every run.
+"""Four scenes that the engine and the truth are compared on: numpy builders, the same for every run.
 
 Each returns a `Scene` and a `Camera`. The splats are ellipses of seeded random orientation and aspect, overlap
 about as much as converted meshes do, and carry colours with edges, so that filters have something to do.
@@ -14,6 +14,7 @@ import numpy as np
 from ..rendering.camera import Camera, look_at
 from ..rendering.scene import Instance, Light, Material, Scene
 from ..surfels import Surfels, axes_quaternions
+from .lettering import PLACE, page
 
 #: Half-axis of a splat in spacings sqrt(area / count): ellipses down to `LEAST_ASPECT` still overlap everywhere.
 OVERLAP = 1.6
@@ -49,17 +50,49 @@ def checker_plane(
 
     count: surfels, on the nearest square grid; cells smaller than a few surfels blur.
     """
+    return _board(
+        count,
+        lambda x, y: (np.floor((x + 1) * cells / 2) + np.floor((y + 1) * cells / 2)) % 2,
+        ((0.02, 0.02, 0.03), (0.9, 0.88, 0.85)),
+        _eye(elevation, 1.3, 0.15),
+        50,
+        size,
+        seed,
+    )
+
+
+def text_board(
+    count: int = 66_000, elevation: float = 35.0, size=(128, 128), seed: int = 4, columns: int = 22
+) -> tuple[Scene, Camera]:
+    """A square page of capital letters, seen whole at `elevation` degrees.
+
+    count: surfels, on the nearest square grid. columns: letters in a line, of 6 dots each; with a dot smaller than
+    a surfel the text blurs.
+    """
+    ink = page(columns, columns * PLACE[0] // PLACE[1])
+    rows, width = ink.shape
+
+    def is_ink(x, y):
+        return ink[((y + 1) / 2 * rows).astype(int), ((x + 1) / 2 * width).astype(int)]
+
+    return _board(count, is_ink, ((0.03, 0.03, 0.1), (0.85, 0.83, 0.75)), _eye(elevation, 3.1, 0.3), 42, size, seed)
+
+
+def _eye(elevation: float, distance: float, aside: float) -> tuple[float, float, float]:
+    """In front of a board at the origin, at `elevation` degrees above it."""
+    angle = math.radians(elevation)
+    return aside, -distance * math.cos(angle), distance * math.sin(angle)
+
+
+def _board(count, pattern, colors, eye, fov: float, size, seed: int) -> tuple[Scene, Camera]:
+    """The square from -1 to 1 in x and y; the first colour is where pattern(x, y) is above 0."""
     side = max(round(math.sqrt(count)), 1)
     axis = (np.arange(side) + 0.5) * 2 / side - 1
     x, y = (a.ravel() for a in np.meshgrid(axis, axis))
     points = np.stack([x, y, np.zeros_like(x)], axis=1)
-    fields = (np.floor((x + 1) * cells / 2) + np.floor((y + 1) * cells / 2)) % 2
-    colors = _two_colors(fields, (0.02, 0.02, 0.03), (0.9, 0.88, 0.85))
     normals = np.broadcast_to((0.0, 0.0, 1.0), points.shape)
-    surfels = _surfels(points, normals, colors, 2 / side, seed)
-    angle = math.radians(elevation)
-    eye = (0.15, -1.3 * math.cos(angle), 1.3 * math.sin(angle))
-    camera = Camera.perspective(look_at(eye, (0.0, 0.0, 0.0)), math.radians(50), size, near=0.05, far=10)
+    surfels = _surfels(points, normals, _two_colors(pattern(x, y), *colors), 2 / side, seed)
+    camera = Camera.perspective(look_at(eye, (0.0, 0.0, 0.0)), math.radians(fov), size, near=0.05, far=10)
     return Scene((surfels,), (SUN, LAMP), WORLD), camera
 
 

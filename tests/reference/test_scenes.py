@@ -5,10 +5,17 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import render_exact, scenes
+from splat_addon.reference.lettering import page
+from splat_addon.rendering.camera import Camera, look_at
 from splat_addon.rendering.settings import Settings
 from splat_addon.surfels import LAYOUT
 
-BUILDERS = {"sphere": scenes.sphere, "checker_plane": scenes.checker_plane, "torus": scenes.torus}
+BUILDERS = {
+    "sphere": scenes.sphere,
+    "checker_plane": scenes.checker_plane,
+    "text_board": scenes.text_board,
+    "torus": scenes.torus,
+}
 every_scene = pytest.mark.parametrize("name", BUILDERS)
 
 
@@ -42,3 +49,16 @@ def test_the_inner_torus_shows_only_through_the_cut():
     gold = (frame.color[..., 0] > 0.9) & (frame.color[..., 2] < 0.3)
     assert 0.05 < gold.sum() / (frame.coverage > 0).sum() < 0.35
     assert not gold[30:].any()
+
+
+def test_the_text_board_can_be_read():
+    """Seen from straight above at 4 pixels a dot, the ink is where the page's dots are."""
+    columns = 4
+    scene, _ = scenes.text_board(count=40_000, columns=columns)
+    ink = page(columns, 2)
+    above = look_at((0, 0, 5), (0, 0, 0), (0, 1, 0))
+    camera = Camera(above, window=(-1, 1, -1, 1), size=(96, 72), is_orthographic=True)
+    frame = render_exact(scene, camera, Settings(shading="flat"), samples=2)
+    middles = frame.color[2::4, 2::4, 0]
+    assert middles.shape == ink.shape
+    np.testing.assert_array_equal(middles > 0.44, ink)
