@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..images import Image
 from ..surfels import Surfels
 from .camera import Camera
 
@@ -32,16 +33,34 @@ class Material:
 
 
 @dataclass(frozen=True, eq=False)
+class SurfaceTexture:
+    """A base colour that is looked up at every pixel, for surfels with texture coordinates.
+
+    factor: (3,) scene-linear, multiplies the image.
+    """
+
+    image: Image
+    factor: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+    def __post_init__(self):
+        if len(self.factor) != 3 or not np.isfinite(self.factor).all():
+            raise ValueError(f"A texture's factor must be 3 finite numbers, not {self.factor!r}.")
+
+
+@dataclass(frozen=True, eq=False)
 class Instance:
     """Surfels placed in the world.
 
     matrix_world: (4, 4), object to world, any invertible affine map (mirrored, non-uniform, sheared).
     materials: what `Surfels.materials` indexes; an index past the end uses the last one.
+    textures: indexed alike; where one is None, and for surfels without texture coordinates, the surfels' own colours
+        are shown.
     """
 
     surfels: Surfels
     matrix_world: np.ndarray = field(default_factory=lambda: np.eye(4))
     materials: tuple[Material, ...] = (Material(),)
+    textures: tuple[SurfaceTexture | None, ...] = ()
 
     def __post_init__(self):
         matrix = np.array(self.matrix_world, np.float64)
@@ -50,6 +69,7 @@ class Instance:
         matrix.flags.writeable = False
         object.__setattr__(self, "matrix_world", matrix)
         object.__setattr__(self, "materials", tuple(self.materials) or (Material(),))
+        object.__setattr__(self, "textures", tuple(self.textures))
 
     def model_view(self, camera: Camera) -> np.ndarray:
         """(4, 4) float64, surfel positions (without origin) to the camera's view space.

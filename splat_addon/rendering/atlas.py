@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The textures of one object in one image, with all their levels: a shader then needs a single draw and no sampler.
+
+`gpu` of Blender 4.5 and 5.0 can neither set a texture's filter nor its levels, so shaders/common/texture_lookup.glsl
+does both by hand. The table has a row for each material slot:
+    factor.rgb, levels (0: none)   |   extension, closest, width, height   |   x, y, width, height of each level
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..images import EXTENSIONS, Image, Pyramid
+from .scene import SurfaceTexture
+
+#: Of the atlas, along each edge: what every tested backend has. Textures that do not fit lose their finest level.
+MAX_EDGE = 16384
+#: Texels of the atlas: 16 bytes each.
+MAX_TEXELS = 1 << 26
+
+#: The order is the number by which the shader knows an extension.
+EXTENSION_NUMBERS = {name: number for number, name in enumerate(("REPEAT", "EXTEND", "CLIP", "MIRROR"))}
+assert EXTENSION_NUMBERS.keys() == EXTENSIONS.keys()
+
+
+@dataclass(frozen=True, eq=False)
+class Atlas:
+    """texels: (h, w, 4) float32, premultiplied. table: (slots, 2 + levels, 4) float32.
+    dropped: how many finest levels did not fit."""
+
+    texels: np.ndarray
+    table: np.ndarray
+    dropped: int = 0
+
+
+def make_atlas(textures: tuple[SurfaceTexture | None, ...], max_texels: int = MAX_TEXELS) -> Atlas:
+    """The atlas of these material slots' textures; slots with one image share its place.
+
+    max_texels: above it the largest images lose their finest levels.
+    """
+    images = list({id(t.image): t.image for t in textures if t is not None}.values())
+    pyramids = [Pyramid(image) for image in images]
+    first = _first_levels(pyramids, max_texels)
+    chains = [[p.level(k) for k in range(skip, p.count)] for p, skip in zip(pyramids, first, strict=True)]
+    levels = [level for chain in chains for level in chain]
+    places, (width, height) = _packed([level.shape[1::-1] for level in levels])
+    rectangles = [(*place, *level.shape[1::-1]) for place, level in zip(places, levels, strict=True)]
+    texels = np.zeros((height, width, 4), np.float32)
+    for (x, y, w, h), level in zip(rectangles, levels, strict=True):
+        texels[y : y + h, x : x + w] = level
+    table = np.zeros((len(textures), 2 + max(map(len, chains), default=0), 4), np.float32)
+    ends = np.cumsum([len(chain) for chain in chains])
+    rows = {id(i): rectangles[end - len(c) : end] for i, c, end in zip(images, chains, ends, strict=True)}
+    for row, texture in zip(table, textures, strict=True):
+        if texture is not None:
+            _write_row(row, texture, rows[id(texture.image)])
+    return Atlas(texels, table, sum(first))
+
+
+def _write_row(row: np.ndarray, texture: SurfaceTexture, rectangles: list[tuple[int, int, int, int]]):
+    image: Image = texture.image
+    row[0] = *texture.factor, len(rectangles)
+    row[1] = EXTENSION_NUMBERS[image.extension], image.interpolation == "Closest", *rectangles[0][2:]
+    row[2 : 2 + len(rectangles)] = rectangles
+
+
+def _first_levels(pyramids: list[Pyramid], max_texels: int) -> list[int]:
+    """The finest level of each image that is kept."""
+    first = [0] * len(pyramids)
+
+    def size(k: int) -> tuple[int, int]:
+        return tuple(max(edge >> first[k], 1) for edge in pyramids[k].size)
+
+    while pyramids:
+        sizes = [size(k) for k in range(len(pyramids))]
+        largest = max(range(len(sizes)), key=lambda k: sizes[k][0] * sizes[k][1])
+        # a third more for the coarser levels, and as much again for gaps
+        area = 5 / 3 * sum(w * h for w, h in sizes)
+        if (area <= max_texels and max(max(s) for s in sizes) <= MAX_EDGE // 2) or max(sizes[largest]) == 1:
+            break
+        first[largest] += 1
+    return first
+
+
+def _packed(sizes: list[tuple[int, int]]) -> tuple[list[tuple[int, int]], tuple[int, int]]:
+    """Where rectangles go on shelves, the tallest first, and the size of it all, at least 1 x 1."""
+    if not sizes:
+        return [], (1, 1)
+    width = max(max(w for w, _ in sizes), int(sum(w * h for w, h in sizes) ** 0.5 / 1.2))
+    places = [(0, 0)] * len(sizes)
+    x = y = shelf = 0
+    for k in sorted(range(len(sizes)), key=lambda k: sizes[k][1], reverse=True):
+        w, h = sizes[k]
+        if x + w > width:
+            x, y = 0, y + shelf
+            shelf = 0
+        places[k] = x, y
+        x, shelf = x + w, max(shelf, h)
+    return places, (width, y + shelf)
