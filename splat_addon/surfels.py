@@ -25,11 +25,14 @@ LAYOUT = {
 }
 
 #: Fields that are there only where the scene needs them, None otherwise: field -> (columns, dtype, what a set without
-#: it means, as one number for all columns: Principled's own default).
+#: it means, as one number for all columns: Principled's own default, and no texture).
 OPTIONAL_LAYOUT = {
     "roughness": (1, np.float32, 0.5),
     "metallic": (1, np.float32, 0.0),
     "emission": (3, np.float32, 0.0),
+    "uvs": (2, np.float32, 0.0),
+    "uv_along_x": (2, np.float32, 0.0),
+    "uv_along_y": (2, np.float32, 0.0),
 }
 
 #: How far a quaternion or a normal may be from unit length before it is refused (float32 rounding is 1e-7).
@@ -51,6 +54,8 @@ class Surfels:
     is_solid: they bound solids, so that from outside no surfel's back is ever seen (`sampling.is_solid`).
     roughness, metallic: (N,) float32, 0 to 1, in place of their material's; None: the material's.
     emission: (N, 3) float32, scene-linear radiance, in place of their material's; None: the material's.
+    uvs: (N, 2) float32 texture coordinates at the centres; uv_along_x, uv_along_y: (N, 2) their change along the local
+        x and y half-axis. Where both changes are 0, and without all three, the texture is not looked up: `colors` shows.
 
     Raises ValueError with one sentence for a wrong shape, a non-finite or an out-of-range value;
     `valid_surfels` drops and counts such rows instead.
@@ -67,6 +72,9 @@ class Surfels:
     roughness: np.ndarray | None = None
     metallic: np.ndarray | None = None
     emission: np.ndarray | None = None
+    uvs: np.ndarray | None = None
+    uv_along_x: np.ndarray | None = None
+    uv_along_y: np.ndarray | None = None
 
     def __post_init__(self):
         arrays = _shaped(self.arrays())
@@ -103,6 +111,11 @@ class Surfels:
         """The two half-axis vectors of each ellipse: two (N, 3) float32 arrays, object units."""
         x, y, _ = quaternion_axes(self.rotations, 2)
         return x * self.scales[:, :1], y * self.scales[:, 1:]
+
+    @property
+    def has_uvs(self) -> bool:
+        """Whether a texture can be looked up at every point of the ellipses."""
+        return not any(a is None for a in (self.uvs, self.uv_along_x, self.uv_along_y))
 
     def as_solid(self) -> Surfels:
         """The same surfels, said to be solid; the arrays are shared."""

@@ -6,7 +6,7 @@
 //          No sampler state and no derivative of the hardware: the same on every device.
 //          The twin of rendering/texture_lookup.py. The layout of atlas and table is rendering/atlas.py's.
 //
-// The includer declares the samplers `texture_atlas` and `texture_table` and the constant PIXEL_VARIANCE.
+// The includer declares the samplers `texture_atlas` and `texture_table`.
 
 const int MAX_PROBES = 16;
 // Probes this many standard deviations of one texel's kernel apart still look like one Gaussian.
@@ -68,20 +68,18 @@ ivec4 level_place(SurfaceTexture t, int level) {
   return ivec4(texelFetch(texture_table, ivec2(2 + min(level, t.levels - 1), t.slot), 0));
 }
 
-// Colour, not premultiplied, at uv; the columns of `footprint` are what one pixel along x and y moves uv.
-vec3 texture_color(SurfaceTexture t, vec2 uv, mat2 footprint) {
-  vec2 x = footprint[0] * t.size, y = footprint[1] * t.size;
-  float xx = PIXEL_VARIANCE * (x.x * x.x + y.x * y.x), yy = PIXEL_VARIANCE * (x.y * x.y + y.y * y.y);
-  float xy = PIXEL_VARIANCE * (x.x * x.y + y.x * y.y);
-  float area = PIXEL_VARIANCE * (x.x * y.y - x.y * y.x);
+// Colour, not premultiplied, under the Gaussian at uv whose variances and covariance xx, yy, xy are given.
+vec3 texture_color(SurfaceTexture t, vec2 uv, vec3 variances) {
+  float xx = variances.x * t.size.x * t.size.x, yy = variances.y * t.size.y * t.size.y;
+  float xy = variances.z * t.size.x * t.size.y;
   float tilt = 0.5 * (xx - yy), root = sqrt(tilt * tilt + xy * xy);
   float along = 0.5 * (xx + yy) + root;
   bool is_usable = along < LARGEST;   // not so for NaN
   vec2 axis = tilt >= 0.0 ? vec2(tilt + root, xy) : vec2(xy, root - tilt);
   if (!is_usable) axis = vec2(1.0, 0.0);
   along = is_usable ? along : LARGEST;
-  float across = is_usable ? area * area / max(along, 1e-30) : LARGEST;
-  across = max(across, (along - LONGEST) / (1.0 + 4.0 * LONGEST));
+  float across = is_usable ? (xx * yy - xy * xy) / max(along, 1e-30) : LARGEST;
+  across = max(max(across, 0.0), (along - LONGEST) / (1.0 + 4.0 * LONGEST));
 
   // A bilinear lookup of level l has the variance 4^l / 4 - 1 / 12; the image itself, level 0, has 1 / 6.
   float width2 = 1.0 + 4.0 * across;

@@ -56,4 +56,7 @@ POINT_ATTRIBUTES = {
     "roughness": PointAttribute("roughness", "FLOAT", "value", 1),
     "metallic": PointAttribute("metallic", "FLOAT", "value", 1),
     "emission": PointAttribute("emission", "FLOAT_VECTOR", "vector", 3),
+    "uvs": PointAttribute("uv", "FLOAT2", "vector", 2),
+    "uv_along_x": PointAttribute("uv_along_x", "FLOAT2", "vector", 2),
+    "uv_along_y": PointAttribute("uv_along_y", "FLOAT2", "vector", 2),
 }

@@ -34,13 +34,21 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
         _unit(n.astype(np.float64) @ np.linalg.inv(linear)) for n in (surfels.normals, surfels.geometric_normals())
     )
     x = _unit(long)
+    y = np.cross(geometric, x)
+    uvs = {}
+    if surfels.has_uvs:
+        along_x = surfels.uv_along_x * np.cos(angle) + surfels.uv_along_y * np.sin(angle)
+        along_y = surfels.uv_along_y * np.cos(angle) - surfels.uv_along_x * np.sin(angle)
+        # a mirrored frame is made right-handed by turning y
+        uvs = {"uv_along_x": along_x, "uv_along_y": along_y * np.sign(np.einsum("ij,ij->i", y, short))[:, None]}
     return replace(
         surfels,
         origin=origin,
         positions=surfels.positions.astype(np.float64) @ linear.T,
-        rotations=axes_quaternions(x, np.cross(geometric, x), geometric),
+        rotations=axes_quaternions(x, y, geometric),
         scales=np.stack([np.linalg.norm(axis, axis=1) for axis in (long, short)], axis=1),
         normals=normals,
+        **uvs,
     )
 
 

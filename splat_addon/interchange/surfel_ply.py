@@ -11,7 +11,7 @@
 | scale_0 scale_1 | float | half-axes along the quaternion's x and y axes, not logarithms |
 | radius | float | the larger half-axis |
 | material | int | index of the material slot |
-| roughness, metallic, emission_0 .. emission_2 | float | where the surfels have them (`OPTIONAL_LAYOUT`) |
+| roughness, metallic, emission_0 .. emission_2, uvs_0 ... | float | where the surfels have them (`OPTIONAL_LAYOUT`) |
 
 Comments: "surfel_splatting 1", "origin X Y Z" where it is not 0, "solid" where the surfels are.
 """

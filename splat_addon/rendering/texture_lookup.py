@@ -17,21 +17,18 @@ PROBE_VARIANCES = {2: 0.25, 3: 0.2005}
 MANY_PROBES_VARIANCE = 0.1945
 
 
-def texture_colors(
-    atlas: Atlas, slot: int, uvs: np.ndarray, footprints: np.ndarray, pixel_variance: float
-) -> np.ndarray:
+def texture_colors(atlas: Atlas, slot: int, uvs: np.ndarray, variances: np.ndarray) -> np.ndarray:
     """(n, 3) colours, not premultiplied, of a slot that has a texture.
 
-    uvs: (n, 2). footprints: (n, 2, 2), what one pixel along x (column 0) and y (column 1) moves uv.
-    pixel_variance: of the pixel's filter, pixels squared.
+    uvs: (n, 2) middles of the Gaussian footprints. variances: (n, 2, 2) their covariance matrices.
     """
-    return np.array([_color(atlas, slot, uv, f, pixel_variance) for uv, f in zip(uvs, footprints, strict=True)])
+    return np.array([_color(atlas, slot, uv, v) for uv, v in zip(uvs, variances, strict=True)])
 
 
-def _color(atlas: Atlas, slot: int, uv: np.ndarray, footprint: np.ndarray, pixel_variance: float) -> np.ndarray:
+def _color(atlas: Atlas, slot: int, uv: np.ndarray, variance: np.ndarray) -> np.ndarray:
     row = atlas.table[slot].astype(np.float64)
     factor, count, size = row[0, :3], int(row[0, 3]), row[1, 2:]
-    along, across, axis = _variances(footprint * size[:, None], pixel_variance)
+    along, across, axis = _along_and_across(variance * np.outer(size, size))
     width2 = 1 + 4 * across
     level = min(int(0.5 * np.log2(width2)), count - 1)
     share = np.clip((width2 * 4.0**-level - 1) / 3, 0, 1)
@@ -47,12 +44,12 @@ def _color(atlas: Atlas, slot: int, uv: np.ndarray, footprint: np.ndarray, pixel
     return factor * total[:3] / (total[3] if total[3] > 0 else weights)
 
 
-def _variances(texels: np.ndarray, pixel_variance: float) -> tuple[float, float, np.ndarray]:
+def _along_and_across(variance: np.ndarray) -> tuple[float, float, np.ndarray]:
     """Along the footprint's long axis and across it, texels squared, and the unit axis; bounded as MAX_PROBES need."""
-    if not (pixel_variance * np.square(texels).sum() < LARGEST):
+    if not np.trace(variance) < LARGEST:
         return LARGEST, LARGEST, np.array([1.0, 0.0])
-    (across, along), axes = np.linalg.eigh(pixel_variance * texels @ texels.T)
-    return along, max(across, (along - LONGEST) / (1 + 4 * LONGEST)), axes[:, 1]
+    (across, along), axes = np.linalg.eigh(variance)
+    return along, max(across, 0.0, (along - LONGEST) / (1 + 4 * LONGEST)), axes[:, 1]
 
 
 def _level_color(atlas: Atlas, slot: int, level: int, uv: np.ndarray, may_be_closest: bool) -> np.ndarray:

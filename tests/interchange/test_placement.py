@@ -36,6 +36,21 @@ def test_geometric_normals_stay_on_their_side(surfels, name):
     assert np.allclose(after, wanted / np.linalg.norm(wanted, axis=1, keepdims=True), atol=1e-5)
 
 
+@pytest.mark.parametrize("name", MAPS)
+def test_every_point_of_an_ellipse_keeps_its_texture_coordinate(surfels, name):
+    random = np.random.default_rng(11)
+    uvs = {field: random.normal(size=(50, 2)) for field in ("uvs", "uv_along_x", "uv_along_y")}
+    before = surfels(50, **uvs)
+    after = transformed(before, MAPS[name])
+    p, q = before.half_axes()
+    x, y = after.half_axes()
+    across, up = random.uniform(-1, 1, (2, 50, 1))
+    point = (p * across + q * up) @ MAPS[name][:3, :3].T
+    place = [((point * axis).sum(1) / (axis * axis).sum(1))[:, None] for axis in (x, y)]
+    wanted = before.uv_along_x * across + before.uv_along_y * up
+    assert np.allclose(after.uv_along_x * place[0] + after.uv_along_y * place[1], wanted, atol=1e-4)
+
+
 def test_a_map_that_flattens_is_an_error(surfels):
     with pytest.raises(ValueError, match="a scale of 0"):
         transformed(surfels(3), np.diag([1, 1, 0, 1]))

@@ -19,8 +19,8 @@ SIZES = (2, 4, 8, 16, 32, 64)
 FRAGMENT = """
 void main() {
   ivec2 query = ivec2(int(gl_FragCoord.x) * 2, int(gl_FragCoord.y));
-  vec4 place = texelFetch(queries, query, 0), footprint = texelFetch(queries, query + ivec2(1, 0), 0);
-  color = vec4(texture_color(surface_texture(int(place.z)), place.xy, mat2(footprint.xy, footprint.zw)), 1.0);
+  vec4 place = texelFetch(queries, query, 0), variances = texelFetch(queries, query + ivec2(1, 0), 0);
+  color = vec4(texture_color(surface_texture(int(place.z)), place.xy, variances.xyz), 1.0);
 }
 """
 
@@ -39,17 +39,22 @@ def random_textures(random):
 
 
 def random_queries(random, slots):
-    """(slots,), uvs and footprints from far magnified to the whole texture in a pixel, up to 1000 : 1 stretched."""
+    """Slots, uvs and variances from far magnified to the whole texture in a pixel, up to 1000 : 1 stretched."""
     size = 10 ** random.uniform(-4, 0.5, (QUERIES, 1, 1))
     turns = [np.linalg.qr(random.normal(size=(QUERIES, 2, 2)))[0] for _ in range(2)]
     stretch = np.stack([np.ones(QUERIES), 10 ** random.uniform(-3, 0, QUERIES)], axis=1)
     footprints = size * turns[0] * stretch[:, None] @ turns[1]
-    return random.integers(1, slots, QUERIES), random.uniform(-2.5, 2.5, (QUERIES, 2)), footprints
+    return random.integers(1, slots, QUERIES), random.uniform(-2.5, 2.5, (QUERIES, 2)), variances_of(footprints)
 
 
-def gpu_colors(device, atlas, slots, uvs, footprints):
+def variances_of(footprints):
+    """(n, 2, 2) of the pixel's Gaussian; the columns of a footprint are what a pixel along x and y moves uv."""
+    return PIXEL_VARIANCE * footprints @ np.swapaxes(footprints, 1, 2)
+
+
+def gpu_colors(device, atlas, slots, uvs, variances):
     """(n, 3), one query a pixel."""
-    columns = np.swapaxes(footprints, 1, 2).reshape(-1, 4)
+    columns = variances[:, (0, 1, 0, 0), (0, 1, 1, 0)]
     data = np.stack([np.column_stack([uvs, slots, slots]), columns], axis=1).reshape(1, -1, 4).astype(np.float32)
     description = PipelineDescription(
         name="lookup",
@@ -58,7 +63,6 @@ def gpu_colors(device, atlas, slots, uvs, footprints):
         block=("Unused", "unused", (("vec4", "nothing"),)),
         samplers=("queries", "texture_atlas", "texture_table"),
         outputs=(("vec4", "color"),),
-        defines=(("PIXEL_VARIANCE", str(PIXEL_VARIANCE)),),
     )
     textures = [device.texture(d.shape[1::-1], "RGBA32F", d) for d in (data, atlas.texels, atlas.table)]
     target = device.target([device.texture((len(slots), 1), "RGBA32F")])
@@ -72,12 +76,12 @@ def test_the_shader_is_its_twin(on_device):
     random = np.random.default_rng(2)
     textures = random_textures(random)
     atlas = make_atlas(textures)
-    slots, uvs, footprints = random_queries(random, len(textures))
-    colors = on_device(lambda device: gpu_colors(device, atlas, slots, uvs, footprints))
+    slots, uvs, variances = random_queries(random, len(textures))
+    colors = on_device(lambda device: gpu_colors(device, atlas, slots, uvs, variances))
     twin = np.empty_like(colors)
     for slot in np.unique(slots):
         at = np.flatnonzero(slots == slot)
-        twin[at] = texture_colors(atlas, slot, uvs[at].astype(np.float32), footprints[at], PIXEL_VARIANCE)
+        twin[at] = texture_colors(atlas, slot, uvs[at].astype(np.float32), variances[at])
     is_smooth = np.array([t is not None and t.image.interpolation == "Linear" for t in textures])[slots]
     # where nearest texels, or the numbers of probes, tie
     differ = np.abs(colors - twin).max(axis=1) > 1e-4
@@ -90,8 +94,8 @@ def test_a_footprint_without_size_is_the_mean_of_the_texture(bad, on_device):
     pixels = np.random.default_rng(3).uniform(0, 1, (16, 8, 4))
     pixels[..., 3] = 1
     atlas = make_atlas((SurfaceTexture(Image(pixels)),))
-    footprints = np.full((1, 2, 2), bad)
-    colors = on_device(lambda device: gpu_colors(device, atlas, np.zeros(1), np.full((1, 2), 0.3), footprints))
+    variances = np.full((1, 2, 2), bad)
+    colors = on_device(lambda device: gpu_colors(device, atlas, np.zeros(1), np.full((1, 2), 0.3), variances))
     assert np.allclose(colors[0], pixels[..., :3].mean(axis=(0, 1)), atol=1e-5)
 
 
@@ -114,6 +118,7 @@ def true_mean(pixels, uv, footprint):
 
 
 @pytest.mark.parametrize(("across", "stretch"), [(0.1, 1), (0.5, 1), (1, 1), (3, 1), (0.2, 8), (1, 2), (1, 4), (2, 6)])
+def test_a_lookup_is_the_mean_under_the_footprint(across, stretch):
     """across: texels a pixel; stretch: of the footprint. The texture has as much contrast at every scale."""
     random = np.random.default_rng(4)
     octaves = [np.kron(random.uniform(0, 1, (size, size, 4)), np.ones((64 // size, 64 // size, 1))) for size in SIZES]
@@ -123,7 +128,7 @@ def true_mean(pixels, uv, footprint):
     angles, uvs = random.uniform(0, np.pi, 40), random.uniform(0, 1, (40, 2))
     turn = np.array([[np.cos(angles), -np.sin(angles)], [np.sin(angles), np.cos(angles)]]).transpose(2, 0, 1)
     footprints = turn * (across * stretch / 64, across / 64)
-    looked_up = texture_colors(atlas, 0, uvs, footprints, PIXEL_VARIANCE)
+    looked_up = texture_colors(atlas, 0, uvs, variances_of(footprints))
     true = np.array([true_mean(pixels, uv, f) for uv, f in zip(uvs, footprints, strict=True)])
     error = np.sqrt(np.mean((looked_up - true) ** 2))
     assert error < 0.3 * true.std()
