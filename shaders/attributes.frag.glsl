@@ -2,15 +2,12 @@
 // Summary: adds weighted colour, normal, depth and material to their sums; the depth test keeps what is visible.
 
 #include "common/depth.glsl"
+#include "common/sums.glsl"
 #include "methods/{method}.glsl"
 
 void main() {
   float weight = kernel_weight(place_depth.xy) * color_weight.w;
   if (!(weight > 0.0)) discard;
   write_depth(place_depth.z);
-  color_sum = vec4(color_weight.rgb, 1.0) * weight;
-  normal_sum = vec4(normal, place_depth.z) * weight;
-#ifdef MATERIAL_TARGET
-  material_sum = vec4(material, 1.0) * weight;
-#endif
+  add_to_sums(weight, place_depth.z);
 }

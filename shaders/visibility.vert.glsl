@@ -5,16 +5,16 @@
 //          right for splats of a small angle; where linear depth is planned, every fragment is.
 
 #include "common/sides.glsl"
-#include "common/splat_fetch.glsl"
+#include "common/stored_splat.glsl"
 #include "methods/quad.glsl"
 
 void main() {
-  ivec2 texel = splat_texel(gl_VertexID >> 2);
+  StoredSplat stored = stored_splat(gl_VertexID >> 2);
   vec2 corner = quad_corner(gl_VertexID);
   mat3 linear = mat3(splats.model_view);
-  vec3 position = (splats.model_view * vec4(texelFetch(surfels, texel, 0).xyz, 1.0)).xyz;
-  vec3 axis_u = linear * texelFetch(surfels, texel + ivec2(1, 0), 0).xyz;
-  vec3 axis_v = linear * texelFetch(surfels, texel + ivec2(2, 0), 0).xyz;
+  vec3 position = (splats.model_view * vec4(stored.position, 1.0)).xyz;
+  vec3 axis_u = linear * stored.axis_u;
+  vec3 axis_v = linear * stored.axis_v;
   vec3 eye = footprint_corner(position, axis_u, axis_v, corner);
   place_depth = vec3(corner, -eye.z);
   bool is_orthographic = splats.options.z > 0.5;

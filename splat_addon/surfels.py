@@ -128,6 +128,11 @@ class Surfels:
         return quaternion_axes(self.rotations)[2]
 
     @cached_property
+    def brightest(self) -> float:
+        """The largest absolute colour (0 when empty)."""
+        return float(np.abs(self.colors[:, :3]).max(initial=0.0))
+
+    @cached_property
     def local_bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Two (3,) float64 corners, relative to `origin`, of a box that holds every ellipse (NaN when empty)."""
         if not len(self):

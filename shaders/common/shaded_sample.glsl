@@ -7,14 +7,26 @@ struct ShadedSample {
   float depth;
 };
 
+// A mean normal shorter than this is what rounding left of normals that cancel; the surface then faces the viewer.
+#ifdef HALF_SUMS
+const float CANCELLED = 4e-3;
+#else
+const float CANCELLED = 1e-6;
+#endif
+
 // Only where the sum of weights is above 0.
 ShadedSample shaded_sample(ivec2 texel) {
   vec4 c = texelFetch(color_sum, texel, 0);
   vec4 n = texelFetch(normal_sum, texel, 0) / c.w;
+#ifdef HALF_SUMS
+  vec2 depths = texelFetch(depth_sum, texel, 0).xy;
+  n.w = depths.x / depths.y;
+  c.rgb *= shading.options.w;
+#endif
   vec2 place = shading.window.xy + (vec2(texel) + 0.5) * shading.window.zw;
   vec3 position = vec3(shading.options.x > 0.5 ? place : place * n.w, -n.w);
   float size = length(n.xyz);
-  vec3 normal = size > 1e-6 ? n.xyz / size : vec3(0.0, 0.0, 1.0);
+  vec3 normal = size > CANCELLED ? n.xyz / size : vec3(0.0, 0.0, 1.0);
 #ifdef MATERIAL_TARGET
   vec3 material = texelFetch(material_sum, texel, 0).xyz / c.w;
 #else

@@ -6,6 +6,7 @@
 #define PARALLEL (splats.options.z > 0.5)
 #define DEPTH_UNIT splats.options.w
 #include "common/stored_depth.glsl"
+#include "common/sums.glsl"
 #include "screen/place.glsl"
 #include "methods/{method}.glsl"
 
@@ -45,9 +46,5 @@ void main() {
   // depth, moved back by up to 2 epsilon, is more than that and a radius behind this splat's.
   if (seen < 1.0 && straddling < 0.5 && view_depth(seen) - depth > (1.0 + 4.0 * splats.options.x) * plane.radius) discard;
 #endif
-  color_sum = vec4(color_weight.rgb, 1.0) * weight;
-  normal_sum = vec4(normal, weight_depth.y) * weight;
-#ifdef MATERIAL_TARGET
-  material_sum = vec4(material, 1.0) * weight;
-#endif
+  add_to_sums(weight, weight_depth.y);
 }

@@ -22,12 +22,7 @@ MAX_SPLATS = SPLATS_PER_ROW * MAX_ROWS
 
 def pack_surfels(surfels: Surfels) -> np.ndarray:
     """(rows, 2048, 4) float32 texels of N surfels. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
-    count = len(surfels)
-    if count > MAX_SPLATS:
-        raise ValueError(
-            f"One object can hold {MAX_SPLATS:,} surfels, not {count:,}; split it or raise its surfel spacing."
-        )
-    rows = max(-(-count // SPLATS_PER_ROW), 1)
+    rows, count = row_count(surfels), len(surfels)
     texels = np.zeros((rows * SPLATS_PER_ROW, TEXELS_PER_SPLAT, 4), np.float32)
     filled = texels[:count]
     filled[:, 0, :3] = surfels.positions
@@ -37,6 +32,16 @@ def pack_surfels(surfels: Surfels) -> np.ndarray:
     filled[:, 2, 3] = surfels.materials
     filled[:, 3] = surfels.colors
     return texels.reshape(rows, SPLATS_PER_ROW * TEXELS_PER_SPLAT, 4)
+
+
+def row_count(surfels: Surfels) -> int:
+    """Rows of 512 splats, one at least. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
+    count = len(surfels)
+    if count > MAX_SPLATS:
+        raise ValueError(
+            f"One object can hold {MAX_SPLATS:,} surfels, not {count:,}; split it or raise its surfel spacing."
+        )
+    return max(-(-count // SPLATS_PER_ROW), 1)
 
 
 def octahedral(normals: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from .methods import Method, get_method
 from .packing import shared_material
 from .scene import Material, Scene
 from .settings import Settings
+from .storages import get_storage
 from .view import depth_ratios
 
 #: A target's edge in samples; a larger picture is rendered in tiles, so that memory stays below about 1 GB.
@@ -37,12 +38,19 @@ TEXTURES = {
     "visibility_depth": ("DEPTH32F", "visibility sample"),
     "color_sum": ("RGBA32F", "sample"),
     "normal_sum": ("RGBA32F", "sample"),
+    "depth_sum": ("RG32F", "sample"),
     "material_sum": ("RGBA32F", "sample"),
     "shaded": ("RGBA32F", "sample"),
     "surface": ("RGBA32F", "sample"),
     "combined": ("RGBA32F", "pixel"),
     "depth": ("R32F", "pixel"),
     "normal_coverage": ("RGBA32F", "pixel"),
+}
+
+#: accumulation -> texture -> format, where it is not the one above
+SUM_FORMATS = {
+    "float32": {},
+    "float16": {"color_sum": "RGBA16F", "normal_sum": "RGBA16F", "material_sum": "RGBA16F"},
 }
 
 
@@ -64,6 +72,7 @@ class FramePlan:
         margin that the filter reads.
     samples: N of the N x N samples a pixel. visibility_samples: V of the V x V a sample.
     material: the one that all surfels share, or None.
+    storage, accumulation: as in the settings.
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
     left_out: (what, why), of what other scenes or settings would need.
     """
@@ -73,6 +82,8 @@ class FramePlan:
     visibility_samples: int
     method: str
     shading: str
+    storage: str
+    accumulation: str
     material: Material | None
     linear_depth: bool
     passes: tuple[PlannedPass, ...]
@@ -91,6 +102,10 @@ class FramePlan:
             "visibility sample": self.samples * self.visibility_samples,
         }[TEXTURES[texture][1]]
 
+    def format(self, texture: str) -> str:
+        """A name in `device.interface.FORMATS`."""
+        return SUM_FORMATS[self.accumulation].get(texture, TEXTURES[texture][0])
+
     @property
     def textures(self) -> tuple[str, ...]:
         """Names of every texture that some pass writes, once each."""
@@ -99,7 +114,8 @@ class FramePlan:
     def __str__(self) -> str:
         depth = "linear" if self.linear_depth else "hardware"
         lines = [
-            f"{len(self.tiles)} tile(s), {self.samples} x {self.samples} samples, method {self.method}, {depth} depth"
+            f"{len(self.tiles)} tile(s), {self.samples} x {self.samples} samples, method {self.method}, {depth} depth, "
+            f"{self.storage} splats, {self.accumulation} sums"
         ]
         for p in self.passes:
             lines.append(f"  {p.name}: {', '.join(p.writes)} <- {', '.join(p.reads) or 'splats'}; {p.reason}")
@@ -131,6 +147,8 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         method.visibility_samples,
         settings.method,
         settings.shading,
+        get_storage(settings.storage).name,
+        settings.accumulation,
         material,
         linear_depth,
         passes,
@@ -144,6 +162,10 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
 def _sums(settings: Settings, material: Material | None, left_out: list) -> tuple[str, ...]:
     """What the attribute pass adds up."""
     sums = ["color_sum", "normal_sum"]
+    if settings.accumulation == "float16":
+        sums.append("depth_sum")
+    else:
+        left_out.append(("depth_sum", "float32 sums of normals have room for depths"))
     if settings.shading == "flat":
         left_out.append(("material_sum", "flat shading does not look at materials"))
     elif material is not None:

@@ -10,7 +10,7 @@ import numpy as np
 from ..surfels import Surfels
 from .device import Device
 from .device.interface import Pipeline, PipelineDescription, Texture
-from .packing import pack_surfels
+from .storages import Storage
 
 #: name, width, height, format of a texture that a pass writes.
 TextureKey = tuple[str, int, int, str]
@@ -27,15 +27,20 @@ class Resources:
         self._pipelines = {}
         self.textures = {}
 
-    def surfels(self, surfels: Surfels) -> Texture:
-        """Their texels, uploaded once."""
-        if surfels not in self._surfels:
-            self._surfels[surfels] = self.data(pack_surfels(surfels))
-        return self._surfels[surfels]
+    def surfels(self, surfels: Surfels, storage: Storage) -> dict[str, Texture]:
+        """Their textures by sampler, uploaded once; another storage takes their place."""
+        name, textures = self._surfels.get(surfels, (None, None))
+        if name != storage.name:
+            textures = {
+                sampler: self.data(texels, format)
+                for (sampler, format), texels in zip(storage.textures, storage.pack(surfels), strict=True)
+            }
+            self._surfels[surfels] = storage.name, textures
+        return textures
 
-    def data(self, texels: np.ndarray) -> Texture:
+    def data(self, texels: np.ndarray, format: str = "RGBA32F") -> Texture:
         """A texture of (h, w, 4) float32 texels that nothing here keeps."""
-        return self.device.texture(texels.shape[1::-1], "RGBA32F", texels)
+        return self.device.texture(texels.shape[1::-1], format, texels)
 
     def texture(self, key: TextureKey) -> Texture:
         """The texture of that name, size and format, made when it is first asked for."""

@@ -12,6 +12,12 @@ SHADINGS = {
     "flat": "The surfels' own colour, unlit",
 }
 
+#: accumulation -> what it costs and gains
+ACCUMULATIONS = {
+    "float32": "Sums that keep their digits at any overdraw",
+    "float16": "Sums in half the memory; with many layers they lose digits",
+}
+
 MAX_SUPERSAMPLING = 16
 
 #: the arrays of a `Frame`
@@ -27,6 +33,8 @@ class Settings:
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
     transparent_film: leave the background out and keep its alpha at 0.
     outputs: which arrays of the `Frame` are wanted; the others are None and cost nothing.
+    storage: the form in which surfels lie on the device, a name in `rendering.storages`.
+    accumulation: of the sums of colour and material, a name in `ACCUMULATIONS`.
     profile: wait for the device after each pass, so that the frame's statistics hold a time for each.
     """
 
@@ -36,11 +44,15 @@ class Settings:
     epsilon: float = 0.5
     transparent_film: bool = False
     outputs: tuple[str, ...] = OUTPUTS
+    storage: str = "float32"
+    accumulation: str = "float32"
     profile: bool = False
 
     def __post_init__(self):
         if self.shading not in SHADINGS:
             raise ValueError(f"shading must be one of {', '.join(SHADINGS)}, not {self.shading!r}.")
+        if self.accumulation not in ACCUMULATIONS:
+            raise ValueError(f"accumulation must be one of {', '.join(ACCUMULATIONS)}, not {self.accumulation!r}.")
         if int(self.supersampling) != self.supersampling or not 1 <= self.supersampling <= MAX_SUPERSAMPLING:
             raise ValueError(f"supersampling must be 1 to {MAX_SUPERSAMPLING}, not {self.supersampling}.")
         if not set(self.outputs) <= set(OUTPUTS):

@@ -14,8 +14,8 @@ from typing import Protocol
 
 import numpy as np
 
-#: format -> channels
-FORMATS = {"RGBA32F": 4, "R32F": 1, "DEPTH32F": 1}
+#: format -> channels; RGBA16 holds 0 to 1 in multiples of 1 / 65535
+FORMATS = {"RGBA32F": 4, "RGBA16F": 4, "RGBA16": 4, "RG32F": 2, "R32F": 1, "DEPTH32F": 1}
 
 #: blend mode -> what happens to a fragment
 BLENDS = ("none", "add")

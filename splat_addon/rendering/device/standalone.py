@@ -13,6 +13,12 @@ from .quads import capacity, quad_indices
 
 _GL_TEXTURE_2D, _GL_DEPTH_COMPONENT, _GL_FLOAT, _GL_DEPTH_COMPONENT32F = 0x0DE1, 0x1902, 0x1406, 0x8CAC
 
+#: format -> moderngl's name and the data's numbers as it takes them, where those are not float32
+_STORED = {
+    "RGBA16F": ("f2", np.float16),
+    "RGBA16": ("nu2", lambda data: np.rint(np.multiply(data, 65535.0)).astype(np.uint16)),
+}
+
 
 class StandaloneDevice:
     """A context of its own. Raises RuntimeError where none can be made."""
@@ -96,8 +102,9 @@ class _Texture:
             self.handle = context.depth_texture(self.size)
             _respecify_depth_as_32f(context, self.handle)
         else:
-            values = None if data is None else np.ascontiguousarray(data, np.float32).tobytes()
-            self.handle = context.texture(self.size, FORMATS[format], values, dtype="f4")
+            kind, stored = _STORED.get(format, ("f4", np.float32))
+            values = None if data is None else np.ascontiguousarray(stored(data)).tobytes()
+            self.handle = context.texture(self.size, FORMATS[format], values, dtype=kind)
             self.handle.filter = context.NEAREST, context.NEAREST
 
 

@@ -7,10 +7,13 @@ from ..device.interface import PipelineDescription, Target
 from ..methods import get_method
 from ..plan import FramePlan, PlannedPass
 from ..shaders import load
-from .blocks import LINEAR_DEPTH
+from ..storages import get_storage
+from .blocks import HALF_SUMS, LINEAR_DEPTH
 from .splats import SPLATS_BLOCK, draw_splats
 from .tile import TileContext
 
+#: Of the sums that are not vec4.
+_OUTPUT_TYPES = {"depth_sum": "vec2"}
 _MATERIAL_VARYING = ("flat", "vec3", "material")
 
 
@@ -23,19 +26,20 @@ def _in_space(planned, frame):
     with_material = "material_sum" in planned.writes
     return PipelineDescription(
         name="attributes",
-        vertex=load("attributes.vert.glsl", method=frame.method),
+        vertex=load("attributes.vert.glsl", method=frame.method, storage=frame.storage),
         fragment=load("attributes.frag.glsl", method=frame.method),
         block=SPLATS_BLOCK,
-        samplers=("surfels", "materials") if with_material else ("surfels",),
+        samplers=(*get_storage(frame.storage).samplers, *(("materials",) if with_material else ())),
         varyings=(
             ("smooth", "vec3", "place_depth"),
             ("flat", "vec4", "color_weight"),
             ("flat", "vec3", "normal"),
             *((_MATERIAL_VARYING,) if with_material else ()),
         ),
-        outputs=tuple(("vec4", name) for name in planned.writes),
+        outputs=tuple((_OUTPUT_TYPES.get(name, "vec4"), name) for name in planned.writes),
         defines=(
             *((("MATERIAL_TARGET", "1"),) if with_material else ()),
+            *(HALF_SUMS if frame.accumulation == "float16" else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
         blend="add",
@@ -48,10 +52,14 @@ def _in_picture(planned, frame):
     with_material = "material_sum" in planned.writes
     return PipelineDescription(
         name="attributes",
-        vertex=load("screen/attributes.vert.glsl", method=frame.method),
+        vertex=load("screen/attributes.vert.glsl", method=frame.method, storage=frame.storage),
         fragment=load("screen/attributes.frag.glsl", method=frame.method),
         block=SPLATS_BLOCK,
-        samplers=("surfels", *(("materials",) if with_material else ()), "visibility_depth"),
+        samplers=(
+            *get_storage(frame.storage).samplers,
+            *(("materials",) if with_material else ()),
+            "visibility_depth",
+        ),
         varyings=(
             ("flat", "float", "straddling"),
             ("flat", "vec4", "plane_ab"),
@@ -62,10 +70,11 @@ def _in_picture(planned, frame):
             ("flat", "vec3", "normal"),
             *((_MATERIAL_VARYING,) if with_material else ()),
         ),
-        outputs=tuple(("vec4", name) for name in planned.writes),
+        outputs=tuple((_OUTPUT_TYPES.get(name, "vec4"), name) for name in planned.writes),
         defines=(
             ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
             *((("MATERIAL_TARGET", "1"),) if with_material else ()),
+            *(HALF_SUMS if frame.accumulation == "float16" else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
         blend="add",

@@ -13,3 +13,5 @@ def std140(*parts) -> np.ndarray:
 
 #: Defined where fragments write depth / far.
 LINEAR_DEPTH = (("LINEAR_DEPTH", "1"),)
+#: Defined where sums are float16.
+HALF_SUMS = (("HALF_SUMS", "1"),)

@@ -9,11 +9,12 @@ from ..device.interface import PipelineDescription, Target
 from ..packing import pack_lights, pack_materials
 from ..plan import FramePlan, PlannedPass
 from ..shaders import load
-from .blocks import LINEAR_DEPTH, std140
+from .blocks import HALF_SUMS, LINEAR_DEPTH, std140
 from .tile import TileContext
 
 #: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
-#: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights, 1 / far.
+#: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights, 1 / far, what summed
+#: colours are multiplied by.
 SHADING_BLOCK = (
     "Shading",
     "shading",
@@ -42,6 +43,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
             ("SAMPLES", str(frame.samples)),
             ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
             *((("MATERIAL_TARGET", "1"),) if "material_sum" in planned.reads else ()),
+            *(HALF_SUMS if "depth_sum" in planned.reads else ()),
             *((("LIGHTS", "1"),) if "lights" in planned.reads else ()),
             *((("NORMAL_OUTPUT", "1"),) if "normal_coverage" in planned.writes else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
@@ -73,5 +75,5 @@ def _block(tile: TileContext) -> np.ndarray:
         tile.window,
         (*scene.world, 0.0 if tile.settings.transparent_film else 1.0),
         (*material, 1.0 / view.scale),
-        (camera.is_orthographic, len(scene.lights), tile.depth_unit, 0.0),
+        (camera.is_orthographic, len(scene.lights), tile.depth_unit, 1 / tile.color_scale),
     )

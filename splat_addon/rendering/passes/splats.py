@@ -7,12 +7,13 @@ import numpy as np
 
 from ..device.interface import Pipeline, Target
 from ..packing import pack_materials
+from ..storages import get_storage
 from .blocks import std140
 from .tile import TileContext
 
 #: options: epsilon, near, 1 for orthographic, 1 / far.
 #: sides: -1 for a mirrored object and 1 for others, 1 where backs are hidden, the least offset of visibility (as a
-#:     share of the distance; of an orthographic camera a length).
+#:     share of the distance; of an orthographic camera a length), what colours are multiplied by.
 #: window: left, bottom and step of one sample on the plane at depth 1.
 SPLATS_BLOCK = (
     "Splats",
@@ -30,18 +31,19 @@ SPLATS_BLOCK = (
 
 def draw_splats(tile: TileContext, pipeline: Pipeline, target: Target) -> None:
     """One draw call an instance."""
-    resources, view = tile.resources, tile.view
+    resources, view, storage = tile.resources, tile.view, get_storage(tile.plan.storage)
     least_offset = view.least_offset(tile.plan.linear_depth)
     options = tile.settings.epsilon, view.near, tile.camera.is_orthographic, tile.depth_unit
     for placed in view.placed:
         instance = placed.instance
+        stored = resources.surfels(instance.surfels, storage)
         made_here = {
-            "surfels": lambda i=instance: resources.surfels(i.surfels),
+            **{name: lambda t=texture: t for name, texture in stored.items()},
             "materials": lambda i=instance: resources.data(pack_materials(i.materials)),
         }
         textures = tile.textures(pipeline.description.samplers, made_here)
         orientation = np.sign(np.linalg.det(placed.normal_matrix))
-        sides = orientation, placed.hides_backs, least_offset, 0.0
+        sides = orientation, placed.hides_backs, least_offset, tile.color_scale
         normal_matrix = np.eye(4)
         normal_matrix[:3, :3] = placed.normal_matrix
         block = std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window)

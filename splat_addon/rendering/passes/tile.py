@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 from ..camera import Camera
 from ..device.interface import Texture
-from ..plan import TEXTURES, FramePlan
+from ..plan import FramePlan
 from ..resources import Resources, TextureKey
 from ..scene import Scene
 from ..settings import Settings
@@ -43,6 +45,14 @@ class TileContext:
         """What turns a depth of the view into a stored linear one; 0 where the hardware's depth is stored."""
         return 1.0 / self.view.far if self.plan.linear_depth else 0.0
 
+    @cached_property
+    def color_scale(self) -> float:
+        """What float16 sums multiply colours by, a power of two: the scene's brightest is then at most 1."""
+        if self.plan.accumulation == "float32":
+            return 1.0
+        brightest = max((instance.surfels.brightest for instance in self.scene.surfels), default=0.0)
+        return math.ldexp(1.0, -math.ceil(math.log2(brightest))) if brightest > 0 else 1.0
+
     @property
     def window(self) -> tuple[float, float, float, float]:
         """Left, bottom and step of one sample, on the plane at depth 1 or (parallel cameras) in scaled units."""
@@ -55,4 +65,4 @@ class TileContext:
 def texture_key(name: str, size: tuple[int, int], plan: FramePlan) -> TextureKey:
     """Of a texture of the plan, for a tile of `size` pixels."""
     scale = plan.scale(name)
-    return name, size[0] * scale, size[1] * scale, TEXTURES[name][0]
+    return name, size[0] * scale, size[1] * scale, plan.format(name)

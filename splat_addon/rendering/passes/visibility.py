@@ -6,6 +6,7 @@ from __future__ import annotations
 from ..device.interface import PipelineDescription, Target
 from ..plan import FramePlan, PlannedPass
 from ..shaders import load
+from ..storages import get_storage
 from .blocks import LINEAR_DEPTH
 from .splats import SPLATS_BLOCK, draw_splats
 from .tile import TileContext
@@ -15,10 +16,10 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
     """What the pass draws with."""
     return PipelineDescription(
         name="visibility",
-        vertex=load("visibility.vert.glsl"),
+        vertex=load("visibility.vert.glsl", storage=frame.storage),
         fragment=load("visibility.frag.glsl"),
         block=SPLATS_BLOCK,
-        samplers=("surfels",),
+        samplers=get_storage(frame.storage).samplers,
         varyings=(
             ("smooth", "vec3", "place_depth"),
             *((("smooth", "vec3", "across_offset"),) if frame.linear_depth else ()),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from splat_addon.blender import final_render
-from splat_addon.rendering import resources
+from splat_addon.rendering import storages
 
 
 @pytest.fixture
@@ -28,8 +28,8 @@ def frames(scene, read_picture):
 @pytest.fixture
 def uploads(monkeypatch):
     """The surfels that were packed for the device, one entry each time."""
-    packed, pack = [], resources.pack_surfels
-    monkeypatch.setattr(resources, "pack_surfels", lambda surfels: packed.append(surfels) or pack(surfels))
+    packed, pack = [], storages.pack_surfels
+    monkeypatch.setattr(storages, "pack_surfels", lambda surfels: packed.append(surfels) or pack(surfels))
     return packed
 
 

@@ -1,0 +1,24 @@
+// References: Botsch et al. 2005, sections 3 and 4 (accumulation, normalised by the sum of weights in a later pass).
+// Summary: what a splat adds to a sample's sums. Where sums are float16 (HALF_SUMS), depths and their weights have a
+//          float32 target of their own; weights are scaled so that the sum's first and last steps lie in what float16
+//          can hold, and colours so that the scene's brightest is at most 1.
+
+#ifdef HALF_SUMS
+// A sum of weights up to 1 stops growing at 2048 of them, here 32768; float16 ends at 65504.
+const float WEIGHT_SCALE = 16.0;
+#endif
+
+void add_to_sums(float weight, float depth) {
+#ifdef HALF_SUMS
+  weight *= WEIGHT_SCALE;
+  color_sum = vec4(color_weight.rgb * splats.sides.w, 1.0) * weight;
+  normal_sum = vec4(normal, 0.0) * weight;
+  depth_sum = vec2(depth, 1.0) * weight;
+#else
+  color_sum = vec4(color_weight.rgb, 1.0) * weight;
+  normal_sum = vec4(normal, depth) * weight;
+#endif
+#ifdef MATERIAL_TARGET
+  material_sum = vec4(material, 1.0) * weight;
+#endif
+}

@@ -1,0 +1,14 @@
+// References: rendering/packing.py, which writes this layout.
+// Summary: four texels of float32 a splat, 512 splats a row.
+
+#include "common/octahedron.glsl"
+
+StoredSplat stored_splat(int index) {
+  ivec2 texel = ivec2((index % SPLATS_PER_ROW) * TEXELS_PER_SPLAT, index / SPLATS_PER_ROW);
+  vec4 position_data = texelFetch(surfels, texel, 0);
+  vec4 u_data = texelFetch(surfels, texel + ivec2(1, 0), 0);
+  vec4 v_data = texelFetch(surfels, texel + ivec2(2, 0), 0);
+  vec4 color = texelFetch(surfels, texel + ivec2(3, 0), 0);
+  vec3 normal = octahedral_decode(vec2(position_data.w, u_data.w));
+  return StoredSplat(position_data.xyz, u_data.xyz, v_data.xyz, normal, v_data.w, color);
+}

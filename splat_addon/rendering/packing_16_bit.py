@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfels as 16-bit numbers: 32 bytes each instead of 64, and a table of 48 bytes for every 512.
+
+A splat is four texels of four 16-bit numbers (unsigned, normalised: the one 16-bit format that every graphics API fills
+alike; drivers differ in how they round to float16):
+    position.xyz, normal.x  |  rotation.xyz, normal.y  |  log length u, v, material, 0  |  color.rgb, opacity
+The 512 splats of a row are neighbours, and numbers are relative to that block. Its row in the table is
+    low corner, longest half-axis  |  size of the box, log2 of longest over shortest half-axis  |  brightest colour, 0, 0, 0
+
+What each number may lose:
+    position: 2^-17 of the block's box, along each axis.
+    half-axes: 2^-17 log2(longest / shortest of the block) octaves, below 2^-10 of themselves while that ratio is below
+        2^180; equal lengths are exact. The axes turn by 2e-4 radians at most.
+    normal: 5e-5 radians.
+    colour: cube root of the share of the block's brightest in steps of 2^-15, so 5e-5 of the brightest and 1e-3 of a
+        colour a thousandth as bright. 0 is exact.
+    opacity: 2^-17 within 0 to 1. material: none up to 65,535, beyond which it is refused.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..surfels import Surfels
+from .packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT, octahedral, row_count
+
+_STEPS = 65535
+#: Steps from 0 to 1 of a signed number; one of the 65,536 values is given up so that 0 is one.
+_SIGNED_STEPS = 32767
+
+#: Bits of each coordinate in the order along which neighbours are gathered.
+_ORDER_BITS = 16
+
+
+def pack_16_bit(surfels: Surfels) -> tuple[np.ndarray, np.ndarray]:
+    """(rows, 2048, 4) float32 texels in 0 to 1, multiples of 1 / 65535, and the (rows, 3, 4) float32 table.
+
+    Raises ValueError above `MAX_SPLATS` surfels and for a material index above 65,535.
+    """
+    rows = row_count(surfels)
+    if len(surfels) and surfels.materials.max() > _STEPS:
+        raise ValueError(
+            f"16-bit storage numbers materials up to {_STEPS:,}, not {surfels.materials.max():,}; use float32 storage."
+        )
+    texels = np.zeros((rows, SPLATS_PER_ROW, TEXELS_PER_SPLAT, 4), np.float32)
+    table = np.zeros((rows, 3, 4), np.float32)
+    if not len(surfels):
+        return texels.reshape(rows, -1, 4), table
+    # the last row is filled up with its last splat, which widens no block
+    order = np.pad(spatial_order(surfels.positions), (0, rows * SPLATS_PER_ROW - len(surfels)), "edge")
+
+    def blocks(array):
+        return array[order].reshape(rows, SPLATS_PER_ROW, *array.shape[1:])
+
+    positions = blocks(surfels.positions).astype(np.float64)
+    low = positions.min(axis=1)
+    size = positions.max(axis=1) - low
+    texels[:, :, 0, :3] = _steps((positions - low[:, None]) / _divisor(size)[:, None])
+    table[:, 0, :3], table[:, 1, :3] = low, size
+
+    octaves_down = np.log2(blocks(surfels.scales))
+    octaves_down = octaves_down.max(axis=(1, 2), keepdims=True) - octaves_down
+    octaves = octaves_down.max(axis=(1, 2))
+    texels[:, :, 2, :2] = _steps(octaves_down / _divisor(octaves)[:, None, None])
+    table[:, 0, 3], table[:, 1, 3] = blocks(surfels.scales).max(axis=(1, 2)), octaves
+
+    texels[:, :, 1, :3] = _signed_steps(rotation_parameters(blocks(surfels.rotations)))
+    normals = octahedral(surfels.normals[order]).reshape(2, rows, SPLATS_PER_ROW)
+    texels[:, :, 0, 3], texels[:, :, 1, 3] = _signed_steps(normals)
+    texels[:, :, 2, 2] = blocks(surfels.materials) / _STEPS
+
+    colors = blocks(surfels.colors)
+    brightest = np.abs(colors[..., :3]).max(axis=(1, 2))
+    texels[:, :, 3, :3] = _signed_steps(np.cbrt(colors[..., :3] / _divisor(brightest)[:, None, None]))
+    texels[:, :, 3, 3] = _steps(np.clip(colors[..., 3], 0, 1))
+    table[:, 2, 0] = brightest
+    return texels.reshape(rows, -1, 4), table
+
+
+def spatial_order(positions: np.ndarray) -> np.ndarray:
+    """(N,) indices that bring neighbours of (N, 3) positions together: along a Morton curve through their box, equal
+    cells in their own order.
+    """
+    low, high = positions.min(axis=0).astype(np.float64), positions.max(axis=0).astype(np.float64)
+    cells = ((positions - low) * ((2**_ORDER_BITS - 1) / max((high - low).max(), 1e-300))).astype(np.uint64)
+    codes = np.zeros(len(positions), np.uint64)
+    for axis in range(3):
+        codes |= _spread(cells[:, axis]) << np.uint64(axis)
+    return np.argsort(codes, kind="stable")
+
+
+def _spread(bits: np.ndarray) -> np.ndarray:
+    """16-bit numbers with two zeros after each bit."""
+    for shift, mask in ((16, 0x0000FF0000FF), (8, 0x00F00F00F00F), (4, 0x0C30C30C30C3), (2, 0x249249249249)):
+        bits = (bits | bits << np.uint64(shift)) & np.uint64(mask)
+    return bits
+
+
+def rotation_parameters(quaternions: np.ndarray) -> np.ndarray:
+    """(..., 3) modified Rodrigues parameters, (x, y, z) / (1 + w), of (..., 4) unit quaternions w, x, y, z.
+
+    A quaternion and its negative are one rotation; the one with w >= 0 keeps the parameters within 1.
+    """
+    w = quaternions[..., :1]
+    return quaternions[..., 1:] * np.copysign(1 / (1 + np.abs(w)), w)
+
+
+def _divisor(size):
+    """What shares of a size are taken with: 1 in place of 0."""
+    return np.where(size > 0, size, 1)
+
+
+def _steps(share):
+    """0 to 1, rounded to a multiple of 1 / 65535."""
+    return np.rint(share * _STEPS) / _STEPS
+
+
+def _signed_steps(share):
+    """-1 to 1 as 0 to 65534 / 65535."""
+    return (np.rint(np.clip(share, -1, 1) * _SIGNED_STEPS) + _SIGNED_STEPS) / _STEPS

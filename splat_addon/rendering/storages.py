@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The forms in which surfels lie on the device: one registry entry and one GLSL file, shaders/storage/<name>.glsl, each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..surfels import Surfels
+from .packing import pack_surfels
+from .packing_16_bit import pack_16_bit
+
+
+@dataclass(frozen=True)
+class Storage:
+    """name: also of its GLSL file. label, summary: for users.
+    textures: (sampler, format) of each texture, in the order of `pack`'s (h, w, 4) float32 arrays.
+    """
+
+    name: str
+    label: str
+    summary: str
+    textures: tuple[tuple[str, str], ...]
+    pack: Callable[[Surfels], tuple[np.ndarray, ...]]
+
+    @property
+    def samplers(self) -> tuple[str, ...]:
+        """Names by which shaders know the textures."""
+        return tuple(sampler for sampler, _ in self.textures)
+
+
+STORAGES = {
+    storage.name: storage
+    for storage in (
+        Storage(
+            "float32",
+            "Float 32",
+            "64 bytes a surfel, exact",
+            (("surfels", "RGBA32F"),),
+            lambda surfels: (pack_surfels(surfels),),
+        ),
+        Storage(
+            "16-bit",
+            "16 Bit",
+            "32 bytes a surfel, positions to 1/131,072 of their neighbourhood",
+            (("surfels", "RGBA16"), ("surfel_blocks", "RGBA32F")),
+            pack_16_bit,
+        ),
+    )
+}
+
+
+def get_storage(name: str) -> Storage:
+    """Raises ValueError for a name that is not registered."""
+    if name not in STORAGES:
+        raise ValueError(f"A storage is one of {', '.join(STORAGES)}, not {name!r}.")
+    return STORAGES[name]

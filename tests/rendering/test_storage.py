@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""16-bit storage loses no more than it says, and every device reads it as it is written."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from splat_addon.rendering import Camera, Scene, Settings
+from splat_addon.rendering.packing_16_bit import pack_16_bit, spatial_order
+from splat_addon.rendering.storages import STORAGES
+from splat_addon.reference.metrics import psnr
+from splat_addon.surfels import LAYOUT, Surfels, quaternion_axes
+
+BLOCK = 512
+
+
+@st.composite
+def surfel_sets(draw):
+    """1 to 1100 surfels of any place, size, ratio, brightness and spread."""
+    random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    count = draw(st.sampled_from((1, 2, 511, 512, 513, 1100)))
+    scale, far = 10.0 ** draw(st.floats(-15, 15)), draw(st.floats(-1e3, 1e3))
+    octaves = draw(st.floats(0, 40))
+    flatness = (1, draw(st.sampled_from((0.0, 1e-3, 1.0))), 1)
+    normals, rotations = random.normal(size=(count, 3)), random.normal(size=(count, 4))
+    return Surfels(
+        positions=scale * (far + random.normal(size=(count, 3)) * flatness),
+        rotations=rotations / np.linalg.norm(rotations, axis=1, keepdims=True),
+        scales=scale * 2.0 ** -(octaves * random.random((count, 2))),
+        normals=normals / np.linalg.norm(normals, axis=1, keepdims=True),
+        colors=np.c_[draw(st.sampled_from((0.0, 1.0, 1e6))) * random.normal(size=(count, 3)), random.random(count)],
+        materials=random.integers(0, 65536, count),
+    )
+
+
+def unpacked(texels, table, count):
+    """The numbers back, in float64, by the words of packing_16_bit's docstring."""
+    texels, table = texels.astype(np.float64).reshape(-1, BLOCK, 4, 4), table.astype(np.float64)[:, None]
+    signed = (texels * 65535 - 32767) / 32767
+    low, size, tint = table[..., 0, :], table[..., 1, :], table[..., 2, :]
+    parameters = signed[:, :, 1, :3]
+    squared = (parameters**2).sum(axis=-1, keepdims=True)
+    x, y = signed[:, :, 0, 3], signed[:, :, 1, 3]
+    z = 1 - abs(x) - abs(y)
+    fold = np.maximum(-z, 0)
+    normals = np.stack([x - np.where(x >= 0, fold, -fold), y - np.where(y >= 0, fold, -fold), z], axis=-1)
+    fields = {
+        "positions": low[..., :3] + size[..., :3] * texels[:, :, 0, :3],
+        "rotations": np.concatenate([1 - squared, 2 * parameters], axis=-1) / (1 + squared),
+        "scales": low[..., 3:] * 2.0 ** (-size[..., 3:] * texels[:, :, 2, :2]),
+        "normals": normals / np.linalg.norm(normals, axis=-1, keepdims=True),
+        "colors": np.concatenate([tint[..., :1] * signed[:, :, 3, :3] ** 3, texels[:, :, 3, 3:]], axis=-1),
+        "materials": np.rint(texels[:, :, 2, 2] * 65535),
+    }
+    return {name: array.reshape(-1, *array.shape[2:])[:count] for name, array in fields.items()}
+
+
+@given(surfel_sets())
+@settings(max_examples=60, deadline=None)
+def test_every_number_keeps_within_its_bound(surfels):
+    order = spatial_order(surfels.positions)
+    found = unpacked(*pack_16_bit(surfels), len(surfels))
+    true = {name: getattr(surfels, name)[order].astype(np.float64) for name in LAYOUT}
+    for first in range(0, len(surfels), BLOCK):
+        block = {name: (found[name][first : first + BLOCK], true[name][first : first + BLOCK]) for name in LAYOUT}
+        position, exact = block["positions"]
+        extent = np.ptp(exact, axis=0)
+        rounding = 2.0**-23 * abs(exact).max(axis=0)
+        assert (abs(position - exact) <= extent / 2**17 * 1.001 + rounding).all()
+        scale, exact = block["scales"]
+        assert (abs(scale / exact - 1) <= 2.0**-10).all()
+        axes = zip(*(quaternion_axes(rotation.astype(np.float64)) for rotation in block["rotations"]), strict=True)
+        for axis, exact in axes:
+            assert np.linalg.norm(axis - exact, axis=1).max() <= 2e-4
+        normal, exact = block["normals"]
+        assert np.linalg.norm(normal - exact, axis=1).max() <= 1e-4
+        color, exact = block["colors"]
+        brightest = abs(exact[:, :3]).max()
+        cube_root = np.cbrt(exact[:, :3] / (brightest or 1))
+        assert (abs(color - exact)[:, :3] <= brightest * (3 * cube_root**2 + 1e-4) * 1.6e-5).all()
+        assert (abs(color - exact)[:, 3] <= 2.0**-17 * 1.01).all()
+        np.testing.assert_array_equal(*block["materials"])
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 2000))
+@settings(max_examples=20, deadline=None)
+def test_the_order_holds_everyone_once_and_gathers_neighbours(seed, count):
+    positions = np.random.default_rng(seed).random((count, 3), np.float32)
+    order = spatial_order(positions)
+    np.testing.assert_array_equal(np.sort(order), np.arange(count))
+    octants = (positions[order] >= (positions.min(axis=0) + np.ptp(positions, axis=0).max() / 2)) @ (1, 2, 4)
+    assert (np.diff(octants) >= 0).all()
+
+
+def test_storage_halves_the_memory():
+    surfels = _sheet(40_000)
+    sizes = {
+        name: sum(
+            texels.size * {"RGBA32F": 4, "RGBA16": 2}[format]
+            for texels, (_, format) in zip(storage.pack(surfels), storage.textures, strict=True)
+        )
+        for name, storage in STORAGES.items()
+    }
+    assert sizes["float32"] / 40_448 == 64
+    assert sizes["16-bit"] / 40_448 <= 32.1
+
+
+def test_devices_read_what_was_packed(render):
+    """Surfels that are given as 16 bits hold them are drawn alike from both storages: the shader reads them right."""
+    surfels = _sheet(3000)
+    held = unpacked(*pack_16_bit(surfels), len(surfels))
+    held = Surfels(**{name: array.astype(dtype) for (name, array), (_, dtype) in zip(held.items(), LAYOUT.values())})
+    camera = Camera.perspective(np.eye(4), 0.6, (96, 96), 0.1, 100)
+    scene = Scene((held,), world=(0.5, 0.5, 0.5))
+    frames = [render(Scene((s,), world=scene.world), camera, Settings(storage=name, supersampling=1))
+              for s, name in ((surfels, "16-bit"), (held, "float32"))]  # fmt: skip
+    assert frames[0].coverage.mean() > 0.9
+    assert psnr(frames[0].color, frames[1].color) > 65
+    np.testing.assert_allclose(np.median(abs(frames[0].color - frames[1].color)), 0, atol=1e-6)
+
+
+def test_too_many_materials_are_refused():
+    surfels = _sheet(10)
+    many = Surfels(**{**surfels.arrays(), "materials": np.full(10, 65536)})
+    with pytest.raises(ValueError, match="materials up to 65,535, not 65,536; use float32 storage"):
+        pack_16_bit(many)
+
+
+def test_no_surfels_pack_to_one_empty_row():
+    texels, table = pack_16_bit(_sheet(0))
+    assert texels.shape == (1, 2048, 4) and table.shape == (1, 3, 4) and not texels.any()
+
+
+def test_an_unknown_storage_is_refused(render):
+    with pytest.raises(ValueError, match="A storage is one of float32, 16-bit, not 'half'"):
+        render(Scene((_sheet(3),)), Camera.perspective(np.eye(4), 1, (8, 8), 0.1, 10), Settings(storage="half"))
+
+
+def _sheet(count):
+    """Surfels of many colours, sizes and slants on a wall at distance 3."""
+    random = np.random.default_rng(5)
+    tilt = random.normal(0, 0.1, (count, 4)) + (1, 0, 0, 0)
+    normals = random.normal(0, 0.2, (count, 3)) + (0, 0, 1)
+    return Surfels(
+        positions=(random.random((count, 3)) - 0.5) * (2.2, 2.2, 0.05) - (0, 0, 3),
+        rotations=tilt / np.linalg.norm(tilt, axis=1, keepdims=True),
+        scales=0.03 + 0.05 * random.random((count, 2)),
+        normals=normals / np.linalg.norm(normals, axis=1, keepdims=True),
+        colors=np.c_[random.random((count, 3)), np.ones(count)],
+        materials=np.zeros(count),
+    )
