@@ -5,7 +5,7 @@ A splat is four texels of four 16-bit numbers (unsigned, normalised: the one 16-
 alike; drivers differ in how they round to float16):
     position.xyz, normal.x  |  rotation.xyz, normal.y  |  log length u, v, material, 0  |  color.rgb, opacity
 The 512 splats of a row are neighbours, and numbers are relative to that block. Its row in the table is
-    low corner, longest half-axis  |  size of the box, log2 of longest over shortest half-axis  |  brightest colour, 0, 0, 0
+    low corner, longest half-axis  |  size of the box, log2 of longest over shortest half-axis  |  brightest colour, 0
 
 What each number may lose:
     position: 2^-17 of the block's box, along each axis.
@@ -82,7 +82,8 @@ def spatial_order(positions: np.ndarray) -> np.ndarray:
     cells in their own order.
     """
     low, high = positions.min(axis=0).astype(np.float64), positions.max(axis=0).astype(np.float64)
-    cells = ((positions - low) * ((2**_ORDER_BITS - 1) / max((high - low).max(), 1e-300))).astype(np.uint64)
+    shares = (positions - low) / max((high - low).max(), 1e-300)
+    cells = np.minimum(shares * 2**_ORDER_BITS, 2**_ORDER_BITS - 1).astype(np.uint64)
     codes = np.zeros(len(positions), np.uint64)
     for axis in range(3):
         codes |= _spread(cells[:, axis]) << np.uint64(axis)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The forms in which surfels lie on the device: one registry entry and one GLSL file, shaders/storage/<name>.glsl, each."""
+"""The forms in which surfels lie on the device: a registry entry and a GLSL file, shaders/storage/<name>.glsl, each."""
 
 from __future__ import annotations
 

@@ -5,10 +5,34 @@ import numpy as np
 import pytest
 
 from splat_addon.reference.extremes import discs
+from splat_addon.rendering import Scene, Settings
+
+LAYERS = [
+    *(("float32", *row) for row in ((1, 100), (10, 100), (100, 100), (1000, 90), (5000, 80))),
+    # float16 sums lose splats below 1/2048 of what is there: beyond 1000 layers they are no longer the mean
+    *(("float16", *row) for row in ((1, 80), (10, 75), (100, 65), (300, 50), (1000, 30), (5000, 0))),
+]
 
 
-@pytest.mark.parametrize(("layers", "least"), [(1, 100), (10, 100), (100, 100), (1000, 90), (5000, 80)])
-def test_many_layers_give_their_mean(layers, least, hold, lit, camera):
+@pytest.mark.parametrize(("accumulation", "layers", "least"), LAYERS)
+def test_many_layers_give_their_mean(accumulation, layers, least, hold, lit, camera):
     random = np.random.default_rng(1)
     centers = np.concatenate([random.normal(0, 0.02, (layers, 2)), -3 - 1e-3 * random.random((layers, 1))], axis=1)
-    hold({f"{layers} layers": (lit(discs(centers, (1.5, 0, 0), (0, 1.5, 0))), camera(size=(12, 12)))}, least)
+    sheet = lit(discs(centers, (1.5, 0, 0), (0, 1.5, 0)))
+    settings = Settings(accumulation=accumulation)
+    hold({f"{layers} layers": (sheet, camera(size=(12, 12)), settings)}, least)
+
+
+@pytest.mark.parametrize("brightness", [1e-6, 1e6, 1e20])
+def test_float16_sums_hold_any_brightness(brightness, render_all, camera):
+    random = np.random.default_rng(1)
+    centers = np.concatenate([random.normal(0, 0.02, (100, 2)), -3 - 1e-3 * random.random((100, 1))], axis=1)
+    colors = random.random((100, 3))
+    settings = Settings(accumulation="float16", shading="flat")
+    dim, bright = render_all(
+        [
+            (Scene((discs(centers, (1.5, 0, 0), (0, 1.5, 0), colors * factor),)), camera(size=(12, 12)), settings)
+            for factor in (1.0, brightness)
+        ]
+    )
+    np.testing.assert_allclose(bright.color[..., :3] / brightness, dim.color[..., :3], rtol=0, atol=2e-3)

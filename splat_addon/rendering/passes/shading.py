@@ -13,8 +13,8 @@ from .blocks import HALF_SUMS, LINEAR_DEPTH, std140
 from .tile import TileContext
 
 #: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
-#: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights, 1 / far, what summed
-#: colours are multiplied by.
+#: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights, 1 / far,
+#:     what summed colours are multiplied by.
 SHADING_BLOCK = (
     "Shading",
     "shading",
