@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One mesh object becomes one surfel object, in three steps: prepare, sample, place.
+"""One object, or several joined, becomes one surfel object, in three steps: prepare, sample, place.
 
 Only `prepare` and `place` touch Blender's data, so `sample` may run in a thread of its own while the window lives.
 """
@@ -28,8 +28,7 @@ from ..sampling import (
 )
 from ..surfels import Surfels
 from .camera_density import without_camera
-from .mesh_extraction import extract_mesh
-from .placement import transformed, without_shear
+from .gathering import gather
 from .surfel_objects import add_surfel_object, collections_of
 
 #: About 20 GB while converting; a slip in the resolution must not freeze the machine.
@@ -40,23 +39,31 @@ MAX_SURFELS = 100_000_000
 class Choices:
     """fineness: one keyword and value: "resolution", "spacing" or "count" as sampling takes them, or "pixels" that a
     surfel may cover for the scene's camera. reduction, grazing_angle: as sampling takes them. splat_size: half-axis of
-    a splat, in spacings. tolerance: how far from flat, object units, where surfels may become larger, or None."""
+    a splat, in spacings. tolerance: how far from flat, object units, where surfels may become larger, or None.
+    space: "object" or "world", whose units lengths are in and which the surfels are even in. join: all sources become
+    one, in world units."""
 
     fineness: dict[str, float]
     splat_size: float = DEFAULT_SPLAT_SIZE
     reduction: str = "normal"
     grazing_angle: float = DEFAULT_GRAZING_ANGLE
     tolerance: float | None = None
+    space: str = "object"
+    join: bool = False
+
+    @property
+    def in_world_units(self) -> bool:
+        return self.join or self.space == "world"
 
 
 @dataclass(eq=False)
 class Conversion:
-    """One source on its way, and what there is to tell about it.
+    """The sources of one surfel object on their way, and what there is to tell about them.
 
-    whole: as it was read; mesh: without its unusable triangles.
+    sources: the first gives the place. whole: as it was read; mesh: without its unusable triangles.
     """
 
-    source: bpy.types.Object
+    sources: list[bpy.types.Object]
     whole: TriangleMesh
     mesh: TriangleMesh
     matrix_world: Matrix
@@ -69,34 +76,34 @@ class Conversion:
     surfels: Surfels | None = None
     sampling: Sampling | None = None
 
+    @property
+    def name(self) -> str:
+        return self.sources[0].name
+
     def summary(self) -> str:
         """What was made, in one line."""
         parts, saved = self.sampling.small_parts, self.sampling.saved
+        objects = f"{len(self.sources)} objects, " if len(self.sources) > 1 else ""
         details = [f"{parts:,} small part{'s' * (parts > 1)} got one surfel each"] if parts else []
         if self.choices.tolerance is not None:
             details.append(f"flat places saved {saved:,} surfels and are off by {self.sampling.error:.2g} at most")
         return "; ".join(
             [
-                f"{self.triangles:,} triangles -> {len(self.surfels):,} surfels "
+                f"{objects}{self.triangles:,} triangles -> {len(self.surfels):,} surfels "
                 f"in {self.seconds:.1f} s, spacing {self.spacing:.4g}",
                 *details,
             ]
         )
 
 
-def prepare(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, choices: Choices) -> Conversion:
-    """Read the source, evaluated with its modifiers.
+def prepare(sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, choices: Choices) -> Conversion:
+    """Read the sources, evaluated with their modifiers, with the instances that they make.
 
     Raises ValueError with a sentence: no faces, nothing usable, an impossible fineness or transform.
     """
     start = time.perf_counter()
-    matrix_world, shear = without_shear(source.evaluated_get(depsgraph).matrix_world)
-    extracted = extract_mesh(source, depsgraph)
-    total = len(extracted.triangles)
-    if not total:
-        what = "has no faces" if len(extracted.triangles.positions) else "is empty"
-        raise ValueError(f"The mesh {what}, so there is no surface to sample; add faces first.")
-    whole = extracted.triangles if shear is None else transformed(extracted.triangles, shear)
+    gathered = gather(sources, depsgraph, choices.in_world_units)
+    whole, matrix_world = gathered.mesh, gathered.matrix_world
     mesh, dropped = drop_unusable(whole)
     skipped = [f"{count:,} triangle{'s' * (count > 1)} {reason}" for reason, count in dropped.items()]
     if not len(mesh):
@@ -107,9 +114,9 @@ def prepare(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, choices: C
     predicted = predict_count(mesh, spacing=spacing, **how)
     if predicted > MAX_SURFELS:
         raise ValueError(f"It would become {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
-    notes = [f"Skipped {', '.join(skipped)}", *extracted.notes] if skipped else list(extracted.notes)
-    seconds = time.perf_counter() - start
-    return Conversion(source, whole, mesh, matrix_world, extracted.materials, choices, spacing, total, notes, seconds)
+    notes = [f"Skipped {', '.join(skipped)}", *gathered.notes] if skipped else gathered.notes
+    materials, seconds = gathered.materials, time.perf_counter() - start
+    return Conversion(sources, whole, mesh, matrix_world, materials, choices, spacing, len(whole), notes, seconds)
 
 
 def sample(conversion: Conversion, progress: Callable[[float], bool | None] | None = None) -> None:
@@ -135,13 +142,13 @@ def sample(conversion: Conversion, progress: Callable[[float], bool | None] | No
 
 
 def place(conversion: Conversion, fallback: bpy.types.Collection) -> bpy.types.Object:
-    """The new object "<name> surfels" over its source, in the source's collections, with its materials.
+    """The new object "<name> surfels" over its sources, in the collections of the first, with their materials.
 
-    fallback: where it goes when every collection of the source belongs to a linked library.
+    fallback: where it goes when every collection of that source belongs to a linked library.
     """
     start = time.perf_counter()
-    source, collections = conversion.source, collections_of(conversion.source, fallback)
-    name, matrix_world = f"{source.name} surfels", conversion.matrix_world
+    collections = collections_of(conversion.sources[0], fallback)
+    name, matrix_world = f"{conversion.name} surfels", conversion.matrix_world
     made = add_surfel_object(name, conversion.surfels, matrix_world, collections, conversion.materials)
     conversion.seconds += time.perf_counter() - start
     return made

@@ -13,14 +13,16 @@ import bpy
 
 from ..sampling import SamplingCancelled
 from .conversion import Choices, Conversion, place, prepare, sample
+from .gathering import groups
 from .surfel_objects import select_only
 
 
 class ConversionBatch:
-    """refused: (object name, sentence) of each source that could not be converted. share: finished part, 0 to 1."""
+    """active: whose place a joined result takes. refused: (object name, sentence) of each source that could not be
+    converted. share: finished part, 0 to 1."""
 
-    def __init__(self, sources: list[bpy.types.Object], choices: Choices):
-        self._sources, self._choices = sources, choices
+    def __init__(self, sources: list[bpy.types.Object], choices: Choices, active: bpy.types.Object | None = None):
+        self._groups, self._choices = groups(sources, active, choices.join), choices
         self._sampled: list[Conversion] = []
         self._begun = 0
         self._part = 0.0
@@ -29,20 +31,20 @@ class ConversionBatch:
 
     @property
     def share(self) -> float:
-        return (max(self._begun - 1, 0) + self._part) / len(self._sources)
+        return (max(self._begun - 1, 0) + self._part) / len(self._groups)
 
     @property
     def has_surfels(self) -> bool:
         return bool(self._sampled)
 
     def prepared(self, context: bpy.types.Context) -> Iterator[Conversion]:
-        """The usable sources, each read from Blender when it is asked for; give it to `sample` before the next."""
-        for source in self._sources:
+        """The usable ones, each read from Blender when it is asked for; give it to `sample` before the next."""
+        for sources in self._groups:
             self._begun, self._part = self._begun + 1, 0.0
             try:
-                yield prepare(source, context.evaluated_depsgraph_get(), self._choices)
+                yield prepare(sources, context.evaluated_depsgraph_get(), self._choices)
             except ValueError as error:
-                self.refused.append((source.name, str(error)))
+                self.refused.append((sources[0].name, str(error)))
 
     def sample(self, conversion: Conversion, report=lambda share: None) -> None:
         """Sample one source; may run in another thread. report: called with `share` now and then."""
@@ -58,7 +60,7 @@ class ConversionBatch:
             return
         except (ValueError, MemoryError) as error:
             sentence = str(error) or "The memory does not suffice; sample it coarser."
-            self.refused.append((conversion.source.name, sentence))
+            self.refused.append((conversion.name, sentence))
         else:
             self._sampled.append(conversion)
 

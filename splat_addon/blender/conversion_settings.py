@@ -59,7 +59,7 @@ class ConversionProperties:
     spacing: FloatProperty(
         name="Spacing",
         description=(
-            "Distance between surfels, in the object's own units, before its scale. "
+            "Distance between surfels, in the units of the chosen space. "
             "Half of it shows details half the size, for four times the surfels, memory and time"
         ),
         default=0.01,
@@ -86,6 +86,27 @@ class ConversionProperties:
         min=0.0,
         soft_min=0.25,
         soft_max=10.0,
+    )
+    join: BoolProperty(
+        name="Join",
+        description=(
+            "Make one surfel object of everything selected, in the place of the active object and evenly spaced in the "
+            "world, with the materials of all. The density then means the whole: its longest edge, its count"
+        ),
+        default=False,
+    )
+    space: EnumProperty(
+        name="Space",
+        description="Where surfels are spaced evenly, and whose units lengths are in",
+        items=(
+            ("OBJECT", "Object", "The object's own space: its scale spreads the surfels, unevenly if it is uneven"),
+            (
+                "WORLD",
+                "World",
+                "The world: scaled objects are as dense as others. The surfel object has a scale of 1",
+            ),
+        ),
+        default="OBJECT",
     )
     reduction: EnumProperty(
         name="Reduction",
@@ -115,8 +136,7 @@ class ConversionProperties:
     tolerance: FloatProperty(
         name="Tolerance",
         description=(
-            "How far the surface may be from flat where surfels become larger, in the object's own units, before its "
-            "scale"
+            "How far the surface may be from flat where surfels become larger, in the units of the chosen space"
         ),
         default=0.001,
         min=0.0,
@@ -137,10 +157,10 @@ class ConversionProperties:
     )
     source: EnumProperty(
         name="Source",
-        description="What happens to the mesh that was converted",
+        description="What happens to the object that was converted",
         items=(
-            ("KEEP", "Keep", "Leave the mesh as it is; it and its surfels lie in the same place"),
-            ("HIDE", "Hide", "Hide the mesh in the viewport and in renders, so that only its surfels are seen"),
+            ("KEEP", "Keep", "Leave the object as it is; it and its surfels lie in the same place"),
+            ("HIDE", "Hide", "Hide the object in the viewport and in renders, so that only its surfels are seen"),
         ),
         default="KEEP",
     )
@@ -159,6 +179,8 @@ def choices(properties: ConversionProperties) -> Choices:
         reduction=properties.reduction.lower(),
         grazing_angle=properties.grazing_angle,
         tolerance=properties.tolerance if properties.use_adaptive else None,
+        space=properties.space.lower(),
+        join=properties.join,
     )
 
 
@@ -168,6 +190,9 @@ def draw_properties(layout: bpy.types.UILayout, properties: ConversionProperties
     layout.use_property_decorate = False
     layout.prop(properties, "density")
     layout.prop(properties, DENSITIES[properties.density].property)
+    layout.prop(properties, "join")
+    if not properties.join:
+        layout.row().prop(properties, "space", expand=True)
     layout.prop(properties, "reduction")
     if REDUCTIONS[properties.reduction.lower()].has_angle:
         layout.prop(properties, "grazing_angle")

@@ -28,30 +28,28 @@ class ExtractedMesh:
     notes: tuple[str, ...]
 
 
-def extract_mesh(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> ExtractedMesh:
-    """Everything that sampling needs of a mesh object; no triangles where it has no faces."""
-    with evaluated_mesh(source, depsgraph) as (evaluated, mesh):
-        slots = _slot_materials(evaluated, mesh)
-        corners, faces = _triangle_corners(mesh)
-        vertices = _corner_vertices(mesh)[corners]
-        indices = _material_indices(mesh, faces, max(len(slots), 1))
-        colors, notes = _base_colors(slots, np.unique(indices), mesh)
-        triangles = TriangleMesh(
-            positions=_positions(mesh),
-            triangles=vertices,
-            corner_normals=_corner_normals(mesh, corners),
-            corner_colors=_by_material(colors, indices, "color_layer", _color_reader(mesh, corners, vertices), 4),
-            corner_uvs=_by_material(colors, indices, "uv_layer", _uv_reader(mesh, corners), 2),
-            materials=indices,
-            surfaces=tuple(color.surface for color in colors),
-        )
+def read_mesh(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> ExtractedMesh:
+    """Everything that sampling needs of an evaluated object's mesh; no triangles where it has no faces."""
+    slots = slot_materials(evaluated, mesh)
+    corners, faces = _triangle_corners(mesh)
+    vertices = _corner_vertices(mesh)[corners]
+    indices = _material_indices(mesh, faces, max(len(slots), 1))
+    colors, notes = _base_colors(slots, np.unique(indices), mesh)
+    triangles = TriangleMesh(
+        positions=_positions(mesh),
+        triangles=vertices,
+        corner_normals=_corner_normals(mesh, corners),
+        corner_colors=_by_material(colors, indices, "color_layer", _color_reader(mesh, corners, vertices), 4),
+        corner_uvs=_by_material(colors, indices, "uv_layer", _uv_reader(mesh, corners), 2),
+        materials=indices,
+        surfaces=tuple(color.surface for color in colors),
+    )
     return ExtractedMesh(triangles, tuple(m and m.original for m in slots), tuple(notes))
 
 
-def extract_triangles(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> TriangleMesh:
+def read_triangles(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> ExtractedMesh:
     """Only the positions and triangles, for predictions."""
-    with evaluated_mesh(source, depsgraph) as (_, mesh):
-        return TriangleMesh(_positions(mesh), _corner_vertices(mesh)[_triangle_corners(mesh)[0]])
+    return ExtractedMesh(TriangleMesh(_positions(mesh), _corner_vertices(mesh)[_triangle_corners(mesh)[0]]), (), ())
 
 
 @contextmanager
@@ -111,7 +109,7 @@ def _material_indices(mesh: bpy.types.Mesh, faces: np.ndarray | None, slots: int
     return indices if faces is None else indices[faces]
 
 
-def _slot_materials(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> list[bpy.types.Material | None]:
+def slot_materials(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> list[bpy.types.Material | None]:
     """The mesh's materials, which Geometry Nodes may have set, and over them those of slots that the object owns."""
     slots = evaluated.material_slots
     materials = list(mesh.materials) + [slot.material for slot in slots[len(mesh.materials) :]]

@@ -2,17 +2,13 @@
 """Where a new surfel object stands, so that it lies exactly over its source.
 
 An object of its own can be moved, turned and scaled, but not sheared, as a child of a turned and unevenly scaled
-parent is. Such shear goes into the mesh before it is sampled.
+parent is. What its transform leaves over goes into the mesh before it is sampled.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from mathutils import Matrix
-
-from ..sampling import TriangleMesh
 
 #: Blender's matrices are float32; a difference this small, relative to the matrix, is rounding.
 _ROUNDING = 1e-5
@@ -35,11 +31,17 @@ def without_shear(matrix_world: Matrix) -> tuple[Matrix, np.ndarray | None]:
     return plain, np.linalg.solve(made[:3, :3], whole[:3, :3])
 
 
-def transformed(mesh: TriangleMesh, linear: np.ndarray) -> TriangleMesh:
-    """The mesh under a (3, 3) linear map; normals go by its inverse transpose."""
-    normals = mesh.corner_normals
-    return replace(
-        mesh,
-        positions=mesh.positions @ linear.T,
-        corner_normals=None if normals is None else normals @ np.linalg.inv(linear),
-    )
+def without_scale(matrix_world: Matrix) -> Matrix:
+    """Its location and rotation alone, so that lengths in it are world units. Raises as `without_shear`."""
+    location, rotation, _ = without_shear(matrix_world)[0].decompose()
+    return Matrix.LocRotScale(location, rotation, None)
+
+
+def relative(matrix_world: np.ndarray, frame: Matrix) -> np.ndarray:
+    """(4, 4) float64 map from the space of `matrix_world` to that of `frame`; exactly 1 where they are the same."""
+    frame, result = np.array(frame, np.float64), np.eye(4)
+    if not np.array_equal(matrix_world, frame):
+        result[:3, :3] = np.linalg.solve(frame[:3, :3], matrix_world[:3, :3])
+        # the difference first: both may be far from the world's origin
+        result[:3, 3] = np.linalg.solve(frame[:3, :3], matrix_world[:3, 3] - frame[:3, 3])
+    return result

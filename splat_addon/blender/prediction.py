@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many surfels a mesh will become, known before the conversion and cheap enough for the sidebar.
+"""How many surfels something will become, known before the conversion and cheap enough for the sidebar.
 
 The count is a projected area over the spacing squared, so only the area and the longest edge of each evaluated mesh
 are kept, and a coarse outline where a camera is to decide. They are measured by a timer shortly after they are first
@@ -12,11 +12,15 @@ import math
 from dataclasses import dataclass
 
 import bpy
+import numpy as np
 from bpy.app.handlers import persistent
 
 from ..sampling import Outline, drop_unusable, grid_spacing, outline, projected_area
 from .conversion import Choices
-from .mesh_extraction import extract_triangles
+from .gathering import frame_of, gather
+from .mesh_extraction import read_triangles
+from .placement import relative
+from .sources import has_surfaces
 
 #: Waiting this long gathers the changes of a stroke or a drag into one measurement.
 _DELAY_SECONDS = 0.2
@@ -24,12 +28,13 @@ _DELAY_SECONDS = 0.2
 
 @dataclass(frozen=True, eq=False)
 class Extent:
-    """area: projected area. longest_edge: of the bounding box. Object units, both 0 for nothing usable.
-    surface: its outline, where the choices need it."""
+    """area: projected area. longest_edge: of the bounding box. In units of the result, both 0 for nothing usable.
+    surface: its outline, where the choices need it. others: session_uids of objects that are part of it besides."""
 
     area: float
     longest_edge: float
     surface: Outline | None = None
+    others: frozenset[int] = frozenset()
 
     def predict(self, fineness: dict[str, float]) -> tuple[int, float]:
         """(surfels, spacing) for a resolution, spacing or count; both 0 where that is 0 or nothing is usable."""
@@ -37,6 +42,9 @@ class Extent:
         spacing = _SPACINGS[kind](self, value) if value > 0 else 0.0
         return (round(self.area / spacing**2), spacing) if spacing > 0 else (0, 0.0)
 
+
+#: The extent of what cannot be converted.
+NOTHING = Extent(0.0, 0.0, Outline(np.zeros((0, 3)), 0.0))
 
 #: kind of fineness -> spacing from the extent and a value above 0
 _SPACINGS = {
@@ -46,19 +54,23 @@ _SPACINGS = {
 }
 
 
-def measure(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, choices: Choices) -> Extent:
-    """The extent of a mesh object with its modifiers; not fast: 0.3 s for a million triangles."""
-    mesh, _ = drop_unusable(extract_triangles(source, depsgraph))
-    surface = outline(mesh) if "pixels" in choices.fineness else None
+def measure(sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, choices: Choices) -> Extent:
+    """The extent of what the sources become together; not fast: 0.3 s for a million triangles."""
+    try:
+        gathered = gather(sources, depsgraph, choices.in_world_units, read_triangles)
+    except ValueError:
+        return NOTHING
+    mesh, _ = drop_unusable(gathered.mesh)
     if not len(mesh):
-        return Extent(0.0, 0.0, surface)
+        return NOTHING
+    surface = outline(mesh) if "pixels" in choices.fineness else None
     area = projected_area(mesh, choices.reduction, choices.grazing_angle)
-    return Extent(area, grid_spacing(mesh, resolution=1), surface)
+    return Extent(area, grid_spacing(mesh, resolution=1), surface, gathered.others)
 
 
-def known_extents(sources: list[bpy.types.Object], choices: Choices) -> list[Extent] | None:
-    """Those of all sources, or None while some are still to be measured, for which the timer is started."""
-    keys = [_key(source, choices) for source in sources]
+def known_extents(groups: list[list[bpy.types.Object]], choices: Choices) -> list[Extent] | None:
+    """Those of all groups of sources, or None while some are still to be measured, for which the timer is started."""
+    keys = [_key(sources, choices) for sources in groups]
     missing = [key for key in keys if key not in _extents]
     if not missing:
         return [_extents[key] for key in keys]
@@ -68,12 +80,20 @@ def known_extents(sources: list[bpy.types.Object], choices: Choices) -> list[Ext
     return None
 
 
-def _key(source: bpy.types.Object, choices: Choices) -> tuple:
-    """The object's session_uid, and the choices that make a difference to its extent."""
-    return source.session_uid, choices.reduction, choices.grazing_angle, "pixels" in choices.fineness
+def _key(sources: list[bpy.types.Object], choices: Choices) -> tuple:
+    """The sources' session_uids, and what of their transforms and of the choices makes a difference to the extent."""
+    try:
+        frame = frame_of(sources[0], choices.in_world_units)
+        maps = (relative(np.array(source.matrix_world, np.float64), frame) for source in sources)
+        places = tuple(float(f"{value:.4g}") for matrix in maps for value in matrix.ravel())
+    except ValueError:
+        places = ()
+    uids = tuple(source.session_uid for source in sources)
+    how = choices.reduction, choices.grazing_angle, "pixels" in choices.fineness, choices.in_world_units
+    return uids, places, *how
 
 
-#: key of an object and choices -> its extent, as long as that is true
+#: key of sources and choices -> their extent, as long as that is true
 _extents: dict[tuple, Extent] = {}
 
 #: keys that the sidebar asked for, and the choices that they were made of
@@ -82,11 +102,11 @@ _wanted: dict[tuple, Choices] = {}
 
 def _measure_wanted() -> None:
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    sources = {source.session_uid: source for source in bpy.context.view_layer.objects}
+    objects = {object_.session_uid: object_ for object_ in bpy.context.view_layer.objects}
     for key, choices in _wanted.items():
-        source = sources.get(key[0])
-        if source is not None and source.type == "MESH" and source.mode == "OBJECT":
-            _extents[key] = measure(source, depsgraph, choices)
+        sources = [objects.get(uid) for uid in key[0]]
+        if all(source is not None and has_surfaces(source) and source.mode == "OBJECT" for source in sources):
+            _extents[key] = measure(sources, depsgraph, choices)
     _wanted.clear()
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
@@ -97,13 +117,14 @@ def _measure_wanted() -> None:
 @persistent
 def forget_changed(scene, depsgraph):
     """Drop what a depsgraph update made untrue."""
-    changed = {
-        update.id.original.session_uid
-        for update in depsgraph.updates
-        if update.is_updated_geometry and isinstance(update.id, bpy.types.Object)
-    }
-    for key in [key for key in _extents if key[0] in changed]:
-        del _extents[key]
+    updates = [update for update in depsgraph.updates if isinstance(update.id, bpy.types.Object)]
+    changed = {update.id.original.session_uid for update in updates if update.is_updated_geometry}
+    touched = changed | {update.id.original.session_uid for update in updates if update.is_updated_transform}
+    # what a collection instance shows changes with the collection's members too
+    is_regrouped = any(isinstance(update.id, bpy.types.Collection) for update in depsgraph.updates)
+    for key, extent in list(_extents.items()):
+        if changed & set(key[0]) or touched & extent.others or (is_regrouped and extent.others):
+            del _extents[key]
 
 
 @persistent

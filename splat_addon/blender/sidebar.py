@@ -8,8 +8,9 @@ import bpy
 from .camera_density import without_camera
 from .conversion import Choices
 from .conversion_settings import PROPERTY_NAMES, choices, draw_properties
+from .gathering import frame_of, groups
 from .ids import CONVERSION_SETTINGS, SIDEBAR_PANEL, SIDEBAR_TAB, SURFELS_FROM_MESH
-from .operators.surfels_from_mesh import selected_meshes
+from .operators.surfels_from_mesh import selected_sources
 from .prediction import known_extents
 
 
@@ -23,11 +24,11 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
     def draw(self, context):
         settings = getattr(context.scene, CONVERSION_SETTINGS)
         draw_properties(self.layout, settings)
-        sources = selected_meshes(context)
+        sources = selected_sources(context)
         if sources and context.mode == "OBJECT":
             text = prediction(context, sources, choices(settings))
         else:
-            text = "Select a mesh with faces, in object mode"
+            text = "Select something with a surface, in object mode"
         self.layout.label(text=text, icon="INFO")
         button = self.layout.operator(SURFELS_FROM_MESH, icon="OUTLINER_OB_POINTCLOUD")
         for name in PROPERTY_NAMES:
@@ -36,14 +37,17 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
 
 def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], asked: Choices) -> str:
     """One line on what the sources will become, or why they cannot."""
-    extents = known_extents(sources, asked)
+    parts = groups(sources, context.active_object, asked.join)
+    extents = known_extents(parts, asked)
     if extents is None:
         return "Counting …"
     depsgraph = context.view_layer.depsgraph
     try:
         finenesses = [
-            without_camera(asked.fineness, lambda e=extent: e.surface, source.matrix_world, depsgraph)
-            for source, extent in zip(sources, extents, strict=True)
+            without_camera(
+                asked.fineness, lambda e=extent: e.surface, frame_of(part[0], asked.in_world_units), depsgraph
+            )
+            for part, extent in zip(parts, extents, strict=True)
         ]
     except ValueError as error:
         return str(error)

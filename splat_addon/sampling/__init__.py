@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sampling: a mesh becomes surfels by exact scan conversion onto a layered depth cube. Numpy only.
 
-Flow: `mesh` -> `cleaning` -> `fineness`, `grid` -> `depth_cube` (`reductions`, `scan_conversion`) -> `attributes`
-(`ellipses`, `colors`) -> `merging`, `adaptive` -> `lost_parts`, `part_surfels` -> `Surfels`; `sample` puts
+Flow: `mesh` (`joining`) -> `cleaning` -> `fineness`, `grid` -> `depth_cube` (`reductions`, `scan_conversion`) ->
+`attributes` (`ellipses`, `colors`) -> `merging`, `adaptive` -> `lost_parts`, `part_surfels` -> `Surfels`; `sample` puts
 them in order.
 `closest_approach` says how fine a camera needs it. Points without faces become surfels in `points`.
 """
@@ -13,6 +13,7 @@ from .cleaning import drop_unusable
 from .closest_approach import Outline, camera_spacing, outline
 from .colors import SurfaceColor
 from .fineness import grid_spacing, predict_count
+from .joining import joined, transformed
 from .mesh import TriangleMesh
 from .points import PointsReport, surfels_from_points
 from .reductions import DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS, projected_area
@@ -36,10 +37,12 @@ __all__ = [
     "drop_unusable",
     "grid_spacing",
     "is_solid",
+    "joined",
     "outline",
     "predict_count",
     "projected_area",
     "sample_mesh",
     "sample_surface",
     "surfels_from_points",
+    "transformed",
 ]

@@ -5,11 +5,12 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.mesh_extraction import extract_mesh, extract_triangles
+from splat_addon.blender.mesh_extraction import evaluated_mesh, read_mesh, read_triangles
 
 
-def extract(source):
-    return extract_mesh(source, bpy.context.evaluated_depsgraph_get())
+def extract(source, read=read_mesh):
+    with evaluated_mesh(source, bpy.context.evaluated_depsgraph_get()) as (evaluated, mesh):
+        return read(evaluated, mesh)
 
 
 def area(mesh):
@@ -106,7 +107,5 @@ def test_an_empty_mesh_gives_no_triangles(add_mesh):
 
 def test_the_short_way_gives_the_same_triangles():
     bpy.ops.mesh.primitive_torus_add()
-    full, short = (
-        f(bpy.context.object, bpy.context.evaluated_depsgraph_get()) for f in (extract_mesh, extract_triangles)
-    )
-    assert np.array_equal(full.triangles.positions[full.triangles.triangles], short.positions[short.triangles])
+    full, short = (extract(bpy.context.object, read).triangles for read in (read_mesh, read_triangles))
+    assert np.array_equal(full.positions[full.triangles], short.positions[short.triangles])

@@ -6,7 +6,7 @@ import pytest
 
 from splat_addon.blender import prediction
 from splat_addon.blender.conversion import Choices
-from splat_addon.blender.mesh_extraction import extract_mesh
+from splat_addon.blender.gathering import gather
 from splat_addon.blender.sidebar import prediction as sidebar_text
 from splat_addon.blender.sidebar import prediction_text
 from splat_addon.sampling import REDUCTIONS, predict_count
@@ -35,9 +35,9 @@ def camera():
 def known(cube):
     """The extent of the cube, measured as the timer does it."""
     bpy.context.view_layer.update()
-    assert prediction.known_extents([cube], PLAIN) is None
+    assert prediction.known_extents([[cube]], PLAIN) is None
     prediction._measure_wanted()
-    return prediction.known_extents([cube], PLAIN)[0]
+    return prediction.known_extents([[cube]], PLAIN)[0]
 
 
 def test_a_cube_is_predicted_exactly(known):
@@ -48,8 +48,8 @@ def test_a_cube_is_predicted_exactly(known):
 def test_it_is_the_count_that_sampling_predicts(cube):
     cube.modifiers.new("round", "SUBSURF").levels = 3
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    count, spacing = prediction.measure(cube, depsgraph, PLAIN).predict({"resolution": 100})
-    assert count == predict_count(extract_mesh(cube, depsgraph).triangles, spacing=spacing)
+    count, spacing = prediction.measure([cube], depsgraph, PLAIN).predict({"resolution": 100})
+    assert count == predict_count(gather([cube], depsgraph, False).mesh, spacing=spacing)
 
 
 @pytest.mark.parametrize("fineness", [{"resolution": 0}, {"spacing": 0.0}])
@@ -59,27 +59,27 @@ def test_a_setting_of_zero_predicts_nothing(known, fineness):
 
 def test_a_mesh_without_faces_predicts_nothing(add_mesh):
     points = add_mesh("points", [(0, 0, 0)], [])
-    extent = prediction.measure(points, bpy.context.evaluated_depsgraph_get(), PLAIN)
+    extent = prediction.measure([points], bpy.context.evaluated_depsgraph_get(), PLAIN)
     assert (extent.predict({"resolution": 16})[0], extent.predict({"spacing": 0.1})[0]) == (0, 0)
 
 
 def test_a_changed_modifier_forgets_the_count(cube, known):
     cube.modifiers.new("array", "ARRAY")
     bpy.context.view_layer.update()
-    assert prediction.known_extents([cube], PLAIN) is None
+    assert prediction.known_extents([[cube]], PLAIN) is None
 
 
 def test_a_changed_mesh_forgets_the_count(cube, known):
     cube.data.vertices[0].co.x = 5
     cube.data.update()
     bpy.context.view_layer.update()
-    assert prediction.known_extents([cube], PLAIN) is None
+    assert prediction.known_extents([[cube]], PLAIN) is None
 
 
 def test_a_moved_object_keeps_its_count(cube, known):
     cube.location.x = 5
     bpy.context.view_layer.update()
-    assert prediction.known_extents([cube], PLAIN) == [known]
+    assert prediction.known_extents([[cube]], PLAIN) == [known]
 
 
 def test_another_file_forgets_all_counts(cube, known):
@@ -96,14 +96,14 @@ def test_every_reduction_has_its_own_count(cube, reduction):
     cube.rotation_euler = (0.3, 0.5, 0.7)
     bpy.ops.object.transform_apply(rotation=True)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    extent = prediction.measure(cube, depsgraph, Choices({"resolution": 16}, reduction=reduction))
-    mesh = extract_mesh(cube, depsgraph).triangles
+    extent = prediction.measure([cube], depsgraph, Choices({"resolution": 16}, reduction=reduction))
+    mesh = gather([cube], depsgraph, False).mesh
     assert extent.predict({"spacing": 0.1})[0] == predict_count(mesh, spacing=0.1, reduction=reduction)
 
 
 def test_another_reduction_is_measured_anew(cube, known):
-    assert prediction.known_extents([cube], Choices({"resolution": 16}, reduction="none")) is None
-    assert prediction.known_extents([cube], Choices({"spacing": 0.5})) == [known]
+    assert prediction.known_extents([[cube]], Choices({"resolution": 16}, reduction="none")) is None
+    assert prediction.known_extents([[cube]], Choices({"spacing": 0.5})) == [known]
 
 
 def test_the_text_sums_over_the_selected_meshes():

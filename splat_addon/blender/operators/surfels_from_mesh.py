@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Object > Convert to Surfels: each selected mesh becomes a surfel object in the same place.
+"""Object > Convert to Surfels: what is selected becomes surfel objects in the same place.
 
 From a button or a menu the sampling runs in a thread, so that the window shows progress and Esc cancels; from a
 script, in background and from the redo panel it runs to its end in `execute`.
@@ -11,21 +11,22 @@ from concurrent.futures import ThreadPoolExecutor
 
 import bpy
 
-from ..attributes import has_surfels
 from ..conversion_batch import ConversionBatch
 from ..conversion_settings import ConversionProperties, choices, draw_properties
 from ..ids import SURFELS_FROM_MESH
+from ..sources import has_surfaces
 
 _TIMER_SECONDS = 0.05
 
 
-def selected_meshes(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """What the operator converts: all meshes that are not surfels already."""
-    return [s for s in context.selected_objects if s.type == "MESH" and not has_surfels(s.data)]
+def selected_sources(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """What the operator converts: everything that may show a surface and is not surfels already."""
+    return [source for source in context.selected_objects if has_surfaces(source)]
 
 
 class OBJECT_OT_surfels_from_mesh(ConversionProperties, bpy.types.Operator):
-    """Sample each selected mesh, as its modifiers make it, into a new object of surfels that lies exactly over it"""
+    """Sample what is selected, as its modifiers make it, into new objects of surfels that lie exactly over it: \
+meshes, curves, texts, metaballs, and the instances of Geometry Nodes and collections"""
 
     bl_idname = SURFELS_FROM_MESH
     bl_label = "Convert to Surfels"
@@ -34,9 +35,11 @@ class OBJECT_OT_surfels_from_mesh(ConversionProperties, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         if context.mode != "OBJECT":
-            cls.poll_message_set("Meshes are converted in object mode; leave the current mode first")
-        elif not selected_meshes(context):
-            cls.poll_message_set("Select a mesh object to convert, one that is not surfels already")
+            cls.poll_message_set("Objects are converted in object mode; leave the current mode first")
+        elif not selected_sources(context):
+            cls.poll_message_set(
+                "Select a mesh object, curve, text, metaball or collection instance, one that is not surfels already"
+            )
         else:
             return True
         return False
@@ -45,7 +48,7 @@ class OBJECT_OT_surfels_from_mesh(ConversionProperties, bpy.types.Operator):
         draw_properties(self.layout, self)
 
     def execute(self, context):
-        batch = ConversionBatch(selected_meshes(context), choices(self))
+        batch = ConversionBatch(selected_sources(context), choices(self), context.active_object)
         manager = context.window_manager
         manager.progress_begin(0.0, 1.0)
         try:
@@ -58,7 +61,7 @@ class OBJECT_OT_surfels_from_mesh(ConversionProperties, bpy.types.Operator):
     def invoke(self, context, event):
         if bpy.app.background:
             return self.execute(context)
-        self._batch = ConversionBatch(selected_meshes(context), choices(self))
+        self._batch = ConversionBatch(selected_sources(context), choices(self), context.active_object)
         self._prepared = self._batch.prepared(context)
         self._executor, self._sampling = ThreadPoolExecutor(max_workers=1), None
         self._timer = context.window_manager.event_timer_add(_TIMER_SECONDS, window=context.window)
@@ -110,12 +113,12 @@ class OBJECT_OT_surfels_from_mesh(ConversionProperties, bpy.types.Operator):
             return {"CANCELLED"}
         made = batch.place_all(context) if batch.has_surfels else []
         for conversion, _ in made:
-            self.report({"INFO"}, f"{conversion.source.name}: {conversion.summary()}")
+            self.report({"INFO"}, f"{conversion.name}: {conversion.summary()}")
             for note in conversion.notes:
-                self.report({"WARNING"}, f"{conversion.source.name}: {note}")
-            if self.source == "HIDE":
-                conversion.source.hide_set(True)
-                conversion.source.hide_render = True
+                self.report({"WARNING"}, f"{conversion.name}: {note}")
+            for source in conversion.sources if self.source == "HIDE" else ():
+                source.hide_set(True)
+                source.hide_render = True
         # An error fails a script's call; where others were converted, that would hide them from it.
         for name, sentence in batch.refused:
             self.report({"WARNING" if made else "ERROR"}, f"{name}: {sentence}")

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What an object shows of surfaces: its own evaluated mesh, and every mesh that it puts somewhere as an instance.
+
+The depsgraph's list of instances has it all, in every supported version: the mesh of a curve, a text or a family of
+metaballs is an instance that its object makes of itself, as are what Geometry Nodes place and what an empty takes from
+its collection.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import bpy
+import numpy as np
+
+from .attributes import has_surfels
+
+#: Types whose evaluated geometry is, or may be, a mesh; of the latter, only with modifiers that could make one.
+_SURFACES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
+_SURFACES_BY_MODIFIERS = frozenset({"POINTCLOUD", "CURVES"})
+
+
+def has_surfaces(source: bpy.types.Object) -> bool:
+    """Whether `Shown` may find a surface in this kind of object; surfels are none."""
+    if source.type == "EMPTY":
+        return source.instance_type == "COLLECTION" and source.instance_collection is not None
+    if source.type in _SURFACES_BY_MODIFIERS:
+        return bool(source.modifiers)
+    return source.type in _SURFACES and not (source.type == "MESH" and has_surfels(source.data))
+
+
+@dataclass(eq=False)
+class Piece:
+    """One mesh, as it was read, and the (4, 4) float64 matrices from its space to the world, of its every place."""
+
+    content: Any
+    matrices: list[np.ndarray] = field(default_factory=list)
+
+
+@dataclass(eq=False)
+class Shown:
+    """What one object shows.
+
+    others: session_uids of the objects that it shows something of, so that it changes when they do. skipped: sentence
+    -> how many instances cannot be sampled, and why. types: of what else it shows.
+    """
+
+    pieces: list[Piece] = field(default_factory=list)
+    others: set[int] = field(default_factory=set)
+    skipped: dict[str, int] = field(default_factory=dict)
+    types: set[str] = field(default_factory=set)
+
+    def skip(self, sentence: str) -> None:
+        self.skipped[sentence] = self.skipped.get(sentence, 0) + 1
+
+    def notes(self) -> list[str]:
+        """A sentence for each kind of thing that was left out."""
+        return [sentence.format(count, "s" * (count > 1)) for sentence, count in self.skipped.items()]
+
+
+#: What is done with a mesh while it can be read.
+Reader = Callable[[bpy.types.Object, bpy.types.Mesh], Any]
+
+_FLATTENED = "Left out {} instance{} with a scale of 0 on some axis"
+_SURFELS = "Left out {} instance{} of surfels, which are not sampled again"
+
+
+def shown_by(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, read: Reader) -> Shown:
+    """Every mesh that the source shows in the depsgraph; `read` is called once a mesh, however often it is there."""
+    shown, pieces = Shown(), {}
+    for entry in depsgraph.object_instances:
+        if owner_of(entry) != source or not entry.show_self:
+            continue
+        object_ = entry.object
+        if object_.original != source:
+            shown.others.add(object_.original.session_uid)
+        if object_.type != "MESH":
+            if entry.is_instance:
+                shown.types.add(object_.type)
+            continue
+        matrix = np.array(entry.matrix_world, np.float64)
+        if entry.is_instance and not abs(np.linalg.det(matrix[:3, :3])) > 0:
+            shown.skip(_FLATTENED)
+            continue
+        key = mesh_key(object_)
+        if key not in pieces:
+            with readable_mesh(object_) as mesh:
+                pieces[key] = None if has_surfels(mesh) else Piece(read(object_, mesh))
+        if pieces[key] is None:
+            shown.skip(_SURFELS)
+        else:
+            pieces[key].matrices.append(matrix)
+    shown.pieces = [piece for piece in pieces.values() if piece is not None]
+    if source.type == "META":
+        shown.others |= {other.session_uid for other in metaball_family(source)}
+    return shown
+
+
+def owner_of(entry: bpy.types.DepsgraphObjectInstance) -> bpy.types.Object:
+    """The object in the file that an entry of `depsgraph.object_instances` belongs to: an instance's instancer."""
+    return (entry.parent if entry.is_instance else entry.object).original
+
+
+def mesh_key(evaluated: bpy.types.Object) -> tuple:
+    """Equal for what has one evaluated mesh and the same materials on it, within one evaluation."""
+    slots = (slot.material.session_uid if slot.material else 0 for slot in evaluated.material_slots)
+    return evaluated.data.session_uid, *slots
+
+
+@contextmanager
+def readable_mesh(evaluated: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
+    """The mesh of an evaluated mesh object or instance, subdivided on the graphics card or not."""
+    try:
+        yield evaluated.to_mesh()
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def metaball_family(source: bpy.types.Object) -> list[bpy.types.Object]:
+    """All metaball objects that flow together with this one: Blender tells them by their names up to the number."""
+    stem = _stem(source.name)
+    return [other for other in bpy.data.objects if other.type == "META" and _stem(other.name) == stem]
+
+
+def _stem(name: str) -> str:
+    head, dot, tail = name.rpartition(".")
+    return head if dot and tail.isdigit() else name
+
+
+def why_nothing(source: bpy.types.Object, shown: Shown, points: int) -> str:
+    """The sentence for a source without a face. points: how many vertices its meshes have."""
+    if source.type == "META":
+        family = sorted(other.name for other in metaball_family(source) if other != source)
+        if family:
+            return (
+                f"Its family of metaballs, with {', '.join(map(repr, family))}, is one mesh, which another of them "
+                "has; select all of them."
+            )
+    if "POINTCLOUD" in shown.types:
+        return (
+            "It makes points without a surface; use Object > Convert Points to Surfels, or let its Geometry Nodes "
+            "put meshes there."
+        )
+    if source.type == "CURVE" or shown.types & {"CURVE", "CURVES"}:
+        return "Its curves have no surface; give them a bevel, an extrusion or a fill first."
+    if source.type == "EMPTY":
+        return "The collection that it shows has no surfaces in it; put a mesh there."
+    if source.type in _SURFACES_BY_MODIFIERS:
+        return "Its modifiers make no mesh, so there is no surface to sample; let them make one."
+    return f"The mesh {'has no faces' if points else 'is empty'}, so there is no surface to sample; add faces first."

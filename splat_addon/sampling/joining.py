@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes moved by affine maps, and several of them as one; before `cleaning`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from .mesh import TriangleMesh
+
+
+def transformed(mesh: TriangleMesh, matrix: np.ndarray) -> TriangleMesh:
+    """The mesh under a (4, 4) affine map that flattens nothing.
+
+    Normals go by the inverse transpose. A map that mirrors turns the triangles over, so that what was counter-clockwise
+    from outside still is. The identity hands back the mesh itself.
+    """
+    matrix = np.asarray(matrix, np.float64)
+    if np.array_equal(matrix, np.eye(4)):
+        return mesh
+    linear, offset = matrix[:3, :3], matrix[:3, 3]
+    arrays = mesh.per_triangle()
+    if np.linalg.det(linear) < 0:
+        arrays = {name: array[:, ::-1] if array.ndim > 1 else array for name, array in arrays.items()}
+    normals = arrays.pop("corner_normals", None)
+    return replace(
+        mesh,
+        positions=mesh.positions @ linear.T + offset,
+        corner_normals=None if normals is None else normals @ np.linalg.inv(linear),
+        **arrays,
+    )
+
+
+def joined(meshes: Sequence[TriangleMesh]) -> TriangleMesh:
+    """One mesh of several, in their order, over the first one's `surfaces`; one of one is itself.
+
+    What only some of them have is 0 in the others, which for `corner_normals` means the triangle's own normal.
+    """
+    if len(meshes) == 1:
+        return meshes[0]
+    starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
+    names = {name: array for mesh in meshes for name, array in mesh.per_triangle().items() if name != "triangles"}
+    return TriangleMesh(
+        positions=np.concatenate([mesh.positions for mesh in meshes]),
+        triangles=np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts, strict=False)]),
+        surfaces=meshes[0].surfaces,
+        **{name: np.concatenate([_values(mesh, name, like) for mesh in meshes]) for name, like in names.items()},
+    )
+
+
+def _values(mesh: TriangleMesh, name: str, like: np.ndarray) -> np.ndarray:
+    """A field of the mesh, one entry a triangle; zeros where it has none."""
+    array = getattr(mesh, name)
+    return np.zeros((len(mesh), *like.shape[1:]), like.dtype) if array is None else array

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What may stand in a scene besides plain meshes, and what its surface is."""
+
+import bpy
+import numpy as np
+import pytest
+import trimesh
+
+
+@pytest.fixture
+def select():
+    """select(*objects): these alone are selected, the last is active."""
+
+    def only(*objects: bpy.types.Object) -> None:
+        bpy.context.view_layer.update()
+        for other in bpy.context.view_layer.objects:
+            other.select_set(other in objects)
+        bpy.context.view_layer.objects.active = objects[-1]
+
+    return only
+
+
+@pytest.fixture
+def add_nodes():
+    """add_nodes(object, build): a Geometry Nodes modifier; build(tree, start, end) links the nodes between."""
+
+    def add(object_: bpy.types.Object, build) -> None:
+        tree = bpy.data.node_groups.new("nodes", "GeometryNodeTree")
+        for in_out in ("INPUT", "OUTPUT"):
+            tree.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
+        start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+        build(tree, start.outputs[0], end.inputs[0])
+        object_.modifiers.new("nodes", "NODES").node_group = tree
+
+    return add
+
+
+@pytest.fixture
+def made_real():
+    """made_real() -> trimesh of everything in the scene, in the world, as Blender's own operators make it real."""
+
+    def make() -> trimesh.Trimesh:
+        bpy.context.view_layer.update()
+        for shown in bpy.context.view_layer.objects:
+            shown.select_set(shown.type in ("MESH", "EMPTY"))
+        bpy.ops.object.duplicates_make_real()
+        bpy.ops.object.select_all(action="SELECT")
+        bpy.context.view_layer.objects.active = bpy.context.selected_objects[0]
+        bpy.ops.object.convert(target="MESH")
+        parts = []
+        for made in bpy.context.selected_objects:
+            if made.type == "MESH" and made.data.polygons:
+                made.data.calc_loop_triangles()
+                matrix = np.array(made.matrix_world, np.float64)
+                vertices = np.array([v.co for v in made.data.vertices], np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+                faces = np.array([t.vertices for t in made.data.loop_triangles])
+                parts.append(trimesh.Trimesh(vertices, faces, process=False))
+        return trimesh.util.concatenate(parts)
+
+    return make
+
+
+@pytest.fixture
+def world_surfels(surfels_of):
+    """world_surfels(object) -> positions, geometric normals, shading normals, all (N, 3) in the world, and (N, 2)
+    half-axes in the world."""
+
+    def read(made: bpy.types.Object):
+        bpy.context.view_layer.update()
+        matrix = np.array(made.matrix_world, np.float64)
+        linear, surfels = matrix[:3, :3], surfels_of(made)
+        u, v = (axis.astype(np.float64) @ linear.T for axis in surfels.half_axes())
+        normals = [n.astype(np.float64) @ np.linalg.inv(linear) for n in (surfels.geometric_normals(), surfels.normals)]
+        geometric, shading = (n / np.linalg.norm(n, axis=1, keepdims=True) for n in normals)
+        sizes = np.stack([np.linalg.norm(axis, axis=1) for axis in (u, v)], axis=1)
+        return surfels.positions.astype(np.float64) @ linear.T + matrix[:3, 3], geometric, shading, sizes
+
+    return read

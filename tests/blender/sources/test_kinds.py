@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Everything that has a surface becomes surfels on that surface, as Blender makes the same thing real."""
+
+import bpy
+import numpy as np
+import pytest
+import trimesh
+
+SPACING = 0.05
+
+
+def add_text():
+    bpy.ops.object.text_add(location=(1, 2, 3), rotation=(0.3, 0.2, 0.1))
+    bpy.context.object.data.extrude = 0.1
+
+
+def add_bevelled_curve():
+    bpy.ops.curve.primitive_bezier_circle_add(scale=(1, 1, 1), location=(3, 0, 0))
+    bpy.context.object.data.bevel_depth = 0.2
+
+
+def add_nurbs_surface():
+    bpy.ops.surface.primitive_nurbs_surface_sphere_add(location=(0, 3, 0))
+
+
+def add_metaballs():
+    for x in (0, 1.2):
+        bpy.ops.object.metaball_add(type="BALL", location=(x, 0, 0), rotation=(0.2, 0.4, x))
+    bpy.data.objects["Mball"].select_set(True)
+
+
+KINDS = {f.__name__: f for f in (add_text, add_bevelled_curve, add_nurbs_surface, add_metaballs)}
+
+
+@pytest.fixture
+def assert_covers(convert, made_real, world_surfels):
+    """assert_covers(sources, **settings): the surfels lie on the surface that Blender makes real, and cover it."""
+
+    def check(count=1, least_area=0.5, prepare=lambda: None, **settings) -> None:
+        made = convert(density="SPACING", spacing=SPACING, **settings)
+        assert len(made) == count
+        positions, normals, _, _ = (np.concatenate(part) for part in zip(*map(world_surfels, made), strict=True))
+        for surfels in made:
+            bpy.data.objects.remove(surfels)
+        prepare()
+        surface = made_real()
+        assert surface.area > least_area
+        _, distances, triangles = trimesh.proximity.closest_point(surface, positions)
+        assert distances.max() < 1e-5
+        assert np.einsum("ij,ij->i", normals, surface.face_normals[triangles]).mean() > 0.99
+        points, _ = trimesh.sample.sample_surface(surface, 2000, seed=1)
+        tree = trimesh.proximity.cKDTree(positions)
+        assert tree.query(points)[0].max() < 1.3 * SPACING
+
+    return check
+
+
+@pytest.mark.parametrize("add", KINDS.values(), ids=KINDS)
+def test_objects_that_are_no_meshes(add, assert_covers):
+    add()
+    assert_covers()
+
+
+@pytest.fixture
+def cone_on_corners(add_square, add_nodes):
+    """A square that Geometry Nodes put cones on, of several sizes and turns, beside the square itself."""
+    square = add_square()
+    square.location, square.scale = (1, 2, 3), (2, 2, 2)
+
+    def build(tree, start, end):
+        cone, place = tree.nodes.new("GeometryNodeMeshCone"), tree.nodes.new("GeometryNodeInstanceOnPoints")
+        random = tree.nodes.new("FunctionNodeRandomValue")
+        random.data_type = "FLOAT_VECTOR"
+        random.inputs["Min"].default_value, random.inputs["Max"].default_value = (0.05, 0.1, 0.2), (0.1, 0.2, 0.3)
+        tree.links.new(random.outputs[0], place.inputs["Scale"])
+        join = tree.nodes.new("GeometryNodeJoinGeometry")
+        tree.links.new(cone.outputs["Mesh"], place.inputs["Instance"])
+        tree.links.new(start, place.inputs["Points"])
+        for piece in (place.outputs["Instances"], start):
+            tree.links.new(piece, join.inputs[0])
+        tree.links.new(join.outputs[0], end)
+
+    add_nodes(square, build)
+    return square
+
+
+def test_geometry_nodes_instances_and_the_mesh_beside_them(cone_on_corners, assert_covers):
+    tree = cone_on_corners.modifiers[0].node_group
+
+    def realise():
+        node, [link] = tree.nodes.new("GeometryNodeRealizeInstances"), tree.nodes["Group Output"].inputs[0].links
+        tree.links.new(link.from_socket, node.inputs[0])
+        tree.links.new(node.outputs[0], tree.nodes["Group Output"].inputs[0])
+
+    assert_covers(prepare=realise, space="WORLD", least_area=4)
+
+
+def test_a_collection_instance_with_a_text_and_a_mirrored_mesh(assert_covers, select):
+    hidden = bpy.data.collections.new("hidden")
+    add_text()
+    bpy.ops.mesh.primitive_monkey_add(location=(0, 0, 3), scale=(-0.5, 0.5, 0.5))
+    for shown in list(bpy.context.scene.objects):
+        hidden.objects.link(shown)
+        bpy.context.scene.collection.objects.unlink(shown)
+    instancer = bpy.data.objects.new("instancer", None)
+    instancer.instance_type, instancer.instance_collection = "COLLECTION", hidden
+    bpy.context.scene.collection.objects.link(instancer)
+    instancer.location, instancer.rotation_euler = (5, 6, 7), (0.4, 0.5, 0.6)
+    select(instancer)
+    assert_covers()
+
+
+def test_instances_on_vertices(assert_covers, add_mesh, select):
+    points = add_mesh("points", [(0, 0, 0), (3, 0, 0), (0, 3, 0)], [])
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=0.4)
+    ball = bpy.context.object
+    ball.parent, points.instance_type = points, "VERTS"
+    select(points)
+    made_of_ball_too = bpy.data.objects[ball.name]
+    made_of_ball_too.hide_render = True
+    assert_covers()
+
+
+def test_a_family_of_metaballs_is_converted_once(convert, capfd):
+    add_metaballs()
+    made = convert(resolution=32)
+    assert [m.name for m in made] == ["Mball surfels"]
+    assert "Mball.001: Its family of metaballs, with 'Mball', is one mesh" in capfd.readouterr().out
+
+
+def only_points(tree, start, end):
+    node = tree.nodes.new("GeometryNodeMeshToPoints")
+    tree.links.new(start, node.inputs[0])
+    tree.links.new(node.outputs[0], end)
+
+
+def nothing(tree, start, end):
+    pass
+
+
+def bare_curves(tree, start, end):
+    circle, place = tree.nodes.new("GeometryNodeCurvePrimitiveCircle"), tree.nodes.new("GeometryNodeInstanceOnPoints")
+    tree.links.new(start, place.inputs["Points"])
+    tree.links.new(circle.outputs["Curve"], place.inputs["Instance"])
+    tree.links.new(place.outputs["Instances"], end)
+
+
+@pytest.mark.parametrize(
+    ("build", "sentence"),
+    [
+        (only_points, "points without a surface; use Object > Convert Points to Surfels"),
+        (nothing, "The mesh is empty"),
+        (bare_curves, "curves have no surface; give them a bevel"),
+    ],
+)
+def test_geometry_nodes_without_a_surface_are_an_error_that_says_why(add_square, add_nodes, convert, build, sentence):
+    add_nodes(add_square("Part"), build)
+    with pytest.raises(RuntimeError, match=f"Part: .*{sentence}"):
+        convert(resolution=8)
+
+
+def test_a_curve_without_a_surface_is_an_error_that_says_why(convert):
+    bpy.ops.curve.primitive_bezier_curve_add()
+    with pytest.raises(RuntimeError, match="Its curves have no surface; give them a bevel"):
+        convert(resolution=8)
+
+
+def test_an_empty_collection_is_an_error_that_says_why(convert, select):
+    instancer = bpy.data.objects.new("instancer", None)
+    instancer.instance_type, instancer.instance_collection = "COLLECTION", bpy.data.collections.new("nothing")
+    bpy.context.scene.collection.objects.link(instancer)
+    select(instancer)
+    with pytest.raises(RuntimeError, match="instancer: The collection that it shows has no surfaces"):
+        convert(resolution=8)
+
+
+def test_instances_of_no_size_are_left_out_and_counted(add_square, add_nodes, convert, capfd):
+    square = add_square("Part")
+
+    def build(tree, start, end):
+        cube, place = tree.nodes.new("GeometryNodeMeshCube"), tree.nodes.new("GeometryNodeInstanceOnPoints")
+        index = tree.nodes.new("GeometryNodeInputIndex")
+        tree.links.new(index.outputs[0], place.inputs["Scale"])
+        tree.links.new(start, place.inputs["Points"])
+        tree.links.new(cube.outputs["Mesh"], place.inputs["Instance"])
+        tree.links.new(place.outputs["Instances"], end)
+
+    add_nodes(square, build)
+    made = convert(density="SPACING", spacing=0.25)
+    assert len(made[0].data.vertices) == sum(6 * (4 * k) ** 2 for k in (1, 2, 3))
+    assert "Part: Left out 1 instance with a scale of 0" in capfd.readouterr().out
