@@ -34,9 +34,11 @@ from splat_addon.reference.metrics import psnr, srgb  # noqa: E402
 from splat_addon.rendering import Camera, Light, Renderer, Scene, Settings, look_at, open_device  # noqa: E402
 from splat_addon.sampling import (  # noqa: E402
     REDUCTIONS,
-    SurfaceColor,
+    Channel,
+    Surface,
     Tolerance,
     TriangleMesh,
+    VertexColors,
     drop_unusable,
     grid_spacing,
     sample_surface,
@@ -182,7 +184,7 @@ def smooth_cube() -> TriangleMesh:
 
 
 def colored(mesh: TriangleMesh, corner_colors: np.ndarray) -> TriangleMesh:
-    return replace(mesh, corner_colors=corner_colors, surfaces=(SurfaceColor((1, 1, 1, 1), vertex_colors=True),))
+    return replace(mesh, corner_colors=corner_colors, surfaces=(Surface(Channel((1, 1, 1, 1), VertexColors())),))
 
 
 def colored_by_side(mesh: TriangleMesh) -> TriangleMesh:

@@ -55,7 +55,7 @@ class Surfels:
     roughness, metallic: (N,) float32, 0 to 1, in place of their material's; None: the material's.
     emission: (N, 3) float32, scene-linear radiance, in place of their material's; None: the material's.
     uvs: (N, 2) float32 texture coordinates at the centres; uv_along_x, uv_along_y: (N, 2) their change along the local
-        x and y half-axis. Where both changes are 0, and without all three, the texture is not looked up: `colors` shows.
+        x and y half-axis. Where both changes are 0, and without all three, no texture is looked up: `colors` shows.
 
     Raises ValueError with one sentence for a wrong shape, a non-finite or an out-of-range value;
     `valid_surfels` drops and counts such rows instead.

@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ..sampling import SurfaceColor, TriangleMesh, joined, transformed
+from ..sampling import Surface, TriangleMesh, joined, transformed
 from .mesh_extraction import ExtractedMesh, read_mesh
 from .placement import relative, without_scale, without_shear
 from .sources import Piece, Reader, Shown, shown_by, why_nothing
@@ -83,7 +83,7 @@ def _with_shared_slots(
     """
     if len(pieces) == 1:
         return [(pieces[0].content.triangles, pieces[0])], pieces[0].content.materials
-    slots: list[tuple[bpy.types.Material | None, SurfaceColor]] = []
+    slots: list[tuple[bpy.types.Material | None, Surface]] = []
     indices = [_slot_indices(piece.content, slots) for piece in pieces]
     surfaces = tuple(surface for _, surface in slots)
     meshes = [
@@ -115,6 +115,8 @@ def _same(a, b) -> bool:
         return a is b or all(_same(getattr(a, f.name), getattr(b, f.name)) for f in fields(a))
     if isinstance(a, np.ndarray):
         return np.array_equal(a, b)
+    if isinstance(a, tuple) and isinstance(b, tuple) and len(a) == len(b):
+        return all(_same(x, y) for x, y in zip(a, b, strict=True))
     return a == b
 
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ..sampling import SurfaceColor, TriangleMesh
-from .surface_colors import BaseColor, base_color
+from ..sampling import Surface, TriangleMesh
+from .material_surfaces import MeshLayers, material_surface
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,15 +34,16 @@ def read_mesh(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> ExtractedMes
     corners, faces = _triangle_corners(mesh)
     vertices = _corner_vertices(mesh)[corners]
     indices = _material_indices(mesh, faces, max(len(slots), 1))
-    colors, notes = _base_colors(slots, np.unique(indices), mesh)
+    layers = MeshLayers(mesh)
+    surfaces, notes = _surfaces(slots, np.unique(indices), layers)
     triangles = TriangleMesh(
         positions=_positions(mesh),
         triangles=vertices,
         corner_normals=_corner_normals(mesh, corners),
-        corner_colors=_by_material(colors, indices, "color_layer", _color_reader(mesh, corners, vertices), 4),
-        corner_uvs=_by_material(colors, indices, "uv_layer", _uv_reader(mesh, corners), 2),
+        corner_colors=_layered(_color_reader(mesh, corners, vertices), layers.colors),
+        corner_uvs=_layered(_uv_reader(mesh, corners), layers.uvs),
         materials=indices,
-        surfaces=tuple(color.surface for color in colors),
+        surfaces=surfaces,
     )
     return ExtractedMesh(triangles, tuple(m and m.original for m in slots), tuple(notes))
 
@@ -116,33 +117,22 @@ def slot_materials(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> list[bp
     return [slots[k].material if k < len(slots) and slots[k].link == "OBJECT" else m for k, m in enumerate(materials)]
 
 
-def _base_colors(
-    slots: list[bpy.types.Material | None], used: np.ndarray, mesh: bpy.types.Mesh
-) -> tuple[list[BaseColor], list[str]]:
-    """One base colour a slot, at least one, plain in slots that no face uses, and what could not be read."""
-    colors, notes = [], []
+def _surfaces(
+    slots: list[bpy.types.Material | None], used: np.ndarray, layers: MeshLayers
+) -> tuple[tuple[Surface, ...], list[str]]:
+    """One surface a slot, at least one, plain in slots that no face uses, and what could not be read."""
+    surfaces, notes = [], []
     for index, material in enumerate(slots or [None]):
-        color, unread = base_color(material, mesh) if index in used else (BaseColor(SurfaceColor()), [])
-        colors.append(color)
+        surface, unread = material_surface(material, layers) if index in used else (Surface(), [])
+        surfaces.append(surface)
         notes += [f"The material {material.name!r}'s {what}; the plain value of its socket is used" for what in unread]
-    return colors, notes
+    return tuple(surfaces), notes
 
 
-def _by_material(colors: list[BaseColor], indices: np.ndarray, layer: str, read, width: int) -> np.ndarray | None:
-    """(T, 3, width) corner values, those of each triangle from the layer that its material names; None for none.
-
-    layer: a field of `BaseColor`. read: function of a layer's name giving (T, 3, width) values.
-    """
-    names = [getattr(color, layer) for color in colors]
-    wanted = {name for name in names if name is not None}
-    if len(wanted) == 1:
-        return read(wanted.pop())
-    values = None
-    for name in wanted:
-        values = np.zeros((len(indices), 3, width), np.float32) if values is None else values
-        at = np.flatnonzero(np.isin(indices, [k for k, other in enumerate(names) if other == name]))
-        values[at] = read(name)[at]
-    return values
+def _layered(read, names: list[str]) -> np.ndarray | None:
+    """(T, 3, width * layers) of `read`, a function of a layer's name giving (T, 3, width) values; None for none."""
+    layers = [read(name) for name in names]
+    return (np.concatenate(layers, axis=2) if len(layers) > 1 else layers[0]) if layers else None
 
 
 def _color_reader(mesh: bpy.types.Mesh, corners: np.ndarray, vertices: np.ndarray):

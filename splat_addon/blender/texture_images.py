@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender images as scene-linear pixels, for `surface_colors`.
+"""Blender images as scene-linear pixels, for `material_surfaces`.
 
 Blender hands out the pixels of an 8-bit image as they are encoded and straight, those of a float image linear and
 premultiplied; the sampling side wants them linear and straight, or opaque as a renderer sees an unused alpha.
@@ -11,8 +11,8 @@ import bpy
 import numpy as np
 
 
-class UnreadableColorError(Exception):
-    """What a base colour comes from and cannot be read, as the end of the sentence "it comes from ..."."""
+class UnreadableError(Exception):
+    """What an input of a shader comes from and cannot be read, as the end of the sentence "it comes from ..."."""
 
 
 def linear_pixels(image: bpy.types.Image, keep_alpha: bool) -> np.ndarray:
@@ -20,10 +20,10 @@ def linear_pixels(image: bpy.types.Image, keep_alpha: bool) -> np.ndarray:
 
     keep_alpha: whether the material uses the image's alpha; otherwise the result is opaque and, as in Cycles and
     EEVEE, its colour premultiplied, unless the image's own alpha mode says that they are not related.
-    Raises UnreadableColorError for an image without pixels, a tiled or moving one, or an encoding other than sRGB.
+    Raises UnreadableError for an image without pixels, a tiled or moving one, or an encoding other than sRGB.
     """
     if image.source not in ("FILE", "GENERATED"):
-        raise UnreadableColorError(f"the {image.source.lower()} image {image.name!r}")
+        raise UnreadableError(f"the {image.source.lower()} image {image.name!r}")
     pixels = _rgba(_stored_pixels(image), image)
     colors, alpha = pixels[..., :3], pixels[..., 3:]
     if not image.is_float:
@@ -53,7 +53,7 @@ def _stored_pixels(image: bpy.types.Image) -> np.ndarray:
     width, height = image.size
     count = len(image.pixels)
     if not count or count != width * height * image.channels:
-        raise UnreadableColorError(f"the image {image.name!r}, which has no pixels (is its file missing?)")
+        raise UnreadableError(f"the image {image.name!r}, which has no pixels (is its file missing?)")
     pixels = np.empty(count, np.float32)
     image.pixels.foreach_get(pixels)
     return pixels.reshape(height, width, image.channels)
@@ -63,7 +63,7 @@ def _rgba(pixels: np.ndarray, image: bpy.types.Image) -> np.ndarray:
     """Grey and colour without alpha, opaque, too."""
     channels = pixels.shape[2]
     if channels not in (1, 3, 4):
-        raise UnreadableColorError(f"the image {image.name!r} with {channels} channels")
+        raise UnreadableError(f"the image {image.name!r} with {channels} channels")
     if channels == 4:
         return pixels
     rgba = np.ones((*pixels.shape[:2], 4), np.float32)
@@ -77,6 +77,6 @@ def _decoded(colors: np.ndarray, image: bpy.types.Image) -> np.ndarray:
     if space in _LINEAR:
         return colors
     if space != "sRGB":
-        raise UnreadableColorError(f"the image {image.name!r} in the colour space {space!r}")
+        raise UnreadableError(f"the image {image.name!r} in the colour space {space!r}")
     table = srgb_to_linear(np.arange(256) / 255).astype(np.float32)
     return table.take(np.rint(colors * 255).astype(np.uint8))

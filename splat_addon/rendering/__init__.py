@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfels, camera and lights become a frame: `plan` decides the passes, `Renderer` runs them on a device.
 
-    scene, camera, settings -> plan -> view -> passes on a device -> Frame
+scene, camera, settings -> plan -> view -> passes on a device -> Frame
 """
 
 from .camera import Camera, look_at

@@ -2,8 +2,8 @@
 """Sampling: a mesh becomes surfels by exact scan conversion onto a layered depth cube. Numpy only.
 
 Flow: `mesh` (`joining`) -> `cleaning` -> `fineness`, `grid` -> `depth_cube` (`reductions`, `scan_conversion`) ->
-`attributes` (`ellipses`, `colors`) -> `merging`, `adaptive` -> `lost_parts`, `part_surfels` -> `Surfels`; `sample` puts
-them in order.
+`attributes` (`ellipses`, `palette` of `surfaces`, `tangents`) -> `merging`, `adaptive` -> `lost_parts`, `part_surfels`
+-> `Surfels`; `sample` puts them in order.
 `closest_approach` says how fine a camera needs it. Points without faces become surfels in `points`.
 """
 
@@ -11,7 +11,6 @@ from ..images import Image
 from .adaptive import Tolerance
 from .cleaning import drop_unusable
 from .closest_approach import Outline, camera_spacing, outline
-from .colors import SurfaceColor
 from .fineness import grid_spacing, predict_count
 from .joining import joined, transformed
 from .mesh import TriangleMesh
@@ -19,20 +18,25 @@ from .points import PointsReport, surfels_from_points
 from .reductions import DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS, projected_area
 from .sample import DEFAULT_SPLAT_SIZE, Sampling, SamplingCancelled, sample_mesh, sample_surface
 from .solid import is_solid
+from .surfaces import Channel, NormalMap, Surface, Texture, VertexColors
 
 __all__ = [
     "DEFAULT_GRAZING_ANGLE",
     "DEFAULT_SPLAT_SIZE",
     "LEAST_GRAZING_ANGLE",
     "REDUCTIONS",
+    "Channel",
     "Image",
+    "NormalMap",
     "Outline",
     "PointsReport",
     "Sampling",
     "SamplingCancelled",
-    "SurfaceColor",
+    "Surface",
+    "Texture",
     "Tolerance",
     "TriangleMesh",
+    "VertexColors",
     "camera_spacing",
     "drop_unusable",
     "grid_spacing",

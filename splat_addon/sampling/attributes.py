@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Gives the samples of one layered depth image their position, ellipse, normal, colour and material.
+"""Gives the samples of one layered depth image their position, ellipse, normal, material and what it is made of.
 
 Everything that varies is linear along a span. So the barycentric weights are worked out at a span's two ends, in
 float64 and clamped into the triangle, and a sample costs one multiply and add a component, in float32.
@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from .colors import Palette
 from .ellipses import ellipse_rotations, ellipse_scales
 from .grid import Grid
 from .mesh import TriangleMesh, doubled_areas, gather_corners
+from .palette import Palette, Samples
 from .scan_conversion import Spans, expand
 
 #: A projected triangle this much smaller than its snapped twin, or turned over, has no usable barycentrics of its own.
@@ -30,14 +30,23 @@ class SampleFiller:
     """Fills the rows of preallocated arrays, span after span.
 
     mesh: usable. coordinates: (3, V) float64, of its vertices on the grid. half_size: of a splat, object units.
+    palette: of the mesh. tangents: (T, 3, 4 layers) at its corners, as `Samples` has them, or None.
     arrays: field of `Surfels` -> array to fill.
     """
 
-    def __init__(self, mesh: TriangleMesh, coordinates: np.ndarray, grid: Grid, half_size: float, arrays: dict):
+    def __init__(
+        self,
+        mesh: TriangleMesh,
+        coordinates: np.ndarray,
+        grid: Grid,
+        half_size: float,
+        palette: Palette,
+        tangents: np.ndarray | None,
+        arrays: dict[str, np.ndarray],
+    ):
         self._mesh, self._coordinates, self._grid = mesh, coordinates, grid
-        self._half_size, self._arrays = half_size, arrays
+        self._half_size, self._palette, self._tangents, self._arrays = half_size, palette, tangents, arrays
         self._centres = grid.centres()
-        self.palette = Palette(mesh.surfaces)
 
     def fill(self, spans: Spans, axis: int, rows: slice):
         """Writes the samples of these spans of the image along `axis` to `rows` of the arrays."""
@@ -64,23 +73,25 @@ class SampleFiller:
         else:
             vectors = self._samples(self._mesh.corner_normals[triangles], weights, line)
             _write_unit(vectors, face_normals, triangle, out["normals"])
-        self._color(out, triangles, triangle, weights, line)
+        self._paint(out, triangles, triangle, weights, line)
 
     @_quietly
-    def _color(self, out: dict, triangles: np.ndarray, triangle: np.ndarray, weights: _SpanWeights, line: _Lines):
-        mesh, palette = self._mesh, self.palette
+    def _paint(self, out: dict, triangles: np.ndarray, triangle: np.ndarray, weights: _SpanWeights, line: _Lines):
+        mesh, palette = self._mesh, self._palette
         if mesh.materials is None:
             out["materials"][...] = 0
         else:
             out["materials"][...] = mesh.materials[triangles].take(triangle)
-        vertex_colors = uvs = uv_steps = None
-        if palette.needs_vertex_colors and mesh.corner_colors is not None:
-            vertex_colors = self._samples(mesh.corner_colors[triangles], weights, line)
+        colors = uvs = uv_steps = tangents = None
+        if palette.needs_colors and mesh.corner_colors is not None:
+            colors = self._samples(mesh.corner_colors[triangles], weights, line)
         if palette.needs_uvs and mesh.corner_uvs is not None:
             corner_uvs = mesh.corner_uvs[triangles]
             uvs = self._samples(corner_uvs, weights, line)
             uv_steps = weights.gradients(np.moveaxis(corner_uvs, 0, 2)).take(triangle, axis=2)
-        out["colors"][...] = palette.colors(out["materials"], vertex_colors, uvs, uv_steps)
+        if self._tangents is not None:
+            tangents = self._samples(self._tangents[triangles], weights, line)
+        palette.fill(out, Samples(out["materials"], colors, uvs, uv_steps, tangents))
 
     @_quietly
     def _samples(self, corner_values: np.ndarray, weights: _SpanWeights, line: _Lines) -> np.ndarray:

@@ -36,12 +36,14 @@ def transformed(mesh: TriangleMesh, matrix: np.ndarray) -> TriangleMesh:
 def joined(meshes: Sequence[TriangleMesh]) -> TriangleMesh:
     """One mesh of several, in their order, over the first one's `surfaces`; one of one is itself.
 
-    What only some of them have is 0 in the others, which for `corner_normals` means the triangle's own normal.
+    What only some of them have is 0 in the others, which for `corner_normals` means the triangle's own normal; so are
+    layers of texture coordinates and colours that only some have.
     """
     if len(meshes) == 1:
         return meshes[0]
     starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
-    names = {name: array for mesh in meshes for name, array in mesh.per_triangle().items() if name != "triangles"}
+    given = [(name, array) for mesh in meshes for name, array in mesh.per_triangle().items() if name != "triangles"]
+    names = dict(sorted(given, key=lambda pair: pair[1].shape[2:]))  # the one with the most layers stays
     return TriangleMesh(
         positions=np.concatenate([mesh.positions for mesh in meshes]),
         triangles=np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts, strict=False)]),
@@ -51,6 +53,9 @@ def joined(meshes: Sequence[TriangleMesh]) -> TriangleMesh:
 
 
 def _values(mesh: TriangleMesh, name: str, like: np.ndarray) -> np.ndarray:
-    """A field of the mesh, one entry a triangle; zeros where it has none."""
+    """A field of the mesh, one entry a triangle as those of `like` are; zeros where it has none."""
     array = getattr(mesh, name)
-    return np.zeros((len(mesh), *like.shape[1:]), like.dtype) if array is None else array
+    if array is None:
+        return np.zeros((len(mesh), *like.shape[1:]), like.dtype)
+    lacking = [(0, wide - has) for has, wide in zip(array.shape[1:], like.shape[1:], strict=True)]
+    return np.pad(array, [(0, 0), *lacking]) if any(after for _, after in lacking) else array

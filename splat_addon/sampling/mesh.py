@@ -8,18 +8,19 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .colors import SurfaceColor
+from .surfaces import Surface
 
 #: Triangles handled at a time: their temporaries stay in the processor's cache (facts: 32k has the lowest memory).
 CHUNK = 32768
 
-#: field -> shape of one triangle's entry and dtype.
+#: field -> shape of one triangle's entry, of one layer where it may have several, and dtype.
 _PER_TRIANGLE = {
     "corner_normals": ((3, 3), np.floating),
     "corner_colors": ((3, 4), np.floating),
     "corner_uvs": ((3, 2), np.floating),
     "materials": ((), np.integer),
 }
+_LAYERED = ("corner_colors", "corner_uvs")
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,9 +30,10 @@ class TriangleMesh:
     positions: (V, 3) float64, object units; values that are not finite are allowed, `drop_unusable` sorts them out.
     triangles: (T, 3) integer vertex indices, counter-clockwise seen from outside.
     corner_normals: (T, 3, 3) shading normals of any length; None or zero: the triangle's own normal.
-    corner_colors: (T, 3, 4) scene-linear. corner_uvs: (T, 3, 2).
+    corner_colors: (T, 3, 4) scene-linear. corner_uvs: (T, 3, 2). Both may have several layers, one behind the other in
+        the last dimension.
     materials: (T,) integer index into `surfaces` and into the object's material slots; None: all 0.
-    surfaces: where each material's colour comes from; an index past the end uses the last.
+    surfaces: what each material is made of; an index past the end uses the last.
     known_usable: set by `drop_unusable` alone.
 
     Raises ValueError with one sentence for a wrong shape or type or an index out of range.
@@ -43,7 +45,7 @@ class TriangleMesh:
     corner_colors: np.ndarray | None = None
     corner_uvs: np.ndarray | None = None
     materials: np.ndarray | None = None
-    surfaces: tuple[SurfaceColor, ...] = (SurfaceColor(),)
+    surfaces: tuple[Surface, ...] = (Surface(),)
     known_usable: bool = field(default=False, init=False, repr=False)
 
     def __post_init__(self):
@@ -59,6 +61,8 @@ class TriangleMesh:
         for name, (shape, kind) in _PER_TRIANGLE.items():
             if getattr(self, name) is not None:
                 array = np.asarray(getattr(self, name))
+                if name in _LAYERED and array.ndim == 3 and array.shape[2]:
+                    shape = (3, array.shape[2] // shape[1] * shape[1] or shape[1])
                 if array.shape != (len(triangles), *shape) or not np.issubdtype(array.dtype, kind):
                     raise ValueError(
                         f"Mesh {name} must be {kind.__name__} of shape {(len(triangles), *shape)}, "
@@ -67,7 +71,7 @@ class TriangleMesh:
                 object.__setattr__(self, name, array)
         if self.materials is not None:
             _check_indices("material", self.materials, np.iinfo(np.int32).max)
-        object.__setattr__(self, "surfaces", tuple(self.surfaces) or (SurfaceColor(),))
+        object.__setattr__(self, "surfaces", tuple(self.surfaces) or (Surface(),))
 
     def __len__(self) -> int:
         return len(self.triangles)

@@ -7,10 +7,11 @@ import math
 
 import numpy as np
 
-from .colors import Palette
+from ..surfels import OPTIONAL_LAYOUT
 from .ellipses import ellipse_rotations
 from .grid import Grid
 from .mesh import TriangleMesh, doubled_areas, gather_corners
+from .palette import Palette, Samples
 
 #: Half-axis of the smallest disc, in spacings: dust of no measurable area is still a surfel.
 _LEAST_RADIUS = 1e-3
@@ -26,14 +27,15 @@ def part_surfels(
     lost: tuple[np.ndarray, np.ndarray],
     largest_radius: float,
     palette: Palette,
+    tangents: np.ndarray | None,
 ) -> dict[str, np.ndarray]:
     """The arrays of `Surfels` of p parts, positions relative to the grid's origin.
 
     coordinates: (3, V) float64, of the mesh's vertices on the grid. lost: what `lost_parts` found.
-    largest_radius: of a disc, in spacings.
+    largest_radius: of a disc, in spacings. palette, tangents: as a `SampleFiller` has them.
     The disc lies at the area-weighted centroid, faces the way that most of the area faces, and has the area that is
-    seen from there. The shading normal is the mean over the triangles on its front; the colour and the material are
-    those of the largest triangle.
+    seen from there. The shading normal is the mean over the triangles on its front; the material and what it is made of
+    are those of the largest triangle.
     """
     triangles, part = lost
     corners = gather_corners(coordinates, mesh.triangles[triangles])
@@ -49,14 +51,20 @@ def part_surfels(
 
     largest = np.lexsort((areas, part))[np.cumsum(np.bincount(part)) - 1]
     materials = np.zeros(len(total), np.int32) if mesh.materials is None else mesh.materials[triangles[largest]]
-    return {
+    count = len(total)
+    arrays = {
         "positions": ((centroids.T + 0.5) * grid.spacing).astype(np.float32),
         "rotations": ellipse_rotations(normals, 2),
         "scales": np.stack([radius, radius], axis=1).astype(np.float32),
         "normals": _shading_normals(mesh, triangles, part, np.where(facing > 0, areas, 0), normals),
-        "colors": _colors(mesh, palette, triangles[largest], materials),
+        "colors": np.empty((count, 4), np.float32),
         "materials": materials.astype(np.int32),
     }
+    for name in palette.optional:
+        columns, dtype, _ = OPTIONAL_LAYOUT[name]
+        arrays[name] = np.empty((count, columns) if columns > 1 else count, dtype)
+    palette.fill(arrays, _samples(mesh, palette, tangents, triangles[largest], materials))
+    return arrays
 
 
 def _sums(part: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -90,12 +98,15 @@ def _shading_normals(mesh, triangles, part, weights, normals) -> np.ndarray:
     return result
 
 
-def _colors(mesh: TriangleMesh, palette: Palette, triangles: np.ndarray, materials: np.ndarray) -> np.ndarray:
-    """(p, 4) colours at the middle of these triangles; a texture is averaged over the triangle's own edges."""
-    vertex_colors = uvs = uv_steps = None
-    if palette.needs_vertex_colors and mesh.corner_colors is not None:
-        vertex_colors = np.asarray(mesh.corner_colors[triangles], np.float32).mean(axis=1).T
+@np.errstate(over="ignore", invalid="ignore")
+def _samples(mesh: TriangleMesh, palette: Palette, tangents, triangles: np.ndarray, materials: np.ndarray) -> Samples:
+    """The middle of these triangles; a texture is averaged over the triangle's own edges."""
+    colors = uvs = uv_steps = None
+    if palette.needs_colors and mesh.corner_colors is not None:
+        colors = np.asarray(mesh.corner_colors[triangles], np.float32).mean(axis=1).T
     if palette.needs_uvs and mesh.corner_uvs is not None:
         a, b, c = np.moveaxis(np.asarray(mesh.corner_uvs[triangles], np.float32), 1, 0)
         uvs, uv_steps = ((a + b + c) / 3).T, np.stack([(b - a).T, (c - a).T])
-    return palette.colors(materials, vertex_colors, uvs, uv_steps)
+    if tangents is not None:
+        tangents = tangents[triangles].mean(axis=1).T
+    return Samples(materials, colors, uvs, uv_steps, tangents)

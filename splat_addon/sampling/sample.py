@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-from ..surfels import LAYOUT, Surfels, empty_surfels
+from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
 from .adaptive import Tolerance, merge_flat
 from .attributes import SampleFiller
 from .cleaning import drop_unusable
@@ -22,9 +22,11 @@ from .fineness import check_fineness, grid_spacing
 from .grid import make_grid
 from .lost_parts import lost_parts
 from .mesh import TriangleMesh
+from .palette import Palette
 from .part_surfels import part_surfels
 from .reductions import DEFAULT_GRAZING_ANGLE, check_grazing_angle, find_reduction
 from .scan_conversion import BATCH, Spans, batches
+from .tangents import layered_tangents
 
 #: Half-axis of a splat in H. At 1 the seams between the regions of two axes leave 0.025 % of the armadillo uncovered
 #: at resolution 256, single dark specks in a picture; at 1.25 none of 200,000 points on it was uncovered.
@@ -100,8 +102,11 @@ def sample_surface(
     lost = lost_parts(mesh, _is_sampled(images, len(mesh)))
 
     total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
-    arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype) in LAYOUT.items()}
-    filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, arrays)
+    palette = Palette(mesh.surfaces)
+    layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in palette.optional}
+    arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
+    tangents = layered_tangents(mesh) if palette.needs_tangents else None
+    filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, palette, tangents, arrays)
     _fill(filler, images, _stage(progress, 0.5, 1.0))
     if chosen.merge is not None:
         arrays = chosen.merge(arrays, grid.spacing)
@@ -112,7 +117,7 @@ def sample_surface(
         saved = total - len(arrays["positions"])
     small_parts = int(lost[1].max(initial=-1)) + 1
     if small_parts:
-        extra = part_surfels(mesh, coordinates, grid, lost, splat_size, filler.palette)
+        extra = part_surfels(mesh, coordinates, grid, lost, splat_size, palette, tangents)
         arrays = {name: np.concatenate([array, extra[name]]) for name, array in arrays.items()}
     surfels = Surfels(origin=grid.origin, **arrays)
     return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error)

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scripts.coverage import uncovered_points
-from splat_addon.sampling import SurfaceColor, Tolerance, TriangleMesh, grid_spacing, sample_surface
+from splat_addon.sampling import Channel, Surface, Tolerance, TriangleMesh, VertexColors, grid_spacing, sample_surface
 
 
 def adaptive(mesh, resolution, cells=0.1, **limits):
@@ -83,12 +83,12 @@ def test_normals_that_turn_are_not_merged(sphere):
 
 def test_colours_that_differ_are_not_merged(square):
     ramp = np.array([0, 1, 1, 0])[[[0, 1, 2], [0, 2, 3]]][..., None] * np.ones(4)
-    mesh = square(corner_colors=ramp, surfaces=(SurfaceColor((1, 1, 1, 1), vertex_colors=True),))
+    mesh = square(corner_colors=ramp, surfaces=(Surface(Channel((1, 1, 1, 1), VertexColors())),))
     assert adaptive(mesh, 64, color=1e-4).saved == 0 and adaptive(mesh, 64, color=1.0).saved > 0
 
 
 def test_materials_are_not_merged(square):
-    two = square(materials=np.array([0, 1]), surfaces=(SurfaceColor(), SurfaceColor()))
+    two = square(materials=np.array([0, 1]), surfaces=(Surface(), Surface()))
     surfels = adaptive(two, 64).surfels
     x, y = surfels.positions[:, :2].T
     assert set(surfels.materials) == {0, 1}
@@ -110,7 +110,7 @@ def test_odd_cells_inside_a_block_are_not_merged(field):
         "colors": {"corner_colors": np.repeat(0.5 + 0.4 * odd, 12).reshape(-1, 3, 4)},
         "normals": {"corner_normals": tilted[:, None].repeat(3, axis=1)},
     }[field]
-    surfaces = (SurfaceColor((1, 1, 1, 1), vertex_colors=True),)
+    surfaces = (Surface(Channel((1, 1, 1, 1), VertexColors())),)
     mesh = TriangleMesh(np.stack([x, y, 0 * x], axis=1) / 32, triangles, surfaces=surfaces, **values)
     surfels = adaptive(mesh, 32).surfels
     stored = getattr(surfels, field).reshape(len(surfels), -1)[:, 0]
@@ -128,7 +128,7 @@ def test_each_sample_is_within_the_tolerances_of_the_surfel_in_its_place(sphere,
         sphere.triangles,
         corner_normals=sphere.corner_normals,
         corner_colors=colors,
-        surfaces=(SurfaceColor((1, 1, 1, 1), vertex_colors=True),),
+        surfaces=(Surface(Channel((1, 1, 1, 1), VertexColors())),),
     )
     spacing = grid_spacing(ball, resolution=100)
     plain = sample_surface(ball, resolution=100).surfels

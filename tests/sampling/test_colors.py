@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from splat_addon.sampling import Image, SurfaceColor, sample_mesh
+from splat_addon.sampling import Channel, Image, Surface, Texture, VertexColors, sample_mesh
 
 #: The square's corners as its triangles use them: texture coordinates equal x, y.
 UVS = np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]], float)
@@ -15,7 +15,7 @@ def surfaced(square, *surfaces, **fields):
 
 
 def test_a_material_without_texture_gives_its_own_colour(square):
-    surfels = sample_mesh(surfaced(square, SurfaceColor((0.1, 0.2, 0.3, 0.5))), resolution=8)
+    surfels = sample_mesh(surfaced(square, Surface(Channel((0.1, 0.2, 0.3, 0.5)))), resolution=8)
     assert (surfels.colors == np.float32((0.1, 0.2, 0.3, 0.5))).all()
 
 
@@ -23,14 +23,22 @@ def test_vertex_colours_are_linear_between_corners(square):
     corners = np.ones((2, 3, 4))
     corners[..., :2] = UVS
     surfels = sample_mesh(
-        surfaced(square, SurfaceColor((1, 1, 1, 1), vertex_colors=True), corner_colors=corners), resolution=32
+        surfaced(square, Surface(Channel((1, 1, 1, 1), VertexColors())), corner_colors=corners), resolution=32
     )
     assert np.abs(surfels.colors[:, :2] - surfels.positions[:, :2]).max() < 1e-6
 
 
 def test_the_factors_multiply(square):
     image = Image(np.full((2, 2, 4), 0.5))
-    surface = SurfaceColor((0.5, 1, 1, 1), image, vertex_colors=True)
+    surface = Surface(
+        Channel(
+            (0.5, 1, 1, 1),
+            (
+                Texture(image),
+                VertexColors(),
+            ),
+        )
+    )
     surfels = sample_mesh(surfaced(square, surface, corner_colors=np.full((2, 3, 4), 0.25)), resolution=8)
     assert np.allclose(surfels.colors, (0.0625, 0.125, 0.125, 0.125))
 
@@ -39,7 +47,7 @@ def test_a_ramp_in_a_texture_comes_back_unshifted(square):
     """Pixel k is centred at (k + 1/2) / size: with value k + 1/2 over size it is the coordinate itself."""
     ramp = np.ones((16, 16, 4))
     ramp[..., 0], ramp[..., 1] = np.meshgrid((np.arange(16) + 0.5) / 16, (np.arange(16) + 0.5) / 16)
-    surfels = sample_mesh(surfaced(square, SurfaceColor((1, 1, 1, 1), Image(ramp))), resolution=64)
+    surfels = sample_mesh(surfaced(square, Surface(Channel((1, 1, 1, 1), Texture(Image(ramp))))), resolution=64)
     x, y = surfels.positions[:, 0], surfels.positions[:, 1]
     inner = (np.minimum(x, y) > 1 / 32) & (np.maximum(x, y) < 31 / 32)
     assert inner.sum() > 3000 and np.abs(surfels.colors[:, :2] - surfels.positions[:, :2])[inner].max() < 1e-6
@@ -54,7 +62,7 @@ OUTSIDE = {"REPEAT": (1, 0, 1), "EXTEND": (0, 1, 1), "MIRROR": (0, 1, 0), "CLIP"
 def test_extension_modes_follow_the_image_texture_node(square, extension, interpolation):
     image = Image(np.array([[(0, 0, 0, 1), (1, 1, 1, 1)]], float), extension, interpolation)
     for u, red in zip((-0.25, 1.25, 1.75), OUTSIDE[extension], strict=True):
-        surface = SurfaceColor((1, 1, 1, 1), image)
+        surface = Surface(Channel((1, 1, 1, 1), Texture(image)))
         surfels = sample_mesh(square(corner_uvs=np.full((2, 3, 2), (u, 0.5)), surfaces=(surface,)), resolution=2)
         assert np.allclose(surfels.colors[:, 0], red, atol=1e-6)
         assert np.allclose(surfels.colors[:, 3], extension != "CLIP")
@@ -64,7 +72,7 @@ def test_a_texture_finer_than_the_spacing_does_not_alias(square):
     """A checker of single pixels, eight to a cell: point lookups would give pure black and white."""
     checker = np.ones((512, 512, 4))
     checker[..., :3] = (np.indices((512, 512)).sum(axis=0) % 2)[..., None]
-    surfels = sample_mesh(surfaced(square, SurfaceColor((1, 1, 1, 1), Image(checker))), resolution=64)
+    surfels = sample_mesh(surfaced(square, Surface(Channel((1, 1, 1, 1), Texture(Image(checker))))), resolution=64)
     assert np.allclose(surfels.colors[:, :3], 0.5)
 
 
@@ -72,27 +80,27 @@ def test_a_texture_finer_than_the_spacing_does_not_alias(square):
 def test_a_minified_texture_of_any_size_keeps_its_mean(square, size):
     pixels = np.random.default_rng(0).random((*size, 4))
     pixels[..., 3] = 1
-    surfels = sample_mesh(surfaced(square, SurfaceColor((1, 1, 1, 1), Image(pixels))), resolution=1)
+    surfels = sample_mesh(surfaced(square, Surface(Channel((1, 1, 1, 1), Texture(Image(pixels))))), resolution=1)
     assert np.allclose(surfels.colors[0], pixels.mean(axis=(0, 1)), atol=1e-6)
 
 
 def test_a_texture_at_its_own_size_is_not_blurred(square):
     pixels = np.random.default_rng(0).random((16, 16, 4))
     pixels[..., 3] = 1
-    surfels = sample_mesh(surfaced(square, SurfaceColor((1, 1, 1, 1), Image(pixels))), resolution=16)
+    surfels = sample_mesh(surfaced(square, Surface(Channel((1, 1, 1, 1), Texture(Image(pixels))))), resolution=16)
     column, row = np.floor(surfels.positions[:, :2] * 16).astype(int).T
     assert np.abs(surfels.colors - pixels[row, column]).max() < 1e-5
 
 
 def test_a_transparent_pixel_does_not_bleed_its_colour(square):
     image = Image(np.array([[(1, 0, 0, 1), (0, 1, 0, 0)]], float), "EXTEND")
-    surfels = sample_mesh(surfaced(square, SurfaceColor((1, 1, 1, 1), image)), resolution=32)
+    surfels = sample_mesh(surfaced(square, Surface(Channel((1, 1, 1, 1), Texture(image)))), resolution=32)
     seen = surfels.colors[:, 3] > 0
     assert seen.sum() > 500 and np.allclose(surfels.colors[seen, :3], (1, 0, 0))
 
 
 def test_each_triangle_has_its_own_material(square):
-    surfaces = SurfaceColor((1, 0, 0, 1)), SurfaceColor((0, 1, 0, 1))
+    surfaces = Surface(Channel((1, 0, 0, 1))), Surface(Channel((0, 1, 0, 1)))
     surfels = sample_mesh(surfaced(square, *surfaces, materials=np.array([0, 1])), resolution=16)
     above = surfels.positions[:, 1] > surfels.positions[:, 0] + 1e-6
     assert (surfels.materials[above] == 1).all() and (surfels.colors[above] == (0, 1, 0, 1)).all()
@@ -100,13 +108,21 @@ def test_each_triangle_has_its_own_material(square):
 
 
 def test_a_material_past_the_end_uses_the_last_surface_and_keeps_its_index(square):
-    surfaces = SurfaceColor((1, 0, 0, 1)), SurfaceColor((0, 0, 1, 1))
+    surfaces = Surface(Channel((1, 0, 0, 1))), Surface(Channel((0, 0, 1, 1)))
     surfels = sample_mesh(surfaced(square, *surfaces, materials=np.array([5, 5])), resolution=4)
     assert (surfels.materials == 5).all() and (surfels.colors == (0, 0, 1, 1)).all()
 
 
 def test_a_factor_that_the_mesh_lacks_is_left_out(square):
-    surface = SurfaceColor((0.5, 0.5, 0.5, 1), Image(np.zeros((1, 1, 4))), vertex_colors=True)
+    surface = Surface(
+        Channel(
+            (0.5, 0.5, 0.5, 1),
+            (
+                Texture(Image(np.zeros((1, 1, 4)))),
+                VertexColors(),
+            ),
+        )
+    )
     surfels = sample_mesh(square(surfaces=(surface,)), resolution=4)
     assert (surfels.colors == (0.5, 0.5, 0.5, 1)).all()
 
@@ -117,7 +133,7 @@ def test_a_broken_colour_falls_back_to_the_materials_own(square, broken):
     corners = np.ones((2, 3, 4))
     corners[:, :, 0] = broken
     surfels = sample_mesh(
-        surfaced(square, SurfaceColor((0.5, 0, 0, 1), vertex_colors=True), corner_colors=corners), resolution=4
+        surfaced(square, Surface(Channel((0.5, 0, 0, 1), VertexColors())), corner_colors=corners), resolution=4
     )
     assert np.allclose(surfels.colors, (0.5, 0, 0, 1))
 
@@ -128,7 +144,7 @@ def test_a_broken_pixel_falls_back_to_the_materials_own(square, resolution):
     pixels = np.full((4, 4, 4), np.inf)
     pixels[:2] = np.nan
     pixels[3, :, 3] = 0
-    surface = SurfaceColor((0.5, 0, 0, 1), Image(pixels))
+    surface = Surface(Channel((0.5, 0, 0, 1), Texture(Image(pixels))))
     assert np.allclose(sample_mesh(surfaced(square, surface), resolution=resolution).colors, (0.5, 0, 0, 1))
 
 
@@ -137,7 +153,9 @@ def test_broken_texture_coordinates_look_up_the_corner(square):
     image = Image(np.array([[(0.5, 0, 0, 1)]]))
     uvs = np.full((2, 3, 2), np.nan)
     uvs[1] = 1e30
-    surfels = sample_mesh(square(corner_uvs=uvs, surfaces=(SurfaceColor((1, 1, 1, 1), image),)), resolution=4)
+    surfels = sample_mesh(
+        square(corner_uvs=uvs, surfaces=(Surface(Channel((1, 1, 1, 1), Texture(image))),)), resolution=4
+    )
     assert np.allclose(surfels.colors, (0.5, 0, 0, 1))
 
 

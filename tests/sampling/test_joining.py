@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes moved and joined, held to trimesh's word on their volume and area."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
 
-from splat_addon.sampling import SurfaceColor, TriangleMesh, is_solid, joined, sample_mesh, transformed
+from splat_addon.sampling import Channel, Surface, TriangleMesh, is_solid, joined, sample_mesh, transformed
 
 
 def mesh_of(solid: trimesh.Trimesh, **fields) -> TriangleMesh:
@@ -67,13 +69,22 @@ def test_joined_meshes_are_all_there(ball):
     assert is_solid(both)
 
 
+def test_layers_of_coordinates_stay_those_of_their_mesh(ball):
+    """Two layers beside one: the second is 0 where a mesh has not got it, and nobody there looks it up."""
+    two = replace(ball, corner_uvs=np.full((len(ball), 3, 4), 0.5))
+    one = replace(ball, corner_uvs=np.full((len(ball), 3, 2), 0.25))
+    both = joined([two, one]).corner_uvs
+    assert (both[: len(ball)] == 0.5).all() and (both[len(ball) :, :, :2] == 0.25).all()
+    assert (both[len(ball) :, :, 2:] == 0).all()
+
+
 def test_what_one_mesh_lacks_is_filled_in(ball):
     """A box without normals beside a smooth ball is shaded flat; its material stays the first."""
     painted = mesh_of(
         trimesh.creation.icosphere(subdivisions=2),
         corner_normals=ball.corner_normals,
         materials=np.ones(len(ball), np.int32),
-        surfaces=(SurfaceColor((1, 0, 0, 1)), SurfaceColor((0, 1, 0, 1))),
+        surfaces=(Surface(Channel((1, 0, 0, 1))), Surface(Channel((0, 1, 0, 1)))),
     )
     box = transformed(mesh_of(trimesh.creation.box()), trimesh.transformations.translation_matrix((5, 0, 0)))
     surfels = sample_mesh(joined([painted, box]), spacing=0.1)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from splat_addon.sampling import SurfaceColor, TriangleMesh, sample_surface
+from splat_addon.sampling import Channel, Surface, Texture, TriangleMesh, VertexColors, sample_surface
 from splat_addon.sampling.connectivity import part_labels
 
 #: A spacing whose rays pass a small part near the origin by: they lie at odd halves of it.
@@ -90,7 +90,7 @@ def test_a_part_without_measurable_area_is_still_one_finite_surfel(triangle):
 
 def test_a_small_part_has_the_material_colour_and_normal_of_its_faces(square):
     normals, colors = np.tile((0.6, 0, 0.8), (2, 3, 1)), np.tile((0.5, 1, 0, 1), (2, 3, 1))
-    surfaces = SurfaceColor(), SurfaceColor((1, 0.5, 1, 1), vertex_colors=True)
+    surfaces = Surface(), Surface(Channel((1, 0.5, 1, 1), VertexColors()))
     mesh = square(0.2, corner_normals=normals, corner_colors=colors, materials=np.ones(2, int), surfaces=surfaces)
     surfels = sample_surface(mesh, spacing=SPACING).surfels
     assert surfels.materials.tolist() == [1] and np.allclose(surfels.colors, (0.5, 0.5, 0, 1))
@@ -110,7 +110,7 @@ def test_a_textured_small_part_has_the_mean_of_its_texture(square):
     checks = np.ones((64, 64, 4), np.float32)
     checks[::2, ::2, :3] = checks[1::2, 1::2, :3] = 0
     uvs = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)[[[0, 1, 2], [0, 2, 3]]]
-    mesh = square(0.2, corner_uvs=uvs, surfaces=(SurfaceColor((1, 1, 1, 1), Image(checks)),))
+    mesh = square(0.2, corner_uvs=uvs, surfaces=(Surface(Channel((1, 1, 1, 1), Texture(Image(checks)))),))
     assert np.allclose(sample_surface(mesh, spacing=SPACING).surfels.colors[0, :3], 0.5, atol=0.01)
 
 

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from splat_addon.sampling import SurfaceColor, TriangleMesh, sample_mesh, scan_conversion
+from splat_addon.sampling import Channel, Surface, TriangleMesh, VertexColors, sample_mesh, scan_conversion
 from splat_addon.sampling import mesh as mesh_module
 from splat_addon.sampling import sample as sample_module
 
@@ -70,7 +70,7 @@ def slivers(thicknesses, count=1000):
     off = np.repeat(thicknesses, count)[:, None] * random.normal(size=a.shape)
     corners = np.stack([a, b, middle + off], axis=1)
     colors = random.integers(0, 2, (len(a), 3, 4)).astype(float)
-    surfaces = (SurfaceColor((1, 1, 1, 1), vertex_colors=True),)
+    surfaces = (Surface(Channel((1, 1, 1, 1), VertexColors())),)
     triangles = np.arange(3 * len(a)).reshape(-1, 3)
     return TriangleMesh(corners.reshape(-1, 3), triangles, corner_colors=colors, surfaces=surfaces)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials -> base colours, down to the surfels of a unit square whose UV map is its x and y."""
+"""Materials -> what surfels are made of, down to the surfels of a unit square whose UV map is its x and y."""
 
 import bpy
 import numpy as np
@@ -232,10 +232,10 @@ def test_what_cannot_be_read_falls_back_to_the_sockets_colour_and_is_reported(pa
 def test_an_unreadable_alpha_costs_only_the_alpha(painted, image, capfd):
     nodes = Nodes("odd")
     nodes.link(nodes.texture(image(alpha_mode="NONE")), "Color", nodes.principled, "Base Color")
-    nodes.link(nodes.add("ShaderNodeMath"), "Value", nodes.principled, "Alpha")
+    nodes.link(nodes.add("ShaderNodeCameraData"), "View Distance", nodes.principled, "Alpha")
     surfels, texel = painted(nodes.material)
     assert np.allclose(surfels.colors[:, :3], decoded(ENCODED)[texel][:, :3], atol=1e-6)
-    assert "alpha comes from a Math node" in capfd.readouterr().out
+    assert "alpha comes from a Camera Data node" in capfd.readouterr().out
 
 
 def test_a_material_in_a_slot_that_no_face_uses_is_not_complained_about(painted, image, capfd):

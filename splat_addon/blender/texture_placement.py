@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where an image lies on a mesh: the UV map that an Image Texture node is looked up by, and how a Mapping moves it."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from mathutils import Euler
+
+from .node_products import linked
+from .texture_images import UnreadableError
+
+
+def uv_layer(name: str, mesh: bpy.types.Mesh) -> str:
+    """The UV map of this name, or for "" the one that renders. Raises UnreadableError where there is none."""
+    names = [layer.name for layer in mesh.uv_layers if layer.name == name or (not name and layer.active_render)]
+    if not names:
+        raise UnreadableError(f"an image texture on the UV map {name!r}, which the mesh does not have")
+    return names[0]
+
+
+def placement(node: bpy.types.ShaderNodeTexImage, mesh: bpy.types.Mesh) -> tuple[str, np.ndarray | None]:
+    """The UV map of an Image Texture node, and the (2, 3) matrix from its coordinates to the image's, None: the same.
+
+    Raises UnreadableError.
+    """
+    matrix = np.eye(3)
+    socket = node.inputs["Vector"]
+    while (source := linked(socket)) is not None:
+        by, output = source
+        if by.bl_idname == "ShaderNodeMapping" and not by.mute:
+            matrix = matrix @ _mapping(by)
+            socket = by.inputs["Vector"]
+        elif by.bl_idname == "ShaderNodeUVMap":
+            return uv_layer(by.uv_map, mesh), _rows(matrix)
+        elif (by.bl_idname, output) == ("ShaderNodeTexCoord", "UV"):
+            return uv_layer("", mesh), _rows(matrix)
+        elif (by.bl_idname, output) == ("ShaderNodeAttribute", "Vector") and by.attribute_type == "GEOMETRY":
+            return uv_layer(by.attribute_name, mesh), _rows(matrix)
+        else:
+            raise UnreadableError(f"an image texture that is placed by a {by.bl_label} node")
+    if socket.node != node:
+        raise UnreadableError("an image texture that a Mapping node places without texture coordinates")
+    return uv_layer("", mesh), None
+
+
+def _rows(matrix: np.ndarray) -> np.ndarray | None:
+    return None if (matrix == np.eye(3)).all() else matrix[:2]
+
+
+def _mapping(node: bpy.types.ShaderNodeMapping) -> np.ndarray:
+    """(3, 3) matrix of a Mapping node over u, v, 1; the third coordinate of a texture is 0 and is not looked at."""
+    names = ("Location", "Rotation", "Scale")
+    sockets = [node.inputs[name] for name in names]
+    if node.vector_type not in _MAPPINGS or any(linked(s) for s in sockets if s.enabled):
+        raise UnreadableError(f"an image texture that is placed by a {node.vector_type.title()} or linked Mapping node")
+    location, rotation, scale = (np.array(socket.default_value, np.float64) for socket in sockets)
+    linear, shift = _MAPPINGS[node.vector_type](location, np.array(Euler(rotation).to_matrix(), np.float64), scale)
+    matrix = np.eye(3)
+    matrix[:2, :2], matrix[:2, 2] = linear[:2, :2], shift[:2]
+    return matrix
+
+
+def _as_point(location, rotation, scale):
+    return rotation * scale, location
+
+
+def _as_texture(location, rotation, scale):
+    """The inverse of a point's; a scale of 0 divides as shaders do."""
+    inverse = np.divide(1, scale, out=np.zeros(3), where=scale != 0)[:, None] * rotation.T
+    return inverse, -inverse @ location
+
+
+#: vector type -> function of location, rotation matrix and scale giving a (3, 3) matrix and a shift
+_MAPPINGS = {"POINT": _as_point, "TEXTURE": _as_texture}
