@@ -62,19 +62,19 @@ def test_objects_that_are_no_meshes(add, assert_covers):
 
 
 @pytest.fixture
-def cone_on_corners(add_square, add_nodes):
-    """A square that Geometry Nodes put cones on, of several sizes and turns, beside the square itself."""
+def cubes_on_corners(add_square, add_nodes):
+    """A square that Geometry Nodes put boxes on, of several sizes and turns, beside the square itself."""
     square = add_square()
     square.location, square.scale = (1, 2, 3), (2, 2, 2)
 
     def build(tree, start, end):
-        cone, place = tree.nodes.new("GeometryNodeMeshCone"), tree.nodes.new("GeometryNodeInstanceOnPoints")
+        cube, place = tree.nodes.new("GeometryNodeMeshCube"), tree.nodes.new("GeometryNodeInstanceOnPoints")
         random = tree.nodes.new("FunctionNodeRandomValue")
         random.data_type = "FLOAT_VECTOR"
         random.inputs["Min"].default_value, random.inputs["Max"].default_value = (0.05, 0.1, 0.2), (0.1, 0.2, 0.3)
         tree.links.new(random.outputs[0], place.inputs["Scale"])
         join = tree.nodes.new("GeometryNodeJoinGeometry")
-        tree.links.new(cone.outputs["Mesh"], place.inputs["Instance"])
+        tree.links.new(cube.outputs["Mesh"], place.inputs["Instance"])
         tree.links.new(start, place.inputs["Points"])
         for piece in (place.outputs["Instances"], start):
             tree.links.new(piece, join.inputs[0])
@@ -84,8 +84,8 @@ def cone_on_corners(add_square, add_nodes):
     return square
 
 
-def test_geometry_nodes_instances_and_the_mesh_beside_them(cone_on_corners, assert_covers):
-    tree = cone_on_corners.modifiers[0].node_group
+def test_geometry_nodes_instances_and_the_mesh_beside_them(cubes_on_corners, assert_covers):
+    tree = cubes_on_corners.modifiers[0].node_group
 
     def realise():
         node, [link] = tree.nodes.new("GeometryNodeRealizeInstances"), tree.nodes["Group Output"].inputs[0].links
