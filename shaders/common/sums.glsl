@@ -6,11 +6,13 @@
 #ifdef HALF_SUMS
 // A sum of weights up to 1 stops growing at 2048 of them, here 32768; float16 ends at 65504.
 const float WEIGHT_SCALE = 16.0;
+// Below this float16 drops digits, and then the splat: weaker weights count as this one.
+const float LEAST_WEIGHT = 6.104e-5;
 #endif
 
 void add_to_sums(float weight, float depth) {
 #ifdef HALF_SUMS
-  weight *= WEIGHT_SCALE;
+  weight = max(weight * WEIGHT_SCALE, LEAST_WEIGHT);
   color_sum = vec4(color_weight.rgb * splats.sides.w, 1.0) * weight;
   normal_sum = vec4(normal, 0.0) * weight;
   depth_sum = vec2(depth, 1.0) * weight;

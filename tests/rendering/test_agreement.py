@@ -14,8 +14,9 @@ from splat_addon.rendering.methods import METHODS
 TOLERANCE = 1e-4
 #: A normal is a sum brought to unit length: where front and back of a fold nearly cancel, that magnifies rounding.
 NORMAL_TOLERANCE = 5e-4
-#: A float16 sum is rounded at every splat, to one side or the other of what differs in the last digit of float32.
-FLOAT16_TOLERANCE = 4e-3
+#: A float16 sum is rounded at every splat, to one side or the other of what differs in the last digit of float32; of 1,
+#: and of the value in highlights, which magnify it.
+FLOAT16_TOLERANCE = 6e-3
 #: The share of samples in which a splat's rim, or two depths, may tie and fall either way.
 TIES = 1 / 20_000
 SIZE = (256, 256)
@@ -54,7 +55,8 @@ def test_picture_is_the_same_on_every_device(name, method, options, render, pict
     assert path.exists(), f"{path} is missing: run the tests with --device standalone first (scripts/test.py does)"
     standalone = np.load(path)
     hit = (frame.depth < EMPTY_DEPTH) & (standalone["depth"] < EMPTY_DEPTH)
-    assert_few(ties(frame.color, standalone["color"], tolerance), samples=1)
+    brightness = np.maximum(standalone["color"], 1) if tolerance == FLOAT16_TOLERANCE else 1
+    assert_few(ties(frame.color / brightness, standalone["color"] / brightness, tolerance), samples=1)
     assert_few(ties(frame.normal, standalone["normal"], max(tolerance, NORMAL_TOLERANCE)), samples=1)
     assert_few(frame.coverage != standalone["coverage"], samples=1)
     assert_few(hit & (np.abs(frame.depth - standalone["depth"]) > TOLERANCE), samples=1)
