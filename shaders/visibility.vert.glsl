@@ -4,6 +4,8 @@
 //          than the depth can resolve, or rounding would let a splat hide itself. The corners are moved, which is
 //          right for splats of a small angle; where linear depth is planned, every fragment is.
 
+#define VERTEX_STAGE
+#include "common/depth.glsl"
 #include "common/sides.glsl"
 #include "common/stored_splat.glsl"
 #include "methods/quad.glsl"
@@ -24,8 +26,14 @@ void main() {
 #ifdef LINEAR_DEPTH
   across_offset = vec3(eye.xy, offset);
 #else
+  vec4 unmoved = splats.projection * vec4(eye, 1.0);
   offset = max(offset, splats.sides.z * (is_orthographic ? 1.0 : length(eye)));
   eye += offset * (is_orthographic ? vec3(0.0, 0.0, -1.0) : eye / max(length(eye), 1e-30));
 #endif
-  gl_Position = is_back && splats.sides.y > 0.5 ? NOWHERE : splats.projection * vec4(eye, 1.0);
+  vec4 moved = splats.projection * vec4(eye, 1.0);
+#ifndef LINEAR_DEPTH
+  // Moving brings nothing beyond the far plane.
+  moved.z = min(moved.z, moved.w * max(unmoved.z / unmoved.w, 2.0 * FARTHEST_STORED - 1.0));
+#endif
+  gl_Position = is_back && splats.sides.y > 0.5 ? NOWHERE : moved;
 }

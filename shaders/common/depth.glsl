@@ -5,8 +5,10 @@
 
 const float FARTHEST_STORED = 0.9999998;  // 1 says that nothing was drawn
 
+#ifndef VERTEX_STAGE
 void write_depth(float depth) {
 #ifdef LINEAR_DEPTH
   gl_FragDepth = min(depth * splats.options.w, FARTHEST_STORED);
 #endif
 }
+#endif

@@ -36,8 +36,18 @@ def test_a_wide_clip_range_alone_costs_nothing(world, render_all):
     np.testing.assert_array_equal(wide.color, base.color)
 
 
-def test_something_at_the_near_plane_costs_nothing(world, hold):
-    hold({f"near {near}": with_speck(*world, near) for near in NEARS}, least=60)
+@pytest.mark.parametrize("near", NEARS)
+def test_something_at_the_near_plane_costs_nothing(near, world, hold):
+    hold({"speck": with_speck(*world, near)}, least=60)
+
+
+@pytest.mark.parametrize("distance", [10.0**k for k in range(-6, 7)])
+def test_depth_is_known_to_a_millionth_at_any_distance(distance, render_all, lit, camera):
+    """A disc as wide as the picture at the distance, between near 1e-6 and far 1e6, with something at both."""
+    camera = camera(near=0.5e-6, far=2e6)
+    wall = discs((0, 0, -distance), (distance, 0, 0), (0, distance, 0))
+    (frame,) = render_all([(lit(wall, speck(camera, 0.6e-6), speck(camera, 1.9e6)), camera, None)])
+    np.testing.assert_allclose(frame.depth[8:56, 8:24], distance, rtol=1e-6)
 
 
 def test_hardware_depth_serves_where_it_is_fine_enough():

@@ -8,6 +8,7 @@ from splat_addon.reference.extremes import discs
 
 RATIOS = [1, 10, 1e2, 1e3, 1e4, 1e5, 1e6]
 TURN = 1.0
+LEAST_PSNR = 50
 
 
 def stripes(long, short, turn):
@@ -16,16 +17,18 @@ def stripes(long, short, turn):
     return discs(np.linspace(-1, 1, 21)[:, None] * v + (0, 0, -3), u * long, v * short)
 
 
+@pytest.mark.parametrize("ratio", RATIOS)
 @pytest.mark.parametrize("turn", [0, TURN])
-def test_ellipses_that_get_thinner_are_the_true_ones(turn, hold, lit, camera):
-    hold({f"1 : {ratio:g}": (lit(stripes(1, 1 / ratio, turn)), camera()) for ratio in RATIOS})
+def test_ellipses_that_get_thinner_are_the_true_ones(turn, ratio, hold, lit, camera):
+    hold({"stripes": (lit(stripes(1, 1 / ratio, turn)), camera())})
 
 
-def test_ellipses_that_get_longer_are_the_true_ones(hold, lit, camera):
-    hold({f"{ratio:g} : 1": (lit(stripes(0.08 * ratio, 0.08, 0)), camera()) for ratio in RATIOS})
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_ellipses_that_get_longer_are_the_true_ones(ratio, hold, lit, camera):
+    hold({"stripes": (lit(stripes(0.08 * ratio, 0.08, 0)), camera())})
 
 
-def test_long_ellipses_at_an_angle_are_the_true_ones(hold, lit, camera):
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_long_ellipses_at_an_angle_are_the_true_ones(ratio, hold, lit, camera):
     """Their corners lie far outside of the picture, where float32 has few digits left for the short axis."""
-    hold({f"{ratio:g} : 1": (lit(stripes(0.08 * ratio, 0.08, TURN)), camera()) for ratio in RATIOS[:-1]})
-    hold({"1e6 : 1": (lit(stripes(0.08e6, 0.08, TURN)), camera())}, least=35)
+    hold({"stripes": (lit(stripes(0.08 * ratio, 0.08, TURN)), camera())}, least=35 if ratio > 1e5 else LEAST_PSNR)

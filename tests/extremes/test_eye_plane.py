@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Splats across the near plane or the eye's plane, also with their centre behind the camera, keep what is before it."""
 
+import pytest
+
 from splat_addon.reference.extremes import discs
 
 SPLATS = {
@@ -13,12 +15,16 @@ SPLATS = {
 }
 
 
-def test_what_lies_before_the_near_plane_alone_is_cut(hold, lit, camera):
-    results = hold({name: (lit(splat), camera(near=1e-2)) for name, splat in SPLATS.items()})
-    seen = {name for name, (frame, _) in results.items() if frame.coverage.any()}
-    assert seen == SPLATS.keys() - {"through the eye", "wholly behind"}
+UNSEEN = ("through the eye", "wholly behind")
 
 
-def test_a_splat_across_the_eye_hides_nothing_beyond_its_rim(hold, lit, camera):
+@pytest.mark.parametrize("name", SPLATS)
+def test_what_lies_before_the_near_plane_alone_is_cut(name, hold, lit, camera):
+    ((frame, _),) = hold({name: (lit(SPLATS[name]), camera(near=1e-2))}).values()
+    assert frame.coverage.any() == (name not in UNSEEN)
+
+
+@pytest.mark.parametrize("name", SPLATS)
+def test_a_splat_across_the_eye_hides_nothing_beyond_its_rim(name, hold, lit, camera):
     beyond = discs((0, 0, -30), (40, 0, 0), (0, 40, 0), (0, 1, 0))
-    hold({name: (lit(splat, beyond), camera(near=1e-2)) for name, splat in SPLATS.items()})
+    hold({name: (lit(SPLATS[name], beyond), camera(near=1e-2))})

@@ -33,15 +33,18 @@ def shifted(shift):
     return Camera.perspective(matrix, np.radians(60), SIZE, 0.1, 100, shift=(shift, 0))
 
 
-def test_any_field_of_view_is_the_true_one(hold, sphere):
-    hold({f"{angle} degrees": (sphere, filling(angle)) for angle in ANGLES})
+@pytest.mark.parametrize("angle", ANGLES)
+def test_any_field_of_view_is_the_true_one(angle, hold, sphere):
+    hold({f"{angle} degrees": (sphere, filling(angle))})
 
 
-def test_a_window_far_off_the_axis_is_the_true_one(hold, sphere):
-    results = hold({f"shift {shift}": (sphere, shifted(shift)) for shift in SHIFTS})
-    assert all(frame.coverage.any() for frame, _ in results.values())
+@pytest.mark.parametrize("shift", SHIFTS)
+def test_a_window_far_off_the_axis_is_the_true_one(shift, hold, sphere):
+    ((frame, _),) = hold({f"shift {shift}": (sphere, shifted(shift))}).values()
+    assert frame.coverage.any()
 
 
-def test_splats_across_a_wide_field_are_the_true_ones(hold, lit, camera):
+@pytest.mark.parametrize("angle", [120, 150, 170])
+def test_splats_across_a_wide_field_are_the_true_ones(angle, hold, lit, camera):
     """At 170 degrees the outermost pixels look 85 degrees off the axis: affine approximations fail there."""
-    hold({f"{angle} degrees": (lit(sheet(40, 8.0, 0, 1.0)), camera(angle)) for angle in (120, 150, 170)})
+    hold({f"{angle} degrees": (lit(sheet(40, 8.0, 0, 1.0)), camera(angle))})

@@ -45,3 +45,10 @@ def test_any_invertible_map_is_the_true_picture(name, hold):
 def test_a_map_that_flattens_space_is_counted(render_all):
     (frame,) = render_all([(*framed(np.diag([1.0, 1.0, 0.0])), None)])
     assert frame.stats["instances_degenerate"] == 1
+
+
+@pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-6, 1e-8])
+def test_axes_that_are_all_but_collinear_break_nothing(gap, render_all):
+    """Beyond 1e-7 float32 cannot tell them apart: what is left may be anything but NaN."""
+    (frame,) = render_all([(*framed(np.array([[1, 1, 0], [1, 1 + gap, 0], [0, 0, 1.0]])), None)])
+    assert all(np.isfinite(getattr(frame, name)).all() for name in ("color", "depth", "normal", "coverage"))
