@@ -1,52 +1,91 @@
 // References: Walter, Marschner, Li, Torrance, "Microfacet Models for Refraction", 2007 (GGX);
 //             Heitz, "Understanding the Masking-Shadowing Function", 2014, equation 99 (height-correlated Smith);
-//             Schlick 1994 (Fresnel); Karis, "Physically Based Shading on Mobile", 2014 (environment BRDF).
+//             Schlick 1994 (Fresnel); Heitz et al. 2016 (lights with a size).
 // Summary: a Principled-like surface: metal or a dielectric coat over a Lambertian base that loses what the coat
-//          reflects; suns, points and an even world. The twin of reference/shading.py.
+//          reflects, under lights and the world. The twin of reference/shading.py.
+
+#include "shading/brdf.glsl"
+#include "common/world.glsl"
+#ifdef LIGHTS
+#include "shading/lights.glsl"
+#endif
 
 const float PI = 3.14159265358979;
 const float MIN_ROUGHNESS = 0.03;
 const float MIN_COSINE = 1e-4;
 
-// material: roughness, metallic, reflectance at normal incidence
-vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
-  vec3 view = shading.options.x > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
-  float roughness = clamp(material.x, MIN_ROUGHNESS, 1.0);
-  float metallic = clamp(material.y, 0.0, 1.0);
-  vec3 f0 = mix(vec3(material.z), base, metallic);
-  float nv = max(dot(normal, view), MIN_COSINE);
-
-  vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
-  float a004 = min(r.x * r.x, exp2(-9.28 * nv)) * r.x + r.y;
-  vec2 ab = vec2(-1.04, 1.04) * a004 + r.zw;
-  vec3 diffuse_albedo = base * (1.0 - metallic) * (1.0 - (material.z * ab.x + ab.y));
-  vec3 radiance = shading.world.rgb * (diffuse_albedo + f0 * ab.x + ab.y);
+struct Lobe {
+  vec3 normal;
+  vec3 view;
+  float nv;
+  float roughness;
+  vec3 diffuse_albedo;
+  vec3 f0;
+  vec3 specular_albedo;
+  vec3 scattered;  // what light that the coat scatters more than once adds, as a factor
+};
 
 #ifdef LIGHTS
-  float a2 = roughness * roughness * roughness * roughness;
+vec3 from_point(Lobe lobe, vec3 to_light, vec3 irradiance) {
+  float nl = max(dot(lobe.normal, to_light), 0.0);
+  if (!(nl > 0.0)) return vec3(0.0);
+  float a2 = lobe.roughness * lobe.roughness * lobe.roughness * lobe.roughness, nv = lobe.nv;
+  vec3 halfway = normalize(lobe.view + to_light);
+  float nh = clamp(dot(lobe.normal, halfway), 0.0, 1.0);
+  float vh = clamp(dot(lobe.view, halfway), 0.0, 1.0);
+  vec3 sine = cross(lobe.normal, halfway);  // sin^2 + a^2 cos^2: 1 - cos^2 (1 - a^2) loses all digits on a mirror
+  float d = dot(sine, sine) + nh * nh * a2;
+  float distribution = a2 / (PI * d * d);
+  float masking = 0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));
+  vec3 fresnel = (lobe.f0 + (1.0 - lobe.f0) * pow(1.0 - vh, 5.0)) * lobe.scattered;
+  return (lobe.diffuse_albedo / PI + distribution * masking * fresnel) * irradiance * nl;
+}
+#endif
+
+#ifdef SIZED_LIGHTS
+vec3 from_quad(Lobe lobe, Incident light) {
+  vec3 across = normalize(lobe.view - lobe.normal * dot(lobe.view, lobe.normal) + vec3(1e-7, 2e-7, 0.0));
+  mat3 to_tangent = transpose(mat3(across, cross(lobe.normal, across), lobe.normal));
+  vec3 middle = to_tangent * light.middle, u = to_tangent * light.half_u, v = to_tangent * light.half_v;
+  vec3 corners[4] = vec3[4](middle - u - v, middle + u - v, middle + u + v, middle - u + v);
+  float diffuse = form_factor(corners);
+  vec4 m = table_at(lobe.roughness, lobe.nv, 0);
+  for (int i = 0; i < 4; i++) {
+    vec3 c = corners[i];
+    corners[i] = vec3(m.x * c.x + m.y * c.z, c.y, m.z * c.x + m.w * c.z);
+  }
+  return light.radiance * (lobe.diffuse_albedo * diffuse + lobe.specular_albedo * form_factor(corners));
+}
+#endif
+
+// material: roughness, metallic, reflectance at normal incidence
+vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
+  Lobe lobe;
+  lobe.normal = normal;
+  lobe.view = shading.options.x > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
+  lobe.roughness = clamp(material.x, MIN_ROUGHNESS, 1.0);
+  lobe.nv = max(dot(normal, lobe.view), MIN_COSINE);
+  float metallic = clamp(material.y, 0.0, 1.0);
+  lobe.f0 = mix(vec3(material.z), base, metallic);
+  vec2 terms = table_at(lobe.roughness, lobe.nv, 1).xy;
+  vec3 scattered;
+  vec3 coat = specular_albedo(terms, vec3(material.z), scattered);
+  lobe.diffuse_albedo = base * (1.0 - metallic) * (1.0 - coat);
+  lobe.specular_albedo = specular_albedo(terms, lobe.f0, lobe.scattered);
+  vec3 mirrored = reflect(-lobe.view, normal);
+  vec3 radiance = lobe.diffuse_albedo * world_irradiance(normal)
+      + lobe.specular_albedo * world_reflection(mirrored, lobe.roughness);
+#ifdef LIGHTS
   int count = int(shading.options.y);
   for (int i = 0; i < count; i++) {
-    vec4 place = texelFetch(lights, ivec2(0, i), 0);
-    vec3 irradiance = texelFetch(lights, ivec2(1, i), 0).rgb;
-    vec3 to_light = place.xyz;
-    if (place.w > 0.5) {
-      to_light -= position;
-      float distance2 = max(dot(to_light, to_light), 1e-30);
-      irradiance /= distance2;
-      to_light *= inversesqrt(distance2);
+    Incident light = incident(i, position);
+#ifdef SIZED_LIGHTS
+    if (light.is_sized) {
+      radiance += from_quad(lobe, light);
+      continue;
     }
-    float nl = max(dot(normal, to_light), 0.0);
-    if (nl > 0.0) {
-      vec3 halfway = normalize(view + to_light);
-      float nh = clamp(dot(normal, halfway), 0.0, 1.0);
-      float vh = clamp(dot(view, halfway), 0.0, 1.0);
-      vec3 sine = cross(normal, halfway);  // sin^2 + a^2 cos^2: 1 - cos^2 (1 - a^2) loses all digits on a mirror
-      float d = dot(sine, sine) + nh * nh * a2;
-      float distribution = a2 / (PI * d * d);
-      float masking = 0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));
-      vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - vh, 5.0);
-      radiance += (diffuse_albedo / PI + distribution * masking * fresnel) * irradiance * nl;
-    }
+#endif
+    radiance += from_point(lobe, light.to_light, light.irradiance);
   }
 #endif
   return radiance;

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -11,33 +12,54 @@ import numpy as np
 from ..rendering import Light, Material
 from ..rendering.packing import reflectance
 
-#: Blender's light type -> the renderer's kind
-_LIGHT_KINDS = {"SUN": "sun", "POINT": "point"}
-
 #: Blender's light type -> its emitting area, which multiplies the energy of a light that is not normalised (as
-#: Cycles measures it: a sun's disc at distance 1, a point's sphere).
+#: Cycles measures it: a sun's disc at distance 1, a point's sphere, or 4 for one without size).
 _AREAS = {
     "SUN": lambda light: math.pi * math.sin(light.angle / 2) ** 2,
-    "POINT": lambda light: 4 * math.pi * light.shadow_soft_size**2,
+    "POINT": lambda light: 4 * (math.pi * light.shadow_soft_size**2 or 1),
+    "SPOT": lambda light: 4 * (math.pi * light.shadow_soft_size**2 or 1),
 }
 
 
 def light_of(light: bpy.types.Light, matrix_world: np.ndarray, notes) -> Light | None:
-    """None for a type that the renderer has not. matrix_world: (4, 4), of the light's object."""
-    if light.type not in _LIGHT_KINDS:
-        notes.add(f"Lights of type {light.type.title()} give no light yet; use a sun or a point")
-        return None
+    """None for a lamp without extent. matrix_world: (4, 4), of the light's object."""
     color = np.array(light.color, np.float64) * _emission(light, notes)
     if light.use_temperature:
         color = color * np.array(light.temperature_color, np.float64)
-    area = 1.0 if light.normalize else _AREAS[light.type](light)
-    return Light(
-        _LIGHT_KINDS[light.type],
+    shape = _SHAPES[light.type](light, matrix_world)
+    if light.type == "AREA" and np.linalg.norm(np.cross(*shape["half_axes"])) == 0:
+        notes.add(f"The area light {light.name!r} has no area and gives no light; give it a size and a scale above 0")
+        return None
+    made = Light(
+        light.type.lower(),
         tuple(color),
-        light.energy * 2.0**light.exposure * area,
+        light.energy * 2.0**light.exposure,
         position=tuple(matrix_world[:3, 3]),
         direction=tuple(-matrix_world[:3, 2]),
+        **shape,
     )
+    if light.normalize:
+        return made
+    area = made.area if light.type == "AREA" else _AREAS[light.type](light)
+    return replace(made, energy=made.energy * area)
+
+
+def _area_shape(light: bpy.types.AreaLight, matrix_world: np.ndarray) -> dict:
+    sizes = light.size, light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
+    half_axes = tuple(tuple(matrix_world[:3, k] * size / 2) for k, size in enumerate(sizes))
+    return {"half_axes": half_axes, "is_round": light.shape in {"DISK", "ELLIPSE"}}
+
+
+_SHAPES = {
+    "SUN": lambda light, _: {"size": light.angle},
+    "POINT": lambda light, _: {"size": light.shadow_soft_size},
+    "SPOT": lambda light, _: {
+        "size": light.shadow_soft_size,
+        "spot_angle": light.spot_size,
+        "spot_blend": light.spot_blend,
+    },
+    "AREA": _area_shape,
+}
 
 
 def _emission(light: bpy.types.Light, notes) -> np.ndarray:

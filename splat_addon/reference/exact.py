@@ -13,8 +13,9 @@ from ..rendering.frame import EMPTY_DEPTH, Frame
 from ..rendering.scene import Scene
 from ..rendering.settings import Settings
 from .filters import filter_weights, resample
+from .lights import all_incident
 from .rays import RayGrid, Surface, visible_surface
-from .shading import eye_lights, principled_radiance
+from .shading import principled_radiance
 from .splats import eye_splats, projected_bounds
 
 #: Rays of a tile: enough for numpy to be quick, few enough that a tile's arrays stay below 100 MB.
@@ -42,14 +43,13 @@ def render_exact(
     margin = (len(weights) // samples - 1) // 2
     splats = eye_splats(scene, camera)
     bounds = projected_bounds(splats, camera)
-    lights = eye_lights(scene, camera)
     width, height = camera.size
     color, normal = np.empty((height, width, 4)), np.empty((height, width, 3))
     depth, coverage = np.empty((height, width)), np.empty((height, width))
     for x, y, w, h in _tiles(width, height, samples, margin):
         grid = RayGrid.of_pixels(camera, samples, x - margin, y - margin, w + 2 * margin, h + 2 * margin)
         surface = visible_surface(splats, bounds, grid, settings.epsilon)
-        shaded = resample(_shaded_rays(surface, grid, scene, lights, settings), weights, samples)
+        shaded = resample(_shaded_rays(surface, grid, scene, camera, settings), weights, samples)
         here = np.s_[y : y + h, x : x + w]
         color[here], normal[here], coverage[here] = shaded[..., :4], shaded[..., 4:7], shaded[..., 7]
         depth[here] = _nearest_depth(surface, grid, samples, margin)
@@ -66,29 +66,29 @@ def _tiles(width: int, height: int, samples: int, margin: int):
             yield x, y, min(side, width - x), min(side, height - y)
 
 
-def _shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, lights, settings: Settings) -> np.ndarray:
+def _shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
     """(rows, columns, 8): premultiplied rgba, eye-space normal and coverage of every ray."""
     rays = np.zeros((grid.count, 8))
     if not settings.transparent_film:
         rays[:, :3], rays[:, 3] = scene.world, 1
     hit = surface.rays
-    rays[hit, :3] = SHADERS[settings.shading](surface, grid, scene, lights)
+    rays[hit, :3] = SHADERS[settings.shading](surface, grid, scene, camera)
     rays[hit, 3] = rays[hit, 7] = 1
     rays[hit, 4:7] = surface.normal
     return rays.reshape(*grid.shape, 8)
 
 
-def _flat(surface: Surface, grid: RayGrid, scene: Scene, lights) -> np.ndarray:
+def _flat(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera) -> np.ndarray:
     return surface.color
 
 
-def _principled(surface: Surface, grid: RayGrid, scene: Scene, lights) -> np.ndarray:
+def _principled(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera) -> np.ndarray:
     origin, direction = grid.rays(surface.rays)
     position = origin + surface.depth[:, None] * direction
-    return principled_radiance(surface, position, direction, lights, scene.world)
+    return principled_radiance(surface, direction, all_incident(scene, camera, position), scene.world)
 
 
-#: shading -> (surface, grid, scene, lights) to (n, 3) radiance of the rays that hit
+#: shading -> (surface, grid, scene, camera) to (n, 3) radiance of the rays that hit
 SHADERS = {"flat": _flat, "principled": _principled}
 
 

@@ -12,7 +12,8 @@ import math
 import numpy as np
 
 from ..rendering.camera import Camera, look_at
-from ..rendering.scene import Instance, Light, Material, Scene
+from ..rendering.light import Light
+from ..rendering.scene import Instance, Material, Scene
 from ..surfels import Surfels, axes_quaternions
 from .lettering import PLACE, page
 

@@ -7,9 +7,10 @@ scene, camera, settings -> plan -> view -> passes on a device -> Frame
 from .camera import Camera, look_at
 from .device import open_device
 from .frame import EMPTY_DEPTH, Frame
+from .light import Light
 from .plan import FramePlan, plan
 from .renderer import RenderCancelled, Renderer
-from .scene import Instance, Light, Material, Scene
+from .scene import Instance, Material, Scene
 from .settings import Settings
 
 __all__ = (

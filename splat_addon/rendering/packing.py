@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels, materials and lights as texels, the form in which shaders pull them.
+"""Surfels and materials as texels, the form in which shaders pull them.
 
 A splat is four RGBA32F texels, 512 splats a row:
     position.xyz, normal.x   |   axis u.xyz, normal.y   |   axis v.xyz, material   |   color.rgba
@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..surfels import Surfels
-from .scene import Instance, Light, Material
+from .scene import Instance, Material
 
 SPLATS_PER_ROW = 512
 TEXELS_PER_SPLAT = 4
@@ -69,29 +69,3 @@ def shared_material(instances: tuple[Instance, ...]) -> Material | None:
     """The one material that every surfel of the instances has, or None where they differ."""
     materials = {m for instance in instances for m in instance.materials}
     return materials.pop() if len(materials) == 1 else None
-
-
-def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: float) -> np.ndarray:
-    """(L, 2, 4) float32, in scaled view space.
-
-    Texel 0: direction to the light (sun, w = 0) or its position (point, w = 1). Texel 1: irradiance at a surface
-    that faces it; of a point light at distance 1, energy / (4 pi), in scaled units.
-    """
-    texels = np.zeros((len(lights), 2, 4))
-    for row, light in zip(texels, lights, strict=True):
-        irradiance = np.asarray(light.color, np.float64) * light.energy
-        row[0], row[1, :3] = _LIGHT_TEXELS[light.kind](light, irradiance, world_to_view, scale)
-    return texels.astype(np.float32)
-
-
-def _sun(light, irradiance, world_to_view, scale):
-    to_light = world_to_view[:3, :3] @ -np.asarray(light.direction, np.float64)
-    return (*to_light / np.linalg.norm(to_light), 0.0), irradiance
-
-
-def _point(light, irradiance, world_to_view, scale):
-    position = (world_to_view @ (*light.position, 1.0))[:3] * scale
-    return (*position, 1.0), irradiance / (4 * np.pi) * scale**2
-
-
-_LIGHT_TEXELS = {"sun": _sun, "point": _point}

@@ -74,6 +74,7 @@ class FramePlan:
     material: the one that all surfels share, or None.
     storage, accumulation: as in the settings.
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
+    features: (name, why), of what shaders do beside the least; each name is defined in their text.
     left_out: (what, why), of what other scenes or settings would need.
     """
 
@@ -87,6 +88,7 @@ class FramePlan:
     material: Material | None
     linear_depth: bool
     passes: tuple[PlannedPass, ...]
+    features: tuple[tuple[str, str], ...]
     left_out: tuple[tuple[str, str], ...]
 
     @property
@@ -119,6 +121,7 @@ class FramePlan:
         ]
         for p in self.passes:
             lines.append(f"  {p.name}: {', '.join(p.writes)} <- {', '.join(p.reads) or 'splats'}; {p.reason}")
+        lines += [f"  with {name}: {why}" for name, why in self.features]
         lines += [f"  without {what}: {why}" for what, why in self.left_out]
         return "\n".join(lines)
 
@@ -127,7 +130,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
     """The passes that this picture needs. Raises ValueError for an unknown method."""
     method = get_method(settings.method)
     material = shared_material(scene.surfels)
-    linear_depth, passes, left_out = False, (), []
+    linear_depth, passes, features, left_out = False, (), (), []
     if not any(len(instance.surfels) for instance in scene.surfels):
         left_out.append(("all passes", "the scene has no surfels, so the picture is its background"))
     else:
@@ -138,6 +141,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
             PlannedPass("attributes", f"overlapping splats blend by {method.name}", ("visibility_depth",), sums),
             *_shading_passes(settings, method, _read_by_shading(scene, settings, sums, left_out), left_out),
         )
+        features = _features(scene, settings, left_out)
         if not linear_depth:
             left_out.append(("linear depth", why_depth))
         _say_what_surfels_lack(scene, camera, left_out)
@@ -152,6 +156,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         material,
         linear_depth,
         passes,
+        features,
         tuple(left_out),
     )
 
@@ -178,11 +183,22 @@ def _sums(settings: Settings, material: Material | None, left_out: list) -> tupl
 def _read_by_shading(scene: Scene, settings: Settings, sums: tuple[str, ...], left_out: list) -> tuple[str, ...]:
     if settings.shading == "flat":
         left_out.append(("lights", "flat shading does not look at lights"))
-    elif scene.lights:
-        return *sums, "lights"
-    else:
+        return sums
+    if not scene.lights:
         left_out.append(("lights", "the scene has none"))
-    return sums
+        return *sums, "brdf_table"
+    return *sums, "brdf_table", "lights"
+
+
+def _features(scene: Scene, settings: Settings, left_out: list) -> tuple[tuple[str, str], ...]:
+    """What shaders do beside the least."""
+    if settings.shading == "flat" or not scene.lights:
+        return ()
+    sized = sum(light.is_sized for light in scene.lights)
+    if sized:
+        return (("SIZED_LIGHTS", f"{sized} of {len(scene.lights)} lights have a size"),)
+    left_out.append(("sized lights", "every light is a point or a direction"))
+    return ()
 
 
 def _shading_passes(settings: Settings, method: Method, reads: tuple[str, ...], left_out: list):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -24,6 +25,7 @@ class Resources:
     def __init__(self, device: Device):
         self.device = device
         self._surfels = WeakKeyDictionary()
+        self._constants = {}
         self._pipelines = {}
         self.textures = {}
 
@@ -41,6 +43,12 @@ class Resources:
     def data(self, texels: np.ndarray, format: str = "RGBA32F") -> Texture:
         """A texture of (h, w, 4) float32 texels that nothing here keeps."""
         return self.device.texture(texels.shape[1::-1], format, texels)
+
+    def constant(self, texels: Callable[[], np.ndarray]) -> Texture:
+        """The texture of what `texels` gives, which is always the same; uploaded once."""
+        if texels not in self._constants:
+            self._constants[texels] = self.data(texels())
+        return self._constants[texels]
 
     def texture(self, key: TextureKey) -> Texture:
         """The texture of that name, size and format, made when it is first asked for."""
@@ -62,5 +70,6 @@ class Resources:
     def release(self) -> None:
         """Let go of everything on the device."""
         self._surfels.clear()
+        self._constants.clear()
         self._pipelines.clear()
         self.textures.clear()

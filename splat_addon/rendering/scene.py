@@ -13,6 +13,7 @@ import numpy as np
 from ..images import Image
 from ..surfels import Surfels
 from .camera import Camera
+from .light import Light
 
 
 @dataclass(frozen=True)
@@ -94,36 +95,6 @@ class Instance:
     def hides_backs(self, camera: Camera) -> bool:
         """Whether no back can be seen: solid, and wholly beyond the near plane, so that the camera is outside."""
         return self.surfels.is_solid and bool((-self.corners(camera)[:, 2] >= camera.near).all())
-
-
-@dataclass(frozen=True, eq=False)
-class Light:
-    """A light without size, in Blender's units.
-
-    kind: "sun" (energy is irradiance, W/m^2, of a surface facing it) or "point" (energy is radiant power, W,
-    sent out evenly: irradiance energy / (4 pi d^2) at distance d).
-    color: (3,) linear, multiplies energy. position: (3,) world, of a point light.
-    direction: (3,) world, the way a sun's light travels.
-    """
-
-    kind: str
-    color: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    energy: float = 1.0
-    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    direction: tuple[float, float, float] = (0.0, 0.0, -1.0)
-
-    def __post_init__(self):
-        if self.kind not in LIGHT_KINDS:
-            raise ValueError(f"A light's kind must be one of {', '.join(LIGHT_KINDS)}, not {self.kind!r}.")
-        for name in ("color", "energy", "position", "direction"):
-            if not np.isfinite(getattr(self, name)).all():
-                raise ValueError(f"A light's {name} must be finite, not {getattr(self, name)!r}.")
-        if not np.any(self.direction):
-            raise ValueError("A light's direction must not be zero.")
-
-
-#: The order is the number by which the shading pass knows a kind.
-LIGHT_KINDS = ("sun", "point")
 
 
 @dataclass(frozen=True, eq=False)

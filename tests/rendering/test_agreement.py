@@ -8,7 +8,7 @@ import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import EMPTY_DEPTH, Settings
+from splat_addon.rendering import EMPTY_DEPTH, Light, Settings
 from splat_addon.rendering.methods import METHODS
 
 TOLERANCE = 1e-4
@@ -28,10 +28,22 @@ def solid(scene, camera):
     return replace(scene, surfels=tuple(instances)), camera
 
 
+def lit(scene, camera):
+    """The scene under one light of each kind, with a size."""
+    lights = (
+        Light("sun", energy=1.0, direction=(1, -0.5, -1), size=0.3),
+        Light("point", (1, 0.6, 0.3), energy=60, position=(-2, 1, 2), size=0.3),
+        Light("spot", (0.3, 0.6, 1), energy=200, position=(2, 2, 2), direction=(-1, -1, -1), size=0.1),
+        Light("area", energy=30, position=(0, 0, -2), direction=(0, 0, 1), half_axes=((1, 0, 0), (0, 0.5, 0))),
+    )
+    return replace(scene, lights=lights), camera
+
+
 SCENES = {
     "sphere": lambda: scenes.sphere(size=SIZE),
     "checker_plane": lambda: scenes.checker_plane(size=SIZE),
     "torus": lambda: scenes.torus(size=SIZE),
+    "lights": lambda: lit(*scenes.torus(size=SIZE)),
     "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),
 }
 

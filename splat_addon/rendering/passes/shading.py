@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..brdf_table import brdf_texels
 from ..device.interface import PipelineDescription, Target
-from ..packing import pack_lights, pack_materials
+from ..light import pack_lights
+from ..packing import pack_materials
 from ..plan import FramePlan, PlannedPass
 from ..shaders import load
 from .blocks import HALF_SUMS, LINEAR_DEPTH, std140
@@ -46,6 +48,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
             *(HALF_SUMS if "depth_sum" in planned.reads else ()),
             *((("LIGHTS", "1"),) if "lights" in planned.reads else ()),
             *((("NORMAL_OUTPUT", "1"),) if "normal_coverage" in planned.writes else ()),
+            *((name, "1") for name, _ in frame.features),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
     )
@@ -54,7 +57,8 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
 def run(tile: TileContext, planned: PlannedPass) -> Target:
     """Fill the textures of the plan's last passes."""
     target = tile.target(planned.writes)
-    reads = tile.textures(planned.reads, {"lights": lambda: _lights(tile)})
+    made_here = {"lights": lambda: _lights(tile), "brdf_table": lambda: tile.resources.constant(brdf_texels)}
+    reads = tile.textures(planned.reads, made_here)
     pipeline = tile.resources.pipeline(describe(planned, tile.plan))
     tile.resources.device.draw_fullscreen(pipeline, target, _block(tile), reads)
     return target

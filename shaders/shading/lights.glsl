@@ -1,0 +1,52 @@
+// References: Blender manual, "Light Objects" (units); Cycles' spot falloff (a smooth step between cosines).
+// Summary: what each light sends to a place: the texels of rendering/light.py as a direction, an irradiance and, of a
+//          light with a size, four corners. A round light is a square of its area that faces the place, as Cycles takes a disc there.
+
+struct Incident {
+  vec3 to_light;    // unit
+  vec3 irradiance;  // of a surface that faces it
+  bool is_sized;
+  vec3 middle;      // from the place to the light, and the half-axes of its square
+  vec3 half_u;
+  vec3 half_v;
+  vec3 radiance;    // of the square
+};
+
+const float LEAST_SIZE = 2e-3;  // half-side over distance, below which a light is a point
+
+Incident incident(int light, vec3 position) {
+  vec4 place = texelFetch(lights, ivec2(0, light), 0);
+  vec4 strength = texelFetch(lights, ivec2(1, light), 0);
+  vec4 axis = texelFetch(lights, ivec2(2, light), 0);
+  vec4 u = texelFetch(lights, ivec2(3, light), 0);
+  Incident here;
+  here.middle = place.xyz - position * place.w;
+  float distance2 = max(dot(here.middle, here.middle), 1e-30);
+  here.to_light = here.middle * inversesqrt(distance2);
+  here.irradiance = strength.rgb / (place.w > 0.5 ? distance2 : 1.0);
+  float along = -dot(here.to_light, axis.xyz);
+  float open = clamp((along - axis.w) * u.w, 0.0, 1.0);
+  here.irradiance *= open * open * (3.0 - 2.0 * open);
+  float size2 = strength.w * strength.w / distance2;
+  here.is_sized = size2 > LEAST_SIZE * LEAST_SIZE;
+#ifdef SIZED_LIGHTS
+  vec4 v = texelFetch(lights, ivec2(4, light), 0);
+  vec3 spread = strength.rgb / (4.0 * strength.w * strength.w);
+  if (v.w > 0.5) {
+    here.irradiance *= max(along, 0.0);
+    here.half_u = u.xyz;
+    here.half_v = v.xyz;
+    here.radiance = along > 0.0 ? spread : vec3(0.0);
+  }
+  else {
+    vec3 side = abs(here.to_light.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
+    here.half_u = normalize(cross(side, here.to_light)) * strength.w;
+    here.half_v = cross(here.to_light, here.half_u);
+    float rim = strength.w * inversesqrt(1.0 + strength.w * strength.w);
+    // What a sun sends is given as irradiance.
+    here.radiance = place.w > 0.5 ? spread * open * open * (3.0 - 2.0 * open)
+                                  : strength.rgb / (4.0 * rim * atan(rim));
+  }
+#endif
+  return here;
+}

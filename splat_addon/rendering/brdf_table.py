@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the principled shading needs to know of the GGX lobe, tabulated by scripts/fit_brdf_table.py."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+LEAST_ROUGHNESS = 0.03
+
+
+@cache
+def brdf_table() -> np.ndarray:
+    """(48, 32, 8) float32: by roughness (`LEAST_ROUGHNESS` to 1) and sqrt(1 - cosine to the viewer) (0 to 1).
+
+    Entries xx, xz, zx and zz (yy is 1) of the transform from directions of the lobe, in the frame whose x is the
+    view's direction along the surface and z the normal, to a clamped cosine (Heitz et al. 2016); then the parts of
+    the directional albedo that F0 scales and that it does not (Karis 2013); two zeros.
+    """
+    table = np.load(Path(__file__).with_name("brdf_table.npy"))
+    table.flags.writeable = False
+    return table
+
+
+def brdf_texels() -> np.ndarray:
+    """(48, 64, 4) float32: the first four entries, and beside them the others."""
+    table = brdf_table()
+    return np.ascontiguousarray(np.concatenate([table[..., :4], table[..., 4:]], axis=1))

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lights in Blender's units, and the texels in which shaders read them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+#: A sun wider than this half-angle is shaded as one of it: half a sky.
+MAX_SUN_HALF_ANGLE = 1.4
+
+KINDS = ("sun", "point", "spot", "area")
+
+
+@dataclass(frozen=True, eq=False)
+class Light:
+    """kind: "sun" (energy is irradiance, W/m^2, of a surface facing it), "point" and "spot" (energy is radiant power,
+    W, sent out evenly: irradiance energy / (4 pi d^2) at distance d; a spot keeps what its cone lets through) or
+    "area" (energy is the power, W, that a flat lamp sends to its front, by Lambert's law).
+
+    color: (3,) linear, multiplies energy. position: (3,) world, of all but suns.
+    direction: (3,) world, the way the light of a sun, a spot's axis and an area's front travel.
+    size: radians across a sun, or the radius of a point or spot; 0 is a light without size.
+    spot_angle: radians across a spot's cone; spot_blend: 0 to 1, how soft its rim is.
+    half_axes: (2, 3) world, from an area's middle to the middles of two sides; is_round: they are an ellipse's.
+    """
+
+    kind: str
+    color: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    energy: float = 1.0
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    direction: tuple[float, float, float] = (0.0, 0.0, -1.0)
+    size: float = 0.0
+    spot_angle: float = math.pi / 4
+    spot_blend: float = 0.15
+    half_axes: tuple[tuple[float, float, float], tuple[float, float, float]] = ((0.5, 0.0, 0.0), (0.0, 0.5, 0.0))
+    is_round: bool = False
+
+    def __post_init__(self):
+        if self.kind not in KINDS:
+            raise ValueError(f"A light's kind must be one of {', '.join(KINDS)}, not {self.kind!r}.")
+        for name in ("color", "energy", "position", "direction", "size", "spot_angle", "spot_blend", "half_axes"):
+            if not np.isfinite(getattr(self, name)).all():
+                raise ValueError(f"A light's {name} must be finite, not {getattr(self, name)!r}.")
+        if not np.any(self.direction):
+            raise ValueError("A light's direction must not be zero.")
+        if self.size < 0:
+            raise ValueError(f"A light's size must be 0 or more, not {self.size}.")
+        if self.kind == "area" and not self.area > 0:
+            raise ValueError(f"An area light's half-axes must span an area, not {self.half_axes!r}.")
+
+    @property
+    def area(self) -> float:
+        """Of an area light's lamp."""
+        u, v = np.asarray(self.half_axes, np.float64)
+        return float(np.linalg.norm(np.cross(u, v))) * (math.pi if self.is_round else 4.0)
+
+    @property
+    def is_sized(self) -> bool:
+        """Whether it is more than a point or a direction."""
+        return self.kind == "area" or self.size > 0
+
+
+#: Rows of float32 texels a light: see shaders/shading/lights.glsl.
+TEXELS_PER_LIGHT = 5
+
+#: A square with the area of a disc has this half-side in radii.
+_SQUARED = math.sqrt(math.pi) / 2
+
+
+def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: float) -> np.ndarray:
+    """(L, 5, 4) float32, in scaled view space; world_to_view: (4, 4) float64.
+
+    place, w: 1, or for a sun the direction to it and 0 | irradiance at distance 1 that faces it (of an area the
+    intensity along its axis), half-side of a square as large as it | axis, cosine of a spot's half-angle | half-axis u,
+    1 / width of a spot's rim | half-axis v, 1 for an area.
+    """
+    texels = np.zeros((len(lights), TEXELS_PER_LIGHT, 4))
+    rotation = world_to_view[:3, :3]
+    for row, light in zip(texels, lights, strict=True):
+        axis = rotation @ np.asarray(light.direction, np.float64)
+        axis /= np.linalg.norm(axis)
+        strength, half_side = _STRENGTHS[light.kind](light, scale)
+        if light.kind == "sun":
+            row[0] = *-axis, 0.0
+        else:
+            row[0] = *((world_to_view @ (*light.position, 1.0))[:3] * scale), 1.0
+        row[1] = *(np.asarray(light.color, np.float64) * strength), half_side
+        row[2] = *axis, -2.0
+        row[3, 3] = 1.0
+        if light.kind == "spot":
+            cosine = math.cos(light.spot_angle / 2)
+            row[2, 3], row[3, 3] = cosine, 1 / max((1 - cosine) * light.spot_blend, 1e-6)
+        if light.kind == "area":
+            squared = _SQUARED if light.is_round else 1.0
+            row[3, :3], row[4, :3] = (np.asarray(light.half_axes, np.float64) @ rotation.T) * scale * squared
+            row[4, 3] = 1.0
+    return texels.astype(np.float32)
+
+
+def _sun(light: Light, scale: float) -> tuple[float, float]:
+    half_angle = min(light.size / 2, MAX_SUN_HALF_ANGLE)
+    return light.energy, math.tan(half_angle) * _SQUARED
+
+
+def _point(light: Light, scale: float) -> tuple[float, float]:
+    return light.energy / (4 * math.pi) * scale**2, light.size * scale * _SQUARED
+
+
+def _area(light: Light, scale: float) -> tuple[float, float]:
+    return light.energy / math.pi * scale**2, math.sqrt(light.area) / 2 * scale
+
+
+_STRENGTHS = {"sun": _sun, "point": _point, "spot": _point, "area": _area}

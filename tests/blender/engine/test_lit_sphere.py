@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A sphere of surfels under each kind of light, beside Cycles' sphere: within 10 % where there is light."""
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender.attributes import write_surfels
+from splat_addon.sampling import TriangleMesh, sample_mesh
+
+#: name: type, energy, location, rotation, properties
+LIGHTS = {
+    "sun": ("SUN", 3, (0, 0, 0), (0.5, 0.6, 0), {"angle": 0.01}),
+    "wide sun": ("SUN", 3, (0, 0, 0), (0.5, 0.6, 0), {"angle": 0.8}),
+    "point": ("POINT", 300, (2, -1, 3), (0, 0, 0), {"shadow_soft_size": 0.02}),
+    "large point": ("POINT", 300, (2, -1, 3), (0, 0, 0), {"shadow_soft_size": 0.7}),
+    "spot": ("SPOT", 300, (0.5, 0.5, 3), (-0.15, 0.15, 0), {"spot_size": 0.7, "spot_blend": 0.6}),
+    "area": ("AREA", 200, (2, 1, 2.5), (-0.3, 0.7, 0), {"shape": "RECTANGLE", "size": 2, "size_y": 1}),
+    "disk": ("AREA", 200, (-2, 1, 2.5), (-0.3, -0.7, 0), {"shape": "DISK", "size": 1.5}),
+}
+MATERIALS = {
+    "plastic": {"Roughness": 0.4},
+    "metal": {"Roughness": 0.5, "Metallic": 1.0},
+}
+BASE = (0.8, 0.5, 0.3, 1.0)
+#: Share of the brightest place above which others are held to Cycles; a metal's tail under an area light, where the
+#: transformed cosine is a poor fit, is up to 30 % off below it.
+LIT = 0.25
+#: Pixels of a block whose mean is compared: Cycles' sphere has facets, and noise.
+BLOCK = 4
+
+
+@pytest.fixture
+def spheres(scene, add_camera, add_object):
+    """A smooth sphere and its surfels, of one material."""
+    scene.render.resolution_x = scene.render.resolution_y = 64
+    scene.surfel_splatting.shading = "principled"
+    scene.render.film_transparent = True
+    add_camera((0, 0, 5))
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=96, ring_count=48)
+    sphere = bpy.context.object
+    sphere.data.shade_smooth()
+    sphere.data.calc_loop_triangles()
+    points = np.array([v.co for v in sphere.data.vertices])
+    triangles = np.array([t.vertices for t in sphere.data.loop_triangles])
+    surfels = sample_mesh(TriangleMesh(points, triangles, points[triangles]), resolution=120)
+    made = add_object(write_surfels("surfels", replace(surfels, colors=np.tile(BASE, (len(surfels), 1)))))
+    made.location = surfels.origin
+    material = bpy.data.materials.new("material")
+    material.use_nodes = True
+    for one in (sphere, made):
+        one.data.materials.append(material)
+    return sphere, made, material.node_tree.nodes["Principled BSDF"].inputs
+
+
+@pytest.mark.parametrize("material", MATERIALS)
+@pytest.mark.parametrize("name", LIGHTS)
+def test_a_lit_sphere_is_cycles_sphere(name, material, scene, spheres, picture, switch_to_cycles):
+    sphere, made, sockets = spheres
+    kind, energy, location, rotation, properties = LIGHTS[name]
+    data = bpy.data.lights.new("light", kind)
+    data.energy = energy
+    for key, value in properties.items():
+        setattr(data, key, value)
+    light = bpy.data.objects.new("light", data)
+    light.location, light.rotation_euler = location, rotation
+    scene.collection.objects.link(light)
+    sockets["Base Color"].default_value = BASE
+    for socket, value in MATERIALS[material].items():
+        sockets[socket].default_value = value
+    sphere.hide_render = True
+    ours = picture()
+    sphere.hide_render, made.hide_render = False, True
+    switch_to_cycles(samples=64)
+    theirs = picture()
+    inside = blocks(np.minimum(ours[..., 3], theirs[..., 3])) > 0.999
+    ours, theirs = blocks(ours[..., :3])[inside], blocks(theirs[..., :3])[inside]
+    is_lit = theirs.mean(axis=1) > LIT * theirs.mean(axis=1).max()
+    assert is_lit.sum() > 3
+    off = np.abs(ours - theirs)[is_lit].mean(axis=1) / theirs[is_lit].mean(axis=1)
+    assert np.percentile(off, 95) < 0.1, f"median {np.median(off):.3f}, most {off.max():.3f}"
+
+
+def blocks(picture):
+    """Means of BLOCK x BLOCK pixels."""
+    h, w = (n // BLOCK for n in picture.shape[:2])
+    return picture.reshape(h, BLOCK, w, BLOCK, *picture.shape[2:]).mean(axis=(1, 3))
