@@ -11,15 +11,18 @@ from collections.abc import Callable
 import numpy as np
 
 from .grid import Grid
-from .mesh import doubled_areas, gather_corners, triangle_chunks
+from .mesh import corner_indices, corners_at, doubled_areas, triangle_chunks
 from .scan_conversion import Spans, scan_convert
 
 #: Rows of an array index surfels with 32 bits elsewhere; nobody means to make more.
 MAX_SAMPLES = 2**31 - 1
 
+#: Bits of a packed cell for each component: more than the cells along an edge, 2^19, and a sign.
+_CELL_BITS = 21
+
 
 def depth_cube(
-    coordinates: np.ndarray,
+    positions: np.ndarray,
     triangles: np.ndarray,
     grid: Grid,
     keeps: Callable[[np.ndarray], np.ndarray],
@@ -27,24 +30,49 @@ def depth_cube(
 ) -> tuple[Spans, Spans, Spans]:
     """One `Spans` for the image along each of x, y, z.
 
-    coordinates: (3, V) float64, of the vertices on the grid. triangles: (T, 3).
+    positions: (V, 3) float64, of the vertices. triangles: (T, 3).
     keeps: (3, t) absolute normal components -> the (3, t) images that sample a triangle.
     report: called with the finished share, 0 to 1. The axis is chosen from the snapped corners, whose normal is exact.
     Raises ValueError with one sentence where there would be more samples than `MAX_SAMPLES`.
     """
+    snapped = grid.snapped(grid.coordinates(positions))
+    cells = _packed_cells(snapped, grid.subcells)
     images: tuple[list, list, list] = ([], [], [])
     total = 0
     for chunk in triangle_chunks(len(triangles)):
-        corners = grid.snapped(gather_corners(coordinates, triangles[chunk]))
+        indices = corner_indices(triangles[chunk])
+        may_hit = _boxes_with_samples(*cells.take(indices))
+        candidates = np.flatnonzero(may_hit[0] | may_hit[1] | may_hit[2])
+        corners = corners_at(snapped, indices.take(candidates, axis=1))
         normals = np.abs(doubled_areas(corners))
-        kept = keeps(normals) & (normals > 0)
+        kept = keeps(normals)
         for axis, spans in enumerate(images):
-            picked = np.flatnonzero(kept[axis])
+            picked = np.flatnonzero(kept[axis] & may_hit[axis].take(candidates) & (normals[axis] > 0))
             u, v = (corners[(axis + k) % 3].take(picked, axis=1) for k in (1, 2))
-            for part in scan_convert(u, v, picked + chunk.start, grid.subcells):
+            for part in scan_convert(u, v, candidates.take(picked) + chunk.start, grid.subcells):
                 spans.append(part)
                 total += int(part.counts.sum(dtype=np.int64))
                 if total > MAX_SAMPLES:
                     raise ValueError(f"More than {MAX_SAMPLES:,} surfels would be made; use a larger spacing.")
         report(chunk.stop / len(triangles))
     return tuple(Spans.joined(spans) for spans in images)
+
+
+def _packed_cells(snapped: np.ndarray, subcells: int) -> np.ndarray:
+    """(V,) int64 that hold, for each component of (3, V) snapped coordinates, the first cell centre at or after it."""
+    packed = np.zeros(snapped.shape[1], np.int64)
+    for component in snapped:
+        packed <<= _CELL_BITS
+        packed |= np.ceil(component * (1 / subcells)).astype(np.int64)
+    return packed
+
+
+def _boxes_with_samples(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> list[np.ndarray]:
+    """For each image, (t,) whether any of its rays goes through the box of a triangle with its corners in these cells.
+
+    Between corners with the same first cell centre lies none, half-open as in the scan conversion.
+    """
+    differ = (a ^ b) | (a ^ c)
+    mask = (1 << _CELL_BITS) - 1
+    x, y, z = ((differ & (mask << shift)) != 0 for shift in (2 * _CELL_BITS, _CELL_BITS, 0))
+    return [y & z, z & x, x & y]

@@ -46,7 +46,8 @@ class Grid:
 
     def snapped(self, coordinates: np.ndarray) -> np.ndarray:
         """Grid coordinates in whole sub-cells: integers held in float64."""
-        return np.rint(coordinates * self.subcells)
+        snapped = coordinates * self.subcells
+        return np.rint(snapped, out=snapped)
 
     def centres(self) -> np.ndarray:
         """(size + 1,) float32: distance of each column's or row's samples from the origin, object units."""

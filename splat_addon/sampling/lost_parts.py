@@ -11,7 +11,7 @@ import numpy as np
 
 from .cleaning import vertex_hashes
 from .connectivity import part_labels
-from .mesh import TriangleMesh
+from .mesh import TriangleMesh, corner_indices, triangle_chunks
 
 #: The sampled surface stops growing when a step takes less than this share of what is left; labels do the rest.
 _WORTHWHILE_SHARE = 0.1
@@ -24,7 +24,7 @@ def lost_parts(mesh: TriangleMesh, is_sampled: np.ndarray) -> tuple[np.ndarray, 
     """
     reached = np.zeros(len(mesh.positions), bool)
     reached[mesh.triangles.take(np.flatnonzero(is_sampled), axis=0).ravel()] = True
-    rest = np.flatnonzero(~is_sampled)
+    rest = _with_unreached_corners(mesh.triangles, reached)
     corners, rest = _unreached(mesh.triangles.take(rest, axis=0), rest, reached)
     if len(rest):
         corners, reached = _welded(mesh.positions, corners, reached)
@@ -37,6 +37,18 @@ def lost_parts(mesh: TriangleMesh, is_sampled: np.ndarray) -> tuple[np.ndarray, 
     part = labels[corners[:, 0]]
     lost = ~is_found[part]
     return rest[lost], np.unique(part[lost], return_inverse=True)[1].reshape(-1)
+
+
+def _with_unreached_corners(triangles: np.ndarray, reached: np.ndarray) -> np.ndarray:
+    """Which of the (T, 3) triangles have a vertex that is not among the (V,) reached ones; others have
+    no say."""
+    if reached.all():
+        return np.zeros(0, np.intp)
+    found = []
+    for chunk in triangle_chunks(len(triangles)):
+        a, b, c = reached.take(corner_indices(triangles[chunk]))
+        found.append(np.flatnonzero(~(a & b & c)) + chunk.start)
+    return np.concatenate(found)
 
 
 def _welded(positions: np.ndarray, corners: np.ndarray, reached: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

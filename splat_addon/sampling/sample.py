@@ -96,12 +96,12 @@ def sample_surface(
         return Sampling(empty_surfels())
     how = {"reduction": reduction, "grazing_angle": grazing_angle}
     grid = make_grid(mesh, grid_spacing(mesh, spacing=spacing, resolution=resolution, count=count, **how))
-    coordinates = grid.coordinates(mesh.positions)
     keeps = partial(chosen.keeps, grazing_angle=grazing_angle)
-    images = depth_cube(coordinates, mesh.triangles, grid, keeps, _stage(progress, 0.0, 0.5))
+    images = depth_cube(mesh.positions, mesh.triangles, grid, keeps, _stage(progress, 0.0, 0.5))
     lost = lost_parts(mesh, _is_sampled(images, len(mesh)))
 
     total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
+    coordinates = grid.coordinates(mesh.positions)
     palette = Palette(mesh.surfaces)
     layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in palette.optional}
     arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}

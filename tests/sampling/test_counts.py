@@ -18,9 +18,8 @@ def test_each_face_of_a_cube_gets_one_sample_a_cell_wherever_the_grid_starts(cub
     """At half a cell the outermost rays run along the cube's edges, and half-open rules must keep one side."""
     mesh = cube()
     grid = Grid(np.full(3, -shift / 32), 1 / 32, subcells=1024, size=33)
-    coordinates = grid.coordinates(mesh.positions)
     keeps = partial(keep_dominant, grazing_angle=0)
-    images = depth_cube(coordinates, mesh.triangles, grid, keeps, lambda share: None)
+    images = depth_cube(mesh.positions, mesh.triangles, grid, keeps, lambda share: None)
     assert [spans.counts.sum() for spans in images] == [2 * 32**2] * 3
 
 
