@@ -8,13 +8,13 @@ each has the right density, whatever its scale.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ..sampling import Surface, TriangleMesh, joined, transformed
+from ..sampling import Surface, TriangleMesh, have_same_values, joined, transformed
 from .mesh_extraction import ExtractedMesh, read_mesh
 from .placement import relative, without_scale, without_shear
 from .sources import Piece, Reader, Shown, shown_by, why_nothing
@@ -102,22 +102,13 @@ def _slot_indices(content: ExtractedMesh, slots: list) -> np.ndarray:
     for index in used:
         material = content.materials[index] if index < len(content.materials) else None
         surface = mesh.surfaces[min(index, len(mesh.surfaces) - 1)]
-        known = (k for k, (other, theirs) in enumerate(slots) if other == material and _same(theirs, surface))
+        known = (
+            k for k, (other, theirs) in enumerate(slots) if other == material and have_same_values(theirs, surface)
+        )
         into[index] = next(known, len(slots))
         if into[index] == len(slots):
             slots.append((material, surface))
     return into[own]
-
-
-def _same(a, b) -> bool:
-    """Whether two values mean the same, field by field and pixel by pixel."""
-    if is_dataclass(a) and type(a) is type(b):
-        return a is b or all(_same(getattr(a, f.name), getattr(b, f.name)) for f in fields(a))
-    if isinstance(a, np.ndarray):
-        return np.array_equal(a, b)
-    if isinstance(a, tuple) and isinstance(b, tuple) and len(a) == len(b):
-        return all(_same(x, y) for x, y in zip(a, b, strict=True))
-    return a == b
 
 
 def groups(

@@ -4,7 +4,8 @@
 Flow: `mesh` (`joining`) -> `cleaning` -> `fineness`, `grid` -> `depth_cube` (`reductions`, `scan_conversion`) ->
 `attributes` (`ellipses`, `palette` of `surfaces`, `tangents`) -> `merging`, `adaptive` -> `lost_parts`, `part_surfels`
 -> `Surfels`; `sample` puts them in order.
-`closest_approach` says how fine a camera needs it. Points without faces become surfels in `points`.
+`closest_approach` says how fine a camera needs it. `tracked` surfels follow a mesh that deforms. Points without faces
+become surfels in `points`.
 """
 
 from ..images import Image
@@ -12,19 +13,21 @@ from .adaptive import Tolerance
 from .cleaning import drop_unusable
 from .closest_approach import Outline, camera_spacing, outline
 from .fineness import grid_spacing, predict_count
-from .joining import joined, transformed
+from .joining import have_same_values, joined, transformed
 from .mesh import TriangleMesh
 from .points import PointsReport, surfels_from_points
 from .reductions import DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS, projected_area
 from .sample import DEFAULT_SPLAT_SIZE, Sampling, SamplingCancelled, sample_mesh, sample_surface
 from .solid import is_solid
 from .surfaces import Channel, NormalMap, Surface, Texture, VertexColors
+from .tracked import STRETCHED_SHARE, TrackedSurfels
 
 __all__ = [
     "DEFAULT_GRAZING_ANGLE",
     "DEFAULT_SPLAT_SIZE",
     "LEAST_GRAZING_ANGLE",
     "REDUCTIONS",
+    "STRETCHED_SHARE",
     "Channel",
     "Image",
     "NormalMap",
@@ -35,11 +38,13 @@ __all__ = [
     "Surface",
     "Texture",
     "Tolerance",
+    "TrackedSurfels",
     "TriangleMesh",
     "VertexColors",
     "camera_spacing",
     "drop_unusable",
     "grid_spacing",
+    "have_same_values",
     "is_solid",
     "joined",
     "outline",

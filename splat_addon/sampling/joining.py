@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
 
 import numpy as np
 
@@ -59,3 +59,18 @@ def _values(mesh: TriangleMesh, name: str, like: np.ndarray) -> np.ndarray:
         return np.zeros((len(mesh), *like.shape[1:]), like.dtype)
     lacking = [(0, wide - has) for has, wide in zip(array.shape[1:], like.shape[1:], strict=True)]
     return np.pad(array, [(0, 0), *lacking]) if any(after for _, after in lacking) else array
+
+
+def have_same_values(a, b) -> bool:
+    """Whether two values mean the same, field by field and, where they are not one array, number by number."""
+    if a is b:
+        return True
+    if isinstance(a, np.ndarray):
+        return isinstance(b, np.ndarray) and np.array_equal(a, b)
+    if type(a) is not type(b):
+        return False
+    if is_dataclass(a):
+        return all(have_same_values(getattr(a, f.name), getattr(b, f.name)) for f in fields(a))
+    if isinstance(a, tuple):
+        return len(a) == len(b) and all(map(have_same_values, a, b))
+    return a == b
