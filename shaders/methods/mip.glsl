@@ -1,12 +1,14 @@
 // References: Zwicker et al. 2001 (the resampling filter), taken to the splat's plane with the exact Jacobian of
 //             every pixel, in the style of AA-2DGS (arXiv 2506.11252); this project.
 // Summary: the pixel's Gaussian is mapped into the splat's plane, joined with the kernel there and scaled to keep
-//          its integral: neither a vanishing splat nor a stretched one loses or gains weight.
+//          its integral: neither a vanishing splat nor a stretched one loses or gains weight. The kernel's rim is
+//          blurred as much as the pixel's Gaussian blurs it: where splats are larger than pixels, nothing else is.
 //          The twin of rendering/methods/mip.py.
 
 const float KERNEL_VARIANCE = 0.25;
 const float FILTER_SIGMA = 0.70710678;  // pixels
 const float FILTER_VARIANCE = FILTER_SIGMA * FILTER_SIGMA;
+const float LOGISTIC = 1.702;  // 1 / (1 + exp(-1.702 x)) is within 0.0095 of the normal distribution
 
 #ifdef VERTEX_STAGE
 void adjust(inout Splat splat, bool straddles) {}
@@ -28,9 +30,15 @@ vec2 splat_sample(Plane plane, vec2 point) {
   vec2 q = place.uv;
   float rho2 = KERNEL_VARIANCE / det * (q.x * q.x * (KERNEL_VARIANCE + FILTER_VARIANCE * yy)
       - 2.0 * q.x * q.y * FILTER_VARIANCE * xy + q.y * q.y * (KERNEL_VARIANCE + FILTER_VARIANCE * xx));
-  // The kernel goes on for the filter's reach beyond its rim, where pixels are still covered in part.
-  float limit = 1.0 + 2.0 * FILTER_SIGMA * length(q * j) / max(length(q), 1e-30);
-  float weight = rho2 <= limit * limit ? KERNEL_VARIANCE * inversesqrt(det) * exp(-2.0 * rho2) : 0.0;
+  // The kernel ends at its rim. Along the line from the centre, kernel times pixel is a Gaussian about `middle`: the
+  // share of it within the rim is what the pixel sees of the splat (a logistic in place of the normal distribution).
+  float reach = max(length(q), 1e-30);
+  vec2 along = q * j / reach * FILTER_SIGMA;
+  float share = KERNEL_VARIANCE / (KERNEL_VARIANCE + dot(along, along));
+  float middle = reach * share, deviation = max(sqrt(KERNEL_VARIANCE * (1.0 - share)), 1e-6);
+  float within = 1.0 / (1.0 + exp(clamp(LOGISTIC * (middle - 1.0) / deviation, -40.0, 40.0)));
+  float limit = 1.0 + 2.0 * length(along);
+  float weight = rho2 <= limit * limit ? within * KERNEL_VARIANCE * inversesqrt(det) * exp(-2.0 * rho2) : 0.0;
   return vec2(place.k > 0.0 ? weight : 0.0, plane_depth(plane, place, FILTER_SIGMA));
 }
 #endif

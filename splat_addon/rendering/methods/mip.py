@@ -9,12 +9,15 @@ from .plane import Plane, gradients, places, plane_depth, projected_box
 
 KERNEL_VARIANCE = 0.25
 FILTER_SIGMA = 0.5**0.5
+#: 1 / (1 + exp(-1.702 x)) is within 0.0095 of the normal distribution.
+LOGISTIC = 1.702
 
 
 def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(M,) weights and (M,) depths at (M, 2) picture points; pixel: (2,) its size in the picture.
 
-    Sigma = kernel + filter J J^T (Zwicker et al. 2001, in object space); the amplitude keeps the integral.
+    Sigma = kernel + filter J J^T (Zwicker et al. 2001, in object space); the amplitude keeps the integral,
+    and the rim is blurred as the filter blurs it.
     """
     at = places(plane, points)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -24,12 +27,23 @@ def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.nda
         u, v = at.uv.T
         across = u * u * sigma[:, 1, 1] - 2 * u * v * sigma[:, 0, 1] + v * v * sigma[:, 0, 0]
         rho2 = KERNEL_VARIANCE * across / det
-        along = np.einsum("ni,nij->nj", at.uv, j)
-        size = np.maximum(np.linalg.norm(at.uv, axis=1), 1e-30)
-        limit = 1 + 2 * FILTER_SIGMA * np.linalg.norm(along, axis=1) / size
+        reach = np.maximum(np.linalg.norm(at.uv, axis=1), 1e-30)
+        along = np.linalg.norm(np.einsum("ni,nij->nj", at.uv, j), axis=1) / reach * FILTER_SIGMA
+        limit = 1 + 2 * along
         is_inside = (rho2 <= limit**2) & (at.k > 0) & _in_box(plane, points, pixel)
-        weights = np.where(is_inside, KERNEL_VARIANCE / np.sqrt(det) * np.exp(-2 * rho2), 0.0)
+        within = _within_rim(reach, along)
+        weights = np.where(is_inside, within * KERNEL_VARIANCE / np.sqrt(det) * np.exp(-2 * rho2), 0.0)
         return weights, plane_depth(plane, at, pixel, FILTER_SIGMA)
+
+
+def _within_rim(reach: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """(M,) share, within the kernel's rim at 1, of kernel times pixel along the line from the centre.
+
+    reach: (M,) distance of the pixel from the centre; along: (M,) standard deviation of its filter that way.
+    """
+    share = KERNEL_VARIANCE / (KERNEL_VARIANCE + along**2)
+    deviation = np.maximum(np.sqrt(KERNEL_VARIANCE * (1 - share)), 1e-6)
+    return 1 / (1 + np.exp(np.clip(LOGISTIC * (reach * share - 1) / deviation, -40, 40)))
 
 
 def _in_box(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> np.ndarray:
