@@ -61,6 +61,7 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
         if _is_last_of_render(engine, depsgraph):
             _release_resources()
     notes.add(_FLATTENED, frame.stats["instances_degenerate"])
+    notes.add(_COARSE, frame.stats["surfels_coarse"])
     if "transparency" in dict(frame.stats["plan"].left_out):
         notes.add(_OPAQUE)
     for sentence in notes.sentences():
@@ -72,6 +73,7 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
 
 
 _OPAQUE = "Surfels whose opacity, the alpha of Col, is below 1 are drawn opaque"
+_COARSE = "16-bit storage moves surfels visibly where they lie far apart; choose Float 32 as their storage"
 _FLATTENED = "Surfel objects with a scale of 0 on some axis are left out; give every axis a scale"
 
 

@@ -24,6 +24,9 @@ import numpy as np
 from ..surfels import Surfels
 from .packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT, octahedral, row_count
 
+#: A share of a splat's shorter half-axis that is seen.
+COARSE = 1 / 8
+
 _STEPS = 65535
 #: Steps from 0 to 1 of a signed number; one of the 65,536 values is given up so that 0 is one.
 _SIGNED_STEPS = 32767
@@ -32,8 +35,10 @@ _SIGNED_STEPS = 32767
 _ORDER_BITS = 16
 
 
-def pack_16_bit(surfels: Surfels) -> tuple[np.ndarray, np.ndarray]:
-    """(rows, 2048, 4) float32 texels in 0 to 1, multiples of 1 / 65535, and the (rows, 3, 4) float32 table.
+def pack_16_bit(surfels: Surfels) -> tuple[tuple[np.ndarray, np.ndarray], int]:
+    """(rows, 2048, 4) float32 texels in 0 to 1, multiples of 1 / 65535, the (rows, 3, 4) float32 table, and how many
+    surfels are coarse: their position may be off by more than `COARSE` of their shorter half-axis, because their block
+    is that much larger than they are (a stray surfel far away widens the block that it falls into).
 
     Raises ValueError above `MAX_SPLATS` surfels and for a material index above 65,535.
     """
@@ -45,7 +50,7 @@ def pack_16_bit(surfels: Surfels) -> tuple[np.ndarray, np.ndarray]:
     texels = np.zeros((rows, SPLATS_PER_ROW, TEXELS_PER_SPLAT, 4), np.float32)
     table = np.zeros((rows, 3, 4), np.float32)
     if not len(surfels):
-        return texels.reshape(rows, -1, 4), table
+        return (texels.reshape(rows, -1, 4), table), 0
     # the last row is filled up with its last splat, which widens no block
     order = np.pad(spatial_order(surfels.positions), (0, rows * SPLATS_PER_ROW - len(surfels)), "edge")
 
@@ -74,7 +79,8 @@ def pack_16_bit(surfels: Surfels) -> tuple[np.ndarray, np.ndarray]:
     texels[:, :, 3, :3] = _signed_steps(np.cbrt(colors[..., :3] / _divisor(brightest)[:, None, None]))
     texels[:, :, 3, 3] = _steps(np.clip(colors[..., 3], 0, 1))
     table[:, 2, 0] = brightest
-    return texels.reshape(rows, -1, 4), table
+    is_coarse = blocks(surfels.scales).min(axis=2) * COARSE < size.max(axis=1, keepdims=True) / (2 * _STEPS)
+    return (texels.reshape(rows, -1, 4), table), int(np.count_nonzero(is_coarse.ravel()[: len(surfels)]))
 
 
 def spatial_order(positions: np.ndarray) -> np.ndarray:

@@ -17,6 +17,7 @@ from .plan import FramePlan, plan
 from .resources import Resources
 from .scene import Scene
 from .settings import OUTPUTS, Settings
+from .storages import get_storage
 from .view import look
 
 #: x, y, width, height in pixels.
@@ -90,6 +91,7 @@ class Renderer:
             "instances": 0,
             "instances_outside": 0,
             "instances_degenerate": 0,
+            "surfels_coarse": 0,
             "passes": {},
         }
 
@@ -108,6 +110,8 @@ class Renderer:
             stats["instances"] += len(view.placed)
             stats["instances_outside"] += view.outside
             stats["instances_degenerate"] = view.degenerate
+            stored = [self.resources.surfels(p.instance.surfels, get_storage(frame_plan.storage)) for p in view.placed]
+            stats["surfels_coarse"] = max(stats["surfels_coarse"], sum(s.coarse for s in stored))
             target = None
             for step, planned in enumerate(frame_plan.passes):
                 done = (number + step / len(frame_plan.passes)) / len(frame_plan.tiles)

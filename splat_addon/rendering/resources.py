@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -15,6 +16,14 @@ from .storages import Storage
 
 #: name, width, height, format of a texture that a pass writes.
 TextureKey = tuple[str, int, int, str]
+
+
+class StoredSurfels(NamedTuple):
+    """textures: by sampler. coarse: surfels whose place the storage loses visibly."""
+
+    storage: Storage
+    textures: dict[str, Texture]
+    coarse: int
 
 
 class Resources:
@@ -29,16 +38,17 @@ class Resources:
         self._pipelines = {}
         self.textures = {}
 
-    def surfels(self, surfels: Surfels, storage: Storage) -> dict[str, Texture]:
-        """Their textures by sampler, uploaded once; another storage takes their place."""
-        name, textures = self._surfels.get(surfels, (None, None))
-        if name != storage.name:
+    def surfels(self, surfels: Surfels, storage: Storage) -> StoredSurfels:
+        """Their textures, uploaded once; another storage takes their place."""
+        stored = self._surfels.get(surfels)
+        if stored is None or stored.storage is not storage:
+            arrays, coarse = storage.pack(surfels)
             textures = {
                 sampler: self.data(texels, format)
-                for (sampler, format), texels in zip(storage.textures, storage.pack(surfels), strict=True)
+                for (sampler, format), texels in zip(storage.textures, arrays, strict=True)
             }
-            self._surfels[surfels] = storage.name, textures
-        return textures
+            stored = self._surfels[surfels] = StoredSurfels(storage, textures, coarse)
+        return stored
 
     def data(self, texels: np.ndarray, format: str = "RGBA32F") -> Texture:
         """A texture of (h, w, 4) float32 texels that nothing here keeps."""

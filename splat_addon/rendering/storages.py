@@ -16,14 +16,15 @@ from .packing_16_bit import pack_16_bit
 @dataclass(frozen=True)
 class Storage:
     """name: also of its GLSL file. label, summary: for users.
-    textures: (sampler, format) of each texture, in the order of `pack`'s (h, w, 4) float32 arrays.
+    textures: (sampler, format) of each texture.
+    pack: to their (h, w, 4) float32 texels, and the number of surfels whose place it loses visibly.
     """
 
     name: str
     label: str
     summary: str
     textures: tuple[tuple[str, str], ...]
-    pack: Callable[[Surfels], tuple[np.ndarray, ...]]
+    pack: Callable[[Surfels], tuple[tuple[np.ndarray, ...], int]]
 
     @property
     def samplers(self) -> tuple[str, ...]:
@@ -39,7 +40,7 @@ STORAGES = {
             "Float 32",
             "64 bytes a surfel, exact",
             (("surfels", "RGBA32F"),),
-            lambda surfels: (pack_surfels(surfels),),
+            lambda surfels: ((pack_surfels(surfels),), 0),
         ),
         Storage(
             "16-bit",

@@ -60,7 +60,7 @@ def unpacked(texels, table, count):
 @settings(max_examples=60, deadline=None)
 def test_every_number_keeps_within_its_bound(surfels):
     order = spatial_order(surfels.positions)
-    found = unpacked(*pack_16_bit(surfels), len(surfels))
+    found = unpacked(*pack_16_bit(surfels)[0], len(surfels))
     true = {name: getattr(surfels, name)[order].astype(np.float64) for name in LAYOUT}
     for first in range(0, len(surfels), BLOCK):
         block = {name: (found[name][first : first + BLOCK], true[name][first : first + BLOCK]) for name in LAYOUT}
@@ -99,7 +99,7 @@ def test_storage_halves_the_memory():
     sizes = {
         name: sum(
             texels.size * {"RGBA32F": 4, "RGBA16": 2}[format]
-            for texels, (_, format) in zip(storage.pack(surfels), storage.textures, strict=True)
+            for texels, (_, format) in zip(storage.pack(surfels)[0], storage.textures, strict=True)
         )
         for name, storage in STORAGES.items()
     }
@@ -110,7 +110,7 @@ def test_storage_halves_the_memory():
 def test_devices_read_what_was_packed(render):
     """Surfels that are given as 16 bits hold them are drawn alike from both storages: the shader reads them right."""
     surfels = _sheet(3000)
-    held = unpacked(*pack_16_bit(surfels), len(surfels))
+    held = unpacked(*pack_16_bit(surfels)[0], len(surfels))
     held = Surfels(**{name: held[name].astype(dtype) for name, (_, dtype) in LAYOUT.items()})
     camera = Camera.perspective(np.eye(4), 0.6, (96, 96), 0.1, 100)
     scene = Scene((held,), world=(0.5, 0.5, 0.5))
@@ -121,6 +121,21 @@ def test_devices_read_what_was_packed(render):
     np.testing.assert_allclose(np.median(abs(frames[0].color - frames[1].color)), 0, atol=1e-6)
 
 
+def test_a_stray_surfel_makes_its_block_coarse_and_that_is_counted(render):
+    """One block of 512 holds the stray; the other 2,488 keep their place."""
+    surfels = _sheet(3000)
+    positions = surfels.positions.copy()
+    positions[7] = 1e6
+    stray = Surfels(**{**surfels.arrays(), "positions": positions})
+    camera = Camera.perspective(np.eye(4), 0.6, (8, 8), 0.1, 100)
+    coarse = [
+        render(Scene((s,)), camera, Settings(storage=name)).stats["surfels_coarse"]
+        for s, name in ((surfels, "16-bit"), (stray, "16-bit"), (stray, "float32"))
+    ]
+    assert coarse[0] == coarse[2] == 0
+    assert 0 < coarse[1] <= BLOCK
+
+
 def test_too_many_materials_are_refused():
     surfels = _sheet(10)
     many = Surfels(**{**surfels.arrays(), "materials": np.full(10, 65536)})
@@ -129,7 +144,8 @@ def test_too_many_materials_are_refused():
 
 
 def test_no_surfels_pack_to_one_empty_row():
-    texels, table = pack_16_bit(_sheet(0))
+    (texels, table), coarse = pack_16_bit(_sheet(0))
+    assert coarse == 0
     assert texels.shape == (1, 2048, 4) and table.shape == (1, 3, 4) and not texels.any()
 
 

@@ -38,7 +38,7 @@ def draw_splats(tile: TileContext, pipeline: Pipeline, target: Target) -> None:
         instance = placed.instance
         stored = resources.surfels(instance.surfels, storage)
         made_here = {
-            **{name: lambda t=texture: t for name, texture in stored.items()},
+            **{name: lambda t=texture: t for name, texture in stored.textures.items()},
             "materials": lambda i=instance: resources.data(pack_materials(i.materials)),
         }
         textures = tile.textures(pipeline.description.samplers, made_here)
