@@ -6,8 +6,9 @@
 #ifdef HALF_SUMS
 // A sum of weights up to 1 stops growing at 2048 of them, here 32768; float16 ends at 65504.
 const float WEIGHT_SCALE = 16.0;
-// Below this float16 drops digits, and then the splat: weaker weights count as this one.
-const float LEAST_WEIGHT = 6.104e-5;
+// Below 6.1e-5 float16 drops digits, and then the splat: weaker weights count as this one, a sixteenth of which, in a
+// dark colour's channel, still has all its digits.
+const float LEAST_WEIGHT = 9.766e-4;
 #endif
 
 void add_to_sums(float weight, float depth) {
