@@ -8,6 +8,7 @@
 #define PARALLEL (shading.options.x > 0.5)
 #define DEPTH_UNIT shading.options.z
 #include "common/stored_depth.glsl"
+#include "common/world.glsl"
 
 const float EMPTY_DEPTH = 1e10;
 const float FARTHEST = 3.4e38;
@@ -47,7 +48,7 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit) {
     float tolerance = same_surface(texel, size, depth);
     range = vec2(stored_depth(max(depth - tolerance, 0.5 * depth)), stored_depth(depth + tolerance));
   }
-  vec4 background = vec4(shading.world.rgb, 1.0) * shading.world.w;
+  vec4 background = world_background(texel);
   vec4 color = vec4(0.0);
   float total = 0.0;
   coverage = 0.0;

@@ -4,6 +4,7 @@
 
 #include "shading/{shading}.glsl"
 #include "common/shaded_sample.glsl"
+#include "common/world.glsl"
 
 const float EMPTY_DEPTH = 1e10;
 const float FARTHEST = 3.4e38;
@@ -23,7 +24,7 @@ void main() {
         nearest = min(nearest, here.depth * shading.material.w);
       }
       else {
-        color_total += vec4(shading.world.rgb, 1.0) * shading.world.w;
+        color_total += world_background(texel);
       }
     }
   }

@@ -13,7 +13,8 @@ import numpy as np
 from ..rendering import Instance, Scene
 from ..surfels import Surfels
 from .attributes import has_surfels, read_surfels
-from .shading_export import light_of, shading_material, world_radiance
+from .shading_export import light_of, shading_material
+from .world_export import WorldStore
 
 
 @dataclass
@@ -48,6 +49,7 @@ class SurfelStore:
     """
 
     def __init__(self):
+        self.world = WorldStore()
         self._kept: dict[int, _Kept] = {}
         self._current: set[int] = set()
 
@@ -87,8 +89,8 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore) -> tuple[Sc
                 notes.add(f"Objects of type {_NOT_DRAWN[object_.type]} are not drawn; convert them to meshes first")
         except ValueError as error:
             notes.add(f"{object_.name} is left out: {error}")
-    world = world_radiance(depsgraph.scene.world, notes)
-    return Scene(tuple(filter(None, surfels)), tuple(filter(None, lights)), world), notes
+    world, environment = store.world.read(depsgraph.scene.world, notes)
+    return Scene(tuple(filter(None, surfels)), tuple(filter(None, lights)), world, environment), notes
 
 
 #: Blender's type -> its name, of what could be seen but is no mesh. Curves and texts come as meshes.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's lights, worlds and materials -> the renderer's, as far as it models them."""
+"""Blender's lights and materials -> the renderer's, as far as it models them."""
 
 from __future__ import annotations
 
@@ -66,25 +66,15 @@ def _emission(light: bpy.types.Light, notes) -> np.ndarray:
     """(3,) colour times strength of the light's Emission node, which scales the light's own; 1 without nodes."""
     if not light.use_nodes:
         return np.ones(3)
-    node = _output_source(light.node_tree, "OUTPUT_LIGHT", "EMISSION")
+    node = output_source(light.node_tree, "OUTPUT_LIGHT", "EMISSION")
     if node is None:
         notes.add(f"The light {light.name!r} has no Emission node at its output; its nodes are passed over")
         return np.ones(3)
-    return np.array(_color_times_strength(node, f"The light {light.name!r}", notes))
+    return np.array(color_times_strength(node, f"The light {light.name!r}", notes))
 
 
-def world_radiance(world: bpy.types.World | None, notes) -> tuple[float, float, float]:
-    """Colour times strength of the world's Background node, or the world's plain colour; black without a world."""
-    if world is None:
-        return 0.0, 0.0, 0.0
-    node = _output_source(world.node_tree, "OUTPUT_WORLD", "BACKGROUND") if world.use_nodes else None
-    if node is None:
-        return (0.0, 0.0, 0.0) if world.use_nodes else tuple(world.color)
-    return _color_times_strength(node, f"The world {world.name!r}", notes)
-
-
-def _color_times_strength(node: bpy.types.Node, owner: str, notes) -> tuple[float, float, float]:
-    """Of a Background or an Emission node."""
+def color_times_strength(node: bpy.types.Node, owner: str, notes) -> tuple[float, float, float]:
+    """Of a Background or an Emission node. owner: the subject of a sentence."""
     color, strength = node.inputs["Color"], node.inputs["Strength"]
     if color.is_linked or strength.is_linked:
         notes.add(f"{owner} is textured; its {node.bl_label} node's plain colour and strength are used")
@@ -95,7 +85,7 @@ def shading_material(material: bpy.types.Material | None, notes) -> Material:
     """Roughness, metallic and specular reflectance of the material's Principled node; the defaults without one."""
     if material is None or not material.use_nodes:
         return Material()
-    node = _output_source(material.node_tree, "OUTPUT_MATERIAL", "BSDF_PRINCIPLED")
+    node = output_source(material.node_tree, "OUTPUT_MATERIAL", "BSDF_PRINCIPLED")
     if node is None:
         notes.add(f"The material {material.name!r} has no Principled BSDF at its output; it is shaded as a default one")
         return Material()
@@ -113,7 +103,7 @@ def _levelled(ior: float, level: float) -> float:
     return (1 + root) / (1 - root)
 
 
-def _output_source(tree: bpy.types.NodeTree, output_type: str, wanted: str) -> bpy.types.Node | None:
+def output_source(tree: bpy.types.NodeTree, output_type: str, wanted: str) -> bpy.types.Node | None:
     """The node of type `wanted` that feeds the tree's active output, or None."""
     for node in tree.nodes:
         if node.type == output_type and node.is_active_output and node.inputs["Surface"].links:

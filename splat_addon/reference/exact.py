@@ -17,6 +17,7 @@ from .lights import all_incident
 from .rays import RayGrid, Surface, visible_surface
 from .shading import principled_radiance
 from .splats import eye_splats, projected_bounds
+from .world import WorldLight
 
 #: Rays of a tile: enough for numpy to be quick, few enough that a tile's arrays stay below 100 MB.
 TILE_RAYS = 300_000
@@ -70,7 +71,8 @@ def _shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, 
     """(rows, columns, 8): premultiplied rgba, eye-space normal and coverage of every ray."""
     rays = np.zeros((grid.count, 8))
     if not settings.transparent_film:
-        rays[:, :3], rays[:, 3] = scene.world, 1
+        _, direction = grid.rays(np.arange(grid.count))
+        rays[:, :3], rays[:, 3] = WorldLight(scene, camera).background(direction), 1
     hit = surface.rays
     rays[hit, :3] = SHADERS[settings.shading](surface, grid, scene, camera)
     rays[hit, 3] = rays[hit, 7] = 1
@@ -85,7 +87,7 @@ def _flat(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera) -> np.n
 def _principled(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera) -> np.ndarray:
     origin, direction = grid.rays(surface.rays)
     position = origin + surface.depth[:, None] * direction
-    return principled_radiance(surface, direction, all_incident(scene, camera, position), scene.world)
+    return principled_radiance(surface, direction, all_incident(scene, camera, position), WorldLight(scene, camera))
 
 
 #: shading -> (surface, grid, scene, camera) to (n, 3) radiance of the rays that hit

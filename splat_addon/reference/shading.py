@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The principled shading of a visible surface point, in plain numpy: the definition that the GLSL follows.
 
-A dielectric or metal with a Lambert diffuse and a GGX specular term, under lights and a world of even radiance.
+A dielectric or metal with a Lambert diffuse and a GGX specular term, under lights and a world.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import numpy as np
 from .brdf import dot, quad_form_factors, specular_albedo, specular_term, unit
 from .lights import Incident
 from .rays import Surface
+from .world import WorldLight
 
 #: Below this roughness a highlight from a light without size is a single bright sub-sample.
 MIN_ROUGHNESS = 0.03
@@ -19,10 +20,10 @@ MIN_ROUGHNESS = 0.03
 MIN_VIEW_COSINE = 1e-4
 
 
-def principled_radiance(surface: Surface, direction, lights: list[Incident], world) -> np.ndarray:
+def principled_radiance(surface: Surface, direction, lights: list[Incident], world: WorldLight) -> np.ndarray:
     """(n, 3) radiance that leaves towards the viewer.
 
-    direction: (n, 3) of the rays that see the points, eye space. lights: what each sends to them. world: (3,) radiance.
+    direction: (n, 3) of the rays that see the points, eye space. lights: what each sends to them.
     """
     view = -unit(direction)
     normal = surface.normal
@@ -33,7 +34,8 @@ def principled_radiance(surface: Surface, direction, lights: list[Incident], wor
     coat, _ = specular_albedo(roughness, nv, coat_f0)
     diffuse = surface.color * (1 - metallic) * (1 - coat)
     specular, scattered = specular_albedo(roughness, nv, f0)
-    radiance = np.asarray(world) * (diffuse + specular)
+    mirrored = 2 * dot(view, normal)[:, None] * normal - view
+    radiance = diffuse * world.irradiance(normal) + specular * world.reflection(mirrored, roughness)
     for light in lights:
         nl = np.maximum(dot(normal, light.to_light), 0)
         lobe = specular_term(normal, view, light.to_light, nl, nv, roughness, f0) * scattered

@@ -6,6 +6,7 @@ scene, camera, settings -> plan -> view -> passes on a device -> Frame
 
 from .camera import Camera, look_at
 from .device import open_device
+from .environment import Environment
 from .frame import EMPTY_DEPTH, Frame
 from .light import Light
 from .plan import FramePlan, plan
@@ -16,6 +17,7 @@ from .settings import Settings
 __all__ = (
     "EMPTY_DEPTH",
     "Camera",
+    "Environment",
     "Frame",
     "FramePlan",
     "Instance",

@@ -132,14 +132,17 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
     material = shared_material(scene.surfels)
     linear_depth, passes, features, left_out = False, (), (), []
     if not any(len(instance.surfels) for instance in scene.surfels):
-        left_out.append(("all passes", "the scene has no surfels, so the picture is its background"))
+        left_out.append(("all other passes", "the scene has no surfels, so the picture is its background"))
+        if _shows_environment(scene, settings):
+            outputs = _outputs(settings, left_out)
+            passes = (PlannedPass("background", "the world is a picture", ("environment_image",), outputs),)
     else:
         linear_depth, why_depth = _linear_depth(scene, camera, settings)
         sums = _sums(settings, material, left_out)
         passes = (
             PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
             PlannedPass("attributes", f"overlapping splats blend by {method.name}", ("visibility_depth",), sums),
-            *_shading_passes(settings, method, _read_by_shading(scene, settings, sums, left_out), left_out),
+            *_shading_passes(scene, settings, method, _read_by_shading(scene, settings, sums, left_out), left_out),
         )
         features = _features(scene, settings, left_out)
         if not linear_depth:
@@ -181,13 +184,24 @@ def _sums(settings: Settings, material: Material | None, left_out: list) -> tupl
 
 
 def _read_by_shading(scene: Scene, settings: Settings, sums: tuple[str, ...], left_out: list) -> tuple[str, ...]:
+    reads = list(sums)
     if settings.shading == "flat":
         left_out.append(("lights", "flat shading does not look at lights"))
-        return sums
-    if not scene.lights:
-        left_out.append(("lights", "the scene has none"))
-        return *sums, "brdf_table"
-    return *sums, "brdf_table", "lights"
+    else:
+        reads.append("brdf_table")
+        if scene.lights:
+            reads.append("lights")
+        else:
+            left_out.append(("lights", "the scene has none"))
+        if scene.environment:
+            reads += ["environment_image", "environment_levels"]
+    if not scene.environment:
+        left_out.append(("environment", "the world is even"))
+    return tuple(reads)
+
+
+def _shows_environment(scene: Scene, settings: Settings) -> bool:
+    return scene.environment is not None and not settings.transparent_film
 
 
 def _features(scene: Scene, settings: Settings, left_out: list) -> tuple[tuple[str, str], ...]:
@@ -201,21 +215,26 @@ def _features(scene: Scene, settings: Settings, left_out: list) -> tuple[tuple[s
     return ()
 
 
-def _shading_passes(settings: Settings, method: Method, reads: tuple[str, ...], left_out: list):
+def _shading_passes(scene: Scene, settings: Settings, method: Method, reads: tuple[str, ...], left_out: list):
     """From sums to pixels: in one pass, or in two where silhouettes are filtered."""
-    outputs = ["combined", "depth"]
-    if {"normal", "coverage"} & set(settings.outputs):
-        outputs.append("normal_coverage")
-    else:
-        left_out.append(("normal_coverage", "neither the normal nor the coverage is asked for"))
+    outputs = _outputs(settings, left_out)
+    behind = ("environment_image",) if _shows_environment(scene, settings) else ()
     once = f"{settings.shading}, once a sample"
     if method.visibility_samples == 1:
-        return (PlannedPass("shading", once, reads, tuple(outputs)),)
+        return (PlannedPass("shading", once, tuple(dict.fromkeys((*reads, *behind))), outputs),)
     kept = ("shaded", "surface")
     return (
         PlannedPass("sample_shading", once, reads, kept),
-        PlannedPass("resolve", "silhouettes are filtered", (*kept, "visibility_depth"), tuple(outputs)),
+        PlannedPass("resolve", "silhouettes are filtered", (*kept, "visibility_depth", *behind), outputs),
     )
+
+
+def _outputs(settings: Settings, left_out: list) -> tuple[str, ...]:
+    """What the last pass writes."""
+    if {"normal", "coverage"} & set(settings.outputs):
+        return "combined", "depth", "normal_coverage"
+    left_out.append(("normal_coverage", "neither the normal nor the coverage is asked for"))
+    return "combined", "depth"
 
 
 def _say_what_surfels_lack(scene: Scene, camera: Camera, left_out: list) -> None:

@@ -34,6 +34,7 @@ class Resources:
     def __init__(self, device: Device):
         self.device = device
         self._surfels = WeakKeyDictionary()
+        self._kept = WeakKeyDictionary()
         self._constants = {}
         self._pipelines = {}
         self.textures = {}
@@ -60,6 +61,13 @@ class Resources:
             self._constants[texels] = self.data(texels())
         return self._constants[texels]
 
+    def kept(self, owner: object, texels: Callable[[], np.ndarray]) -> Texture:
+        """The texture of what `texels`, a method of `owner`, gives; it leaves the device with the owner."""
+        textures = self._kept.setdefault(owner, {})
+        if texels.__name__ not in textures:
+            textures[texels.__name__] = self.data(texels())
+        return textures[texels.__name__]
+
     def texture(self, key: TextureKey) -> Texture:
         """The texture of that name, size and format, made when it is first asked for."""
         if key not in self.textures:
@@ -80,6 +88,7 @@ class Resources:
     def release(self) -> None:
         """Let go of everything on the device."""
         self._surfels.clear()
+        self._kept.clear()
         self._constants.clear()
         self._pipelines.clear()
         self.textures.clear()

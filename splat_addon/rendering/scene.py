@@ -13,6 +13,7 @@ import numpy as np
 from ..images import Image
 from ..surfels import Surfels
 from .camera import Camera
+from .environment import Environment
 from .light import Light
 
 
@@ -103,11 +104,13 @@ class Scene:
 
     surfels: `Instance`s, or bare `Surfels` standing at the world's origin.
     world: (3,) scene-linear radiance that reaches every surface and fills the background.
+    environment: a picture all around, which `world` then multiplies.
     """
 
     surfels: tuple[Instance, ...] = ()
     lights: tuple[Light, ...] = ()
     world: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    environment: Environment | None = None
 
     def __post_init__(self):
         instances = tuple(s if isinstance(s, Instance) else Instance(s) for s in self.surfels)

@@ -8,7 +8,7 @@ import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import EMPTY_DEPTH, Light, Settings
+from splat_addon.rendering import EMPTY_DEPTH, Environment, Light, Material, Settings
 from splat_addon.rendering.methods import METHODS
 
 TOLERANCE = 1e-4
@@ -39,11 +39,27 @@ def lit(scene, camera):
     return replace(scene, lights=lights), camera
 
 
+def environment():
+    """A sky, a floor and a red lamp in a picture of 32 x 64 pixels."""
+    pixels = np.empty((32, 64, 3), np.float32)
+    pixels[:16], pixels[16:] = (0.1, 0.08, 0.05), (0.3, 0.5, 0.9)
+    pixels[20:23, 40:44] = 3, 0.6, 0.2
+    return Environment(pixels, np.array(((0.0, 1, 0), (-1, 0, 0), (0, 0, 1))))
+
+
+def in_a_picture(scene, camera):
+    """The scene in a world that is a picture; its two materials reflect it."""
+    rough, metal = scene.surfels
+    metal = replace(metal, materials=(Material(roughness=0.3, metallic=1.0),))
+    return replace(scene, surfels=(rough, metal), world=(1, 0.9, 0.8), environment=environment()), camera
+
+
 SCENES = {
     "sphere": lambda: scenes.sphere(size=SIZE),
     "checker_plane": lambda: scenes.checker_plane(size=SIZE),
     "torus": lambda: scenes.torus(size=SIZE),
     "lights": lambda: lit(*scenes.torus(size=SIZE)),
+    "environment": lambda: in_a_picture(*scenes.torus(size=SIZE)),
     "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),
 }
 

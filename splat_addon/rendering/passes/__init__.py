@@ -5,6 +5,7 @@ from . import attributes, shading, visibility
 
 #: name in a `FramePlan` -> run(tile, planned) -> the target that was drawn into
 RUN = {
+    "background": shading.run,
     "visibility": visibility.run,
     "attributes": attributes.run,
     "shading": shading.run,

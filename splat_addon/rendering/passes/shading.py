@@ -22,6 +22,7 @@ SHADING_BLOCK = (
     "shading",
     (
         ("mat4", "view_to_world"),
+        ("mat4", "view_to_environment"),
         ("mat4", "projection"),
         ("vec4", "window"),
         ("vec4", "world"),
@@ -29,6 +30,15 @@ SHADING_BLOCK = (
         ("vec4", "options"),
     ),
 )
+
+
+#: texture that a pass reads -> what its shader is told of it
+_DEFINES = {
+    "material_sum": "MATERIAL_TARGET",
+    "lights": "LIGHTS",
+    "environment_image": "ENVIRONMENT",
+    "environment_levels": "ENVIRONMENT_LIGHT",
+}
 
 
 def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
@@ -44,10 +54,9 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
         defines=(
             ("SAMPLES", str(frame.samples)),
             ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
-            *((("MATERIAL_TARGET", "1"),) if "material_sum" in planned.reads else ()),
             *(HALF_SUMS if "depth_sum" in planned.reads else ()),
-            *((("LIGHTS", "1"),) if "lights" in planned.reads else ()),
             *((("NORMAL_OUTPUT", "1"),) if "normal_coverage" in planned.writes else ()),
+            *((define, "1") for texture, define in _DEFINES.items() if texture in planned.reads),
             *((name, "1") for name, _ in frame.features),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
@@ -57,10 +66,16 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
 def run(tile: TileContext, planned: PlannedPass) -> Target:
     """Fill the textures of the plan's last passes."""
     target = tile.target(planned.writes)
-    made_here = {"lights": lambda: _lights(tile), "brdf_table": lambda: tile.resources.constant(brdf_texels)}
+    resources, environment = tile.resources, tile.scene.environment
+    made_here = {
+        "lights": lambda: _lights(tile),
+        "brdf_table": lambda: resources.constant(brdf_texels),
+        "environment_image": lambda: resources.kept(environment, environment.image_texels),
+        "environment_levels": lambda: resources.kept(environment, environment.level_texels),
+    }
     reads = tile.textures(planned.reads, made_here)
-    pipeline = tile.resources.pipeline(describe(planned, tile.plan))
-    tile.resources.device.draw_fullscreen(pipeline, target, _block(tile), reads)
+    pipeline = resources.pipeline(describe(planned, tile.plan))
+    resources.device.draw_fullscreen(pipeline, target, _block(tile), reads)
     return target
 
 
@@ -70,11 +85,14 @@ def _lights(tile: TileContext):
 
 def _block(tile: TileContext) -> np.ndarray:
     frame, scene, camera, view = tile.plan, tile.scene, tile.camera, tile.view
-    view_to_world = np.eye(4)
+    view_to_world, view_to_environment = np.eye(4), np.eye(4)
     view_to_world[:3, :3] = camera.matrix_world[:3, :3]
+    if scene.environment:
+        view_to_environment[:3, :3] = scene.environment.rotation @ camera.matrix_world[:3, :3]
     material = (0.0,) * 3 if frame.material is None else pack_materials((frame.material,))[0, 0, :3]
     return std140(
         view_to_world,
+        view_to_environment,
         view.projection,
         tile.window,
         (*scene.world, 0.0 if tile.settings.transparent_film else 1.0),

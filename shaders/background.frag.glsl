@@ -1,0 +1,16 @@
+// References: none needed.
+// Summary: the picture of a world without anything in it.
+
+#include "common/world.glsl"
+
+void main() {
+  vec4 total = vec4(0.0);
+  for (int i = 0; i < SAMPLES * SAMPLES; i++) {
+    total += world_background(ivec2(gl_FragCoord.xy) * SAMPLES + ivec2(i % SAMPLES, i / SAMPLES));
+  }
+  combined = total / float(SAMPLES * SAMPLES);
+  depth = 1e10;
+#ifdef NORMAL_OUTPUT
+  normal_coverage = vec4(0.0);
+#endif
+}
