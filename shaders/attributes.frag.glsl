@@ -4,10 +4,20 @@
 #include "common/depth.glsl"
 #include "common/sums.glsl"
 #include "methods/{method}.glsl"
+#ifdef TEXTURED
+#include "common/splat_texture.glsl"
+#endif
 
 void main() {
   float weight = kernel_weight(place_depth.xy) * color_weight.w;
   if (!(weight > 0.0)) discard;
   write_depth(place_depth.z);
-  add_to_sums(weight, place_depth.z);
+#ifdef TEXTURED
+  vec2 point = splats.window.xy + gl_FragCoord.xy * splats.window.zw;
+  mat2 change = space_place_change(texture_axis_u, texture_axis_v, point, place_depth.z);
+  vec3 color = splat_texture_color(color_weight.rgb, texture_place, texture_along, place_depth.xy, change);
+#else
+  vec3 color = color_weight.rgb;
+#endif
+  add_to_sums(color, weight, place_depth.z);
 }

@@ -1,8 +1,12 @@
 // References: Botsch et al. 2005, section 4 (deferred shading: attributes are blended, not colours).
 // Summary: for methods that draw quads in space: each splat's corner and its attributes.
 
+#define VERTEX_STAGE
 #include "common/splat_attributes.glsl"
 #include "methods/{method}.glsl"
+#ifdef TEXTURED
+#include "common/splat_texture.glsl"
+#endif
 
 void main() {
   Splat splat = fetch_splat(gl_VertexID >> 2);
@@ -11,6 +15,11 @@ void main() {
   place_depth = vec3(corner, -eye.z);
   color_weight = splat.color_weight;
   normal = splat.normal;
+#ifdef TEXTURED
+  texture_place = fetch_texture_place(gl_VertexID >> 2, splat.material, texture_along);
+  texture_axis_u = splat.axis_u;
+  texture_axis_v = splat.axis_v;
+#endif
 #ifdef MATERIAL_TARGET
   material = texelFetch(materials, ivec2(min(int(splat.material), textureSize(materials, 0).x - 1), 0), 0).xyz;
 #endif

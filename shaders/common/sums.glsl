@@ -11,14 +11,14 @@ const float WEIGHT_SCALE = 16.0;
 const float LEAST_WEIGHT = 9.766e-4;
 #endif
 
-void add_to_sums(float weight, float depth) {
+void add_to_sums(vec3 color, float weight, float depth) {
 #ifdef HALF_SUMS
   weight = max(weight * WEIGHT_SCALE, LEAST_WEIGHT);
-  color_sum = vec4(color_weight.rgb * splats.sides.w, 1.0) * weight;
+  color_sum = vec4(color * splats.sides.w, 1.0) * weight;
   normal_sum = vec4(normal, 0.0) * weight;
   depth_sum = vec2(depth, 1.0) * weight;
 #else
-  color_sum = vec4(color_weight.rgb, 1.0) * weight;
+  color_sum = vec4(color, 1.0) * weight;
   normal_sum = vec4(normal, depth) * weight;
 #endif
 #ifdef MATERIAL_TARGET

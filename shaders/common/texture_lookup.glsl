@@ -1,18 +1,19 @@
 // References: "View-independent object-space surface splatting", section 4.4 (texture-mapped splats, looked up with the
 //             pixel's anisotropic footprint); McCormack et al., "Feline", 1999 (probes along the footprint's long
 //             axis); Heckbert, "Fundamentals of Texture Mapping", 1989 (Gaussian footprints).
-// Summary: a texture's colour under a footprint. Footprints are Gaussians, added up by their variances: the level is
-//          that whose bilinear lookup is as wide as the footprint is across, and the probes spread it along.
+// Summary: a texture's colour under a footprint. Footprints are Gaussians, added up by their variances: a bilinear lookup
+//          of the level that is at most half as wide as the footprint across, and a grid of probes that spread it.
 //          No sampler state and no derivative of the hardware: the same on every device.
 //          The twin of rendering/texture_lookup.py. The layout of atlas and table is rendering/atlas.py's.
 //
 // The includer declares the samplers `texture_atlas` and `texture_table`.
 
-const int MAX_PROBES = 16;
-// Probes this many standard deviations of one texel's kernel apart still look like one Gaussian.
-const float PROBES_PER_DEVIATION = 3.8;
-const float LONGEST = 16.0;      // square of the deviations, in texels of the level, that MAX_PROBES can spread
-const float LARGEST = 1e12;      // variance beyond which only the mean of the texture is left
+const int MAX_PROBES = 24;              // along
+const float PROBES_PER_DEVIATION = 3.0;  // of the level's texels: bilinear kernels this far apart still look like one
+const float LEVEL_SHARE = 0.25;         // of the footprint's variance across that the level's own kernel may have
+const float LONGEST = 32.0;             // variance along, of one across of 1/2, that probes can spread
+const float AXIS_BIAS = 1e-3;
+const float LARGEST = 1e12;             // variance beyond which only the mean of the texture is left
 
 const int REPEAT = 0, EXTEND = 1, CLIP = 2, MIRROR = 3;
 
@@ -65,7 +66,13 @@ vec4 level_color(SurfaceTexture t, ivec4 place, vec2 uv, bool is_closest) {
 }
 
 ivec4 level_place(SurfaceTexture t, int level) {
-  return ivec4(texelFetch(texture_table, ivec2(2 + min(level, t.levels - 1), t.slot), 0));
+  return ivec4(texelFetch(texture_table, ivec2(2 + level, t.slot), 0));
+}
+
+// Half of the length over which probes spread; of Gaussian weights at the middles of 2, 3 and more parts of -1 .. 1 the
+// variance is known.
+float probe_reach(float spread, int probes) {
+  return probes == 1 ? 0.0 : spread * inversesqrt(probes == 2 ? 0.25 : probes == 3 ? 0.2005 : 0.1945);
 }
 
 // Colour, not premultiplied, under the Gaussian at uv whose variances and covariance xx, yy, xy are given.
@@ -75,31 +82,34 @@ vec3 texture_color(SurfaceTexture t, vec2 uv, vec3 variances) {
   float tilt = 0.5 * (xx - yy), root = sqrt(tilt * tilt + xy * xy);
   float along = 0.5 * (xx + yy) + root;
   bool is_usable = along < LARGEST;   // not so for NaN
-  vec2 axis = tilt >= 0.0 ? vec2(tilt + root, xy) : vec2(xy, root - tilt);
+  // A round footprint has no long axis: the bias gives it one that rounding does not turn.
+  float biased = tilt + AXIS_BIAS * (xx + yy), biased_root = sqrt(biased * biased + xy * xy);
+  vec2 axis = biased >= 0.0 ? vec2(biased + biased_root, xy) : vec2(xy, biased_root - biased);
   if (!is_usable) axis = vec2(1.0, 0.0);
   along = is_usable ? along : LARGEST;
   float across = is_usable ? (xx * yy - xy * xy) / max(along, 1e-30) : LARGEST;
-  across = max(max(across, 0.0), (along - LONGEST) / (1.0 + 4.0 * LONGEST));
+  across = max(max(across, 0.0), (along - LONGEST) / (2.0 * LONGEST));
 
-  // A bilinear lookup of level l has the variance 4^l / 4 - 1 / 12; the image itself, level 0, has 1 / 6.
-  float width2 = 1.0 + 4.0 * across;
-  int level = min(int(0.5 * log2(width2)), t.levels - 1);
-  float share = clamp((width2 * exp2(-2.0 * float(level)) - 1.0) / 3.0, 0.0, 1.0);
-  ivec4 fine = level_place(t, level), coarse = level_place(t, level + 1);
-
-  float spread = sqrt(max(along - across, 0.0));
-  int probes = min(1 + int(PROBES_PER_DEVIATION * spread * inversesqrt(width2) + 0.3), MAX_PROBES);
-  // Of Gaussian weights at the middles of 2, 3 and more parts of -1 .. 1.
-  float variance = probes == 2 ? 0.25 : probes == 3 ? 0.2005 : 0.1945;
-  vec2 reach = axis * (probes > 1 ? inversesqrt(max(dot(axis, axis), 1e-30) * variance) * spread : 0.0) / t.size;
+  // A bilinear lookup of level l is wider than one of the image itself, whose kernel is part of the texture, by the
+  // variance (4^l - 1) / 4; probes spread what is left.
+  int level = min(int(0.5 * log2(1.0 + 4.0 * LEVEL_SHARE * across)), t.levels - 1);
+  ivec4 place = level_place(t, level);
+  float texel2 = exp2(2.0 * float(level)), kernel = 0.25 * (texel2 - 1.0);
+  vec2 spread = sqrt(max(vec2(along, across) - kernel, 0.0));
+  ivec2 probes = min(ivec2(1.5 + PROBES_PER_DEVIATION * spread * inversesqrt(texel2)), MAX_PROBES);
+  axis *= inversesqrt(max(dot(axis, axis), 1e-30));
+  vec2 reach_along = axis * probe_reach(spread.x, probes.x) / t.size;
+  vec2 reach_across = vec2(-axis.y, axis.x) * probe_reach(spread.y, probes.y) / t.size;
+  bool is_closest = t.is_closest && level == 0;
   vec4 total = vec4(0.0);
   float weights = 0.0;
-  for (int i = 0; i < probes; i++) {
-    float place = (2.0 * float(i) + 1.0) / float(probes) - 1.0;
-    float weight = exp(-2.0 * place * place);
-    vec2 at = uv + reach * place;
-    total += weight * mix(level_color(t, fine, at, t.is_closest && level == 0), level_color(t, coarse, at, false), share);
-    weights += weight;
+  for (int j = 0; j < probes.y; j++) {
+    for (int i = 0; i < probes.x; i++) {
+      vec2 at = (2.0 * vec2(i, j) + 1.0) / vec2(probes) - 1.0;
+      float weight = exp(-2.0 * dot(at, at));
+      total += weight * level_color(t, place, uv + reach_along * at.x + reach_across * at.y, is_closest);
+      weights += weight;
+    }
   }
   return t.factor * total.rgb / (total.a > 0.0 ? total.a : weights);
 }

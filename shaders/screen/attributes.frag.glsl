@@ -9,9 +9,12 @@
 #include "common/sums.glsl"
 #include "screen/place.glsl"
 #include "methods/{method}.glsl"
+#ifdef TEXTURED
+#include "common/splat_texture.glsl"
+#endif
 
-// Weight and depth of a splat that reaches the near plane, unfiltered.
-vec2 straddling_sample(vec2 point) {
+// Place and depth of a splat that reaches the near plane, unfiltered.
+vec3 straddling_place(vec2 point) {
   bool is_orthographic = splats.options.z > 0.5;
   vec3 forward = vec3(1.0, 1.0, -1.0);
   vec3 p = plane_ab.xyz * forward, s = plane_center_gh.xyz * forward, t = plane_depths.xyz * forward;
@@ -19,10 +22,33 @@ vec2 straddling_sample(vec2 point) {
   if (is_orthographic) p.xy -= point;
   float w = dot(cross(s, t), direction);
   vec2 uv = vec2(dot(cross(t, p), direction), dot(cross(p, s), direction)) / w;
-  float depth = dot(cross(s, t), p) / w;
-  float rho2 = dot(uv, uv);
-  return vec2(rho2 <= 1.0 && depth >= splats.options.y ? exp(-2.0 * rho2) : 0.0, depth);
+  return vec3(uv, dot(cross(s, t), p) / w);
 }
+
+vec2 straddling_sample(vec2 point) {
+  vec3 place = straddling_place(point);
+  float rho2 = dot(place.xy, place.xy);
+  return vec2(rho2 <= 1.0 && place.z >= splats.options.y ? exp(-2.0 * rho2) : 0.0, place.z);
+}
+
+#ifdef TEXTURED
+vec3 textured_color(Plane plane, vec2 point) {
+  vec2 q;
+  mat2 change;
+  if (straddling > 0.5) {
+    vec3 place = straddling_place(point);
+    q = place.xy;
+    change = space_place_change(plane_center_gh.xyz, plane_depths.xyz, point, place.z);
+  }
+  else {
+    Place place = place_at(plane, point);
+    // Beyond the plane's horizon only the splat's mean can be meant.
+    q = place.k > 0.0 ? place.uv : vec2(LARGEST_PIXEL);
+    change = place_gradient(plane, place);
+  }
+  return splat_texture_color(color_weight.rgb, texture_place, texture_along, q, change);
+}
+#endif
 
 void main() {
   vec2 point = picture_point();
@@ -46,5 +72,10 @@ void main() {
   // depth, moved back by up to 2 epsilon, is more than that and a radius behind this splat's.
   if (seen < 1.0 && straddling < 0.5 && view_depth(seen) - depth > (1.0 + 4.0 * splats.options.x) * plane.radius) discard;
 #endif
-  add_to_sums(weight, weight_depth.y);
+#ifdef TEXTURED
+  vec3 color = textured_color(plane, point);
+#else
+  vec3 color = color_weight.rgb;
+#endif
+  add_to_sums(color, weight, weight_depth.y);
 }

@@ -6,6 +6,9 @@
 #include "common/splat_attributes.glsl"
 #include "screen/plane.glsl"
 #include "methods/{method}.glsl"
+#ifdef TEXTURED
+#include "common/splat_texture.glsl"
+#endif
 
 const float STRADDLING_MARGIN = 1.02;
 
@@ -15,6 +18,9 @@ void main() {
   bool is_orthographic = splats.options.z > 0.5;
   float reach = length(vec2(splat.axis_u.z, splat.axis_v.z));
   bool straddles = -splat.position.z - reach <= splats.options.y;
+#ifdef TEXTURED
+  Plane true_plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic);
+#endif
   adjust(splat, straddles);
   Plane plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic);
   straddling = straddles ? 1.0 : 0.0;
@@ -25,6 +31,14 @@ void main() {
   plane_gradient = plane.gradient;
   color_weight = splat.color_weight;
   normal = splat.normal;
+#ifdef TEXTURED
+  texture_place = fetch_texture_place(gl_VertexID >> 2, splat.material, texture_along);
+  // Axes that the method replaced move in the picture as others of the true plane do.
+  if (true_plane.a != plane.a || true_plane.b != plane.b) {
+    mat2 along = mat2(texture_along.xy, texture_along.zw) * inverse(mat2(true_plane.a, true_plane.b)) * mat2(plane.a, plane.b);
+    texture_along = vec4(along[0], along[1]);
+  }
+#endif
 #ifdef MATERIAL_TARGET
   material = texelFetch(materials, ivec2(min(int(splat.material), textureSize(materials, 0).x - 1), 0), 0).xyz;
 #endif

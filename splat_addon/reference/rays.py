@@ -13,6 +13,7 @@ import numpy as np
 
 from ..rendering.camera import Camera
 from .splats import BACK_WEIGHT, Splats
+from .textures import point_colors
 
 #: Splat-ray pairs handled at once: about 100 bytes each.
 CHUNK_PAIRS = 1_000_000
@@ -90,10 +91,12 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """M meetings of a ray with a splat: their numbers, rho^2 in the ellipse, depth along -Z, the direction's length."""
+    """M meetings of a ray with a splat: their numbers, the place (M, 2) in the ellipse and its rho^2, the depth along
+    -Z, the direction's length."""
 
     ray: np.ndarray
     splat: np.ndarray
+    place: np.ndarray
     rho2: np.ndarray
     depth: np.ndarray
     stretch: np.ndarray
@@ -115,9 +118,19 @@ def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float) -> Su
         weight = np.exp(-2 * hits.rho2[seen]) * side[splat]
         sums[0] += np.bincount(ray, weight, grid.count)
         sums[1] += np.bincount(ray, weight * hits.depth[seen], grid.count)
-        for total, values in zip(sums[2:], attributes, strict=True):
-            total += np.bincount(ray, weight * values[splat], grid.count)
+        values = attributes[:, splat]
+        _look_textures_up(splats, splat, hits.place[seen], values[:3])
+        for total, row in zip(sums[2:], values, strict=True):
+            total += np.bincount(ray, weight * row, grid.count)
     return _averages(sums)
+
+
+def _look_textures_up(splats: Splats, splat: np.ndarray, place: np.ndarray, colors: np.ndarray):
+    """Put the textures' colours at (m, 2) places of m hit splats into (3, m) colours, where there are textures."""
+    for texture in set(splats.texture) - {None}:
+        at = np.flatnonzero(splats.texture[splat] == texture)
+        uvs = splats.uv[splat[at]] + np.einsum("nk,nkc->nc", place[at], splats.uv_along[splat[at]])
+        colors[:, at] = point_colors(texture, uvs).T
 
 
 def _averages(sums: np.ndarray) -> Surface:
@@ -167,4 +180,5 @@ def _intersections(splats: Splats, rows, ray, splat, grid: RayGrid) -> Hits:
         a, b = (np.einsum("ij,ij->i", offset, dual[local]) for dual in (dual_u, dual_v))
         rho2 = a * a + b * b
         hit = np.flatnonzero((rho2 <= 1) & (depth >= grid.camera.near) & (depth <= grid.camera.far))
-    return Hits(ray[hit], splat[hit], rho2[hit], depth[hit], np.linalg.norm(direction[hit], axis=1))
+    place = np.stack([a[hit], b[hit]], axis=1)
+    return Hits(ray[hit], splat[hit], place, rho2[hit], depth[hit], np.linalg.norm(direction[hit], axis=1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Four scenes that the engine and the truth are compared on: numpy builders, the same for every run.
+"""Five scenes that the engine and the truth are compared on: numpy builders, the same for every run.
 
 Each returns a `Scene` and a `Camera`. The splats are ellipses of seeded random orientation and aspect, overlap
 about as much as converted meshes do, and carry colours with edges, so that filters have something to do.
@@ -11,9 +11,10 @@ import math
 
 import numpy as np
 
+from ..images import Image
 from ..rendering.camera import Camera, look_at
 from ..rendering.light import Light
-from ..rendering.scene import Instance, Material, Scene
+from ..rendering.scene import Instance, Material, Scene, SurfaceTexture
 from ..surfels import Surfels, axes_quaternions
 from .lettering import PLACE, page
 
@@ -77,6 +78,51 @@ def text_board(
         return ink[((y + 1) / 2 * rows).astype(int), ((x + 1) / 2 * width).astype(int)]
 
     return _board(count, is_ink, ((0.03, 0.03, 0.1), (0.85, 0.83, 0.75)), _eye(elevation, 3.1, 0.3), 42, size, seed)
+
+
+def textured_plane(
+    side: int = 8, elevation: float = 25.0, extension: str = "REPEAT", size=(128, 128)
+) -> tuple[Scene, Camera]:
+    """A square of side x side texture-mapped surfels in three strips: checks of 16 texels, grains of every size, and
+    the surfels' own colours. The texture coordinates run from -0.25 to 1.25.
+    """
+    axis = (np.arange(side) + 0.5) * 2 / side - 1
+    x, y = (a.ravel() for a in np.meshgrid(axis, axis))
+    count, half_axis = len(x), OVERLAP / side
+    uvs = np.stack([x, y], axis=1) * 0.75 + 0.5
+    surfels = Surfels(
+        positions=np.stack([x, y, np.zeros_like(x)], axis=1),
+        rotations=np.tile((1.0, 0.0, 0.0, 0.0), (count, 1)),
+        scales=np.full((count, 2), half_axis),
+        normals=np.tile((0.0, 0.0, 1.0), (count, 1)),
+        colors=np.tile((0.5, 0.1, 0.05, 1.0), (count, 1)),
+        materials=np.floor((x + 1) * 1.5).astype(np.int32),
+        uvs=uvs,
+        uv_along_x=np.tile((0.75 * half_axis, 0.0), (count, 1)),
+        uv_along_y=np.tile((0.0, 0.75 * half_axis), (count, 1)),
+    )
+    textures = (
+        SurfaceTexture(Image(checks(128, 8), extension)),
+        SurfaceTexture(Image(grains(128), extension), (0.9, 0.8, 0.5)),
+        None,
+    )
+    instance = Instance(surfels, materials=(Material(roughness=0.6),), textures=textures)
+    camera = Camera.perspective(look_at(_eye(elevation, 2.6, 0.15), (0, 0, 0)), math.radians(45), size, 0.05, 10)
+    return Scene((instance,), (SUN, LAMP), WORLD), camera
+
+
+def checks(texels: int, fields: int) -> np.ndarray:
+    """(texels, texels, 4) opaque pixels of fields x fields dark and light squares."""
+    field = np.arange(texels) * fields // texels
+    colors = _two_colors(((field[:, None] + field) % 2).ravel(), (0.02, 0.02, 0.03), (0.9, 0.88, 0.85))
+    return np.concatenate([colors, np.ones((texels**2, 1))], axis=1).reshape(texels, texels, 4)
+
+
+def grains(texels: int, seed: int = 3) -> np.ndarray:
+    """(texels, texels, 4) opaque pixels, texels a power of two, with as much contrast at every size."""
+    random, sizes = np.random.default_rng(seed), 2 ** np.arange(1, texels.bit_length())
+    octaves = [np.kron(random.uniform(0, 1, (s, s, 3)), np.ones((texels // s, texels // s, 1))) for s in sizes]
+    return np.concatenate([np.mean(octaves, axis=0), np.ones((texels, texels, 1))], axis=2)
 
 
 def _eye(elevation: float, distance: float, aside: float) -> tuple[float, float, float]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..rendering.camera import Camera
 from ..rendering.scene import Instance, Scene
+from .textures import surfel_textures
 
 #: What the back of a splat weighs against a front, how much further it is moved away, and how flat (cosine) a
 #: back must be seen to pass for the rim of a front, whose normal is left as it is: shaders/common/sides.glsl.
@@ -28,6 +29,8 @@ class Splats:
     normal: (N, 3) unit shading normal turned to the viewer. color: (N, 3) scene-linear.
     surface: (N, 3) roughness, metallic, reflectance at normal incidence.
     is_back: (N,) bool: its inward side is seen.
+    texture: (N,) objects, the `SurfaceTexture` that takes the place of color, or None. uv: (N, 2) at the centre;
+    uv_along: (N, 2, 2), its change along u (row 0) and v (row 1).
     """
 
     center: np.ndarray
@@ -38,6 +41,9 @@ class Splats:
     color: np.ndarray
     surface: np.ndarray
     is_back: np.ndarray
+    texture: np.ndarray
+    uv: np.ndarray
+    uv_along: np.ndarray
 
     def __len__(self) -> int:
         return len(self.center)
@@ -59,7 +65,7 @@ def eye_splats(scene: Scene, camera: Camera) -> Splats:
     """Every instance's surfels in the eye space of `camera`."""
     parts = [_instance_splats(instance, camera) for instance in scene.surfels]
     if not parts:
-        return Splats(*np.zeros((7, 0, 3)), np.zeros(0, bool))
+        return Splats(*np.zeros((7, 0, 3)), np.zeros(0, bool), np.zeros(0, object), *_no_uvs(0))
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
 
 
@@ -78,8 +84,16 @@ def _instance_splats(instance: Instance, camera: Camera) -> Splats:
     seen = np.where((cosine < -GRAZING_COSINE) == (np.linalg.det(linear) < 0), 1, -1)[:, None] * plane
     normal = _turned(surfels.normals.astype(np.float64) @ _cofactors(linear).T, seen)
     color = surfels.colors[:, :3].astype(np.float64)
-    splats = Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0)
+    uvs = _no_uvs(len(surfels))
+    if instance.is_textured:
+        uvs = surfels.uvs.astype(np.float64), np.stack([surfels.uv_along_x, surfels.uv_along_y], axis=1)
+    textures = surfel_textures(instance)
+    splats = Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0, textures, *uvs)
     return splats.take(np.flatnonzero(cosine >= 0)) if instance.hides_backs(camera) else splats
+
+
+def _no_uvs(count: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.zeros((count, 2)), np.zeros((count, 2, 2))
 
 
 def _cofactors(linear: np.ndarray) -> np.ndarray:

@@ -34,6 +34,15 @@ def pack_surfels(surfels: Surfels) -> np.ndarray:
     return texels.reshape(rows, SPLATS_PER_ROW * TEXELS_PER_SPLAT, 4)
 
 
+def pack_uvs(surfels: Surfels) -> np.ndarray:
+    """(rows, 1024, 4) float32, two texels a splat: uv, its change along the local x half-axis  |  along y, 0, 0."""
+    rows = row_count(surfels)
+    texels = np.zeros((rows * SPLATS_PER_ROW, 2, 4), np.float32)
+    filled = texels[: len(surfels)]
+    filled[:, 0, :2], filled[:, 0, 2:], filled[:, 1, :2] = surfels.uvs, surfels.uv_along_x, surfels.uv_along_y
+    return texels.reshape(rows, SPLATS_PER_ROW * 2, 4)
+
+
 def row_count(surfels: Surfels) -> int:
     """Rows of 512 splats, one at least. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
     count = len(surfels)

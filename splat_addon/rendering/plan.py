@@ -141,7 +141,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         sums = _sums(settings, material, left_out)
         passes = (
             PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
-            PlannedPass("attributes", f"overlapping splats blend by {method.name}", ("visibility_depth",), sums),
+            PlannedPass("attributes", _why_attributes(scene, method), ("visibility_depth",), sums),
             *_shading_passes(scene, settings, method, _read_by_shading(scene, settings, sums, left_out), left_out),
         )
         features = _features(scene, settings, left_out)
@@ -162,6 +162,12 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         features,
         tuple(left_out),
     )
+
+
+def _why_attributes(scene: Scene, method: Method) -> str:
+    textured = sum(instance.is_textured for instance in scene.surfels)
+    looked_up = f"; {textured} of {len(scene.surfels)} instances look textures up" if textured else ""
+    return f"overlapping splats blend by {method.name}{looked_up}"
 
 
 # What follows decides one thing each, and appends to `left_out` what it decided against.

@@ -102,6 +102,7 @@ class Renderer:
         self.resources.forget_textures_but(
             {texture_key(name, size, frame_plan) for name in frame_plan.textures for size in sizes}
         )
+        self.resources.forget_atlases_but({instance.textures for instance in scene.surfels})
         for number, tile in enumerate(frame_plan.tiles):
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
             view = look(scene, tile_camera, settings.epsilon)

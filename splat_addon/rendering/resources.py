@@ -10,8 +10,11 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ..surfels import Surfels
+from .atlas import make_atlas
 from .device import Device
 from .device.interface import Pipeline, PipelineDescription, Texture
+from .packing import pack_uvs
+from .scene import SurfaceTexture
 from .storages import Storage
 
 #: name, width, height, format of a texture that a pass writes.
@@ -36,6 +39,8 @@ class Resources:
         self._surfels = WeakKeyDictionary()
         self._kept = WeakKeyDictionary()
         self._constants = {}
+        self._surfel_uvs = WeakKeyDictionary()
+        self._atlases = {}
         self._pipelines = {}
         self.textures = {}
 
@@ -50,6 +55,23 @@ class Resources:
             }
             stored = self._surfels[surfels] = StoredSurfels(storage, textures, coarse)
         return stored
+
+    def surfel_uvs(self, surfels: Surfels) -> Texture:
+        """Their texture coordinates, uploaded once."""
+        if surfels not in self._surfel_uvs:
+            self._surfel_uvs[surfels] = self.data(pack_uvs(surfels))
+        return self._surfel_uvs[surfels]
+
+    def atlas(self, textures: tuple[SurfaceTexture | None, ...]) -> tuple[Texture, Texture]:
+        """Texels and table of an instance's textures, uploaded once."""
+        if textures not in self._atlases:
+            atlas = make_atlas(textures)
+            self._atlases[textures] = self.data(atlas.texels), self.data(atlas.table)
+        return self._atlases[textures]
+
+    def forget_atlases_but(self, wanted: set[tuple[SurfaceTexture | None, ...]]) -> None:
+        """Let go of textures that this frame does not use."""
+        self._atlases = {key: atlas for key, atlas in self._atlases.items() if key in wanted}
 
     def data(self, texels: np.ndarray, format: str = "RGBA32F") -> Texture:
         """A texture of (h, w, 4) float32 texels that nothing here keeps."""
@@ -90,5 +112,7 @@ class Resources:
         self._surfels.clear()
         self._kept.clear()
         self._constants.clear()
+        self._surfel_uvs.clear()
+        self._atlases.clear()
         self._pipelines.clear()
         self.textures.clear()

@@ -7,6 +7,7 @@ Plain values, no Blender: `blender/scene_export.py` makes a `Scene` from a depsg
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -48,6 +49,11 @@ class SurfaceTexture:
         if len(self.factor) != 3 or not np.isfinite(self.factor).all():
             raise ValueError(f"A texture's factor must be 3 finite numbers, not {self.factor!r}.")
 
+    @cached_property
+    def brightest(self) -> float:
+        """The largest component of any texel times the factor."""
+        return float(np.max(self.image.pixels[..., :3].max(axis=(0, 1)) * self.factor))
+
 
 @dataclass(frozen=True, eq=False)
 class Instance:
@@ -72,6 +78,11 @@ class Instance:
         object.__setattr__(self, "matrix_world", matrix)
         object.__setattr__(self, "materials", tuple(self.materials) or (Material(),))
         object.__setattr__(self, "textures", tuple(self.textures))
+
+    @property
+    def is_textured(self) -> bool:
+        """Whether some surfel's colour is to be looked up."""
+        return self.surfels.has_uvs and any(texture is not None for texture in self.textures)
 
     def model_view(self, camera: Camera) -> np.ndarray:
         """(4, 4) float64, surfel positions (without origin) to the camera's view space.

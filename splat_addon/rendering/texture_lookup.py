@@ -7,10 +7,12 @@ import numpy as np
 
 from .atlas import Atlas
 
-MAX_PROBES = 16
-PROBES_PER_DEVIATION = 3.8
-LONGEST = 16.0
+MAX_PROBES = 24
+PROBES_PER_DEVIATION = 3.0
+LEVEL_SHARE = 0.25
+LONGEST = 32.0
 LARGEST = 1e12
+AXIS_BIAS = 1e-3
 
 #: of Gaussian weights at the middles of n parts of -1 .. 1
 PROBE_VARIANCES = {2: 0.25, 3: 0.2005}
@@ -29,18 +31,19 @@ def _color(atlas: Atlas, slot: int, uv: np.ndarray, variance: np.ndarray) -> np.
     row = atlas.table[slot].astype(np.float64)
     factor, count, size = row[0, :3], int(row[0, 3]), row[1, 2:]
     along, across, axis = _along_and_across(variance * np.outer(size, size))
-    width2 = 1 + 4 * across
-    level = min(int(0.5 * np.log2(width2)), count - 1)
-    share = np.clip((width2 * 4.0**-level - 1) / 3, 0, 1)
-    spread = np.sqrt(max(along - across, 0))
-    probes = min(1 + int(PROBES_PER_DEVIATION * spread / np.sqrt(width2) + 0.3), MAX_PROBES)
-    reach = axis * spread / np.sqrt(PROBE_VARIANCES.get(probes, MANY_PROBES_VARIANCE)) if probes > 1 else 0.0
+    level = min(int(0.5 * np.log2(1 + 4 * LEVEL_SHARE * across)), count - 1)
+    spreads = np.sqrt(np.maximum(np.array([along, across]) - (4.0**level - 1) / 4, 0))
+    places = []
+    for spread, direction in zip(spreads, (axis, np.array([-axis[1], axis[0]])), strict=True):
+        probes = min(int(1.5 + PROBES_PER_DEVIATION * spread / 2.0**level), MAX_PROBES)
+        reach = spread / np.sqrt(PROBE_VARIANCES.get(probes, MANY_PROBES_VARIANCE)) if probes > 1 else 0.0
+        steps = (2 * np.arange(probes) + 1) / probes - 1
+        places.append([(np.exp(-2 * step**2), direction * reach * step / size) for step in steps])
     total, weights = np.zeros(4), 0.0
-    for place in (2 * np.arange(probes) + 1) / probes - 1:
-        at, weight = uv + reach * place / size, np.exp(-2 * place**2)
-        colors = [_level_color(atlas, slot, min(k, count - 1), at, k == 0) for k in (level, level + 1)]
-        total += weight * ((1 - share) * colors[0] + share * colors[1])
-        weights += weight
+    for weight_along, along_ in places[0]:
+        for weight_across, across_ in places[1]:
+            total += weight_along * weight_across * _level_color(atlas, slot, level, uv + along_ + across_)
+            weights += weight_along * weight_across
     return factor * total[:3] / (total[3] if total[3] > 0 else weights)
 
 
@@ -48,14 +51,15 @@ def _along_and_across(variance: np.ndarray) -> tuple[float, float, np.ndarray]:
     """Along the footprint's long axis and across it, texels squared, and the unit axis; bounded as MAX_PROBES need."""
     if not np.trace(variance) < LARGEST:
         return LARGEST, LARGEST, np.array([1.0, 0.0])
-    (across, along), axes = np.linalg.eigh(variance)
-    return along, max(across, 0.0, (along - LONGEST) / (1 + 4 * LONGEST)), axes[:, 1]
+    across, along = np.linalg.eigvalsh(variance)
+    _, axes = np.linalg.eigh(variance + np.diag([2 * AXIS_BIAS * np.trace(variance), 0]))
+    return along, max(across, 0.0, (along - LONGEST) / (2 * LONGEST)), axes[:, 1]
 
 
-def _level_color(atlas: Atlas, slot: int, level: int, uv: np.ndarray, may_be_closest: bool) -> np.ndarray:
+def _level_color(atlas: Atlas, slot: int, level: int, uv: np.ndarray) -> np.ndarray:
     row = atlas.table[slot]
     x, y, width, height = row[2 + level].astype(int)
-    extension, is_closest = EXTENSION_RULES[int(row[1, 0])], may_be_closest and row[1, 1] > 0.5
+    extension, is_closest = EXTENSION_RULES[int(row[1, 0])], row[1, 1] > 0.5 and level == 0
     color = np.zeros(4)
     for j, weight_y in _taps(uv[1] * height, is_closest):
         for i, weight_x in _taps(uv[0] * width, is_closest):

@@ -21,7 +21,10 @@ vectors = st.tuples(numbers, numbers, numbers).map(np.array)
 
 def one_splat(center, u, v) -> Splats:
     rest = np.zeros((3, 1, 3))
-    return Splats(center[None], u[None], v[None], np.cross(u, v)[None], *rest, np.zeros(1, bool))
+    return Splats(center[None], u[None], v[None], np.cross(u, v)[None], *rest, np.zeros(1, bool), *_NO_TEXTURE)
+
+
+_NO_TEXTURE = (np.full(1, None), np.zeros((1, 2)), np.zeros((1, 2, 2)))
 
 
 @pytest.mark.parametrize("kind", CAMERAS)

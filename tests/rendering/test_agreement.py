@@ -63,10 +63,14 @@ SCENES = {
     "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),
 }
 
+#: Looked up under footprints, which rays do not have: tests/rendering/test_textured.py compares them with the truth.
+TEXTURED = {"textured_plane": lambda: scenes.textured_plane(size=SIZE)}
+
 #: scene, method, other settings
 CASES = [
     *((name, "quad", {}) for name in SCENES),
     *(("torus", method, {}) for method in METHODS if method != "quad"),
+    *((name, method, {}) for name in TEXTURED for method in METHODS),
     *(("torus", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
     *(("torus", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
 ]
@@ -74,7 +78,7 @@ CASES = [
 
 @pytest.mark.parametrize(("name", "method", "options"), CASES)
 def test_picture_is_the_same_on_every_device(name, method, options, render, pictures, request):
-    frame = render(*SCENES[name](), Settings(method=method, supersampling=1, **options))
+    frame = render(*(SCENES | TEXTURED)[name](), Settings(method=method, supersampling=1, **options))
     path = pictures / f"{'-'.join((name, method, *options.values()))}.npz"
     tolerance = FLOAT16_TOLERANCE if options.get("accumulation") == "float16" else TOLERANCE
     if request.config.getoption("--device") == "standalone":

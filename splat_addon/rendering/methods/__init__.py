@@ -18,6 +18,7 @@ class Method:
         footprint, every pixel computed).
     visibility_samples: along each side of a sample, of the visibility pass; above 1 a resolve pass
         filters silhouettes as the colours are.
+    pixel_variance: of its pixel filter, samples squared; 1/12 is that of a box. Textures are looked up under it.
     twin: the same functions in numpy.
     """
 
@@ -28,6 +29,7 @@ class Method:
     twin: ModuleType
     works_in: str = "picture"
     visibility_samples: int = 1
+    pixel_variance: float = 0.5
 
 
 METHODS = {
@@ -48,6 +50,7 @@ METHODS = {
             "No filter: the fastest, and with many samples the sharpest",
             quad,
             works_in="space",
+            pixel_variance=1 / 12,
         ),
         Method(
             "ewa",
@@ -76,6 +79,7 @@ METHODS = {
             "Botsch and Kobbelt 2003, section 4",
             "Discs in point sprites; opens holes at flat angles",
             affine,
+            pixel_variance=1 / 12,
         ),
     )
 }

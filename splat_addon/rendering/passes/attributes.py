@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ..device.interface import PipelineDescription, Target
 from ..methods import get_method
 from ..plan import FramePlan, PlannedPass
@@ -15,11 +17,29 @@ from .tile import TileContext
 #: Of the sums that are not vec4.
 _OUTPUT_TYPES = {"depth_sum": "vec2"}
 _MATERIAL_VARYING = ("flat", "vec3", "material")
+#: Of texture-mapped splats: uv and slot, change of uv along the half-axes; and the half-axes.
+_TEXTURE_VARYINGS = (("flat", "vec3", "texture_place"), ("flat", "vec4", "texture_along"))
+_AXES_VARYINGS = (("flat", "vec3", "texture_axis_u"), ("flat", "vec3", "texture_axis_v"))
+_TEXTURE_SAMPLERS = ("surfel_uvs", "texture_atlas", "texture_table")
 
 
-def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
-    """What the pass draws with, by the space that the method works in."""
-    return _MAKERS[get_method(frame.method).works_in](planned, frame)
+def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> PipelineDescription:
+    """What the pass draws with, by the space that the method works in.
+
+    textured: for instances whose colours are looked up in textures; the others do not pay for them.
+    """
+    method = get_method(frame.method)
+    plain = _MAKERS[method.works_in](planned, frame)
+    if not textured:
+        return plain
+    axes = _AXES_VARYINGS if method.works_in == "space" else ()
+    return replace(
+        plain,
+        name="textured_attributes",
+        samplers=(*plain.samplers, *_TEXTURE_SAMPLERS),
+        varyings=(*plain.varyings, *_TEXTURE_VARYINGS, *axes),
+        defines=(*plain.defines, ("TEXTURED", "1"), ("PIXEL_VARIANCE", repr(method.pixel_variance))),
+    )
 
 
 def _in_space(planned, frame):
@@ -86,8 +106,11 @@ _MAKERS = {"space": _in_space, "picture": _in_picture}
 
 def run(tile: TileContext, planned: PlannedPass) -> Target:
     """Fill the sums. A method that works in the picture compares depths itself and needs no depth buffer."""
-    pipeline = tile.resources.pipeline(describe(planned, tile.plan))
-    target = tile.target(planned.writes, "visibility_depth" if pipeline.description.depth_test else None)
+    description = describe(planned, tile.plan)
+    target = tile.target(planned.writes, "visibility_depth" if description.depth_test else None)
     target.clear(color=0.0)
-    draw_splats(tile, pipeline, target)
+    for textured in (False, True):
+        placed = [p for p in tile.view.placed if p.instance.is_textured is textured]
+        if placed:
+            draw_splats(tile, tile.resources.pipeline(describe(planned, tile.plan, textured)), target, placed)
     return target

@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ..device.interface import Pipeline, Target
 from ..packing import pack_materials
 from ..storages import get_storage
+from ..view import PlacedInstance
 from .blocks import std140
 from .tile import TileContext
 
@@ -29,17 +32,20 @@ SPLATS_BLOCK = (
 )
 
 
-def draw_splats(tile: TileContext, pipeline: Pipeline, target: Target) -> None:
+def draw_splats(tile: TileContext, pipeline: Pipeline, target: Target, placed_ones: Iterable[PlacedInstance]) -> None:
     """One draw call an instance."""
     resources, view, storage = tile.resources, tile.view, get_storage(tile.plan.storage)
     least_offset = view.least_offset(tile.plan.linear_depth)
     options = tile.settings.epsilon, view.near, tile.camera.is_orthographic, tile.depth_unit
-    for placed in view.placed:
+    for placed in placed_ones:
         instance = placed.instance
         stored = resources.surfels(instance.surfels, storage)
         made_here = {
             **{name: lambda t=texture: t for name, texture in stored.textures.items()},
             "materials": lambda i=instance: resources.data(pack_materials(i.materials)),
+            "surfel_uvs": lambda i=instance: resources.surfel_uvs(i.surfels),
+            "texture_atlas": lambda i=instance: resources.atlas(i.textures)[0],
+            "texture_table": lambda i=instance: resources.atlas(i.textures)[1],
         }
         textures = tile.textures(pipeline.description.samplers, made_here)
         orientation = np.sign(np.linalg.det(placed.normal_matrix))

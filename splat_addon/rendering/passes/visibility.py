@@ -35,5 +35,5 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
     """Fill the depth texture."""
     target = tile.target((), planned.writes[0])
     target.clear(depth=1.0)
-    draw_splats(tile, tile.resources.pipeline(describe(planned, tile.plan)), target)
+    draw_splats(tile, tile.resources.pipeline(describe(planned, tile.plan)), target, tile.view.placed)
     return target

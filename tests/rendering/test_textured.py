@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Texture-mapped splats show the texture: against the texture itself, and against the float64 reference."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.images import EXTENSIONS, Image
+from splat_addon.reference import render_exact, scenes
+from splat_addon.reference.filters import filter_weights, resample
+from splat_addon.reference.metrics import psnr
+from splat_addon.reference.textures import point_colors
+from splat_addon.rendering import Camera, Renderer, Scene, Settings, look_at
+from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.scene import SurfaceTexture
+from splat_addon.surfels import concatenate
+
+SIZE = 96
+#: What each pixel filter is the truth of, and how close to it the methods come that have it.
+FILTERS = {"quad": "box", "affine": "box"}
+
+
+def whole_plane(elevation):
+    """A plane of 4 x 4 surfels with one texture of 8 x 8 checks, coordinates -0.25 to 1.25, and a camera on it."""
+    scene, camera = scenes.textured_plane(side=4, elevation=elevation, size=(SIZE, SIZE))
+    (instance,) = scene.surfels
+    surfels = replace(instance.surfels, materials=np.zeros(16, int))
+    return replace(scene, surfels=(replace(instance, surfels=surfels),)), camera
+
+
+def seen_texture(texture, camera, pixel_filter, samples=16):
+    """(SIZE, SIZE, 3) the texture on the plane z = 0 by rays, and (SIZE, SIZE) bool where only its inside is seen."""
+    weights = filter_weights(pixel_filter, samples)
+    margin = (len(weights) // samples - 1) // 2
+    left, right, bottom, top = camera.window
+    steps = (np.arange(-margin * samples, (SIZE + margin) * samples) + 0.5) / (SIZE * samples)
+    x, y = np.meshgrid(left + steps * (right - left), bottom + steps * (top - bottom))
+    rays = np.stack([x, y, -np.ones_like(x)], axis=-1).reshape(-1, 3) @ camera.matrix_world[:3, :3].T
+    eye = camera.matrix_world[:3, 3]
+    points = (eye - rays * (eye[2] / rays[:, 2:]))[:, :2]
+    points[rays[:, 2] >= 0] = np.inf
+    inside = (np.abs(points) < 0.9).all(axis=1)
+    colors = np.zeros((len(points), 3))
+    colors[inside] = point_colors(texture, points[inside] * 0.75 + 0.5)
+    values = np.concatenate([colors, inside[:, None]], axis=1).reshape(*x.shape, 4)
+    pixels = resample(values, weights, samples)
+    return pixels[..., :3], pixels[..., 3] > 1 - 1e-9
+
+
+@pytest.mark.parametrize("elevation", [89, 35, 12])
+@pytest.mark.parametrize(("method", "samples", "least"), [("quad", 2, 37), ("mip", 1, 37)])
+def test_few_large_surfels_show_the_texture(method, samples, least, elevation, render):
+    scene, camera = whole_plane(elevation)
+    texture = scene.surfels[0].textures[0]
+    seen, inside = seen_texture(texture, camera, FILTERS.get(method, "gaussian"))
+    frame = render(scene, camera, Settings(method=method, supersampling=samples, shading="flat"))
+    assert inside.sum() > 500
+    assert psnr(frame.color[inside][None, :, :3], seen[inside][None]) > least
+
+
+def test_without_texture_coordinates_so_few_surfels_show_next_to_nothing(render):
+    scene, camera = whole_plane(35)
+    (instance,) = scene.surfels
+    seen, inside = seen_texture(instance.textures[0], camera, "box")
+    averaged = np.tile((*seen[inside].mean(axis=0), 1.0), (16, 1))
+    bare = replace(instance.surfels, colors=averaged, uvs=None, uv_along_x=None, uv_along_y=None)
+    frame = render(replace(scene, surfels=(replace(instance, surfels=bare),)), camera, Settings(shading="flat"))
+    assert psnr(frame.color[inside][None, :, :3], seen[inside][None]) < 12
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_method_shows_what_the_reference_shows(method, render):
+    """Methods whose silhouettes are not filtered, and the affine ones, are farther away."""
+    least = {"mip": 36, "quad": 40, "affine": 24, "ewa": 24}.get(method, 30)
+    scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
+    settings = Settings(method=method, supersampling=2 if method == "quad" else 1)
+    exact = render_exact(scene, camera, settings, samples=6, pixel_filter=FILTERS.get(method, "gaussian"))
+    frame = render(scene, camera, settings)
+    assert psnr(frame.color, exact.color) > least
+
+
+@pytest.mark.parametrize("extension", EXTENSIONS)
+@pytest.mark.parametrize("interpolation", ["Linear", "Closest"])
+def test_outside_of_the_image_the_extension_is_shown(extension, interpolation, render):
+    scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
+    (instance,) = scene.surfels
+    image = Image(scenes.grains(16), extension, interpolation)
+    textures = (SurfaceTexture(image), SurfaceTexture(image, (0.0, 1.0, 0.0)), None)
+    scene = replace(scene, surfels=(replace(instance, textures=textures),))
+    settings = Settings(shading="flat", supersampling=3)
+    exact = render_exact(scene, camera, settings, samples=6)
+    assert psnr(render(scene, camera, settings).color, exact.color) > 38
+
+
+def test_coordinates_that_differ_by_whole_images_show_the_same(render):
+    scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
+    (instance,) = scene.surfels
+    moved = replace(instance, surfels=replace(instance.surfels, uvs=instance.surfels.uvs + np.array((3, -2))))
+    first, second = (render(replace(scene, surfels=(i,)), camera, Settings()) for i in (instance, moved))
+    assert np.abs(first.color - second.color).max() < 1e-3
+
+
+def test_surfels_without_a_change_of_coordinates_show_their_own_colour(render):
+    """What joining with surfels that have none leaves."""
+    scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
+    (instance,) = scene.surfels
+    bare = replace(instance.surfels, uvs=None, uv_along_x=None, uv_along_y=None)
+    joined = concatenate([bare, bare, instance.surfels])
+    held = replace(joined, uv_along_x=0 * joined.uv_along_x, uv_along_y=0 * joined.uv_along_y)
+    own, shown = (render(replace(scene, surfels=(replace(instance, surfels=s),)), camera) for s in (bare, held))
+    assert np.abs(own.color - shown.color).max() < 1e-5
+
+
+PLACES = {
+    "orthographic": Camera.orthographic(look_at((0.3, -1.2, 1.0), (0, 0, 0)), 2.0, (SIZE, SIZE), 0.05, 10),
+    "splats through the eye": Camera.perspective(
+        look_at((0.1, -0.6, 0.05), (0, 0.5, 0)), math.radians(70), (SIZE, SIZE), 0.02, 10
+    ),
+}
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize(("method", "least"), [("quad", 40), ("mip", 30)])
+def test_cameras_of_every_kind(place, method, least, render):
+    scene, _ = scenes.textured_plane(side=6)
+    settings = Settings(method=method, supersampling=3 if method == "quad" else 1, shading="flat")
+    exact = render_exact(scene, PLACES[place], settings, samples=6, pixel_filter=FILTERS.get(method, "gaussian"))
+    assert psnr(render(scene, PLACES[place], settings).color, exact.color) > least
+
+
+@pytest.mark.parametrize("method", ["quad", "mip"])
+def test_a_mirrored_sheared_object_keeps_its_texture(method, render):
+    scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
+    matrix = np.array([[-0.8, 0.3, 0, 0], [0.1, 0.9, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    scene = replace(scene, surfels=(replace(scene.surfels[0], matrix_world=matrix),))
+    settings = Settings(method=method, supersampling=2 if method == "quad" else 1, shading="flat")
+    exact = render_exact(scene, camera, settings, samples=6, pixel_filter=FILTERS.get(method, "gaussian"))
+    assert psnr(render(scene, camera, settings).color, exact.color) > 35
+
+
+def test_a_scene_without_textures_has_nothing_of_them(on_device):
+    def textures_and_pipelines(device):
+        renderer = Renderer(device)
+        scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
+        (instance,) = scene.surfels
+        plain = replace(instance, textures=())
+        stats = renderer.render(Scene((plain,)), camera, Settings()).stats
+        names = [description.name for description in renderer.resources._pipelines]
+        return names, len(renderer.resources._atlases), len(renderer.resources._surfel_uvs), str(stats["plan"])
+
+    names, atlases, uvs, plan = on_device(textures_and_pipelines)
+    assert "textured_attributes" not in names and not atlases and not uvs and "textures" not in plan
+
+
+def test_an_atlas_leaves_with_the_last_frame_that_uses_it(on_device):
+    def counts(device):
+        renderer = Renderer(device)
+        scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
+        kept = []
+        for instances in ((*scene.surfels, *scene.surfels), ()):
+            others = scenes.sphere(count=100)[0].surfels
+            renderer.render(Scene((*instances, *others)), camera, Settings())
+            kept.append(len(renderer.resources._atlases))
+        return kept
+
+    assert on_device(counts) == [1, 0]
