@@ -30,7 +30,7 @@ def whole_plane(elevation):
     return replace(scene, surfels=(replace(instance, surfels=surfels),)), camera
 
 
-def seen_texture(texture, camera, pixel_filter, samples=16):
+def seen_texture(texture, camera, pixel_filter, samples=10):
     """(SIZE, SIZE, 3) the texture on the plane z = 0 by rays, and (SIZE, SIZE) bool where only its inside is seen."""
     weights = filter_weights(pixel_filter, samples)
     margin = (len(weights) // samples - 1) // 2
