@@ -4,13 +4,24 @@
 
 from __future__ import annotations
 
-from . import conversion_settings, engine, operators, points_panel, prediction, properties, render_panels, sidebar
+from . import (
+    conversion_settings,
+    engine,
+    mesh_sampling_settings,
+    operators,
+    points_panel,
+    prediction,
+    properties,
+    render_panels,
+    sidebar,
+)
 
 #: In the order of registration: what others refer to comes first.
 MODULES = (
     properties,
     engine,
     render_panels,
+    mesh_sampling_settings,
     conversion_settings,
     operators,
     prediction,

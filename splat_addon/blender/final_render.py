@@ -13,6 +13,7 @@ import numpy as np
 
 from ..rendering import Frame, RenderCancelled, Renderer, open_device
 from .camera_export import final_camera
+from .live_meshes import LiveMeshes
 from .properties import final_settings
 from .scene_export import SurfelStore, export_scene
 
@@ -34,7 +35,8 @@ RENDER_PASSES = (
     RenderPass("Normal", 3, "XYZ", "VECTOR", "normal", "use_pass_normal"),
 )
 
-#: Statistics of the last frame that was rendered, for scripts: see `Renderer`, plus `notes`.
+#: Statistics of the last frame that was rendered, for scripts: see `Renderer`, plus `notes`, and as `live_meshes` the
+#: counts of `LiveMeshes`.
 last_frame_stats: dict = {}
 
 
@@ -52,7 +54,7 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
     engine.update_stats("", "Reading surfels")
     resources = _acquire_resources()
     try:
-        scene, notes = _read(depsgraph, resources.store)
+        scene, notes = _read(depsgraph, resources)
         frame = resources.renderer.render(scene, camera, settings, progress=lambda *step: _progress(engine, *step))
     except RenderCancelled:
         _release_resources()
@@ -67,7 +69,7 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
     for sentence in notes.sentences():
         engine.report({"WARNING"}, sentence)
     last_frame_stats.clear()
-    last_frame_stats.update(frame.stats, notes=notes.sentences())
+    last_frame_stats.update(frame.stats, notes=notes.sentences(), live_meshes=dict(resources.live_meshes.counts))
     engine.update_stats("", f"{frame.stats['splats']:,} splats in {frame.stats['milliseconds']:.0f} ms")
     _hand_over(engine, depsgraph.view_layer, camera.size, passes, frame)
 
@@ -77,10 +79,11 @@ _COARSE = "16-bit storage moves surfels visibly where they lie far apart; choose
 _FLATTENED = "Surfel objects with a scale of 0 on some axis are left out; give every axis a scale"
 
 
-def _read(depsgraph, store: SurfelStore):
-    store.begin_frame()
-    scene, notes = export_scene(depsgraph, store)
-    store.forget_unused()
+def _read(depsgraph, resources: _Resources):
+    resources.store.begin_frame()
+    resources.live_meshes.begin_frame()
+    scene, notes = export_scene(depsgraph, resources.store, resources.live_meshes)
+    resources.store.forget_unused()
     return scene, notes
 
 
@@ -103,6 +106,7 @@ class _Resources:
 
     def __init__(self):
         self.store = SurfelStore()
+        self.live_meshes = LiveMeshes()
         self.renderer = Renderer(open_device("blender"))
 
 

@@ -28,6 +28,9 @@ SOLID = "surfels_solid"
 #: How a picture is rendered: `scene.surfel_splatting`.
 RENDER_SETTINGS = "surfel_splatting"
 
+#: What an object says about its rendering: `object.surfel_splatting`.
+OBJECT_SETTINGS = "surfel_splatting"
+
 #: Where the sidebar keeps what it will convert with: `scene.surfel_conversion`.
 CONVERSION_SETTINGS = "surfel_conversion"
 

@@ -28,13 +28,39 @@ class ExtractedMesh:
     notes: tuple[str, ...]
 
 
-def read_mesh(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> ExtractedMesh:
-    """Everything that sampling needs of an evaluated object's mesh; no triangles where it has no faces."""
+@dataclass(frozen=True, eq=False)
+class Topology:
+    """What stays while a mesh deforms. corner_vertices: (C,). faces: how many. corners: (T, 3) face corners of its
+    triangles, and face_of: (T,) the faces that these are of, None: each its own. They are those of the mesh as it was
+    first seen; of a face that has been bent since, Blender may make other ones."""
+
+    corner_vertices: np.ndarray
+    faces: int
+    corners: np.ndarray
+    face_of: np.ndarray | None
+
+
+def read_topology(mesh: bpy.types.Mesh, known: Topology | None = None) -> Topology:
+    """That of the mesh; `known` itself where it still is the same."""
+    vertices = _corner_vertices(mesh)
+    if known and known.faces == len(mesh.polygons) and np.array_equal(known.corner_vertices, vertices):
+        return known
+    return Topology(vertices, len(mesh.polygons), *_triangle_corners(mesh))
+
+
+def read_mesh(
+    evaluated: bpy.types.Object, mesh: bpy.types.Mesh, topology: Topology | None = None, images: dict | None = None
+) -> ExtractedMesh:
+    """Everything that sampling needs of an evaluated object's mesh; no triangles where it has no faces.
+
+    topology: the mesh's, if it is known. images: keeps the textures' pixels from one call to the next.
+    """
     slots = slot_materials(evaluated, mesh)
-    corners, faces = _triangle_corners(mesh)
-    vertices = _corner_vertices(mesh)[corners]
+    topology = topology or read_topology(mesh)
+    corners, faces = topology.corners, topology.face_of
+    vertices = topology.corner_vertices[corners]
     indices = _material_indices(mesh, faces, max(len(slots), 1))
-    layers = MeshLayers(mesh)
+    layers = MeshLayers(mesh) if images is None else MeshLayers(mesh, _images=images)
     surfaces, notes = _surfaces(slots, np.unique(indices), layers)
     triangles = TriangleMesh(
         positions=_positions(mesh),

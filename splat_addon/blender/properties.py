@@ -9,9 +9,10 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 from ..rendering.methods import METHODS
 from ..rendering.settings import MAX_SUPERSAMPLING, SHADINGS, Settings
 from .ids import RENDER_SETTINGS
+from .mesh_sampling_settings import MeshSamplingProperties
 
 
-class SurfelSplattingSettings(bpy.types.PropertyGroup):
+class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     method: EnumProperty(
         name="Method",
         description="How a splat is drawn and filtered",

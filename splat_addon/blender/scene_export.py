@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A depsgraph -> `rendering.Scene`: surfel objects and instances, lights, world; what cannot be drawn is counted."""
+"""A depsgraph -> `rendering.Scene`: surfels, meshes, instances, lights, world; what cannot be drawn is counted."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -13,7 +15,10 @@ import numpy as np
 from ..rendering import Instance, Scene
 from ..surfels import Surfels
 from .attributes import has_surfels, read_surfels
+from .live_meshes import LiveMeshes
+from .mesh_sampling_settings import mesh_fineness, renders_as_surfels
 from .shading_export import light_of, shading_material
+from .sources import owner_of
 from .world_export import WorldStore
 
 
@@ -72,9 +77,12 @@ class SurfelStore:
         self._kept = {key: kept for key, kept in self._kept.items() if key in self._current}
 
 
-def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore) -> tuple[Scene, Notes]:
-    """Everything in the depsgraph that the renderer knows how to draw, and notes on what it does not."""
-    notes = Notes()
+def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes: LiveMeshes) -> tuple[Scene, Notes]:
+    """Everything in the depsgraph that the renderer knows how to draw, and notes on what it does not.
+
+    live_meshes: samples the meshes that are no surfels, where the scene asks for that.
+    """
+    notes, fineness = Notes(), mesh_fineness(depsgraph.scene)
     surfels, lights = [], []
     for entry in depsgraph.object_instances:
         object_, matrix = entry.object, np.array(entry.matrix_world, np.float64)
@@ -84,35 +92,56 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore) -> tuple[Sc
             if object_.type == "LIGHT":
                 lights.append(light_of(object_.data, matrix, notes))
             elif object_.type == "MESH":
-                surfels.append(_instance(object_, matrix, store, notes))
+                if (what := _content(object_)) == "surfels":
+                    surfels.append(_instance(object_, matrix, store, notes))
+                elif fineness is not None and what == "faces" and renders_as_surfels(owner_of(entry)):
+                    live_meshes.add(object_, owner_of(entry), matrix, notes)
+                elif fineness is None and what != "nothing":
+                    notes.add(_NOT_SAMPLED)
             elif object_.type in _NOT_DRAWN:
                 notes.add(f"Objects of type {_NOT_DRAWN[object_.type]} are not drawn; convert them to meshes first")
         except ValueError as error:
             notes.add(f"{object_.name} is left out: {error}")
+    if fineness is not None:
+        surfels += live_meshes.instances(depsgraph, fineness, notes)
     world, environment = store.world.read(depsgraph.scene.world, notes)
-    return Scene(tuple(filter(None, surfels)), tuple(filter(None, lights)), world, environment), notes
+    return Scene(tuple(surfels), tuple(filter(None, lights)), world, environment), notes
 
 
 #: Blender's type -> its name, of what could be seen but is no mesh. Curves and texts come as meshes.
 _NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "volume", "GREASEPENCIL": "grease pencil"}
 
 
-def _instance(object_, matrix_world: np.ndarray, store: SurfelStore, notes: Notes) -> Instance | None:
-    """None for a mesh without surfels. Raises ValueError for broken attributes or an unusable matrix."""
-    # the evaluated mesh of an object in edit mode is empty
-    mesh = object_.to_mesh() if object_.data.is_editmode else object_.data
-    try:
+_NOT_SAMPLED = (
+    "Meshes without surfels are not drawn; convert them with Object > Convert to Surfels, or switch on "
+    "Render Meshes as Surfels in the render properties"
+)
+
+
+def _content(object_: bpy.types.Object) -> str:
+    """What a mesh object has: "surfels", "faces", "points" or "nothing"."""
+    with _attributes_of(object_) as mesh:
         if not len(mesh.vertices):
-            return None
-        if not has_surfels(mesh):
-            notes.add("Meshes without surfels are not drawn; convert them with Object > Convert to Surfels")
-            return None
+            return "nothing"
+        return "surfels" if has_surfels(mesh) else "faces" if mesh.polygons else "points"
+
+
+def _instance(object_, matrix_world: np.ndarray, store: SurfelStore, notes: Notes) -> Instance:
+    """Of an object that has surfels. Raises ValueError for broken attributes or an unusable matrix."""
+    with _attributes_of(object_) as mesh:
         surfels, skipped = store.get(mesh)
-    finally:
-        object_.to_mesh_clear()
     if skipped:
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
     return Instance(surfels, matrix_world, tuple(shading_material(s.material, notes) for s in object_.material_slots))
+
+
+@contextmanager
+def _attributes_of(object_: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
+    """An evaluated object's mesh, in edit mode too, where its data is empty."""
+    try:
+        yield object_.to_mesh() if object_.data.is_editmode else object_.data
+    finally:
+        object_.to_mesh_clear()
 
 
 def _same(a: Surfels, b: Surfels) -> bool:

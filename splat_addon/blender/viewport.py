@@ -9,6 +9,7 @@ import bpy
 
 from ..rendering import Renderer, open_device
 from .camera_export import viewport_camera
+from .live_meshes import LiveMeshes
 from .properties import viewport_settings
 from .scene_export import SurfelStore, export_scene
 
@@ -29,7 +30,11 @@ def update(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph
     changed = {u.id.name_full for u in depsgraph.updates if u.is_updated_geometry}
     changed |= {u.id.data.name_full for u in depsgraph.updates if u.is_updated_geometry and getattr(u.id, "data", None)}
     state.store.begin_frame(changed)
-    state.scene, notes = export_scene(depsgraph, state.store)
+    if any(depsgraph.id_type_updated(kind) for kind in ("MATERIAL", "NODETREE", "IMAGE")):
+        state.live_meshes.forget_images()
+        changed = None
+    state.live_meshes.begin_frame(changed)
+    state.scene, notes = export_scene(depsgraph, state.store, state.live_meshes)
     state.store.forget_unused()
     engine.update_stats("", "; ".join(notes.sentences()))
 
@@ -56,6 +61,7 @@ class _State:
 
     def __init__(self):
         self.store = SurfelStore()
+        self.live_meshes = LiveMeshes()
         self.renderer = Renderer(open_device("blender"))
         self.scene = None
 

@@ -11,7 +11,7 @@ become surfels in `points`.
 from ..images import Image
 from .adaptive import Tolerance
 from .cleaning import drop_unusable
-from .closest_approach import Outline, camera_spacing, outline
+from .closest_approach import NotSeenError, Outline, camera_spacing, outline
 from .fineness import grid_spacing, predict_count
 from .joining import have_same_values, joined, transformed
 from .mesh import TriangleMesh
@@ -31,6 +31,7 @@ __all__ = [
     "Channel",
     "Image",
     "NormalMap",
+    "NotSeenError",
     "Outline",
     "PointsReport",
     "Sampling",

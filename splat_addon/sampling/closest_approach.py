@@ -22,6 +22,10 @@ _OUTLINE_RESOLUTION = 96
 _OUTLINE_REACH = 1.5
 
 
+class NotSeenError(ValueError):
+    """Nothing of the surface lies in the camera's view."""
+
+
 @dataclass(frozen=True, eq=False)
 class Outline:
     """(n, 3) points, object units, such that each point of a surface lies within `reach` of one."""
@@ -55,7 +59,7 @@ def camera_spacing(
     object_to_view: (4, 4), the camera looks along -z. window: left, right, bottom, top on the plane at distance 1, or
     in view units for an orthographic camera. size: width, height in pixels. near: clip distance, view units.
     The longest stretch of the object decides: no surfel covers more than `pixels`, across any direction.
-    Raises ValueError with one sentence for an unusable `pixels` and for a surface that the camera does not see.
+    Raises ValueError with one sentence for an unusable `pixels`, NotSeenError for what the camera does not see.
     """
     if not (np.isfinite(pixels) and pixels > 0):
         raise ValueError(f"The pixels a surfel covers must be a finite number above 0, not {pixels}.")
@@ -70,7 +74,7 @@ def camera_spacing(
         seen &= _beside(across, depth, low, is_orthographic) > -reach
         seen &= _beside(across, depth, high, is_orthographic) < reach
     if not seen.any():
-        raise ValueError("The camera does not see the object; turn it there, or choose another density.")
+        raise NotSeenError("The camera does not see the object; turn it there, or choose another density.")
     pixel = min((right - left) / size[0], (top - bottom) / size[1])
     distance = 1.0 if is_orthographic else max(float(depth[seen].min()) - reach, near)
     return pixels * pixel * distance / stretch

@@ -82,6 +82,21 @@ def add_square(add_mesh):
 
 
 @pytest.fixture
+def add_nodes():
+    """add_nodes(object, build): a Geometry Nodes modifier that build(tree, input socket, output socket) fills."""
+
+    def add(owner: bpy.types.Object, build) -> None:
+        tree = bpy.data.node_groups.new("nodes", "GeometryNodeTree")
+        for direction in ("INPUT", "OUTPUT"):
+            tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+        start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+        build(tree, start.outputs[0], end.inputs[0])
+        owner.modifiers.new("nodes", "NODES").node_group = tree
+
+    return add
+
+
+@pytest.fixture
 def convert():
     """convert(**settings) -> the surfel objects that the operator made of what is selected."""
 

@@ -14,6 +14,7 @@ import bpy
 from ..conversion_batch import ConversionBatch
 from ..conversion_settings import ConversionProperties, choices, draw_properties
 from ..ids import SURFELS_FROM_MESH
+from ..mesh_sampling_settings import leave_to_surfels
 from ..sources import has_surfaces
 
 _TIMER_SECONDS = 0.05
@@ -116,9 +117,11 @@ meshes, curves, texts, metaballs, and the instances of Geometry Nodes and collec
             self.report({"INFO"}, f"{conversion.name}: {conversion.summary()}")
             for note in conversion.notes:
                 self.report({"WARNING"}, f"{conversion.name}: {note}")
-            for source in conversion.sources if self.source == "HIDE" else ():
-                source.hide_set(True)
-                source.hide_render = True
+            for source in conversion.sources:
+                leave_to_surfels(source)
+                if self.source == "HIDE":
+                    source.hide_set(True)
+                    source.hide_render = True
         # An error fails a script's call; where others were converted, that would hide them from it.
         for name, sentence in batch.refused:
             self.report({"WARNING" if made else "ERROR"}, f"{name}: {sentence}")

@@ -162,21 +162,6 @@ def switch_to_cycles(scene):
 
 
 @pytest.fixture
-def add_nodes():
-    """add_nodes(object, build): a Geometry Nodes modifier that build(tree, input socket, output socket) fills."""
-
-    def add(owner: bpy.types.Object, build) -> None:
-        tree = bpy.data.node_groups.new("nodes", "GeometryNodeTree")
-        for direction in ("INPUT", "OUTPUT"):
-            tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
-        start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
-        build(tree, start.outputs[0], end.inputs[0])
-        owner.modifiers.new("nodes", "NODES").node_group = tree
-
-    return add
-
-
-@pytest.fixture
 def assert_same_picture():
     """assert_same_picture(a, b, ties): equal within 1e-4, save a counted handful of pixels on a splat's edge."""
 

@@ -21,21 +21,6 @@ def select():
 
 
 @pytest.fixture
-def add_nodes():
-    """add_nodes(object, build): a Geometry Nodes modifier; build(tree, start, end) links the nodes between."""
-
-    def add(object_: bpy.types.Object, build) -> None:
-        tree = bpy.data.node_groups.new("nodes", "GeometryNodeTree")
-        for in_out in ("INPUT", "OUTPUT"):
-            tree.interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
-        start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
-        build(tree, start.outputs[0], end.inputs[0])
-        object_.modifiers.new("nodes", "NODES").node_group = tree
-
-    return add
-
-
-@pytest.fixture
 def made_real():
     """made_real() -> trimesh of everything in the scene, in the world, as Blender's own operators make it real."""
 

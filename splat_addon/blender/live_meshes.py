@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes that are rendered without a conversion: sampled when they are first seen, then followed from frame to frame.
+
+A mesh is read anew in every frame of a final render, which tells of no change, and in the viewport when it changed.
+Unchanged values give the same `Surfels`, by which the renderer knows what lies on the device already.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+
+from ..rendering import Instance, Material
+from ..rendering.packing import MAX_SPLATS
+from ..sampling import (
+    STRETCHED_SHARE,
+    NotSeenError,
+    Outline,
+    TrackedSurfels,
+    TriangleMesh,
+    grid_spacing,
+    outline,
+    predict_count,
+)
+from ..surfels import Surfels
+from .camera_density import without_camera
+from .mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
+from .shading_export import shading_material
+from .sources import mesh_key, readable_mesh
+
+#: A sampling is kept until it is coarser or finer than asked for by more than this.
+_TOO_COARSE, _TOO_FINE = 1.26, 2.5
+
+#: For an object that the camera does not see, but its light or its shadow may.
+_UNSEEN_RESOLUTION = 64
+
+
+@dataclass(eq=False)
+class _LiveMesh:
+    """One evaluated mesh, wherever it stands. key: of `mesh_key`, of the evaluation that was read."""
+
+    key: tuple = ()
+    topology: Topology | None = None
+    content: ExtractedMesh | None = None
+    materials: tuple[Material, ...] = ()
+    matrices: list[np.ndarray] = field(default_factory=list)
+    owner: str = ""
+    tracked: TrackedSurfels | None = None
+    fineness: dict[str, float] = field(default_factory=dict)
+    spacing: float = 0.0
+    surface: tuple[TriangleMesh, Outline] | None = None
+
+    def spacing_for(self, fineness: dict[str, float], depsgraph: bpy.types.Depsgraph) -> float:
+        """In the mesh's own units: as fine as its neediest place asks, or as it is where that is near enough."""
+        if fineness != self.fineness:
+            self.tracked = None
+        ((kind, value),) = fineness.items()
+        return _SPACINGS[kind](self, value, depsgraph)
+
+    def kept_if_near(self, spacing: float) -> float:
+        is_near = self.tracked and spacing / _TOO_FINE <= self.spacing <= spacing * _TOO_COARSE
+        return self.spacing if is_near else spacing
+
+
+class LiveMeshes:
+    """The meshes of one render or one 3D view.
+
+    counts: what the last frame did: "meshes", and their "surfels"; of the meshes, how many were "sampled", how many
+    "followed" an earlier sampling, and how many of the former because they had "stretched" too far.
+    """
+
+    def __init__(self):
+        self._kept: dict[tuple, _LiveMesh] = {}
+        self._names: dict[tuple, tuple] = {}
+        self._frame: dict[tuple, _LiveMesh] = {}
+        self._changed: set[str] | None = None
+        self._images: dict = {}
+        self.counts: Counter = Counter()
+
+    def begin_frame(self, changed: set[str] | None = None) -> None:
+        """Meshes named in `changed` (None: all), and those that were evaluated anew, are read when they are added."""
+        self._changed, self._frame, self._names, self.counts = changed, {}, {}, Counter()
+
+    def forget_images(self) -> None:
+        """Read the pixels of textures again: an image or a material was edited."""
+        self._images.clear()
+
+    def add(self, evaluated: bpy.types.Object, owner: bpy.types.Object, matrix_world: np.ndarray, notes) -> None:
+        """An entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry lives."""
+        key = mesh_key(evaluated)
+        if key not in self._frame:
+            live = self._kept.setdefault(self._lasting_key(evaluated), _LiveMesh())
+            live.matrices, live.owner = [], owner.name
+            if live.key != key or self._changed is None or evaluated.data.name_full in self._changed:
+                self._read(live, evaluated, notes)
+                live.key = key
+            self._frame[key] = live
+        self._frame[key].matrices.append(matrix_world)
+
+    def instances(self, depsgraph: bpy.types.Depsgraph, fineness: dict[str, float], notes) -> list[Instance]:
+        """All that were added to this frame, sampled; the places of one mesh share its surfels."""
+        made = []
+        for live in self._frame.values():
+            for sentence in live.content.notes:
+                notes.add(sentence)
+            try:
+                surfels = self._sampled(live, depsgraph, fineness)
+            except ValueError as error:
+                notes.add(f"{live.owner} is left out: {error}")
+                continue
+            made += [Instance(surfels, matrix, live.materials) for matrix in live.matrices]
+            self.counts["meshes"] += 1
+            self.counts["surfels"] += len(surfels)
+        self._kept = {name: live for name, live in self._kept.items() if name in self._names}
+        return made
+
+    def _lasting_key(self, evaluated: bpy.types.Object) -> tuple:
+        """By which the same mesh is known in the next frame, when it has been evaluated anew.
+
+        Geometry Nodes may put several meshes of one name into an object; they are told apart by their order.
+        """
+        name = evaluated.original.session_uid, evaluated.data.name_full
+        number = 0
+        while (*name, number) in self._names:
+            number += 1
+        self._names[(*name, number)] = name
+        return (*name, number)
+
+    def _read(self, live: _LiveMesh, evaluated: bpy.types.Object, notes) -> None:
+        with readable_mesh(evaluated) as mesh:
+            live.topology = read_topology(mesh, live.topology)
+            live.content = read_mesh(evaluated, mesh, live.topology, self._images)
+            live.materials = tuple(shading_material(m, notes) for m in slot_materials(evaluated, mesh))
+
+    def _sampled(self, live: _LiveMesh, depsgraph: bpy.types.Depsgraph, fineness: dict[str, float]) -> Surfels:
+        """Raises ValueError with a sentence where nothing can be sampled."""
+        mesh, spacing = live.content.triangles, live.spacing_for(fineness, depsgraph)
+        if live.tracked is not None and spacing == live.spacing and live.tracked.has_triangles_of(mesh):
+            surfels, stretched = live.tracked.at(mesh)
+            if stretched <= STRETCHED_SHARE:
+                self.counts["followed"] += 1
+                return surfels
+            self.counts["stretched"] += 1
+            live.tracked = None
+            spacing = live.spacing_for(fineness, depsgraph)
+        predicted = predict_count(mesh, spacing=spacing)
+        if predicted > MAX_SPLATS:
+            raise ValueError(f"It would be {predicted:,} surfels and the limit is {MAX_SPLATS:,}; sample it coarser.")
+        live.tracked, live.fineness, live.spacing = TrackedSurfels(mesh, spacing=spacing), fineness, spacing
+        self.counts["sampled"] += 1
+        return live.tracked.at(mesh)[0]
+
+
+def _by_resolution(live: _LiveMesh, resolution: float, depsgraph) -> float:
+    # what is bent or grows keeps its surfels, unless they are stretched too far
+    return live.spacing if live.tracked else grid_spacing(live.content.triangles, resolution=resolution)
+
+
+def _by_spacing(live: _LiveMesh, spacing: float, depsgraph) -> float:
+    stretch = max(float(np.linalg.norm(matrix[:3, :3], 2)) for matrix in live.matrices)
+    return live.kept_if_near(spacing / stretch if stretch > 0 else math.inf)
+
+
+def _by_camera(live: _LiveMesh, pixels: float, depsgraph) -> float:
+    mesh, spacings = live.content.triangles, []
+    if live.surface is None or live.surface[0] is not mesh:
+        live.surface = mesh, outline(mesh)
+    for matrix in live.matrices:
+        try:
+            spacings.append(without_camera({"pixels": pixels}, lambda: live.surface[1], matrix, depsgraph)["spacing"])
+        except NotSeenError:
+            continue
+    if spacings:
+        return live.kept_if_near(min(spacings))
+    return live.spacing if live.tracked else grid_spacing(mesh, resolution=_UNSEEN_RESOLUTION)
+
+
+#: kind of fineness -> function of a mesh, the number and the depsgraph
+_SPACINGS = {"resolution": _by_resolution, "spacing": _by_spacing, "pixels": _by_camera}

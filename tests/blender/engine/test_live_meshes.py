@@ -1,0 +1,326 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Render Meshes as Surfels: what was not converted looks as if it had been, and keeps its surfels while it deforms."""
+
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender import final_render
+from splat_addon.rendering import storages
+
+
+@pytest.fixture
+def live(scene, add_camera):
+    """The scene with the option on, at a resolution of 32, seen from above."""
+    add_camera(location=(0, 0, 10))
+    scene.surfel_splatting.render_meshes = True
+    scene.surfel_splatting.mesh_resolution = 32
+    return scene.surfel_splatting
+
+
+@pytest.fixture
+def sampled(monkeypatch):
+    """The surfels that were packed for the device, in order."""
+    packed, pack = [], storages.pack_surfels
+    monkeypatch.setattr(storages, "pack_surfels", lambda surfels: packed.append(surfels) or pack(surfels))
+    return packed
+
+
+@pytest.fixture
+def render_frames(scene):
+    """render_frames(last): an animation from frame 1 to there; returns the counts of its last frame."""
+
+    def render(last: int = 3) -> dict:
+        scene.frame_start, scene.frame_end = 1, last
+        scene.render.filepath = str(Path(scene.render.filepath).parent / "frame_####.exr")
+        bpy.ops.render.render(animation=True)
+        return final_render.last_frame_stats["live_meshes"]
+
+    return render
+
+
+def world(surfels):
+    return surfels.origin + surfels.positions.astype(np.float64)
+
+
+def counts():
+    return final_render.last_frame_stats["live_meshes"]
+
+
+def add_text():
+    bpy.ops.object.text_add(location=(-1, 0, 0))
+    bpy.context.object.data.extrude = 0.1
+
+
+def add_curve():
+    bpy.ops.curve.primitive_bezier_circle_add(rotation=(0.4, 0.3, 0))
+    bpy.context.object.data.bevel_depth = 0.3
+
+
+def add_metaballs():
+    for x in (0, 1.2):
+        bpy.ops.object.metaball_add(location=(x, 0, 0))
+        # the conversion samples what the viewport shows
+        bpy.context.object.data.render_resolution = bpy.context.object.data.resolution
+    bpy.data.objects["Mball"].select_set(True)
+    bpy.data.objects["Mball.001"].select_set(False)
+    bpy.context.view_layer.objects.active = bpy.data.objects["Mball"]
+
+
+def add_coloured_mirrored_mesh():
+    bpy.ops.mesh.primitive_monkey_add(rotation=(0.3, 0.2, 0.1))
+    monkey = bpy.context.object
+    monkey.scale = (-1, 1, 1.5)
+    attribute = monkey.data.color_attributes.new("paint", "FLOAT_COLOR", "POINT")
+    colors = np.random.default_rng(1).uniform(size=(len(monkey.data.vertices), 4))
+    attribute.data.foreach_set("color", colors.astype(np.float32).ravel())
+
+
+KINDS = {f.__name__: f for f in (add_text, add_curve, add_metaballs, add_coloured_mirrored_mesh)}
+
+
+@pytest.mark.parametrize("add", KINDS.values(), ids=KINDS)
+def test_it_looks_as_if_it_had_been_converted(add, live, picture, assert_same_picture):
+    add()
+    unconverted = picture()
+    assert unconverted[..., 3].any() and counts()["meshes"] == 1
+    live.render_meshes = False
+    bpy.ops.object.surfels_from_mesh(resolution=32, source="HIDE")
+    assert_same_picture(unconverted, picture())
+
+
+def test_it_is_off_by_default_and_says_where_it_is(scene, add_camera, picture, said):
+    assert not scene.surfel_splatting.render_meshes
+    add_camera()
+    add_curve()
+    picture()
+    assert "switch on Render Meshes as Surfels" in said()
+
+
+def test_what_has_been_converted_is_not_drawn_twice(live, picture):
+    add_coloured_mirrored_mesh()
+    bpy.ops.object.surfels_from_mesh(resolution=24, source="KEEP")
+    both = picture()
+    assert counts() == {}
+    live.render_meshes = False
+    assert np.array_equal(both, picture())
+
+
+def test_an_object_can_be_left_out(live, picture):
+    add_coloured_mirrored_mesh()
+    bpy.context.object.surfel_splatting.render_as_surfels = False
+    assert not picture().any()
+
+
+def test_instances_share_one_sampling(live, scene, sampled, picture, add_mesh, add_nodes):
+    """Boxes on two points, and a linked duplicate of one of those boxes beside: two meshes, three places."""
+    points = add_mesh("points", [(-2, 0, 0), (2, 0, 0)], [])
+
+    def build(tree, start, end):
+        cube, place = tree.nodes.new("GeometryNodeMeshCube"), tree.nodes.new("GeometryNodeInstanceOnPoints")
+        tree.links.new(cube.outputs["Mesh"], place.inputs["Instance"])
+        tree.links.new(start, place.inputs["Points"])
+        tree.links.new(place.outputs["Instances"], end)
+
+    add_nodes(points, build)
+    alpha = picture()[..., 3]
+    assert alpha[:, :16].any() and alpha[:, 16:].any()
+    assert counts()["meshes"] == 1 and len(sampled) == 1
+
+
+def test_a_collection_instance_shows_where_it_stands(live, scene, picture):
+    add_curve()
+    hidden = bpy.data.collections.new("hidden")
+    hidden.objects.link(bpy.context.object)
+    scene.collection.objects.unlink(bpy.context.object)
+    assert not picture().any()
+    instancer = bpy.data.objects.new("instancer", None)
+    instancer.instance_type, instancer.instance_collection = "COLLECTION", hidden
+    scene.collection.objects.link(instancer)
+    instancer.location.x = 1.5
+    alpha = picture()[..., 3]
+    assert alpha[:, 20:].sum() > 2 * alpha[:, :16].sum()
+
+
+def add_bar():
+    """A bar along x, 4 long, smooth, of many quads."""
+    bpy.ops.mesh.primitive_cylinder_add(vertices=24, radius=0.4, depth=4, rotation=(0, np.pi / 2, 0))
+    bpy.ops.object.transform_apply()
+    bar = bpy.context.object
+    bar.modifiers.new("fine", "SUBSURF").levels = 2
+    bpy.ops.object.modifier_apply(modifier="fine")
+    return bar
+
+
+def by_armature(bar):
+    bpy.ops.object.armature_add(enter_editmode=True, rotation=(0, 0, 0))
+    armature = bpy.context.object
+    bones = armature.data.edit_bones
+    bones[0].head, bones[0].tail = (-2, 0, 0), (0, 0, 0)
+    second = bones.new("second")
+    second.head, second.tail, second.parent = (0, 0, 0), (2, 0, 0), bones[0]
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bar.select_set(True)
+    bpy.ops.object.parent_set(type="ARMATURE_AUTO")
+    bone = armature.pose.bones["second"]
+    bone.rotation_mode = "XYZ"
+    for frame, angle in ((1, 0), (3, 0.8)):
+        bone.rotation_euler.x = angle
+        bone.keyframe_insert("rotation_euler", frame=frame)
+
+
+def by_shape_key(bar):
+    bar.shape_key_add(name="Basis")
+    key = bar.shape_key_add(name="bent")
+    for point in key.data:
+        point.co.z += 0.3 * point.co.x**2
+    for frame, value in ((1, 0), (3, 1)):
+        key.value = value
+        key.keyframe_insert("value", frame=frame)
+
+
+def by_lattice(bar):
+    bpy.ops.object.add(type="LATTICE")
+    lattice = bpy.context.object
+    lattice.scale = (5, 2, 2)
+    lattice.shape_key_add(name="Basis")
+    key = lattice.shape_key_add(name="up")
+    for point in key.data:
+        point.co.z += point.co.x
+    for frame, value in ((1, 0), (3, 1)):
+        key.value = value
+        key.keyframe_insert("value", frame=frame)
+    modifier = bar.modifiers.new("lattice", "LATTICE")
+    modifier.object = lattice
+
+
+DEFORMERS = {f.__name__: f for f in (by_armature, by_shape_key, by_lattice)}
+
+
+@pytest.mark.parametrize("deform", DEFORMERS.values(), ids=DEFORMERS)
+def test_a_deforming_mesh_keeps_its_surfels(deform, live, scene, sampled, render_frames):
+    """Each lies, on every frame, in its own triangle of the mesh as Blender deforms it."""
+    bar = add_bar()
+    deform(bar)
+    said = render_frames()
+    assert said.get("followed") == 1, said
+    assert len(sampled) == 3 and len({len(s) for s in sampled}) == 1
+    meshes = []
+    for frame in (1, 2, 3):
+        scene.frame_set(frame)
+        meshes.append(triangles_of(bar))
+    places = [world(s) for s in sampled]
+    assert np.abs(places[2] - places[0]).max() > 0.3
+    triangle, weights = nearest_triangle(meshes[0], places[0])
+    for mesh, place, surfels in zip(meshes, places, sampled, strict=True):
+        own = np.einsum("nk,nkj->nj", weights, mesh[triangle])
+        assert np.abs(own - place).max() < 2e-4
+        a, b, c = np.moveaxis(mesh[triangle], 1, 0)
+        normal = np.cross(b - a, c - a)
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+        assert np.quantile(np.einsum("nj,nj->n", normal, surfels.geometric_normals()), 0.02) > 0.999
+
+
+def triangles_of(object_) -> np.ndarray:
+    """(T, 3, 3) corners of the evaluated mesh's triangles, which by construction are cut the same on every frame."""
+    evaluated = object_.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = evaluated.to_mesh()
+    corners = [[mesh.vertices[v].co for v in (f.vertices[0], *pair)] for f in mesh.polygons for pair in _fans(f)]
+    evaluated.to_mesh_clear()
+    return np.array(corners, np.float64)
+
+
+def _fans(face):
+    return zip(list(face.vertices)[1:-1], list(face.vertices)[2:], strict=True)
+
+
+def nearest_triangle(triangles, points):
+    """(N,) index of the triangle that each point lies in, and its (N, 3) barycentric weights."""
+    import trimesh
+
+    mesh = trimesh.Trimesh(triangles.reshape(-1, 3), np.arange(len(triangles) * 3).reshape(-1, 3), process=False)
+    _, _, index = trimesh.proximity.closest_point(mesh, points)
+    return index, trimesh.triangles.points_to_barycentric(triangles[index], points)
+
+
+def test_what_stands_still_is_uploaded_once(live, sampled, render_frames):
+    bar = add_bar()
+    bar.location.x = 0
+    bar.keyframe_insert("location", frame=1)
+    bar.location.x = 1
+    bar.keyframe_insert("location", frame=3)
+    assert render_frames() == {"meshes": 1, "surfels": len(sampled[0]), "followed": 1}
+    assert len(sampled) == 1
+
+
+def test_a_colour_that_changes_leaves_the_surfels_in_their_places(live, sampled, render_frames):
+    bar = add_bar()
+    by_shape_key(bar)
+    material = bpy.data.materials.new("paint")
+    material.use_nodes = True
+    color = material.node_tree.nodes["Principled BSDF"].inputs["Base Color"]
+    for frame, value in ((1, (1, 0, 0, 1)), (3, (0, 1, 0, 1))):
+        color.default_value = value
+        color.keyframe_insert("default_value", frame=frame)
+    bar.data.materials.append(material)
+    assert render_frames()["followed"] == 1
+    assert np.allclose(sampled[0].colors, (1, 0, 0, 1)) and np.allclose(sampled[2].colors, (0, 1, 0, 1))
+    assert np.allclose((world(sampled[0]) + world(sampled[2])) / 2, world(sampled[1]), atol=1e-5)
+
+
+def test_too_much_stretch_samples_anew_and_says_so(live, sampled, render_frames):
+    bar = add_bar()
+    bar.shape_key_add(name="Basis")
+    key = bar.shape_key_add(name="long")
+    for point in key.data:
+        point.co.x *= 4
+    for frame, value in ((1, 0), (2, 1)):
+        key.value = value
+        key.keyframe_insert("value", frame=frame)
+    assert render_frames(2) == {"meshes": 1, "surfels": len(sampled[1]), "sampled": 1, "stretched": 1}
+
+
+def test_another_topology_is_sampled_anew(live, sampled, render_frames):
+    bar = add_bar()
+    build = bar.modifiers.new("build", "BUILD")
+    build.frame_start, build.frame_duration = 0, 6
+    assert render_frames(2)["sampled"] == 1
+    assert len(sampled) == 2 and len(sampled[0]) != len(sampled[1])
+
+
+def test_spacing_is_in_world_units(live, sampled, picture):
+    bpy.ops.mesh.primitive_cube_add(size=1)
+    bpy.context.object.scale = (2, 2, 2)
+    live.mesh_density, live.mesh_spacing = "SPACING", 0.25
+    picture()
+    assert len(sampled[0]) == 6 * 8**2
+
+
+def test_for_the_camera_a_surfel_covers_as_many_pixels_as_asked(live, scene, sampled, picture):
+    """The square is 10 from a camera whose picture is 1 wide at distance 1; another is behind it."""
+    scene.camera.data.sensor_width = scene.camera.data.lens = 36
+    bpy.ops.mesh.primitive_plane_add(size=2)
+    live.mesh_density, live.mesh_pixels = "CAMERA", 0.5
+    picture()
+    assert sampled[0].scales[0, 0] / 1.25 == pytest.approx(0.5 * 10 / 32, rel=0.02)
+    bpy.context.object.location.z = 20
+    picture()
+    assert counts()["meshes"] == 1
+
+
+def test_too_many_surfels_are_refused_with_a_sentence(live, picture, said):
+    bpy.ops.mesh.primitive_plane_add(size=2)
+    live.mesh_resolution = 4000
+    assert not picture().any()
+    assert "Plane is left out: It would be 16,000,000 surfels and the limit is" in said()
+
+
+def test_the_same_file_gives_the_same_pictures_in_any_run(live, read_picture, render_frames, scene):
+    by_shape_key(add_bar())
+    shots = []
+    for _ in range(2):
+        render_frames(2)
+        shots.append(read_picture(Path(scene.render.filepath).parent / "frame_0002.exr"))
+    assert np.array_equal(*shots)
