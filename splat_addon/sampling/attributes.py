@@ -2,7 +2,8 @@
 """Gives the samples of one layered depth image their position, ellipse, normal, material and what it is made of.
 
 Everything that varies is linear along a span. So the barycentric weights are worked out at a span's two ends, in
-float64 and clamped into the triangle, and a sample costs one multiply and add a component, in float32.
+float64 and clamped into the triangle, and a sample costs one multiply and add a component, in float32; its height in
+float64, rounded once.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import numpy as np
 
 from .ellipses import ellipse_rotations, ellipse_scales
 from .grid import Grid
-from .mesh import TriangleMesh, doubled_areas, gather_corners
+from .mesh import TriangleMesh, corner_indices, corners_at, crossed, doubled_areas
 from .palette import Palette, Samples
 from .scan_conversion import Spans, expand
 
@@ -52,27 +53,28 @@ class SampleFiller:
         """Writes the samples of these spans of the image along `axis` to `rows` of the arrays."""
         out = {name: array[rows] for name, array in self._arrays.items()}
         triangles, of_span = _distinct(spans.triangles)
-        corners, normals = self._sound_corners(triangles, axis)
-        u, v, depth = (corners[(axis + k) % 3] for k in (1, 2, 0))
-        weights = _SpanWeights(u, v, of_span, spans)
+        first, edges, normals = self._sound_triangles(triangles, axis)
+        weights = _SpanWeights(first, edges, axis, of_span, spans)
         span, step = expand(spans.counts)
         line = _Lines(span, step)
         triangle = of_span.take(span)
 
-        out["positions"][:, (axis + 1) % 3] = self._centres.take(spans.columns.take(span) + step)
+        column = spans.columns.take(span)
+        column += step
+        out["positions"][:, (axis + 1) % 3] = self._centres.take(column)
         out["positions"][:, (axis + 2) % 3] = self._centres.take(spans.rows).take(span)
-        heights = (depth + 0.5) * self._grid.spacing
-        out["positions"][:, axis] = line.samples(*weights.interpolate(heights))
+        spacing = self._grid.spacing
+        ends = weights.interpolate((first[axis] + 0.5) * spacing, *(edges[axis] * spacing))
+        out["positions"][:, axis] = line.samples(*ends)
 
+        normals /= np.sqrt(sum(component * component for component in normals))
         _spread(ellipse_rotations(normals, axis), triangle, out["rotations"])
         _spread(ellipse_scales(normals[axis], self._half_size), triangle, out["scales"])
-
-        face_normals = np.ascontiguousarray(normals.T, np.float32)
         if self._mesh.corner_normals is None:
-            _spread(face_normals, triangle, out["normals"])
+            _spread(np.ascontiguousarray(normals.T, np.float32), triangle, out["normals"])
         else:
-            vectors = self._samples(self._mesh.corner_normals[triangles], weights, line)
-            _write_unit(vectors, face_normals, triangle, out["normals"])
+            vectors = self._samples(self._mesh.corner_normals, triangles, weights, line)
+            _write_unit(vectors, normals, triangle, out["normals"])
         self._paint(out, triangles, triangle, weights, line)
 
     @_quietly
@@ -81,75 +83,100 @@ class SampleFiller:
         if mesh.materials is None:
             out["materials"][...] = 0
         else:
-            out["materials"][...] = mesh.materials[triangles].take(triangle)
+            out["materials"][...] = mesh.materials.take(triangles).take(triangle)
         colors = uvs = uv_steps = tangents = None
         if palette.needs_colors and mesh.corner_colors is not None:
-            colors = self._samples(mesh.corner_colors[triangles], weights, line)
+            colors = self._samples(mesh.corner_colors, triangles, weights, line)
         if palette.needs_uvs and mesh.corner_uvs is not None:
-            corner_uvs = mesh.corner_uvs[triangles]
-            uvs = self._samples(corner_uvs, weights, line)
-            uv_steps = weights.gradients(np.moveaxis(corner_uvs, 0, 2)).take(triangle, axis=2)
+            uvs = self._samples(mesh.corner_uvs, triangles, weights, line)
+            corner_uvs = _at_corners(mesh.corner_uvs, triangles)
+            uv_steps = weights.gradients(corner_uvs.swapaxes(0, 1)).take(triangle, axis=2)
         if self._tangents is not None:
-            tangents = self._samples(self._tangents[triangles], weights, line)
+            tangents = self._samples(self._tangents, triangles, weights, line)
         palette.fill(out, Samples(out["materials"], colors, uvs, uv_steps, tangents))
 
     @_quietly
-    def _samples(self, corner_values: np.ndarray, weights: _SpanWeights, line: _Lines) -> np.ndarray:
-        """(c, n) float32 interpolated values of (t, 3, c) ones at the corners."""
-        values = np.ascontiguousarray(np.moveaxis(corner_values, 0, 2), np.float32)
-        result = np.empty((values.shape[1], line.count), np.float32)
-        for component, row in enumerate(result):
-            row[...] = line.samples(*weights.interpolate(values[:, component]))
+    def _samples(
+        self, corner_values: np.ndarray, triangles: np.ndarray, weights: _SpanWeights, line: _Lines
+    ) -> np.ndarray:
+        """(c, n) float32 interpolated values of (T, 3, c) ones at the corners."""
+        components = _at_corners(corner_values, triangles)
+        result = np.empty((len(components), line.count), np.float32)
+        for (a, b, c), row in zip(components, result, strict=True):
+            line.samples(*weights.interpolate(a, b - a, c - a), out=row)
         return result
 
-    def _sound_corners(self, triangles: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-        """(3, 3, t) corners on the grid and (3, t) unit normals: the real ones, or snapped ones where those are flat.
+    def _sound_triangles(self, triangles: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(3, t) first corners on the grid, (3, 2, t) edges from there to the others and (3, t) normals of any length.
 
         A triangle that projects to (nearly) nothing can open up once its corners are snapped; its own barycentrics
-        would be infinite (facts/sampling.md section 1, the trap).
+        would be infinite (facts/sampling.md section 1, the trap). There all is of the snapped corners.
         """
-        corners = gather_corners(self._coordinates, self._mesh.triangles[triangles])
-        normals = doubled_areas(corners)
-        u, v = (self._grid.snapped(corners[(axis + k) % 3]) for k in (1, 2))
-        snapped_area = (u[1] - u[0]) * (v[2] - v[0]) - (v[1] - v[0]) * (u[2] - u[0])
-        least = snapped_area * (_LEAST_AREA_RATIO / self._grid.subcells**2)
-        poor = np.flatnonzero(~(normals[axis] * np.sign(snapped_area) > np.abs(least)))
+        corners = corners_at(self._coordinates, corner_indices(self._mesh.triangles.take(triangles, axis=0)))
+        edges = corners[:, 1:] - corners[:, :1]
+        normals = crossed(edges)
+        poor = self._poor(corners, edges, normals[axis], axis)
         if len(poor):
             corners[:, :, poor] = self._grid.snapped(corners[:, :, poor]) / self._grid.subcells
-            normals[:, poor] = doubled_areas(corners[:, :, poor])
-        x, y, z = normals
-        normals /= np.sqrt(x * x + y * y + z * z)
-        return corners, normals
+            edges[:, :, poor] = corners[:, 1:, poor] - corners[:, :1, poor]
+            normals[:, poor] = crossed(edges[:, :, poor])
+        return corners[:, 0], edges, normals
+
+    def _poor(self, corners: np.ndarray, edges: np.ndarray, areas: np.ndarray, axis: int) -> np.ndarray:
+        """The triangles whose (t,) area in the image is lost beside what snapping does to it, or turned over by it."""
+        # No component of an edge changes by more than 1 / subcells, so most are seen to be sound from afar.
+        reach = sum(np.abs(edges[(axis + k) % 3]).sum(axis=0) for k in (1, 2))
+        reach += 1
+        poor = np.flatnonzero(~(np.abs(areas) * (self._grid.subcells / 2) > reach))
+        snapped = self._grid.snapped(corners.take(poor, axis=2))
+        snapped_areas = doubled_areas(snapped)[axis]
+        least = np.abs(snapped_areas) * (_LEAST_AREA_RATIO / self._grid.subcells**2)
+        return poor[~(areas.take(poor) * np.sign(snapped_areas) > least)]
 
 
 class _SpanWeights:
     """Barycentric weights of corners 1 and 2 at each span's first sample, and their change from one sample to the next.
 
-    u, v: (3, t) corners on the image's grid. of_span: (n,) each span's triangle among the t.
+    first, edges: of t triangles, as `_sound_triangles` gives them. of_span: (n,) each span's triangle among the t.
     Both ends are clamped into the triangle: on the snapped outline a sample can lie 1 / subcells outside the real one.
     """
 
-    def __init__(self, u: np.ndarray, v: np.ndarray, of_span: np.ndarray, spans: Spans):
+    def __init__(self, first: np.ndarray, edges: np.ndarray, axis: int, of_span: np.ndarray, spans: Spans):
         self._of_span = of_span
-        u1, u2, v1, v2 = u[1] - u[0], u[2] - u[0], v[1] - v[0], v[2] - v[0]
-        area = u1 * v2 - v1 * u2
+        (u, v), ((u1, u2), (v1, v2)) = ([rows[(axis + k) % 3] for k in (1, 2)] for rows in (first, edges))
+        inverse = 1 / (u1 * v2 - v1 * u2)
         #: Change of the two weights per column and per row: (2, t) each.
-        self._per_column = np.stack([v2, -v1]) / area
-        self._per_row = np.stack([-u2, u1]) / area
-        du = spans.columns - u[0].take(of_span)
-        dv = spans.rows - v[0].take(of_span)
+        self._per_column, self._per_row = np.empty_like(edges[0]), np.empty_like(edges[0])
+        parts = (*self._per_column, *self._per_row)
+        for part, (edge, factor) in zip(
+            parts, ((v2, inverse), (v1, -inverse), (u2, -inverse), (u1, inverse)), strict=True
+        ):
+            np.multiply(edge, factor, out=part)
         along = self._per_column.take(of_span, axis=1)
-        start = du * along + dv * self._per_row.take(of_span, axis=1)
-        steps = spans.counts - 1
-        stop = _clamped(start + steps * along)
-        self._first = _clamped(start)
-        self._step = (stop - self._first) / np.maximum(steps, 1)
+        start = self._per_row.take(of_span, axis=1)
+        start *= spans.rows - v.take(of_span)
+        start += along * (spans.columns - u.take(of_span))
+        steps = spans.counts - 1.0
+        along *= steps
+        along += start
+        self._first, self._step = _clamped(start), _clamped(along)
+        self._step -= self._first
+        self._step /= np.maximum(steps, 1)
+        self._rounded = self._first.astype(np.float32), self._step.astype(np.float32)
 
-    def interpolate(self, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) float32 first value and (n,) float32 step of a (3, t) quantity along each span."""
-        first, second = ((corners[k] - corners[0]).take(self._of_span) for k in (1, 2))
-        start = corners[0].take(self._of_span) + first * self._first[0] + second * self._first[1]
-        return start.astype(np.float32), (first * self._step[0] + second * self._step[1]).astype(np.float32)
+    def interpolate(self, value: np.ndarray, *rises: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) first value and (n,) step along each span, in the type of the values.
+
+        value: (t,) float32 or float64, at corner 0. rises: (t,) twice, from there to the corners 1 and 2.
+        """
+        firsts, steps = (self._first, self._step) if value.dtype == np.float64 else self._rounded
+        start, change = value.take(self._of_span), 0
+        for rise, first, step in zip(rises, firsts, steps, strict=True):
+            rise = rise.take(self._of_span)
+            start += rise * first
+            rise *= step
+            change = change + rise
+        return start, change
 
     def gradients(self, corners: np.ndarray) -> np.ndarray:
         """(2, c, t) change of (3, c, t) corner values from one column, and from one row, to the next."""
@@ -162,24 +189,36 @@ class _Lines:
 
     def __init__(self, span: np.ndarray, step: np.ndarray):
         self.count = len(span)
-        self._span, self._step = span, step.astype(np.float32)
+        self._span = span
+        self._steps = {np.dtype(kind): step.astype(kind) for kind in (np.float32, np.float64)}
 
-    def samples(self, first: np.ndarray, step: np.ndarray) -> np.ndarray:
-        """(count,) float32 values that start at (n,) `first` and change by (n,) `step`."""
-        values = step.take(self._span)
-        values *= self._step
+    def samples(self, first: np.ndarray, step: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
+        """(count,) values that start at (n,) `first` and change by (n,) `step`, float32 or float64."""
+        values = step.take(self._span, out=out, mode="clip")
+        values *= self._steps[step.dtype]
         values += first.take(self._span)
         return values
 
 
 def _distinct(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The distinct values of an ascending array, and which of them each entry is."""
-    is_new = np.concatenate([[True], ordered[1:] != ordered[:-1]])
-    return ordered[is_new], np.cumsum(is_new) - 1
+    is_new = np.empty(len(ordered), bool)
+    is_new[:1] = True
+    np.not_equal(ordered[1:], ordered[:-1], out=is_new[1:])
+    place = np.cumsum(is_new)
+    place -= 1
+    return ordered.take(np.flatnonzero(is_new)), place
+
+
+def _at_corners(values: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(c, 3, t) float32: of (T, 3, c) values at corners those of t triangles, each component contiguous."""
+    rows = values.reshape(len(values), -1).take(triangles, axis=0)
+    return np.ascontiguousarray(rows.T.reshape(3, -1, len(triangles)).swapaxes(0, 1), np.float32)
 
 
 def _clamped(weights: np.ndarray) -> np.ndarray:
-    weights = np.clip(weights, 0, 1)
+    """(2, n) barycentric weights within the triangle, in place."""
+    np.maximum(weights, 0, out=weights)
     weights /= np.maximum(weights[0] + weights[1], 1)
     return weights
 
@@ -189,12 +228,15 @@ def _spread(rows: np.ndarray, owner: np.ndarray, out: np.ndarray):
 
 
 def _write_unit(vectors: np.ndarray, fallbacks: np.ndarray, owner: np.ndarray, out: np.ndarray):
-    """Normalises (3, n) vectors into (n, 3) `out`; one of no usable length becomes its owner's fallback."""
+    """Normalises (3, n) vectors into (n, 3) `out`; one of no usable length becomes its owner's of (3, t) fallbacks."""
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        squares = vectors[0] * vectors[0] + vectors[1] * vectors[1] + vectors[2] * vectors[2]
+        squares = vectors[0] * vectors[0]
+        squares += vectors[1] * vectors[1]
+        squares += vectors[2] * vectors[2]
         inverse = 1 / np.sqrt(squares)
-        for column, component in enumerate(vectors):
-            out[:, column] = component * inverse
+        for column, component in zip(out.T, vectors, strict=True):
+            np.multiply(component, inverse, out=column)
     low, high = _USABLE_SQUARES
-    poor = np.flatnonzero(~((squares > low) & (squares < high)))
-    out[poor] = fallbacks[owner[poor]]
+    if not (squares.min() > low and squares.max() < high):
+        poor = np.flatnonzero(~((squares > low) & (squares < high)))
+        out[poor] = fallbacks.T[owner[poor]]

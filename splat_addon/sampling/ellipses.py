@@ -21,9 +21,11 @@ def ellipse_scales(axis_normals: np.ndarray, half_size: float) -> np.ndarray:
 
     axis_normals: (t,) unit normals' component along the image's axis. half_size: h, object units.
     """
-    with np.errstate(divide="ignore"):
-        stretch = np.minimum(1 / np.abs(axis_normals), MAX_STRETCH)
-    return np.stack([half_size * stretch, np.full_like(stretch, half_size)], axis=1).astype(np.float32)
+    scales = np.empty((len(axis_normals), 2), np.float32)
+    stretch = 1 / np.maximum(np.abs(axis_normals), 1 / MAX_STRETCH)
+    scales[:, 0] = half_size * stretch
+    scales[:, 1] = half_size
+    return scales
 
 
 def ellipse_rotations(normals: np.ndarray, axis: int) -> np.ndarray:
@@ -37,25 +39,41 @@ def ellipse_rotations(normals: np.ndarray, axis: int) -> np.ndarray:
     u, v, a = (normals[(axis + k) % 3] for k in (1, 2, 0))
     r = np.sqrt(u * u + v * v)
     cosine = np.divide(u, r, out=np.ones_like(r), where=r > 0)
-    half_turn = np.sqrt(np.maximum(1 + cosine, 0) / 2), np.copysign(np.sqrt(np.maximum(1 - cosine, 0) / 2), v)
-    tilt = np.sqrt(np.maximum(1 - a, 0) / 2), np.sqrt(np.maximum(1 + a, 0) / 2)
-    w, x, y, z = -half_turn[1] * tilt[1], half_turn[0] * tilt[0], half_turn[1] * tilt[0], half_turn[0] * tilt[1]
-    return np.stack(_FROM_IMAGE_ORDER[axis](w, x, y, z), axis=1).astype(np.float32)
+    cosine_half, sine_half = _half_angle(cosine)
+    np.copysign(sine_half, v, out=sine_half)
+    upright, tilted = _half_angle(a)
+    w, x, y, z = sine_half * upright, cosine_half * tilted, sine_half * tilted, cosine_half * upright
+    np.negative(w, out=w)
+    rotations = np.empty((len(a), 4), np.float32)
+    for column, values in zip(rotations.T, _FROM_IMAGE_ORDER[axis](w, x, y, z), strict=True):
+        column[...] = values
+    return rotations
+
+
+def _half_angle(cosine: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cosine and sine of half the angle, 0 to a quarter of a turn; a cosine may be beyond 1 by its rounding."""
+    halves = np.stack([cosine, -cosine])
+    halves += 1
+    np.maximum(halves, 0, out=halves)
+    halves *= 0.5
+    return tuple(np.sqrt(halves, out=halves))
+
+
+def _halves(p: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Half the sum and half the difference."""
+    p, q = 0.5 * p, 0.5 * q
+    return p + q, p - q
+
+
+def _there(w, x, y, z):
+    (first, last), (third, second) = _halves(w - x, -(y + z)), _halves(w + x, y - z)
+    return first, second, third, last
+
+
+def _back(w, x, y, z):
+    (first, second), (fourth, third) = _halves(x + y, w + z), _halves(z - w, x - y)
+    return first, second, third, fourth
 
 
 #: axis -> quaternion product that turns (u, v, axis) into (x, y, z): a third of a turn about (1, 1, 1), there or back.
-_FROM_IMAGE_ORDER = {
-    0: lambda w, x, y, z: (
-        (w - x - y - z) / 2,
-        (w + x - y + z) / 2,
-        (w + x + y - z) / 2,
-        (w - x + y + z) / 2,
-    ),
-    1: lambda w, x, y, z: (
-        (w + x + y + z) / 2,
-        (-w + x + y - z) / 2,
-        (-w - x + y + z) / 2,
-        (-w + x - y + z) / 2,
-    ),
-    2: lambda w, x, y, z: (w, x, y, z),
-}
+_FROM_IMAGE_ORDER = {0: _there, 1: _back, 2: lambda w, x, y, z: (w, x, y, z)}

@@ -13,8 +13,12 @@ from .cleaning import vertex_hashes
 from .connectivity import part_labels
 from .mesh import TriangleMesh, corner_indices, triangle_chunks
 
-#: The sampled surface stops growing when a step takes less than this share of what is left; labels do the rest.
-_WORTHWHILE_SHARE = 0.1
+#: The sampled surface stops growing when a step takes less than this share of what is left, and this many triangles
+#: cost a step next to nothing; labels do the rest.
+_WORTHWHILE_SHARE, _FEW = 0.1, 4096
+
+#: Of a hash, that sort out vertices; the table has this power of two entries.
+_SIEVE_BITS = 16
 
 
 def lost_parts(mesh: TriangleMesh, is_sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -53,9 +57,12 @@ def _with_unreached_corners(triangles: np.ndarray, reached: np.ndarray) -> np.nd
 
 def _welded(positions: np.ndarray, corners: np.ndarray, reached: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(m, 3) corners that name places instead of vertices, and the (p,) places where a reached vertex is."""
-    keys = vertex_hashes(positions)
-    places, named = np.unique(keys[corners], return_inverse=True)
-    others = keys[reached]
+    places, named = np.unique(vertex_hashes(positions.take(corners.ravel(), axis=0)), return_inverse=True)
+    # A few bits of one coordinate tell nearly all vertices apart from the few places in question.
+    bits = (vertex_hashes(positions[:, :1]) >> np.uint64(64 - _SIEVE_BITS)).astype(np.intp)
+    is_wanted = np.zeros(1 << _SIEVE_BITS, bool)
+    is_wanted[bits.take(corners)] = True
+    others = vertex_hashes(positions.take(np.flatnonzero(is_wanted.take(bits) & reached), axis=0))
     place = np.minimum(np.searchsorted(places, others), len(places) - 1)
     is_reached = np.zeros(len(places), bool)
     is_reached[place[places[place] == others]] = True
@@ -70,6 +77,7 @@ def _unreached(corners: np.ndarray, rest: np.ndarray, reached: np.ndarray) -> tu
         left = np.flatnonzero(~touched)
         reached[corners.compress(touched, axis=0).ravel()] = True
         before, corners, rest = len(rest), corners.take(left, axis=0), rest.take(left)
-        if before - len(rest) < _WORTHWHILE_SHARE * before:
+        taken = before - len(rest)
+        if not taken or (taken < _WORTHWHILE_SHARE * before and before > _FEW):
             return corners, rest
     return (corners, rest) if not reached.all() else (corners[:0], rest[:0])

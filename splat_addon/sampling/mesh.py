@@ -119,14 +119,17 @@ def corners_at(components: np.ndarray, indices: np.ndarray) -> np.ndarray:
 
 def doubled_areas(corners: np.ndarray) -> np.ndarray:
     """(3, t): the normal of each triangle, as long as twice its area, from (3, 3, t) corners."""
-    x, y, z = corners
-    x1, y1, z1 = x[1] - x[0], y[1] - y[0], z[1] - z[0]
-    x2, y2, z2 = x[2] - x[0], y[2] - y[0], z[2] - z[0]
-    areas = np.empty((3, *x1.shape), x1.dtype)
-    for area, (a, b, c, d) in zip(areas, ((y1, z2, z1, y2), (z1, x2, x1, z2), (x1, y2, y1, x2)), strict=True):
-        np.multiply(a, b, out=area)
-        area -= c * d
-    return areas
+    return crossed(corners[:, 1:] - corners[:, :1])
+
+
+def crossed(edges: np.ndarray) -> np.ndarray:
+    """(3, t) cross products of the two edges in each of (3, 2, t)."""
+    (x1, x2), (y1, y2), (z1, z2) = edges
+    products = np.empty((3, *x1.shape), x1.dtype)
+    for product, (a, b, c, d) in zip(products, ((y1, z2, z1, y2), (z1, x2, x1, z2), (x1, y2, y1, x2)), strict=True):
+        np.multiply(a, b, out=product)
+        product -= c * d
+    return products
 
 
 def _check_indices(name: str, indices: np.ndarray, limit: int):
