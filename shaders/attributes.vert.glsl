@@ -3,6 +3,9 @@
 
 #define VERTEX_STAGE
 #include "common/splat_attributes.glsl"
+#ifdef WITH_MATERIALS
+#include "common/splat_material.glsl"
+#endif
 #include "methods/{method}.glsl"
 #ifdef TEXTURED
 #include "common/splat_texture.glsl"
@@ -20,8 +23,8 @@ void main() {
   texture_axis_u = splat.axis_u;
   texture_axis_v = splat.axis_v;
 #endif
-#ifdef MATERIAL_TARGET
-  material = texelFetch(materials, ivec2(min(int(splat.material), textureSize(materials, 0).x - 1), 0), 0).xyz;
+#ifdef WITH_MATERIALS
+  fetch_material(gl_VertexID >> 2, splat.material);
 #endif
   gl_Position = splat.is_hidden ? NOWHERE : splats.projection * vec4(eye, 1.0);
 }

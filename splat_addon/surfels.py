@@ -117,6 +117,11 @@ class Surfels:
         """Whether a texture can be looked up at every point of the ellipses."""
         return not any(a is None for a in (self.uvs, self.uv_along_x, self.uv_along_y))
 
+    @property
+    def has_own_material(self) -> bool:
+        """Whether something of their materials is in their own fields."""
+        return not all(a is None for a in (self.roughness, self.metallic, self.emission))
+
     def as_solid(self) -> Surfels:
         """The same surfels, said to be solid; the arrays are shared."""
         solid = copy(self)

@@ -32,5 +32,13 @@ ShadedSample shaded_sample(ivec2 texel) {
 #else
   vec3 material = shading.material.xyz;
 #endif
-  return ShadedSample(shade(position, normal, c.rgb / c.w, material), normal, n.w);
+  vec3 radiance = shade(position, normal, c.rgb / c.w, material);
+#ifdef EMISSION_TARGET
+  vec4 e = texelFetch(emission_sum, texel, 0);
+  radiance += e.rgb / e.w;  // its own weights: those of float16 sums are scaled
+#endif
+#ifdef EMISSION
+  radiance += shading.emission.rgb;
+#endif
+  return ShadedSample(radiance, normal, n.w);
 }

@@ -24,4 +24,7 @@ void add_to_sums(vec3 color, float weight, float depth) {
 #ifdef MATERIAL_TARGET
   material_sum = vec4(material, 1.0) * weight;
 #endif
+#ifdef EMISSION_TARGET
+  emission_sum = vec4(emission, 1.0) * weight;
+#endif
 }

@@ -4,6 +4,9 @@
 
 #define VERTEX_STAGE
 #include "common/splat_attributes.glsl"
+#ifdef WITH_MATERIALS
+#include "common/splat_material.glsl"
+#endif
 #include "screen/plane.glsl"
 #include "methods/{method}.glsl"
 #ifdef TEXTURED
@@ -39,8 +42,8 @@ void main() {
     texture_along = vec4(along[0], along[1]);
   }
 #endif
-#ifdef MATERIAL_TARGET
-  material = texelFetch(materials, ivec2(min(int(splat.material), textureSize(materials, 0).x - 1), 0), 0).xyz;
+#ifdef WITH_MATERIALS
+  fetch_material(gl_VertexID >> 2, splat.material);
 #endif
   if (splat.is_hidden) {
     gl_Position = NOWHERE;

@@ -132,7 +132,9 @@ def _instance(object_, matrix_world: np.ndarray, store: SurfelStore, notes: Note
         surfels, skipped = store.get(mesh)
     if skipped:
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
-    return Instance(surfels, matrix_world, tuple(shading_material(s.material, notes) for s in object_.material_slots))
+    own = surfels.arrays().keys()
+    materials = tuple(shading_material(slot.material, notes, own) for slot in object_.material_slots)
+    return Instance(surfels, matrix_world, materials)
 
 
 @contextmanager

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import replace
 
 import bpy
@@ -81,20 +82,41 @@ def color_times_strength(node: bpy.types.Node, owner: str, notes) -> tuple[float
     return tuple(c * strength.default_value for c in color.default_value[:3])
 
 
-def shading_material(material: bpy.types.Material | None, notes) -> Material:
-    """Roughness, metallic and specular reflectance of the material's Principled node; the defaults without one."""
+def shading_material(material: bpy.types.Material | None, notes, own: Collection[str] = ()) -> Material:
+    """Roughness, metallic, specular reflectance and emission of the material's Principled node; the defaults without.
+
+    own: fields that the surfels have themselves, whose textures are not missed here.
+    """
     if material is None or not material.use_nodes:
         return Material()
     node = output_source(material.node_tree, "OUTPUT_MATERIAL", "BSDF_PRINCIPLED")
     if node is None:
         notes.add(f"The material {material.name!r} has no Principled BSDF at its output; it is shaded as a default one")
         return Material()
-    sockets = {name: node.inputs[name] for name in ("Roughness", "Metallic", "IOR", "Specular IOR Level")}
-    linked = [name for name, socket in sockets.items() if socket.is_linked]
+    sockets = {name: node.inputs[name] for name in _SOCKET_FIELDS}
+    plain = {name: socket.default_value for name, socket in sockets.items()}
+    emission = tuple(c * plain["Emission Strength"] for c in plain["Emission Color"][:3])
+    linked = [n for n, socket in sockets.items() if socket.is_linked and _SOCKET_FIELDS[n] not in own]
+    if not any(emission):
+        linked = [n for n in linked if n != "Emission Color"]
     if linked:
-        notes.add(f"The material {material.name!r} textures {', '.join(linked)}; the sockets' plain values are used")
-    roughness, metallic, ior, level = (float(socket.default_value) for socket in sockets.values())
-    return Material(roughness, metallic, _levelled(ior, level))
+        notes.add(
+            f"The material {material.name!r} textures {', '.join(linked)}, which the surfels do not have; the sockets' "
+            "plain values are used. Convert the mesh again to sample them"
+        )
+    ior = _levelled(plain["IOR"], plain["Specular IOR Level"])
+    return Material(plain["Roughness"], plain["Metallic"], ior, emission)
+
+
+#: socket of a Principled node -> the field of surfels that takes its place, or ""
+_SOCKET_FIELDS = {
+    "Roughness": "roughness",
+    "Metallic": "metallic",
+    "IOR": "",
+    "Specular IOR Level": "",
+    "Emission Color": "emission",
+    "Emission Strength": "emission",
+}
 
 
 def _levelled(ior: float, level: float) -> float:

@@ -87,7 +87,8 @@ def _flat(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera) -> np.n
 def _principled(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera) -> np.ndarray:
     origin, direction = grid.rays(surface.rays)
     position = origin + surface.depth[:, None] * direction
-    return principled_radiance(surface, direction, all_incident(scene, camera, position), WorldLight(scene, camera))
+    incident, world = all_incident(scene, camera, position), WorldLight(scene, camera)
+    return surface.emission + principled_radiance(surface, direction, incident, world)
 
 
 #: shading -> (surface, grid, scene, camera) to (n, 3) radiance of the rays that hit

@@ -8,6 +8,8 @@ where normal.xy is the octahedral form of the shading normal and the axes carry 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..surfels import Surfels
@@ -34,12 +36,16 @@ def pack_surfels(surfels: Surfels) -> np.ndarray:
     return texels.reshape(rows, SPLATS_PER_ROW * TEXELS_PER_SPLAT, 4)
 
 
-def pack_uvs(surfels: Surfels) -> np.ndarray:
-    """(rows, 1024, 4) float32, two texels a splat: uv, its change along the local x half-axis  |  along y, 0, 0."""
+def pack_uvs(surfels: Surfels, order=slice(None)) -> np.ndarray:
+    """(rows, 1024, 4) float32, two texels a splat: uv, its change along the local x half-axis  |  along y, 0, 0.
+
+    order: in which the surfels are stored.
+    """
     rows = row_count(surfels)
     texels = np.zeros((rows * SPLATS_PER_ROW, 2, 4), np.float32)
     filled = texels[: len(surfels)]
-    filled[:, 0, :2], filled[:, 0, 2:], filled[:, 1, :2] = surfels.uvs, surfels.uv_along_x, surfels.uv_along_y
+    columns = surfels.uvs, surfels.uv_along_x, surfels.uv_along_y
+    filled[:, 0, :2], filled[:, 0, 2:], filled[:, 1, :2] = (column[order] for column in columns)
     return texels.reshape(rows, SPLATS_PER_ROW * 2, 4)
 
 
@@ -64,9 +70,35 @@ def octahedral(normals: np.ndarray) -> np.ndarray:
     return np.stack([np.where(below, folded_x, x), np.where(below, folded_y, y)])
 
 
-def pack_materials(materials: tuple[Material, ...]) -> np.ndarray:
-    """(1, M, 4) float32: roughness, metallic, reflectance at normal incidence, 0."""
-    return np.array([[(m.roughness, m.metallic, reflectance(m.ior), 0.0) for m in materials]], np.float32)
+def pack_materials(materials: tuple[Material, ...], with_emission: bool = False) -> np.ndarray:
+    """(1, M, 4) float32: roughness, metallic, reflectance at normal incidence, 0.
+
+    with_emission: two texels each, (1, 2 M, 4), the second r, g, b of the emission, 0.
+    """
+    texels = np.zeros((1, len(materials), 2, 4), np.float32)
+    texels[0, :, 0, :3] = [(m.roughness, m.metallic, reflectance(m.ior)) for m in materials]
+    texels[0, :, 1, :3] = [m.emission for m in materials]
+    return texels[:, :, : 1 + with_emission].reshape(1, -1, 4)
+
+
+def pack_own_materials(
+    surfels: Surfels, materials: tuple[Material, ...], order=slice(None), with_emission: bool = False
+) -> np.ndarray:
+    """(rows, 512 or 1024, 4) float32: as `pack_materials`, but one of each surfel, and 1 at the end of the first texel.
+
+    What the surfels do not have themselves is that of their slot. order: in which the surfels are stored.
+    """
+    slots = pack_materials(materials, with_emission).reshape(len(materials), -1, 4)
+    rows, count = row_count(surfels), len(surfels)
+    texels = np.zeros((rows * SPLATS_PER_ROW, *slots.shape[1:]), np.float32)
+    texels[:count] = slots[np.minimum(surfels.materials[order], len(materials) - 1)]
+    for column, values in enumerate((surfels.roughness, surfels.metallic)):
+        if values is not None:
+            texels[:count, 0, column] = values[order]
+    if with_emission and surfels.emission is not None:
+        texels[:count, 1, :3] = surfels.emission[order]
+    texels[:, 0, 3] = 1
+    return texels.reshape(rows, -1, 4)
 
 
 def reflectance(ior: float) -> float:
@@ -75,6 +107,16 @@ def reflectance(ior: float) -> float:
 
 
 def shared_material(instances: tuple[Instance, ...]) -> Material | None:
-    """The one material that every surfel of the instances has, or None where they differ."""
-    materials = {m for instance in instances for m in instance.materials}
+    """The one material that all surfels of the instances answer light with, or None; its emission means nothing."""
+    if any(i.surfels.roughness is not None or i.surfels.metallic is not None for i in instances):
+        return None
+    materials = {replace(m, emission=(0.0, 0.0, 0.0)) for instance in instances for m in instance.materials}
     return materials.pop() if len(materials) == 1 else None
+
+
+def shared_emission(instances: tuple[Instance, ...]) -> tuple[float, float, float] | None:
+    """The one radiance that all surfels of the instances send out, or None where they differ."""
+    if any(instance.surfels.emission is not None for instance in instances):
+        return None
+    emissions = {tuple(m.emission) for instance in instances for m in instance.materials}
+    return emissions.pop() if len(emissions) == 1 else None

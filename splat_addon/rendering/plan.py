@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from .camera import Camera
 from .methods import Method, get_method
-from .packing import shared_material
+from .packing import shared_emission, shared_material
 from .scene import Material, Scene
 from .settings import Settings
 from .storages import get_storage
@@ -40,6 +40,7 @@ TEXTURES = {
     "normal_sum": ("RGBA32F", "sample"),
     "depth_sum": ("RG32F", "sample"),
     "material_sum": ("RGBA32F", "sample"),
+    "emission_sum": ("RGBA32F", "sample"),
     "shaded": ("RGBA32F", "sample"),
     "surface": ("RGBA32F", "sample"),
     "combined": ("RGBA32F", "pixel"),
@@ -47,7 +48,7 @@ TEXTURES = {
     "normal_coverage": ("RGBA32F", "pixel"),
 }
 
-#: accumulation -> texture -> format, where it is not the one above
+#: accumulation -> texture -> format, where it is not the one above; emission has no bound that a half could hold.
 SUM_FORMATS = {
     "float32": {},
     "float16": {"color_sum": "RGBA16F", "normal_sum": "RGBA16F", "material_sum": "RGBA16F"},
@@ -71,7 +72,7 @@ class FramePlan:
     """tiles: (x, y, width, height) in pixels, each rendered with all passes and, where silhouettes are filtered, with a
         margin that the filter reads.
     samples: N of the N x N samples a pixel. visibility_samples: V of the V x V a sample.
-    material: the one that all surfels share, or None.
+    material, emission: the one that all surfels share, or None.
     storage, accumulation: as in the settings.
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
     features: (name, why), of what shaders do beside the least; each name is defined in their text.
@@ -86,6 +87,7 @@ class FramePlan:
     storage: str
     accumulation: str
     material: Material | None
+    emission: tuple[float, float, float] | None
     linear_depth: bool
     passes: tuple[PlannedPass, ...]
     features: tuple[tuple[str, str], ...]
@@ -129,7 +131,7 @@ class FramePlan:
 def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
     """The passes that this picture needs. Raises ValueError for an unknown method."""
     method = get_method(settings.method)
-    material = shared_material(scene.surfels)
+    material, emission = shared_material(scene.surfels), shared_emission(scene.surfels)
     linear_depth, passes, features, left_out = False, (), (), []
     if not any(len(instance.surfels) for instance in scene.surfels):
         left_out.append(("all other passes", "the scene has no surfels, so the picture is its background"))
@@ -138,13 +140,13 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
             passes = (PlannedPass("background", "the world is a picture", ("environment_image",), outputs),)
     else:
         linear_depth, why_depth = _linear_depth(scene, camera, settings)
-        sums = _sums(settings, material, left_out)
+        sums = _sums(settings, material, emission, left_out)
         passes = (
             PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
             PlannedPass("attributes", _why_attributes(scene, method), ("visibility_depth",), sums),
             *_shading_passes(scene, settings, method, _read_by_shading(scene, settings, sums, left_out), left_out),
         )
-        features = _features(scene, settings, left_out)
+        features = _features(scene, settings, emission, left_out)
         if not linear_depth:
             left_out.append(("linear depth", why_depth))
         _say_what_surfels_lack(scene, camera, left_out)
@@ -157,6 +159,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         get_storage(settings.storage).name,
         settings.accumulation,
         material,
+        emission,
         linear_depth,
         passes,
         features,
@@ -173,7 +176,7 @@ def _why_attributes(scene: Scene, method: Method) -> str:
 # What follows decides one thing each, and appends to `left_out` what it decided against.
 
 
-def _sums(settings: Settings, material: Material | None, left_out: list) -> tuple[str, ...]:
+def _sums(settings: Settings, material: Material | None, emission, left_out: list) -> tuple[str, ...]:
     """What the attribute pass adds up."""
     sums = ["color_sum", "normal_sum"]
     if settings.accumulation == "float16":
@@ -181,11 +184,16 @@ def _sums(settings: Settings, material: Material | None, left_out: list) -> tupl
     else:
         left_out.append(("depth_sum", "float32 sums of normals have room for depths"))
     if settings.shading == "flat":
-        left_out.append(("material_sum", "flat shading does not look at materials"))
-    elif material is not None:
+        left_out += [(name, "flat shading does not look at materials") for name in ("material_sum", "emission_sum")]
+        return tuple(sums)
+    if material is not None:
         left_out.append(("material_sum", "all surfels have one material"))
     else:
         sums.append("material_sum")
+    if emission is not None:
+        left_out.append(("emission_sum", f"all surfels send out the same light{'' if any(emission) else ', none'}"))
+    else:
+        sums.append("emission_sum")
     return tuple(sums)
 
 
@@ -210,15 +218,18 @@ def _shows_environment(scene: Scene, settings: Settings) -> bool:
     return scene.environment is not None and not settings.transparent_film
 
 
-def _features(scene: Scene, settings: Settings, left_out: list) -> tuple[tuple[str, str], ...]:
+def _features(scene: Scene, settings: Settings, emission, left_out: list) -> tuple[tuple[str, str], ...]:
     """What shaders do beside the least."""
-    if settings.shading == "flat" or not scene.lights:
+    if settings.shading == "flat":
         return ()
+    features = (("EMISSION", "all surfels send out the same light"),) if emission is not None and any(emission) else ()
+    if not scene.lights:
+        return features
     sized = sum(light.is_sized for light in scene.lights)
     if sized:
-        return (("SIZED_LIGHTS", f"{sized} of {len(scene.lights)} lights have a size"),)
+        return *features, ("SIZED_LIGHTS", f"{sized} of {len(scene.lights)} lights have a size")
     left_out.append(("sized lights", "every light is a point or a direction"))
-    return ()
+    return features
 
 
 def _shading_passes(scene: Scene, settings: Settings, method: Method, reads: tuple[str, ...], left_out: list):

@@ -13,8 +13,8 @@ from ..surfels import Surfels
 from .atlas import make_atlas
 from .device import Device
 from .device.interface import Pipeline, PipelineDescription, Texture
-from .packing import pack_uvs
-from .scene import SurfaceTexture
+from .packing import pack_materials, pack_own_materials, pack_uvs
+from .scene import Instance, SurfaceTexture
 from .storages import Storage
 
 #: name, width, height, format of a texture that a pass writes.
@@ -38,6 +38,7 @@ class Resources:
         self.device = device
         self._surfels = WeakKeyDictionary()
         self._kept = WeakKeyDictionary()
+        self._own_materials = WeakKeyDictionary()
         self._constants = {}
         self._surfel_uvs = WeakKeyDictionary()
         self._atlases = {}
@@ -56,11 +57,24 @@ class Resources:
             stored = self._surfels[surfels] = StoredSurfels(storage, textures, coarse)
         return stored
 
-    def surfel_uvs(self, surfels: Surfels) -> Texture:
+    def materials(self, instance: Instance, storage: Storage, with_emission: bool) -> Texture:
+        """Those of its slots; where surfels have their own, one of each, uploaded once."""
+        surfels, slots = instance.surfels, instance.materials
+        if not surfels.has_own_material:
+            return self.data(pack_materials(slots, with_emission))
+        known, texture = self._own_materials.get(surfels, (None, None))
+        if known != (slots, storage.name, with_emission):
+            texture = self.data(pack_own_materials(surfels, slots, _order(surfels, storage), with_emission))
+            self._own_materials[surfels] = (slots, storage.name, with_emission), texture
+        return texture
+
+    def surfel_uvs(self, surfels: Surfels, storage: Storage) -> Texture:
         """Their texture coordinates, uploaded once."""
-        if surfels not in self._surfel_uvs:
-            self._surfel_uvs[surfels] = self.data(pack_uvs(surfels))
-        return self._surfel_uvs[surfels]
+        known, texture = self._surfel_uvs.get(surfels, (None, None))
+        if known != storage.name:
+            texture = self.data(pack_uvs(surfels, _order(surfels, storage)))
+            self._surfel_uvs[surfels] = storage.name, texture
+        return texture
 
     def atlas(self, textures: tuple[SurfaceTexture | None, ...]) -> tuple[Texture, Texture]:
         """Texels and table of an instance's textures, uploaded once."""
@@ -111,8 +125,14 @@ class Resources:
         """Let go of everything on the device."""
         self._surfels.clear()
         self._kept.clear()
+        self._own_materials.clear()
         self._constants.clear()
         self._surfel_uvs.clear()
         self._atlases.clear()
         self._pipelines.clear()
         self.textures.clear()
+
+
+def _order(surfels: Surfels, storage: Storage):
+    """The index of surfels that brings them into the order in which they are stored."""
+    return storage.order(surfels) if storage.order else slice(None)

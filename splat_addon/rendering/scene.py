@@ -23,15 +23,18 @@ class Material:
     """How a surface answers light; its base colour is the surfels' own.
 
     roughness, metallic: 0 to 1. ior: index of refraction of the dielectric coat, which sets its
-    reflectance at normal incidence, ((ior - 1) / (ior + 1))^2.
+    reflectance at normal incidence, ((ior - 1) / (ior + 1))^2. emission: scene-linear radiance that leaves it evenly.
+    Surfels may have their own roughness, metallic and emission, which take the place of these.
     """
 
     roughness: float = 0.5
     metallic: float = 0.0
     ior: float = 1.5
+    emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self):
-        if not (np.isfinite([self.roughness, self.metallic, self.ior]).all() and self.ior > 0):
+        numbers = [self.roughness, self.metallic, self.ior, *self.emission]
+        if not (np.isfinite(numbers).all() and self.ior > 0 and len(self.emission) == 3):
             raise ValueError(f"A material needs finite numbers and an index of refraction above 0, not {self}.")
 
 

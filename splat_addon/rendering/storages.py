@@ -10,7 +10,7 @@ import numpy as np
 
 from ..surfels import Surfels
 from .packing import pack_surfels
-from .packing_16_bit import pack_16_bit
+from .packing_16_bit import pack_16_bit, spatial_order
 
 
 @dataclass(frozen=True)
@@ -18,6 +18,7 @@ class Storage:
     """name: also of its GLSL file. label, summary: for users.
     textures: (sampler, format) of each texture.
     pack: to their (h, w, 4) float32 texels, and the number of surfels whose place it loses visibly.
+    order: (N,) the surfels in the order in which they are stored; None: their own.
     """
 
     name: str
@@ -25,6 +26,7 @@ class Storage:
     summary: str
     textures: tuple[tuple[str, str], ...]
     pack: Callable[[Surfels], tuple[tuple[np.ndarray, ...], int]]
+    order: Callable[[Surfels], np.ndarray] | None = None
 
     @property
     def samplers(self) -> tuple[str, ...]:
@@ -48,6 +50,7 @@ STORAGES = {
             "32 bytes a surfel, positions to 1/131,072 of their neighbourhood",
             (("surfels", "RGBA16"), ("surfel_blocks", "RGBA32F")),
             pack_16_bit,
+            lambda surfels: spatial_order(surfels.positions),
         ),
     )
 }

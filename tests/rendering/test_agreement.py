@@ -54,12 +54,27 @@ def in_a_picture(scene, camera):
     return replace(scene, surfels=(rough, metal), world=(1, 0.9, 0.8), environment=environment()), camera
 
 
+def own_materials(scene, camera):
+    """The scene with roughness, metallic and emission that vary over one of its instances, and a glow on another."""
+    first, *others = scene.surfels
+    x, y, z = (first.surfels.positions / np.abs(first.surfels.positions).max()).T
+    own = replace(
+        first.surfels,
+        roughness=0.5 - 0.2 * x,
+        metallic=np.clip(y, 0, 1),
+        emission=np.stack([np.maximum(z, 0), 0 * x, x * x], axis=1),
+    )
+    glow = (replace(i, materials=(replace(i.materials[0], emission=(0.1, 0.4, 0.2)),)) for i in others)
+    return replace(scene, surfels=(replace(first, surfels=own), *glow)), camera
+
+
 SCENES = {
     "sphere": lambda: scenes.sphere(size=SIZE),
     "checker_plane": lambda: scenes.checker_plane(size=SIZE),
     "torus": lambda: scenes.torus(size=SIZE),
     "lights": lambda: lit(*scenes.torus(size=SIZE)),
     "environment": lambda: in_a_picture(*scenes.torus(size=SIZE)),
+    "own_materials": lambda: own_materials(*scenes.torus(size=SIZE)),
     "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),
 }
 
@@ -73,6 +88,8 @@ CASES = [
     *((name, method, {}) for name in TEXTURED for method in METHODS),
     *(("torus", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
     *(("torus", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
+    ("own_materials", "mip", {}),
+    ("own_materials", "mip", {"storage": "16-bit"}),
 ]
 
 

@@ -10,17 +10,20 @@ from ..methods import get_method
 from ..plan import FramePlan, PlannedPass
 from ..shaders import load
 from ..storages import get_storage
-from .blocks import HALF_SUMS, LINEAR_DEPTH
+from .blocks import HALF_SUMS, LINEAR_DEPTH, material_defines
 from .splats import SPLATS_BLOCK, draw_splats
 from .tile import TileContext
 
 #: Of the sums that are not vec4.
 _OUTPUT_TYPES = {"depth_sum": "vec2"}
-_MATERIAL_VARYING = ("flat", "vec3", "material")
 #: Of texture-mapped splats: uv and slot, change of uv along the half-axes; and the half-axes.
 _TEXTURE_VARYINGS = (("flat", "vec3", "texture_place"), ("flat", "vec4", "texture_along"))
 _AXES_VARYINGS = (("flat", "vec3", "texture_axis_u"), ("flat", "vec3", "texture_axis_v"))
 _TEXTURE_SAMPLERS = ("surfel_uvs", "texture_atlas", "texture_table")
+
+
+def _material_varyings(planned: PlannedPass) -> tuple[tuple[str, str, str], ...]:
+    return tuple(("flat", "vec3", name) for name in ("material", "emission") if f"{name}_sum" in planned.writes)
 
 
 def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> PipelineDescription:
@@ -43,22 +46,22 @@ def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> 
 
 
 def _in_space(planned, frame):
-    with_material = "material_sum" in planned.writes
+    with_materials = material_defines(planned.writes)
     return PipelineDescription(
         name="attributes",
         vertex=load("attributes.vert.glsl", method=frame.method, storage=frame.storage),
         fragment=load("attributes.frag.glsl", method=frame.method),
         block=SPLATS_BLOCK,
-        samplers=(*get_storage(frame.storage).samplers, *(("materials",) if with_material else ())),
+        samplers=(*get_storage(frame.storage).samplers, *(("materials",) if with_materials else ())),
         varyings=(
             ("smooth", "vec3", "place_depth"),
             ("flat", "vec4", "color_weight"),
             ("flat", "vec3", "normal"),
-            *((_MATERIAL_VARYING,) if with_material else ()),
+            *_material_varyings(planned),
         ),
         outputs=tuple((_OUTPUT_TYPES.get(name, "vec4"), name) for name in planned.writes),
         defines=(
-            *((("MATERIAL_TARGET", "1"),) if with_material else ()),
+            *with_materials,
             *(HALF_SUMS if frame.accumulation == "float16" else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
@@ -69,7 +72,7 @@ def _in_space(planned, frame):
 
 
 def _in_picture(planned, frame):
-    with_material = "material_sum" in planned.writes
+    with_materials = material_defines(planned.writes)
     return PipelineDescription(
         name="attributes",
         vertex=load("screen/attributes.vert.glsl", method=frame.method, storage=frame.storage),
@@ -77,7 +80,7 @@ def _in_picture(planned, frame):
         block=SPLATS_BLOCK,
         samplers=(
             *get_storage(frame.storage).samplers,
-            *(("materials",) if with_material else ()),
+            *(("materials",) if with_materials else ()),
             "visibility_depth",
         ),
         varyings=(
@@ -88,12 +91,12 @@ def _in_picture(planned, frame):
             ("flat", "vec2", "plane_gradient"),
             ("flat", "vec4", "color_weight"),
             ("flat", "vec3", "normal"),
-            *((_MATERIAL_VARYING,) if with_material else ()),
+            *_material_varyings(planned),
         ),
         outputs=tuple((_OUTPUT_TYPES.get(name, "vec4"), name) for name in planned.writes),
         defines=(
             ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
-            *((("MATERIAL_TARGET", "1"),) if with_material else ()),
+            *with_materials,
             *(HALF_SUMS if frame.accumulation == "float16" else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),

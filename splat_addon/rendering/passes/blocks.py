@@ -13,5 +13,13 @@ def std140(*parts) -> np.ndarray:
 
 #: Defined where fragments write depth / far.
 LINEAR_DEPTH = (("LINEAR_DEPTH", "1"),)
+
+
+def material_defines(names: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
+    """What is defined where these textures, of a pass, hold sums over the splats' own materials."""
+    targets = [(f"{name.upper()}_TARGET", "1") for name in ("material", "emission") if f"{name}_sum" in names]
+    return (*targets, ("WITH_MATERIALS", "1")) if targets else ()
+
+
 #: Defined where sums are float16.
 HALF_SUMS = (("HALF_SUMS", "1"),)

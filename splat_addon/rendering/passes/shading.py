@@ -16,7 +16,7 @@ from .tile import TileContext
 
 #: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
 #: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights, 1 / far,
-#:     what summed colours are multiplied by.
+#:     what summed colours are multiplied by. emission: of all surfels.
 SHADING_BLOCK = (
     "Shading",
     "shading",
@@ -28,6 +28,7 @@ SHADING_BLOCK = (
         ("vec4", "world"),
         ("vec4", "material"),
         ("vec4", "options"),
+        ("vec4", "emission"),
     ),
 )
 
@@ -35,6 +36,7 @@ SHADING_BLOCK = (
 #: texture that a pass reads -> what its shader is told of it
 _DEFINES = {
     "material_sum": "MATERIAL_TARGET",
+    "emission_sum": "EMISSION_TARGET",
     "lights": "LIGHTS",
     "environment_image": "ENVIRONMENT",
     "environment_levels": "ENVIRONMENT_LIGHT",
@@ -98,4 +100,5 @@ def _block(tile: TileContext) -> np.ndarray:
         (*scene.world, 0.0 if tile.settings.transparent_film else 1.0),
         (*material, 1.0 / view.scale),
         (camera.is_orthographic, len(scene.lights), tile.depth_unit, 1 / tile.color_scale),
+        (*(frame.emission or (0.0, 0.0, 0.0)), 0.0),
     )

@@ -8,7 +8,6 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..device.interface import Pipeline, Target
-from ..packing import pack_materials
 from ..storages import get_storage
 from ..view import PlacedInstance
 from .blocks import std140
@@ -42,8 +41,8 @@ def draw_splats(tile: TileContext, pipeline: Pipeline, target: Target, placed_on
         stored = resources.surfels(instance.surfels, storage)
         made_here = {
             **{name: lambda t=texture: t for name, texture in stored.textures.items()},
-            "materials": lambda i=instance: resources.data(pack_materials(i.materials)),
-            "surfel_uvs": lambda i=instance: resources.surfel_uvs(i.surfels),
+            "materials": lambda i=instance: resources.materials(i, storage, "emission_sum" in tile.plan.textures),
+            "surfel_uvs": lambda i=instance: resources.surfel_uvs(i.surfels, storage),
             "texture_atlas": lambda i=instance: resources.atlas(i.textures)[0],
             "texture_table": lambda i=instance: resources.atlas(i.textures)[1],
         }

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Roughness, metallic and emission: of the material, or of each surfel; only what differs is summed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import scenes
+from splat_addon.rendering import Instance, Light, Material, Scene, Settings, plan
+from splat_addon.surfels import LAYOUT, Surfels
+
+SETTINGS = Settings(method="quad", supersampling=1)
+
+
+def sphere(**options):
+    scene, camera = scenes.sphere(size=(64, 64))
+    return replace(scene, **options), camera
+
+
+def with_own(scene, **fields):
+    """The scene, whose one instance's surfels have these fields, the same number for all."""
+    (instance,) = scene.surfels
+    count = len(instance.surfels)
+    own = {name: np.broadcast_to(value, (count, *np.shape(value))) for name, value in fields.items()}
+    return replace(scene, surfels=(replace(instance, surfels=replace(instance.surfels, **own)),))
+
+
+def with_material(scene, **fields):
+    (instance,) = scene.surfels
+    return replace(scene, surfels=(replace(instance, materials=(replace(instance.materials[0], **fields),)),))
+
+
+@pytest.mark.parametrize("method", ["quad", "mip"])
+@pytest.mark.parametrize(
+    "fields",
+    [{"roughness": 0.7}, {"metallic": 1.0}, {"emission": (0.5, 2.0, 0.1)}, {"roughness": 0.2, "metallic": 0.5}],
+)
+def test_surfels_of_one_value_look_like_their_material_with_it(render, fields, method):
+    scene, camera = sphere()
+    settings = replace(SETTINGS, method=method)
+    own = render(with_own(scene, **fields), camera, settings).color
+    assert np.abs(own - render(with_material(scene, **fields), camera, settings).color).max() < 1e-4
+    assert np.abs(own - render(scene, camera, settings).color).max() > 1e-2
+
+
+def test_a_surface_in_the_dark_shows_its_emission_alone(render):
+    scene, camera = sphere(lights=(), world=(0, 0, 0))
+    frame = render(with_material(scene, emission=(0.25, 3.0, 1000.0)), camera, SETTINGS)
+    seen = frame.coverage == 1
+    assert seen.sum() > 500 and np.allclose(frame.color[seen][:, :3], (0.25, 3, 1000), rtol=1e-5)
+    assert (frame.color[~seen & (frame.coverage == 0), :3] == 0).all()
+
+
+def test_each_surfel_sends_out_its_own_light(render):
+    scene, camera = sphere(lights=(), world=(0, 0, 0))
+    up = scene.surfels[0].surfels.positions[:, 2] > 0
+    glowing = replace(scene.surfels[0].surfels, emission=np.outer(up, (1, 2, 3)))
+    frame = render(replace(scene, surfels=(Instance(glowing),)), camera, SETTINGS)
+    seen = frame.coverage == 1
+    normal_up = frame.normal[..., 2]
+    assert np.allclose(frame.color[seen & (normal_up > 0.15)][:, :3], (1, 2, 3), atol=1e-5)
+    assert np.allclose(frame.color[seen & (normal_up < -0.15)][:, :3], 0, atol=1e-6)
+
+
+def test_float16_sums_keep_bright_emission(render):
+    scene, camera = sphere(lights=(), world=(0, 0, 0))
+    bright = with_own(scene, emission=(1e6, 1.0, 0.0))
+    frame = render(bright, camera, replace(SETTINGS, accumulation="float16"))
+    assert np.allclose(frame.color[frame.coverage == 1][:, :3], (1e6, 1, 0), rtol=1e-3)
+
+
+def left_out(scene, camera, **settings):
+    return dict(plan(scene, camera, replace(SETTINGS, **settings)).left_out)
+
+
+def test_the_plan_sums_only_what_differs():
+    scene, camera = sphere(lights=(Light("sun"),))
+    assert {"material_sum", "emission_sum"} <= left_out(scene, camera).keys()
+    assert left_out(scene, camera)["emission_sum"].endswith("none")
+    for fields, name, other in (
+        ({"roughness": 0.5}, "material_sum", "emission_sum"),
+        ({"emission": (0, 0, 1)}, "emission_sum", "material_sum"),
+    ):
+        planned = plan(with_own(scene, **fields), camera, SETTINGS)
+        assert name in planned.textures and other not in planned.textures
+        assert not {name, other} & set(
+            plan(with_own(scene, **fields), camera, replace(SETTINGS, shading="flat")).textures
+        )
+
+
+def test_one_emission_for_all_is_a_number_and_no_sum():
+    scene, camera = sphere()
+    planned = plan(with_material(scene, emission=(0, 0, 1)), camera, SETTINGS)
+    assert "emission_sum" not in planned.textures and "EMISSION" in dict(planned.features)
+    assert "EMISSION" not in dict(plan(scene, camera, SETTINGS).features)
+
+
+def test_materials_that_differ_in_emission_alone_add_no_material_sum():
+    scene, camera = sphere()
+    first = scene.surfels[0]
+    glowing = replace(first, materials=(Material(emission=(1, 0, 0)),))
+    plain = replace(first, materials=(Material(),))
+    planned = plan(Scene((plain, glowing)), camera, SETTINGS)
+    assert "emission_sum" in planned.textures and "material_sum" not in planned.textures
+
+
+def test_an_instance_that_has_no_own_values_stands_beside_one_that_has(render):
+    """Two halves of a sphere, the left with its own emission, the right with its material's."""
+    scene, camera = sphere(lights=(), world=(0, 0, 0))
+    surfels = scene.surfels[0].surfels
+    left, right = (
+        Surfels(**{name: getattr(surfels, name)[rows] for name in LAYOUT}, origin=surfels.origin)
+        for rows in (surfels.positions[:, 0] < 0, surfels.positions[:, 0] >= 0)
+    )
+    left = replace(left, emission=np.tile(np.float32((1, 0, 0)), (len(left), 1)))
+    halves = Instance(left), Instance(right, materials=(Material(emission=(0, 1, 0)),))
+    frame = render(replace(scene, surfels=halves), camera, SETTINGS)
+    seen = frame.coverage == 1
+    assert np.allclose(frame.color[seen & (frame.normal[..., 0] < -0.15)][:, :3], (1, 0, 0), atol=1e-6)
+    assert np.allclose(frame.color[seen & (frame.normal[..., 0] > 0.15)][:, :3], (0, 1, 0), atol=1e-6)
+
+
+def test_an_emission_that_is_not_finite_is_refused():
+    with pytest.raises(ValueError, match="finite numbers"):
+        Material(emission=(np.nan, 0, 0))
