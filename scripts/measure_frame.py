@@ -22,6 +22,7 @@ sys.path.insert(0, str(ROOT))
 
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402
+from inside_a_render import inside_a_render  # noqa: E402
 
 from splat_addon.rendering import Camera, Instance, Light, Material, Renderer, Scene, Settings, open_device  # noqa: E402
 from splat_addon.surfels import Surfels, axes_quaternions  # noqa: E402
@@ -111,28 +112,6 @@ def main() -> None:
     inside_a_render(lambda: report(arguments))
     sys.stdout.flush()
     os._exit(0)
-
-
-def inside_a_render(job) -> None:
-    """Blender has a graphics context in background mode only inside an engine's render()."""
-
-    class JobEngine(bpy.types.RenderEngine):
-        bl_idname, bl_label, bl_use_gpu_context = "MEASURE_JOB", "Measure", True
-
-        def render(self, depsgraph):
-            try:
-                job()
-            except Exception as error:
-                self.report({"ERROR"}, str(error))
-                raise
-
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    scene = bpy.context.scene
-    scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-    bpy.utils.register_class(JobEngine)
-    scene.render.engine = "MEASURE_JOB"
-    scene.render.resolution_x = scene.render.resolution_y = 4
-    bpy.ops.render.render()
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@
 const float KERNEL_VARIANCE = 0.25;
 const float FILTER_SIGMA = 0.70710678;  // pixels
 const float FILTER_VARIANCE = FILTER_SIGMA * FILTER_SIGMA;
-const float LOGISTIC = 1.702;  // 1 / (1 + exp(-1.702 x)) is within 0.0095 of the normal distribution
+const vec2 NORMAL = vec2(1.5976, 0.070565);  // 1 / (1 + exp(-x (NORMAL.x + NORMAL.y x^2))) is within 2e-4 of it
 
 #ifdef VERTEX_STAGE
 void adjust(inout Splat splat, bool straddles) {}
@@ -31,12 +31,13 @@ vec2 splat_sample(Plane plane, vec2 point) {
   float rho2 = KERNEL_VARIANCE / det * (q.x * q.x * (KERNEL_VARIANCE + FILTER_VARIANCE * yy)
       - 2.0 * q.x * q.y * FILTER_VARIANCE * xy + q.y * q.y * (KERNEL_VARIANCE + FILTER_VARIANCE * xx));
   // The kernel ends at its rim. Along the line from the centre, kernel times pixel is a Gaussian about `middle`: the
-  // share of it within the rim is what the pixel sees of the splat (a logistic in place of the normal distribution).
+  // share of it within the rim, its normal distribution, is what the pixel sees of the splat.
   float reach = max(length(q), 1e-30);
   vec2 along = q * j / reach * FILTER_SIGMA;
   float share = KERNEL_VARIANCE / (KERNEL_VARIANCE + dot(along, along));
   float middle = reach * share, deviation = max(sqrt(KERNEL_VARIANCE * (1.0 - share)), 1e-6);
-  float within = 1.0 / (1.0 + exp(clamp(LOGISTIC * (middle - 1.0) / deviation, -40.0, 40.0)));
+  float x = clamp((middle - 1.0) / deviation, -8.0, 8.0);
+  float within = 1.0 / (1.0 + exp(x * (NORMAL.x + NORMAL.y * x * x)));
   float limit = 1.0 + 2.0 * length(along);
   float weight = rho2 <= limit * limit ? within * KERNEL_VARIANCE * inversesqrt(det) * exp(-2.0 * rho2) : 0.0;
   return vec2(place.k > 0.0 ? weight : 0.0, plane_depth(plane, place, FILTER_SIGMA));

@@ -71,7 +71,7 @@ def text_board(
     count: surfels, on the nearest square grid. columns: letters in a line, of 6 dots each; with a dot smaller than
     a surfel the text blurs.
     """
-    ink = page(columns, columns * PLACE[0] // PLACE[1])
+    ink = page(columns, max(columns * PLACE[0] // PLACE[1], 1))
     rows, width = ink.shape
 
     def is_ink(x, y):

@@ -10,12 +10,14 @@ from .environment import Environment
 from .frame import EMPTY_DEPTH, Frame
 from .light import Light
 from .plan import FramePlan, plan
+from .presets import PRESETS, Preset
 from .renderer import RenderCancelled, Renderer
 from .scene import Instance, Material, Scene
 from .settings import Settings
 
 __all__ = (
     "EMPTY_DEPTH",
+    "PRESETS",
     "Camera",
     "Environment",
     "Frame",
@@ -23,6 +25,7 @@ __all__ = (
     "Instance",
     "Light",
     "Material",
+    "Preset",
     "RenderCancelled",
     "Renderer",
     "Scene",

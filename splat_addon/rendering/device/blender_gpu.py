@@ -31,6 +31,7 @@ class BlenderDevice:
                 gpu.platform.backend_type_get(), gpu.platform.backend_type_get()
             )
             self.renderer = gpu.platform.renderer_get()
+            self.version = gpu.platform.version_get()
         except SystemError as error:
             raise RuntimeError(
                 "Blender has no graphics context here: in background mode it has one only inside a render."

@@ -71,11 +71,13 @@ class Pipeline(Protocol):
 
 
 class Device(Protocol):
-    """kind: its name in `DEVICES`. backend: "OpenGL", "Vulkan" ... renderer: what the driver calls itself."""
+    """kind: its name in `DEVICES`. backend: "OpenGL", "Vulkan" ... renderer, version: what the driver calls itself.
+    """
 
     kind: str
     backend: str
     renderer: str
+    version: str
 
     def texture(self, size: tuple[int, int], format: str, data: np.ndarray | None = None) -> Texture:
         """data: (h, w, channels) float32, row 0 first; without it the contents are undefined."""

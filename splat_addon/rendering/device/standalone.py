@@ -42,6 +42,7 @@ class StandaloneDevice:
             raise RuntimeError(f"No OpenGL 3.3 context could be made without a window: {error}") from error
         self._context.gc_mode = "auto"
         self.renderer = self._context.info["GL_RENDERER"]
+        self.version = self._context.info["GL_VERSION"]
         self._indices = None
         self._uniforms = {}
 

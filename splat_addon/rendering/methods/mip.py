@@ -9,8 +9,8 @@ from .plane import Plane, gradients, places, plane_depth, projected_box
 
 KERNEL_VARIANCE = 0.25
 FILTER_SIGMA = 0.5**0.5
-#: 1 / (1 + exp(-1.702 x)) is within 0.0095 of the normal distribution.
-LOGISTIC = 1.702
+#: 1 / (1 + exp(-x (a + b x^2))) is within 2e-4 of the normal distribution.
+NORMAL = 1.5976, 0.070565
 
 
 def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -43,7 +43,8 @@ def _within_rim(reach: np.ndarray, along: np.ndarray) -> np.ndarray:
     """
     share = KERNEL_VARIANCE / (KERNEL_VARIANCE + along**2)
     deviation = np.maximum(np.sqrt(KERNEL_VARIANCE * (1 - share)), 1e-6)
-    return 1 / (1 + np.exp(np.clip(LOGISTIC * (reach * share - 1) / deviation, -40, 40)))
+    x = np.clip((reach * share - 1) / deviation, -8, 8)
+    return 1 / (1 + np.exp(x * (NORMAL[0] + NORMAL[1] * x * x)))
 
 
 def _in_box(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> np.ndarray:

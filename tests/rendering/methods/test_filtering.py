@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import render_exact, scenes
-from splat_addon.reference.metrics import psnr
+from splat_addon.reference.metrics import psnr, srgb
 from splat_addon.rendering import Camera, Settings
 
 SIZE = (256, 256)
@@ -44,6 +44,14 @@ def test_mip_is_above_36_db_and_6_above_the_papers(name, render):
     true = {method: psnr(frame.color, exact(name).color) for method, frame in frames.items()}
     assert true["mip"] > 36, true
     assert true["mip"] > max(true["raycast"], true["homogeneous"]) + 6, true
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_mips_mean_flip_is_at_most_0_016(name, render):
+    flip_evaluator = pytest.importorskip("flip_evaluator", reason="FLIP is measured outside of a Blender program")
+    frame = render(*SCENES[name](), replace(FLAT, method="mip"))
+    truth, picture = (np.float32(srgb(f.color[..., :3])) for f in (exact(name), frame))
+    assert flip_evaluator.evaluate(truth, picture, "LDR", applyMagma=False)[1] <= 0.016
 
 
 @pytest.mark.parametrize("name", SCENES)

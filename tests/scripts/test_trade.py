@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/measure.py: what it leaves behind, on both devices, and that FLIP is read as its authors mean it."""
+
+import csv
+import platform
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+TINY = ["--quick", "--size", "32", "--samples", "2", "--turns", "2", "--scenes", "text"]
+
+
+def measure(*arguments):
+    command = [sys.executable, str(SCRIPTS / "measure_trade.py"), *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+@pytest.fixture(scope="module", params=["standalone", "blender"])
+def measured(request, tmp_path_factory):
+    """(the finished run, its folder)"""
+    folder = tmp_path_factory.mktemp(request.param)
+    done = measure("--device", request.param, "--out", folder, *TINY)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done, folder
+
+
+def rows_of(folder):
+    with (folder / "trade.csv").open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_every_quick_choice_has_a_row_with_numbers_in_order(measured):
+    from trade.choices import choices
+
+    rows = rows_of(measured[1])
+    assert len(rows) == len(choices(quick=True)) > 8
+    for row in rows:
+        assert float(row["ms_min"]) <= float(row["ms"]) <= float(row["ms_max"])
+        assert float(row["ratio_min"]) <= float(row["ratio"]) <= float(row["ratio_max"])
+        assert 10 < float(row["psnr_gaussian"]) < 60 and 0 < float(row["flip_gaussian"]) < 0.3
+        assert row["non_finite"] == "0"
+
+
+def test_the_default_filter_is_the_truest_under_its_own_pixel(measured):
+    rows = [r for r in rows_of(measured[1]) if r["storage"] == r["accumulation"] == "float32"]
+    assert min(rows, key=lambda row: float(row["flip_gaussian"]))["method"] == "mip"
+    assert min(rows, key=lambda row: float(row["flip_box"]))["method"] == "quad"
+
+
+def test_the_table_says_how_it_was_come_by_and_names_no_host(measured):
+    text = (measured[1] / "trade.md").read_text(encoding="utf-8")
+    assert "32 x 32 pixels, medians of 2 turns, truth of 2 x 2 samples" in text
+    assert "commit " in text and "driver " in text and "Mip Filter, 1 x 1" in text
+    assert platform.node() not in text.split()
+
+
+def test_plots_and_pictures_are_there(measured):
+    for name in ("text.png", "overview.png", "text-differences.png"):
+        with Image.open(measured[1] / name) as picture:
+            assert np.asarray(picture.convert("L")).std() > 10, name
+
+
+def test_a_missing_model_is_said_aloud_and_the_rest_measured(tmp_path):
+    done = measure("--out", tmp_path, *TINY, "armadillo", "--models", tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "SKIPPED armadillo" in done.stdout
+    assert "**Skipped: armadillo**" in (tmp_path / "trade.md").read_text(encoding="utf-8")
+    assert {row["scene"] for row in rows_of(tmp_path)} == {"text"}
+
+
+def test_nothing_measured_is_a_failure(tmp_path):
+    done = measure("--out", tmp_path, *TINY[:-1], "armadillo", "--models", tmp_path)
+    assert done.returncode == 1 and "Nothing was measured" in done.stderr
+
+
+def test_the_frontier_keeps_what_nothing_beats():
+    from trade.frontier import frontier
+
+    rows = [{"ratio": r, "flip_gaussian": f} for r, f in ((1, 0.5), (1, 0.4), (2, 0.4), (3, 0.1), (2.5, 0.6), (4, 0.2))]
+    assert [(row["ratio"], row["flip_gaussian"]) for row in frontier(rows)] == [(1, 0.4), (3, 0.1)]
+
+
+def test_every_case_can_be_built_and_every_choice_is_its_own(models):
+    from trade.cases import CASES, View
+    from trade.choices import YARDSTICK, choices
+
+    view = View(16, models)
+    for case in CASES.values():
+        scene, camera = case.build(view)
+        assert camera.size == (16, 16) and sum(len(i.surfels) for i in scene.surfels) > 0
+    every = choices()
+    assert len(set(every)) == len(every) and YARDSTICK in every and set(choices(quick=True)) < set(every)
+
+
+def test_a_kept_truth_is_read_again_and_another_scenes_is_not(tmp_path):
+    from trade.cases import CASES, View
+    from trade.choices import YARDSTICK
+    from trade.truth import exact_frames
+
+    view = View(16, tmp_path)
+    first = exact_frames(*CASES["text"].build(view), YARDSTICK, 1, tmp_path)
+    kept = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    again = exact_frames(*CASES["text"].build(view), YARDSTICK, 1, tmp_path)
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()} == kept and len(kept) == 2
+    np.testing.assert_array_equal(first["box"].color, again["box"].color)
+    exact_frames(*CASES["text at 10"].build(view), YARDSTICK, 1, tmp_path)
+    assert len(list(tmp_path.iterdir())) == 4
+
+
+@pytest.mark.parametrize(
+    ("a", "b"), [((0, 0, 0), (1, 1, 1)), ((0.2, 0.5, 0.1), (0.2, 0.4, 0.3)), ((0.5,) * 3, (0.5,) * 3)]
+)
+def test_flip_of_two_plain_colours_is_the_papers(a, b):
+    """Andersson et al. 2020: without detail only the colour pipeline is left."""
+    from trade.truth import mean_flip
+
+    pictures = (np.broadcast_to(np.float64(color), (32, 32, 3)) for color in (a, b))
+    assert mean_flip(*pictures) == pytest.approx(flip_of_colours(a, b), abs=2e-4)
+
+
+def flip_of_colours(a, b):
+    """Sections 4.1 and 4.3: Hunt-adjusted CIELAB, HyAB distance to the power 0.7, compressed beyond 0.4 of the
+    distance of green and blue onto 0.95 to 1. The colours are linear."""
+    to_xyz = np.array([(0.4123908, 0.3575843, 0.1804808), (0.2126390, 0.7151687, 0.0721923),
+                       (0.0193308, 0.1191948, 0.9505322)])  # fmt: skip
+
+    def hunt_lab(color):
+        ratio = to_xyz @ np.float64(color) / to_xyz.sum(axis=1)
+        f = np.where(ratio > (6 / 29) ** 3, np.cbrt(ratio), ratio / (3 * (6 / 29) ** 2) + 4 / 29)
+        lightness = 116 * f[1] - 16
+        return np.array([lightness, 0.01 * lightness * 500 * (f[0] - f[1]), 0.01 * lightness * 200 * (f[1] - f[2])])
+
+    def distance(a, b):
+        difference = hunt_lab(a) - hunt_lab(b)
+        return (abs(difference[0]) + np.hypot(*difference[1:])) ** 0.7
+
+    most = distance((0, 1, 0), (0, 0, 1))
+    least, knee, height = distance(a, b), 0.4 * most, 0.95
+    return height * least / knee if least < knee else height + (least - knee) / (most - knee) * (1 - height)
