@@ -16,6 +16,7 @@ import numpy as np
 
 from ..surfels import LAYOUT, quaternion_axes
 from .ellipses import ellipse_rotations, ellipse_scales
+from .texture_mapping import UV_FIELDS, from_uv_planes, is_mapped, slips, uv_planes
 
 #: Doublings of the spacing. The renderer tells surfaces apart at half a splat's radius, so larger discs would show
 #: what lies several spacings behind them.
@@ -30,6 +31,9 @@ _BITS = 21
 #: Four blocks of one layer meet over their middle within this many tolerances: one to each side, and sqrt(3) for tilt.
 _SPREAD = 2 * math.sqrt(3)
 
+#: Of texture coordinates in float32, in cells.
+_ROUNDING = 1e-3
+
 #: Layers of surface over one block that a search looks at.
 _LAYERS = 4
 
@@ -37,7 +41,8 @@ _LAYERS = 4
 @dataclass(frozen=True)
 class Tolerance:
     """distance: from the sampled planes, object units. angle: between shading normals, radians. color: the largest
-    difference of a component, scene-linear, and of any optional field of `Surfels` that is there."""
+    difference of a component, scene-linear, where no texture takes its place, and of any optional field of `Surfels`.
+    A texture may slip by the distance."""
 
     distance: float
     angle: float = math.radians(8)
@@ -57,7 +62,9 @@ class _Nodes:
     keys: (n,) int64: image, side and block. planes: (n, 3): depth over the block's middle and its change per column and
     row, in cells. shading: (n, 3) unit. colors: (n, 4 or more): what is averaged, the optional fields of `Surfels`
     after the colour. materials: (n,). errors, bends, tints: (n,) bounds of what its samples differ by from it: depth in
-    cells, radians, colour. children: (n, 4) rows of the level below.
+    cells, radians, colour. uvs: (n, 2, 3) texture coordinates over the block's middle and their change per column and
+    row, (n, 0, 3) without any; slips: (n,) bound of how far they are off, in cells. children: (n, 4) rows of the level
+    below.
     """
 
     keys: np.ndarray
@@ -68,6 +75,8 @@ class _Nodes:
     errors: np.ndarray
     bends: np.ndarray
     tints: np.ndarray
+    uvs: np.ndarray
+    slips: np.ndarray
     children: np.ndarray
 
     def take(self, rows: np.ndarray) -> _Nodes:
@@ -86,13 +95,16 @@ def merge_flat(
     while len(levels) <= LEVELS and len(levels[-1].keys):
         levels.append(_parents(levels[-1], 2 ** (len(levels) - 1), spacing, tolerance))
     parts, error = [], 0.0
-    optional = {name: array for name, array in arrays.items() if name not in LAYOUT}
+    optional = {name: array for name, array in arrays.items() if name not in (*LAYOUT, *UV_FIELDS)}
+    has_uvs = "uvs" in arrays
     wanted = np.arange(len(levels[-1].keys))
     for level in range(len(levels) - 1, 0, -1):
         nodes = levels[level].take(wanted)
         alone = _goes_on_around(nodes, level, levels[max(level - 2, 0)], spacing, tolerance)
         discs = nodes.take(np.flatnonzero(alone))
-        parts.append(_discs(discs, level, spacing) | _unstacked(discs.colors[:, 4:], optional))
+        made, images = _discs(discs, level, spacing), _block(discs.keys)[0] >> 1
+        uvs = from_uv_planes(discs.uvs, made, images, spacing) if has_uvs else {}
+        parts.append(made | uvs | _unstacked(discs.colors[:, 4:], optional))
         error = max(error, float((nodes.errors * _cosines(nodes.planes))[alone].max(initial=0.0)))
         free = np.ones(len(levels[level - 1].keys), bool)
         free[levels[level].children.ravel()] = False
@@ -113,8 +125,12 @@ def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
     planes = np.stack([pw, -nu / nw, -nv / nw], axis=1)
     order = np.lexsort((pw, keys))
     zeros = np.zeros(len(axes))
-    colors = np.column_stack([arrays["colors"], *(array for name, array in arrays.items() if name not in LAYOUT)])
-    nodes = _Nodes(keys, planes, arrays["normals"], colors, arrays["materials"], zeros, zeros, zeros, zeros[:, None])
+    averaged = (array for name, array in arrays.items() if name not in (*LAYOUT, *UV_FIELDS))
+    colors = np.column_stack([arrays["colors"], *averaged])
+    uvs = uv_planes(arrays, axes, spacing)
+    nodes = _Nodes(
+        keys, planes, arrays["normals"], colors, arrays["materials"], zeros, zeros, zeros, uvs, zeros, zeros[:, None]
+    )
     return nodes.take(order), order
 
 
@@ -145,14 +161,14 @@ def _parents(nodes: _Nodes, edge: int, spacing: float, tolerance: Tolerance) -> 
     four = np.stack([window[first] for window in windows], axis=1)
     four = np.take_along_axis(four, corner[four].argsort(axis=1), axis=1)
 
-    depths = nodes.planes[four, 0]
-    along_u = (depths[:, 1] - depths[:, 0] + depths[:, 3] - depths[:, 2]) / (2 * edge)
-    along_v = (depths[:, 2] - depths[:, 0] + depths[:, 3] - depths[:, 1]) / (2 * edge)
-    planes = np.stack([depths.mean(axis=1), along_u, along_v], axis=1)
+    planes = _plane_of_four(nodes.planes[four, 0], edge)
+    uvs, slipped = _uvs_of_four(nodes.uvs[four], edge)
     shading = nodes.shading[four].mean(axis=1)
     shading = shading / np.maximum(np.linalg.norm(shading, axis=1, keepdims=True), 1e-30)
     colors = nodes.colors[four].mean(axis=1)
     cosines = (nodes.shading[four] * shading[:, None]).sum(axis=2)
+    tints = np.abs(nodes.colors[four] - colors[:, None])
+    tints[is_mapped(uvs), :, :3] = 0
     parents = _Nodes(
         keys[four[:, 0]],
         planes,
@@ -161,16 +177,41 @@ def _parents(nodes: _Nodes, edge: int, spacing: float, tolerance: Tolerance) -> 
         nodes.materials[four[:, 0]],
         (_plane_distances(planes, nodes.planes[four], edge) + nodes.errors[four]).max(axis=1),
         (np.arccos(np.clip(cosines, -1, 1)) + nodes.bends[four]).max(axis=1),
-        (np.abs(nodes.colors[four] - colors[:, None]).max(axis=2) + nodes.tints[four]).max(axis=1),
+        (tints.max(axis=2) + nodes.tints[four]).max(axis=1),
+        uvs,
+        (slipped + nodes.slips[four]).max(axis=1),
         four,
     )
     good = (
         (parents.errors * _cosines(planes) * spacing <= tolerance.distance)
         & (parents.bends <= tolerance.angle)
         & (parents.tints <= tolerance.color)
+        & (parents.slips <= _most_slip(spacing, tolerance))
         & (nodes.materials[four] == parents.materials[:, None]).all(axis=1)
     )
     return parents.take(np.flatnonzero(good))
+
+
+def _plane_of_four(values: np.ndarray, edge: float) -> np.ndarray:
+    """(n, 3) value over a block's middle and its change per column and row, from (n, 4) values at its quarters."""
+    along_u = (values[:, 1] - values[:, 0] + values[:, 3] - values[:, 2]) / (2 * edge)
+    along_v = (values[:, 2] - values[:, 0] + values[:, 3] - values[:, 1]) / (2 * edge)
+    return np.stack([values.mean(axis=1), along_u, along_v], axis=1)
+
+
+def _uvs_of_four(children: np.ndarray, edge: float) -> tuple[np.ndarray, np.ndarray]:
+    """(n, k, 3) texture coordinates of blocks from (n, 4, k, 3) of their quarters, and how far each of those slips."""
+    count = children.shape[2]
+    uvs, off = np.empty((len(children), count, 3)), np.empty((len(children), 4, count))
+    for k in range(count):
+        uvs[:, k] = _plane_of_four(children[:, :, k, 0], edge)
+        off[:, :, k] = _plane_distances(uvs[:, k], children[:, :, k], edge)
+    return uvs, np.stack([slips(off[:, child], uvs) for child in range(4)], axis=1)
+
+
+def _most_slip(spacing: float, tolerance: Tolerance) -> float:
+    """How many cells a texture may lie beside its place: as far as the surface may, but for rounding."""
+    return max(tolerance.distance / spacing, _ROUNDING)
 
 
 def _every_fourth(whole: np.ndarray) -> np.ndarray:
@@ -208,12 +249,15 @@ def _goes_on_around(nodes: _Nodes, level: int, finer: _Nodes, spacing: float, to
         keys = _key(side[at], column[at] * count + across, row[at] * count + along)
         plane, aside = nodes.planes[at], (across + 0.5 - count / 2, along + 0.5 - count / 2)
         depth = plane[:, 0] + share * (plane[:, 1] * aside[0] + plane[:, 2] * aside[1])
+        uvs = nodes.uvs[at]
+        there = uvs[:, :, 0] + share * (uvs[:, :, 1] * aside[0] + uvs[:, :, 2] * aside[1])
         start = np.searchsorted(finer.keys, keys)
         for layer in range(_LAYERS):
             other = np.minimum(start + layer, len(finer.keys) - 1)
             is_like = (finer.keys[other] == keys) & (np.abs(finer.planes[other, 0] - depth) <= limits[at])
             is_like &= _are_alike(finer, other, nodes, at, tolerance)
-            at, keys, depth, start = (array[~is_like] for array in (at, keys, depth, start))
+            is_like &= slips(finer.uvs[other, :, 0] - there, nodes.uvs[at]) <= _most_slip(spacing, tolerance)
+            at, keys, depth, start, there = (array[~is_like] for array in (at, keys, depth, start, there))
         result[at] = False
     return result
 
@@ -222,8 +266,10 @@ def _are_alike(a: _Nodes, i: np.ndarray, b: _Nodes, k: np.ndarray, tolerance: To
     """(n,) bool: whether rows i of a and k of b have one material and nearly one shading normal and colour."""
     alike = a.materials[i] == b.materials[k]
     alike &= sum(a.shading[i, c] * b.shading[k, c] for c in range(3)) >= math.cos(tolerance.angle)
+    mapped = is_mapped(a.uvs[i])
+    alike &= mapped == is_mapped(b.uvs[k])
     for c in range(a.colors.shape[1]):
-        alike &= np.abs(a.colors[i, c] - b.colors[k, c]) <= tolerance.color
+        alike &= (np.abs(a.colors[i, c] - b.colors[k, c]) <= tolerance.color) | (mapped & (c < 3))
     return alike
 
 

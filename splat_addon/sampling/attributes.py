@@ -15,6 +15,7 @@ from .grid import Grid
 from .mesh import TriangleMesh, corner_indices, corners_at, crossed, doubled_areas
 from .palette import Palette, Samples
 from .scan_conversion import Spans, expand
+from .texture_mapping import axis_steps, fill_uvs
 
 #: A projected triangle this much smaller than its snapped twin, or turned over, has no usable barycentrics of its own.
 _LEAST_AREA_RATIO = 1e-6
@@ -75,10 +76,14 @@ class SampleFiller:
         else:
             vectors = self._samples(self._mesh.corner_normals, triangles, weights, line)
             _write_unit(vectors, normals, triangle, out["normals"])
-        self._paint(out, triangles, triangle, weights, line)
+        samples = self._paint(out, triangles, triangle, weights, line)
+        if "uvs" in out:
+            fill_uvs(out, self._mesh.surfaces, samples, axis_steps(out, axis, spacing))
 
     @_quietly
-    def _paint(self, out: dict, triangles: np.ndarray, triangle: np.ndarray, weights: _SpanWeights, line: _Lines):
+    def _paint(
+        self, out: dict, triangles: np.ndarray, triangle: np.ndarray, weights: _SpanWeights, line: _Lines
+    ) -> Samples:
         mesh, palette = self._mesh, self._palette
         if mesh.materials is None:
             out["materials"][...] = 0
@@ -93,7 +98,9 @@ class SampleFiller:
             uv_steps = weights.gradients(corner_uvs.swapaxes(0, 1)).take(triangle, axis=2)
         if self._tangents is not None:
             tangents = self._samples(self._tangents, triangles, weights, line)
-        palette.fill(out, Samples(out["materials"], colors, uvs, uv_steps, tangents))
+        samples = Samples(out["materials"], colors, uvs, uv_steps, tangents)
+        palette.fill(out, samples)
+        return samples
 
     @_quietly
     def _samples(

@@ -10,6 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..surfels import quaternion_axes
+from .texture_mapping import moved
+
 
 def nearest_to_lattice(arrays: dict[str, np.ndarray], spacing: float) -> dict[str, np.ndarray]:
     """Of the surfels around each lattice node the nearest, standing on the node; in the order that they had.
@@ -27,7 +30,12 @@ def nearest_to_lattice(arrays: dict[str, np.ndarray], spacing: float) -> dict[st
     is_first[1:] = nodes[1:] != nodes[:-1]
     stay = np.sort(order[is_first])
     kept = {name: array[stay] for name, array in arrays.items()}
-    kept["positions"] = np.ascontiguousarray(centres.T[stay], np.float32)
+    positions = np.ascontiguousarray(centres.T[stay], np.float32)
+    if "uvs" in kept:
+        x, y, _ = quaternion_axes(kept["rotations"], 2)
+        half_axes = x * kept["scales"][:, :1], y * kept["scales"][:, 1:]
+        kept["uvs"] = moved(kept, half_axes, positions - kept["positions"])
+    kept["positions"] = positions
     return kept
 
 

@@ -120,21 +120,26 @@ class Palette:
         return rows.T
 
     def _texture(self, factor: Texture, samples: Samples, looked_up) -> np.ndarray | None:
-        uvs, steps = (_layer(a, factor.layer, _UV) for a in (samples.uvs, samples.uv_steps))
-        if uvs is None:
-            return None
-        placement = None if factor.placement is None else factor.placement.tobytes()
-        key = factor.image, factor.layer, placement
+        key = factor.image, factor.layer, None if factor.placement is None else factor.placement.tobytes()
         if key not in looked_up:
-            if placement is not None:
-                linear, shift = factor.placement[:, :2], factor.placement[:, 2:]
-                uvs, steps = (linear @ uvs + shift).astype(np.float32), linear @ steps
+            uvs, steps = placed(factor, samples)
+            if uvs is None:
+                return None
             pyramid = self._pyramids[factor.image]
             looked_up[key] = pyramid.lookup(uvs, pyramid.level_for(_texels_between(steps, pyramid.size)))
         return looked_up[key] if factor.uses_alpha else _on_black(looked_up[key])
 
 
 _READERS = {VertexColors: Palette._vertex_colors, Texture: Palette._texture}
+
+
+def placed(texture: Texture, samples: Samples) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """(2, n) coordinates in the texture's image and their (2, 2, n) steps; None where the mesh has not its layer."""
+    uvs, steps = (_layer(a, texture.layer, _UV) for a in (samples.uvs, samples.uv_steps))
+    if uvs is None or texture.placement is None:
+        return uvs, steps
+    linear, shift = texture.placement[:, :2], texture.placement[:, 2:]
+    return (linear @ uvs + shift).astype(np.float32), linear @ steps
 
 
 def bent(normals: np.ndarray, normal_map: NormalMap, color: np.ndarray, tangents: np.ndarray | None) -> np.ndarray:

@@ -7,11 +7,12 @@ import math
 
 import numpy as np
 
-from ..surfels import OPTIONAL_LAYOUT
+from ..surfels import OPTIONAL_LAYOUT, quaternion_axes
 from .ellipses import ellipse_rotations
 from .grid import Grid
 from .mesh import TriangleMesh, doubled_areas, gather_corners
 from .palette import Palette, Samples
+from .texture_mapping import UV_FIELDS, fill_uvs
 
 #: Half-axis of the smallest disc, in spacings: dust of no measurable area is still a surfel.
 _LEAST_RADIUS = 1e-3
@@ -28,11 +29,13 @@ def part_surfels(
     largest_radius: float,
     palette: Palette,
     tangents: np.ndarray | None,
+    texture_mapped: bool,
 ) -> dict[str, np.ndarray]:
     """The arrays of `Surfels` of p parts, positions relative to the grid's origin.
 
     coordinates: (3, V) float64, of the mesh's vertices on the grid. lost: what `lost_parts` found.
     largest_radius: of a disc, in spacings. palette, tangents: as a `SampleFiller` has them.
+    texture_mapped: the surfels get texture coordinates too.
     The disc lies at the area-weighted centroid, faces the way that most of the area faces, and has the area that is
     seen from there. The shading normal is the mean over the triangles on its front; the material and what it is made of
     are those of the largest triangle.
@@ -63,8 +66,28 @@ def part_surfels(
     for name in palette.optional:
         columns, dtype, _ = OPTIONAL_LAYOUT[name]
         arrays[name] = np.empty((count, columns) if columns > 1 else count, dtype)
-    palette.fill(arrays, _samples(mesh, palette, tangents, triangles[largest], materials))
+    samples = _samples(mesh, palette, tangents, triangles[largest], materials)
+    palette.fill(arrays, samples)
+    if texture_mapped:
+        arrays |= {name: np.empty((count, 2), np.float32) for name in UV_FIELDS}
+        fill_uvs(arrays, mesh.surfaces, samples, _axis_steps(corners[:, :, largest] * grid.spacing, arrays))
     return arrays
+
+
+def _axis_steps(corners: np.ndarray, arrays: dict[str, np.ndarray]) -> np.ndarray:
+    """(2, 2, p) how many of the two edges from a triangle's first corner the discs' half-axes are, in its plane.
+
+    corners: (3, 3, p), object units. By the dual basis of the edges; not finite for a triangle without area.
+    """
+    first, second = (np.moveaxis(corners[:, k] - corners[:, 0], 0, 1) for k in (1, 2))
+    normal = np.cross(first, second)
+    square = np.einsum("ij,ij->i", normal, normal)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        duals = np.cross(second, normal) / square, np.cross(normal, first) / square
+    axes = (
+        a * size[:, None] for a, size in zip(quaternion_axes(arrays["rotations"], 2), arrays["scales"].T, strict=False)
+    )
+    return np.stack([[np.einsum("ij,ij->i", axis, dual) for dual in duals] for axis in axes])
 
 
 def _sums(part: np.ndarray, values: np.ndarray) -> np.ndarray:

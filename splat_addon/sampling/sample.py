@@ -27,6 +27,7 @@ from .part_surfels import part_surfels
 from .reductions import DEFAULT_GRAZING_ANGLE, check_grazing_angle, find_reduction
 from .scan_conversion import BATCH, Spans, batches
 from .tangents import layered_tangents
+from .texture_mapping import UV_FIELDS, is_texture_mapped
 
 #: Half-axis of a splat in H. At 1 the seams between the regions of two axes leave 0.025 % of the armadillo uncovered
 #: at resolution 256, single dark specks in a picture; at 1.25 none of 200,000 points on it was uncovered.
@@ -69,6 +70,7 @@ def sample_surface(
     grazing_angle: float = DEFAULT_GRAZING_ANGLE,
     splat_size: float = DEFAULT_SPLAT_SIZE,
     tolerance: Tolerance | None = None,
+    texture_mapped: bool = False,
     progress: Callable[[float], bool | None] | None = None,
 ) -> Sampling:
     """Surfels of a mesh on a grid of exact rays, in the order of axis, triangle, row, column.
@@ -78,6 +80,7 @@ def sample_surface(
     reduction: a name in `REDUCTIONS`. grazing_angle: radians between a normal and the axis beyond which the reduction
     "grazing" refuses a sample. splat_size: smaller half-axis of a splat, in H.
     tolerance: how far from flat the surface may be where larger surfels take the place of several; None: all alike.
+    texture_mapped: surfels whose colour is one image also keep where they lie in it, to look it up when rendered.
     progress: called between chunks with the finished share, 0 to 1; where it returns False, `SamplingCancelled` rises.
     Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the grid's origin.
     A connected part that lies between the rays gets one surfel. A mesh without usable triangles gives none.
@@ -103,7 +106,8 @@ def sample_surface(
     total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
     coordinates = grid.coordinates(mesh.positions)
     palette = Palette(mesh.surfaces)
-    layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in palette.optional}
+    uv_fields = UV_FIELDS if texture_mapped and is_texture_mapped(mesh.surfaces) else ()
+    layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in (*palette.optional, *uv_fields)}
     arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
     tangents = layered_tangents(mesh) if palette.needs_tangents else None
     filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, palette, tangents, arrays)
@@ -117,7 +121,7 @@ def sample_surface(
         saved = total - len(arrays["positions"])
     small_parts = int(lost[1].max(initial=-1)) + 1
     if small_parts:
-        extra = part_surfels(mesh, coordinates, grid, lost, splat_size, palette, tangents)
+        extra = part_surfels(mesh, coordinates, grid, lost, splat_size, palette, tangents, bool(uv_fields))
         arrays = {name: np.concatenate([array, extra[name]]) for name, array in arrays.items()}
     surfels = Surfels(origin=grid.origin, **arrays)
     return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error)

@@ -112,6 +112,13 @@ class Surface:
             if channel is not None and len(channel.value) != count:
                 raise ValueError(f"A surface's {name} has {count} numbers, not {len(channel.value)}.")
 
+    @property
+    def color_texture(self) -> Texture | None:
+        """The one image whose colours, times a constant, are the surface's; None where there is more or less to it."""
+        factors = self.color.factors
+        is_one = len(factors) == 1 and isinstance(factors[0], Texture) and factors[0].weights is None
+        return factors[0] if is_one else None
+
     def channels(self) -> dict[str, Channel]:
         """Those that are given, by name; that of the normal map as "normal_map"."""
         given = {name: getattr(self, name) for name in _COUNTS if getattr(self, name) is not None}
