@@ -19,12 +19,12 @@ vec2 footprint_box(Plane plane, out vec2 middle) {
 vec2 splat_sample(Plane plane, vec2 point) {
   Place place = place_at(plane, point);
   vec2 a = plane.a / splats.window.zw, b = plane.b / splats.window.zw, e = place.d / splats.window.zw;
-  float xx = KERNEL_VARIANCE * (a.x * a.x + b.x * b.x) + FILTER_VARIANCE;
-  float yy = KERNEL_VARIANCE * (a.y * a.y + b.y * b.y) + FILTER_VARIANCE;
-  float xy = KERNEL_VARIANCE * (a.x * a.y + b.x * b.y);
   float area = KERNEL_VARIANCE * (a.x * b.y - a.y * b.x);
-  float det = area * area + FILTER_VARIANCE * (xx + yy - FILTER_VARIANCE);
-  float rho2 = KERNEL_VARIANCE / det * (e.x * e.x * yy - 2.0 * e.x * e.y * xy + e.y * e.y * xx);
+  float trace = KERNEL_VARIANCE * (dot(a, a) + dot(b, b));
+  float det = area * area + FILTER_VARIANCE * (trace + FILTER_VARIANCE);
+  // e V^-1 e det, as squares: seen edge-on or stretched, the differences in V^-1 have no digits left in float32.
+  vec2 across = vec2(e.x * a.y - e.y * a.x, e.x * b.y - e.y * b.x);
+  float rho2 = KERNEL_VARIANCE / det * (FILTER_VARIANCE * dot(e, e) + KERNEL_VARIANCE * dot(across, across));
   float weight = rho2 <= 1.0 ? abs(area) * inversesqrt(det) * exp(-2.0 * rho2) : 0.0;
   return vec2(weight, plane_depth(plane, place, FILTER_SIGMA));
 }

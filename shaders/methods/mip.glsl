@@ -22,14 +22,14 @@ vec2 footprint_box(Plane plane, out vec2 middle) {
 vec2 splat_sample(Plane plane, vec2 point) {
   Place place = place_at(plane, point);
   mat2 j = place_gradient(plane, place);
-  float xx = j[0].x * j[0].x + j[1].x * j[1].x;
-  float yy = j[0].y * j[0].y + j[1].y * j[1].y;
-  float xy = j[0].x * j[0].y + j[1].x * j[1].y;
-  float spread = FILTER_VARIANCE * determinant(j);
-  float det = spread * spread + KERNEL_VARIANCE * (FILTER_VARIANCE * (xx + yy) + KERNEL_VARIANCE);
-  vec2 q = place.uv;
-  float rho2 = KERNEL_VARIANCE / det * (q.x * q.x * (KERNEL_VARIANCE + FILTER_VARIANCE * yy)
-      - 2.0 * q.x * q.y * FILTER_VARIANCE * xy + q.y * q.y * (KERNEL_VARIANCE + FILTER_VARIANCE * xx));
+  vec2 q = place.uv, pixel = splats.window.zw;
+  // det J and q x J, multiplied out: edge-on, the differences that they stand for have no digits left in float32.
+  float scale = place.k / place.det;
+  float spread = FILTER_VARIANCE * place.k * scale * pixel.x * pixel.y;
+  vec2 across = scale * pixel * place.d.yx;
+  float det = spread * spread
+      + KERNEL_VARIANCE * (FILTER_VARIANCE * (dot(j[0], j[0]) + dot(j[1], j[1])) + KERNEL_VARIANCE);
+  float rho2 = KERNEL_VARIANCE / det * (KERNEL_VARIANCE * dot(q, q) + FILTER_VARIANCE * dot(across, across));
   // The kernel ends at its rim. Along the line from the centre, kernel times pixel is a Gaussian about `middle`: the
   // share of it within the rim, its normal distribution, is what the pixel sees of the splat.
   float reach = max(length(q), 1e-30);

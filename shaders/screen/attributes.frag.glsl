@@ -60,9 +60,10 @@ void main() {
   ivec2 nearest = ivec2(gl_FragCoord.xy) * VISIBILITY_SAMPLES + VISIBILITY_SAMPLES / 2;
   float seen = texelFetch(visibility_depth, nearest, 0).r;
 #if VISIBILITY_SAMPLES > 1
-  // That sample lies beside the centre, and so does the splat's depth to compare.
+  // That sample lies beside the centre, and so does the splat's depth to compare; no farther than its ellipse reaches.
   vec2 beside = 0.5 * float(1 - VISIBILITY_SAMPLES % 2) / float(VISIBILITY_SAMPLES) * splats.window.zw;
-  float depth = weight_depth.y + (straddling > 0.5 ? 0.0 : dot(plane.gradient, beside));
+  float reach = length(plane.slope);
+  float depth = weight_depth.y + (straddling > 0.5 ? 0.0 : clamp(dot(plane.gradient, beside), -reach, reach));
 #else
   float depth = weight_depth.y;
 #endif

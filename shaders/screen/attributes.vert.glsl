@@ -25,6 +25,7 @@ void main() {
   Plane true_plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic);
 #endif
   adjust(splat, straddles);
+  straddles = -splat.position.z - length(vec2(splat.axis_u.z, splat.axis_v.z)) <= splats.options.y;
   Plane plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic);
   straddling = straddles ? 1.0 : 0.0;
   // The same three varyings carry the plane of a splat before the eye, or centre and half-axes of a straddling one.

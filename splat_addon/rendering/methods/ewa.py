@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .plane import Plane, places, plane_depth
+from .plane import Plane, places, plane_depth, projected_box
 
 KERNEL_VARIANCE = 0.25
 FILTER_SIGMA = 0.5**0.5
@@ -15,8 +15,18 @@ def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.nda
     """(M,) weights and (M,) depths at (M, 2) picture points (Zwicker et al. 2001, equations 9 to 12)."""
     at = places(plane, points)
     j = np.stack([plane.a, plane.b], axis=1) / pixel[:, None]
-    variance = KERNEL_VARIANCE * j @ j.T + FILTER_SIGMA**2 * np.eye(2)
     pixels = at.d / pixel
-    rho2 = KERNEL_VARIANCE * np.einsum("ni,ij,nj->n", pixels, np.linalg.inv(variance), pixels)
-    amplitude = abs(KERNEL_VARIANCE * np.linalg.det(j)) / np.sqrt(np.linalg.det(variance))
-    return np.where(rho2 <= 1, amplitude * np.exp(-2 * rho2), 0.0), plane_depth(plane, at, pixel, FILTER_SIGMA)
+    area = KERNEL_VARIANCE * (j[0, 0] * j[1, 1] - j[0, 1] * j[1, 0])
+    det = area**2 + FILTER_SIGMA**2 * (KERNEL_VARIANCE * (j * j).sum() + FILTER_SIGMA**2)
+    across = pixels @ np.array([j[1], -j[0]])
+    squares = FILTER_SIGMA**2 * (pixels**2).sum(axis=1) + KERNEL_VARIANCE * (across**2).sum(axis=1)
+    rho2 = KERNEL_VARIANCE / det * squares
+    amplitude = abs(area) / np.sqrt(det)
+    is_inside = (rho2 <= 1) & _in_box(plane, points, pixel)
+    return np.where(is_inside, amplitude * np.exp(-2 * rho2), 0.0), plane_depth(plane, at, pixel, FILTER_SIGMA)
+
+
+def _in_box(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> np.ndarray:
+    """(M,) bool: the ellipse's exact box and the filter's reach; the affine ellipse of a near splat is far larger."""
+    middle, exact = projected_box(plane)
+    return (np.abs(points - middle) <= exact + 2 * FILTER_SIGMA * pixel).all(axis=1)

@@ -22,11 +22,13 @@ def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.nda
     at = places(plane, points)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         j = gradients(plane, at, pixel)
-        sigma = KERNEL_VARIANCE * np.eye(2) + FILTER_SIGMA**2 * j @ np.swapaxes(j, 1, 2)
-        det = sigma[:, 0, 0] * sigma[:, 1, 1] - sigma[:, 0, 1] ** 2
-        u, v = at.uv.T
-        across = u * u * sigma[:, 1, 1] - 2 * u * v * sigma[:, 0, 1] + v * v * sigma[:, 0, 0]
-        rho2 = KERNEL_VARIANCE * across / det
+        # det J and q x J, multiplied out: edge-on, the differences that they stand for have no digits left.
+        scale = at.k / at.det
+        spread = FILTER_SIGMA**2 * at.k * scale * pixel.prod()
+        across = scale[:, None] * pixel * at.d[:, ::-1]
+        det = spread**2 + KERNEL_VARIANCE * (FILTER_SIGMA**2 * (j * j).sum(axis=(1, 2)) + KERNEL_VARIANCE)
+        squares = KERNEL_VARIANCE * (at.uv**2).sum(axis=1) + FILTER_SIGMA**2 * (across**2).sum(axis=1)
+        rho2 = KERNEL_VARIANCE / det * squares
         reach = np.maximum(np.linalg.norm(at.uv, axis=1), 1e-30)
         along = np.linalg.norm(np.einsum("ni,nij->nj", at.uv, j), axis=1) / reach * FILTER_SIGMA
         limit = 1 + 2 * along

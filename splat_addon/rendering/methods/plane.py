@@ -59,7 +59,8 @@ def splat_plane(position, axis_u, axis_v, is_orthographic: bool = False) -> Plan
     gh = np.zeros(2) if is_orthographic else slope * scale
     a, b = axis_u[:2] * scale - center * gh[0], axis_v[:2] * scale - center * gh[1]
     det = a[0] * b[1] - a[1] * b[0]
-    gradient = np.array([slope[0] * b[1] - slope[1] * a[1], slope[1] * a[0] - slope[0] * b[0]]) / det
+    with np.errstate(divide="ignore", invalid="ignore"):
+        gradient = np.array([slope[0] * b[1] - slope[1] * a[1], slope[1] * a[0] - slope[0] * b[0]]) / det
     radius = max(np.linalg.norm(axis_u), np.linalg.norm(axis_v))
     return Plane(center, a, b, gh, slope, depth, gradient, radius, scale, np.cross(axis_u, axis_v))
 
@@ -90,3 +91,22 @@ def plane_depth(plane: Plane, at: Places, pixel: np.ndarray, filter_pixels: floa
     reach = np.linalg.norm(plane.slope) + min(2 * filter_pixels * steepest, 16 * plane.radius)
     depth = np.clip(plane.depth + at.uv @ plane.slope, plane.depth - reach, plane.depth + reach)
     return np.where(at.k > 0, depth, plane.depth)
+
+
+def straddling_samples(position, axis_u, axis_v, points: np.ndarray, is_orthographic: bool):
+    """(M,) weights, unfiltered, and (M,) depths of a splat that reaches the near plane, wherever its centre lies.
+
+    Guennebaud et al. 2006, equation 5: (u w, v w, w) = adj(M) direction. The twin of screen/attributes.frag.glsl.
+    """
+    forward = np.array((1.0, 1.0, -1.0))
+    p, s, t = (np.asarray(a, np.float64) * forward for a in (position, axis_u, axis_v))
+    directions = np.concatenate([points, np.ones((len(points), 1))], axis=1)
+    if is_orthographic:
+        p = p - np.concatenate([points, np.zeros((len(points), 1))], axis=1)
+        directions = np.broadcast_to((0.0, 0.0, 1.0), directions.shape)
+    p = np.broadcast_to(p, directions.shape)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        w = directions @ np.cross(s, t)
+        u, v = ((c * directions).sum(axis=1) / w for c in (np.cross(t, p), np.cross(p, s)))
+        rho2 = u * u + v * v
+        return np.where(rho2 <= 1, np.exp(-2 * rho2), 0.0), p @ np.cross(s, t) / w

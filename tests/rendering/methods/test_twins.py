@@ -1,73 +1,174 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Each method's GLSL does what its numpy twin says, splat by splat."""
+"""Each method's GLSL does what its numpy twin says, splat by splat: from sub-pixel to giant, round to a million times
+longer than wide, from facing the viewer to edge-on, before, across and behind the near plane.
+
+float32 cannot know more than its inputs: a weight may be anything between the twin's of splats that differ by a few
+roundings, and rims may fall either way by a fraction of a pixel.
+"""
+
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
 
-from splat_addon.rendering import Camera, Renderer, Scene, Settings
+from splat_addon.rendering import EMPTY_DEPTH, Camera, Renderer, Scene, Settings
 from splat_addon.rendering.methods import METHODS
-from splat_addon.rendering.methods.plane import splat_plane
+from splat_addon.rendering.methods.plane import splat_plane, straddling_samples
 from splat_addon.surfels import Surfels, axes_quaternions
 
 SIZE = 48
-SPLATS = 24
+NEAR, FAR = 0.01, 1000.0
 #: Pixels; rims and boxes of footprints are snapped to 1 / 256 of one.
-NEAR = 0.01
+SNAP = 0.01
+#: Of inputs, relative: what float32 makes of them on their way through matrices and divisions.
+ROUNDING = 5e-7
+#: How many splats within that rounding a weight is held against.
+NEIGHBOURS = 12
+TOLERANCE = 2e-4
+EXAMPLES = 60
+BACK_WEIGHT = 1e-3
+
 CAMERAS = {
-    "perspective": Camera.perspective(np.eye(4), 1.0, (SIZE, SIZE), near=0.01, far=100),
-    "orthographic": Camera.orthographic(np.eye(4), 2.0, (SIZE, SIZE), near=0.01, far=100),
+    "perspective": Camera.perspective(np.eye(4), 1.0, (SIZE, SIZE), NEAR, FAR),
+    "orthographic": Camera.orthographic(np.eye(4), 2.0, (SIZE, SIZE), NEAR, FAR),
 }
 
 
-def random_splat(random):
-    """A splat about depth 1 to 3, from a tenth of a pixel to a third of the picture, tilted up to 85 degrees."""
-    depth = random.uniform(1, 3)
-    tilt, turn, spin = np.radians(random.uniform(0, 85)), *random.uniform(0, 2 * np.pi, 2)
-    normal = np.array((np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)))
-    x = np.cross(normal, (0.31, 0.95, 0.05))
-    x /= np.linalg.norm(x)
-    x = x * np.cos(spin) + np.cross(normal, x) * np.sin(spin)
-    long = 10 ** random.uniform(-3, -0.5) * depth
-    scales = np.array((long, long * random.uniform(0.2, 1)))
-    position = np.array((*random.uniform(-0.3, 0.3, 2) * depth, -depth))
-    return Surfels(
-        position[None], axes_quaternions(x[None], np.cross(normal, x)[None], normal[None]), scales[None],
-        normal[None], np.ones((1, 4)), np.zeros(1, int),
-    )  # fmt: skip
+@dataclass(frozen=True)
+class Splat:
+    """angle: degrees between its normal and the viewer; turn, spin: of the normal and in the plane. place: in the
+    picture's half-widths. size: the longer half-axis over the depth. ratio: the shorter one over it.
+    """
+
+    depth: float
+    place: tuple[float, float]
+    angle: float
+    turn: float
+    spin: float
+    size: float
+    ratio: float
+
+    def surfels(self, camera: Camera) -> Surfels:
+        across = camera.window[1] * (1 if camera.is_orthographic else self.depth)
+        position = np.array((*np.multiply(self.place, across), -self.depth))
+        angle, turn = np.radians(self.angle), self.turn
+        to_viewer = np.array((0.0, 0.0, 1.0)) if camera.is_orthographic else -position / np.linalg.norm(position)
+        side = np.cross(to_viewer, (np.cos(turn), np.sin(turn), 0.1))
+        side /= np.linalg.norm(side)
+        normal = np.cos(angle) * to_viewer + np.sin(angle) * side
+        x = np.cross(side, to_viewer)
+        x = np.cos(self.spin) * x + np.sin(self.spin) * np.cross(normal, x)
+        long = self.size * self.depth
+        return Surfels(
+            position[None], axes_quaternions(x[None], np.cross(normal, x)[None], normal[None]),
+            np.array([[long, long * self.ratio]]), normal[None], np.ones((1, 4)), np.zeros(1, int),
+        )  # fmt: skip
 
 
-def gpu_weights(device, method, surfels, camera):
-    """(SIZE, SIZE) sums of weights that the attribute pass leaves."""
-    renderer = Renderer(device)
-    renderer.render(Scene((surfels,)), camera, Settings(method=method, supersampling=1, shading="flat", epsilon=50))
+def powers(low, high):
+    """Numbers evenly spread over their orders of magnitude."""
+    return st.floats(np.log10(low), np.log10(high)).map(lambda e: 10.0**e)
+
+
+TURNS = st.floats(0, 2 * np.pi)
+SPLATS = st.builds(
+    Splat,
+    depth=powers(0.02, 100),
+    place=st.tuples(st.floats(-1, 1), st.floats(-1, 1)),
+    angle=st.one_of(st.floats(0, 90), st.floats(80, 90), st.floats(90, 180), st.sampled_from((89.9, 89.999, 90.0))),
+    turn=TURNS,
+    spin=TURNS,
+    size=powers(1e-5, 30),
+    ratio=st.one_of(st.floats(0.1, 1), powers(1e-6, 1)),
+)
+
+
+def drawn(renderer, method, surfels, camera):
+    """(SIZE, SIZE) sums of weights that the attribute pass leaves, and the frame's depths."""
+    settings = Settings(method=method, supersampling=1, shading="flat", epsilon=1e9)
+    frame = renderer.render(Scene((surfels,)), camera, settings)
     sums = next(texture for key, texture in renderer.resources.textures.items() if key[0] == "color_sum")
     margin = (sums.size[0] - SIZE) // 2
-    return device.target([sums]).read(0)[margin : margin + SIZE, margin : margin + SIZE, 3]
+    return renderer.device.target([sums]).read(0)[margin : margin + SIZE, margin : margin + SIZE, 3], frame.depth
 
 
-def twin_weights(method, surfels, camera, shift=(0.0, 0.0)):
-    """(SIZE, SIZE) weights at the pixels' centres, or `shift` pixels beside them."""
+def twin_weights(method, axes, camera, shift=(0.0, 0.0)):
+    """(SIZE, SIZE) weights and depths at the pixels' centres, or `shift` pixels beside them.
+
+    axes: position and half-axes, float64.
+    """
     left, right, bottom, top = camera.window
     pixel = np.array([right - left, top - bottom]) / SIZE
     x, y = np.meshgrid(np.arange(SIZE) + 0.5 + shift[0], np.arange(SIZE) + 0.5 + shift[1])
     points = np.stack([left + x.ravel() * pixel[0], bottom + y.ravel() * pixel[1]], axis=1)
-    u, v = surfels.half_axes()
-    plane = splat_plane(surfels.positions[0], u[0], v[0], camera.is_orthographic)
-    return METHODS[method].twin.samples(plane, points, pixel)[0].reshape(SIZE, SIZE)
+    position, u, v = axes
+    if -position[2] - np.hypot(u[2], v[2]) <= NEAR:
+        weights, depths = straddling_samples(position, u, v, points, camera.is_orthographic)
+    else:
+        plane = splat_plane(position, u, v, camera.is_orthographic)
+        weights, depths = METHODS[method].twin.samples(plane, points, pixel)
+    is_seen = (weights > 0) & (depths >= NEAR) & (depths <= FAR)
+    return np.where(is_seen, weights, 0.0).reshape(SIZE, SIZE), depths.reshape(SIZE, SIZE)
+
+
+def side_weight(axes, camera):
+    """Of the side that is seen; None where rounding decides which it is."""
+    position, u, v = axes
+    plane, to_eye = np.cross(u, v), (np.array((0, 0, 1.0)) if camera.is_orthographic else -position)
+    cosine = plane @ to_eye / (np.linalg.norm(plane) * np.linalg.norm(to_eye))
+    return None if abs(cosine) < 1e-5 else 1.0 if cosine > 0 else BACK_WEIGHT
+
+
+def neighbours(method, surfels, camera):
+    """(K, SIZE, SIZE) weights and depths of twins of splats and at places that differ by rounding, and the weight of
+    the side that is seen.
+    """
+    random = np.random.default_rng(0)
+    axes = [a.astype(np.float64) for a in (surfels.positions[0], *(a[0] for a in surfels.half_axes()))]
+    found = [twin_weights(method, axes, camera)]
+    for _ in range(NEIGHBOURS):
+        moved = [a + ROUNDING * np.linalg.norm(a) * random.uniform(-1, 1, 3) for a in axes]
+        found.append(twin_weights(method, moved, camera, random.uniform(-SNAP, SNAP, 2)))
+    weights, depths = np.moveaxis(np.array(found), 1, 0)
+    return weights, depths, side_weight(axes, camera)
+
+
+def is_within(found, known, tolerance):
+    """Whether `found` lies between the least and the greatest of `known`, or half of what lies between them beyond."""
+    low, high = known.min(axis=0), known.max(axis=0)
+    spread = tolerance + 0.5 * (high - low)
+    return (found >= low - spread) & (found <= high + spread)
 
 
 @pytest.mark.parametrize("kind", CAMERAS)
 @pytest.mark.parametrize("method", METHODS)
-def test_weights_are_the_twins(method, kind, on_device):
-    random = np.random.default_rng(5)
-    splats = [random_splat(random) for _ in range(SPLATS)]
+def test_weights_and_depths_are_the_twins(method, kind, on_device):
     camera = CAMERAS[kind]
-    pictures = on_device(lambda device: [gpu_weights(device, method, s, camera) for s in splats])
-    covered = 0
-    for surfels, picture in zip(splats, pictures, strict=True):
-        twin = twin_weights(method, surfels, camera)
-        beside = [twin_weights(method, surfels, camera, (x, y)) > 0 for x in (-NEAR, NEAR) for y in (-NEAR, NEAR)]
-        away_from_rim = np.logical_and.reduce([b == (twin > 0) for b in beside])
-        assert np.abs(picture - twin)[away_from_rim].max() < 2e-4
-        covered += np.count_nonzero(twin)
-    assert covered > 20 * SPLATS
+    compared = []
+
+    def job(device):
+        renderer = Renderer(device)
+
+        @hypothesis_settings(deadline=None, max_examples=EXAMPLES, derandomize=True, database=None)
+        @given(splat=SPLATS)
+        def agree(splat):
+            surfels = splat.surfels(camera)
+            picture, depth = drawn(renderer, method, surfels, camera)
+            assert np.isfinite(picture).all() and np.isfinite(depth).all()
+            weights, depths, side = neighbours(method, surfels, camera)
+            if side is not None:
+                covered = (weights > 0).all(axis=0)
+                empty = ~(weights > 0).any(axis=0)
+                assert np.all(is_within(picture / side, weights, TOLERANCE)[covered])
+                assert not np.any(picture[empty])
+                has_depth = covered & (weights.min(axis=0) * side > 1e-6) & (depth < EMPTY_DEPTH)
+                assert np.all(is_within(depth, depths, TOLERANCE * splat.depth)[has_depth])
+                compared.append(np.count_nonzero(has_depth))
+
+        agree()
+
+    on_device(job)
+    assert np.count_nonzero(compared) > EXAMPLES / 4
