@@ -17,18 +17,20 @@ void main() {
   for (int y = 0; y < SAMPLES; y++) {
     for (int x = 0; x < SAMPLES; x++) {
       ivec2 texel = first + ivec2(x, y);
-      if (texelFetch(color_sum, texel, 0).w > 0.0) {
-        ShadedSample here = shaded_sample(texel);
-        color_total += vec4(here.color, 1.0);
-        normal_total += vec4(here.normal, 1.0);
-        nearest = min(nearest, here.depth * shading.material.w);
-      }
-      else {
-        color_total += world_background(texel);
+      for (int look = 0; look < LOOKS; look++) {
+        float coverage = 0.0;
+        if (SUM_AT(color_sum, texel, look).w > 0.0) {
+          ShadedSample here = shaded_sample(texel, look);
+          coverage = here.coverage;
+          color_total += vec4(here.color, 1.0) * coverage;
+          normal_total += vec4(here.normal, 1.0) * coverage;
+          nearest = min(nearest, here.depth * shading.material.w);
+        }
+        if (coverage < 1.0) color_total += world_background(texel) * (1.0 - coverage);
       }
     }
   }
-  float share = 1.0 / float(SAMPLES * SAMPLES);
+  float share = 1.0 / float(SAMPLES * SAMPLES * LOOKS);
   combined = color_total * share;
   depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
 #ifdef NORMAL_OUTPUT

@@ -1,10 +1,14 @@
 // References: Botsch et al. 2005, section 4 (normalise, then light once).
 // Summary: a sample's sums as a lit surface; the includer has included a shading model.
 
+#include "common/sum_at.glsl"
+#include "common/weight_scale.glsl"
+
 struct ShadedSample {
   vec3 color;
   vec3 normal;
   float depth;
+  float coverage;  // below 1 only where an edge threshold is planned
 };
 
 // A mean normal shorter than this is what rounding left of normals that cancel; the surface then faces the viewer.
@@ -14,12 +18,18 @@ const float CANCELLED = 4e-3;
 const float CANCELLED = 1e-6;
 #endif
 
-// Only where the sum of weights is above 0.
-ShadedSample shaded_sample(ivec2 texel) {
-  vec4 c = texelFetch(color_sum, texel, 0);
-  vec4 n = texelFetch(normal_sum, texel, 0) / c.w;
+#ifdef EDGE_THRESHOLD
+#include "common/sides.glsl"
+// Weights of backs sum to less; the rim of a front weighs 0.135, or a quarter of it in the mean of four samples.
+const float LEAST_FRONT = 0.02;
+#endif
+
+// Only where the sum of weights is above 0. look: which of the texel's hardware samples, 0 where it has one.
+ShadedSample shaded_sample(ivec2 texel, int look) {
+  vec4 c = SUM_AT(color_sum, texel, look);
+  vec4 n = SUM_AT(normal_sum, texel, look) / c.w;
 #ifdef HALF_SUMS
-  vec2 depths = texelFetch(depth_sum, texel, 0).xy;
+  vec2 depths = SUM_AT(depth_sum, texel, look).xy;
   n.w = depths.x / depths.y;
   c.rgb *= shading.options.w;
 #endif
@@ -28,17 +38,23 @@ ShadedSample shaded_sample(ivec2 texel) {
   float size = length(n.xyz);
   vec3 normal = size > CANCELLED ? n.xyz / size : vec3(0.0, 0.0, 1.0);
 #ifdef MATERIAL_TARGET
-  vec3 material = texelFetch(material_sum, texel, 0).xyz / c.w;
+  vec3 material = SUM_AT(material_sum, texel, look).xyz / c.w;
 #else
   vec3 material = shading.material.xyz;
 #endif
   vec3 radiance = shade(position, normal, c.rgb / c.w, material);
 #ifdef EMISSION_TARGET
-  vec4 e = texelFetch(emission_sum, texel, 0);
+  vec4 e = SUM_AT(emission_sum, texel, look);
   radiance += e.rgb / e.w;  // its own weights: those of float16 sums are scaled
 #endif
 #ifdef EMISSION
   radiance += shading.emission.rgb;
 #endif
-  return ShadedSample(radiance, normal, n.w);
+  float coverage = 1.0;
+#ifdef EDGE_THRESHOLD
+  float weight = c.w / WEIGHT_SCALE;
+  if (weight < LEAST_FRONT) weight /= BACK_WEIGHT;
+  coverage = min(weight / shading.edges.x, 1.0);
+#endif
+  return ShadedSample(radiance, normal, n.w, coverage);
 }

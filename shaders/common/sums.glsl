@@ -1,11 +1,10 @@
 // References: Botsch et al. 2005, sections 3 and 4 (accumulation, normalised by the sum of weights in a later pass).
 // Summary: what a splat adds to a sample's sums. Where sums are float16 (HALF_SUMS), depths and their weights have a
-//          float32 target of their own; weights are scaled so that the sum's first and last steps lie in what float16
-//          can hold, and colours so that the scene's brightest is at most 1.
+//          float32 target of their own, and colours are scaled so that the scene's brightest is at most 1.
+
+#include "common/weight_scale.glsl"
 
 #ifdef HALF_SUMS
-// A sum of weights up to 1 stops growing at 2048 of them, here 32768; float16 ends at 65504.
-const float WEIGHT_SCALE = 16.0;
 // Below 6.1e-5 float16 drops digits, and then the splat: weaker weights count as this one, a sixteenth of which, in a
 // dark colour's channel, still has all its digits.
 const float LEAST_WEIGHT = 9.766e-4;

@@ -55,6 +55,10 @@ SUM_FORMATS = {
 }
 
 
+#: Those that draw splats.
+SPLAT_PASSES = ("visibility", "attributes")
+
+
 @dataclass(frozen=True)
 class PlannedPass:
     """name: also of its pipeline. reason: why the frame needs it.
@@ -73,6 +77,7 @@ class FramePlan:
         margin that the filter reads.
     samples: N of the N x N samples a pixel. visibility_samples: V of the V x V a sample.
     material, emission: the one that all surfels share, or None.
+    multisamples: M hardware samples of each of them, or 0. sample_shading: they are evaluated and lit one by one.
     storage, accumulation: as in the settings.
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
     features: (name, why), of what shaders do beside the least; each name is defined in their text.
@@ -84,6 +89,8 @@ class FramePlan:
     visibility_samples: int
     method: str
     shading: str
+    multisamples: int
+    sample_shading: bool
     storage: str
     accumulation: str
     material: Material | None
@@ -110,6 +117,11 @@ class FramePlan:
         """A name in `device.interface.FORMATS`."""
         return SUM_FORMATS[self.accumulation].get(texture, TEXTURES[texture][0])
 
+    def multisamples_of(self, texture: str) -> int:
+        """Samples a texel, 0 for one: what splats are drawn into has them."""
+        drawn = {name for p in self.passes if p.name in SPLAT_PASSES for name in p.writes}
+        return self.multisamples if texture in drawn else 0
+
     @property
     def textures(self) -> tuple[str, ...]:
         """Names of every texture that some pass writes, once each."""
@@ -121,6 +133,9 @@ class FramePlan:
             f"{len(self.tiles)} tile(s), {self.samples} x {self.samples} samples, method {self.method}, {depth} depth, "
             f"{self.storage} splats, {self.accumulation} sums"
         ]
+        if self.multisamples:
+            each = "evaluated and lit one by one" if self.sample_shading else "evaluated once, lit once for their mean"
+            lines.append(f"  with {self.multisamples} hardware samples in each: {each}")
         for p in self.passes:
             lines.append(f"  {p.name}: {', '.join(p.writes)} <- {', '.join(p.reads) or 'splats'}; {p.reason}")
         lines += [f"  with {name}: {why}" for name, why in self.features]
@@ -129,8 +144,15 @@ class FramePlan:
 
 
 def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
-    """The passes that this picture needs. Raises ValueError for an unknown method."""
+    """The passes that this picture needs. Raises ValueError for an unknown method or storage, and for multisampling
+    with a method that does not work in space.
+    """
     method = get_method(settings.method)
+    if settings.multisampling and method.works_in != "space":
+        raise ValueError(
+            f"Method {method.name} works in the picture, where hardware multisampling sees nothing; set multisampling "
+            "to 0 and use supersampling, or method quad."
+        )
     material, emission = shared_material(scene.surfels), shared_emission(scene.surfels)
     linear_depth, passes, features, left_out = False, (), (), []
     if not any(len(instance.surfels) for instance in scene.surfels):
@@ -156,6 +178,8 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         method.visibility_samples,
         settings.method,
         settings.shading,
+        settings.multisampling,
+        bool(settings.multisampling and settings.sample_shading),
         get_storage(settings.storage).name,
         settings.accumulation,
         material,
@@ -220,16 +244,23 @@ def _shows_environment(scene: Scene, settings: Settings) -> bool:
 
 def _features(scene: Scene, settings: Settings, emission, left_out: list) -> tuple[tuple[str, str], ...]:
     """What shaders do beside the least."""
+    features = []
+    if settings.edge_threshold == 0:
+        left_out.append(("edge threshold", "it is 0: whatever a splat reaches is covered"))
+    elif get_method(settings.method).works_in != "space":
+        left_out.append(("edge threshold", f"the weights of {settings.method} are smaller where it filters"))
+    else:
+        features.append(("EDGE_THRESHOLD", f"pixels whose weights sum to less than {settings.edge_threshold:g} fade"))
     if settings.shading == "flat":
-        return ()
-    features = (("EMISSION", "all surfels send out the same light"),) if emission is not None and any(emission) else ()
-    if not scene.lights:
-        return features
+        return tuple(features)
+    if emission is not None and any(emission):
+        features.append(("EMISSION", "all surfels send out the same light"))
     sized = sum(light.is_sized for light in scene.lights)
     if sized:
-        return *features, ("SIZED_LIGHTS", f"{sized} of {len(scene.lights)} lights have a size")
-    left_out.append(("sized lights", "every light is a point or a direction"))
-    return features
+        features.append(("SIZED_LIGHTS", f"{sized} of {len(scene.lights)} lights have a size"))
+    elif scene.lights:
+        left_out.append(("sized lights", "every light is a point or a direction"))
+    return tuple(features)
 
 
 def _shading_passes(scene: Scene, settings: Settings, method: Method, reads: tuple[str, ...], left_out: list):

@@ -46,6 +46,7 @@ class Renderer:
         Raises ValueError for settings that do not fit, RuntimeError where the device fails, RenderCancelled.
         """
         settings = settings or Settings()
+        self._check(settings)
         frame_plan = plan(scene, camera, settings)
         stats = self._new_stats(frame_plan)
         started = perf_counter()
@@ -65,6 +66,7 @@ class Renderer:
 
         A texture is good until the next tile is asked for.
         """
+        self._check(settings)
         frame_plan = plan(scene, camera, settings)
         if not frame_plan.passes:
             pixel = np.array(background_pixel(scene, settings), np.float32).reshape(1, 1, 4)
@@ -81,6 +83,15 @@ class Renderer:
     def release(self) -> None:
         """Let go of everything on the device."""
         self.resources.release()
+
+    def _check(self, settings: Settings) -> None:
+        counts = self.device.multisample_counts
+        if settings.multisampling and settings.multisampling not in counts:
+            has = f"has {' or '.join(map(str, counts))} samples a pixel" if counts else "cannot multisample"
+            raise ValueError(
+                f"The {self.device.kind} device {has}, so multisampling cannot be {settings.multisampling}; "
+                "set it to 0 and use supersampling."
+            )
 
     def _new_stats(self, frame_plan: FramePlan) -> dict:
         return {

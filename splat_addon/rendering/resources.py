@@ -17,8 +17,8 @@ from .packing import pack_materials, pack_own_materials, pack_uvs
 from .scene import Instance, SurfaceTexture
 from .storages import Storage
 
-#: name, width, height, format of a texture that a pass writes.
-TextureKey = tuple[str, int, int, str]
+#: name, width, height, format, samples a texel (0 for one) of a texture that a pass writes.
+TextureKey = tuple[str, int, int, str, int]
 
 
 class StoredSurfels(NamedTuple):
@@ -107,8 +107,8 @@ class Resources:
     def texture(self, key: TextureKey) -> Texture:
         """The texture of that name, size and format, made when it is first asked for."""
         if key not in self.textures:
-            _, width, height, format = key
-            self.textures[key] = self.device.texture((width, height), format)
+            _, width, height, format, samples = key
+            self.textures[key] = self.device.texture((width, height), format, samples=samples)
         return self.textures[key]
 
     def forget_textures_but(self, wanted: set[TextureKey]) -> None:

@@ -20,6 +20,9 @@ ACCUMULATIONS = {
 
 MAX_SUPERSAMPLING = 16
 
+#: Samples a pixel that hardware may offer; 0 is none of its own.
+MULTISAMPLING = (0, 2, 4, 8)
+
 #: the arrays of a `Frame`
 OUTPUTS = ("color", "depth", "normal", "coverage")
 
@@ -29,6 +32,11 @@ class Settings:
     """method: how a splat is rasterised and filtered, a name in `rendering.methods`.
     shading: a name in `SHADINGS`.
     supersampling: N x N samples a pixel, averaged with a box filter.
+    multisampling: samples that the hardware tests for depth in each of those, for methods that work in space; a device
+        has what its `multisample_counts` name, and Blender's has none.
+    sample_shading: of multisampling, evaluate splats and light at every sample, not once a pixel.
+    edge_threshold: where splats' weights sum to less, the pixel fades to the background (the view-independent paper's
+        threshold, section 4.5); 1 is one splat's centre, 0 covers whatever a splat reaches.
     epsilon: how far, in radii of each splat, the visibility pass moves it back along the view ray;
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
     transparent_film: leave the background out and keep its alpha at 0.
@@ -41,6 +49,9 @@ class Settings:
     method: str = "quad"
     shading: str = "principled"
     supersampling: int = 2
+    multisampling: int = 0
+    sample_shading: bool = False
+    edge_threshold: float = 0.0
     epsilon: float = 0.5
     transparent_film: bool = False
     outputs: tuple[str, ...] = OUTPUTS
@@ -55,6 +66,10 @@ class Settings:
             raise ValueError(f"accumulation must be one of {', '.join(ACCUMULATIONS)}, not {self.accumulation!r}.")
         if int(self.supersampling) != self.supersampling or not 1 <= self.supersampling <= MAX_SUPERSAMPLING:
             raise ValueError(f"supersampling must be 1 to {MAX_SUPERSAMPLING}, not {self.supersampling}.")
+        if self.multisampling not in MULTISAMPLING:
+            raise ValueError(f"multisampling must be one of {MULTISAMPLING}, not {self.multisampling!r}.")
+        if not (math.isfinite(self.edge_threshold) and self.edge_threshold >= 0):
+            raise ValueError(f"edge_threshold must be 0 or more splat weights, not {self.edge_threshold}.")
         if not set(self.outputs) <= set(OUTPUTS):
             raise ValueError(f"outputs must be among {', '.join(OUTPUTS)}, not {self.outputs!r}.")
         if not (math.isfinite(self.epsilon) and self.epsilon >= 0):

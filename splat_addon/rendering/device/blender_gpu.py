@@ -20,6 +20,7 @@ class BlenderDevice:
     """Usable inside RenderEngine callbacks, in the window, and (from 5.2) after gpu.init(); else RuntimeError."""
 
     kind = "blender"
+    multisample_counts = ()
 
     def __init__(self):
         try:
@@ -41,7 +42,9 @@ class BlenderDevice:
         self._quads = (0, None)
         self._triangle = _batch(gpu, 3)
 
-    def texture(self, size, format, data=None):
+    def texture(self, size, format, data=None, samples=0):
+        if samples:
+            raise ValueError("Blender's gpu module has no multisampled textures.")
         return _Texture(self._gpu, size, format, data)
 
     def target(self, colors, depth=None):

@@ -25,12 +25,13 @@ BLENDS = ("none", "add")
 class PipelineDescription:
     """name: for error messages. vertex, fragment: GLSL without declarations of the inputs and outputs below.
     block: (struct name, instance name, ((type, field), ...)) of the one uniform block, std140; of mat4 and vec4 only.
-    samplers: names of 2D float textures, in slot order.
+    samplers: names of 2D float textures, in slot order. multisampled: those with several samples a texel.
     varyings: (interpolation "smooth" | "flat", type, name) from vertex to fragment.
     outputs: (type, name) in slot order; empty for depth only.
     defines: (name, value) that the text tests with #ifdef or uses as constants, which drivers fold.
     blend: "none" or "add" (all channels summed). depth_test: less or equal. fragment_depth: the fragment
-        shader says what the depth is (gl_FragDepth).
+        shader says what the depth is (gl_FragDepth). sample_shading: of a multisampled target, the fragment shader
+        runs at each sample and not once a pixel.
     """
 
     name: str
@@ -45,6 +46,8 @@ class PipelineDescription:
     depth_test: bool = False
     depth_write: bool = False
     fragment_depth: bool = False
+    multisampled: tuple[str, ...] = ()
+    sample_shading: bool = False
 
 
 class Texture(Protocol):
@@ -72,15 +75,19 @@ class Pipeline(Protocol):
 
 class Device(Protocol):
     """kind: its name in `DEVICES`. backend: "OpenGL", "Vulkan" ... renderer, version: what the driver calls itself.
+    multisample_counts: the samples a texel that its textures can have beside one.
     """
 
     kind: str
     backend: str
     renderer: str
     version: str
+    multisample_counts: tuple[int, ...]
 
-    def texture(self, size: tuple[int, int], format: str, data: np.ndarray | None = None) -> Texture:
-        """data: (h, w, channels) float32, row 0 first; without it the contents are undefined."""
+    def texture(self, size: tuple[int, int], format: str, data: np.ndarray | None = None, samples: int = 0) -> Texture:
+        """data: (h, w, channels) float32, row 0 first; without it the contents are undefined.
+        samples: one of `multisample_counts`, of a texture without data that only targets and shaders use.
+        """
 
     def target(self, colors: list[Texture], depth: Texture | None = None) -> Target:
         """Colour slots in order, and a depth texture. Make one per frame: framebuffers belong to one context."""

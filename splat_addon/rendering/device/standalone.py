@@ -11,6 +11,7 @@ import numpy as np
 from .interface import FORMATS, PipelineDescription
 from .quads import capacity, quad_indices
 
+_GL_TEXTURE_2D_MULTISAMPLE, _GL_TEXTURE_SAMPLES, _GL_SAMPLE_SHADING = 0x9100, 0x9106, 0x8C36
 _GL_TEXTURE_2D, _GL_DEPTH_COMPONENT, _GL_FLOAT, _GL_DEPTH_COMPONENT32F = 0x0DE1, 0x1902, 0x1406, 0x8CAC
 
 #: format -> moderngl's name and the data's numbers as it takes them, where those are not float32
@@ -45,9 +46,11 @@ class StandaloneDevice:
         self.version = self._context.info["GL_VERSION"]
         self._indices = None
         self._uniforms = {}
+        self._set_sample_shading = _sample_shading(self._context)
+        self.multisample_counts = tuple(n for n in (2, 4, 8) if _has_multisampling(self._context, n))
 
-    def texture(self, size, format, data=None):
-        return _Texture(self._context, size, format, data)
+    def texture(self, size, format, data=None, samples=0):
+        return _Texture(self._context, size, format, data, samples)
 
     def target(self, colors, depth=None):
         return _Target(self._context, colors, depth)
@@ -81,6 +84,7 @@ class StandaloneDevice:
         context.blend_func = context.ONE, context.ONE
         context.depth_func = "<="
         target.framebuffer.depth_mask = description.depth_write
+        self._set_sample_shading(description.sample_shading)
         for slot, texture in enumerate(textures):
             texture.handle.use(slot)
         data = np.ascontiguousarray(block, np.float32).tobytes()
@@ -97,16 +101,17 @@ class StandaloneDevice:
 
 
 class _Texture:
-    def __init__(self, context, size, format, data):
+    def __init__(self, context, size, format, data, samples):
         self.size, self.format = tuple(size), format
         if format == "DEPTH32F":
-            self.handle = context.depth_texture(self.size)
-            _respecify_depth_as_32f(context, self.handle)
+            self.handle = context.depth_texture(self.size, samples=samples)
+            _respecify_depth_as_32f(context, self.handle, samples)
         else:
             kind, stored = _STORED.get(format, ("f4", np.float32))
             values = None if data is None else np.ascontiguousarray(stored(data)).tobytes()
-            self.handle = context.texture(self.size, FORMATS[format], values, dtype=kind)
-            self.handle.filter = context.NEAREST, context.NEAREST
+            self.handle = context.texture(self.size, FORMATS[format], values, samples=samples, dtype=kind)
+            if not samples:
+                self.handle.filter = context.NEAREST, context.NEAREST
 
 
 class _Target:
@@ -165,20 +170,53 @@ def _declared(description: PipelineDescription, source: str, varying: str) -> st
     lines += [f"#define {name} {value}" for name, value in description.defines]
     members = " ".join(f"{kind} {name};" for kind, name in fields)
     lines += [f"struct {struct} {{ {members} }};", f"layout(std140) uniform {struct}Block {{ {struct} {instance}; }};"]
-    lines += [f"uniform sampler2D {name};" for name in description.samplers]
+    kinds = {name: "sampler2DMS" for name in description.multisampled}
+    lines += [f"uniform {kinds.get(name, 'sampler2D')} {name};" for name in description.samplers]
     lines += [f"{interpolation} {varying} {kind} {name};" for interpolation, kind, name in description.varyings]
     if varying == "in":
         lines += [f"layout(location = {n}) out {kind} {name};" for n, (kind, name) in enumerate(description.outputs)]
     return "\n".join(lines) + "\n#line 1\n" + source
 
 
-def _respecify_depth_as_32f(context, texture):
+def _respecify_depth_as_32f(context, texture, samples):
     """moderngl makes 24-bit depth, which costs up to 50 dB at a near plane of 1e-4; Blender's is 32-bit float."""
-    load = context.mglo._context.load_opengl_function
     integer, unsigned, pointer = ctypes.c_int, ctypes.c_uint, ctypes.c_void_p
-    bind = ctypes.CFUNCTYPE(None, unsigned, unsigned)(load("glBindTexture"))
-    image = ctypes.CFUNCTYPE(
-        None, unsigned, integer, integer, integer, integer, integer, unsigned, unsigned, pointer
-    )(load("glTexImage2D"))  # fmt: skip
+    bind = _gl(context, "glBindTexture", unsigned, unsigned)
+    if samples:
+        bind(_GL_TEXTURE_2D_MULTISAMPLE, texture.glo)
+        image = _gl(context, "glTexImage2DMultisample", unsigned, integer, unsigned, integer, integer, ctypes.c_ubyte)
+        image(_GL_TEXTURE_2D_MULTISAMPLE, samples, _GL_DEPTH_COMPONENT32F, *texture.size, 1)
+        return
     bind(_GL_TEXTURE_2D, texture.glo)
+    image = _gl(context, "glTexImage2D", unsigned, *(integer,) * 5, unsigned, unsigned, pointer)
     image(_GL_TEXTURE_2D, 0, _GL_DEPTH_COMPONENT32F, *texture.size, 0, _GL_DEPTH_COMPONENT, _GL_FLOAT, None)
+
+
+def _has_multisampling(context, samples) -> bool:
+    """Whether a texture that is asked to have that many samples has them, and not more."""
+    if samples > context.max_samples:
+        return False
+    texture, given = context.texture((1, 1), 4, samples=samples, dtype="f4"), ctypes.c_int()
+    _gl(context, "glBindTexture", ctypes.c_uint, ctypes.c_uint)(_GL_TEXTURE_2D_MULTISAMPLE, texture.glo)
+    ask = _gl(context, "glGetTexLevelParameteriv", ctypes.c_uint, ctypes.c_int, ctypes.c_uint, ctypes.c_void_p)
+    ask(_GL_TEXTURE_2D_MULTISAMPLE, 0, _GL_TEXTURE_SAMPLES, ctypes.byref(given))
+    return given.value == samples
+
+
+def _sample_shading(context):
+    """set(True) makes fragment shaders run at every sample (OpenGL 4.0), set(False) once a pixel."""
+    if context.version_code < 400:
+
+        def refuse(on):
+            if on:
+                raise RuntimeError(f"Shading every sample needs OpenGL 4.0, not {context.version_code / 100}.")
+
+        return refuse
+    enable, disable = (_gl(context, name, ctypes.c_uint) for name in ("glEnable", "glDisable"))
+    _gl(context, "glMinSampleShading", ctypes.c_float)(1.0)
+    return lambda on: (enable if on else disable)(_GL_SAMPLE_SHADING)
+
+
+def _gl(context, name, *argument_types):
+    """An OpenGL function that moderngl does not wrap."""
+    return ctypes.CFUNCTYPE(None, *argument_types)(context.mglo._context.load_opengl_function(name))

@@ -68,6 +68,7 @@ def _in_space(planned, frame):
         blend="add",
         depth_test=True,
         fragment_depth=frame.linear_depth,
+        sample_shading=frame.sample_shading,
     )
 
 

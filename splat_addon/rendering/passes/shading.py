@@ -16,7 +16,7 @@ from .tile import TileContext
 
 #: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
 #: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights, 1 / far,
-#:     what summed colours are multiplied by. emission: of all surfels.
+#:     what summed colours are multiplied by. emission: of all surfels. edges: the sum of weights that covers a sample.
 SHADING_BLOCK = (
     "Shading",
     "shading",
@@ -29,6 +29,7 @@ SHADING_BLOCK = (
         ("vec4", "material"),
         ("vec4", "options"),
         ("vec4", "emission"),
+        ("vec4", "edges"),
     ),
 )
 
@@ -52,10 +53,12 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
         fragment=load(f"{planned.name}.frag.glsl", shading=frame.shading),
         block=SHADING_BLOCK,
         samplers=planned.reads,
+        multisampled=tuple(name for name in planned.reads if frame.multisamples_of(name)),
         outputs=tuple((kinds.get(name, "vec4"), name) for name in planned.writes),
         defines=(
             ("SAMPLES", str(frame.samples)),
             ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
+            *_multisampling(frame),
             *(HALF_SUMS if "depth_sum" in planned.reads else ()),
             *((("NORMAL_OUTPUT", "1"),) if "normal_coverage" in planned.writes else ()),
             *((define, "1") for texture, define in _DEFINES.items() if texture in planned.reads),
@@ -81,6 +84,13 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
     return target
 
 
+def _multisampling(frame: FramePlan):
+    """How many times the shader looks at a texel, and of how many samples it then takes the mean."""
+    if frame.multisamples and not frame.sample_shading:
+        return ("LOOKS", "1"), ("MEAN_OF", str(frame.multisamples))
+    return (("LOOKS", str(frame.multisamples or 1)),)
+
+
 def _lights(tile: TileContext):
     return tile.resources.data(pack_lights(tile.scene.lights, tile.camera.world_to_view(), tile.view.scale))
 
@@ -101,4 +111,5 @@ def _block(tile: TileContext) -> np.ndarray:
         (*material, 1.0 / view.scale),
         (camera.is_orthographic, len(scene.lights), tile.depth_unit, 1 / tile.color_scale),
         (*(frame.emission or (0.0, 0.0, 0.0)), 0.0),
+        (tile.settings.edge_threshold, 0.0, 0.0, 0.0),
     )

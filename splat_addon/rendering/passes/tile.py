@@ -67,4 +67,4 @@ class TileContext:
 def texture_key(name: str, size: tuple[int, int], plan: FramePlan) -> TextureKey:
     """Of a texture of the plan, for a tile of `size` pixels."""
     scale = plan.scale(name)
-    return name, size[0] * scale, size[1] * scale, plan.format(name)
+    return name, size[0] * scale, size[1] * scale, plan.format(name), plan.multisamples_of(name)

@@ -28,6 +28,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
         depth_test=True,
         depth_write=True,
         fragment_depth=frame.linear_depth,
+        sample_shading=frame.sample_shading,
     )
 
 

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The normalisation threshold of the view-independent paper, section 4.5: weak sums fade to the background."""
+
+import numpy as np
+import pytest
+
+from splat_addon.reference.extremes import discs
+from splat_addon.rendering import Camera, Scene, Settings
+
+SIZE = 48
+CAMERA = Camera.orthographic(np.eye(4), 2.4, (SIZE, SIZE), 0.1, 10)
+
+
+def place():
+    """Each pixel's distance from the axis."""
+    x = (np.arange(SIZE) + 0.5) / SIZE * 2.4 - 1.2
+    return np.hypot(*np.meshgrid(x, x))
+
+
+@pytest.mark.parametrize("accumulation", ["float32", "float16"])
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("threshold", [0.0, 0.2, 0.5, 1.0])
+def test_one_disc_fades_by_its_kernel(threshold, side, accumulation, render):
+    """Also where its back is seen, which weighs less and is as much a surface."""
+    disc = discs((0, 0, -3), (1, 0, 0), (0, side, 0), (0.2, 0.5, 0.8))
+    settings = Settings(
+        shading="flat",
+        supersampling=1,
+        edge_threshold=threshold,
+        accumulation=accumulation,
+        transparent_film=True,
+    )
+    frame = render(Scene((disc,)), CAMERA, settings)
+    weight = np.where(place() <= 1, np.exp(-2 * place() ** 2), 0)
+    expected = np.minimum(weight / threshold, 1) if threshold else (weight > 0).astype(float)
+    tolerance = 1e-4 if accumulation == "float32" else 2e-3
+    np.testing.assert_allclose(frame.coverage, expected, atol=tolerance)
+    np.testing.assert_allclose(frame.color[..., 3], expected, atol=tolerance)
+    np.testing.assert_allclose(frame.color[..., :3], expected[..., None] * (0.2, 0.5, 0.8), atol=tolerance)
+
+
+def test_a_filtering_method_is_left_alone_and_the_plan_says_so(render):
+    disc = Scene((discs((0, 0, -3)),))
+    frames = [render(disc, CAMERA, Settings(method="mip", edge_threshold=t)) for t in (0.0, 0.5)]
+    np.testing.assert_array_equal(frames[0].color, frames[1].color)
+    assert dict(frames[1].stats["plan"].left_out)["edge threshold"] == "the weights of mip are smaller where it filters"
