@@ -42,6 +42,10 @@ ShadedSample shaded_sample(ivec2 texel, int look) {
 #else
   vec3 material = shading.material.xyz;
 #endif
+#ifdef LIGHT_SET_TARGET
+  light_set = texelFetch(light_set_sum, texel, 0);
+  light_set /= dot(light_set, vec4(1.0));
+#endif
   vec3 radiance = shade(position, normal, c.rgb / c.w, material);
 #ifdef EMISSION_TARGET
   vec4 e = SUM_AT(emission_sum, texel, look);

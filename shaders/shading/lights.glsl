@@ -2,6 +2,10 @@
 // Summary: what each light sends to a place: the texels of rendering/light.py as a direction, an irradiance and, of a
 //          light with a size, four corners. A round light is a square of its area that faces the place, as Cycles takes a disc there.
 
+#ifdef LIGHT_SET_TARGET
+vec4 light_set;  // of the sample that is shaded: its share of each set of objects
+#endif
+
 struct Incident {
   vec3 to_light;    // unit
   vec3 irradiance;  // of a surface that faces it
@@ -19,6 +23,9 @@ Incident incident(int light, vec3 position) {
   vec4 strength = texelFetch(lights, ivec2(1, light), 0);
   vec4 axis = texelFetch(lights, ivec2(2, light), 0);
   vec4 u = texelFetch(lights, ivec2(3, light), 0);
+#ifdef LIGHT_SET_TARGET
+  strength.rgb *= dot(texelFetch(lights, ivec2(5, light), 0), light_set);
+#endif
   Incident here;
   here.middle = place.xyz - position * place.w;
   float distance2 = max(dot(here.middle, here.middle), 1e-30);

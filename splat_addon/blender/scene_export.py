@@ -6,15 +6,16 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import bpy
 import numpy as np
 
-from ..rendering import Instance, Scene
+from ..rendering import Instance, Light, Scene
 from ..surfels import Surfels
 from .attributes import has_surfels, read_surfels
+from .light_linking import LightSets
 from .live_meshes import LiveMeshes
 from .mesh_sampling_settings import mesh_fineness, renders_as_surfels
 from .shading_export import light_of, shading_material
@@ -83,19 +84,18 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
     live_meshes: samples the meshes that are no surfels, where the scene asks for that.
     """
     notes, fineness = Notes(), mesh_fineness(depsgraph.scene)
-    surfels, lights = [], []
+    surfels, (lights, light_sets) = [], _lights(depsgraph, notes)
     for entry in depsgraph.object_instances:
         object_, matrix = entry.object, np.array(entry.matrix_world, np.float64)
         if not entry.show_self:
             continue
         try:
-            if object_.type == "LIGHT":
-                lights.append(light_of(object_.data, matrix, notes))
-            elif object_.type == "MESH":
+            if object_.type == "MESH":
+                light_set = light_sets.of_instance(entry)
                 if (what := _content(object_)) == "surfels":
-                    surfels.append(_instance(object_, matrix, store, notes))
+                    surfels.append(replace(_instance(object_, matrix, store, notes), light_set=light_set))
                 elif fineness is not None and what == "faces" and renders_as_surfels(owner_of(entry)):
-                    live_meshes.add(object_, owner_of(entry), matrix, notes)
+                    live_meshes.add(object_, owner_of(entry), matrix, light_set, notes)
                 elif fineness is None and what != "nothing":
                     notes.add(_NOT_SAMPLED)
             elif object_.type in _NOT_DRAWN:
@@ -105,7 +105,24 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
     if fineness is not None:
         surfels += live_meshes.instances(depsgraph, fineness, notes)
     world, environment = store.world.read(depsgraph.scene.world, notes)
-    return Scene(tuple(surfels), tuple(filter(None, lights)), world, environment), notes
+    lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
+    return Scene(tuple(surfels), tuple(lights), world, environment), notes
+
+
+def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], LightSets]:
+    """All that give light, and what they light."""
+    lights, objects = [], []
+    for entry in depsgraph.object_instances:
+        if entry.object.type == "LIGHT" and entry.show_self:
+            try:
+                light = light_of(entry.object.data, np.array(entry.matrix_world, np.float64), notes)
+            except ValueError as error:
+                notes.add(f"{entry.object.name} is left out: {error}")
+                continue
+            if light:
+                lights.append(light)
+                objects.append(entry.object.original)
+    return lights, LightSets(objects, notes)
 
 
 #: Blender's type -> its name, of what could be seen but is no mesh. Curves and texts come as meshes.

@@ -87,7 +87,7 @@ def _flat(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera) -> np.n
 def _principled(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera) -> np.ndarray:
     origin, direction = grid.rays(surface.rays)
     position = origin + surface.depth[:, None] * direction
-    incident, world = all_incident(scene, camera, position), WorldLight(scene, camera)
+    incident, world = all_incident(scene, camera, position, surface.light_set), WorldLight(scene, camera)
     return surface.emission + principled_radiance(surface, direction, incident, world)
 
 

@@ -9,7 +9,7 @@ a spot's rim is Cycles' smooth step between two cosines.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,6 +34,11 @@ class Incident:
     is_sized: np.ndarray
     corners: np.ndarray
     radiance: np.ndarray
+
+    def times(self, share: np.ndarray) -> Incident:
+        """The same light, of which that share (n,) arrives."""
+        dimmed = {name: getattr(self, name) * share[:, None] for name in ("irradiance", "radiance")}
+        return replace(self, **dimmed)
 
 
 def incident(light: Light, camera: Camera, position: np.ndarray) -> Incident:
@@ -95,6 +100,11 @@ def _facing(to_light: np.ndarray, half_side) -> tuple[np.ndarray, np.ndarray]:
     return u * np.reshape(half_side, (-1, 1)), np.cross(to_light, u) * np.reshape(half_side, (-1, 1))
 
 
-def all_incident(scene: Scene, camera: Camera, position: np.ndarray) -> list[Incident]:
-    """Of every light of the scene."""
-    return [incident(light, camera, position) for light in scene.lights]
+def all_incident(scene: Scene, camera: Camera, position: np.ndarray, light_set: np.ndarray) -> list[Incident]:
+    """Of every light of the scene, as far as it lights the sets (n, 4) that places belong to."""
+    return [incident(light, camera, position).times(_linked(light, light_set)) for light in scene.lights]
+
+
+def _linked(light: Light, light_set: np.ndarray) -> np.ndarray:
+    """(n,) share of a place that the light lights."""
+    return light_set.sum(axis=1) if light.receivers is None else light_set[:, list(light.receivers)].sum(axis=1)

@@ -77,7 +77,7 @@ class Surface:
     """What the n rays that hit something see, averaged over the splats with their weights, eye space.
 
     rays: (n,) numbers in the grid. color: (n, 3). normal: (n, 3) unit. depth: (n,).
-    roughness, metallic, f0: (n,). emission: (n, 3).
+    roughness, metallic, f0: (n,). emission: (n, 3). light_set: (n, 4) the share of each set of objects.
     """
 
     rays: np.ndarray
@@ -88,6 +88,7 @@ class Surface:
     metallic: np.ndarray
     f0: np.ndarray
     emission: np.ndarray
+    light_set: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +112,7 @@ def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float) -> Su
     for hits in _hits(splats, boxes, grid):
         # A point e moved back to e (1 + push / |e|) gains push / |direction| in depth, as |e| = depth |direction|.
         np.minimum.at(visibility, hits.ray, hits.depth + push[hits.splat] / hits.stretch)
-    sums = np.zeros((14, grid.count))
+    sums = np.zeros((18, grid.count))
     attributes = np.concatenate([splats.color, splats.normal, splats.surface], axis=1).T
     for hits in _hits(splats, boxes, grid):
         seen = np.flatnonzero(hits.depth <= visibility[hits.ray])
@@ -140,7 +141,8 @@ def _averages(sums: np.ndarray) -> Surface:
     color, normal = np.stack(columns[:3], axis=1), np.stack(columns[3:6], axis=1)
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = np.where(length > CANCELLED, normal / np.maximum(length, CANCELLED), TO_VIEWER)
-    return Surface(rays, color, normal, depth, *columns[6:9], np.stack(columns[9:12], axis=1))
+    emission, light_set = np.stack(columns[9:12], axis=1), np.stack(columns[12:], axis=1)
+    return Surface(rays, color, normal, depth, *columns[6:9], emission, light_set)
 
 
 def _splats_in(splats: Splats, bounds, grid: RayGrid):

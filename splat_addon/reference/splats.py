@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ..rendering.camera import Camera
+from ..rendering.light import MAX_LIGHT_SETS
 from ..rendering.scene import Instance, Scene
 from .textures import surfel_textures
 
@@ -27,7 +28,8 @@ class Splats:
 
     center: (N, 3). u, v: (N, 3) conjugate half-diameters, world units. plane: (N, 3) u x v, not unit.
     normal: (N, 3) unit shading normal turned to the viewer. color: (N, 3) scene-linear.
-    surface: (N, 6) roughness, metallic, reflectance at normal incidence, and r, g, b of the emission.
+    surface: (N, 10) roughness, metallic, reflectance at normal incidence, r, g, b of the emission, and 1 in the
+        column of the set of objects that it belongs to.
     is_back: (N,) bool: its inward side is seen.
     texture: (N,) objects, the `SurfaceTexture` that takes the place of color, or None. uv: (N, 2) at the centre;
     uv_along: (N, 2, 2), its change along u (row 0) and v (row 1).
@@ -65,7 +67,7 @@ def eye_splats(scene: Scene, camera: Camera) -> Splats:
     """Every instance's surfels in the eye space of `camera`."""
     parts = [_instance_splats(instance, camera) for instance in scene.surfels]
     if not parts:
-        return Splats(*np.zeros((6, 0, 3)), np.zeros((0, 6)), np.zeros(0, bool), np.zeros(0, object), *_no_uvs(0))
+        return Splats(*np.zeros((6, 0, 3)), np.zeros((0, 10)), np.zeros(0, bool), np.zeros(0, object), *_no_uvs(0))
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
 
 
@@ -121,7 +123,7 @@ def _turned(normal: np.ndarray, side: np.ndarray) -> np.ndarray:
 
 
 def _surface(instance: Instance) -> np.ndarray:
-    """(N, 6) roughness, metallic, f0 and emission of each surfel: its own, or its material's."""
+    """(N, 10) roughness, metallic, f0 and emission of each surfel, its own or its material's; and its light set."""
     surfels = instance.surfels
     table = np.array(
         [(m.roughness, m.metallic, ((m.ior - 1) / (m.ior + 1)) ** 2, *m.emission) for m in instance.materials]
@@ -130,7 +132,8 @@ def _surface(instance: Instance) -> np.ndarray:
     for columns, own in ((0, surfels.roughness), (1, surfels.metallic), (slice(3, 6), surfels.emission)):
         if own is not None:
             surface[:, columns] = own
-    return surface
+    light_set = np.tile(np.eye(MAX_LIGHT_SETS)[instance.light_set], (len(surfels), 1))
+    return np.concatenate([surface, light_set], axis=1)
 
 
 def projected_bounds(splats: Splats, camera: Camera) -> tuple[np.ndarray, np.ndarray]:

@@ -11,6 +11,9 @@ import numpy as np
 #: A sun wider than this half-angle is shaded as one of it: half a sky.
 MAX_SUN_HALF_ANGLE = 1.4
 
+#: How many sets of instances that differ in what lights them a picture can have: the channels of one texture.
+MAX_LIGHT_SETS = 4
+
 KINDS = ("sun", "point", "spot", "area")
 
 
@@ -24,6 +27,7 @@ class Light:
     direction: (3,) world, the way the light of a sun, a spot's axis and an area's front travel.
     size: radians across a sun, or the radius of a point or spot; 0 is a light without size.
     spot_angle: radians across a spot's cone; spot_blend: 0 to 1, how soft its rim is.
+    receivers: numbers of the sets of instances (`Instance.light_set`) that it lights, or None for all.
     half_axes: (2, 3) world, from an area's middle to the middles of two sides; is_round: they are an ellipse's.
     """
 
@@ -37,6 +41,7 @@ class Light:
     spot_blend: float = 0.15
     half_axes: tuple[tuple[float, float, float], tuple[float, float, float]] = ((0.5, 0.0, 0.0), (0.0, 0.5, 0.0))
     is_round: bool = False
+    receivers: tuple[int, ...] | None = None
 
     def __post_init__(self):
         if self.kind not in KINDS:
@@ -64,18 +69,18 @@ class Light:
 
 
 #: Rows of float32 texels a light: see shaders/shading/lights.glsl.
-TEXELS_PER_LIGHT = 5
+TEXELS_PER_LIGHT = 6
 
 #: A square with the area of a disc has this half-side in radii.
 _SQUARED = math.sqrt(math.pi) / 2
 
 
 def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: float) -> np.ndarray:
-    """(L, 5, 4) float32, in scaled view space; world_to_view: (4, 4) float64.
+    """(L, 6, 4) float32, in scaled view space; world_to_view: (4, 4) float64.
 
     place, w: 1, or for a sun the direction to it and 0 | irradiance at distance 1 that faces it (of an area the
     intensity along its axis), half-side of a square as large as it | axis, cosine of a spot's half-angle | half-axis u,
-    1 / width of a spot's rim | half-axis v, 1 for an area.
+    1 / width of a spot's rim | half-axis v, 1 for an area | 1 for each set that it lights.
     """
     texels = np.zeros((len(lights), TEXELS_PER_LIGHT, 4))
     rotation = world_to_view[:3, :3]
@@ -90,6 +95,7 @@ def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: flo
         row[1] = *(np.asarray(light.color, np.float64) * strength), half_side
         row[2] = *axis, -2.0
         row[3, 3] = 1.0
+        row[5] = [light.receivers is None or number in light.receivers for number in range(MAX_LIGHT_SETS)]
         if light.kind == "spot":
             cosine = math.cos(light.spot_angle / 2)
             row[2, 3], row[3, 3] = cosine, 1 / max((1 - cosine) * light.spot_blend, 1e-6)

@@ -41,6 +41,7 @@ TEXTURES = {
     "depth_sum": ("RG32F", "sample"),
     "material_sum": ("RGBA32F", "sample"),
     "emission_sum": ("RGBA32F", "sample"),
+    "light_set_sum": ("RGBA32F", "sample"),
     "shaded": ("RGBA32F", "sample"),
     "surface": ("RGBA32F", "sample"),
     "combined": ("RGBA32F", "pixel"),
@@ -51,7 +52,7 @@ TEXTURES = {
 #: accumulation -> texture -> format, where it is not the one above; emission has no bound that a half could hold.
 SUM_FORMATS = {
     "float32": {},
-    "float16": {"color_sum": "RGBA16F", "normal_sum": "RGBA16F", "material_sum": "RGBA16F"},
+    "float16": {"color_sum": "RGBA16F", "normal_sum": "RGBA16F", "material_sum": "RGBA16F", "light_set_sum": "RGBA16F"},
 }
 
 
@@ -162,7 +163,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
             passes = (PlannedPass("background", "the world is a picture", ("environment_image",), outputs),)
     else:
         linear_depth, why_depth = _linear_depth(scene, camera, settings)
-        sums = _sums(settings, material, emission, left_out)
+        sums = _sums(scene, settings, material, emission, left_out)
         passes = (
             PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
             PlannedPass("attributes", _why_attributes(scene, method), ("visibility_depth",), sums),
@@ -200,7 +201,7 @@ def _why_attributes(scene: Scene, method: Method) -> str:
 # What follows decides one thing each, and appends to `left_out` what it decided against.
 
 
-def _sums(settings: Settings, material: Material | None, emission, left_out: list) -> tuple[str, ...]:
+def _sums(scene: Scene, settings: Settings, material: Material | None, emission, left_out: list) -> tuple[str, ...]:
     """What the attribute pass adds up."""
     sums = ["color_sum", "normal_sum"]
     if settings.accumulation == "float16":
@@ -218,6 +219,10 @@ def _sums(settings: Settings, material: Material | None, emission, left_out: lis
         left_out.append(("emission_sum", f"all surfels send out the same light{'' if any(emission) else ', none'}"))
     else:
         sums.append("emission_sum")
+    if settings.shading != "flat" and any(light.receivers is not None for light in scene.lights):
+        sums.append("light_set_sum")
+    else:
+        left_out.append(("light_set_sum", "every light lights everything"))
     return tuple(sums)
 
 

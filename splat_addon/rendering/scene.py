@@ -15,7 +15,7 @@ from ..images import Image
 from ..surfels import Surfels
 from .camera import Camera
 from .environment import Environment
-from .light import Light
+from .light import MAX_LIGHT_SETS, Light
 
 
 @dataclass(frozen=True)
@@ -64,6 +64,7 @@ class Instance:
 
     matrix_world: (4, 4), object to world, any invertible affine map (mirrored, non-uniform, sheared).
     materials: what `Surfels.materials` indexes; an index past the end uses the last one.
+    light_set: number of the set of instances that the same lights light (`Light.receivers`).
     textures: indexed alike; where one is None, and for surfels without texture coordinates, the surfels' own colours
         are shown.
     """
@@ -71,9 +72,12 @@ class Instance:
     surfels: Surfels
     matrix_world: np.ndarray = field(default_factory=lambda: np.eye(4))
     materials: tuple[Material, ...] = (Material(),)
+    light_set: int = 0
     textures: tuple[SurfaceTexture | None, ...] = ()
 
     def __post_init__(self):
+        if not 0 <= self.light_set < MAX_LIGHT_SETS:
+            raise ValueError(f"An instance's light set must be 0 to {MAX_LIGHT_SETS - 1}, not {self.light_set}.")
         matrix = np.array(self.matrix_world, np.float64)
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
             raise ValueError("An instance's matrix_world must be 4 x 4 finite numbers.")

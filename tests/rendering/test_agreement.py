@@ -39,6 +39,13 @@ def lit(scene, camera):
     return replace(scene, lights=lights), camera
 
 
+def linked(scene, camera):
+    """Two lights, of which one object has the first and the other both."""
+    first, second = scene.surfels
+    lights = Light("sun", energy=2.0, direction=(1, -0.5, -1)), Light("sun", energy=2.0, receivers=(1,))
+    return replace(scene, surfels=(first, replace(second, light_set=1)), lights=lights), camera
+
+
 def environment():
     """A sky, a floor and a red lamp in a picture of 32 x 64 pixels."""
     pixels = np.empty((32, 64, 3), np.float32)
@@ -73,6 +80,7 @@ SCENES = {
     "checker_plane": lambda: scenes.checker_plane(size=SIZE),
     "torus": lambda: scenes.torus(size=SIZE),
     "lights": lambda: lit(*scenes.torus(size=SIZE)),
+    "light_linking": lambda: linked(*scenes.torus(size=SIZE)),
     "environment": lambda: in_a_picture(*scenes.torus(size=SIZE)),
     "own_materials": lambda: own_materials(*scenes.torus(size=SIZE)),
     "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),

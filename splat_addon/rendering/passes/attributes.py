@@ -62,6 +62,7 @@ def _in_space(planned, frame):
         outputs=tuple((_OUTPUT_TYPES.get(name, "vec4"), name) for name in planned.writes),
         defines=(
             *with_materials,
+            *((("LIGHT_SET_TARGET", "1"),) if "light_set_sum" in planned.writes else ()),
             *(HALF_SUMS if frame.accumulation == "float16" else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
@@ -98,6 +99,7 @@ def _in_picture(planned, frame):
         defines=(
             ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
             *with_materials,
+            *((("LIGHT_SET_TARGET", "1"),) if "light_set_sum" in planned.writes else ()),
             *(HALF_SUMS if frame.accumulation == "float16" else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),

@@ -39,6 +39,7 @@ _DEFINES = {
     "material_sum": "MATERIAL_TARGET",
     "emission_sum": "EMISSION_TARGET",
     "lights": "LIGHTS",
+    "light_set_sum": "LIGHT_SET_TARGET",
     "environment_image": "ENVIRONMENT",
     "environment_levels": "ENVIRONMENT_LIGHT",
 }

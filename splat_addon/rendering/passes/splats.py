@@ -8,6 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..device.interface import Pipeline, Target
+from ..light import MAX_LIGHT_SETS
 from ..storages import get_storage
 from ..view import PlacedInstance
 from .blocks import std140
@@ -16,6 +17,7 @@ from .tile import TileContext
 #: options: epsilon, near, 1 for orthographic, 1 / far.
 #: sides: -1 for a mirrored object and 1 for others, 1 where backs are hidden, the least offset of visibility (as a
 #:     share of the distance; of an orthographic camera a length), what colours are multiplied by.
+#: light_set: 1 in the channel of the instance's set.
 #: window: left, bottom and step of one sample on the plane at depth 1.
 SPLATS_BLOCK = (
     "Splats",
@@ -27,6 +29,7 @@ SPLATS_BLOCK = (
         ("vec4", "options"),
         ("vec4", "sides"),
         ("vec4", "window"),
+        ("vec4", "light_set"),
     ),
 )
 
@@ -51,5 +54,6 @@ def draw_splats(tile: TileContext, pipeline: Pipeline, target: Target, placed_on
         sides = orientation, placed.hides_backs, least_offset, tile.color_scale
         normal_matrix = np.eye(4)
         normal_matrix[:3, :3] = placed.normal_matrix
-        block = std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window)
+        light_set = np.eye(MAX_LIGHT_SETS)[instance.light_set]
+        block = std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set)
         resources.device.draw_quads(pipeline, target, len(instance.surfels), block, textures)

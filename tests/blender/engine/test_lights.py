@@ -117,6 +117,21 @@ def test_the_world_lights_the_surface(scene, assert_as_cycles):
     assert_as_cycles(IOR=1.0)
 
 
+@pytest.mark.parametrize("state", ["INCLUDE", "EXCLUDE"])
+def test_a_light_lights_what_it_is_linked_to(state, scene, add_camera, add_light, add_sheet, picture):
+    scene.surfel_splatting.shading = "principled"
+    add_camera((0, 0, 4))
+    left, right = add_sheet(side=1), add_sheet(side=1)
+    left.location.x, right.location.x = -0.6, 0.6
+    linked = add_light("SUN", 3, (0, 0, 0), (0, 0, 0), {})
+    linked.light_linking.receiver_collection = bpy.data.collections.new("receivers")
+    linked.light_linking.receiver_collection.objects.link(left)
+    linked.light_linking.receiver_collection.collection_objects[0].light_linking.link_state = state
+    seen = picture()[..., 0]
+    lit, unlit = (seen[:, :16], seen[:, 16:]) if state == "INCLUDE" else (seen[:, 16:], seen[:, :16])
+    assert lit.max() > 0.5 and unlit.max() == 0
+
+
 def gradient_world(scene, rotation=(0, 0, 0)):
     """A world whose picture is brighter upwards and to one side, with a lamp in it."""
     image = bpy.data.images.new("sky", 64, 32, float_buffer=True)
