@@ -41,7 +41,7 @@ class Effort:
     samples: int
 
 
-FULL_EFFORT, QUICK_EFFORT = Effort(FULL, 5, 8), Effort(FULL // 2, 3, 5)
+FULL_EFFORT, QUICK_EFFORT = Effort(FULL, 5, 8), Effort(FULL // 2, 2, 5)
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:

@@ -59,7 +59,7 @@ def summary(rows: list[dict], chosen: list[Settings], name: str) -> tuple[list[s
 def preset_of(settings: Settings) -> str:
     """(Name) of the preset that these settings are, or nothing."""
     for preset in PRESETS.values():
-        if preset.is_in(settings):
+        if preset.of(YARDSTICK) == settings:
             return f" (**{preset.label}**)"
     return ""
 

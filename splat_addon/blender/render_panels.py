@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import bpy
 
 from .ids import ENGINE, RENDER_SETTINGS
+from .operators.render_preset import draw_presets
 
 
 class _RenderPanel:
@@ -30,6 +31,10 @@ class _RenderPanel:
 class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
     properties = ("method", "supersampling", "viewport_supersampling")
+
+    def draw(self, context):
+        draw_presets(self.layout, getattr(context.scene, RENDER_SETTINGS))
+        super().draw(context)
 
 
 class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operator that puts a measured preset into the render settings, and the buttons that call it."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import EnumProperty
+
+from ...rendering.presets import PRESETS
+from ..ids import RENDER_PRESET, RENDER_SETTINGS
+
+
+class RENDER_OT_surfel_preset(bpy.types.Operator):
+    bl_idname = RENDER_PRESET
+    bl_label = "Surfel Splatting Preset"
+    bl_description = "Choose method and samples together"
+    bl_options = frozenset({"REGISTER", "UNDO", "INTERNAL"})
+
+    preset: EnumProperty(
+        name="Preset",
+        description="Which trade of speed for accuracy",
+        items=[(preset.name, preset.label, preset.summary) for preset in PRESETS.values()],
+    )
+
+    @classmethod
+    def description(cls, context, properties):
+        return PRESETS[properties.preset].summary
+
+    def execute(self, context):
+        settings = getattr(context.scene, RENDER_SETTINGS)
+        for name, value in PRESETS[self.preset].values.items():
+            setattr(settings, name, value)
+        return {"FINISHED"}
+
+
+def draw_presets(layout: bpy.types.UILayout, settings) -> None:
+    """A row of buttons, of which the one whose values are set is pressed."""
+    row = layout.row(align=True)
+    for preset in PRESETS.values():
+        button = row.operator(RENDER_PRESET, text=preset.label, depress=preset.is_in(settings))
+        button.preset = preset.name
+
+
+register, unregister = bpy.utils.register_classes_factory((RENDER_OT_surfel_preset,))
