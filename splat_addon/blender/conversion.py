@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One object, or several joined, becomes one surfel object, in three steps: prepare, sample, place.
+"""One object, or several joined, becomes one surfel object, in four steps: prepare, sample, bake, place.
 
-Only `prepare` and `place` touch Blender's data, so `sample` may run in a thread of its own while the window lives.
+Only `sample` leaves Blender's data alone, so it may run in a thread of its own while the window lives.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 from mathutils import Matrix
@@ -16,6 +16,7 @@ from mathutils import Matrix
 from ..sampling import (
     DEFAULT_GRAZING_ANGLE,
     DEFAULT_SPLAT_SIZE,
+    REDUCTIONS,
     Sampling,
     Tolerance,
     TriangleMesh,
@@ -27,9 +28,15 @@ from ..sampling import (
     sample_surface,
 )
 from ..surfels import Surfels
+from .baking import Bakeable, baked
 from .camera_density import without_camera
 from .gathering import gather
+from .material_surfaces import Unread
+from .mesh_extraction import unread_sentences
 from .surfel_objects import add_surfel_object, collections_of
+
+#: How far a surfel's surface may be above or below it, in spacings: a bend within its cell, or a move to a lattice.
+_REACH, _LATTICE_REACH = 0.25, 1.0
 
 #: About 20 GB while converting; a slip in the resolution must not freeze the machine.
 MAX_SURFELS = 100_000_000
@@ -41,7 +48,7 @@ class Choices:
     surfel may cover for the scene's camera. reduction, grazing_angle: as sampling takes them. splat_size: half-axis of
     a splat, in spacings. tolerance: how far from flat, object units, where surfels may become larger, or None.
     space: "object" or "world", whose units lengths are in and which the surfels are even in. join: all sources become
-    one, in world units."""
+    one, in world units. bake: what materials cannot be read for comes from Blender's own bake."""
 
     fineness: dict[str, float]
     splat_size: float = DEFAULT_SPLAT_SIZE
@@ -50,6 +57,7 @@ class Choices:
     tolerance: float | None = None
     space: str = "object"
     join: bool = False
+    bake: bool = False
 
     @property
     def in_world_units(self) -> bool:
@@ -61,6 +69,7 @@ class Conversion:
     """The sources of one surfel object on their way, and what there is to tell about them.
 
     sources: the first gives the place. whole: as it was read; mesh: without its unusable triangles.
+    unread: inputs of materials that are to be baked.
     """
 
     sources: list[bpy.types.Object]
@@ -68,6 +77,7 @@ class Conversion:
     mesh: TriangleMesh
     matrix_world: Matrix
     materials: tuple[bpy.types.Material | None, ...]
+    unread: tuple[tuple[bpy.types.Material, Unread], ...]
     choices: Choices
     spacing: float
     triangles: int
@@ -114,9 +124,27 @@ def prepare(sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, cho
     predicted = predict_count(mesh, spacing=spacing, **how)
     if predicted > MAX_SURFELS:
         raise ValueError(f"It would become {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
-    notes = [f"Skipped {', '.join(skipped)}", *gathered.notes] if skipped else gathered.notes
-    materials, seconds = gathered.materials, time.perf_counter() - start
-    return Conversion(sources, whole, mesh, matrix_world, materials, choices, spacing, len(whole), notes, seconds)
+    notes = [f"Skipped {', '.join(skipped)}"] if skipped else []
+    unread = gathered.unread if choices.bake else ()
+    if not choices.bake:
+        notes += unread_sentences(gathered.unread)
+    if unread and choices.tolerance is not None:
+        choices = replace(choices, tolerance=None)
+        notes.append("Adaptive is left off: what is baked is known only once the surfels are there")
+    seconds = time.perf_counter() - start
+    return Conversion(
+        sources,
+        whole,
+        mesh,
+        matrix_world,
+        gathered.materials,
+        unread,
+        choices,
+        spacing,
+        len(whole),
+        [*notes, *gathered.notes],
+        seconds,
+    )
 
 
 def sample(conversion: Conversion, progress: Callable[[float], bool | None] | None = None) -> None:
@@ -138,6 +166,27 @@ def sample(conversion: Conversion, progress: Callable[[float], bool | None] | No
     solid = sampling.keeps_both_sides and is_solid(conversion.whole)
     conversion.surfels = sampling.surfels.as_solid() if solid else sampling.surfels
     conversion.sampling = sampling
+    conversion.seconds += time.perf_counter() - start
+
+
+def bake(conversion: Conversion, depsgraph: bpy.types.Depsgraph) -> None:
+    """Give the surfels what their materials could not be read for, where that is chosen. Raises ValueError."""
+    if not conversion.unread:
+        return
+    start, choices = time.perf_counter(), conversion.choices
+    what = Bakeable(
+        conversion.sources,
+        conversion.matrix_world,
+        conversion.unread,
+        conversion.materials,
+        conversion.mesh.surfaces,
+        conversion.spacing,
+        choices.splat_size,
+        _REACH if REDUCTIONS[choices.reduction].merge is None else _LATTICE_REACH,
+    )
+    conversion.surfels, missed = baked(conversion.surfels, what, depsgraph)
+    if missed:
+        conversion.notes.append(f"The bake did not meet {missed:,} values; the plain values of their sockets are used")
     conversion.seconds += time.perf_counter() - start
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import bpy
 
 from ..sampling import SamplingCancelled
-from .conversion import Choices, Conversion, place, prepare, sample
+from .conversion import Choices, Conversion, bake, place, prepare, sample
 from .gathering import groups
 from .surfel_objects import select_only
 
@@ -66,6 +66,12 @@ class ConversionBatch:
 
     def place_all(self, context: bpy.types.Context) -> list[tuple[Conversion, bpy.types.Object]]:
         """Add the surfel objects to the file; they are selected, and the last is active."""
-        made = [(conversion, place(conversion, context.collection)) for conversion in self._sampled]
+        made = []
+        for conversion in self._sampled:
+            try:
+                bake(conversion, context.evaluated_depsgraph_get())
+            except ValueError as error:
+                conversion.notes.append(f"Nothing was baked: {error}")
+            made.append((conversion, place(conversion, context.collection)))
         select_only(context, [new for _, new in made])
         return made

@@ -144,6 +144,15 @@ class ConversionProperties:
         precision=5,
         step=0.01,
     )
+    bake_materials: BoolProperty(
+        name="Bake Materials",
+        description=(
+            "Let Cycles bake the inputs of materials that are no plain product of images, colour attributes and "
+            "numbers, such as procedural textures and bumps, at each surfel; otherwise the sockets' plain values are "
+            "used. Adds about 35 s for a million surfels and each such input, while progress stands still"
+        ),
+        default=False,
+    )
     splat_size: FloatProperty(
         name="Splat Size",
         description=(
@@ -181,6 +190,7 @@ def choices(properties: ConversionProperties) -> Choices:
         tolerance=properties.tolerance if properties.use_adaptive else None,
         space=properties.space.lower(),
         join=properties.join,
+        bake=properties.bake_materials,
     )
 
 
@@ -199,6 +209,7 @@ def draw_properties(layout: bpy.types.UILayout, properties: ConversionProperties
     layout.prop(properties, "use_adaptive")
     if properties.use_adaptive:
         layout.prop(properties, "tolerance")
+    layout.prop(properties, "bake_materials")
     layout.prop(properties, "splat_size")
     layout.row().prop(properties, "source", expand=True)
 

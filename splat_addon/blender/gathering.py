@@ -15,6 +15,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..sampling import Surface, TriangleMesh, have_same_values, joined, transformed
+from .material_surfaces import Unread
 from .mesh_extraction import ExtractedMesh, read_mesh
 from .placement import relative, without_scale, without_shear
 from .sources import Piece, Reader, Shown, shown_by, why_nothing
@@ -22,13 +23,14 @@ from .sources import Piece, Reader, Shown, shown_by, why_nothing
 
 @dataclass(frozen=True, eq=False)
 class Gathered:
-    """mesh: of all sources, in the space of `matrix_world`. materials: what its material indices mean. notes: a
-    sentence for each kind of thing that could not be read. others: session_uids of the objects besides the sources
-    that it has something of."""
+    """mesh: of all sources, in the space of `matrix_world`. materials: what its material indices mean. unread:
+    inputs of materials that could not be read. notes: a sentence for each kind of thing that was left out. others:
+    session_uids of the objects besides the sources that it has something of."""
 
     mesh: TriangleMesh
     matrix_world: Matrix
     materials: tuple[bpy.types.Material | None, ...]
+    unread: tuple[tuple[bpy.types.Material, Unread], ...]
     notes: list[str]
     others: frozenset[int]
 
@@ -55,7 +57,7 @@ def gather(
         raise ValueError(_why_nothing(sources, shown))
     meshes, materials = _with_shared_slots([piece for piece in pieces if len(piece.content.triangles)])
     notes = [note for each in shown for note in each.notes()]
-    notes += [note for piece in pieces for note in piece.content.notes]
+    unread = tuple(dict.fromkeys(each for piece in pieces for each in piece.content.unread))
     if len(sources) > 1:
         notes += [
             f"{source.name!r} is left out: {_why_nothing([source], [each])}"
@@ -64,7 +66,7 @@ def gather(
         ]
     placed = [transformed(mesh, relative(matrix, frames[0])) for mesh, piece in meshes for matrix in piece.matrices]
     others = frozenset().union(*(each.others for each in shown))
-    return Gathered(joined(placed), frames[0], materials, list(dict.fromkeys(notes)), others)
+    return Gathered(joined(placed), frames[0], materials, unread, list(dict.fromkeys(notes)), others)
 
 
 def _why_nothing(sources: list[bpy.types.Object], shown: list[Shown]) -> str:

@@ -26,7 +26,7 @@ from ..sampling import (
     outline,
     predict_count,
 )
-from ..surfels import Surfels
+from ..surfels import OPTIONAL_LAYOUT, Surfels
 from .camera_density import without_camera
 from .mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
 from .shading_export import shading_material
@@ -139,7 +139,7 @@ class LiveMeshes:
         with readable_mesh(evaluated) as mesh:
             live.topology = read_topology(mesh, live.topology)
             live.content = read_mesh(evaluated, mesh, live.topology, self._images)
-            live.materials = tuple(shading_material(m, notes) for m in slot_materials(evaluated, mesh))
+            live.materials = tuple(shading_material(m, notes, OPTIONAL_LAYOUT) for m in slot_materials(evaluated, mesh))
 
     def _sampled(self, live: _LiveMesh, depsgraph: bpy.types.Depsgraph, fineness: dict[str, float]) -> Surfels:
         """Raises ValueError with a sentence where nothing can be sampled."""

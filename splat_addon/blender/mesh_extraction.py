@@ -7,7 +7,7 @@ Only the fast ways in: attributes and `loop_triangle_polygons` copy whole arrays
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -15,17 +15,27 @@ import bpy
 import numpy as np
 
 from ..sampling import Surface, TriangleMesh
-from .material_surfaces import MeshLayers, material_surface
+from .material_surfaces import MeshLayers, Unread, material_surface
 
 
 @dataclass(frozen=True, eq=False)
 class ExtractedMesh:
     """triangles: in the object's own space. materials: of the object's slots, as they are in the file, None where
-    a slot is empty. notes: a sentence for each kind of thing that could not be read."""
+    a slot is empty. unread: inputs of these materials that could not be read."""
 
     triangles: TriangleMesh
     materials: tuple[bpy.types.Material | None, ...]
-    notes: tuple[str, ...]
+    unread: tuple[tuple[bpy.types.Material, Unread], ...] = ()
+
+    @property
+    def notes(self) -> list[str]:
+        """A sentence for each input that could not be read."""
+        return unread_sentences(self.unread)
+
+
+def unread_sentences(unread: Iterable[tuple[bpy.types.Material, Unread]]) -> list[str]:
+    """What is said of inputs that are not baked."""
+    return [f"The material {owner.name!r}'s {what}; the plain value of its socket is used" for owner, what in unread]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +71,7 @@ def read_mesh(
     vertices = topology.corner_vertices[corners]
     indices = _material_indices(mesh, faces, max(len(slots), 1))
     layers = MeshLayers(mesh) if images is None else MeshLayers(mesh, _images=images)
-    surfaces, notes = _surfaces(slots, np.unique(indices), layers)
+    surfaces, unread = _surfaces(slots, np.unique(indices), layers)
     triangles = TriangleMesh(
         positions=_positions(mesh),
         triangles=vertices,
@@ -71,12 +81,12 @@ def read_mesh(
         materials=indices,
         surfaces=surfaces,
     )
-    return ExtractedMesh(triangles, tuple(m and m.original for m in slots), tuple(notes))
+    return ExtractedMesh(triangles, tuple(m and m.original for m in slots), tuple(unread))
 
 
 def read_triangles(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> ExtractedMesh:
     """Only the positions and triangles, for predictions."""
-    return ExtractedMesh(TriangleMesh(_positions(mesh), _corner_vertices(mesh)[_triangle_corners(mesh)[0]]), (), ())
+    return ExtractedMesh(TriangleMesh(_positions(mesh), _corner_vertices(mesh)[_triangle_corners(mesh)[0]]), ())
 
 
 @contextmanager
@@ -145,14 +155,14 @@ def slot_materials(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> list[bp
 
 def _surfaces(
     slots: list[bpy.types.Material | None], used: np.ndarray, layers: MeshLayers
-) -> tuple[tuple[Surface, ...], list[str]]:
+) -> tuple[tuple[Surface, ...], list[tuple[bpy.types.Material, Unread]]]:
     """One surface a slot, at least one, plain in slots that no face uses, and what could not be read."""
-    surfaces, notes = [], []
+    surfaces, all_unread = [], []
     for index, material in enumerate(slots or [None]):
         surface, unread = material_surface(material, layers) if index in used else (Surface(), [])
         surfaces.append(surface)
-        notes += [f"The material {material.name!r}'s {what}; the plain value of its socket is used" for what in unread]
-    return tuple(surfaces), notes
+        all_unread += [(material.original, what) for what in unread]
+    return tuple(surfaces), all_unread
 
 
 def _layered(read, names: list[str]) -> np.ndarray | None:
