@@ -47,6 +47,7 @@ class Choices:
     """fineness: one keyword and value: "resolution", "spacing" or "count" as sampling takes them, or "pixels" that a
     surfel may cover for the scene's camera. reduction, grazing_angle: as sampling takes them. splat_size: half-axis of
     a splat, in spacings. tolerance: how far from flat, object units, where surfels may become larger, or None.
+    texture_mapped: colours that are one image are looked up in it when rendered.
     space: "object" or "world", whose units lengths are in and which the surfels are even in. join: all sources become
     one, in world units. bake: what materials cannot be read for comes from Blender's own bake."""
 
@@ -55,6 +56,7 @@ class Choices:
     reduction: str = "normal"
     grazing_angle: float = DEFAULT_GRAZING_ANGLE
     tolerance: float | None = None
+    texture_mapped: bool = False
     space: str = "object"
     join: bool = False
     bake: bool = False
@@ -161,6 +163,7 @@ def sample(conversion: Conversion, progress: Callable[[float], bool | None] | No
         grazing_angle=choices.grazing_angle,
         splat_size=choices.splat_size,
         tolerance=None if choices.tolerance is None else Tolerance(choices.tolerance),
+        texture_mapped=choices.texture_mapped,
         progress=progress,
     )
     solid = sampling.keeps_both_sides and is_solid(conversion.whole)

@@ -153,6 +153,14 @@ class ConversionProperties:
         ),
         default=False,
     )
+    texture_mapped: BoolProperty(
+        name="Texture-Mapped",
+        description=(
+            "Surfels whose base colour is one image look it up at every pixel of a render, instead of keeping one "
+            "colour each: a texture is sharp however few surfels there are, and an edited image shows at once"
+        ),
+        default=False,
+    )
     splat_size: FloatProperty(
         name="Splat Size",
         description=(
@@ -188,6 +196,7 @@ def choices(properties: ConversionProperties) -> Choices:
         reduction=properties.reduction.lower(),
         grazing_angle=properties.grazing_angle,
         tolerance=properties.tolerance if properties.use_adaptive else None,
+        texture_mapped=properties.texture_mapped,
         space=properties.space.lower(),
         join=properties.join,
         bake=properties.bake_materials,
@@ -210,6 +219,7 @@ def draw_properties(layout: bpy.types.UILayout, properties: ConversionProperties
     if properties.use_adaptive:
         layout.prop(properties, "tolerance")
     layout.prop(properties, "bake_materials")
+    layout.prop(properties, "texture_mapped")
     layout.prop(properties, "splat_size")
     layout.row().prop(properties, "source", expand=True)
 

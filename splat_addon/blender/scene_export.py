@@ -20,6 +20,7 @@ from .live_meshes import LiveMeshes
 from .mesh_sampling_settings import mesh_fineness, renders_as_surfels
 from .shading_export import light_of, shading_material
 from .sources import owner_of
+from .surface_textures import TextureStore
 from .world_export import WorldStore
 
 
@@ -56,6 +57,7 @@ class SurfelStore:
 
     def __init__(self):
         self.world = WorldStore()
+        self.textures = TextureStore()
         self._kept: dict[int, _Kept] = {}
         self._current: set[int] = set()
 
@@ -69,8 +71,9 @@ class SurfelStore:
             self._current.add(key)
         return self._kept[key][1:]
 
-    def begin_frame(self, changed: set[str] | None = None) -> None:
+    def begin_frame(self, changed: set[str] | None = None, are_materials_edited: bool = False) -> None:
         """Meshes named in `changed` (None: all) are read again the next time they are asked for."""
+        self.textures.begin_frame(are_materials_edited)
         self._current = {k for k in self._current if changed is not None and self._kept[k].name not in changed}
 
     def forget_unused(self) -> None:
@@ -151,7 +154,8 @@ def _instance(object_, matrix_world: np.ndarray, store: SurfelStore, notes: Note
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
     own = surfels.arrays().keys()
     materials = tuple(shading_material(slot.material, notes, own) for slot in object_.material_slots)
-    return Instance(surfels, matrix_world, materials)
+    slots = object_.material_slots if surfels.has_uvs else ()
+    return Instance(surfels, matrix_world, materials, tuple(store.textures.get(slot.material, notes) for slot in slots))
 
 
 @contextmanager

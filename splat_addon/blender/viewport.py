@@ -29,8 +29,9 @@ def update(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph
     state = _state(engine)
     changed = {u.id.name_full for u in depsgraph.updates if u.is_updated_geometry}
     changed |= {u.id.data.name_full for u in depsgraph.updates if u.is_updated_geometry and getattr(u.id, "data", None)}
-    state.store.begin_frame(changed)
-    if any(depsgraph.id_type_updated(kind) for kind in ("MATERIAL", "NODETREE", "IMAGE")):
+    are_materials_edited = any(depsgraph.id_type_updated(kind) for kind in ("MATERIAL", "NODETREE", "IMAGE"))
+    state.store.begin_frame(changed, are_materials_edited)
+    if are_materials_edited:
         state.live_meshes.forget_images()
         changed = None
     state.live_meshes.begin_frame(changed)

@@ -12,7 +12,7 @@ from .light import Light
 from .plan import FramePlan, plan
 from .presets import PRESETS, Preset
 from .renderer import RenderCancelled, Renderer
-from .scene import Instance, Material, Scene
+from .scene import Instance, Material, Scene, SurfaceTexture
 from .settings import Settings
 
 __all__ = (
@@ -30,6 +30,7 @@ __all__ = (
     "Renderer",
     "Scene",
     "Settings",
+    "SurfaceTexture",
     "look_at",
     "open_device",
     "plan",
