@@ -65,9 +65,10 @@ def effort(options: argparse.Namespace) -> Effort:
 
 def run(options: argparse.Namespace) -> None:
     """Measures and writes; the files are whole up to the last scene that was measured."""
-    plan, chosen = effort(options), choices(options.quick)
+    plan = effort(options)
     names = options.scenes or [c.name for c in CASES.values() if c.is_promised or not options.quick]
     renderer = Renderer(open_device(options.device))
+    chosen = choices(options.quick, renderer.device.multisample_counts)
     head = header(renderer.device, plan.size, plan.turns, plan.samples)
     print(head, flush=True)
     rows, skipped = [], {}

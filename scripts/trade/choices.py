@@ -15,8 +15,10 @@ UNFILTERED = frozenset({"quad"})
 #: What every time is divided by.
 YARDSTICK = Settings(method="quad", supersampling=1, shading="flat")
 
-#: Settings that a table shows beside method and samples -> their names in a few letters.
+#: Settings that a table shows beside method and samples -> their names in a few letters, the usual one's first.
 FORMATS = {
+    "multisampling": {0: "", 4: "4 hardware samples"},
+    "sample_shading": {False: "", True: "each shaded"},
     "storage": {"float32": "", "16-bit": "16-bit surfels"},
     "accumulation": {"float32": "", "float16": "16-bit sums"},
 }
@@ -44,15 +46,20 @@ LINES = (
     Line(tuple(m for m in EVERY if m != "quad"), {"supersampling": (2,)}),
     Line(("quad", "mip"), {"supersampling": (1,), "accumulation": ("float16",)}, is_quick=True),
     Line(("quad", "mip"), {"supersampling": (1,), "storage": ("16-bit",)}, is_quick=True),
+    Line(("quad",), {"supersampling": (1,), "multisampling": (4,), "sample_shading": (False, True)}),
 )
 
 #: What is shown beside the truth.
 PICTURED = frozenset([*Line(EVERY, {"supersampling": (1,)}).settings(), replace(YARDSTICK, supersampling=2)])
 
 
-def choices(quick: bool = False) -> list[Settings]:
-    """Each setting of the lines once; the yardstick is among them."""
-    return [*dict.fromkeys(settings for line in LINES if line.is_quick or not quick for settings in line.settings())]
+def choices(quick: bool = False, multisample_counts: tuple[int, ...] = ()) -> list[Settings]:
+    """Each setting of the lines that the device can draw, once; the yardstick is among them.
+
+    multisample_counts: of the device.
+    """
+    every = dict.fromkeys(settings for line in LINES if line.is_quick or not quick for settings in line.settings())
+    return [settings for settings in every if settings.multisampling in (0, *multisample_counts)]
 
 
 def columns(settings: Settings) -> dict:

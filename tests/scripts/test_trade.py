@@ -93,7 +93,8 @@ def test_every_case_can_be_built_and_every_choice_is_its_own(models):
     for case in CASES.values():
         scene, camera = case.build(view)
         assert camera.size == (16, 16) and sum(len(i.surfels) for i in scene.surfels) > 0
-    every = choices()
+    every = choices(multisample_counts=(4,))
+    assert {s.multisampling for s in every} == {0, 4} and {s.multisampling for s in choices()} == {0}
     assert len(set(every)) == len(every) and YARDSTICK in every and set(choices(quick=True)) < set(every)
 
 
