@@ -4,8 +4,8 @@
 Flow: `mesh` (`joining`) -> `cleaning` -> `fineness`, `grid` -> `depth_cube` (`reductions`, `scan_conversion`) ->
 `attributes` (`ellipses`, `palette` of `surfaces`, `tangents`) -> `merging`, `adaptive` -> `lost_parts`, `part_surfels`
 -> `Surfels`; `sample` puts them in order.
-`closest_approach` says how fine a camera needs it. `tracked` surfels follow a mesh that deforms. Points without faces
-become surfels in `points`.
+`closest_approach` says how fine a camera needs it. `tracked` surfels follow a mesh that deforms, by their `binding`.
+Points without faces become surfels in `points`.
 """
 
 from ..images import Image

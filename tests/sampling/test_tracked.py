@@ -11,7 +11,7 @@ import trimesh
 from trimesh.transformations import rotation_matrix
 
 from splat_addon.sampling import STRETCHED_SHARE, Channel, Surface, TrackedSurfels, TriangleMesh, VertexColors
-from splat_addon.sampling.tracked import LARGEST_STRETCH
+from splat_addon.sampling.binding import LARGEST_STRETCH
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
 from coverage import uncovered_points
