@@ -155,7 +155,8 @@ def _instance(object_, matrix_world: np.ndarray, store: SurfelStore, notes: Note
     own = surfels.arrays().keys()
     materials = tuple(shading_material(slot.material, notes, own) for slot in object_.material_slots)
     slots = object_.material_slots if surfels.has_uvs else ()
-    return Instance(surfels, matrix_world, materials, tuple(store.textures.get(slot.material, notes) for slot in slots))
+    textures = tuple(store.textures.get(slot.material, notes) for slot in slots)
+    return Instance(surfels, matrix_world, materials, textures=textures)
 
 
 @contextmanager

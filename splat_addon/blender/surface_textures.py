@@ -10,9 +10,8 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ..images import Image
 from ..rendering import SurfaceTexture
-from ..sampling import Surface
+from ..sampling import Image, Surface
 from .material_surfaces import SHADERS, MeshLayers, surface_shader, uses_nodes
 from .node_products import ImageSource, linked, product
 from .texture_images import UnreadableError
