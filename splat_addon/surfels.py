@@ -274,8 +274,10 @@ def _finite(rows: np.ndarray) -> np.ndarray:
 
 
 def _unit(rows: np.ndarray) -> np.ndarray:
-    # By columns: numpy is many times slower along an axis of three or four.
-    return np.abs(sum(column * column for column in rows.T) - 1) < 2 * UNIT_TOLERANCE
+    # A product with a vector of ones: numpy's own sums are slow along an axis of three or four.
+    off = (rows * rows) @ np.ones(rows.shape[1], rows.dtype)
+    off -= 1
+    return np.abs(off, out=off) < 2 * UNIT_TOLERANCE
 
 
 #: Of the fields that must be more than finite: (n, columns) rows -> (n,) bool, or one for all.

@@ -138,9 +138,11 @@ def _is_sampled(images: tuple[Spans, ...], count: int) -> np.ndarray:
 def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[float], None]):
     """Writes the samples of all images, one after another."""
     total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
+    # What a batch needs on its way is to be small beside the result, and numpy is slow on small batches.
+    limit = min(BATCH, max(BATCH // 4, total // 16))
     done = 0
     for axis, spans in enumerate(images):
-        for part in batches(spans.counts, BATCH):
+        for part in batches(spans.counts, limit):
             count = int(spans.counts[part].sum(dtype=np.int64))
             filler.fill(spans[part], axis, slice(done, done + count))
             done += count
