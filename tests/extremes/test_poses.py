@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cameras anywhere, looking anywhere: outside, in and through the surface, parallel ones. No hole, no NaN."""
+
+import numpy as np
+import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+
+from splat_addon.reference import scenes
+from splat_addon.rendering import Camera, look_at
+
+SIZE = (40, 40)
+EXAMPLES = 12
+
+
+def vectors(low, high):
+    return st.tuples(*[st.floats(low, high)] * 3)
+
+
+def powers(low, high):
+    return st.floats(low, high).map(lambda exponent: 10.0**exponent)
+
+
+#: A direction, and one that is not along it.
+DIRECTIONS = st.tuples(vectors(-1, 1), vectors(-1, 1)).filter(lambda d: np.linalg.norm(np.cross(*d)) > 1e-3)
+
+
+@st.composite
+def outside(draw):
+    eye, (direction, up) = draw(vectors(-3, 3)), draw(DIRECTIONS)
+    matrix = look_at(eye, np.add(np.multiply(direction, 0.3), -np.sign(eye[0]) * 1e-3), up)
+    return Camera.perspective(matrix, np.radians(draw(st.floats(5, 140))), SIZE, 0.01, 100)
+
+
+@st.composite
+def through_the_surface(draw):
+    """The eye in the outer torus's tube, on it or just before it; near planes from far smaller than a splat."""
+    along, around = draw(st.floats(0, 6.28)), draw(st.floats(0, 6.28))
+    ring = np.array((np.cos(along), np.sin(along), 0))
+    eye = ring + draw(st.floats(0, 0.5)) * (np.cos(around) * ring + np.sin(around) * np.array((0, 0, 1)))
+    direction, up = draw(DIRECTIONS)
+    near = draw(powers(-4, -1))
+    return Camera.perspective(look_at(eye, eye + direction, up), np.radians(draw(st.floats(20, 150))), SIZE, near, 100)
+
+
+@st.composite
+def parallel(draw):
+    """With the near plane before the camera, or behind it as in a viewport."""
+    eye, (direction, up) = draw(vectors(-3, 3)), draw(DIRECTIONS)
+    near, far = draw(st.sampled_from(((-5, 5), (0.01, 20))))
+    return Camera.orthographic(look_at(eye, np.add(eye, direction), up), draw(powers(-1.5, 1)), SIZE, near, far)
+
+
+POSES = {"outside": outside(), "through the surface": through_the_surface(), "parallel": parallel()}
+
+
+@pytest.mark.parametrize("kind", POSES)
+def test_no_pose_leaves_a_hole(kind, hold):
+    scene, _ = scenes.torus(2500, SIZE)
+    covered = []
+
+    @settings(
+        max_examples=EXAMPLES, derandomize=True, deadline=None, database=None, phases=[Phase.generate],
+        report_multiple_bugs=False,
+    )  # fmt: skip
+    @given(camera=POSES[kind])
+    def check(camera):
+        label = f"{camera.matrix_world.tolist()}, window {camera.window}, near {camera.near}"
+        ((_, truth),) = hold({label: (scene, camera)}, least=40).values()
+        covered.append(truth.coverage.any())
+
+    check()
+    assert sum(covered) > EXAMPLES / 3
