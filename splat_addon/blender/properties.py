@@ -7,7 +7,8 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 from ..rendering.methods import METHODS
-from ..rendering.settings import MAX_SUPERSAMPLING, SHADINGS, Settings
+from ..rendering.settings import ACCUMULATIONS, MAX_SUPERSAMPLING, SHADINGS, Settings
+from ..rendering.storages import STORAGES
 from .ids import RENDER_SETTINGS
 from .mesh_sampling_settings import MeshSamplingProperties
 
@@ -54,6 +55,18 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         soft_max=5.0,
         default=Settings.epsilon,
     )
+    storage: EnumProperty(
+        name="Surfel Storage",
+        description="How surfels lie on the graphics device",
+        items=[(s.name, s.label, s.summary) for s in STORAGES.values()],
+        default=Settings.storage,
+    )
+    accumulation: EnumProperty(
+        name="Sums",
+        description="How what overlapping splats add to a pixel is kept",
+        items=[(name, *texts) for name, texts in ACCUMULATIONS.items()],
+        default=Settings.accumulation,
+    )
     profile: BoolProperty(
         name="Time Each Pass",
         description="Wait for the graphics device after every pass, and report how long each took",
@@ -79,6 +92,8 @@ def _settings(scene, **choices) -> Settings:
         method=properties.method,
         shading=properties.shading,
         epsilon=properties.epsilon,
+        storage=properties.storage,
+        accumulation=properties.accumulation,
         transparent_film=scene.render.film_transparent,
         **choices,
     )

@@ -45,7 +45,7 @@ class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):
 class RENDER_PT_surfel_performance(_RenderPanel, bpy.types.Panel):
     bl_label = "Performance"
     bl_options = frozenset({"DEFAULT_CLOSED"})
-    properties = ("profile",)
+    properties = ("storage", "accumulation", "profile")
 
 
 class VIEWLAYER_PT_surfel_passes(bpy.types.Panel):

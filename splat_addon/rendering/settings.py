@@ -12,10 +12,14 @@ SHADINGS = {
     "flat": "The surfels' own colour, unlit",
 }
 
-#: accumulation -> what it costs and gains
+#: accumulation -> (label, what it costs and gains)
 ACCUMULATIONS = {
-    "float32": "Sums that keep their digits at any overdraw",
-    "float16": "Sums in half the memory; with many layers they lose digits",
+    "float32": ("Float 32", "Exact with thousands of splats over a pixel; 32 bytes a sample, 48 with materials"),
+    "float16": (
+        "Float 16",
+        "24 bytes a sample, 32 with materials. 70 dB and more from Float 32, 62 with 300 splats over a pixel, "
+        "wrong from 1000. No faster without a graphics card",
+    ),
 }
 
 MAX_SUPERSAMPLING = 16

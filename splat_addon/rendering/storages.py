@@ -47,7 +47,10 @@ STORAGES = {
         Storage(
             "16-bit",
             "16 Bit",
-            "32 bytes a surfel, positions to 1/131,072 of their neighbourhood",
+            (
+                "32 bytes a surfel, placed to 1/131,072 of its block of 512 neighbours. "
+                "58 dB and more from Float 32; 0.9 to 1.5 times the time without a graphics card"
+            ),
             (("surfels", "RGBA16"), ("surfel_blocks", "RGBA32F")),
             pack_16_bit,
             lambda surfels: spatial_order(surfels.positions),

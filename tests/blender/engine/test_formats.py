@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render properties' formats reach the picture, and what 16-bit storage moves visibly is said."""
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender import final_render
+
+
+@pytest.fixture
+def stills(scene, add_camera, add_surfels, picture):
+    """stills(positions, **properties) -> the picture of those surfels with these render properties."""
+
+    def render(positions, **properties):
+        add_camera(location=(0, 0, 10))
+        colors = np.c_[np.random.default_rng(3).random((len(positions), 3)), np.ones(len(positions))]
+        add_surfels(positions, size=0.8, colors=colors)
+        for name, value in properties.items():
+            setattr(scene.surfel_splatting, name, value)
+        return picture()
+
+    return render
+
+
+GRID = [(x, y, 0.01 * x * y) for x in (-2, -1, 0, 1, 2) for y in (-2, -1, 0, 1, 2)]
+
+
+@pytest.mark.parametrize("properties", [{"storage": "16-bit"}, {"accumulation": "float16"}])
+def test_other_formats_give_nearly_the_same_picture(properties, stills):
+    exact = stills(GRID)
+    other = stills(GRID, **properties)
+    plan = final_render.last_frame_stats["plan"]
+    assert all(getattr(plan, name) == value for name, value in properties.items())
+    assert np.quantile(np.abs(other - exact), 0.99) < 5e-3
+    assert not np.array_equal(other, exact)
+
+
+def test_a_stray_surfel_in_16_bits_is_said(stills):
+    stills([*GRID, (1e7, 0, 0)], storage="16-bit")
+    assert any("choose Float 32" in note for note in final_render.last_frame_stats["notes"])
+
+
+def test_tooltips_say_what_was_measured():
+    properties = bpy.types.Scene.bl_rna.properties["surfel_splatting"].fixed_type.properties
+    for name in ("storage", "accumulation"):
+        texts = [item.description for item in properties[name].enum_items]
+        assert all("bytes" in text for text in texts) and "dB" in texts[1]
