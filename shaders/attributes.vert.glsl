@@ -12,19 +12,19 @@
 #endif
 
 void main() {
-  Splat splat = fetch_splat(gl_VertexID >> 2);
-  vec2 corner = quad_corner(gl_VertexID);
+  Splat splat = fetch_splat(gl_VertexID / 3);
+  vec2 corner = triangle_corner(gl_VertexID);
   vec3 eye = footprint_corner(splat.position, splat.axis_u, splat.axis_v, corner);
   place_depth = vec3(corner, -eye.z);
   color_weight = splat.color_weight;
   normal = splat.normal;
 #ifdef TEXTURED
-  texture_place = fetch_texture_place(gl_VertexID >> 2, splat.material, texture_along);
+  texture_place = fetch_texture_place(gl_VertexID / 3, splat.material, texture_along);
   texture_axis_u = splat.axis_u;
   texture_axis_v = splat.axis_v;
 #endif
 #ifdef WITH_MATERIALS
-  fetch_material(gl_VertexID >> 2, splat.material);
+  fetch_material(gl_VertexID / 3, splat.material);
 #endif
   gl_Position = splat.is_hidden ? NOWHERE : splats.projection * vec4(eye, 1.0);
 }

@@ -14,6 +14,7 @@ const float EMPTY_DEPTH = 1e10;
 const float FARTHEST = 3.4e38;
 const float FILTER_VARIANCE = 0.5;  // of the Gaussian, in samples
 const int FILTER_REACH = 2 * VISIBILITY_SAMPLES - VISIBILITY_SAMPLES / 2;
+const int HOME_REACH = (FILTER_REACH + VISIBILITY_SAMPLES / 2 - 1) / VISIBILITY_SAMPLES;  // in samples
 // The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes.
 const float STEP = 1.0 / float(VISIBILITY_SAMPLES);
 const float START = (0.5 - float(FILTER_REACH)) * STEP;
@@ -38,6 +39,18 @@ float same_surface(ivec2 texel, ivec2 size, float depth) {
   return 2.0 * (moved + slope.x + slope.y);
 }
 
+// Nearest and farthest of all stored depths that the filter reaches from here.
+vec2 reached_range(ivec2 texel, ivec2 size) {
+  vec2 reached = vec2(1.0, 0.0);
+  for (int y = -HOME_REACH; y <= HOME_REACH; y++) {
+    for (int x = -HOME_REACH; x <= HOME_REACH; x++) {
+      vec2 seen = texelFetch(seen_range, clamp(texel + ivec2(x, y), ivec2(0), size - 1), 0).xy;
+      reached = vec2(min(reached.x, seen.x), max(reached.y, seen.y));
+    }
+  }
+  return reached;
+}
+
 vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit) {
   ivec2 size = textureSize(shaded, 0);
   vec4 own = texelFetch(shaded, texel, 0);
@@ -53,11 +66,22 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit) {
   float total = 0.0;
   coverage = 0.0;
   is_hit = false;
+  // Inside a surface and beside all surfaces there is nothing to filter, and the loops have no turn to make.
+  vec2 reached = reached_range(texel, size);
+  bool is_inside = reached.x >= range.x && reached.y <= range.y && reached.y < 1.0;
+  bool is_even = is_inside || reached.x == 1.0;
+  if (is_even) {
+    color = is_inside ? own : background;
+    coverage = is_inside ? 1.0 : 0.0;
+    total = 1.0;
+    is_hit = is_inside;
+  }
+  int reach = is_even ? 0 : FILTER_REACH;
   ivec2 first = texel * VISIBILITY_SAMPLES;
   float row = FIRST_WEIGHT, row_ratio = FIRST_RATIO;
-  for (int y = 0; y < 2 * FILTER_REACH; y++) {
+  for (int y = 0; y < 2 * reach; y++) {
     float weight = row * FIRST_WEIGHT, ratio = FIRST_RATIO;
-    for (int x = 0; x < 2 * FILTER_REACH; x++) {
+    for (int x = 0; x < 2 * reach; x++) {
       ivec2 at = first + ivec2(x, y) - FILTER_REACH + VISIBILITY_SAMPLES / 2;
       float seen = texelFetch(visibility_depth, clamp(at, ivec2(0), size * VISIBILITY_SAMPLES - 1), 0).r;
       vec4 here = background;

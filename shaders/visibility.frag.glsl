@@ -3,10 +3,9 @@
 //          into view), leaves none.
 
 #include "common/depth.glsl"
-#include "methods/quad.glsl"
 
 void main() {
-  if (!(kernel_weight(place_depth.xy) > 0.0 && place_depth.z >= splats.options.y)) discard;
+  if (!(dot(place_depth.xy, place_depth.xy) <= 1.0 && place_depth.z >= splats.options.y)) discard;
 #ifdef LINEAR_DEPTH
   float distance = length(vec3(across_offset.xy, place_depth.z));
   write_depth(place_depth.z * (1.0 + max(across_offset.z / distance, splats.sides.z)));

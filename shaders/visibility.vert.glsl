@@ -11,8 +11,8 @@
 #include "methods/quad.glsl"
 
 void main() {
-  StoredSplat stored = stored_splat(gl_VertexID >> 2);
-  vec2 corner = quad_corner(gl_VertexID);
+  StoredSplat stored = stored_splat(gl_VertexID / 3);
+  vec2 corner = triangle_corner(gl_VertexID);
   mat3 linear = mat3(splats.model_view);
   vec3 position = (splats.model_view * vec4(stored.position, 1.0)).xyz;
   vec3 axis_u = linear * stored.axis_u;

@@ -15,6 +15,9 @@ struct StoredSplat {
 
 #include "storage/{storage}.glsl"
 
-vec2 quad_corner(int vertex) {
-  return vec2((vertex & 1) == 1 ? 1.0 : -1.0, (vertex & 2) == 2 ? 1.0 : -1.0);
+// Corners of the triangle around the unit circle: one triangle a splat is less work than the two of a quad, unless
+// splats are many pixels large (docs/methods.md).
+vec2 triangle_corner(int vertex) {
+  int corner = vertex % 3;
+  return corner == 0 ? vec2(0.0, 2.0) : vec2(corner == 1 ? -1.73205081 : 1.73205081, -1.0);
 }

@@ -8,11 +8,10 @@ const float LEAST_COSINE = 0.1;  // a disc seen flatter is drawn as one seen at 
 #ifdef VERTEX_STAGE
 void adjust(inout Splat splat, bool straddles) {}
 
-
-vec2 footprint_box(Plane plane, out vec2 middle) {
-  middle = plane.center;
+vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   float scale = splats.options.z > 0.5 ? 1.0 : 1.0 / plane.depth;
-  return vec2(plane.radius * scale);
+  middle = plane.center;
+  return vec2(1.01 * plane.radius * scale / min(splats.window.z, splats.window.w));
 }
 #else
 // Weight and depth.

@@ -4,15 +4,14 @@
 //          pixel's Gaussian in the picture. The twin of rendering/methods/ewa.py.
 
 const float KERNEL_VARIANCE = 0.25;
-const float FILTER_SIGMA = 0.70710678;  // pixels
-const float FILTER_VARIANCE = FILTER_SIGMA * FILTER_SIGMA;
+const float FILTER_VARIANCE = 0.5;  // square pixels
 
 #ifdef VERTEX_STAGE
 void adjust(inout Splat splat, bool straddles) {}
 
-// Only what the exact box covers: the affine ellipse of a near splat can fill the picture.
-vec2 footprint_box(Plane plane, out vec2 middle) {
-  return projected_box(plane, middle) + 2.0 * FILTER_SIGMA * splats.window.zw;
+// Only about what the exact ellipse covers: the affine one of a near splat can fill the picture.
+vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
+  return 1.1 * sqrt(size * size + 4.0 * FILTER_VARIANCE);
 }
 #else
 // Weight and depth.
@@ -26,6 +25,6 @@ vec2 splat_sample(Plane plane, vec2 point) {
   vec2 across = vec2(e.x * a.y - e.y * a.x, e.x * b.y - e.y * b.x);
   float rho2 = KERNEL_VARIANCE / det * (FILTER_VARIANCE * dot(e, e) + KERNEL_VARIANCE * dot(across, across));
   float weight = rho2 <= 1.0 ? abs(area) * inversesqrt(det) * exp(-2.0 * rho2) : 0.0;
-  return vec2(weight, plane_depth(plane, place, FILTER_SIGMA));
+  return vec2(weight, plane_depth(plane, place));
 }
 #endif

@@ -34,8 +34,8 @@ void adjust(inout Splat splat, bool straddles) {
   splat.axis_v = at_least_filter(splat.axis_v, splat.position, is_orthographic);
 }
 
-vec2 footprint_box(Plane plane, out vec2 middle) {
-  return projected_box(plane, middle);
+vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
+  return 1.01 * size;
 }
 #else
 // Weight and depth.

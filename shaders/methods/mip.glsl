@@ -6,16 +6,15 @@
 //          The twin of rendering/methods/mip.py.
 
 const float KERNEL_VARIANCE = 0.25;
-const float FILTER_SIGMA = 0.70710678;  // pixels
-const float FILTER_VARIANCE = FILTER_SIGMA * FILTER_SIGMA;
+const float FILTER_VARIANCE = 0.5;  // square pixels
 const vec2 NORMAL = vec2(1.5976, 0.070565);  // 1 / (1 + exp(-x (NORMAL.x + NORMAL.y x^2))) is within 2e-4 of it
 
 #ifdef VERTEX_STAGE
 void adjust(inout Splat splat, bool straddles) {}
 
-vec2 footprint_box(Plane plane, out vec2 middle) {
-  vec2 exact = projected_box(plane, middle), pixel = splats.window.zw;
-  return max(sqrt(exact * exact + 4.0 * FILTER_VARIANCE * pixel * pixel), exact + pixel);
+// Beyond 2 sigma of kernel and filter, and 1 pixel from the splat's rim, nothing counts.
+vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
+  return max(sqrt(size * size + 1.5 * 1.5), size + 1.0);
 }
 #else
 // Weight and depth.
@@ -30,16 +29,15 @@ vec2 splat_sample(Plane plane, vec2 point) {
   float det = spread * spread
       + KERNEL_VARIANCE * (FILTER_VARIANCE * (dot(j[0], j[0]) + dot(j[1], j[1])) + KERNEL_VARIANCE);
   float rho2 = KERNEL_VARIANCE / det * (KERNEL_VARIANCE * dot(q, q) + FILTER_VARIANCE * dot(across, across));
-  // The kernel ends at its rim. Along the line from the centre, kernel times pixel is a Gaussian about `middle`: the
-  // share of it within the rim, its normal distribution, is what the pixel sees of the splat.
-  float reach = max(length(q), 1e-30);
-  vec2 along = q * j / reach * FILTER_SIGMA;
-  float share = KERNEL_VARIANCE / (KERNEL_VARIANCE + dot(along, along));
-  float middle = reach * share, deviation = max(sqrt(KERNEL_VARIANCE * (1.0 - share)), 1e-6);
-  float x = clamp((middle - 1.0) / deviation, -8.0, 8.0);
+  // The kernel ends at its rim. Along the line from the centre, kernel times pixel is a Gaussian about share of
+  // the way: what of it lies within the rim, its normal distribution, is what the pixel sees of the splat.
+  float reach2 = max(dot(q, q), 1e-30);
+  vec2 across_rim = q * j;
+  float along = FILTER_VARIANCE * dot(across_rim, across_rim) / reach2;
+  float share = KERNEL_VARIANCE / (KERNEL_VARIANCE + along);
+  float x = clamp((sqrt(reach2) * share - 1.0) * inversesqrt(max(along * share, 1e-12)), -8.0, 8.0);
   float within = 1.0 / (1.0 + exp(x * (NORMAL.x + NORMAL.y * x * x)));
-  float limit = 1.0 + 2.0 * length(along);
-  float weight = rho2 <= limit * limit ? within * KERNEL_VARIANCE * inversesqrt(det) * exp(-2.0 * rho2) : 0.0;
-  return vec2(place.k > 0.0 ? weight : 0.0, plane_depth(plane, place, FILTER_SIGMA));
+  float weight = within * KERNEL_VARIANCE * inversesqrt(det) * exp(-2.0 * rho2);
+  return vec2(place.k > 0.0 ? weight : 0.0, plane_depth(plane, place));
 }
 #endif

@@ -6,14 +6,9 @@
 #ifdef VERTEX_STAGE
 void adjust(inout Splat splat, bool straddles) {}
 
-// At least the low-pass's radius of sqrt(2) pixels around the centre.
-vec2 footprint_box(Plane plane, out vec2 middle) {
-  vec2 half_size = projected_box(plane, middle);
-  vec2 filter_size = 1.41421356 * splats.window.zw;
-  vec2 low = min(middle - half_size, plane.center - filter_size);
-  vec2 high = max(middle + half_size, plane.center + filter_size);
-  middle = 0.5 * (low + high);
-  return 0.5 * (high - low);
+// The ellipse, and the low-pass's disc of sqrt(2) pixels.
+vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
+  return 1.05 * max(size, vec2(2.0 * FILTER_SIGMA));
 }
 #else
 // Weight and depth: the plane's inside the ellipse, the centre's where only the low-pass reaches.

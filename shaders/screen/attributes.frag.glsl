@@ -1,6 +1,6 @@
 // References: as attributes.vert.glsl; adj(M) for straddling splats: Guennebaud et al. 2006, equation 5.
 // Summary: asks the method for weight and depth, and adds what is not hidden at the sample's centre. Depth is compared
-//          here with the visibility pass's, since a rectangle in the picture has none.
+//          here with the visibility pass's, since a triangle in the picture has none.
 
 #define PROJECTION splats.projection
 #define PARALLEL (splats.options.z > 0.5)
@@ -13,6 +13,7 @@
 #include "common/splat_texture.glsl"
 #endif
 
+#ifdef STRADDLING
 // Place and depth of a splat that reaches the near plane, unfiltered.
 vec3 straddling_place(vec2 point) {
   bool is_orthographic = splats.options.z > 0.5;
@@ -30,22 +31,23 @@ vec2 straddling_sample(vec2 point) {
   float rho2 = dot(place.xy, place.xy);
   return vec2(rho2 <= 1.0 && place.z >= splats.options.y ? exp(-2.0 * rho2) : 0.0, place.z);
 }
+#endif
 
 #ifdef TEXTURED
 vec3 textured_color(Plane plane, vec2 point) {
   vec2 q;
   mat2 change;
+  Place place = place_at(plane, point);
+  // Beyond the plane's horizon only the splat's mean can be meant.
+  q = place.k > 0.0 ? place.uv : vec2(LARGEST_PIXEL);
+  change = place_gradient(plane, place);
+#ifdef STRADDLING
   if (straddling > 0.5) {
-    vec3 place = straddling_place(point);
-    q = place.xy;
-    change = space_place_change(plane_center_gh.xyz, plane_depths.xyz, point, place.z);
+    vec3 in_space = straddling_place(point);
+    q = in_space.xy;
+    change = space_place_change(plane_center_gh.xyz, plane_depths.xyz, point, in_space.z);
   }
-  else {
-    Place place = place_at(plane, point);
-    // Beyond the plane's horizon only the splat's mean can be meant.
-    q = place.k > 0.0 ? place.uv : vec2(LARGEST_PIXEL);
-    change = place_gradient(plane, place);
-  }
+#endif
   return splat_texture_color(color_weight.rgb, texture_place, texture_along, q, change);
 }
 #endif
@@ -53,25 +55,23 @@ vec3 textured_color(Plane plane, vec2 point) {
 void main() {
   vec2 point = picture_point();
   Plane plane = Plane(plane_center_gh.xy, plane_ab.xy, plane_ab.zw, plane_center_gh.zw, plane_depths.xy, plane_depths.z,
-                      plane_gradient, plane_depths.w);
-  vec2 weight_depth = straddling > 0.5 ? straddling_sample(point) : splat_sample(plane, point);
-  float weight = weight_depth.x * color_weight.w;
-  if (!(weight > 0.0 && weight_depth.y >= splats.options.y)) discard;
-  ivec2 nearest = ivec2(gl_FragCoord.xy) * VISIBILITY_SAMPLES + VISIBILITY_SAMPLES / 2;
-  float seen = texelFetch(visibility_depth, nearest, 0).r;
-#if VISIBILITY_SAMPLES > 1
-  // That sample lies beside the centre, and so does the splat's depth to compare; no farther than its ellipse reaches.
-  vec2 beside = 0.5 * float(1 - VISIBILITY_SAMPLES % 2) / float(VISIBILITY_SAMPLES) * splats.window.zw;
-  float reach = length(plane.slope);
-  float depth = weight_depth.y + (straddling > 0.5 ? 0.0 : clamp(dot(plane.gradient, beside), -reach, reach));
+                      plane_depths.w, beside_radius.x, beside_radius.y);
+#ifdef STRADDLING
+  bool straddles = straddling > 0.5;
+  vec2 weight_depth = straddles ? straddling_sample(point) : splat_sample(plane, point);
 #else
-  float depth = weight_depth.y;
+  const bool straddles = false;
+  vec2 weight_depth = splat_sample(plane, point);
 #endif
+  float weight = weight_depth.x * color_weight.w;
+  if (!(weight > 0.0 && dot(on_footprint, on_footprint) <= 1.0 && weight_depth.y >= splats.options.y)) discard;
+  float seen = texelFetch(seen_range, ivec2(gl_FragCoord.xy), 0).z;
+  float depth = weight_depth.y + plane.beside;
   if (stored_depth(depth) > seen) discard;
 #if VISIBILITY_SAMPLES > 1
   // Where the filter reaches past a silhouette, what is seen behind it is another surface, which keeps the sample: its
   // depth, moved back by up to 2 epsilon, is more than that and a radius behind this splat's.
-  if (seen < 1.0 && straddling < 0.5 && view_depth(seen) - depth > (1.0 + 4.0 * splats.options.x) * plane.radius) discard;
+  if (seen < 1.0 && !straddles && view_depth(seen) - depth > (1.0 + 4.0 * splats.options.x) * plane.radius) discard;
 #endif
 #ifdef TEXTURED
   vec3 color = textured_color(plane, point);

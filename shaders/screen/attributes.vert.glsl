@@ -1,12 +1,16 @@
-// References: Botsch et al. 2005, section 4; Guennebaud et al. 2006, section 3.3 (the splat's exact box).
-// Summary: for methods that work in the picture: a rectangle around the splat's footprint, and its attributes.
-//          A splat that reaches the near plane is drawn as a quad in space instead, which the hardware clips.
+// References: Botsch et al. 2005, section 4; Guennebaud et al. 2006, section 3.3 (the exact bounds of a splat).
+// Summary: for methods that work in the picture: a triangle around the splat's footprint, and its attributes.
+//          A splat that reaches the near plane is drawn in space instead, which the hardware clips.
 
 #define VERTEX_STAGE
+#define PROJECTION splats.projection
+#define PARALLEL (splats.options.z > 0.5)
+#define DEPTH_UNIT splats.options.w
 #include "common/splat_attributes.glsl"
 #ifdef WITH_MATERIALS
 #include "common/splat_material.glsl"
 #endif
+#include "common/stored_depth.glsl"
 #include "screen/plane.glsl"
 #include "methods/{method}.glsl"
 #ifdef TEXTURED
@@ -16,27 +20,33 @@
 const float STRADDLING_MARGIN = 1.02;
 
 void main() {
-  Splat splat = fetch_splat(gl_VertexID >> 2);
-  vec2 corner = quad_corner(gl_VertexID);
+  Splat splat = fetch_splat(gl_VertexID / 3);
+  vec2 corner = triangle_corner(gl_VertexID);
   bool is_orthographic = splats.options.z > 0.5;
-  float reach = length(vec2(splat.axis_u.z, splat.axis_v.z));
-  bool straddles = -splat.position.z - reach <= splats.options.y;
+#ifdef STRADDLING
+  bool straddles = -splat.position.z - length(vec2(splat.axis_u.z, splat.axis_v.z)) <= splats.options.y;
+#else
+  const bool straddles = false;
+#endif
 #ifdef TEXTURED
   Plane true_plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic);
 #endif
   adjust(splat, straddles);
+#ifdef STRADDLING
   straddles = -splat.position.z - length(vec2(splat.axis_u.z, splat.axis_v.z)) <= splats.options.y;
-  Plane plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic);
   straddling = straddles ? 1.0 : 0.0;
+#endif
+  Plane plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic);
   // The same three varyings carry the plane of a splat before the eye, or centre and half-axes of a straddling one.
   plane_ab = straddles ? vec4(splat.position, 0.0) : vec4(plane.a, plane.b);
   plane_center_gh = straddles ? vec4(splat.axis_u, 0.0) : vec4(plane.center, plane.gh);
-  plane_depths = straddles ? vec4(splat.axis_v, 0.0) : vec4(plane.slope, plane.depth, plane.radius);
-  plane_gradient = plane.gradient;
+  plane_depths = straddles ? vec4(splat.axis_v, 0.0) : vec4(plane.slope, plane.depth, plane.reach);
+  beside_radius = straddles ? vec2(0.0) : vec2(plane.beside, plane.radius);
+  on_footprint = straddles ? vec2(0.0) : corner;
   color_weight = splat.color_weight;
   normal = splat.normal;
 #ifdef TEXTURED
-  texture_place = fetch_texture_place(gl_VertexID >> 2, splat.material, texture_along);
+  texture_place = fetch_texture_place(gl_VertexID / 3, splat.material, texture_along);
   // Axes that the method replaced move in the picture as others of the true plane do.
   if (true_plane.a != plane.a || true_plane.b != plane.b) {
     mat2 along = mat2(texture_along.xy, texture_along.zw) * inverse(mat2(true_plane.a, true_plane.b)) * mat2(plane.a, plane.b);
@@ -44,7 +54,7 @@ void main() {
   }
 #endif
 #ifdef WITH_MATERIALS
-  fetch_material(gl_VertexID >> 2, splat.material);
+  fetch_material(gl_VertexID / 3, splat.material);
 #endif
   if (splat.is_hidden) {
     gl_Position = NOWHERE;
@@ -54,9 +64,11 @@ void main() {
     gl_Position = splats.projection * vec4(splat.position + splat.axis_u * grown.x + splat.axis_v * grown.y, 1.0);
   }
   else {
-    vec2 middle;
-    vec2 half_size = footprint_box(plane, middle);
-    vec4 clip = splats.projection * vec4(middle + half_size * corner, -1.0, 1.0);
-    gl_Position = vec4(clip.xy / clip.w, 0.0, 1.0);
+    vec2 size, middle;
+    mat2 axes = projected_ellipse(plane, size, middle);
+    vec2 half_axes = footprint(plane, size, middle);
+    vec2 pixels = axes * (half_axes * corner);
+    vec4 clip = splats.projection * vec4(middle + pixels * splats.window.zw, -1.0, 1.0);
+    gl_Position = vec4(clip.xy / clip.w, clamp(2.0 * stored_depth(nearest_depth(plane)) - 1.0, -1.0, 1.0), 1.0);
   }
 }

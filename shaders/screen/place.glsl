@@ -35,9 +35,7 @@ mat2 place_gradient(Plane plane, Place place) {
 }
 
 // Depth of the splat's plane, held near the splat: outside the ellipse the plane runs off to the horizon.
-float plane_depth(Plane plane, Place place, float filter_pixels) {
-  float steepest = length(plane.gradient * splats.window.zw);
-  float reach = length(plane.slope) + min(2.0 * filter_pixels * steepest, 16.0 * plane.radius);
-  float depth = plane.depth + dot(plane.slope, place.uv);
-  return place.k > 0.0 ? clamp(depth, plane.depth - reach, plane.depth + reach) : plane.depth;
+float plane_depth(Plane plane, Place place) {
+  float offset = clamp(dot(plane.slope, place.uv), -plane.reach, plane.reach);
+  return plane.depth + (place.k > 0.0 ? offset : 0.0);
 }

@@ -1,10 +1,12 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 3 (the plane's homography); written relative to the splat's
 //             centre, which keeps its digits for small and far splats where adj(M) loses them.
 // Summary: from a point of the picture to the place in a splat's plane, for perspective and parallel cameras alike.
-//          The twin of rendering/methods/homography.py.
+//          The twin of rendering/methods/plane.py.
 //
 // Depth z counts forwards. A picture point is x / z, y / z (perspective) or x, y (parallel), in units of the plane at
 // distance 1; `splats.window` holds the lower left corner and the step of one pixel.
+
+const float FILTER_SIGMA = 0.70710678;  // of the pixel's Gaussian, in pixels
 
 struct Plane {
   vec2 center;   // of the splat in the picture
@@ -13,10 +15,13 @@ struct Plane {
   vec2 gh;       // relative change of depth along u, v; 0 for parallel cameras
   vec2 slope;    // change of depth along u, v
   float depth;
-  vec2 gradient; // change of depth with the picture point, at the centre
+  float reach;   // how far from it depths lie: in the ellipse, and as far as a filter reaches over its rim
+  float beside;  // change of depth from a sample's centre to the visibility sample that it is compared with, at most
+                 // what the ellipse has
   float radius;  // the longer half-axis
 };
 
+#ifdef VERTEX_STAGE
 Plane splat_plane(vec3 position, vec3 axis_u, vec3 axis_v, bool is_orthographic) {
   Plane plane;
   plane.depth = -position.z;
@@ -26,17 +31,41 @@ Plane splat_plane(vec3 position, vec3 axis_u, vec3 axis_v, bool is_orthographic)
   plane.gh = is_orthographic ? vec2(0.0) : plane.slope * scale;
   plane.a = axis_u.xy * scale - plane.center * plane.gh.x;
   plane.b = axis_v.xy * scale - plane.center * plane.gh.y;
-  float det = plane.a.x * plane.b.y - plane.a.y * plane.b.x;
-  plane.gradient = vec2(plane.slope.x * plane.b.y - plane.slope.y * plane.a.y,
-                        plane.slope.y * plane.a.x - plane.slope.x * plane.b.x) / det;
   plane.radius = sqrt(max(dot(axis_u, axis_u), dot(axis_v, axis_v)));
+  float det = plane.a.x * plane.b.y - plane.a.y * plane.b.x;
+  // Change of depth from pixel to pixel, at the centre.
+  vec2 gradient = vec2(plane.slope.x * plane.b.y - plane.slope.y * plane.a.y,
+                       plane.slope.y * plane.a.x - plane.slope.x * plane.b.x) * splats.window.zw / det;
+  float over_rim = 2.0 * FILTER_SIGMA * length(gradient), furthest = 16.0 * plane.radius;
+  plane.reach = length(plane.slope) + (over_rim < furthest ? over_rim : furthest);
+  float to_beside = 0.5 * float(1 - VISIBILITY_SAMPLES % 2) / float(VISIBILITY_SAMPLES);
+  plane.beside = clamp(to_beside * (gradient.x + gradient.y), -length(plane.slope), length(plane.slope));
   return plane;
 }
 
-// Half-size of the exact box of the ellipse in the picture, and its centre in `middle`; valid in front of the eye.
-vec2 projected_box(Plane plane, out vec2 middle) {
+// Half-axes of the splat's projection in pixels, the longer first, their lengths in `size`, and its centre in `middle`;
+// exact for an ellipse before the eye.
+mat2 projected_ellipse(Plane plane, out vec2 size, out vec2 middle) {
+  vec2 pixel = splats.window.zw;
   float d = 1.0 - dot(plane.gh, plane.gh);
-  vec2 offset = -(plane.a * plane.gh.x + plane.b * plane.gh.y) / d;
-  middle = plane.center + offset;
-  return sqrt(offset * offset + (plane.a * plane.a + plane.b * plane.b) / d);
+  vec2 c = -(plane.a * plane.gh.x + plane.b * plane.gh.y) / d;
+  middle = plane.center + c;
+  c /= pixel;
+  vec2 a = plane.a / pixel * inversesqrt(d), b = plane.b / pixel * inversesqrt(d);
+  vec2 on = a * a + b * b + c * c;
+  float across = a.x * a.y + b.x * b.y + c.x * c.y;
+  // The determinant as Cauchy and Binet have it: nothing cancels.
+  vec3 areas = vec3(a.x * b.y - a.y * b.x, a.x * c.y - a.y * c.x, b.x * c.y - b.y * c.x);
+  float half_difference = 0.5 * (on.x - on.y), apart = length(vec2(half_difference, across));
+  float longer = 0.5 * (on.x + on.y) + apart;
+  size = sqrt(vec2(longer, dot(areas, areas) / max(longer, 1e-37)));
+  vec2 along = half_difference > 0.0 ? vec2(half_difference + apart, across) : vec2(across, apart - half_difference);
+  along = dot(along, along) > 0.0 ? normalize(along) : vec2(1.0, 0.0);
+  return mat2(along, -along.y, along.x);
 }
+
+// No method puts a part of the splat nearer.
+float nearest_depth(Plane plane) {
+  return max(plane.depth - max(plane.reach, plane.radius) - abs(plane.beside), splats.options.y);
+}
+#endif

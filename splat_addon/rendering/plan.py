@@ -15,7 +15,7 @@ from .packing import shared_emission, shared_material
 from .scene import Material, Scene
 from .settings import Settings
 from .storages import get_storage
-from .view import depth_ratios
+from .view import DepthExtent, depth_extent
 
 #: A target's edge in samples; a larger picture is rendered in tiles, so that memory stays below about 1 GB.
 MAX_TARGET_EDGE = 4096
@@ -36,6 +36,8 @@ FILTER_MARGIN = 2
 #: texture -> (format, what it holds one value for)
 TEXTURES = {
     "visibility_depth": ("DEPTH32F", "visibility sample"),
+    "seen_range": ("RGBA32F", "sample"),
+    "seen_depth": ("DEPTH32F", "sample"),
     "color_sum": ("RGBA32F", "sample"),
     "normal_sum": ("RGBA32F", "sample"),
     "depth_sum": ("RG32F", "sample"),
@@ -101,6 +103,10 @@ class FramePlan:
     features: tuple[tuple[str, str], ...]
     left_out: tuple[tuple[str, str], ...]
 
+    def has(self, feature: str) -> bool:
+        """Whether shaders do this."""
+        return feature in (name for name, _ in self.features)
+
     @property
     def margin(self) -> int:
         """Pixels drawn around a tile and not kept."""
@@ -162,14 +168,15 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
             outputs = _outputs(settings, left_out)
             passes = (PlannedPass("background", "the world is a picture", ("environment_image",), outputs),)
     else:
-        linear_depth, why_depth = _linear_depth(scene, camera, settings)
+        extent = depth_extent(scene, camera, settings.epsilon)
+        linear_depth, why_depth = _linear_depth(camera, extent)
         sums = _sums(scene, settings, material, emission, left_out)
         passes = (
             PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
-            PlannedPass("attributes", _why_attributes(scene, method), ("visibility_depth",), sums),
+            *_attribute_passes(method, _why_attributes(scene, method), sums, left_out),
             *_shading_passes(scene, settings, method, _read_by_shading(scene, settings, sums, left_out), left_out),
         )
-        features = _features(scene, settings, emission, left_out)
+        features = _splat_features(extent, left_out) + _features(scene, settings, emission, left_out)
         if not linear_depth:
             left_out.append(("linear depth", why_depth))
         _say_what_surfels_lack(scene, camera, left_out)
@@ -226,6 +233,18 @@ def _sums(scene: Scene, settings: Settings, material: Material | None, emission,
     return tuple(sums)
 
 
+def _attribute_passes(method: Method, why: str, sums: tuple[str, ...], left_out: list):
+    """The sums, and before them what a method that works in the picture tests its depths with."""
+    if method.works_in == "space":
+        left_out.append(("seen_range", f"{method.name} is tested by the hardware, with the depth of visibility"))
+        return (PlannedPass("attributes", why, ("visibility_depth",), sums),)
+    seen = ("seen_range", "seen_depth")
+    return (
+        PlannedPass("seen_range", "splats that are hidden whole are tested away early", ("visibility_depth",), seen),
+        PlannedPass("attributes", why, seen, sums),
+    )
+
+
 def _read_by_shading(scene: Scene, settings: Settings, sums: tuple[str, ...], left_out: list) -> tuple[str, ...]:
     reads = list(sums)
     if settings.shading == "flat":
@@ -245,6 +264,13 @@ def _read_by_shading(scene: Scene, settings: Settings, sums: tuple[str, ...], le
 
 def _shows_environment(scene: Scene, settings: Settings) -> bool:
     return scene.environment is not None and not settings.transparent_film
+
+
+def _splat_features(extent: DepthExtent, left_out: list) -> tuple[tuple[str, str], ...]:
+    if extent.reaches_near:
+        return (("STRADDLING", "splats that may reach the near plane are drawn in space"),)
+    left_out.append(("straddling splats", "none reaches the near plane"))
+    return ()
 
 
 def _features(scene: Scene, settings: Settings, emission, left_out: list) -> tuple[tuple[str, str], ...]:
@@ -278,7 +304,7 @@ def _shading_passes(scene: Scene, settings: Settings, method: Method, reads: tup
     kept = ("shaded", "surface")
     return (
         PlannedPass("sample_shading", once, reads, kept),
-        PlannedPass("resolve", "silhouettes are filtered", (*kept, "visibility_depth", *behind), outputs),
+        PlannedPass("resolve", "silhouettes are filtered", (*kept, "visibility_depth", "seen_range", *behind), outputs),
     )
 
 
@@ -298,11 +324,11 @@ def _say_what_surfels_lack(scene: Scene, camera: Camera, left_out: list) -> None
         left_out.append(("transparency", "surfels whose opacity is below 1 are drawn opaque"))
 
 
-def _linear_depth(scene: Scene, camera: Camera, settings: Settings) -> tuple[bool, str]:
+def _linear_depth(camera: Camera, extent: DepthExtent) -> tuple[bool, str]:
     """Whether fragments must write their own depth, which costs the early depth test, and why."""
     if camera.is_orthographic:
         return False, "an orthographic camera's depth is linear"
-    ratio, radius = depth_ratios(scene, camera, settings.epsilon)
+    ratio, radius = extent.ratio, extent.radius
     if ratio > MAX_HARDWARE_DEPTH_RATIO:
         return True, f"far / near of what is seen is {ratio:.3g}, too much for the hardware's depth"
     if radius > MAX_HARDWARE_DEPTH_RADIUS:

@@ -85,11 +85,25 @@ def look(scene: Scene, camera: Camera, epsilon: float) -> View:
     return View(scale, camera.near * scale, far * scale, projection, tuple(placed), outside, degenerate, span)
 
 
-def depth_ratios(scene: Scene, camera: Camera, epsilon: float) -> tuple[float, float]:
-    """Farthest depth over nearest of what a perspective camera sees, and the largest splat's radius over it."""
+@dataclass(frozen=True)
+class DepthExtent:
+    """ratio: farthest depth over nearest of what a camera sees. radius: the largest splat's, over the nearest depth.
+    reaches_near: some splat may touch the near plane.
+    """
+
+    ratio: float
+    radius: float
+    reaches_near: bool
+
+
+def depth_extent(scene: Scene, camera: Camera, epsilon: float) -> DepthExtent:
+    """Of the scene's surfels that may touch the picture; the ratios mean nothing for an orthographic camera."""
     seen, _, _ = _seen(scene, camera)
     near, far = _clip_range(camera, seen, epsilon)
-    return far / near, max((radius for *_, radius in seen), default=0.0) / near
+    radius = max((radius for *_, radius in seen), default=0.0)
+    # By a radius more: a method may lengthen the shorter half-axis.
+    reaches_near = any(float(depths.min()) - reach <= camera.near for _, depths, reach in seen)
+    return DepthExtent(far / near if near else math.inf, radius / near if near else math.inf, reaches_near)
 
 
 def scaled_projection(camera: Camera, near: float, far: float, scale: float) -> np.ndarray:

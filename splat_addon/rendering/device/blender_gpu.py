@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from .interface import FORMATS, PipelineDescription
-from .quads import capacity, quad_indices
 
 _FORMAT_NAMES = {"DEPTH32F": "DEPTH_COMPONENT32F"}
 _BLEND_NAMES = {"none": "NONE", "add": "ADDITIVE_PREMULT"}
@@ -39,8 +38,8 @@ class BlenderDevice:
             ) from error
         self._gpu = gpu
         self._in_flight = []
-        self._quads = (0, None)
-        self._triangle = _batch(gpu, 3)
+        self._triangles = (0, None)
+        self._triangle = _batch(gpu, 1)
 
     def texture(self, size, format, data=None, samples=0):
         if samples:
@@ -53,14 +52,14 @@ class BlenderDevice:
     def pipeline(self, description):
         return _Pipeline(self._gpu, description)
 
-    def draw_quads(self, pipeline, target, quads, block, textures):
-        if not quads:
+    def draw_triangles(self, pipeline, target, triangles, block, textures):
+        if not triangles:
             return
-        if self._quads[0] < quads:
-            size = capacity(quads)
-            index = self._gpu.types.GPUIndexBuf(type="TRIS", seq=quad_indices(size))
-            self._quads = size, _batch(self._gpu, 4 * size, elem=index)
-        self._draw(pipeline, target, block, textures, self._quads[1], 6 * quads)
+        if self._triangles[0] < triangles:
+            # The next power of two: it then grows only a few times.
+            size = 1 << max(triangles - 1, 1023).bit_length()
+            self._triangles = size, _batch(self._gpu, size)
+        self._draw(pipeline, target, block, textures, self._triangles[1], 3 * triangles)
 
     def draw_fullscreen(self, pipeline, target, block, textures):
         self._draw(pipeline, target, block, textures, self._triangle, None)
@@ -75,7 +74,7 @@ class BlenderDevice:
         state.depth_mask_set(False)
         self._in_flight.clear()
 
-    def _draw(self, pipeline, target, block, textures, batch, indices):
+    def _draw(self, pipeline, target, block, textures, batch, vertices):
         gpu, description, shader = self._gpu, pipeline.description, pipeline.shader
         uniforms = gpu.types.GPUUniformBuf(np.ascontiguousarray(block, np.float32))
         self._in_flight.append((uniforms, textures, pipeline, target, batch))
@@ -87,10 +86,10 @@ class BlenderDevice:
             shader.uniform_block(description.block[1], uniforms)
             for name, texture in zip(description.samplers, textures, strict=True):
                 shader.uniform_sampler(name, texture.handle)
-            if indices is None:
+            if vertices is None:
                 batch.draw(shader)
             else:
-                batch.draw_range(shader, elem_start=0, elem_count=indices)
+                batch.draw_range(shader, elem_start=0, elem_count=vertices)
 
 
 class _Texture:
@@ -177,7 +176,7 @@ class _Pipeline:
             ) from error
 
 
-def _batch(gpu, vertices, **elements):
+def _batch(gpu, triangles):
     """A batch without attributes: the vertex shader pulls its data from textures."""
     types = gpu.types
-    return types.GPUBatch(type="TRIS", buf=types.GPUVertBuf(types.GPUVertFormat(), vertices), **elements)
+    return types.GPUBatch(type="TRIS", buf=types.GPUVertBuf(types.GPUVertFormat(), 3 * triangles))

@@ -95,8 +95,8 @@ class Device(Protocol):
     def pipeline(self, description: PipelineDescription) -> Pipeline:
         """Compile and link. Raises RuntimeError with the pipeline's name where the driver refuses."""
 
-    def draw_quads(self, pipeline, target, quads: int, block: np.ndarray, textures: list[Texture]) -> None:
-        """Draw quads 0 to `quads`: vertex 4 q + c is corner c of quad q, triangles (0, 1, 2), (2, 1, 3).
+    def draw_triangles(self, pipeline, target, triangles: int, block: np.ndarray, textures: list[Texture]) -> None:
+        """Draw triangles 0 to `triangles`, in order: vertex 3 t + c is corner c of triangle t.
 
         block: the uniform block's float32 values in std140 order (matrices column by column).
         """

@@ -9,7 +9,6 @@ import sys
 import numpy as np
 
 from .interface import FORMATS, PipelineDescription
-from .quads import capacity, quad_indices
 
 _GL_TEXTURE_2D_MULTISAMPLE, _GL_TEXTURE_SAMPLES, _GL_SAMPLE_SHADING = 0x9100, 0x9106, 0x8C36
 _GL_TEXTURE_2D, _GL_DEPTH_COMPONENT, _GL_FLOAT, _GL_DEPTH_COMPONENT32F = 0x0DE1, 0x1902, 0x1406, 0x8CAC
@@ -44,7 +43,6 @@ class StandaloneDevice:
         self._context.gc_mode = "auto"
         self.renderer = self._context.info["GL_RENDERER"]
         self.version = self._context.info["GL_VERSION"]
-        self._indices = None
         self._uniforms = {}
         self._set_sample_shading = _sample_shading(self._context)
         self.multisample_counts = tuple(n for n in (2, 4, 8) if _has_multisampling(self._context, n))
@@ -58,15 +56,13 @@ class StandaloneDevice:
     def pipeline(self, description):
         return _Pipeline(self._context, description)
 
-    def draw_quads(self, pipeline, target, quads, block, textures):
-        if not quads:
-            return
-        self._bind(pipeline, target, block, textures)
-        pipeline.vertex_array(self._quad_indices(quads)).render(vertices=6 * quads)
+    def draw_triangles(self, pipeline, target, triangles, block, textures):
+        if triangles:
+            self._bind(pipeline, target, block, textures)
+            pipeline.vertex_array.render(vertices=3 * triangles)
 
     def draw_fullscreen(self, pipeline, target, block, textures):
-        self._bind(pipeline, target, block, textures)
-        pipeline.vertex_array(None).render(vertices=3)
+        self.draw_triangles(pipeline, target, 1, block, textures)
 
     def finish(self, target):
         self._context.finish()
@@ -94,11 +90,6 @@ class StandaloneDevice:
         self._uniforms[len(data)].write(data)
         self._uniforms[len(data)].bind_to_uniform_block(0)
 
-    def _quad_indices(self, quads):
-        if self._indices is None or self._indices.size < 24 * quads:
-            self._indices = self._context.buffer(quad_indices(capacity(quads)).tobytes())
-        return self._indices
-
 
 class _Texture:
     def __init__(self, context, size, format, data, samples):
@@ -125,11 +116,16 @@ class _Target:
         framebuffer = self.framebuffer
         framebuffer.depth_mask = depth is not None
         if self._colors:
-            framebuffer.color_mask = [(color is not None,) * 4] * len(self._colors)
+            framebuffer.color_mask = self._mask(color is not None)
         value = color or 0.0
         framebuffer.clear(value, value, value, value, depth=1.0 if depth is None else depth)
         if self._colors:
-            framebuffer.color_mask = [(True,) * 4] * len(self._colors)
+            framebuffer.color_mask = self._mask(True)
+
+    def _mask(self, is_written):
+        """As moderngl takes it: of a single texture without a list around it."""
+        masks = [(is_written,) * 4] * len(self._colors)
+        return masks[0] if len(masks) == 1 else masks
 
     def read(self, slot):
         width, height = self.size
@@ -141,8 +137,6 @@ class _Target:
 class _Pipeline:
     def __init__(self, context, description: PipelineDescription):
         self.description = description
-        self._context = context
-        self._arrays = {}
         try:
             self.program = context.program(
                 vertex_shader=_declared(description, description.vertex, "out"),
@@ -156,12 +150,7 @@ class _Pipeline:
         struct = description.block[0]
         if struct + "Block" in self.program:
             self.program[struct + "Block"].binding = 0
-
-    def vertex_array(self, indices):
-        key = indices and indices.glo
-        if key not in self._arrays:
-            self._arrays = {key: self._context.vertex_array(self.program, [], index_buffer=indices)}
-        return self._arrays[key]
+        self.vertex_array = context.vertex_array(self.program, [])
 
 
 def _declared(description: PipelineDescription, source: str, varying: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .plane import Plane, places, plane_depth, projected_box
+from .plane import Plane, in_footprint, places, plane_depth
 
 KERNEL_VARIANCE = 0.25
 FILTER_SIGMA = 0.5**0.5
@@ -22,11 +22,12 @@ def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.nda
     squares = FILTER_SIGMA**2 * (pixels**2).sum(axis=1) + KERNEL_VARIANCE * (across**2).sum(axis=1)
     rho2 = KERNEL_VARIANCE / det * squares
     amplitude = abs(area) / np.sqrt(det)
-    is_inside = (rho2 <= 1) & _in_box(plane, points, pixel)
+    is_inside = (rho2 <= 1) & in_footprint(plane, points, pixel, _footprint)
     return np.where(is_inside, amplitude * np.exp(-2 * rho2), 0.0), plane_depth(plane, at, pixel, FILTER_SIGMA)
 
 
-def _in_box(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> np.ndarray:
-    """(M,) bool: the ellipse's exact box and the filter's reach; the affine ellipse of a near splat is far larger."""
-    middle, exact = projected_box(plane)
-    return (np.abs(points - middle) <= exact + 2 * FILTER_SIGMA * pixel).all(axis=1)
+def _footprint(size: np.ndarray) -> np.ndarray:
+    """Half-axes in pixels, a little longer than those of kernel and filter; the affine ellipse of a near splat can be
+    far larger.
+    """
+    return 1.1 * np.sqrt(size**2 + (2 * FILTER_SIGMA) ** 2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .plane import Plane, gradients, places, plane_depth, projected_box
+from .plane import Plane, gradients, in_footprint, places, plane_depth
 
 KERNEL_VARIANCE = 0.25
 FILTER_SIGMA = 0.5**0.5
@@ -31,8 +31,7 @@ def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.nda
         rho2 = KERNEL_VARIANCE / det * squares
         reach = np.maximum(np.linalg.norm(at.uv, axis=1), 1e-30)
         along = np.linalg.norm(np.einsum("ni,nij->nj", at.uv, j), axis=1) / reach * FILTER_SIGMA
-        limit = 1 + 2 * along
-        is_inside = (rho2 <= limit**2) & (at.k > 0) & _in_box(plane, points, pixel)
+        is_inside = (at.k > 0) & in_footprint(plane, points, pixel, _footprint)
         within = _within_rim(reach, along)
         weights = np.where(is_inside, within * KERNEL_VARIANCE / np.sqrt(det) * np.exp(-2 * rho2), 0.0)
         return weights, plane_depth(plane, at, pixel, FILTER_SIGMA)
@@ -49,8 +48,6 @@ def _within_rim(reach: np.ndarray, along: np.ndarray) -> np.ndarray:
     return 1 / (1 + np.exp(x * (NORMAL[0] + NORMAL[1] * x * x)))
 
 
-def _in_box(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> np.ndarray:
-    """(M,) bool: the filtered ellipse's box, at least a pixel around the ellipse's own."""
-    middle, exact = projected_box(plane)
-    half_size = np.maximum(np.sqrt(exact**2 + (2 * FILTER_SIGMA * pixel) ** 2), exact + pixel)
-    return (np.abs(points - middle) <= half_size).all(axis=1)
+def _footprint(size: np.ndarray) -> np.ndarray:
+    """Half-axes in pixels: joined with a filter of 1.5 pixels, and at least a pixel longer."""
+    return np.maximum(np.sqrt(size**2 + 1.5**2), size + 1)

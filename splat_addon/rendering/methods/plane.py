@@ -31,11 +31,23 @@ class Plane:
     normal: np.ndarray
 
 
-def projected_box(plane: Plane) -> tuple[np.ndarray, np.ndarray]:
-    """Centre and half-size, two (2,) arrays, of the ellipse's exact box in the picture."""
+def projected_ellipse(plane: Plane, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The exact projection of the splat's ellipse, before the eye: half-axes as the columns of a (2, 2), their lengths
+    in pixels (2,), and its centre (2,) in the picture.
+    """
     spread = 1 - plane.gh @ plane.gh
     offset = -(plane.a * plane.gh[0] + plane.b * plane.gh[1]) / spread
-    return plane.center + offset, np.sqrt(offset**2 + (plane.a**2 + plane.b**2) / spread)
+    columns = np.stack([plane.a / spread**0.5, plane.b / spread**0.5, offset], axis=1) / pixel[:, None]
+    axes, sizes, _ = np.linalg.svd(columns)
+    return axes, sizes, plane.center + offset
+
+
+def in_footprint(plane: Plane, points: np.ndarray, pixel: np.ndarray, grown) -> np.ndarray:
+    """(M,) bool: which points lie in the projected ellipse. grown: its half-axes in pixels, (2,), as a function of
+    the exact ones.
+    """
+    axes, size, middle = projected_ellipse(plane, pixel)
+    return ((((points - middle) / pixel) @ axes / grown(size)) ** 2).sum(axis=1) <= 1
 
 
 @dataclass(frozen=True, eq=False)

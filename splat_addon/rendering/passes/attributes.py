@@ -83,14 +83,15 @@ def _in_picture(planned, frame):
         samplers=(
             *get_storage(frame.storage).samplers,
             *(("materials",) if with_materials else ()),
-            "visibility_depth",
+            "seen_range",
         ),
         varyings=(
-            ("flat", "float", "straddling"),
+            *((("flat", "float", "straddling"),) if frame.has("STRADDLING") else ()),
             ("flat", "vec4", "plane_ab"),
             ("flat", "vec4", "plane_center_gh"),
             ("flat", "vec4", "plane_depths"),
-            ("flat", "vec2", "plane_gradient"),
+            ("flat", "vec2", "beside_radius"),
+            ("smooth", "vec2", "on_footprint"),
             ("flat", "vec4", "color_weight"),
             ("flat", "vec3", "normal"),
             *_material_varyings(planned),
@@ -98,12 +99,14 @@ def _in_picture(planned, frame):
         outputs=tuple((_OUTPUT_TYPES.get(name, "vec4"), name) for name in planned.writes),
         defines=(
             ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
+            *((("STRADDLING", "1"),) if frame.has("STRADDLING") else ()),
             *with_materials,
             *((("LIGHT_SET_TARGET", "1"),) if "light_set_sum" in planned.writes else ()),
             *(HALF_SUMS if frame.accumulation == "float16" else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
         blend="add",
+        depth_test=not frame.linear_depth,
     )
 
 
@@ -111,9 +114,9 @@ _MAKERS = {"space": _in_space, "picture": _in_picture}
 
 
 def run(tile: TileContext, planned: PlannedPass) -> Target:
-    """Fill the sums. A method that works in the picture compares depths itself and needs no depth buffer."""
+    """Fill the sums, tested with the last depth that the plan has."""
     description = describe(planned, tile.plan)
-    target = tile.target(planned.writes, "visibility_depth" if description.depth_test else None)
+    target = tile.target(planned.writes, planned.reads[-1] if description.depth_test else None)
     target.clear(color=0.0)
     for textured in (False, True):
         placed = [p for p in tile.view.placed if p.instance.is_textured is textured]

@@ -81,7 +81,7 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
     }
     reads = tile.textures(planned.reads, made_here)
     pipeline = resources.pipeline(describe(planned, tile.plan))
-    resources.device.draw_fullscreen(pipeline, target, _block(tile), reads)
+    resources.device.draw_fullscreen(pipeline, target, shading_block(tile), reads)
     return target
 
 
@@ -96,7 +96,8 @@ def _lights(tile: TileContext):
     return tile.resources.data(pack_lights(tile.scene.lights, tile.camera.world_to_view(), tile.view.scale))
 
 
-def _block(tile: TileContext) -> np.ndarray:
+def shading_block(tile: TileContext) -> np.ndarray:
+    """Values of `SHADING_BLOCK`."""
     frame, scene, camera, view = tile.plan, tile.scene, tile.camera, tile.view
     view_to_world, view_to_environment = np.eye(4), np.eye(4)
     view_to_world[:3, :3] = camera.matrix_world[:3, :3]

@@ -56,4 +56,4 @@ def draw_splats(tile: TileContext, pipeline: Pipeline, target: Target, placed_on
         normal_matrix[:3, :3] = placed.normal_matrix
         light_set = np.eye(MAX_LIGHT_SETS)[instance.light_set]
         block = std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set)
-        resources.device.draw_quads(pipeline, target, len(instance.surfels), block, textures)
+        resources.device.draw_triangles(pipeline, target, len(instance.surfels), block, textures)
