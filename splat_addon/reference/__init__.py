@@ -5,6 +5,7 @@ It reads the data files of `rendering` (camera, scene, settings, frame) and none
 two can be held against each other. `scenes` builds what they are compared on, `metrics` says how close they are.
 """
 
+from .ewa import render_ewa
 from .exact import render_exact
 
-__all__ = ["render_exact"]
+__all__ = ["render_ewa", "render_exact"]

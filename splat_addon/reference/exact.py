@@ -50,7 +50,7 @@ def render_exact(
     for x, y, w, h in _tiles(width, height, samples, margin):
         grid = RayGrid.of_pixels(camera, samples, x - margin, y - margin, w + 2 * margin, h + 2 * margin)
         surface = visible_surface(splats, bounds, grid, settings.epsilon)
-        shaded = resample(_shaded_rays(surface, grid, scene, camera, settings), weights, samples)
+        shaded = resample(shaded_rays(surface, grid, scene, camera, settings), weights, samples)
         here = np.s_[y : y + h, x : x + w]
         color[here], normal[here], coverage[here] = shaded[..., :4], shaded[..., 4:7], shaded[..., 7]
         depth[here] = _nearest_depth(surface, grid, samples, margin)
@@ -67,7 +67,7 @@ def _tiles(width: int, height: int, samples: int, margin: int):
             yield x, y, min(side, width - x), min(side, height - y)
 
 
-def _shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+def shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
     """(rows, columns, 8): premultiplied rgba, eye-space normal and coverage of every ray."""
     rays = np.zeros((grid.count, 8))
     if not settings.transparent_film:

@@ -106,22 +106,37 @@ class Hits:
 
 def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float) -> Surface:
     """What every ray of the grid sees. bounds: `projected_bounds` of the splats. epsilon: in radii of each splat."""
-    splats, boxes = _splats_in(splats, bounds, grid)
-    push, side = splats.push(epsilon), np.where(splats.is_back, BACK_WEIGHT, 1.0)
+    splats, boxes = splats_in(splats, bounds, grid)
+    return average(splats, grid, _seen(splats, boxes, grid, visible_depth(splats, boxes, grid, epsilon)))
+
+
+def visible_depth(splats: Splats, boxes, grid: RayGrid, epsilon: float) -> np.ndarray:
+    """(count,) how deep each ray may look: the nearest of its hits, each splat moved back by its epsilon."""
+    push = splats.push(epsilon)
     visibility = np.full(grid.count, np.inf)
     for hits in _hits(splats, boxes, grid):
         # A point e moved back to e (1 + push / |e|) gains push / |direction| in depth, as |e| = depth |direction|.
         np.minimum.at(visibility, hits.ray, hits.depth + push[hits.splat] / hits.stretch)
-    sums = np.zeros((18, grid.count))
-    attributes = np.concatenate([splats.color, splats.normal, splats.surface], axis=1).T
+    return visibility
+
+
+def _seen(splats: Splats, boxes, grid: RayGrid, visibility: np.ndarray):
+    side = np.where(splats.is_back, BACK_WEIGHT, 1.0)
     for hits in _hits(splats, boxes, grid):
         seen = np.flatnonzero(hits.depth <= visibility[hits.ray])
-        ray, splat = hits.ray[seen], hits.splat[seen]
-        weight = np.exp(-2 * hits.rho2[seen]) * side[splat]
+        splat = hits.splat[seen]
+        yield hits.ray[seen], splat, np.exp(-2 * hits.rho2[seen]) * side[splat], hits.depth[seen], hits.place[seen]
+
+
+def average(splats: Splats, grid: RayGrid, contributions) -> Surface:
+    """Weighted means. contributions: chunks of rays, splats, weights and depths, each (m,), and places (m, 2)."""
+    sums = np.zeros((18, grid.count))
+    attributes = np.concatenate([splats.color, splats.normal, splats.surface], axis=1).T
+    for ray, splat, weight, depth, place in contributions:
         sums[0] += np.bincount(ray, weight, grid.count)
-        sums[1] += np.bincount(ray, weight * hits.depth[seen], grid.count)
+        sums[1] += np.bincount(ray, weight * depth, grid.count)
         values = attributes[:, splat]
-        _look_textures_up(splats, splat, hits.place[seen], values[:3])
+        _look_textures_up(splats, splat, place, values[:3])
         for total, row in zip(sums[2:], values, strict=True):
             total += np.bincount(ray, weight * row, grid.count)
     return _averages(sums)
@@ -145,7 +160,7 @@ def _averages(sums: np.ndarray) -> Surface:
     return Surface(rays, color, normal, depth, *columns[6:9], emission, light_set)
 
 
-def _splats_in(splats: Splats, bounds, grid: RayGrid):
+def splats_in(splats: Splats, bounds, grid: RayGrid):
     """The splats that may touch the grid, and their boxes in it."""
     first, end = grid.boxes(*bounds)
     rows = np.flatnonzero((first < end).all(axis=1))
@@ -154,26 +169,31 @@ def _splats_in(splats: Splats, bounds, grid: RayGrid):
 
 def _hits(splats: Splats, boxes, grid: RayGrid):
     """Every hit in the grid, in chunks."""
-    first, end = boxes
+    rows = np.arange(len(splats))
+    for ray, splat in candidates(rows, *boxes, grid):
+        yield _intersections(splats, ray, splat, grid)
+
+
+def candidates(rows: np.ndarray, first: np.ndarray, end: np.ndarray, grid: RayGrid):
+    """Ray and splat numbers of all pairs of a splat with a ray in its box, two (M,) arrays, in chunks.
+
+    rows: (n,) numbers of splats. first, end: (n, 2) their boxes in the grid.
+    """
     pairs = (end - first).prod(axis=1)
     chunk = np.cumsum(pairs) // CHUNK_PAIRS
-    for rows in np.split(np.arange(len(pairs)), np.flatnonzero(np.diff(chunk)) + 1):
-        yield _intersections(splats, rows, *_candidates(rows, pairs[rows], first[rows], end[rows], grid), grid)
+    for part in np.split(np.arange(len(pairs)), np.flatnonzero(np.diff(chunk)) + 1):
+        count, low, width = pairs[part], first[part], (end - first)[part, 0]
+        within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+        row, column = np.divmod(within, np.repeat(width, count))
+        ray = (row + np.repeat(low[:, 1], count)) * grid.shape[1] + column + np.repeat(low[:, 0], count)
+        yield ray, np.repeat(rows[part], count)
 
 
-def _candidates(rows, pairs, first, end, grid: RayGrid) -> tuple[np.ndarray, np.ndarray]:
-    """Ray and splat numbers of all pairs of a splat with a ray in its box, two (M,) arrays."""
-    within = np.arange(pairs.sum()) - np.repeat(np.cumsum(pairs) - pairs, pairs)
-    row, column = np.divmod(within, np.repeat(end[:, 0] - first[:, 0], pairs))
-    ray = (row + np.repeat(first[:, 1], pairs)) * grid.shape[1] + column + np.repeat(first[:, 0], pairs)
-    return ray, np.repeat(rows, pairs)
-
-
-def _intersections(splats: Splats, rows, ray, splat, grid: RayGrid) -> Hits:
+def _intersections(splats: Splats, ray, splat, grid: RayGrid) -> Hits:
     """Ray and plane; the ellipse's coordinates by the dual basis of u and v; NaN (a ray in the plane) never hits."""
     origin, direction = grid.rays(ray)
-    chunk = splats.take(rows)
-    local = splat - rows[0] if len(rows) else splat
+    first = splat[0] if len(splat) else 0
+    chunk, local = splats.take(np.arange(first, splat[-1] + 1 if len(splat) else 0)), splat - first
     square = np.einsum("ij,ij->i", chunk.plane, chunk.plane)[:, None]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         dual_u, dual_v = np.cross(chunk.v, chunk.plane) / square, np.cross(chunk.plane, chunk.u) / square
