@@ -2,7 +2,8 @@
 """A Blender object, evaluated with its modifiers -> `sampling.TriangleMesh`.
 
 Only the fast ways in: attributes and `loop_triangle_polygons` copy whole arrays, where `vertices.co`,
-`loops.vertex_index`, `polygons.material_index` and the legacy UV data take a hundred times as long.
+`loops.vertex_index`, `polygons.material_index` and the legacy UV data take a hundred times as long. And rows are taken
+with `take`, in a quarter of the time of an index in brackets.
 """
 
 from __future__ import annotations
@@ -68,10 +69,10 @@ def read_mesh(
     slots = slot_materials(evaluated, mesh)
     topology = topology or read_topology(mesh)
     corners, faces = topology.corners, topology.face_of
-    vertices = topology.corner_vertices[corners]
+    vertices = topology.corner_vertices.take(corners)
     indices = _material_indices(mesh, faces, max(len(slots), 1))
     layers = MeshLayers(mesh) if images is None else MeshLayers(mesh, _images=images)
-    surfaces, unread = _surfaces(slots, np.unique(indices), layers)
+    surfaces, unread = _surfaces(slots, np.flatnonzero(np.bincount(indices)), layers)
     triangles = TriangleMesh(
         positions=_positions(mesh),
         triangles=vertices,
@@ -86,7 +87,7 @@ def read_mesh(
 
 def read_triangles(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> ExtractedMesh:
     """Only the positions and triangles, for predictions."""
-    return ExtractedMesh(TriangleMesh(_positions(mesh), _corner_vertices(mesh)[_triangle_corners(mesh)[0]]), ())
+    return ExtractedMesh(TriangleMesh(_positions(mesh), _corner_vertices(mesh).take(_triangle_corners(mesh)[0])), ())
 
 
 @contextmanager
@@ -134,7 +135,7 @@ def _corner_normals(mesh: bpy.types.Mesh, corners: np.ndarray) -> np.ndarray | N
     """(T, 3, 3) shading normals; None where every triangle is flat, so that its own normal is meant."""
     if not len(corners) or (mesh.normals_domain == "FACE" and len(corners) == len(mesh.polygons)):
         return None
-    return _read(mesh.corner_normals, "vector", 3, len(mesh.loops))[corners]
+    return _read(mesh.corner_normals, "vector", 3, len(mesh.loops)).take(corners, axis=0)
 
 
 def _material_indices(mesh: bpy.types.Mesh, faces: np.ndarray | None, slots: int) -> np.ndarray:
@@ -143,7 +144,7 @@ def _material_indices(mesh: bpy.types.Mesh, faces: np.ndarray | None, slots: int
     if attribute is None:
         return np.zeros(len(mesh.polygons) if faces is None else len(faces), np.int32)
     indices = np.clip(_read(attribute.data, "value", 1, len(mesh.polygons), np.int32), 0, slots - 1)
-    return indices if faces is None else indices[faces]
+    return indices if faces is None else indices.take(faces)
 
 
 def slot_materials(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> list[bpy.types.Material | None]:
@@ -176,10 +177,10 @@ def _color_reader(mesh: bpy.types.Mesh, corners: np.ndarray, vertices: np.ndarra
         attribute = mesh.color_attributes[name]
         # "color" is scene-linear for both types, the 8-bit one too.
         values = _read(attribute.data, "color", 4, len(attribute.data))
-        return values[vertices if attribute.domain == "POINT" else corners]
+        return values.take(vertices if attribute.domain == "POINT" else corners, axis=0)
 
     return read
 
 
 def _uv_reader(mesh: bpy.types.Mesh, corners: np.ndarray):
-    return lambda name: _read(mesh.uv_layers[name].uv, "vector", 2, len(mesh.loops))[corners]
+    return lambda name: _read(mesh.uv_layers[name].uv, "vector", 2, len(mesh.loops)).take(corners, axis=0)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .mesh import TriangleMesh, doubled_areas, gather_corners, triangle_chunks
+from .mesh import TriangleMesh, corner_indices, doubled_areas, gather_corners, triangle_chunks
 
 #: Beyond this the square of an area leaves float32's range; no scene is that large, but broken files are.
 MAX_COORDINATE = 1e18
@@ -60,8 +60,11 @@ def _with_bad_vertex(is_bad_value):
 
 
 def _repeats_index(positions, triangles):
-    a, b, c = triangles.T
-    return (a == b) | (b == c) | (c == a)
+    bad = np.empty(len(triangles), bool)
+    for chunk in triangle_chunks(len(triangles)):
+        a, b, c = np.ascontiguousarray(triangles[chunk].T)
+        bad[chunk] = (a == b) | (b == c) | (c == a)
+    return bad
 
 
 def _has_no_area(positions, triangles):
@@ -79,8 +82,11 @@ def _repeats_another(positions, triangles):
 
     Sums of 64-bit vertex hashes find the suspects in one sort; only those are compared exactly.
     """
-    keys = vertex_hashes(positions)
-    keys = keys[triangles[:, 0]] + keys[triangles[:, 1]] + keys[triangles[:, 2]]
+    vertex_keys = vertex_hashes(positions)
+    keys = np.empty(len(triangles), np.uint64)
+    for chunk in triangle_chunks(len(triangles)):
+        a, b, c = vertex_keys.take(corner_indices(triangles[chunk]))
+        keys[chunk] = a + b + c
     ordered = np.sort(keys)
     shared = ordered[1:][ordered[1:] == ordered[:-1]]
     if not len(shared):

@@ -5,31 +5,48 @@ from __future__ import annotations
 
 import numpy as np
 
-from .cleaning import vertex_hashes
+from .mesh import corner_indices, triangle_chunks
 
 
-def welded(positions: np.ndarray) -> np.ndarray:
-    """(V,) intp numbers that vertices at the same place share, and others but by an accident of 2^-64; -0.0 is 0.0."""
-    return np.unique(vertex_hashes(positions), return_inverse=True)[1].reshape(-1)
+def twins(keys: np.ndarray) -> np.ndarray | None:
+    """(V,) intp: for each vertex the first at its place; None where each is alone.
+
+    keys: (V,) of the places, by `vertex_hashes`, so right but by an accident of 2^-64.
+    """
+    ordered = np.sort(keys)
+    shared = np.unique(ordered[1:][ordered[1:] == ordered[:-1]])
+    if not len(shared):
+        return None
+    at = np.flatnonzero(shared.take(np.searchsorted(shared, keys), mode="clip") == keys)
+    _, index, place = np.unique(keys[at], return_index=True, return_inverse=True)
+    first = np.arange(len(keys))
+    first[at] = at[index][place.reshape(-1)]
+    return first
 
 
 def part_labels(corners: np.ndarray) -> np.ndarray:
     """(V,) intp: for each vertex the lowest vertex of its part, where the (t, 3) corners of triangles connect them.
 
-    Every round hooks each triangle's roots onto their lowest and halves the paths (Shiloach & Vishkin 1982); about
-    log t rounds, over fewer and fewer triangles.
+    Every round hooks roots onto lower ones of the same triangle and halves the paths (Shiloach & Vishkin 1982); about
+    log t rounds, over fewer and fewer triangles. Of several lower ones any will do, so the last one written stays; what
+    that cuts off is joined again in the next round.
     """
     labels = np.arange(int(corners.max(initial=-1)) + 1)
     while len(corners):
-        roots = labels[corners]
-        lowest = roots.min(axis=1)
-        for root in roots.T:
-            np.minimum.at(labels, root, lowest)
+        for chunk in triangle_chunks(len(corners)):
+            roots = labels.take(corner_indices(corners[chunk]))
+            lowest = np.minimum(np.minimum(roots[0], roots[1]), roots[2])
+            for root in roots:
+                at = np.flatnonzero(root > lowest)
+                labels[root.take(at)] = lowest.take(at)
         while True:
-            shorter = labels[labels]
+            shorter = labels.take(labels)
             if np.array_equal(shorter, labels):
                 break
             labels = shorter
-        a, b, c = labels[corners].T
-        corners = corners[(a != b) | (a != c)]
+        apart = []
+        for chunk in triangle_chunks(len(corners)):
+            a, b, c = labels.take(corner_indices(corners[chunk]))
+            apart.append(np.flatnonzero((a != b) | (a != c)) + chunk.start)
+        corners = labels.take(corners.take(np.concatenate(apart), axis=0))
     return labels

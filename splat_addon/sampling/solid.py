@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .connectivity import part_labels, welded
-from .mesh import TriangleMesh
+from .cleaning import vertex_hashes
+from .connectivity import part_labels, twins
+from .mesh import TriangleMesh, corner_indices, crossed, gather_corners, triangle_chunks
 
 
 def is_solid(mesh: TriangleMesh) -> bool:
@@ -30,44 +31,53 @@ class SolidShape:
         self._triangles = mesh.triangles
         self._is_closed = bool(len(mesh)) and bool(np.isfinite(mesh.positions).all())
         if self._is_closed:
-            welds = welded(mesh.positions)
-            corners = welds[mesh.triangles]
-            self._is_closed = _is_closed(corners)
-            first = np.unique(welds, return_index=True)[1]
-            #: For each vertex, the first at its place.
-            self._twins = first[welds]
-            self._parts = np.unique(part_labels(corners)[corners[:, 0]], return_inverse=True)[1].reshape(-1)
+            keys = vertex_hashes(mesh.positions)
+            self._is_closed = _is_closed(keys, mesh.triangles)
+        if self._is_closed:
+            #: For each vertex, the first at its place; None: no place has several.
+            self._twins = twins(keys)
+            corners = mesh.triangles if self._twins is None else self._twins.take(mesh.triangles)
+            self._parts = part_labels(corners).take(corners[:, 0])
 
     def is_solid_at(self, positions: np.ndarray) -> bool:
         """positions: (V, 3) of the same vertices. False too where vertices that were at one place have parted."""
         if not self._is_closed or not np.isfinite(positions).all():
             return False
-        if not np.array_equal(positions[self._twins], positions):
+        if self._twins is not None and not np.array_equal(positions[self._twins], positions):
             return False
-        return bool((self._part_volumes(positions) > 0).all())
+        has_triangles = np.bincount(self._parts) > 0
+        return bool((self._part_volumes(positions)[has_triangles] > 0).all())
 
     def _part_volumes(self, positions: np.ndarray) -> np.ndarray:
         """Signed volume of every connected part, by the divergence theorem, about the mesh's middle."""
-        low, high = positions.min(axis=0), positions.max(axis=0)
-        scale = max(float((high - low).max()), np.finfo(np.float64).tiny)
-        points = np.ascontiguousarray(((positions - (low + high) / 2) / scale).T)
-        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = ([p.take(corner) for p in points] for corner in self._triangles.T)
-        volumes = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+        points = np.ascontiguousarray(positions.T)
+        ends = [(float(component.min()), float(component.max())) for component in points]
+        scale = max(max(high - low for low, high in ends), np.finfo(np.float64).tiny)
+        for component, (low, high) in zip(points, ends, strict=True):
+            component -= (low + high) / 2
+            component /= scale
+        volumes = np.empty(len(self._triangles))
+        for chunk in triangle_chunks(len(volumes)):
+            corners = gather_corners(points, self._triangles[chunk])
+            normals = crossed(corners[:, 1:])
+            volumes[chunk] = sum(corners[k, 0] * normals[k] for k in range(3))
         return np.bincount(self._parts, volumes) / 6
 
 
-def _is_closed(corners: np.ndarray) -> bool:
-    """Whether the boundary of the chain of triangles vanishes.
+def _is_closed(keys: np.ndarray, triangles: np.ndarray) -> bool:
+    """Whether the boundary of the chain of (T, 3) triangles vanishes. keys: (V,) uint64, of the vertices' places.
 
-    Directed edges are added up under an antisymmetric random weight, modulo 2^64: the sum of a chain with a
-    boundary is 0 with a probability of about 2^-64. Degenerate triangles cancel by themselves.
+    Directed edges are added up under an antisymmetric weight of their ends' keys, which are as good as random, modulo
+    2^64: the sum of a chain with a boundary is 0 with a probability of about 2^-64. Degenerate triangles cancel by
+    themselves.
     """
-    random = np.random.default_rng(0)
-    count = int(corners.max()) + 1
-    first, second = (random.integers(0, 2**64, count, np.uint64) for _ in range(2))
+    mixed = (keys ^ (keys >> np.uint64(31))) * np.uint64(0xD6E8FEB86659FD93)
     total = np.uint64(0)
     with np.errstate(over="ignore"):
-        for k in range(3):
-            a, b = corners[:, k], corners[:, (k + 1) % 3]
-            total += (first[a] * second[b] - first[b] * second[a]).sum(dtype=np.uint64)
+        for chunk in triangle_chunks(len(triangles)):
+            indices = corner_indices(triangles[chunk])
+            first, second = keys.take(indices), mixed.take(indices)
+            for k in range(3):
+                after = (k + 1) % 3
+                total += (first[k] * second[after] - first[after] * second[k]).sum(dtype=np.uint64)
     return bool(total == 0)
