@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What 16-bit storage, float16 sums, multisampling and the threshold at edges lose and gain: docs/numerics.md's tables.
 
-    PYTHON scripts/measure_formats.py [--models FOLDER] [--size 256] [--turns 7]
+    PYTHON scripts/measure_formats.py [--models FOLDER] [--size 256] [--turns 7] [--only TABLE]
 
 PYTHON is the environment that scripts/test.py makes. Times are ratios of one run, in turn, medians; PSNR is of sRGB.
 """
@@ -24,11 +24,12 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 import numpy as np  # noqa: E402
+from PIL import Image  # noqa: E402
 
 from scripts.measure_models import load, scene_of  # noqa: E402
 from splat_addon.reference import render_exact, scenes  # noqa: E402
 from splat_addon.reference.extremes import discs  # noqa: E402
-from splat_addon.reference.metrics import psnr  # noqa: E402
+from splat_addon.reference.metrics import psnr, srgb  # noqa: E402
 from splat_addon.rendering import Camera, Frame, Light, Renderer, Scene, Settings, open_device  # noqa: E402
 from splat_addon.rendering.storages import STORAGES  # noqa: E402
 from splat_addon.sampling import sample_mesh  # noqa: E402
@@ -49,6 +50,8 @@ MULTISAMPLED = {
     "1 sample, threshold 1": {"edge_threshold": 1.0},
     "4 shaded once, threshold 0.25": {"multisampling": 4, "edge_threshold": 0.25},
 }
+#: Of those, in docs/rendering/multisampling.png.
+PICTURED = ("1 sample", "4 hardware samples, shaded once", "4 hardware samples, each shaded", "3 x 3")
 
 
 def in_turn(renderer: Renderer, scene, camera, choices: dict, turns: int) -> tuple[dict[str, Frame], dict[str, float]]:
@@ -90,8 +93,8 @@ def formats(renderer: Renderer, options) -> None:
                 )
 
 
-def memory(renderer: Renderer, models: Path) -> None:
-    surfels = sample_mesh(load(models / "armadillo.obj.gz"), resolution=512)
+def memory(renderer: Renderer, options) -> None:
+    surfels = sample_mesh(load(options.models / "armadillo.obj.gz"), resolution=512)
     print("\n| storage | bytes a surfel |\n|---|---|")
     for storage in STORAGES.values():
         arrays, _ = storage.pack(surfels)
@@ -105,7 +108,7 @@ def memory(renderer: Renderer, models: Path) -> None:
         print(f"| {accumulation} | {sum(BYTES[plan.format(t)] for t in drawn)} |")
 
 
-def overdraw(renderer: Renderer) -> None:
+def overdraw(renderer: Renderer, options) -> None:
     print("\n| layers | PSNR, dB | largest error, of 255 |\n|---|---|---|")
     camera = Camera.perspective(np.eye(4), math.radians(60), (12, 12), 0.01, 1000)
     for layers in (1, 10, 30, 100, 300, 1000, 2000, 5000):
@@ -130,6 +133,8 @@ def multisampling(renderer: Renderer, options) -> None:
         one = Settings(supersampling=1)
         choices = {label: replace(one, **values) for label, values in MULTISAMPLED.items()}
         frames, ratios = in_turn(renderer, scene, camera, choices, options.turns)
+        if name == "torus":
+            save_details([frames[label].color for label in PICTURED], options.out)
         columns.append(
             [
                 f"{psnr(f.color, exact.color):.1f} | {np.count_nonzero((exact.coverage > 0.999) & (f.coverage == 0))} "
@@ -141,21 +146,32 @@ def multisampling(renderer: Renderer, options) -> None:
         print(f"| {label} | {' | '.join(cells)} |")
 
 
+def save_details(colors: list[np.ndarray], path: Path) -> None:
+    """A piece of each picture, side by side, every pixel six wide."""
+    pieces = [srgb(color[16:56, 8:48, :3])[::-1] for color in colors]
+    strip = (np.concatenate(pieces, axis=1).clip(0, 1) * 255).astype(np.uint8)
+    Image.fromarray(strip).resize((6 * strip.shape[1], 6 * strip.shape[0]), Image.Resampling.NEAREST).save(path)
+
+
+PARTS = {"formats": formats, "memory": memory, "overdraw": overdraw, "multisampling": multisampling}
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--models", type=Path, default=ROOT.parent / "shared" / "models")
     parser.add_argument("--size", type=int, default=256)
     parser.add_argument("--turns", type=int, default=7)
+    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "rendering" / "multisampling.png")
+    parser.add_argument("--only", choices=PARTS, help="one of the tables")
     options = parser.parse_args()
     renderer = Renderer(open_device("standalone"))
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout
     print(
         f"{renderer.device.renderer}, {platform.machine()}, {os.cpu_count()} cores, {datetime.date.today()}, {commit}"
     )
-    formats(renderer, options)
-    memory(renderer, options.models)
-    overdraw(renderer)
-    multisampling(renderer, options)
+    for name, part in PARTS.items():
+        if options.only in (None, name):
+            part(renderer, options)
 
 
 if __name__ == "__main__":
