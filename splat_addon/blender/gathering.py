@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One or several objects -> the one mesh that is sampled, in the space of the surfel object that it becomes.
 
-Instances are made real: to sample a copy costs no more than to move the surfels of another, 0.1 microseconds each, and
-each has the right density, whatever its scale.
+Instances are made real: to sample a copy takes half as long as to move the surfels of another, and each copy has the
+right density, whatever its scale.
 """
 
 from __future__ import annotations

@@ -18,6 +18,11 @@ _FINENESS = {
 }
 
 
+def _read_again(settings, context) -> None:
+    """A 3D view reads the scene only when Blender tells it of a change; it is not told of one that a script makes."""
+    settings.id_data.update_tag()
+
+
 _DENSITY_ITEMS = [(name, DENSITIES[name].label, DENSITIES[name].description) for name in _FINENESS]
 
 
@@ -32,12 +37,14 @@ class MeshSamplingProperties:
             "to 3 microseconds a surfel where the mesh deforms, and next to nothing where it does not"
         ),
         default=False,
+        update=_read_again,
     )
     mesh_density: EnumProperty(
         name="Density",
         description="How it is said how close the surfels of meshes lie",
         items=_DENSITY_ITEMS,
         default="RESOLUTION",
+        update=_read_again,
     )
     mesh_resolution: IntProperty(
         name="Resolution",
@@ -49,6 +56,7 @@ class MeshSamplingProperties:
         min=1,
         soft_min=8,
         soft_max=2048,
+        update=_read_again,
     )
     mesh_spacing: FloatProperty(
         name="Spacing",
@@ -61,6 +69,7 @@ class MeshSamplingProperties:
         soft_max=10.0,
         precision=4,
         step=0.1,
+        update=_read_again,
     )
     mesh_pixels: FloatProperty(
         name="Pixels per Surfel",
@@ -71,6 +80,7 @@ class MeshSamplingProperties:
         default=1.0,
         min=0.1,
         soft_max=10.0,
+        update=_read_again,
     )
 
 
@@ -93,6 +103,7 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
             "switches this off, since its surfels stand in the object's place; switch it on again if you delete them"
         ),
         default=True,
+        update=_read_again,
     )
 
 
