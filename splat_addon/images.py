@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -38,6 +39,11 @@ class Image:
         for name, allowed in (("extension", tuple(EXTENSIONS)), ("interpolation", INTERPOLATIONS)):
             if getattr(self, name) not in allowed:
                 raise ValueError(f"An image's {name} must be one of {', '.join(allowed)}, not {getattr(self, name)!r}.")
+
+    @cached_property
+    def pyramid(self) -> Pyramid:
+        """Made once, however many look the image up."""
+        return Pyramid(self)
 
 
 class Pyramid:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import bpy
 from mathutils import Matrix
@@ -32,7 +33,7 @@ from .baking import Bakeable, baked
 from .camera_density import without_camera
 from .gathering import gather
 from .material_surfaces import Unread
-from .mesh_extraction import unread_sentences
+from .mesh_extraction import read_mesh, unread_sentences
 from .surfel_objects import add_surfel_object, collections_of
 
 #: How far a surfel's surface may be above or below it, in spacings: a bend within its cell, or a move to a lattice.
@@ -108,13 +109,18 @@ class Conversion:
         )
 
 
-def prepare(sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, choices: Choices) -> Conversion:
+def prepare(
+    sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, choices: Choices, images: dict | None = None
+) -> Conversion:
     """Read the sources, evaluated with their modifiers, with the instances that they make.
 
+    images: keeps the textures' pixels for the next call.
     Raises ValueError with a sentence: no faces, nothing usable, an impossible fineness or transform.
     """
     start = time.perf_counter()
-    gathered = gather(sources, depsgraph, choices.in_world_units)
+    images = {} if images is None else images
+    read = partial(read_mesh, images=images)
+    gathered = gather(sources, depsgraph, choices.in_world_units, read)
     whole, matrix_world = gathered.mesh, gathered.matrix_world
     mesh, dropped = drop_unusable(whole)
     skipped = [f"{count:,} triangle{'s' * (count > 1)} {reason}" for reason, count in dropped.items()]

@@ -24,6 +24,7 @@ class ConversionBatch:
     def __init__(self, sources: list[bpy.types.Object], choices: Choices, active: bpy.types.Object | None = None):
         self._groups, self._choices = groups(sources, active, choices.join), choices
         self._sampled: list[Conversion] = []
+        self._images: dict = {}
         self._begun = 0
         self._part = 0.0
         self.refused: list[tuple[str, str]] = []
@@ -42,7 +43,7 @@ class ConversionBatch:
         for sources in self._groups:
             self._begun, self._part = self._begun + 1, 0.0
             try:
-                yield prepare(sources, context.evaluated_depsgraph_get(), self._choices)
+                yield prepare(sources, context.evaluated_depsgraph_get(), self._choices, self._images)
             except ValueError as error:
                 self.refused.append((sources[0].name, str(error)))
 

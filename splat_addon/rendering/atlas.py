@@ -41,7 +41,7 @@ def make_atlas(textures: tuple[SurfaceTexture | None, ...], max_texels: int = MA
     max_texels: above it the largest images lose their finest levels.
     """
     images = list({id(t.image): t.image for t in textures if t is not None}.values())
-    pyramids = [Pyramid(image) for image in images]
+    pyramids = [image.pyramid for image in images]
     first = _first_levels(pyramids, max_texels)
     chains = [[p.level(k) for k in range(skip, p.count)] for p, skip in zip(pyramids, first, strict=True)]
     levels = [level for chain in chains for level in chain]

@@ -9,7 +9,6 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..images import Pyramid
 from ..surfels import OPTIONAL_LAYOUT
 from .surfaces import Channel, NormalMap, Surface, Texture, VertexColors
 
@@ -51,7 +50,6 @@ class Palette:
         channels = [channel for surface in surfaces for channel in surface.channels().values()]
         factors = [factor for channel in channels for factor in channel.factors]
         textures = [factor for factor in factors if isinstance(factor, Texture)]
-        self._pyramids = {texture.image: Pyramid(texture.image) for texture in textures}
         self.optional = tuple(n for n in OPTIONAL_LAYOUT if any(_varies(getattr(s, n, None)) for s in surfaces))
         self.needs_colors = any(isinstance(factor, VertexColors) for factor in factors)
         self.needs_tangents = any(s.normal_map is not None and s.normal_map.space == "TANGENT" for s in surfaces)
@@ -125,7 +123,7 @@ class Palette:
             uvs, steps = placed(factor, samples)
             if uvs is None:
                 return None
-            pyramid = self._pyramids[factor.image]
+            pyramid = factor.image.pyramid
             looked_up[key] = pyramid.lookup(uvs, pyramid.level_for(_texels_between(steps, pyramid.size)))
         return looked_up[key] if factor.uses_alpha else _on_black(looked_up[key])
 

@@ -103,6 +103,16 @@ def test_an_alpha_that_is_linked_is_the_opacity(image, painted):
     assert np.allclose(surfels.colors[:, :3], decoded(ENCODED)[texel][:, :3], atol=1e-5)
 
 
+def test_an_alpha_that_is_linked_is_the_opacity_of_a_channel_packed_image_too(image, painted):
+    """As glTF's importer has all of them."""
+    nodes = Nodes()
+    texture = nodes.texture(image(alpha_mode="CHANNEL_PACKED"))
+    nodes.link(texture, "Color", nodes.principled, "Base Color").link(texture, "Alpha", nodes.principled, "Alpha")
+    surfels, texel = painted(nodes.material)
+    assert np.allclose(surfels.colors[:, 3], ENCODED[texel][:, 3], atol=1e-6)
+    assert np.allclose(surfels.colors[:, :3], decoded(ENCODED)[texel][:, :3], atol=1e-5)
+
+
 def test_an_alpha_that_is_not_linked_darkens_the_colour_as_in_cycles(image, painted):
     nodes = Nodes()
     nodes.link(nodes.texture(image()), "Color", nodes.principled, "Base Color")
