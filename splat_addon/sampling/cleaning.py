@@ -22,10 +22,12 @@ def drop_unusable(mesh: TriangleMesh) -> tuple[TriangleMesh, dict[str, int]]:
     """
     if mesh.known_usable:
         return mesh, {}
-    kept, dropped = None, {}
+    kept, dropped, facing_area = None, {}, 0.0
     triangles = mesh.triangles
     for reason, is_bad in _CHECKS.items():
         bad = is_bad(mesh.positions, triangles)
+        if reason == _NO_AREA:
+            bad, facing_area = bad
         if bad is not None and bad.any():
             good = np.flatnonzero(~bad)
             dropped[reason] = int(len(bad) - len(good))
@@ -33,7 +35,9 @@ def drop_unusable(mesh: TriangleMesh) -> tuple[TriangleMesh, dict[str, int]]:
             triangles = triangles.take(good, axis=0)
     if kept is not None:
         mesh = replace(mesh, **{name: array.take(kept, axis=0) for name, array in mesh.per_triangle().items()})
-    return _without_unused_vertices(mesh), dropped
+    usable = _without_unused_vertices(mesh)
+    object.__setattr__(usable, "facing_area", facing_area)
+    return usable, dropped
 
 
 def _without_unused_vertices(mesh: TriangleMesh) -> TriangleMesh:
@@ -68,13 +72,15 @@ def _repeats_index(positions, triangles):
 
 
 def _has_no_area(positions, triangles):
+    """The (t,) bad ones, and what the others make up as `TriangleMesh.facing_area`, which is next to nothing here."""
     components = np.ascontiguousarray(positions.T)
-    bad = np.empty(len(triangles), bool)
+    bad, facing_area = np.empty(len(triangles), bool), 0.0
     # A corner that was refused is gone from `triangles`, so nothing here overflows.
     for chunk in triangle_chunks(len(triangles)):
         x, y, z = doubled_areas(gather_corners(components, triangles[chunk]))
         bad[chunk] = (x == 0) & (y == 0) & (z == 0)
-    return bad
+        facing_area += float(np.maximum(np.maximum(np.abs(x), np.abs(y)), np.abs(z)).sum()) / 2
+    return bad, facing_area
 
 
 def _repeats_another(positions, triangles):
@@ -124,13 +130,16 @@ def _equal_rows(rows: np.ndarray) -> np.ndarray:
     return label
 
 
-#: reason -> function of (positions, remaining triangles) giving the (t,) bad ones, or None for none.
+_NO_AREA = "of zero area"
+
+#: reason -> function of (positions, remaining triangles) giving the (t,) bad ones, or None for none. The areas come
+#: last: only then are they those of the triangles that stay.
 _CHECKS = {
     "with a non-finite vertex": _with_bad_vertex(lambda p: ~np.isfinite(p)),
     f"with a vertex beyond {MAX_COORDINATE:g}": _with_bad_vertex(
         lambda p: np.isfinite(p) & (np.abs(p) > MAX_COORDINATE)
     ),
     "with a repeated vertex": _repeats_index,
-    "of zero area": _has_no_area,
     "that repeat another": _repeats_another,
+    _NO_AREA: _has_no_area,
 }

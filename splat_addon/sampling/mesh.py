@@ -35,7 +35,8 @@ class TriangleMesh:
         the last dimension.
     materials: (T,) integer index into `surfaces` and into the object's material slots; None: all 0.
     surfaces: what each material is made of; an index past the end uses the last.
-    known_usable: set by `drop_unusable` alone.
+    known_usable, facing_area: set by `drop_unusable` alone. The latter is the area as the images see it that each
+        triangle faces most, object units squared.
 
     Raises ValueError with one sentence for a wrong shape or type or an index out of range.
     """
@@ -48,6 +49,7 @@ class TriangleMesh:
     materials: np.ndarray | None = None
     surfaces: tuple[Surface, ...] = (Surface(),)
     known_usable: bool = field(default=False, init=False, repr=False)
+    facing_area: float = field(default=0.0, init=False, repr=False)
 
     def __post_init__(self):
         positions = np.ascontiguousarray(self.positions, np.float64)

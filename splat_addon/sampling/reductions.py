@@ -121,6 +121,8 @@ def projected_area(
     counts = find_reduction(reduction).counts
     check_grazing_angle(grazing_angle)
     mesh, _ = drop_unusable(mesh)
+    if counts is keep_dominant:
+        return mesh.facing_area
     components = np.ascontiguousarray(mesh.positions.T)
     total = 0.0
     for chunk in triangle_chunks(len(mesh)):
