@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Unusable attributes are left out and counted; usable but absurd ones leave the other surfels as they are."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -47,6 +49,15 @@ def test_one_stray_position_leaves_the_others_as_they_are(value, world, hold):
     arrays["positions"][0] = value
     surfels, _ = valid_surfels(**arrays)
     hold({f"{value:g}": shot(scene, camera, surfels)[:2]}, least=60)
+
+
+@pytest.mark.parametrize("distance", [1e6, 1e18, 1e30])
+def test_one_surfel_far_away_in_view_leaves_the_others_as_they_are(distance, world, hold):
+    """Also where the far plane does not keep it out: the view is scaled by what most surfels are, not by their mean."""
+    scene, camera, arrays = world
+    arrays["positions"][0] = camera.matrix_world[:3, 3] - distance * camera.matrix_world[:3, 2]
+    surfels, _ = valid_surfels(**arrays)
+    hold({f"{distance:g}": (shot(scene, camera, surfels)[0], replace(camera, far=1e32))}, least=60)
 
 
 @pytest.mark.parametrize("value", ABSURD)

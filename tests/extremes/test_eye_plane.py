@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Splats across the near plane or the eye's plane, also with their centre behind the camera, keep what is before it."""
 
+import numpy as np
 import pytest
 
-from splat_addon.reference.extremes import discs
+from splat_addon.reference.extremes import discs, sheet
 
 SPLATS = {
     "cut by the near plane": discs((0.1, -0.05, -0.011), (1, 0, 0), (0, 0.3, -1)),
@@ -28,3 +29,11 @@ def test_what_lies_before_the_near_plane_alone_is_cut(name, hold, lit, camera):
 def test_a_splat_across_the_eye_hides_nothing_beyond_its_rim(name, hold, lit, camera):
     beyond = discs((0, 0, -30), (40, 0, 0), (0, 40, 0), (0, 1, 0))
     hold({name: (lit(SPLATS[name], beyond), camera(near=1e-2))})
+
+
+@pytest.mark.parametrize("depth", [0.9, 0.95, 0.99])
+def test_a_splat_before_the_near_plane_hides_nothing_when_moved_back(depth, hold, lit, camera):
+    """By its epsilon it is moved to the near plane's other side, where visibility must not see it."""
+    before = discs((0, 0, -depth), (0.15, 0, 0), (0, 0.15, 0), (1, 0, 0))
+    ((frame, truth),) = hold({"before": (lit(before, sheet(20, 2.0, 0, 3.0)), camera(near=1.0))}).values()
+    assert np.abs(frame.depth[truth.coverage == 1] - 3).max() < 1e-3

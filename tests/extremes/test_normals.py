@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from splat_addon.reference.extremes import discs
+from splat_addon.rendering import Settings
 from splat_addon.surfels import valid_surfels
 
 PAIRS = {
@@ -28,6 +29,22 @@ def test_any_two_normals_in_one_place_give_the_true_light(name, hold, lit, camer
 def test_a_surface_whose_normals_cancel_faces_the_viewer(render_all, lit, camera):
     (frame,) = render_all([(lit(pair(PAIRS["cancelling in the plane"])), camera(), None)])
     np.testing.assert_allclose(frame.normal[32, 32], (0, 0, 1), atol=1e-6)
+
+
+@pytest.mark.parametrize("count", [3, 7, 40])
+def test_what_rounding_leaves_of_cancelling_normals_is_no_normal(count, render_all, lit, camera):
+    """Evenly around, their sum is not exactly 0 in float32, and its direction means nothing."""
+    around = np.arange(count) * 2 * np.pi / count
+    normals = np.stack([np.cos(around), np.sin(around), np.full(count, 5e-7)], axis=1)
+    fan = discs(np.broadcast_to((0, 0, -3), (count, 3)), normals=normals)
+    (frame,) = render_all([(lit(fan), camera(), Settings(supersampling=1))])
+    np.testing.assert_array_equal(frame.normal[24:40, 24:40], np.broadcast_to((0, 0, 1), (16, 16, 3)))
+
+
+def test_normals_that_cancel_but_for_a_ten_thousandth_have_their_direction(render_all, lit, camera):
+    normals = [(1, 1e-4, 1e-6), (-1, 1e-4, 1e-6)]
+    (frame,) = render_all([(lit(pair(normals)), camera(), Settings(supersampling=1))])
+    np.testing.assert_allclose(frame.normal[32, 32], (0, 1, 0), atol=0.03)
 
 
 @pytest.mark.parametrize("length", [1e-18, 1e-3, 1e3, 1e18])
