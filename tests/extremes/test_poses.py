@@ -10,7 +10,7 @@ from splat_addon.reference import scenes
 from splat_addon.rendering import Camera, look_at
 
 SIZE = (40, 40)
-EXAMPLES = 12
+EXAMPLES = 10
 
 
 def vectors(low, high):
