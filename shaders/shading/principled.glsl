@@ -34,7 +34,7 @@ vec3 from_point(Lobe lobe, vec3 to_light, vec3 irradiance) {
   float nh = clamp(dot(lobe.normal, halfway), 0.0, 1.0);
   float vh = clamp(dot(lobe.view, halfway), 0.0, 1.0);
   vec3 sine = cross(lobe.normal, halfway);  // sin^2 + a^2 cos^2: 1 - cos^2 (1 - a^2) loses all digits on a mirror
-  float d = dot(sine, sine) + nh * nh * a2;
+  float d = (nh > 0.0 ? dot(sine, sine) : 1.0) + nh * nh * a2;
   float distribution = a2 / (PI * d * d);
   float masking = 0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));
   vec3 fresnel = (lobe.f0 + (1.0 - lobe.f0) * pow(1.0 - vh, 5.0)) * lobe.scattered;

@@ -67,8 +67,8 @@ def own_materials(scene, camera):
     x, y, z = (first.surfels.positions / np.abs(first.surfels.positions).max()).T
     own = replace(
         first.surfels,
-        roughness=0.5 - 0.2 * x,
-        metallic=np.clip(y, 0, 1),
+        roughness=0.5 + 0.4 * x,
+        metallic=np.clip(0.5 + 2 * y, 0, 1),
         emission=np.stack([np.maximum(z, 0), 0 * x, x * x], axis=1),
     )
     glow = (replace(i, materials=(replace(i.materials[0], emission=(0.1, 0.4, 0.2)),)) for i in others)
