@@ -86,6 +86,7 @@ def run(options: argparse.Namespace) -> None:
                 continue
             rows += mine
             write_csv(rows, options.out / "trade.csv")
+            write_markdown(rows, chosen, head, skipped, options.out / "trade.md")
             plot_overview(rows, options.out / "overview.png")
     if not rows:
         raise Problem(f"Nothing was measured: {'; '.join(skipped.values())}.")

@@ -27,7 +27,7 @@ def save_differences(frames: dict[Settings, Frame], truth: Frame, path: Path) ->
         flip = mean_flip(frame.color, truth.color)
         _paste(sheet, draw, column * width, srgb(frame.color[..., :3]), f"{label(settings)}\nFLIP {flip:.4f}")
         sheet.paste(_image(flip_map(frame.color, truth.color)), (column * width, CAPTION + height))
-    sheet.save(path, optimize=True)
+    sheet.quantize(256).save(path, optimize=True)
 
 
 def _paste(sheet, draw, x: int, picture: np.ndarray, caption: str) -> None:

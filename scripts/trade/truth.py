@@ -7,7 +7,7 @@ FLIP (Andersson et al. 2020) is NVIDIA's own evaluator, for low dynamic range at
 from __future__ import annotations
 
 import hashlib
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 
 import flip_evaluator
@@ -15,6 +15,7 @@ import numpy as np
 from environment import ROOT
 
 from splat_addon.reference import render_exact
+from splat_addon.reference.filters import GAUSSIAN_MARGIN, filter_weights, resample
 from splat_addon.reference.metrics import psnr, srgb
 from splat_addon.rendering import Frame
 
@@ -25,17 +26,35 @@ SOURCES = sorted((ROOT / "splat_addon" / "reference").glob("*.py"))
 
 
 def exact_frames(scene, camera, settings, samples: int, folder: Path) -> dict[str, Frame]:
-    """filter -> the exact frame, of colour and coverage only, read from `folder` where it was computed before."""
+    """filter -> the exact frame, of colour and coverage only, read from `folder` where it was computed before.
+
+    Both filters take the same rays: a picture of `samples` times the size, of one ray a pixel, with a margin.
+    """
     folder.mkdir(parents=True, exist_ok=True)
-    frames = {}
+    path = folder / f"{_digest(scene, camera, settings.shading, settings.epsilon, samples)}.npz"
+    if not path.is_file():
+        np.savez(path, **_filtered(_rays(scene, camera, settings, samples), samples))
+    with np.load(path) as kept:
+        return {name: Frame(kept[name][..., :4], None, None, kept[name][..., 4]) for name in FILTERS}
+
+
+def _rays(scene, camera, settings, samples: int) -> np.ndarray:
+    """(rows, columns, 5): colour and coverage of every ray of the picture and `GAUSSIAN_MARGIN` pixels around it."""
+    width, height = (edge + 2 * GAUSSIAN_MARGIN for edge in camera.size)
+    around = camera.cropped(-GAUSSIAN_MARGIN, -GAUSSIAN_MARGIN, width, height)
+    fine = render_exact(scene, replace(around, size=(width * samples, height * samples)), settings, samples=1)
+    return np.concatenate([fine.color, fine.coverage[..., None]], axis=2)
+
+
+def _filtered(rays: np.ndarray, samples: int) -> dict[str, np.ndarray]:
+    """filter -> (h, w, 5) pixels."""
+    pixels = {}
     for name in FILTERS:
-        path = folder / f"{_digest(scene, camera, settings.shading, settings.epsilon, samples, name)}.npz"
-        if not path.is_file():
-            frame = render_exact(scene, camera, settings, samples=samples, pixel_filter=name)
-            np.savez(path, color=frame.color, coverage=frame.coverage)
-        with np.load(path) as kept:
-            frames[name] = Frame(kept["color"], None, None, kept["coverage"])
-    return frames
+        weights = filter_weights(name, samples)
+        spare = (GAUSSIAN_MARGIN - (len(weights) // samples - 1) // 2) * samples
+        inner = rays[spare : len(rays) - spare, spare : rays.shape[1] - spare]
+        pixels[name] = resample(inner, weights, samples).astype(np.float32)
+    return pixels
 
 
 def accuracy(frame: Frame, exact: dict[str, Frame]) -> dict:
