@@ -55,6 +55,17 @@ SHADERS = {
 }
 
 
+#: data type of an attribute that can be looked up as a colour -> its property, and how many numbers it is.
+ATTRIBUTE_TYPES = {
+    "FLOAT_COLOR": ("color", 4),
+    "BYTE_COLOR": ("color", 4),  # scene-linear, this one too
+    "FLOAT_VECTOR": ("vector", 3),
+    "FLOAT2": ("vector", 2),
+    "FLOAT": ("value", 1),
+}
+ATTRIBUTE_DOMAINS = ("POINT", "CORNER", "FACE")
+
+
 @dataclass
 class MeshLayers:
     """The layers of a mesh that its materials are looked up by, each once, in the order in which they were met."""
@@ -69,8 +80,11 @@ class MeshLayers:
 
     def color(self, name: str) -> int:
         name = name or default_color_layer(self.mesh) or ""
-        if name not in self.mesh.color_attributes:
-            raise UnreadableError(f"the colour attribute {name!r}, which the mesh does not have")
+        attribute = self.mesh.attributes.get(name)
+        if attribute is None:
+            raise UnreadableError(f"the attribute {name!r}, which the mesh does not have")
+        if attribute.data_type not in ATTRIBUTE_TYPES or attribute.domain not in ATTRIBUTE_DOMAINS:
+            raise UnreadableError(f"the attribute {name!r}, which is {attribute.data_type} on {attribute.domain}")
         return _index(self.colors, name)
 
     def image(self, source: ImageSource, keep_alpha: bool) -> Image:

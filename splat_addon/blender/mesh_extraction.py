@@ -16,7 +16,7 @@ import bpy
 import numpy as np
 
 from ..sampling import Surface, TriangleMesh
-from .material_surfaces import MeshLayers, Unread, material_surface
+from .material_surfaces import ATTRIBUTE_TYPES, MeshLayers, Unread, material_surface
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +77,7 @@ def read_mesh(
         positions=_positions(mesh),
         triangles=vertices,
         corner_normals=_corner_normals(mesh, corners),
-        corner_colors=_layered(_color_reader(mesh, corners, vertices), layers.colors),
+        corner_colors=_layered(_color_reader(mesh, corners, vertices, faces), layers.colors),
         corner_uvs=_layered(_uv_reader(mesh, corners), layers.uvs),
         materials=indices,
         surfaces=surfaces,
@@ -172,11 +172,21 @@ def _layered(read, names: list[str]) -> np.ndarray | None:
     return (np.concatenate(layers, axis=2) if len(layers) > 1 else layers[0]) if layers else None
 
 
-def _color_reader(mesh: bpy.types.Mesh, corners: np.ndarray, vertices: np.ndarray):
+def _color_reader(mesh: bpy.types.Mesh, corners: np.ndarray, vertices: np.ndarray, faces: np.ndarray | None):
+    """Function of an attribute's name giving (T, 3, 4): what it is as a colour, as shaders have it."""
+
     def read(name: str) -> np.ndarray:
-        attribute = mesh.color_attributes[name]
-        # "color" is scene-linear for both types, the 8-bit one too.
-        values = _read(attribute.data, "color", 4, len(attribute.data))
+        attribute = mesh.attributes[name]
+        key, width = ATTRIBUTE_TYPES[attribute.data_type]
+        values = _read(attribute.data, key, width, len(attribute.data)).reshape(-1, width)
+        if width < 4:
+            rgba = np.zeros((len(values), 4), np.float32)
+            rgba[:, : 3 if width == 1 else width] = values
+            rgba[:, 3] = 1
+            values = rgba
+        if attribute.domain == "FACE":
+            of_triangle = np.arange(len(corners)) if faces is None else faces
+            return np.broadcast_to(values[of_triangle][:, None], (len(corners), 3, 4))
         return values.take(vertices if attribute.domain == "POINT" else corners, axis=0)
 
     return read

@@ -138,6 +138,10 @@ def _attribute_number(weights: tuple[float, ...]) -> Callable[[Node], Product]:
     return lambda node: Product((1.0,), (AttributeSource(_attribute_name(node), weights),))
 
 
+#: What the Attribute node's Factor is of a colour or vector; linked to a number, its Color is the luminance.
+_MEAN = (1 / 3, 1 / 3, 1 / 3, 0.0)
+
+
 def _component(weights: tuple[float, ...]) -> Callable[[Node], Product]:
     def read(node: Node) -> Product:
         if getattr(node, "mode", "RGB") != "RGB":
@@ -221,7 +225,7 @@ _READERS: dict[tuple[str, str], Callable[[Node], Product]] = {
     ("ShaderNodeVertexColor", "Color"): _attribute_color,
     ("ShaderNodeVertexColor", "Alpha"): _attribute_number(ALPHA),
     ("ShaderNodeAttribute", "Color"): _attribute_color,
-    ("ShaderNodeAttribute", "Fac"): _attribute_number(LUMINANCE),
+    ("ShaderNodeAttribute", "Fac"): _attribute_number(_MEAN),
     ("ShaderNodeAttribute", "Alpha"): _attribute_number(ALPHA),
     ("ShaderNodeSeparateColor", "Red"): _component(RED),
     ("ShaderNodeSeparateColor", "Green"): _component(GREEN),

@@ -144,6 +144,25 @@ def test_alpha_of_another_image_and_of_vertex_colours_multiply(nodes, made):
     assert np.allclose(surfels.colors[:, :3], (1, 0, 0))
 
 
+def attribute(square, kind, domain, key, values):
+    made = square.data.attributes.new("given", kind, domain)
+    made.data.foreach_set(key, np.ravel(values).astype(np.float32))
+
+
+def test_a_number_of_each_face_drives_the_roughness(nodes, made):
+    nodes.link(nodes.add("ShaderNodeAttribute", attribute_name="given").outputs["Fac"], "Roughness")
+    surfels, _ = made(nodes, lambda square: attribute(square, "FLOAT", "FACE", "value", [0.375]))
+    assert np.allclose(surfels.roughness, 0.375)
+
+
+@pytest.mark.parametrize(("output", "value"), [(2, 0.5), (0, 0.1 * 0.2126 + 0.5 * 0.7152 + 0.9 * 0.0722)])
+def test_the_factor_of_a_colour_is_its_mean_and_the_colour_as_a_number_its_luminance(nodes, made, output, value):
+    """As Cycles bakes the two."""
+    nodes.link(nodes.add("ShaderNodeAttribute", attribute_name="given").outputs[output], "Roughness")
+    surfels, _ = made(nodes, lambda square: attribute(square, "FLOAT_VECTOR", "POINT", "vector", [(0.1, 0.5, 0.9)] * 4))
+    assert np.allclose(surfels.roughness, value, atol=1e-6)
+
+
 @pytest.mark.parametrize("kind", ["POINT", "TEXTURE"])
 def test_a_mapping_node_places_the_texture(nodes, made, kind):
     """A quarter turn about the corner, and a whole image up again: (u, v) -> (-v, u), or back."""

@@ -226,7 +226,7 @@ def missing_attribute(nodes, image):
         (missing_file, "'gone', which has no pixels"),
         (unknown_encoding, "colour space 'Filmic sRGB'"),
         (missing_uv_map, "UV map 'nowhere'"),
-        (missing_attribute, "colour attribute 'nowhere'"),
+        (missing_attribute, "attribute 'nowhere'"),
     ],
 )
 def test_what_cannot_be_read_falls_back_to_the_sockets_colour_and_is_reported(painted, image, capfd, build, reason):
