@@ -103,7 +103,9 @@ def memory(renderer: Renderer, options) -> None:
     torus, camera = scenes.torus(1000, (64, 64))
     print("\n| sums | bytes a sample, with depth and materials |\n|---|---|")
     for accumulation in ("float32", "float16"):
-        plan = renderer.render(torus, camera, Settings(accumulation=accumulation)).stats["plan"]
+        plan = renderer.render(
+            torus, camera, Settings(method="quad", supersampling=2, accumulation=accumulation)
+        ).stats["plan"]
         drawn = [t for p in plan.passes if p.name in ("visibility", "attributes") for t in p.writes]
         print(f"| {accumulation} | {sum(BYTES[plan.format(t)] for t in drawn)} |")
 
@@ -117,7 +119,7 @@ def overdraw(renderer: Renderer, options) -> None:
         sun = Light("sun", energy=2.0, direction=(0.3, 0.2, -1.0))
         scene = Scene((discs(centers, (1.5, 0, 0), (0, 1.5, 0)),), (sun,), (0.1, 0.1, 0.1))
         whole, half = (
-            renderer.render(scene, camera, Settings(accumulation=accumulation)).color
+            renderer.render(scene, camera, Settings(method="quad", supersampling=2, accumulation=accumulation)).color
             for accumulation in ("float32", "float16")
         )
         print(f"| {layers} | {psnr(half, whole):.1f} | {255 * np.abs(half - whole).max():.2f} |", flush=True)
@@ -129,8 +131,8 @@ def multisampling(renderer: Renderer, options) -> None:
     columns = []
     for name in names:
         scene, camera = getattr(scenes, name)(size=(128, 128))
-        exact = render_exact(scene, camera, Settings(), samples=8)
-        one = Settings(supersampling=1)
+        exact = render_exact(scene, camera, samples=8)
+        one = Settings(method="quad", supersampling=1)
         choices = {label: replace(one, **values) for label, values in MULTISAMPLED.items()}
         frames, ratios = in_turn(renderer, scene, camera, choices, options.turns)
         if name == "torus":

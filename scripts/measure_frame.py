@@ -54,8 +54,8 @@ CONDITIONS = {
 }
 
 
-def measure(device, count: int, edge: int, rounds: int) -> list[tuple[str, list[float], list[float]]]:
-    """(condition, milliseconds of the engine, of the bare program), turn by turn."""
+def measure(device, count: int, edge: int, rounds: int) -> list[tuple[str, dict[str, list[float]]]]:
+    """(condition, milliseconds of the engine by method and of the "bare" program, turn by turn)."""
     from scripts.bare_program import BareProgram
 
     surfels = sphere(count)
@@ -64,13 +64,13 @@ def measure(device, count: int, edge: int, rounds: int) -> list[tuple[str, list[
     camera = Camera.perspective(matrix, np.radians(50), (edge, edge), 0.1, 10)
     bare = BareProgram(surfels.positions, *surfels.half_axes(), surfels.colors[:, :3], camera.size)
     offset = 0.5 * float(surfels.radius.max())
-    settings = Settings(supersampling=1, outputs=("color", "depth"))
+    both = {name: Settings(name, supersampling=1, outputs=("color", "depth")) for name in ("quad", "mip")}
     results = []
     for name, lights in CONDITIONS.items():
         renderer = Renderer(device)
         scene = Scene((Instance(surfels, materials=(Material(),)),), lights, (0.2, 0.2, 0.2))
         programs = {
-            "engine": lambda renderer=renderer, scene=scene: renderer.render(scene, camera, settings),
+            **{name: lambda s=s, r=renderer, scene=scene: r.render(scene, camera, s) for name, s in both.items()},
             "bare": lambda: bare.frame(camera.world_to_view(), camera.projection(0.1, 10), offset),
         }
         times = {key: [] for key in programs}
@@ -80,7 +80,7 @@ def measure(device, count: int, edge: int, rounds: int) -> list[tuple[str, list[
                 program()
                 if turn > 1:
                     times[key].append(1e3 * (time.perf_counter() - started))
-        results.append((name, times["engine"], times["bare"]))
+        results.append((name, times))
     return results
 
 
@@ -89,13 +89,17 @@ def report(arguments) -> None:
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout
     print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, {device.renderer}, {device.backend}")
     print(f"Blender {bpy.app.version_string}, {datetime.date.today()}, commit {commit.strip()}")
-    print("Milliseconds: median (min-max). Ratio: engine / bare, median over turns.")
-    print("| splats | picture | light | engine ms | bare ms | ratio |\n|---|---|---|---|---|---|")
+    print("Milliseconds: median (min-max). Ratios: to the bare program, median over turns.")
+    print("| splats | picture | light | bare ms | quad ms | quad ratio | mip ms | mip ratio |")
+    print("|---|---|---|---|---|---|---|---|")
     for count in arguments.splats:
         for edge in arguments.size:
-            for name, engine, bare in measure(device, count, edge, arguments.rounds):
-                ratio = statistics.median(e / b for e, b in zip(engine, bare, strict=True))
-                cells = f"{count:,}", f"{edge} x {edge}", name, spread(engine), spread(bare), f"{ratio:.2f}"
+            for name, times in measure(device, count, edge, arguments.rounds):
+                cells = [f"{count:,}", f"{edge} x {edge}", name, spread(times["bare"])]
+                for method in ("quad", "mip"):
+                    pairs = zip(times[method], times["bare"], strict=True)
+                    ratio = statistics.median(engine / bare for engine, bare in pairs)
+                    cells += [spread(times[method]), f"{ratio:.2f}"]
                 print("| " + " | ".join(cells) + " |", flush=True)
 
 

@@ -70,7 +70,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "measure")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    renderer, settings = Renderer(open_device("standalone")), Settings()
+    renderer, settings = Renderer(open_device("standalone")), Settings(method="quad", supersampling=2)
     git = ["git", "rev-parse", "--short", "HEAD"]
     commit = subprocess.run(git, cwd=ROOT, capture_output=True, text=True).stdout.strip()
     machine = f"{platform.machine()}, {os.cpu_count()} cores, {renderer.device.renderer}"

@@ -180,7 +180,7 @@ def main() -> None:
     for file, panels in FIGURES.items():
         for panel in panels:
             for method in METHODS:
-                rows = list(panel.rows(Renderer(device), Settings(method=method)))
+                rows = list(panel.rows(Renderer(device), Settings(supersampling=2, method=method)))
                 results[panel.name, method] = rows
                 print(f"{panel.name}, {method}: " + ", ".join(f"{x:.3g} {y:.1f}" for x, y in rows), flush=True)
         draw_figure(out / f"{file}.png", panels, results)

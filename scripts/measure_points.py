@@ -124,7 +124,9 @@ def draw(points: np.ndarray, path: Path) -> None:
     bare = surfels_from_points(points, np.tile((0.0, 0.0, 1.0), (len(points), 1)), np.full(len(points), radius))
     for surfels, shading in ((bare, "flat"), (surfels_from_points(points, viewpoint=(0, 0, 0)), "principled")):
         scene = Scene(surfels=[surfels[0]], lights=lights, world=(0.02, 0.02, 0.02))
-        color = renderer.render(scene, camera, Settings(shading=shading)).color[::-1, :, :3]
+        color = renderer.render(scene, camera, Settings(method="quad", supersampling=2, shading=shading)).color[
+            ::-1, :, :3
+        ]
         halves.append(np.clip(color, 0, 1) ** (1 / 2.2))
     path.parent.mkdir(parents=True, exist_ok=True)
     Image.fromarray(np.uint8(255 * np.hstack(halves))).convert("L").save(path, optimize=True)

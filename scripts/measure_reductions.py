@@ -212,7 +212,7 @@ def render(renderer: Renderer, surfels: Surfels, box, toward, up, distance: floa
     camera = Camera.perspective(look_at(eye, middle, up), 0.6, (400, 400), diagonal / 100, diagonal * 10)
     lights = (Light("sun", energy=2.0, direction=(-0.7, -0.8, -0.4)),) if sun else ()
     scene = Scene((surfels,), lights, (0.3, 0.3, 0.3) if sun else (1.0, 1.0, 1.0))
-    return renderer.render(scene, camera, Settings(shading=shading, supersampling=3)).color
+    return renderer.render(scene, camera, Settings(method="quad", shading=shading, supersampling=3)).color
 
 
 def save(views: list, path: Path) -> None:

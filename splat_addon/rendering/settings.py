@@ -50,9 +50,9 @@ class Settings:
     profile: wait for the device after each pass, so that the frame's statistics hold a time for each.
     """
 
-    method: str = "quad"
+    method: str = "mip"
     shading: str = "principled"
-    supersampling: int = 2
+    supersampling: int = 1
     multisampling: int = 0
     sample_shading: bool = False
     edge_threshold: float = 0.0

@@ -98,7 +98,10 @@ def render_all(on_device, method):
 
     def job(device, shots):
         renderer = Renderer(device)
-        return [renderer.render(scene, camera, replace(s or Settings(), method=method)) for scene, camera, s in shots]
+        return [
+            renderer.render(scene, camera, replace(s or Settings(supersampling=2), method=method))
+            for scene, camera, s in shots
+        ]
 
     return lambda shots: on_device(lambda device: job(device, shots))
 
@@ -113,7 +116,7 @@ def hold(render_all, method, truths, request):
         shots = {label: (*shot, None)[:3] for label, shot in shots.items()}
         results = {}
         for (label, (scene, camera, settings)), frame in zip(shots.items(), render_all(shots.values()), strict=True):
-            settings = settings or Settings()
+            settings = settings or Settings(supersampling=2)
             key = request.node.originalname, others, label
             if key not in truths:
                 truths[key] = render_exact(scene, camera, settings, samples=settings.supersampling)

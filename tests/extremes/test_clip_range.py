@@ -51,19 +51,19 @@ def test_depth_is_known_to_a_millionth_at_any_distance(distance, render_all, lit
 
 
 def test_hardware_depth_serves_where_it_is_fine_enough():
-    assert not plan(*WORLDS["torus"](), Settings()).linear_depth
+    assert not plan(*WORLDS["torus"](), Settings(supersampling=2)).linear_depth
 
 
 @pytest.mark.parametrize(("nearest", "is_linear"), [(0.05, False), (0.02, True)])
 def test_linear_depth_is_planned_where_the_hardwares_is_too_coarse(nearest, is_linear, lit, camera):
     """Splats as far as 3, each far smaller than its distance."""
     tiny = discs([(0, 0, -nearest), (0, 0, -3)], (1e-3, 0, 0), (0, 1e-3, 0))
-    assert plan(lit(tiny), camera(near=1e-6), Settings()).linear_depth == is_linear
+    assert plan(lit(tiny), camera(near=1e-6), Settings(supersampling=2)).linear_depth == is_linear
 
 
 def test_linear_depth_is_planned_where_a_splat_is_wide(lit, camera):
     """Its corners, moved back along their own rays, would not be the splat moved back."""
-    assert plan(lit(discs((0, 0, -3), (2, 0, 0), (0, 2, 0))), camera(), Settings()).linear_depth
+    assert plan(lit(discs((0, 0, -3), (2, 0, 0), (0, 2, 0))), camera(), Settings(supersampling=2)).linear_depth
 
 
 def test_both_depths_give_one_picture(render_all, monkeypatch):

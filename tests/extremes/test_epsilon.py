@@ -14,13 +14,13 @@ EPSILONS = [(0, 40), (1e-7, 40), (1e-4, 45), (1e-2, 60), (0.1, 60), (0.5, 60), (
 
 @pytest.mark.parametrize(("epsilon", "least"), EPSILONS)
 def test_any_epsilon_gives_its_true_picture(epsilon, least, hold):
-    hold({f"epsilon {epsilon}": (*scenes.torus(6000, (64, 64)), Settings(epsilon=epsilon))}, least)
+    hold({f"epsilon {epsilon}": (*scenes.torus(6000, (64, 64)), Settings(supersampling=2, epsilon=epsilon))}, least)
 
 
 @pytest.mark.parametrize("epsilon", [0, 1e-7, 1e-6])
 @pytest.mark.parametrize("angle", [0, 60, 85])
 def test_no_splat_hides_itself(angle, epsilon, hold, lit, camera, is_unfiltered):
     """Moved back by less than rounding it would, here and there; which of coplanar splats is seen is left open."""
-    settings = Settings(epsilon=epsilon)
+    settings = Settings(supersampling=2, epsilon=epsilon)
     ((frame, truth),) = hold({"sheet": (lit(sheet(30, 1.0, angle, 2.0)), camera(), settings)}, least=0).values()
     assert not is_unfiltered or np.count_nonzero(frame.coverage < truth.coverage) <= 2

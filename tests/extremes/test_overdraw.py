@@ -19,7 +19,7 @@ def test_many_layers_give_their_mean(accumulation, layers, least, hold, lit, cam
     random = np.random.default_rng(1)
     centers = np.concatenate([random.normal(0, 0.02, (layers, 2)), -3 - 1e-3 * random.random((layers, 1))], axis=1)
     sheet = lit(discs(centers, (1.5, 0, 0), (0, 1.5, 0)))
-    settings = Settings(accumulation=accumulation)
+    settings = Settings(supersampling=2, accumulation=accumulation)
     hold({f"{layers} layers": (sheet, camera(size=(12, 12)), settings)}, least)
 
 
@@ -28,7 +28,7 @@ def test_float16_sums_hold_any_brightness(brightness, render_all, camera):
     random = np.random.default_rng(1)
     centers = np.concatenate([random.normal(0, 0.02, (100, 2)), -3 - 1e-3 * random.random((100, 1))], axis=1)
     colors = random.random((100, 3))
-    settings = Settings(accumulation="float16", shading="flat")
+    settings = Settings(supersampling=2, accumulation="float16", shading="flat")
     dim, bright = render_all(
         [
             (Scene((discs(centers, (1.5, 0, 0), (0, 1.5, 0), colors * factor),)), camera(size=(12, 12)), settings)

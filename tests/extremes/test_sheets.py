@@ -7,7 +7,7 @@ import pytest
 from splat_addon.reference.extremes import sheet
 from splat_addon.rendering import Scene, Settings
 
-FLAT = Settings(shading="flat")
+FLAT = Settings(supersampling=2, shading="flat")
 DEPTH = 3.0
 RED, GREEN = (1, 0, 0), (0, 1, 0)
 

@@ -20,7 +20,7 @@ def compare(render_all):
     """compare(scene, camera) -> dB between the pictures of both storages."""
 
     def render(scene, camera):
-        shots = [(scene, camera, Settings(storage=name)) for name in ("16-bit", "float32")]
+        shots = [(scene, camera, Settings(supersampling=2, storage=name)) for name in ("16-bit", "float32")]
         sixteen, exact = render_all(shots)
         assert np.isfinite(sixteen.color).all()
         assert (exact.coverage > 0).any()
@@ -64,7 +64,7 @@ def test_a_stray_surfel_spoils_its_block_only_and_is_counted(render_all, camera)
     stray = np.concatenate([centers, [(1e9, 1e9, 0.0)]])
     shots = [
         (Scene((discs(c, (0.05, 0, 0), (0, 0.05, 0), (0.2, 0.5, 0.8)),), world=(1, 1, 1)), camera(), s)
-        for c, s in ((centers, None), (stray, Settings(storage="16-bit")))
+        for c, s in ((centers, None), (stray, Settings(supersampling=2, storage="16-bit")))
     ]
     exact, spoilt = render_all(shots)
     assert spoilt.stats["surfels_coarse"] == 257

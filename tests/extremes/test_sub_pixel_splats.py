@@ -9,7 +9,7 @@ from splat_addon.rendering import Scene, Settings
 
 COUNT = 1_000_000
 DEPTH = 3.0
-FLAT = Settings(shading="flat")
+FLAT = Settings(supersampling=2, shading="flat")
 
 
 def crowd(camera, count, radius):

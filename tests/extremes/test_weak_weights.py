@@ -15,7 +15,7 @@ COLOR = np.array((0.3, 0.6, 0.9), np.float32)
 @pytest.mark.parametrize("radius", [0.02, 0.2, 1.0])
 def test_one_splat_has_its_own_colour_up_to_its_rim(side, radius, accumulation, tolerance, render_all, camera):
     splat = discs((0.01, 0.02, -3), (radius, 0, 0), (0, side * radius, 0), COLOR)
-    settings = Settings(shading="flat", transparent_film=True, accumulation=accumulation)
+    settings = Settings(supersampling=2, shading="flat", transparent_film=True, accumulation=accumulation)
     (frame,) = render_all([(Scene((splat,)), camera(), settings)])
     covered = frame.coverage > 0
     assert covered.any()

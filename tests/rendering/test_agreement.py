@@ -122,7 +122,7 @@ def test_picture_is_the_same_on_every_device(name, method, options, render, pict
 @pytest.mark.parametrize("name", SCENES)
 def test_picture_is_the_exact_one(name, render):
     scene, camera = SCENES[name]()
-    settings = Settings(supersampling=2)
+    settings = Settings(method="quad", supersampling=2)
     frame, exact = render(scene, camera, settings), render_exact(scene, camera, settings, samples=2)
     tied = ties(frame.color, exact.color)
     assert_few(tied, samples=4)

@@ -24,6 +24,7 @@ def test_one_disc_fades_by_its_kernel(threshold, side, accumulation, render):
     """Also where its back is seen, which weighs less and is as much a surface."""
     disc = discs((0, 0, -3), (1, 0, 0), (0, side, 0), (0.2, 0.5, 0.8))
     settings = Settings(
+        method="quad",
         shading="flat",
         supersampling=1,
         edge_threshold=threshold,
@@ -41,6 +42,6 @@ def test_one_disc_fades_by_its_kernel(threshold, side, accumulation, render):
 
 def test_a_filtering_method_is_left_alone_and_the_plan_says_so(render):
     disc = Scene((discs((0, 0, -3)),))
-    frames = [render(disc, CAMERA, Settings(method="mip", edge_threshold=t)) for t in (0.0, 0.5)]
+    frames = [render(disc, CAMERA, Settings(supersampling=2, method="mip", edge_threshold=t)) for t in (0.0, 0.5)]
     np.testing.assert_array_equal(frames[0].color, frames[1].color)
     assert dict(frames[1].stats["plan"].left_out)["edge threshold"] == "the weights of mip are smaller where it filters"

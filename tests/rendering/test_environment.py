@@ -51,7 +51,7 @@ def test_a_picture_without_surfels_is_the_world(on_device):
     directions, _ = equirectangular_directions((64, 128))
     environment = Environment((directions * 0.5 + 0.5).reshape(64, 128, 3))
     scene = Scene(world=(1, 1, 1), environment=environment)
-    frame = on_device(lambda device: Renderer(device).render(scene, CAMERA, Settings(supersampling=1)))
+    frame = on_device(lambda device: Renderer(device).render(scene, CAMERA, Settings(method="quad", supersampling=1)))
     tick = (np.arange(16) + 0.5) / 8 - 1
     x, y = np.meshgrid(tick * np.tan(0.5), tick * np.tan(0.5))
     seen = np.stack([x, y, -np.ones_like(x)], axis=2)

@@ -9,8 +9,8 @@ from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Renderer, Scene, Settings
 
-FOUR = Settings(supersampling=1, multisampling=4)
-FOUR_EACH = Settings(supersampling=1, multisampling=4, sample_shading=True)
+FOUR = Settings(method="quad", supersampling=1, multisampling=4)
+FOUR_EACH = Settings(method="quad", supersampling=1, multisampling=4, sample_shading=True)
 
 
 @pytest.fixture
@@ -36,7 +36,7 @@ def test_shading_every_sample_is_as_true_as_supersampling(name, render):
     truth = render_exact(scene, view, FOUR, samples=6)
     one, regular, each = (
         psnr(render(scene, view, settings).color, truth.color)
-        for settings in (Settings(supersampling=1), Settings(supersampling=2), FOUR_EACH)
+        for settings in (Settings(method="quad", supersampling=1), Settings(method="quad", supersampling=2), FOUR_EACH)
     )
     assert each > 33, (one, regular, each)
     assert each > regular - 2
@@ -46,7 +46,9 @@ def test_shading_every_sample_is_as_true_as_supersampling(name, render):
 def test_shading_once_a_pixel_keeps_the_pixel_s_kernel(render):
     """The kernel is looked up at the pixel's centre: the rim of a disc stays hard, as in the papers' hardware."""
     disc = Scene((discs((0.01, 0.02, -3), (0.5, 0, 0), (0, 0.5, 0), (1, 1, 1)),))
-    single, once, each = (render(disc, camera(), s).coverage for s in (Settings(supersampling=1), FOUR, FOUR_EACH))
+    single, once, each = (
+        render(disc, camera(), s).coverage for s in (Settings(method="quad", supersampling=1), FOUR, FOUR_EACH)
+    )
     assert set(np.unique(single)) == set(np.unique(once)) == {0.0, 1.0}
     np.testing.assert_array_equal(once, single)
     assert set(np.unique(each)) == {0.0, 0.25, 0.5, 0.75, 1.0}
@@ -58,7 +60,7 @@ def test_depth_is_tested_at_every_sample_even_when_shading_once(render):
     """A wall cuts through a floor: along the edge, samples of one pixel see the one and the other."""
     floor = discs((0, 0, -5), (0.7, 0, 0), (0, 0.7, 0), (1, 0, 0))
     tilted = discs((0, 0, -5), (0.5, 0.15, 0.4), (-0.15, 0.5, 0), (0, 0, 1))
-    scene, settings = Scene((floor, tilted)), Settings(supersampling=1, shading="flat", epsilon=1e-6)
+    scene, settings = Scene((floor, tilted)), Settings(method="quad", supersampling=1, shading="flat", epsilon=1e-6)
     mixed = []
     for multisampling in (0, 4):
         frame = render(scene, camera(), Settings(**{**vars(settings), "multisampling": multisampling}))
@@ -83,11 +85,15 @@ def test_what_cannot_be_multisampled_is_refused(on_device, request):
         return
     counts = on_device(lambda device: device.multisample_counts)
     for missing in {2, 4, 8} - set(counts):
-        assert f"so multisampling cannot be {missing};" in refusal(Settings(multisampling=missing))
+        assert f"so multisampling cannot be {missing};" in refusal(
+            Settings(method="quad", supersampling=2, multisampling=missing)
+        )
     for count in counts[:1]:
-        assert "Method mip works in the picture" in refusal(Settings(method="mip", multisampling=count))
+        assert "Method mip works in the picture" in refusal(
+            Settings(supersampling=2, method="mip", multisampling=count)
+        )
 
 
 def test_settings_refuse_other_counts():
     with pytest.raises(ValueError, match=r"multisampling must be one of \(0, 2, 4, 8\), not 3"):
-        Settings(multisampling=3)
+        Settings(method="quad", supersampling=2, multisampling=3)

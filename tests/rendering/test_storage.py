@@ -114,7 +114,7 @@ def test_devices_read_what_was_packed(render):
     held = Surfels(**{name: held[name].astype(dtype) for name, (_, dtype) in LAYOUT.items()})
     camera = Camera.perspective(np.eye(4), 0.6, (96, 96), 0.1, 100)
     scene = Scene((held,), world=(0.5, 0.5, 0.5))
-    frames = [render(Scene((s,), world=scene.world), camera, Settings(storage=name, supersampling=1))
+    frames = [render(Scene((s,), world=scene.world), camera, Settings(method="quad", storage=name, supersampling=1))
               for s, name in ((surfels, "16-bit"), (held, "float32"))]  # fmt: skip
     assert frames[0].coverage.mean() > 0.9
     assert psnr(frames[0].color, frames[1].color) > 65
@@ -129,7 +129,7 @@ def test_a_stray_surfel_makes_its_block_coarse_and_that_is_counted(render):
     stray = Surfels(**{**surfels.arrays(), "positions": positions})
     camera = Camera.perspective(np.eye(4), 0.6, (8, 8), 0.1, 100)
     coarse = [
-        render(Scene((s,)), camera, Settings(storage=name)).stats["surfels_coarse"]
+        render(Scene((s,)), camera, Settings(method="quad", supersampling=2, storage=name)).stats["surfels_coarse"]
         for s, name in ((surfels, "16-bit"), (stray, "16-bit"), (stray, "float32"))
     ]
     assert coarse[0] == coarse[2] == 0
@@ -151,7 +151,11 @@ def test_no_surfels_pack_to_one_empty_row():
 
 def test_an_unknown_storage_is_refused(render):
     with pytest.raises(ValueError, match="A storage is one of float32, 16-bit, not 'half'"):
-        render(Scene((_sheet(3),)), Camera.perspective(np.eye(4), 1, (8, 8), 0.1, 10), Settings(storage="half"))
+        render(
+            Scene((_sheet(3),)),
+            Camera.perspective(np.eye(4), 1, (8, 8), 0.1, 10),
+            Settings(method="quad", supersampling=2, storage="half"),
+        )
 
 
 def _sheet(count):

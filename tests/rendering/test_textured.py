@@ -66,7 +66,11 @@ def test_without_texture_coordinates_so_few_surfels_show_next_to_nothing(render)
     seen, inside = seen_texture(instance.textures[0], camera, "box")
     averaged = np.tile((*seen[inside].mean(axis=0), 1.0), (16, 1))
     bare = replace(instance.surfels, colors=averaged, uvs=None, uv_along_x=None, uv_along_y=None)
-    frame = render(replace(scene, surfels=(replace(instance, surfels=bare),)), camera, Settings(shading="flat"))
+    frame = render(
+        replace(scene, surfels=(replace(instance, surfels=bare),)),
+        camera,
+        Settings(method="quad", supersampling=2, shading="flat"),
+    )
     assert psnr(frame.color[inside][None, :, :3], seen[inside][None]) < 12
 
 
@@ -89,7 +93,7 @@ def test_outside_of_the_image_the_extension_is_shown(extension, interpolation, r
     image = Image(scenes.grains(16), extension, interpolation)
     textures = (SurfaceTexture(image), SurfaceTexture(image, (0.0, 1.0, 0.0)), None)
     scene = replace(scene, surfels=(replace(instance, textures=textures),))
-    settings = Settings(shading="flat", supersampling=3)
+    settings = Settings(method="quad", shading="flat", supersampling=3)
     exact = render_exact(scene, camera, settings, samples=6)
     assert psnr(render(scene, camera, settings).color, exact.color) > 38
 
@@ -98,7 +102,10 @@ def test_coordinates_that_differ_by_whole_images_show_the_same(render):
     scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
     (instance,) = scene.surfels
     moved = replace(instance, surfels=replace(instance.surfels, uvs=instance.surfels.uvs + np.array((3, -2))))
-    first, second = (render(replace(scene, surfels=(i,)), camera, Settings()) for i in (instance, moved))
+    first, second = (
+        render(replace(scene, surfels=(i,)), camera, Settings(method="quad", supersampling=2))
+        for i in (instance, moved)
+    )
     assert np.abs(first.color - second.color).max() < 1e-3
 
 
@@ -146,7 +153,7 @@ def test_a_scene_without_textures_has_nothing_of_them(on_device):
         scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
         (instance,) = scene.surfels
         plain = replace(instance, textures=())
-        stats = renderer.render(Scene((plain,)), camera, Settings()).stats
+        stats = renderer.render(Scene((plain,)), camera, Settings(method="quad", supersampling=2)).stats
         names = [description.name for description in renderer.resources._pipelines]
         return names, len(renderer.resources._atlases), len(renderer.resources._surfel_uvs), str(stats["plan"])
 
@@ -161,7 +168,7 @@ def test_an_atlas_leaves_with_the_last_frame_that_uses_it(on_device):
         kept = []
         for instances in ((*scene.surfels, *scene.surfels), ()):
             others = scenes.sphere(count=100)[0].surfels
-            renderer.render(Scene((*instances, *others)), camera, Settings())
+            renderer.render(Scene((*instances, *others)), camera, Settings(method="quad", supersampling=2))
             kept.append(len(renderer.resources._atlases))
         return kept
 

@@ -13,13 +13,13 @@ IMAGE_FORMATS = {"OPEN_EXR": "IMAGE", "OPEN_EXR_MULTILAYER": "MULTI_LAYER_IMAGE"
 
 @pytest.fixture
 def scene(empty_file, tmp_path):
-    """An empty scene for our engine: 32 x 32 pixels, one sample each, unlit, transparent film, exact file."""
+    """An empty scene for our engine: 32 x 32 pixels of one unfiltered sample, unlit, transparent film, exact file."""
     made = bpy.context.scene
     made.render.engine = "SURFEL_SPLATTING"
     made.render.resolution_x = made.render.resolution_y = 32
     made.render.film_transparent = True
     made.surfel_splatting.shading = "flat"
-    made.surfel_splatting.supersampling = 1
+    made.surfel_splatting.method, made.surfel_splatting.supersampling = "quad", 1
     made.render.filepath = str(tmp_path / "picture.exr")
     set_format(made.render, "OPEN_EXR")
     return made
