@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Seconds and memory of converting real meshes, against a cost model and against other ways to sample a mesh.
 
-    PYTHON scripts/measure_conversion.py [--models DIR] [--rounds 7] [--case armadillo.obj.gz 256] ...
+    PYTHON scripts/measure_conversion.py [--models DIR] [--rounds 7] [--slow-rounds 2] [--case armadillo.obj.gz 256] ...
 
 PYTHON must have numpy, trimesh and rich (the environment that scripts/test.py makes). The cost model is 0.25 us a
 triangle + 0.1 us a surfel. The others (`sampling_rivals.py`) are taken where they are installed: Open3D, trimesh, and
-in a PYTHON with bpy Geometry Nodes. Everything runs once a round, so that a busy moment of the machine does not fall
-on one alone. Meshes are smooth-shaded, without colours.
+in a PYTHON with bpy Geometry Nodes and Blender's BVH tree. Everything runs once a round, so that a busy moment of the
+machine does not fall on one alone. Meshes are smooth-shaded, without colours.
 """
 
 import argparse
@@ -21,6 +21,7 @@ import sys
 import time
 import tracemalloc
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
@@ -30,7 +31,7 @@ import trimesh  # noqa: E402
 from rich.console import Console  # noqa: E402
 from rich.progress import track  # noqa: E402
 
-from scripts.sampling_rivals import RIVALS  # noqa: E402
+from scripts.sampling_rivals import RIVALS, SLOW  # noqa: E402
 from splat_addon.sampling import TriangleMesh, drop_unusable, sample_mesh  # noqa: E402
 from splat_addon.surfels import LAYOUT  # noqa: E402
 
@@ -48,8 +49,8 @@ CASES = (
 
 
 HEADER = (
-    "model", "resolution", "triangles", "surfels", "cleaning s", "sampling s", "M surfels/s", "ratio", "with cleaning",
-    "extra bytes a surfel",
+    "model", "resolution", "triangles", "surfels", "cleaning s", "sampling s", "of a processor", "M surfels/s at best",
+    "ratio", "extra bytes a surfel",
 )  # fmt: skip
 
 
@@ -61,13 +62,25 @@ def load(path: Path) -> TriangleMesh:
     return TriangleMesh(loaded.vertices, np.asarray(loaded.faces, np.int32), corner_normals=corner_normals)
 
 
-def time_round(mesh: TriangleMesh, resolution: int) -> tuple[float, float, int]:
-    """Seconds of cleaning, seconds of sampling the clean mesh, surfels."""
-    started = time.perf_counter()
-    usable, _ = drop_unusable(mesh)
-    cleaned = time.perf_counter()
-    count = len(sample_mesh(usable, resolution=resolution))
-    return cleaned - started, time.perf_counter() - cleaned, count
+class Timed(NamedTuple):
+    """Seconds on the clock, seconds of all processors, and what the job gave."""
+
+    clock: float
+    work: float
+    result: object
+
+
+def timed(job) -> Timed:
+    clock, work = time.perf_counter(), time.process_time()
+    result = job()
+    return Timed(time.perf_counter() - clock, time.process_time() - work, result)
+
+
+def time_round(mesh: TriangleMesh, resolution: int) -> tuple[Timed, Timed]:
+    """Cleaning, and sampling the clean mesh, which gives the number of surfels."""
+    cleaning = timed(lambda: drop_unusable(mesh)[0])
+    sampling = timed(lambda: len(sample_mesh(cleaning.result, resolution=resolution)))
+    return cleaning._replace(result=None), sampling
 
 
 def extra_bytes(mesh: TriangleMesh, resolution: int) -> float:
@@ -80,37 +93,38 @@ def extra_bytes(mesh: TriangleMesh, resolution: int) -> float:
     return peak / count - SURFEL_BYTES
 
 
-def report(models: Path, cases, rounds: int) -> None:
+def report(models: Path, cases, rounds: int, slow_rounds: int) -> None:
     console = Console(stderr=True)
     names = list(dict.fromkeys(name for name, _ in cases))
     meshes = {name: load(models / name) for name in track(names, "Loading", console=console)}
     times = {case: [] for case in cases}
     rivals = {case: prepared_rivals(meshes[case[0]], case[1]) for case in cases}
     rival_times = {case: {name: [] for name in rivals[case]} for case in cases}
-    for _ in track(range(rounds), "Converting", console=console):
+    for turn in track(range(rounds), "Converting", console=console):
         for case in cases:
             times[case].append(time_round(meshes[case[0]], case[1]))
             for name, job in rivals[case].items():
-                started = time.perf_counter()
-                count = job()
-                rival_times[case][name].append((time.perf_counter() - started, count))
+                if name in SLOW and turn >= slow_rounds:
+                    continue
+                rival_times[case][name].append(timed(job))
 
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout
     print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores, {datetime.date.today()}")
     print(f"Python {platform.python_version()}, numpy {np.__version__}, commit {commit.strip()}")
-    print(f"Median (min-max) of {rounds} rounds. Ratio: seconds / (0.25 us a triangle + 0.1 us a surfel).")
+    print(f"Median (min-max) of {rounds} rounds. Ratio: processor seconds / (0.25 us a triangle + 0.1 us a surfel).")
     print("Sampling includes the check at the door of Surfels. Extra bytes: the peak while sampling, above the")
     print("cleaned mesh and the result.")
     print(f"| {' | '.join(HEADER)} |\n{'|---' * len(HEADER)}|")
     for (name, resolution), rows in times.items():
-        mesh, count = meshes[name], rows[0][2]
-        cleaning, sampling = ([row[k] for row in rows] for k in (0, 1))
+        mesh, count = meshes[name], rows[0][1].result
         model = TRIANGLE_COST * len(mesh) + SURFEL_COST * count
-        ratios, whole = [s / model for s in sampling], [(c + s) / model for c, s, _ in rows]
-        speed = count / statistics.median(sampling) / 1e6
+        cleaning, clock, work = (
+            [getattr(row[k], what) for row in rows] for k, what in ((0, "work"), (1, "clock"), (1, "work"))
+        )
         cells = (
-            name.split(".")[0], f"{resolution}", f"{len(mesh):,}", f"{count:,}", spread(cleaning), spread(sampling),
-            f"{speed:.2f}", spread(ratios), spread(whole), f"{extra_bytes(mesh, resolution):.0f}",
+            name.split(".")[0], f"{resolution}", f"{len(mesh):,}", f"{count:,}", spread(cleaning), spread(clock),
+            spread(work), f"{count / min(work) / 1e6:.2f}", spread([w / model for w in work]),
+            f"{extra_bytes(mesh, resolution):.0f}",
         )  # fmt: skip
         print("| " + " | ".join(cells) + " |", flush=True)
     print_rivals(times, rival_times)
@@ -124,16 +138,18 @@ def prepared_rivals(mesh: TriangleMesh, resolution: int) -> dict:
 
 
 def print_rivals(times: dict, rival_times: dict) -> None:
-    """Their seconds over ours, turn by turn, for the whole job and for a sample."""
+    """Their seconds over ours, turn by turn: on the clock, in work of all processors, and that for a sample."""
     print("\nOthers: how many times longer they take than our sampling (without cleaning), turn by turn.\n")
-    print("| model | other | its samples | its seconds | for the whole | for a sample |\n|---|---|---|---|---|---|")
+    print("| model | other | its samples | its seconds | on the clock | in work | in work, a sample |")
+    print("|---|---|---|---|---|---|---|")
     for case, others in rival_times.items():
         for name, rows in others.items():
-            whole = [theirs[0] / ours[1] for ours, theirs in zip(times[case], rows)]
-            each = [ratio * ours[2] / theirs[1] for ratio, ours, theirs in zip(whole, times[case], rows)]
+            turns = [(theirs, ours) for theirs, (_, ours) in zip(rows, times[case], strict=False)]
+            clock, work = ([getattr(t, k) / getattr(o, k) for t, o in turns] for k in ("clock", "work"))
+            each = [ratio * o.result / t.result for ratio, (t, o) in zip(work, turns, strict=True)]
             label = f"{case[0].split('.')[0]} at {case[1]}"
-            seconds = spread([row[0] for row in rows])
-            cells = (label, name, f"{rows[0][1]:,}", seconds, spread(whole), spread(each))
+            seconds = spread([row.clock for row in rows])
+            cells = (label, name, f"{rows[0].result:,}", seconds, spread(clock), spread(work), spread(each))
             print("| " + " | ".join(cells) + " |", flush=True)
 
 
@@ -145,13 +161,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--models", type=Path, default=ROOT.parent / "shared" / "models")
     parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--slow-rounds", type=int, default=2, help="rounds of the others that take long")
     parser.add_argument("--case", nargs=2, action="append", metavar=("FILE", "RESOLUTION"))
     arguments = parser.parse_args()
     cases = [(name, int(resolution)) for name, resolution in arguments.case or CASES]
     missing = [name for name, _ in cases if not (arguments.models / name).is_file()]
     if missing:
         sys.exit(f"{arguments.models} has no {missing[0]}; name the folder of models with --models.")
-    report(arguments.models, cases, arguments.rounds)
+    report(arguments.models, cases, arguments.rounds, arguments.slow_rounds)
 
 
 if __name__ == "__main__":

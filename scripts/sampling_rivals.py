@@ -2,15 +2,18 @@
 """Other ways to sample a mesh, ready to be timed beside ours by measure_conversion.py.
 
 Each takes a usable mesh, a resolution and the number of surfels that we make of it, and gives a function to time that
-returns its number of samples; or None where it is not installed, or takes too long to be worth a round.
+returns its number of samples; or None where it is not installed. `SLOW` ones are not worth every round.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-#: Beyond this many samples the slow ones are left out.
+#: Beyond this many samples trimesh's thinning is left out.
 FEW = 500_000
+
+#: How far a ray that goes on starts behind its last hit, in spacings.
+STEP = 1e-4
 
 
 def open3d_intersections(mesh, resolution, count):
@@ -77,13 +80,39 @@ def trimesh_even(mesh, resolution, count):
     return (lambda: len(trimesh.sample.sample_surface_even(shape, count, seed=0)[0])) if count < FEW else None
 
 
+def blender_bvh(mesh, resolution, count):
+    """The same rays, one after another through Blender's BVH tree, on from each hit: what a script would do."""
+    try:
+        from mathutils import Vector
+        from mathutils.bvhtree import BVHTree
+    except ImportError:
+        return None
+    from splat_addon.sampling import grid_spacing
+
+    tree = BVHTree.FromPolygons(mesh.positions.tolist(), mesh.triangles.tolist(), all_triangles=True)
+    rays = [(Vector(ray[:3]), Vector(ray[3:])) for ray in hitting_rays(mesh, resolution).tolist()]
+    step = STEP * grid_spacing(mesh, resolution=resolution)
+
+    def job():
+        samples = []
+        for origin, direction in rays:
+            onward = direction * step
+            while True:
+                place, normal, _, _ = tree.ray_cast(origin, direction)
+                if place is None:
+                    break
+                samples.append((place, normal))
+                origin = place + onward
+        return len(samples)
+
+    return job
+
+
 def blender_poisson(mesh, resolution, count):
-    """Geometry Nodes' Distribute Points on Faces, Poisson disc, for about as many points."""
+    """Geometry Nodes' Distribute Points on Faces, Poisson disc, for as many points within a few in 100."""
     try:
         import bpy
     except ImportError:
-        return None
-    if count >= FEW:
         return None
     data = bpy.data.meshes.new("rival")
     data.from_pydata(mesh.positions, [], mesh.triangles)
@@ -97,19 +126,27 @@ def blender_poisson(mesh, resolution, count):
     spread.distribute_method = "POISSON"
     area = float(np.linalg.norm(np.cross(*edges_of(mesh)), axis=1).sum()) / 2
     # a Poisson disc sampling holds about 0.7 points a squared distance
-    spread.inputs["Distance Min"].default_value = (0.7 * area / count) ** 0.5
+    distance = (0.7 * area / count) ** 0.5
     spread.inputs["Density Max"].default_value = 10 * count / area
     group.links.new(enter.outputs[0], spread.inputs["Mesh"])
     group.links.new(spread.outputs["Points"], leave.inputs[0])
-    source.modifiers.new("rival", "NODES").node_group = group
+    modifier = source.modifiers.new("rival", "NODES")
+    modifier.node_group, modifier.show_viewport = group, False
 
     def job():
-        source.update_tag()
+        # only this one is evaluated: an object that waits for its turn shall not cost another's
+        modifier.show_viewport = True
         bpy.context.view_layer.update()
         evaluated = source.evaluated_get(bpy.context.evaluated_depsgraph_get())
         geometry = evaluated.evaluated_geometry()
-        return len(geometry.pointcloud.points)
+        made = len(geometry.pointcloud.points)
+        del geometry
+        modifier.show_viewport = False
+        bpy.context.view_layer.update()
+        return made
 
+    spread.inputs["Distance Min"].default_value = distance
+    spread.inputs["Distance Min"].default_value = distance * (job() / count) ** 0.5
     return job
 
 
@@ -122,7 +159,11 @@ def edges_of(mesh):
 #: Blender comes first: its libraries cannot be loaded after Open3D's.
 RIVALS = {
     "Geometry Nodes, Poisson disc": blender_poisson,
+    "Blender's BVH tree, all hits": blender_bvh,
     "Open3D, all hits": open3d_intersections,
     "trimesh, random": trimesh_random,
     "trimesh, even": trimesh_even,
 }
+
+#: These run only in the first rounds.
+SLOW = ("Geometry Nodes, Poisson disc", "Blender's BVH tree, all hits", "trimesh, even")

@@ -178,6 +178,21 @@ def concatenate(parts: list[Surfels]) -> Surfels:
     return Surfels(origin=parts[0].origin, is_solid=all(p.is_solid for p in parts), **joined)
 
 
+def split(surfels: Surfels, size: int) -> tuple[Surfels, ...]:
+    """Runs of at most `size` surfels, in their order, that share the arrays; the set itself where that holds it all."""
+    if len(surfels) <= size:
+        return (surfels,)
+    runs = (slice(start, start + size) for start in range(0, len(surfels), size))
+    return tuple(
+        Surfels(
+            origin=surfels.origin,
+            is_solid=surfels.is_solid,
+            **{name: array[run] for name, array in surfels.arrays().items()},
+        )
+        for run in runs
+    )
+
+
 def empty_surfels(origin=(0.0, 0.0, 0.0)) -> Surfels:
     """A set of no surfels."""
     return Surfels(origin=origin, **{n: np.zeros((0, c) if c > 1 else 0, t) for n, (c, t) in LAYOUT.items()})

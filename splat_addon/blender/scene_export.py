@@ -13,7 +13,8 @@ import bpy
 import numpy as np
 
 from ..rendering import Instance, Light, Scene
-from ..surfels import Surfels
+from ..rendering.packing import MAX_SPLATS
+from ..surfels import Surfels, split
 from .attributes import has_surfels, read_surfels
 from .light_linking import LightSets
 from .live_meshes import LiveMeshes
@@ -42,6 +43,7 @@ class Notes:
 class _Kept(NamedTuple):
     name: str
     surfels: Surfels
+    parts: tuple[Surfels, ...]
     skipped: int
 
 
@@ -61,15 +63,16 @@ class SurfelStore:
         self._kept: dict[int, _Kept] = {}
         self._current: set[int] = set()
 
-    def get(self, mesh: bpy.types.Mesh) -> tuple[Surfels, int]:
-        """As `attributes.read_surfels`; once a mesh and frame."""
+    def get(self, mesh: bpy.types.Mesh) -> tuple[tuple[Surfels, ...], int]:
+        """As `attributes.read_surfels`, in parts that the renderer can hold; once a mesh and frame."""
         key = mesh.session_uid
         if key not in self._current:
             surfels, skipped = read_surfels(mesh)
-            known = (k.surfels for k in self._kept.values() if k.name == mesh.name_full and _same(k.surfels, surfels))
-            self._kept[key] = _Kept(mesh.name_full, next(known, surfels), skipped)
+            known = (k for k in self._kept.values() if k.name == mesh.name_full and _same(k.surfels, surfels))
+            kept = next(known, None) or _Kept(mesh.name_full, surfels, split(surfels, MAX_SPLATS), skipped)
+            self._kept[key] = kept._replace(skipped=skipped)
             self._current.add(key)
-        return self._kept[key][1:]
+        return self._kept[key].parts, self._kept[key].skipped
 
     def begin_frame(self, changed: set[str] | None = None, are_materials_edited: bool = False) -> None:
         """Meshes named in `changed` (None: all) are read again the next time they are asked for."""
@@ -96,7 +99,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
             if object_.type == "MESH":
                 light_set = light_sets.of_instance(entry)
                 if (what := _content(object_)) == "surfels":
-                    surfels.append(replace(_instance(object_, matrix, store, notes), light_set=light_set))
+                    surfels += _instances(object_, matrix, light_set, store, notes)
                 elif fineness is not None and what == "faces" and renders_as_surfels(owner_of(entry)):
                     live_meshes.add(object_, owner_of(entry), matrix, light_set, notes)
                 elif fineness is None and what != "nothing":
@@ -146,17 +149,20 @@ def _content(object_: bpy.types.Object) -> str:
         return "surfels" if has_surfels(mesh) else "faces" if mesh.polygons else "points"
 
 
-def _instance(object_, matrix_world: np.ndarray, store: SurfelStore, notes: Notes) -> Instance:
-    """Of an object that has surfels. Raises ValueError for broken attributes or an unusable matrix."""
+def _instances(object_, matrix_world: np.ndarray, light_set: int, store: SurfelStore, notes: Notes) -> list[Instance]:
+    """Of an object that has surfels; one, unless it has more than the renderer holds in one.
+
+    Raises ValueError for broken attributes or an unusable matrix.
+    """
     with _attributes_of(object_) as mesh:
-        surfels, skipped = store.get(mesh)
+        parts, skipped = store.get(mesh)
     if skipped:
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
-    own = surfels.arrays().keys()
+    own = parts[0].arrays().keys()
     materials = tuple(shading_material(slot.material, notes, own) for slot in object_.material_slots)
-    slots = object_.material_slots if surfels.has_uvs else ()
+    slots = object_.material_slots if parts[0].has_uvs else ()
     textures = tuple(store.textures.get(slot.material, notes) for slot in slots)
-    return Instance(surfels, matrix_world, materials, textures=textures)
+    return [Instance(part, matrix_world, materials, light_set, textures) for part in parts]
 
 
 @contextmanager
