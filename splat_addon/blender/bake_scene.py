@@ -120,6 +120,11 @@ class BakeScene:
     def _copied(self, evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> bpy.types.Mesh:
         """A copy of an evaluated mesh, with copies of the materials that it shows there."""
         copy = self._keep(mesh.copy())
+        # Generated coordinates go by the box of the mesh before its modifiers.
+        plain = evaluated.original.data
+        if hasattr(plain, "texspace_size"):
+            copy.use_auto_texspace = False
+            copy.texspace_location, copy.texspace_size = plain.texspace_location, plain.texspace_size
         for index, material in enumerate(slot_materials(evaluated, mesh)):
             own = self._material(material.original) if material else None
             if index < len(copy.materials):

@@ -105,6 +105,19 @@ def test_a_bump_bends_the_shading_normal(square, convert, surfels_of, scale):
     assert np.allclose(surfels.geometric_normals(), (0, 0, 1), atol=1e-6)
 
 
+def test_generated_coordinates_are_those_before_the_modifiers(square, convert, surfels_of):
+    """The square twice, side by side: they go from 0 to 1 over the first and on to 2 over the second."""
+    array = square.modifiers.new("twice", "ARRAY")
+    array.count, array.use_constant_offset, array.constant_offset_displace = 2, False, (0, 0, 0)
+    array.use_relative_offset, array.relative_offset_displace = True, (1, 0, 0)
+    nodes = Nodes(square)
+    nodes.link(nodes.component(nodes.coordinates("Generated"), "X"), "Emission Color")
+    nodes.inputs["Emission Strength"].default_value = 1
+    surfels = surfels_of(convert(resolution=32, bake_materials=True)[0])
+    x = surfels.positions[:, 0] + bpy.context.object.location[0]
+    assert x.max() > 1.9 and np.abs(surfels.emission[:, 0] - x).max() < 2e-3
+
+
 def test_a_procedural_checker_finer_than_the_spacing_is_averaged(square, convert, surfels_of):
     """32 checks across 8 cells: of the four places in each, two are on black."""
     nodes = Nodes(square)
