@@ -26,7 +26,7 @@ sys.path.insert(0, str(ROOT))
 import numpy as np  # noqa: E402
 from PIL import Image  # noqa: E402
 
-from scripts.measure_models import load, scene_of  # noqa: E402
+from scripts.measure_models import load, median_seconds, scene_of  # noqa: E402
 from splat_addon.reference import render_exact, scenes  # noqa: E402
 from splat_addon.reference.extremes import discs  # noqa: E402
 from splat_addon.reference.metrics import psnr, srgb  # noqa: E402
@@ -95,11 +95,12 @@ def formats(renderer: Renderer, options) -> None:
 
 def memory(renderer: Renderer, options) -> None:
     surfels = sample_mesh(load(options.models / "armadillo.obj.gz"), resolution=512)
-    print("\n| storage | bytes a surfel |\n|---|---|")
+    print("\n| storage | bytes a surfel | seconds to pack a million |\n|---|---|---|")
     for storage in STORAGES.values():
         arrays, _ = storage.pack(surfels)
+        seconds = median_seconds(lambda storage=storage: storage.pack(surfels), options.turns) * 1e6 / len(surfels)
         size = sum(a.size / 4 * BYTES[f] for a, (_, f) in zip(arrays, storage.textures, strict=True))
-        print(f"| {storage.name} | {size / len(surfels):.2f} |")
+        print(f"| {storage.name} | {size / len(surfels):.2f} | {seconds:.2f} |")
     torus, camera = scenes.torus(1000, (64, 64))
     print("\n| sums | bytes a sample, with depth and materials |\n|---|---|")
     for accumulation in ("float32", "float16"):

@@ -7,6 +7,7 @@ one too: print the plan to read them.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from .camera import Camera
@@ -181,7 +182,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
             left_out.append(("linear depth", why_depth))
         _say_what_surfels_lack(scene, camera, left_out)
     return FramePlan(
-        _tiles(camera.size, max(MAX_TARGET_EDGE // (settings.supersampling * method.visibility_samples), 1)),
+        _tiles(camera.size, _tile_edge(settings, method)),
         settings.supersampling,
         method.visibility_samples,
         settings.method,
@@ -334,6 +335,12 @@ def _linear_depth(camera: Camera, extent: DepthExtent) -> tuple[bool, str]:
     if radius > MAX_HARDWARE_DEPTH_RADIUS:
         return True, f"a splat's radius may be {radius:.3g} of its distance, too much to move its corners back"
     return False, f"far / near of what is seen is {ratio:.3g} and the hardware's depth serves"
+
+
+def _tile_edge(settings: Settings, method: Method) -> int:
+    """In pixels: along it lie the samples, and the square root of the hardware's samples in each."""
+    across = settings.supersampling * method.visibility_samples * math.ceil(math.sqrt(max(settings.multisampling, 1)))
+    return max(MAX_TARGET_EDGE // across, 1)
 
 
 def _tiles(size: tuple[int, int], edge: int) -> tuple[tuple[int, int, int, int], ...]:

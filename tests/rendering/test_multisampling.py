@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hardware multisampling of quads: where there is any, what each way of shading gives; elsewhere a clear refusal."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import Camera, Renderer, Scene, Settings
+from splat_addon.rendering import Camera, Renderer, Scene, Settings, plan
 
 FOUR = Settings(method="quad", supersampling=1, multisampling=4)
 FOUR_EACH = Settings(method="quad", supersampling=1, multisampling=4, sample_shading=True)
@@ -97,3 +99,10 @@ def test_what_cannot_be_multisampled_is_refused(on_device, request):
 def test_settings_refuse_other_counts():
     with pytest.raises(ValueError, match=r"multisampling must be one of \(0, 2, 4, 8\), not 3"):
         Settings(method="quad", supersampling=2, multisampling=3)
+
+
+def test_hardware_samples_count_for_the_size_of_tiles():
+    """Targets of 4 samples a pixel take as much memory as of 2 x 2."""
+    scene, view = Scene((discs((0, 0, -3)),)), camera((4096, 4096))
+    plans = [plan(scene, view, s) for s in (*(replace(FOUR, supersampling=n, multisampling=0) for n in (1, 2)), FOUR)]
+    assert [len(p.tiles) for p in plans] == [1, 4, 4]
