@@ -161,7 +161,8 @@ class _Reader:
         """The colour, with the alpha where that comes from the same image, and what of the alpha is left."""
         read = self._product("color")
         own = [s for s in alpha.sources if isinstance(s, ImageSource) and s.weights == ALPHA and not s.functions]
-        joint = [s for s in own if any(isinstance(c, ImageSource) and c.node == s.node for c in read.sources)]
+        images = [s.node for s in read.sources if isinstance(s, ImageSource) and s.weights is None]
+        joint = [s for s in own if s.node in images]
         rest = Product(alpha.value, tuple(s for s in alpha.sources if s not in joint))
         try:
             factors = tuple(self._factor(source, bool(joint)) for source in read.sources)

@@ -144,6 +144,15 @@ def test_alpha_of_another_image_and_of_vertex_colours_multiply(nodes, made):
     assert np.allclose(surfels.colors[:, :3], (1, 0, 0))
 
 
+def test_a_grey_of_one_component_keeps_the_alpha_of_its_image(nodes, made):
+    texture = nodes.texture()
+    nodes.link(nodes.component(texture.outputs["Color"], "Green"), "Base Color")
+    nodes.link(texture.outputs["Alpha"], "Alpha")
+    surfels, texel = made(nodes)
+    assert np.allclose(surfels.colors[:, :3], ENCODED[texel][:, 1:2], atol=1e-5)
+    assert np.allclose(surfels.colors[:, 3], ENCODED[texel][:, 3], atol=1e-5)
+
+
 def attribute(square, kind, domain, key, values):
     made = square.data.attributes.new("given", kind, domain)
     made.data.foreach_set(key, np.ravel(values).astype(np.float32))
