@@ -1,19 +1,21 @@
 // References: "View-independent object-space surface splatting", section 4.4 (texture-mapped splats, looked up with the
-//             pixel's anisotropic footprint); McCormack et al., "Feline", 1999 (probes along the footprint's long
-//             axis); Heckbert, "Fundamentals of Texture Mapping", 1989 (Gaussian footprints).
-// Summary: a texture's colour under a footprint. Footprints are Gaussians, added up by their variances: a bilinear lookup
-//          of the level that is at most half as wide as the footprint across, and a grid of probes that spread it.
-//          No sampler state and no derivative of the hardware: the same on every device.
+//             pixel's anisotropic footprint); Heckbert, "Fundamentals of Texture Mapping", 1989 (elliptical weighted
+//             averages of texels); McCormack et al., "Feline", 1999 (probes along a footprint).
+// Summary: a texture's colour under a footprint, given by its variances. Where it is wider than a texel, the average of
+//          the texels in an ellipse, of the level on which it is about a texel wide across; where the texture is
+//          magnified, bilinear probes. No sampler state and no derivative of the hardware: the same on every device.
 //          The twin of rendering/texture_lookup.py. The layout of atlas and table is rendering/atlas.py's.
 //
 // The includer declares the samplers `texture_atlas` and `texture_table`.
 
-const int MAX_PROBES = 24;              // along
-const float PROBES_PER_DEVIATION = 3.0;  // of the level's texels: bilinear kernels this far apart still look like one
-const float LEVEL_SHARE = 0.25;         // of the footprint's variance across that the level's own kernel may have
-const float LONGEST = 32.0;             // variance along, of one across of 1/2, that probes can spread
+const float MAGNIFIED = 0.2;     // variance across, in texels, below which bilinear lookups are needed
+const float NARROWEST = 0.6;     // variance across, in texels of the level, of the texels' weights
+const float LONGEST = 64.0;      // variance along over variance across that is kept; what is longer is blurred across
+const float LARGEST = 1e12;      // variance beyond which only the mean of the texture is left
+const float REACH2 = 8.0;        // square of the deviations after which weights (1 - rho^2)^2 end: that is their variance
+const int MAX_PROBES = 24;       // of a magnified texture, along
+const float PROBES_PER_DEVIATION = 3.0;
 const float AXIS_BIAS = 1e-3;
-const float LARGEST = 1e12;             // variance beyond which only the mean of the texture is left
 
 const int REPEAT = 0, EXTEND = 1, CLIP = 2, MIRROR = 3;
 
@@ -31,42 +33,37 @@ SurfaceTexture surface_texture(int slot) {
   return SurfaceTexture(slot, int(first.w), first.rgb, int(second.x), second.y > 0.5, second.zw);
 }
 
-// Texel index in 0 .. size - 1 of one that a lookup at a reduced coordinate may ask for; -1: transparent black.
-int wrapped(int index, int size, int extension) {
-  if (extension == REPEAT) return index < 0 ? index + size : index >= size ? index - size : index;
+// A texel's whole number as that of one inside of the image; -1: transparent black.
+float wrapped(float index, float size, int extension) {
+  if (extension == REPEAT) return index - size * floor((index + 0.5) / size);
   if (extension == MIRROR) {
-    int turned = index < 0 ? index + 2 * size : index >= 2 * size ? index - 2 * size : index;
-    return min(turned, 2 * size - 1 - turned);
+    float turned = index - 2.0 * size * floor((index + 0.5) / (2.0 * size));
+    return min(turned, 2.0 * size - 1.0 - turned);
   }
-  if (extension == CLIP && (index < 0 || index >= size)) return -1;
-  return clamp(index, 0, size - 1);
+  if (extension == CLIP && (index < 0.0 || index >= size)) return -1.0;
+  return clamp(index, 0.0, size - 1.0);
 }
 
-vec4 texel(ivec4 place, int extension, ivec2 index) {
-  ivec2 inside = ivec2(wrapped(index.x, place.z, extension), wrapped(index.y, place.w, extension));
-  return min(inside.x, inside.y) < 0 ? vec4(0.0) : texelFetch(texture_atlas, place.xy + inside, 0);
+vec4 texel(vec4 place, float x, float y) {
+  return min(x, y) < 0.0 ? vec4(0.0) : texelFetch(texture_atlas, ivec2(place.xy) + ivec2(x, y), 0);
 }
 
-// The texture coordinate as one period of it, so that texel indices stay small; beyond 4 all is border.
+// The texture coordinate as one period of it, so that texels have small numbers; beyond 4 all is border.
 vec2 reduced(vec2 uv, int extension) {
   if (extension == REPEAT) return uv - floor(uv);
   if (extension == MIRROR) return uv - 2.0 * floor(0.5 * uv);
   return clamp(uv, -4.0, 4.0);
 }
 
-// Premultiplied colour of one level.
-vec4 level_color(SurfaceTexture t, ivec4 place, vec2 uv, bool is_closest) {
-  vec2 position = reduced(uv, t.extension) * vec2(place.zw);
-  if (is_closest) return texel(place, t.extension, ivec2(floor(position)));
-  vec2 low = floor(position - 0.5), share = position - 0.5 - low;
-  ivec2 index = ivec2(low);
-  vec4 bottom = mix(texel(place, t.extension, index), texel(place, t.extension, index + ivec2(1, 0)), share.x);
-  vec4 top = mix(texel(place, t.extension, index + ivec2(0, 1)), texel(place, t.extension, index + ivec2(1, 1)), share.x);
-  return mix(bottom, top, share.y);
-}
-
-ivec4 level_place(SurfaceTexture t, int level) {
-  return ivec4(texelFetch(texture_table, ivec2(2 + level, t.slot), 0));
+// Premultiplied colour of the image itself at a point.
+vec4 point_color(SurfaceTexture t, vec4 place, vec2 uv) {
+  vec2 position = reduced(uv, t.extension) * place.zw - (t.is_closest ? 0.0 : 0.5);
+  vec2 low = floor(position), share = position - low;
+  float x = wrapped(low.x, place.z, t.extension), y = wrapped(low.y, place.w, t.extension);
+  if (t.is_closest) return texel(place, x, y);
+  float right = wrapped(low.x + 1.0, place.z, t.extension), above = wrapped(low.y + 1.0, place.w, t.extension);
+  vec4 bottom = mix(texel(place, x, y), texel(place, right, y), share.x);
+  return mix(bottom, mix(texel(place, x, above), texel(place, right, above), share.x), share.y);
 }
 
 // Half of the length over which probes spread; of Gaussian weights at the middles of 2, 3 and more parts of -1 .. 1 the
@@ -75,41 +72,78 @@ float probe_reach(float spread, int probes) {
   return probes == 1 ? 0.0 : spread * inversesqrt(probes == 2 ? 0.25 : probes == 3 ? 0.2005 : 0.1945);
 }
 
+// Premultiplied sum over probes and, in `weights`, that of their weights. spread: deviations along the axis and across.
+vec4 probe_sum(SurfaceTexture t, vec4 place, vec2 uv, vec2 spread, vec2 axis, out float weights) {
+  ivec2 probes = min(ivec2(1.5 + PROBES_PER_DEVIATION * spread), MAX_PROBES);
+  vec2 along = axis * probe_reach(spread.x, probes.x) / t.size;
+  vec2 across = vec2(-axis.y, axis.x) * probe_reach(spread.y, probes.y) / t.size;
+  vec4 total = vec4(0.0);
+  weights = 0.0;
+  for (int j = 0; j < probes.y; j++) {
+    for (int i = 0; i < probes.x; i++) {
+      vec2 at = (2.0 * vec2(i, j) + 1.0) / vec2(probes) - 1.0;
+      float weight = exp(-2.0 * dot(at, at));
+      total += weight * point_color(t, place, uv + along * at.x + across * at.y);
+      weights += weight;
+    }
+  }
+  return total;
+}
+
+// The same over the texels in an ellipse. variances: xx, yy, xy in texels of the level.
+vec4 ellipse_sum(SurfaceTexture t, vec4 place, vec2 uv, vec3 variances, out float weights) {
+  vec2 middle = reduced(uv, t.extension) * place.zw - 0.5;
+  vec3 conic = vec3(variances.y, variances.x, -variances.z)
+      / (REACH2 * (variances.x * variances.y - variances.z * variances.z));
+  float height = sqrt(REACH2 * variances.y);
+  vec4 total = vec4(0.0);
+  weights = 0.0;
+  for (float y = ceil(middle.y - height); y <= middle.y + height; y += 1.0) {
+    float dy = y - middle.y;
+    float row = conic.z * dy / conic.x, left = 1.0 - dy * dy / (REACH2 * variances.y);
+    float width = sqrt(max(left / conic.x, 0.0));
+    float row_y = wrapped(y, place.w, t.extension);
+    for (float x = ceil(middle.x - row - width); x <= middle.x - row + width; x += 1.0) {
+      float dx = x - middle.x + row;
+      float weight = max(left - conic.x * dx * dx, 0.0);
+      weight *= weight;
+      total += weight * texel(place, wrapped(x, place.z, t.extension), row_y);
+      weights += weight;
+    }
+  }
+  return total;
+}
+
 // Colour, not premultiplied, under the Gaussian at uv whose variances and covariance xx, yy, xy are given.
 vec3 texture_color(SurfaceTexture t, vec2 uv, vec3 variances) {
   float xx = variances.x * t.size.x * t.size.x, yy = variances.y * t.size.y * t.size.y;
   float xy = variances.z * t.size.x * t.size.y;
   float tilt = 0.5 * (xx - yy), root = sqrt(tilt * tilt + xy * xy);
   float along = 0.5 * (xx + yy) + root;
-  bool is_usable = along < LARGEST;   // not so for NaN
+  if (!(along < LARGEST)) {  // nor NaN
+    xx = yy = along = LARGEST;
+    xy = tilt = root = 0.0;
+  }
   // A round footprint has no long axis: the bias gives it one that rounding does not turn.
   float biased = tilt + AXIS_BIAS * (xx + yy), biased_root = sqrt(biased * biased + xy * xy);
   vec2 axis = biased >= 0.0 ? vec2(biased + biased_root, xy) : vec2(xy, biased_root - biased);
-  if (!is_usable) axis = vec2(1.0, 0.0);
-  along = is_usable ? along : LARGEST;
-  float across = is_usable ? (xx * yy - xy * xy) / max(along, 1e-30) : LARGEST;
-  across = max(max(across, 0.0), (along - LONGEST) / (2.0 * LONGEST));
-
-  // A bilinear lookup of level l is wider than one of the image itself, whose kernel is part of the texture, by the
-  // variance (4^l - 1) / 4; probes spread what is left.
-  int level = min(int(0.5 * log2(1.0 + 4.0 * LEVEL_SHARE * across)), t.levels - 1);
-  ivec4 place = level_place(t, level);
-  float texel2 = exp2(2.0 * float(level)), kernel = 0.25 * (texel2 - 1.0);
-  vec2 spread = sqrt(max(vec2(along, across) - kernel, 0.0));
-  ivec2 probes = min(ivec2(1.5 + PROBES_PER_DEVIATION * spread * inversesqrt(texel2)), MAX_PROBES);
   axis *= inversesqrt(max(dot(axis, axis), 1e-30));
-  vec2 reach_along = axis * probe_reach(spread.x, probes.x) / t.size;
-  vec2 reach_across = vec2(-axis.y, axis.x) * probe_reach(spread.y, probes.y) / t.size;
-  bool is_closest = t.is_closest && level == 0;
-  vec4 total = vec4(0.0);
-  float weights = 0.0;
-  for (int j = 0; j < probes.y; j++) {
-    for (int i = 0; i < probes.x; i++) {
-      vec2 at = (2.0 * vec2(i, j) + 1.0) / vec2(probes) - 1.0;
-      float weight = exp(-2.0 * dot(at, at));
-      total += weight * level_color(t, place, uv + reach_along * at.x + reach_across * at.y, is_closest);
-      weights += weight;
-    }
+  float across = max((xx * yy - xy * xy) / max(along, 1e-30), 0.0), blur = max(along / LONGEST - across, 0.0);
+
+  vec4 total;
+  float weights;
+  if (across + blur < MAGNIFIED) {
+    vec4 place = texelFetch(texture_table, ivec2(2, t.slot), 0);
+    total = probe_sum(t, place, uv, sqrt(vec2(along, across)), axis, weights);
+  }
+  else {
+    // The texels of level l are averages already, over a variance of (4^l - 1) / 12; what the image itself shows between
+    // its texels has 1 / 6.
+    int level = min(int(0.5 * log2(max((across + blur + 0.25) / (NARROWEST + 1.0 / 12.0), 1.0))), t.levels - 1);
+    float texel2 = exp2(2.0 * float(level)), own = 0.25 - texel2 / 12.0;
+    vec2 blurred = axis.yx * axis.yx * blur + own;
+    vec3 weighed = vec3(xx + blurred.x, yy + blurred.y, xy - axis.x * axis.y * blur) / texel2;
+    total = ellipse_sum(t, texelFetch(texture_table, ivec2(2 + level, t.slot), 0), uv, weighed, weights);
   }
   return t.factor * total.rgb / (total.a > 0.0 ? total.a : weights);
 }

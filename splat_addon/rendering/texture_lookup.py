@@ -7,11 +7,13 @@ import numpy as np
 
 from .atlas import Atlas
 
+MAGNIFIED = 0.2
+NARROWEST = 0.6
+LONGEST = 64.0
+LARGEST = 1e12
+REACH2 = 8.0
 MAX_PROBES = 24
 PROBES_PER_DEVIATION = 3.0
-LEVEL_SHARE = 0.25
-LONGEST = 32.0
-LARGEST = 1e12
 AXIS_BIAS = 1e-3
 
 #: of Gaussian weights at the middles of n parts of -1 .. 1
@@ -30,54 +32,76 @@ def texture_colors(atlas: Atlas, slot: int, uvs: np.ndarray, variances: np.ndarr
 def _color(atlas: Atlas, slot: int, uv: np.ndarray, variance: np.ndarray) -> np.ndarray:
     row = atlas.table[slot].astype(np.float64)
     factor, count, size = row[0, :3], int(row[0, 3]), row[1, 2:]
-    along, across, axis = _along_and_across(variance * np.outer(size, size))
-    level = min(int(0.5 * np.log2(1 + 4 * LEVEL_SHARE * across)), count - 1)
-    spreads = np.sqrt(np.maximum(np.array([along, across]) - (4.0**level - 1) / 4, 0))
-    places = []
+    variance = variance * np.outer(size, size)
+    if not np.trace(variance) < LARGEST:
+        variance = LARGEST * np.eye(2)
+    across, along = np.maximum(np.linalg.eigvalsh(variance), 0)
+    axis = np.linalg.eigh(variance + np.diag([2 * AXIS_BIAS * np.trace(variance), 0]))[1][:, 1]
+    blur = max(along / LONGEST - across, 0)
+    if across + blur < MAGNIFIED:
+        total, weights = _probe_sum(atlas, slot, uv, np.sqrt([along, across]), axis)
+    else:
+        level = int(0.5 * np.log2(max((across + blur + 0.25) / (NARROWEST + 1 / 12), 1)))
+        level = min(level, count - 1)
+        sideways = np.array([-axis[1], axis[0]])
+        own = 0.25 - 4.0**level / 12
+        weighed = (variance + blur * np.outer(sideways, sideways) + own * np.eye(2)) / 4.0**level
+        total, weights = _ellipse_sum(atlas, slot, level, uv, weighed)
+    return factor * total[:3] / (total[3] if total[3] > 0 else weights)
+
+
+def _probe_sum(atlas: Atlas, slot: int, uv: np.ndarray, spreads: np.ndarray, axis: np.ndarray):
+    size, places = atlas.table[slot, 1, 2:].astype(np.float64), []
     for spread, direction in zip(spreads, (axis, np.array([-axis[1], axis[0]])), strict=True):
-        probes = min(int(1.5 + PROBES_PER_DEVIATION * spread / 2.0**level), MAX_PROBES)
+        probes = min(int(1.5 + PROBES_PER_DEVIATION * spread), MAX_PROBES)
         reach = spread / np.sqrt(PROBE_VARIANCES.get(probes, MANY_PROBES_VARIANCE)) if probes > 1 else 0.0
         steps = (2 * np.arange(probes) + 1) / probes - 1
         places.append([(np.exp(-2 * step**2), direction * reach * step / size) for step in steps])
     total, weights = np.zeros(4), 0.0
-    for weight_along, along_ in places[0]:
-        for weight_across, across_ in places[1]:
-            total += weight_along * weight_across * _level_color(atlas, slot, level, uv + along_ + across_)
+    for weight_along, along in places[0]:
+        for weight_across, across in places[1]:
+            total += weight_along * weight_across * _point_color(atlas, slot, uv + along + across)
             weights += weight_along * weight_across
-    return factor * total[:3] / (total[3] if total[3] > 0 else weights)
+    return total, weights
 
 
-def _along_and_across(variance: np.ndarray) -> tuple[float, float, np.ndarray]:
-    """Along the footprint's long axis and across it, texels squared, and the unit axis; bounded as MAX_PROBES need."""
-    if not np.trace(variance) < LARGEST:
-        return LARGEST, LARGEST, np.array([1.0, 0.0])
-    across, along = np.linalg.eigvalsh(variance)
-    _, axes = np.linalg.eigh(variance + np.diag([2 * AXIS_BIAS * np.trace(variance), 0]))
-    return along, max(across, 0.0, (along - LONGEST) / (2 * LONGEST)), axes[:, 1]
+def _ellipse_sum(atlas: Atlas, slot: int, level: int, uv: np.ndarray, variance: np.ndarray):
+    middle = uv * atlas.table[slot, 2 + level, 2:] - 0.5
+    reach = np.sqrt(REACH2 * np.diag(variance))
+    first, last = np.ceil(middle - reach).astype(int), np.floor(middle + reach).astype(int)
+    inverse = np.linalg.inv(variance) / REACH2
+    total, weights = np.zeros(4), 0.0
+    for y in range(first[1], last[1] + 1):
+        for x in range(first[0], last[0] + 1):
+            offset = (x, y) - middle
+            weight = max(1 - offset @ inverse @ offset, 0) ** 2
+            total += weight * _texel(atlas, slot, level, x, y)
+            weights += weight
+    return total, weights
 
 
-def _level_color(atlas: Atlas, slot: int, level: int, uv: np.ndarray) -> np.ndarray:
-    row = atlas.table[slot]
-    x, y, width, height = row[2 + level].astype(int)
-    extension, is_closest = EXTENSION_RULES[int(row[1, 0])], row[1, 1] > 0.5 and level == 0
-    color = np.zeros(4)
-    for j, weight_y in _taps(uv[1] * height, is_closest):
-        for i, weight_x in _taps(uv[0] * width, is_closest):
-            column, row_ = extension(i, width), extension(j, height)
-            if column is not None and row_ is not None:
-                color += weight_x * weight_y * atlas.texels[y + row_, x + column].astype(np.float64)
-    return color
-
-
-def _taps(position: float, is_closest: bool):
-    if is_closest:
-        return ((int(np.floor(position)), 1.0),)
+def _point_color(atlas: Atlas, slot: int, uv: np.ndarray) -> np.ndarray:
+    """Of the image itself."""
+    position = uv * atlas.table[slot, 2, 2:]
+    if atlas.table[slot, 1, 1] > 0.5:
+        return _texel(atlas, slot, 0, *np.floor(position).astype(int))
     low = np.floor(position - 0.5)
-    share = position - 0.5 - low
-    return ((int(low), 1 - share), (int(low) + 1, share))
+    (right, top), (x, y) = position - 0.5 - low, low.astype(int)
+    bottom = (1 - right) * _texel(atlas, slot, 0, x, y) + right * _texel(atlas, slot, 0, x + 1, y)
+    above = (1 - right) * _texel(atlas, slot, 0, x, y + 1) + right * _texel(atlas, slot, 0, x + 1, y + 1)
+    return (1 - top) * bottom + top * above
 
 
-#: by number of the extension: a texel's index inside the image, None for transparent black
+def _texel(atlas: Atlas, slot: int, level: int, x: int, y: int) -> np.ndarray:
+    left, bottom, width, height = atlas.table[slot, 2 + level].astype(int)
+    extension = EXTENSION_RULES[int(atlas.table[slot, 1, 0])]
+    column, row = extension(x, width), extension(y, height)
+    return (
+        np.zeros(4) if column is None or row is None else atlas.texels[bottom + row, left + column].astype(np.float64)
+    )
+
+
+#: by number of the extension: a texel's number inside the image, None for transparent black
 EXTENSION_RULES = (
     lambda i, n: i % n,
     lambda i, n: min(max(i, 0), n - 1),
