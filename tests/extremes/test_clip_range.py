@@ -10,9 +10,18 @@ import pytest
 from splat_addon.reference import scenes
 from splat_addon.reference.extremes import discs, speck
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import Settings, plan
+from splat_addon.rendering import Camera, Instance, Settings, look_at, plan
 
 NEARS = [1e-1, 1e-2, 1e-4, 1e-6]
+
+
+def parallel(far=10.0):
+    """A parallel camera."""
+    return scenes.torus(6000, (64, 64))[0], Camera.orthographic(
+        look_at((0.3, -3.6, 2.2), (0, 0, 0)), 3.2, (64, 64), 0.1, far
+    )
+
+
 WORLDS = {
     "torus": lambda: scenes.torus(6000, (64, 64)),
     "checker": lambda: scenes.checker_plane(count=6000, size=(64, 64)),
@@ -30,8 +39,9 @@ def with_speck(scene, camera, near):
     return replace(scene, surfels=(*scene.surfels, speck(camera, 1.5 * near))), camera
 
 
-def test_a_wide_clip_range_alone_costs_nothing(world, render_all):
-    scene, camera = world
+@pytest.mark.parametrize("name", [*WORLDS, "parallel"])
+def test_a_wide_clip_range_alone_costs_nothing(name, render_all):
+    scene, camera = parallel() if name == "parallel" else WORLDS[name]()
     base, wide = render_all([(scene, camera, None), (scene, replace(camera, near=1e-6, far=1e6), None)])
     np.testing.assert_array_equal(wide.color, base.color)
 
@@ -48,6 +58,16 @@ def test_depth_is_known_to_a_millionth_at_any_distance(distance, render_all, lit
     wall = discs((0, 0, -distance), (distance, 0, 0), (0, distance, 0))
     (frame,) = render_all([(lit(wall, speck(camera, 0.6e-6), speck(camera, 1.9e6)), camera, None)])
     np.testing.assert_allclose(frame.depth[8:56, 8:24], distance, rtol=1e-6)
+
+
+@pytest.mark.parametrize("far", [1e2, 1e3, 1e4])
+def test_something_far_behind_costs_a_parallel_camera_nothing(far, hold):
+    """Its depth has 2^-24 of the whole span everywhere: from 1e5 on, what is 1 wide loses its epsilon."""
+    scene, camera = parallel(far)
+    behind = camera.matrix_world.copy()
+    behind[:3, 3] += 0.5 * behind[:3, 0] - 0.9 * far * behind[:3, 2]
+    disc = Instance(discs((0, 0, 0), (0.1, 0, 0), (0, 0.1, 0), (1, 0, 0)), behind)
+    hold({"behind": (replace(scene, surfels=(*scene.surfels, disc)), camera)}, least=60)
 
 
 def test_hardware_depth_serves_where_it_is_fine_enough():

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from splat_addon.reference.extremes import discs, sheet
+from splat_addon.reference.metrics import psnr
 
 SPLATS = {
     "cut by the near plane": discs((0.1, -0.05, -0.011), (1, 0, 0), (0, 0.3, -1)),
@@ -37,3 +38,17 @@ def test_a_splat_before_the_near_plane_hides_nothing_when_moved_back(depth, hold
     before = discs((0, 0, -depth), (0.15, 0, 0), (0, 0.15, 0), (1, 0, 0))
     ((frame, truth),) = hold({"before": (lit(before, sheet(20, 2.0, 0, 3.0)), camera(near=1.0))}).values()
     assert np.abs(frame.depth[truth.coverage == 1] - 3).max() < 1e-3
+
+
+@pytest.mark.parametrize("spin", [0, 20, 40, 60, 80, 100])
+def test_a_splat_across_the_near_plane_keeps_its_rim(spin, hold, lit, camera):
+    """All around where it is not cut, however its axes lie in its plane; no method filters it."""
+    angle, tilt = np.radians(spin), np.radians(60)
+    across, along = np.array((1, 0, 0)), np.array((0, np.cos(tilt), np.sin(tilt)))
+    u, v = (
+        0.5 * (np.cos(angle) * across + np.sin(angle) * along),
+        0.5 * (np.cos(angle) * along - np.sin(angle) * across),
+    )
+    disc = lit(discs((0, 0, -1), u, v, (0.9, 0.9, 0.9)))
+    ((frame, truth),) = hold({"disc": (disc, camera(90, near=0.6))}).values()
+    assert psnr(frame.color, truth.color) > 30
