@@ -56,6 +56,9 @@ KNOWN_FAILURES = {
 #: dB; measured: 70 and more (docs/numerics.md). Of 64 x 64 pixels one sample that falls the other way costs 60 dB.
 LEAST_PSNR = 50
 
+#: Of the truth, and of every method but the default, which needs one sample.
+USUAL = Settings(supersampling=2)
+
 SUN = Light("sun", energy=2.0, direction=(0.3, 0.2, -1.0))
 WORLD = (0.1, 0.1, 0.1)
 
@@ -92,6 +95,11 @@ def truths():
     return {}
 
 
+def samples(settings: Settings, method: str) -> int:
+    """Along each side of a pixel, for this method."""
+    return 1 if method == Settings().method else settings.supersampling
+
+
 @pytest.fixture
 def render_all(on_device, method):
     """render_all([(scene, camera, settings or None)]) -> [Frame], by one renderer and with the method under test."""
@@ -99,7 +107,9 @@ def render_all(on_device, method):
     def job(device, shots):
         renderer = Renderer(device)
         return [
-            renderer.render(scene, camera, replace(s or Settings(supersampling=2), method=method))
+            renderer.render(
+                scene, camera, replace(s or USUAL, method=method, supersampling=samples(s or USUAL, method))
+            )
             for scene, camera, s in shots
         ]
 
@@ -116,7 +126,7 @@ def hold(render_all, method, truths, request):
         shots = {label: (*shot, None)[:3] for label, shot in shots.items()}
         results = {}
         for (label, (scene, camera, settings)), frame in zip(shots.items(), render_all(shots.values()), strict=True):
-            settings = settings or Settings(supersampling=2)
+            settings = settings or USUAL
             key = request.node.originalname, others, label
             if key not in truths:
                 truths[key] = render_exact(scene, camera, settings, samples=settings.supersampling)
