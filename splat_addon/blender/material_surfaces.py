@@ -206,9 +206,9 @@ class _Reader:
         if isinstance(source, AttributeSource):
             return VertexColors(self._layers.color(source.name), source.weights, uses_alpha=False)
         image = self._layers.image(source, uses_alpha)
-        name, matrix = placement(source.node, self._layers.mesh)
+        name, matrix, wraps = placement(source.node, self._layers.mesh)
         weights = RED if source.weights is not None and source.functions else source.weights
-        return Texture(image, self._layers.uv(name), matrix, weights, uses_alpha)
+        return Texture(image, self._layers.uv(name), matrix, weights, uses_alpha, wraps)
 
     def _normal_map(self) -> NormalMap | None:
         source = linked(self._shader.inputs[self._sockets["normal_map"][0]])

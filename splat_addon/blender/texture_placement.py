@@ -19,29 +19,61 @@ def uv_layer(name: str, mesh: bpy.types.Mesh) -> str:
     return names[0]
 
 
-def placement(node: bpy.types.ShaderNodeTexImage, mesh: bpy.types.Mesh) -> tuple[str, np.ndarray | None]:
-    """The UV map of an Image Texture node, and the (2, 3) matrix from its coordinates to the image's, None: the same.
+def placement(
+    node: bpy.types.ShaderNodeTexImage, mesh: bpy.types.Mesh
+) -> tuple[str, np.ndarray | None, tuple[str, str] | None]:
+    """The UV map of an Image Texture node, the (2, 3) matrix from its coordinates to the image's, None: the same, and
+    how these are wrapped then, as `sampling.Texture` has it.
 
     Raises UnreadableError.
     """
-    matrix = np.eye(3)
+    matrix, wraps = np.eye(3), None
     socket = node.inputs["Vector"]
     while (source := linked(socket)) is not None:
         by, output = source
         if by.bl_idname == "ShaderNodeMapping" and not by.mute:
             matrix = matrix @ _mapping(by)
             socket = by.inputs["Vector"]
+        elif by.bl_idname == "ShaderNodeCombineXYZ" and socket.node == node:
+            wraps, socket = _wrapped(by)
         elif by.bl_idname == "ShaderNodeUVMap":
-            return uv_layer(by.uv_map, mesh), _rows(matrix)
+            return uv_layer(by.uv_map, mesh), _rows(matrix), wraps
         elif (by.bl_idname, output) == ("ShaderNodeTexCoord", "UV"):
-            return uv_layer("", mesh), _rows(matrix)
+            return uv_layer("", mesh), _rows(matrix), wraps
         elif (by.bl_idname, output) == ("ShaderNodeAttribute", "Vector") and by.attribute_type == "GEOMETRY":
-            return uv_layer(by.attribute_name, mesh), _rows(matrix)
+            return uv_layer(by.attribute_name, mesh), _rows(matrix), wraps
         else:
             raise UnreadableError(f"an image texture that is placed by a {by.bl_label} node")
     if socket.node != node:
-        raise UnreadableError("an image texture that a Mapping node places without texture coordinates")
-    return uv_layer("", mesh), None
+        raise UnreadableError(f"an image texture that a {socket.node.bl_label} node places without coordinates")
+    return uv_layer("", mesh), None, None
+
+
+def _wrapped(combine: bpy.types.ShaderNodeCombineXYZ) -> tuple[tuple[str, str], bpy.types.NodeSocket]:
+    """How u and v are wrapped one by one, as glTF's importer has it where they differ, and the socket that both are of.
+
+    Separate XYZ, a Math node (or none) over each of X and Y, Combine XYZ. Raises UnreadableError for anything else.
+    """
+    wraps, separates = [], []
+    for axis in ("X", "Y"):
+        source, wrap = linked(combine.inputs[axis]), "NONE"
+        if source is not None and source[0].bl_idname == "ShaderNodeMath":
+            math = source[0]
+            numbers = [socket.default_value for socket in math.inputs[1:3]]
+            wrap = next((name for name, (operation, given) in _WRAPS.items() if math.operation == operation
+                         and numbers[: len(given)] == given and not math.mute), None)  # fmt: skip
+            source = linked(math.inputs[0])
+        if wrap is None or source is None or (source[0].bl_idname, source[1]) != ("ShaderNodeSeparateXYZ", axis):
+            raise UnreadableError("an image texture that is placed by a Combine XYZ node")
+        wraps.append(wrap)
+        separates.append(source[0])
+    if separates[0] != separates[1]:
+        raise UnreadableError("an image texture that is placed by a Combine XYZ node")
+    return (wraps[0], wraps[1]), separates[0].inputs[0]
+
+
+#: wrap -> the operation of a Math node that does it, and the numbers of its further inputs
+_WRAPS = {"REPEAT": ("WRAP", [0.0, 1.0]), "MIRROR": ("PINGPONG", [1.0])}
 
 
 def _rows(matrix: np.ndarray) -> np.ndarray | None:

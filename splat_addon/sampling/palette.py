@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ..surfels import OPTIONAL_LAYOUT
-from .surfaces import Channel, NormalMap, Surface, Texture, VertexColors
+from .surfaces import WRAPS, Channel, NormalMap, Surface, Texture, VertexColors
 
 #: The pixel of a normal map that leaves the normal.
 _FLAT = np.array((0.5, 0.5, 1.0), np.float32)
@@ -118,7 +118,8 @@ class Palette:
         return rows.T
 
     def _texture(self, factor: Texture, samples: Samples, looked_up) -> np.ndarray | None:
-        key = factor.image, factor.layer, None if factor.placement is None else factor.placement.tobytes()
+        placement = None if factor.placement is None else factor.placement.tobytes()
+        key = factor.image, factor.layer, placement, factor.wraps
         if key not in looked_up:
             uvs, steps = placed(factor, samples)
             if uvs is None:
@@ -134,10 +135,14 @@ _READERS = {VertexColors: Palette._vertex_colors, Texture: Palette._texture}
 def placed(texture: Texture, samples: Samples) -> tuple[np.ndarray | None, np.ndarray | None]:
     """(2, n) coordinates in the texture's image and their (2, 2, n) steps; None where the mesh has not its layer."""
     uvs, steps = (_layer(a, texture.layer, _UV) for a in (samples.uvs, samples.uv_steps))
-    if uvs is None or texture.placement is None:
-        return uvs, steps
-    linear, shift = texture.placement[:, :2], texture.placement[:, 2:]
-    return (linear @ uvs + shift).astype(np.float32), linear @ steps
+    if uvs is None:
+        return None, None
+    if texture.placement is not None:
+        linear, shift = texture.placement[:, :2], texture.placement[:, 2:]
+        uvs, steps = (linear @ uvs + shift).astype(np.float32), linear @ steps
+    if texture.wraps is not None:
+        uvs = np.stack([WRAPS[wrap](row) for wrap, row in zip(texture.wraps, uvs, strict=True)])
+    return uvs, steps
 
 
 def bent(normals: np.ndarray, normal_map: NormalMap, color: np.ndarray, tangents: np.ndarray | None) -> np.ndarray:

@@ -18,11 +18,20 @@ LUMINANCE = (0.2126, 0.7152, 0.0722, 0.0)
 RED, GREEN, BLUE, ALPHA = ((*np.eye(4)[k].tolist(),) for k in range(4))
 
 
+#: name -> what a coordinate becomes: where an image repeats along one side and not along the other.
+WRAPS = {
+    "REPEAT": lambda coordinate: coordinate - np.floor(coordinate),
+    "MIRROR": lambda coordinate: 1 - np.abs(coordinate - 2 * np.floor(coordinate / 2) - 1),
+    "NONE": lambda coordinate: coordinate,
+}
+
+
 @dataclass(frozen=True, eq=False)
 class Texture:
     """An image on the surface.
 
     layer: which of the mesh's texture coordinates. placement: (2, 3) matrix from those to the image's, None: the same.
+    wraps: how the image's u and v are brought to 0..1 before it is looked up, names in `WRAPS`; None: they are not.
     weights: of r, g, b, a, whose sum is the factor of a channel of one number; None: the components themselves.
     uses_alpha: False: the alpha is not looked at, so that what lies outside a clipped image is black and not clear.
     """
@@ -32,8 +41,11 @@ class Texture:
     placement: np.ndarray | None = None
     weights: tuple[float, float, float, float] | None = None
     uses_alpha: bool = True
+    wraps: tuple[str, str] | None = None
 
     def __post_init__(self):
+        if self.wraps is not None and not (len(self.wraps) == 2 and set(self.wraps) <= set(WRAPS)):
+            raise ValueError(f"A texture's wraps must be two of {', '.join(WRAPS)}, not {self.wraps!r}.")
         if self.placement is not None:
             placement = np.asarray(self.placement, np.float64)
             if placement.shape != (2, 3) or not np.isfinite(placement).all():

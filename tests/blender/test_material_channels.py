@@ -183,6 +183,22 @@ def test_a_mapping_node_places_the_texture(nodes, made, kind):
     assert np.allclose(surfels.colors[:, :3], turned[:, :3], atol=1e-5)
 
 
+@pytest.mark.parametrize(("operation", "numbers"), [("WRAP", (0.0, 1.0)), ("PINGPONG", (1.0,))])
+def test_a_texture_repeats_along_one_side_alone_as_gltf_has_it(nodes, made, operation, numbers):
+    """Moved by one and a half images along both: u is wrapped, v stays at the image's upper edge."""
+    uv = nodes.add("ShaderNodeUVMap", uv_map="UVMap").outputs[0]
+    moved = nodes.add("ShaderNodeMapping", {"Vector": uv, "Location": (1.5, 1.5, 0)}).outputs[0]
+    separate = nodes.add("ShaderNodeSeparateXYZ", {0: moved})
+    given = {0: separate.outputs["X"], **{k + 1: number for k, number in enumerate(numbers)}}
+    wrapped = nodes.add("ShaderNodeMath", given, operation=operation).outputs[0]
+    vector = nodes.add("ShaderNodeCombineXYZ", {"X": wrapped, "Y": separate.outputs["Y"]}).outputs[0]
+    nodes.link(nodes.texture(vector=vector, extension="EXTEND").outputs["Color"], "Base Color")
+    surfels, (_, column) = made(nodes)
+    of_image = np.arange(6, 10) % 8
+    of_image = of_image % 4 if operation == "WRAP" else np.minimum(of_image, 7 - of_image)
+    assert np.allclose(surfels.colors[:, :3], ENCODED[-1, of_image[column]][:, :3], atol=1e-5)
+
+
 def normal_map(nodes, normal, **settings):
     encoded = np.append((np.array(normal) + 1) / 2, 1)
     texture = nodes.texture(np.broadcast_to(encoded, (2, 2, 4)))
