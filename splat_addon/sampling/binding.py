@@ -19,6 +19,9 @@ LARGEST_STRETCH = 2.5
 #: A half-axis shrinks to this share of what it was, and not to nothing.
 _LEAST_SHRINKING = 1e-3
 
+#: Stands for the area of a mesh that has none.
+_LEAST_AREA = 1e-300
+
 #: A mapped normal that is this far from the interpolated one is meant.
 _BENT = 1e-3
 
@@ -55,6 +58,7 @@ class Binding:
             for axis, half_axis in zip(self._axes, half_axes, strict=True):
                 vectors = half_axis[self._starts[:-1][chunk]].T.astype(np.float64)
                 axis[:, chunk] = [_dot(row, vectors) for row in inverse]
+        self._areas = _areas(mesh)
         self.repaint(mesh, surfels)
 
     def repaint(self, mesh: TriangleMesh, surfels: Surfels):
@@ -63,7 +67,7 @@ class Binding:
         self._bends = self._bends_of(mesh, surfels)
 
     def arrays_on(self, mesh: TriangleMesh) -> tuple[dict[str, np.ndarray], np.ndarray, float]:
-        """What of the surfels' arrays changes, their origin, and the share that is stretched too far."""
+        """What of the surfels' arrays changes, their origin, and the share of them or of the area that grew too far."""
         rest, finite = self._surfels, np.isfinite(mesh.positions).all(axis=1)
         shift = mesh.positions.mean(axis=0) - self._middle
         origin = rest.origin + np.where(np.isfinite(shift), shift, 0.0)
@@ -89,7 +93,12 @@ class Binding:
                 here["uv_along_x"][...], here["uv_along_y"][...] = x * cosine + y * sine, y * cosine - x * sine
             too_far = _stretch(p, q, sizes) > LARGEST_STRETCH
             stretched += int(np.count_nonzero(too_far.take(of_run)))
-        return out, origin, stretched / max(len(rest), 1)
+        return out, origin, max(stretched / max(len(rest), 1), self._grown_share(mesh))
+
+    def _grown_share(self, mesh: TriangleMesh) -> float:
+        """The share of the present area on triangles that have grown too much; from nothing, they have no surfel."""
+        areas = _areas(mesh)
+        return float(areas[areas > LARGEST_STRETCH**2 * self._areas].sum() / max(areas.sum(), _LEAST_AREA))
 
     def _rows(self, chunk: slice) -> tuple[slice, np.ndarray]:
         """The rows of the surfels in a chunk of runs, and which of these runs each is in."""
@@ -126,6 +135,15 @@ class Binding:
             added = surfels.normals[rows].T - smooth
             bends[:, rows] = [_dot(axis.take(of_run, axis=1), added) for axis in basis.frame()]
         return bends if np.abs(bends).max(initial=0) > _BENT else None
+
+
+def _areas(mesh: TriangleMesh) -> np.ndarray:
+    """(T,) twice the area of each triangle; 0 where it is not finite."""
+    components, areas = np.ascontiguousarray(mesh.positions.T), np.empty(len(mesh))
+    for chunk in triangle_chunks(len(mesh)):
+        normals = doubled_areas(gather_corners(components, mesh.triangles[chunk]))
+        areas[chunk] = np.sqrt(_dot(normals, normals))
+    return np.nan_to_num(areas, nan=0.0, posinf=0.0)
 
 
 class _Basis:

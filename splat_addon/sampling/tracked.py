@@ -42,7 +42,7 @@ class TrackedSurfels:
         return has_as_many and np.array_equal(mesh.triangles, self.mesh.triangles)
 
     def at(self, mesh: TriangleMesh) -> tuple[Surfels, float]:
-        """The surfels on the mesh as it is now, and the share of them that is stretched too far (`binding`).
+        """The surfels on the mesh as it is now, and the share of them or of its area that grew too far (`binding`).
 
         mesh: the same triangles over as many vertices. Its colours and other values at corners may have changed, which
         costs a second sampling. Raises ValueError for another topology; non-finite vertices leave their surfels where

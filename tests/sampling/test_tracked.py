@@ -141,6 +141,16 @@ def test_too_much_stretch_is_said(bar, tracked):
     assert stretched > 0.5
 
 
+def test_a_part_that_grows_from_nothing_is_said(bar):
+    """It had no area to be sampled, so it has no surfel."""
+    top = bar.positions[:, 2] > 0.5
+    collapsed = replace(bar, positions=np.where(top[:, None], (0, 0, 2), bar.positions))
+    tracked = TrackedSurfels(collapsed, spacing=0.05)
+    surfels, stretched = tracked.at(bar)
+    assert len(surfels) == len(tracked.sampling.surfels)
+    assert stretched > 0.1
+
+
 def test_a_collapsed_and_a_broken_mesh_keep_every_surfel(bar, tracked):
     broken = bar.positions.copy()
     broken[7] = np.nan
