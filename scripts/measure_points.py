@@ -52,8 +52,8 @@ def range_map(models: Path) -> np.ndarray:
         return read_contents(path).positions
 
 
-def by_kd_tree(positions: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """The twin of `nearest_neighbours`."""
+def by_kd_tree(positions: np.ndarray, count: int, report=None) -> tuple[np.ndarray, np.ndarray]:
+    """The twin of `nearest_neighbours`, which tells of no progress."""
     distances, neighbours = cKDTree(positions).query(positions, count + 1)
     return neighbours[:, 1:].astype(np.int32), distances[:, 1:].astype(np.float32)
 

@@ -16,8 +16,9 @@ from .fineness import grid_spacing, predict_count
 from .joining import have_same_values, joined, transformed
 from .mesh import TriangleMesh
 from .points import PointsReport, surfels_from_points
+from .progress import SamplingCancelled
 from .reductions import DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS, projected_area
-from .sample import DEFAULT_SPLAT_SIZE, Sampling, SamplingCancelled, sample_mesh, sample_surface
+from .sample import DEFAULT_SPLAT_SIZE, Sampling, sample_mesh, sample_surface
 from .solid import is_solid
 from .surfaces import Channel, NormalMap, Surface, Texture, VertexColors
 from .tracked import STRETCHED_SHARE, TrackedSurfels

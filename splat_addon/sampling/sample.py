@@ -24,6 +24,7 @@ from .lost_parts import lost_parts
 from .mesh import TriangleMesh
 from .palette import Palette
 from .part_surfels import part_surfels
+from .progress import Progress, stage
 from .reductions import DEFAULT_GRAZING_ANGLE, check_grazing_angle, find_reduction
 from .scan_conversion import BATCH, Spans, batches
 from .tangents import layered_tangents
@@ -32,10 +33,6 @@ from .texture_mapping import UV_FIELDS, is_texture_mapped
 #: Half-axis of a splat in H. At 1 the seams between the regions of two axes leave 0.025 % of the armadillo uncovered
 #: at resolution 256, single dark specks in a picture; at 1.25 none of 200,000 points on it was uncovered.
 DEFAULT_SPLAT_SIZE = 1.25
-
-
-class SamplingCancelled(Exception):
-    """The progress callback asked to stop."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +68,7 @@ def sample_surface(
     splat_size: float = DEFAULT_SPLAT_SIZE,
     tolerance: Tolerance | None = None,
     texture_mapped: bool = False,
-    progress: Callable[[float], bool | None] | None = None,
+    progress: Progress | None = None,
 ) -> Sampling:
     """Surfels of a mesh on a grid of exact rays, in the order of axis, triangle, row, column.
 
@@ -100,7 +97,7 @@ def sample_surface(
     how = {"reduction": reduction, "grazing_angle": grazing_angle}
     grid = make_grid(mesh, grid_spacing(mesh, spacing=spacing, resolution=resolution, count=count, **how))
     keeps = partial(chosen.keeps, grazing_angle=grazing_angle)
-    images = depth_cube(mesh.positions, mesh.triangles, grid, keeps, _stage(progress, 0.0, 0.5))
+    images = depth_cube(mesh.positions, mesh.triangles, grid, keeps, stage(progress, 0.0, 0.5))
     lost = lost_parts(mesh, _is_sampled(images, len(mesh)))
 
     total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
@@ -111,7 +108,7 @@ def sample_surface(
     arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
     tangents = layered_tangents(mesh) if palette.needs_tangents else None
     filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, palette, tangents, arrays)
-    _fill(filler, images, _stage(progress, 0.5, 1.0))
+    _fill(filler, images, stage(progress, 0.5, 1.0))
     if chosen.merge is not None:
         arrays = chosen.merge(arrays, grid.spacing)
     saved, error = 0, 0.0
@@ -147,13 +144,3 @@ def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[flo
             filler.fill(spans[part], axis, slice(done, done + count))
             done += count
             report(done / total)
-
-
-def _stage(progress, start: float, stop: float) -> Callable[[float], None]:
-    """Reports the share of one stage as a share of the whole."""
-
-    def report(share: float):
-        if progress is not None and progress(start + (stop - start) * share) is False:
-            raise SamplingCancelled("The sampling was cancelled.")
-
-    return report

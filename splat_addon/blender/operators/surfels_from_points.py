@@ -3,18 +3,14 @@
 
 from __future__ import annotations
 
-import time
-
 import bpy
-import numpy as np
 from bpy.props import EnumProperty
 
-from ...sampling import surfels_from_points
 from ..ids import SURFELS_FROM_POINTS
-from ..placement import without_shear
-from ..points_extraction import extract_points, has_points, sheared
+from ..points_conversion import PointsBatch
+from ..points_extraction import has_points
 from ..points_settings import PointsProperties, draw_points_properties, keywords, viewpoint
-from ..surfel_objects import add_surfel_object, collections_of, select_only
+from .modal_conversion import ModalConversion
 
 
 def selected_points(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -22,7 +18,7 @@ def selected_points(context: bpy.types.Context) -> list[bpy.types.Object]:
     return [source for source in context.selected_objects if has_points(source)]
 
 
-class OBJECT_OT_surfels_from_points(PointsProperties, bpy.types.Operator):
+class OBJECT_OT_surfels_from_points(PointsProperties, ModalConversion, bpy.types.Operator):
     """Make a surfel of every point of the selected point clouds and meshes; what they lack, normals, sizes and \
 directions, is estimated from neighbouring points"""
 
@@ -54,49 +50,13 @@ directions, is estimated from neighbouring points"""
         draw_points_properties(self.layout, self)
         self.layout.prop(self, "source")
 
-    def execute(self, context):
-        collection, made, refused = context.collection, [], []
-        for source in selected_points(context):
-            try:
-                made.append((source, self._convert(context, source, collection)))
-            except (ValueError, MemoryError) as error:
-                refused.append((source.name, str(error) or "The memory does not suffice; convert fewer points."))
-        if made:
-            select_only(context, [new for _, new in made])
-        if self.source == "HIDE":
-            for source, _ in made:
-                source.hide_set(True)
-                source.hide_render = True
-        # An error fails a script's call; where others were converted, that would hide them from it.
-        for name, sentence in refused:
-            self.report({"WARNING" if made else "ERROR"}, f"{name}: {sentence}")
-        return {"FINISHED"} if made else {"CANCELLED"}
+    def _new_batch(self, context):
+        return PointsBatch(selected_points(context), keywords(self), lambda: viewpoint(self, context))
 
-    def _convert(self, context, source, fallback) -> bpy.types.Object:
-        start = time.perf_counter()
-        depsgraph = context.evaluated_depsgraph_get()
-        matrix_world, shear = without_shear(source.evaluated_get(depsgraph).matrix_world)
-        points = extract_points(source, depsgraph)
-        if not len(points.positions):
-            raise ValueError("It has no points.")
-        points = points if shear is None else sheared(points, shear)
-        eye = viewpoint(self, context)
-        surfels, report = surfels_from_points(
-            points.positions,
-            points.normals,
-            points.radii,
-            points.colors,
-            viewpoint=None if eye is None else np.array(matrix_world.inverted() @ eye),
-            **keywords(self),
-        )
-        made = add_surfel_object(
-            f"{source.name} surfels", surfels, matrix_world, collections_of(source, fallback), points.materials
-        )
-        seconds = time.perf_counter() - start
-        self.report({"INFO"}, f"{source.name}: {report.points:,} points -> {len(surfels):,} surfels in {seconds:.1f} s")
-        for note in report.notes():
-            self.report({"WARNING" if note.startswith("Skipped") else "INFO"}, f"{source.name}: {note}")
-        return made
+    def _tell(self, conversion):
+        for note in conversion.report.notes():
+            self.report({"WARNING" if note.startswith("Skipped") else "INFO"}, f"{conversion.name}: {note}")
+        self._hide(conversion.source)
 
 
 def draw_points_menu_entry(menu, context):

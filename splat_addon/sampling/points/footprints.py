@@ -7,6 +7,8 @@ Splats that cover their own Voronoi regions leave no hole between them. The regi
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .normals import CHUNK
@@ -35,13 +37,18 @@ _MAX_STRETCH = 8.0
 
 
 def tangent_ellipses(
-    positions: np.ndarray, normals: np.ndarray, neighbours: np.ndarray, splat_size: float
+    positions: np.ndarray,
+    normals: np.ndarray,
+    neighbours: np.ndarray,
+    splat_size: float,
+    report: Callable[[float], None] = lambda share: None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The ellipses' longer axes, (N, 3) float64 unit vectors, their half-axes, (N, 2) float64, and which are known.
 
     positions, normals: (N, 3) float64, normals unit. neighbours: (n, k) indices of the first n points' neighbours.
     splat_size: half-axis in units of the spacing, which is the edge of a square or rectangular region. An ellipse
     that would not cover its region is enlarged until it does. Known, (n,) bool, are those with a neighbour beside them.
+    report: called with the finished share.
     """
     count = len(neighbours)
     axes, half_axes, known = np.empty((count, 3)), np.empty((count, 2)), np.empty(count, bool)
@@ -58,6 +65,7 @@ def tangent_ellipses(
         angle, ellipses = _ellipses(_reaches(along_u / spacing, along_v / spacing, bounds), splat_size)
         half_axes[part] = ellipses * spacing[:, None]
         axes[part] = frame[0] * np.cos(angle)[:, None] + frame[1] * np.sin(angle)[:, None]
+        report(part.stop / count)
     return axes, half_axes, known
 
 

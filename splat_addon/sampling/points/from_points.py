@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...surfels import Surfels, axes_quaternions, empty_surfels
+from ..progress import Progress, stage
 from ..sample import DEFAULT_SPLAT_SIZE
 from .cells import spatial_order
 from .cleanup import finite_points, first_of_each, isolated_points
@@ -24,6 +25,9 @@ DEFAULT_NEIGHBOURS = 16
 _FEWEST_NEIGHBOURS = 3
 
 DEFAULT_COLOR = (0.8, 0.8, 0.8, 1.0)
+
+#: What the steps take of the time, from when to when.
+_STAGES = {"neighbours": (0.05, 0.6), "normals": (0.6, 0.7), "sides": (0.7, 0.85), "ellipses": (0.85, 1.0)}
 
 #: What becomes of points that stand alone.
 ISOLATED_CHOICES = {
@@ -42,6 +46,7 @@ def surfels_from_points(
     splat_size: float = DEFAULT_SPLAT_SIZE,
     isolated: str = "drop",
     viewpoint: tuple[float, float, float] | None = None,
+    progress: Progress | None = None,
 ) -> tuple[Surfels, PointsReport]:
     """Surfels of N points in the order of the points, and a report of what was left out and what was estimated.
 
@@ -50,6 +55,7 @@ def surfels_from_points(
     scene-linear, used where they are finite. neighbours: of each point, from which the rest is estimated.
     splat_size: half-axis of an estimated splat, in spacings. isolated: a name in `ISOLATED_CHOICES`.
     viewpoint: (3,), object units, where the scanner stood: estimated normals face it; None: they face outward.
+    progress: called now and then with the finished share, 0 to 1; where it returns False, `SamplingCancelled` rises.
 
     Raises ValueError with one sentence for wrong shapes or settings, and for too few usable points.
     """
@@ -66,7 +72,7 @@ def surfels_from_points(
     report = replace(report, duplicates=len(usable) - len(kept))
     order = kept[spatial_order(given["positions"][kept])]
     given = {name: values[order] for name, values in given.items() if values is not None}
-    surfels, keep, report = _estimate(given, neighbours, splat_size, isolated, viewpoint, report)
+    surfels, keep, report = _estimate(given, neighbours, splat_size, isolated, viewpoint, report, progress)
     rank = np.argsort(order[keep], kind="stable")
     arrays = {name: array[keep][rank] for name, array in surfels.items()}
     middle = (given["positions"].min(axis=0) + given["positions"].max(axis=0)) / 2
@@ -74,7 +80,7 @@ def surfels_from_points(
     return Surfels(origin=middle, **arrays), replace(report, surfels=len(rank))
 
 
-def _estimate(given, neighbours, splat_size, isolated, viewpoint, report):
+def _estimate(given, neighbours, splat_size, isolated, viewpoint, report, progress):
     """Fields of `Surfels` but the positions, indices of the points to keep, and the report."""
     positions = given["positions"]
     positions = positions - positions.mean(axis=0)
@@ -88,10 +94,11 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, report):
     alone = np.zeros(len(positions), bool)
     nearest, distances = np.empty((len(positions), 0), np.int32), np.empty((len(positions), 0), np.float32)
     if len(positions) > _FEWEST_NEIGHBOURS:
-        nearest, distances = nearest_neighbours(positions, min(neighbours, len(positions) - 1))
+        told = stage(progress, *_STAGES["neighbours"])
+        nearest, distances = nearest_neighbours(positions, min(neighbours, len(positions) - 1), told)
         alone = isolated_points(nearest, distances)
-    normals, parts = _normals(given, positions, missing_normals, nearest, viewpoint)
-    axes, scales = _ellipses(given, positions, normals, missing_radii, nearest, distances, alone, splat_size)
+    normals, parts = _normals(given, positions, missing_normals, nearest, viewpoint, progress)
+    axes, scales = _ellipses(given, positions, normals, missing_radii, nearest, distances, alone, splat_size, progress)
     colors, default_colors = _colors(given, len(positions))
     fields = {
         "rotations": axes_quaternions(axes, np.cross(normals, axes), normals),
@@ -111,12 +118,12 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, report):
     )  # fmt: skip
 
 
-def _normals(given, positions, missing, nearest, viewpoint) -> tuple[np.ndarray, int]:
+def _normals(given, positions, missing, nearest, viewpoint, progress) -> tuple[np.ndarray, int]:
     """(N, 3) float64 unit normals, and the connected parts that were oriented."""
     if not missing.any():
         return _unit(given["normals"]), 0
-    normals = plane_normals(positions, nearest)
-    signs, part = consistent_signs(positions, normals, nearest)
+    normals = plane_normals(positions, nearest, stage(progress, *_STAGES["normals"]))
+    signs, part = consistent_signs(positions, normals, nearest, stage(progress, *_STAGES["sides"]))
     normals *= signs[:, None]
     if viewpoint is None:
         normals *= facing_outward(positions, normals, part)[:, None]
@@ -130,12 +137,14 @@ def _normals(given, positions, missing, nearest, viewpoint) -> tuple[np.ndarray,
 
 
 def _ellipses(
-    given, positions, normals, missing, nearest, distances, alone, splat_size
+    given, positions, normals, missing, nearest, distances, alone, splat_size, progress
 ) -> tuple[np.ndarray, np.ndarray]:
     """(N, 3) unit directions of the first half-axis, and (N, 2) half-axes."""
     if not missing.any():
         return tangent_frames(normals)[0], np.repeat(given["radii"][:, None], 2, axis=1)
-    axes, scales, known = tangent_ellipses(positions, normals, nearest, splat_size)
+    axes, scales, known = tangent_ellipses(
+        positions, normals, nearest, splat_size, stage(progress, *_STAGES["ellipses"])
+    )
     # Nothing beside it in its own plane, or nothing near it at all: it is as large as the nearest that is better off.
     stray = alone | ~known
     at = np.flatnonzero(stray)

@@ -8,6 +8,8 @@ twice as large: dense regions are finished while the cells are small, sparse one
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .cells import Cells, fine_cell_size
@@ -23,11 +25,14 @@ _WORTH_LOOKING = 2.5
 _FEW = 16
 
 
-def nearest_neighbours(positions: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+def nearest_neighbours(
+    positions: np.ndarray, count: int, report: Callable[[float], None] = lambda share: None
+) -> tuple[np.ndarray, np.ndarray]:
     """(N, k) int32 indices and (N, k) float32 distances of each point's nearest others, nearest first.
 
     positions: (N, 3) float64, finite and pairwise different. count: k, at most N - 1. Distances are compared in
-    float32, so the order of neighbours that are equally far to 7 digits is arbitrary.
+    float32, so the order of neighbours that are equally far to 7 digits is arbitrary. report: called with the share of
+    the points that are finished.
     Raises ValueError where there are too few points.
     """
     total = len(positions)
@@ -39,19 +44,27 @@ def nearest_neighbours(positions: np.ndarray, count: int) -> tuple[np.ndarray, n
     waiting = np.arange(total)
     while len(waiting) > _FEW:
         cells = Cells(positions, size, waiting)
-        waiting = waiting[~_search(cells, count, neighbours, squares)]
+        done = total - len(waiting)
+        found = _search(cells, count, neighbours, squares, lambda more, done=done: report((done + more) / total))
+        waiting = waiting[~found]
         size *= 2
     _compare_with_all(positions, waiting, count, neighbours, squares)
     return neighbours, np.sqrt(squares)
 
 
-def _search(cells: Cells, count: int, neighbours: np.ndarray, squares: np.ndarray) -> np.ndarray:
-    """Fills the rows of the cells' queries that are certain, and says which of them are, (Q,) bool."""
+def _search(
+    cells: Cells, count: int, neighbours: np.ndarray, squares: np.ndarray, report: Callable[[int], None]
+) -> np.ndarray:
+    """Fills the rows of the cells' queries that are certain, and says which of them are, (Q,) bool.
+
+    report: called with how many are, now and then.
+    """
     candidates = cells.candidate_counts()
     certain = np.zeros(len(cells.queries), bool)
     worth = min(_WORTH_LOOKING * (count + 1), len(cells.order))
     queries = np.flatnonzero(candidates[cells.cell_of_query] >= worth)
     queries = queries[np.argsort(candidates[cells.cell_of_query[queries]], kind="stable")]
+    found_so_far = 0
     for part in _blocks(candidates[cells.cell_of_query[queries]]):
         of = queries[part]
         found, square = _nearest_in_block(cells, of, count)
@@ -61,6 +74,8 @@ def _search(cells: Cells, count: int, neighbours: np.ndarray, squares: np.ndarra
         neighbours[rows] = found[good]
         squares[rows] = square[good] * np.float32(cells.size) ** 2
         certain[of] = good
+        found_so_far += int(np.count_nonzero(good))
+        report(found_so_far)
     return certain
 
 

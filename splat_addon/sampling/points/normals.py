@@ -6,6 +6,8 @@ Hoppe et al. 1992, section 3.2. Up to sign; `orientation` chooses the side.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 #: Points handled at a time: their temporaries stay in the processor's cache.
@@ -15,10 +17,13 @@ CHUNK = 8192
 _DOUBTFUL = 1e-6
 
 
-def plane_normals(positions: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+def plane_normals(
+    positions: np.ndarray, neighbours: np.ndarray, report: Callable[[float], None] = lambda share: None
+) -> np.ndarray:
     """(N, 3) float64 unit normals of the planes that fit each point and its neighbours best, in either direction.
 
     positions: (N, 3) float64. neighbours: (n, k) indices of the first n points' neighbours; n may be below N.
+    report: called with the finished share.
     Neighbours on one line have no plane: then any direction across the line is returned.
     """
     normals = np.empty((len(neighbours), 3))
@@ -26,6 +31,7 @@ def plane_normals(positions: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
     for start in range(0, len(neighbours), CHUNK):
         part = slice(start, min(start + CHUNK, len(neighbours)))
         normals[part] = _least_directions(_covariances(columns, neighbours[part], part))
+        report(part.stop / len(neighbours))
     return normals
 
 

@@ -8,6 +8,8 @@ rounds instead of Prim's queue: in each, every part takes its best edge to anoth
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 #: Neighbours that the graph connects: more cost time, and bridge thin gaps.
@@ -18,11 +20,15 @@ _CHUNK = 1 << 16
 
 
 def consistent_signs(
-    positions: np.ndarray, normals: np.ndarray, neighbours: np.ndarray
+    positions: np.ndarray,
+    normals: np.ndarray,
+    neighbours: np.ndarray,
+    report: Callable[[float], None] = lambda share: None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """(N,) int8 signs, 1 or -1, that turn neighbouring normals to one side, and the (N,) connected part of each point.
 
     positions, normals: (N, 3) float64. neighbours: (N, k) indices. Parts are numbered from 0 without gaps.
+    report: called with the share of the edges that are dealt with.
     """
     ends = _edges(neighbours[:, :GRAPH_NEIGHBOURS])
     agreement = _agreement(positions, normals, ends)
@@ -37,6 +43,7 @@ def consistent_signs(
         part = parent[part]
         between = np.flatnonzero(part[ends[0]] != part[ends[1]])
         ends, turned = ends[:, between], turned[between]
+        report(1 - ends.shape[1] / len(agreement))
     return np.where(flipped, -1, 1).astype(np.int8), np.unique(part, return_inverse=True)[1]
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.attributes import has_surfels
+from splat_addon.blender.points_conversion import PointsBatch
 
 
 def sphere(count=2000):
@@ -161,3 +162,26 @@ def test_one_source_without_points_does_not_stop_the_others(scan, add_mesh, conv
 def test_surfels_are_not_converted_again(scan, convert_points):
     convert_points()
     assert not bpy.ops.object.surfels_from_points.poll()
+
+
+def test_a_cancelled_batch_adds_nothing_and_leaves_its_sources(scan):
+    batch = PointsBatch([scan], {}, lambda: None)
+    names_before, shares = (set(bpy.data.objects.keys()), set(bpy.data.meshes.keys())), []
+
+    def cancel(share):
+        shares.append(share)
+        batch.is_cancelled = share > 0.7
+
+    for conversion in batch.prepared(bpy.context):
+        batch.sample(conversion, cancel)
+    assert 0.7 < shares[-1] < 0.9 and not batch.has_surfels and not batch.refused
+    assert (set(bpy.data.objects.keys()), set(bpy.data.meshes.keys())) == names_before
+    assert scan.select_get() and len(scan.data.vertices) == len(conversion.points.positions)
+
+
+def test_progress_rises_to_the_end(scan):
+    shares = []
+    batch = PointsBatch([scan], {}, lambda: None)
+    for conversion in batch.prepared(bpy.context):
+        batch.sample(conversion, shares.append)
+    assert shares == sorted(shares) and shares[-1] == 1.0 and shares[0] < 0.6

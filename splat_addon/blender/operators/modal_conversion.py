@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the converting operators share: from a button or a menu the sampling runs in a thread, so that the window shows
+progress and Esc cancels; from a script, in background and from the redo panel it runs to its end in `execute`."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import bpy
+
+from ..conversion_batch import Batch
+
+_TIMER_SECONDS = 0.05
+
+
+class ModalConversion:
+    """A mix-in for operators that have the property `source`, "KEEP" or "HIDE"."""
+
+    def _new_batch(self, context: bpy.types.Context) -> Batch:
+        """Of what is selected, as the properties say. Raises ValueError with a sentence."""
+        raise NotImplementedError
+
+    def _tell(self, conversion) -> None:
+        """Report what became of a conversion, and do with its sources what always is done."""
+        raise NotImplementedError
+
+    def execute(self, context):
+        batch = self._new_batch(context)
+        manager = context.window_manager
+        manager.progress_begin(0.0, 1.0)
+        try:
+            for conversion in batch.prepared(context):
+                batch.sample(conversion, manager.progress_update)
+        finally:
+            manager.progress_end()
+        return self._finish(context, batch)
+
+    def invoke(self, context, event):
+        if bpy.app.background:
+            return self.execute(context)
+        self._batch = self._new_batch(context)
+        self._prepared = self._batch.prepared(context)
+        self._executor, self._sampling = ThreadPoolExecutor(max_workers=1), None
+        self._timer = context.window_manager.event_timer_add(_TIMER_SECONDS, window=context.window)
+        context.window_manager.progress_begin(0.0, 1.0)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type == "ESC":
+            self._batch.is_cancelled = True
+        if event.type == "TIMER":
+            self._show_progress(context)
+            if self._sampling is None or self._sampling.done():
+                return self._next_source(context)
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context):
+        """Blender is closing or loading another file."""
+        self._batch.is_cancelled = True
+        self._end_modal(context)
+
+    def _next_source(self, context):
+        try:
+            if self._sampling is not None:
+                self._sampling.result()
+            conversion = None if self._batch.is_cancelled else next(self._prepared, None)
+        except BaseException:
+            self._end_modal(context)
+            raise
+        if conversion is None:
+            self._end_modal(context)
+            return self._finish(context, self._batch)
+        self._sampling = self._executor.submit(self._batch.sample, conversion)
+        return {"RUNNING_MODAL"}
+
+    def _show_progress(self, context):
+        context.window_manager.progress_update(self._batch.share)
+        context.workspace.status_text_set(f"Converting to surfels: {self._batch.share:.0%}   Esc cancels")
+
+    def _end_modal(self, context):
+        self._executor.shutdown()
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        context.workspace.status_text_set(None)
+
+    def _finish(self, context, batch):
+        if batch.is_cancelled:
+            self.report({"INFO"}, "The conversion to surfels was cancelled; nothing was changed")
+            return {"CANCELLED"}
+        made = batch.place_all(context) if batch.has_surfels else []
+        for conversion, _ in made:
+            self.report({"INFO"}, f"{conversion.name}: {conversion.summary()}")
+            self._tell(conversion)
+        # An error fails a script's call; where others were converted, that would hide them from it.
+        for name, sentence in batch.refused:
+            self.report({"WARNING" if made else "ERROR"}, f"{name}: {sentence}")
+        return {"FINISHED"} if made else {"CANCELLED"}
+
+    def _hide(self, source: bpy.types.Object) -> None:
+        """If that is asked for."""
+        if self.source == "HIDE":
+            source.hide_set(True)
+            source.hide_render = True
