@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Epsilon from 0 to 100 radii: the picture is the true one for that epsilon, and no splat hides itself."""
 
+from importlib import import_module
+
 import numpy as np
 import pytest
 
@@ -22,5 +24,13 @@ def test_any_epsilon_gives_its_true_picture(epsilon, least, hold):
 def test_no_splat_hides_itself(angle, epsilon, hold, lit, camera, is_unfiltered):
     """Moved back by less than rounding it would, here and there; which of coplanar splats is seen is left open."""
     settings = Settings(supersampling=2, epsilon=epsilon)
+    ((frame, truth),) = hold({"sheet": (lit(sheet(30, 1.0, angle, 2.0)), camera(), settings)}, least=0).values()
+    assert not is_unfiltered or np.count_nonzero(frame.coverage < truth.coverage) <= 2
+
+
+@pytest.mark.parametrize("angle", [0, 60, 85])
+def test_no_splat_hides_itself_in_linear_depth(angle, hold, lit, camera, is_unfiltered, monkeypatch):
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_HARDWARE_DEPTH_RATIO", 0)
+    settings = Settings(supersampling=2, epsilon=0)
     ((frame, truth),) = hold({"sheet": (lit(sheet(30, 1.0, angle, 2.0)), camera(), settings)}, least=0).values()
     assert not is_unfiltered or np.count_nonzero(frame.coverage < truth.coverage) <= 2
