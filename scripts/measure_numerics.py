@@ -32,7 +32,7 @@ import numpy as np  # noqa: E402
 
 from splat_addon.reference import render_exact, scenes  # noqa: E402
 from splat_addon.reference.extremes import discs, sheet, speck, transformed  # noqa: E402
-from splat_addon.reference.metrics import psnr  # noqa: E402
+from splat_addon.reference.metrics import psnr, srgb  # noqa: E402
 from splat_addon.rendering import Camera, Instance, Light, Renderer, Scene, Settings, look_at, open_device  # noqa: E402
 from splat_addon.rendering.methods import METHODS  # noqa: E402
 
@@ -220,6 +220,33 @@ FIGURES = {
 }
 
 
+#: method -> what shows its formula's limit, as (label, scene, camera): tests/extremes' known failures.
+FAILURES = {
+    "affine": (
+        lambda: ("sheet at 68 degrees", lit(sheet(30, 1.0, 68, 2.0)), origin_camera()),
+        lambda: ("window 5 widths off the axis", *next(s for s in off_axis() if s[0] == 5)[1:3]),
+    ),
+    "ewa": (lambda: ("one disc, a floor", *next(s for s in giants() if s[0] > 300)[1:3]),),
+    "raycast": (lambda: ("sheet edge-on", lit(sheet(30, 1.0, 90, 2.0)), origin_camera()),),
+    "homogeneous": (lambda: ("ellipses 10 : 1", *next(s for s in ratio() if s[0] == 10)[1:3]),),
+}
+
+
+def draw_failures(path: Path, device) -> None:
+    """Above what the methods draw, below the truth."""
+    shots = [(method, *make()) for method, makers in FAILURES.items() for make in makers]
+    figure, axes = plt.subplots(2, len(shots), figsize=(2 * len(shots), 4.3), layout="constrained")
+    for (above, below), (method, label, scene, camera) in zip(axes.T, shots, strict=True):
+        frame = Renderer(device).render(scene, camera, Settings(method=method, supersampling=SAMPLES))
+        for axis, picture in ((above, frame), (below, render_exact(scene, camera, samples=SAMPLES))):
+            axis.imshow(srgb(picture.color[..., :3]), origin="lower", interpolation="nearest")
+            axis.set(xticks=(), yticks=())
+        above.set_title(f"{method}: {label}", fontsize=7)
+        below.set_xlabel("truth", fontsize=7)
+    figure.savefig(path, dpi=80)
+    plt.close(figure)
+
+
 @dataclass(frozen=True)
 class Found:
     """At one x: the PSNR, at most `EQUAL`; empty pixels; numbers that are not finite."""
@@ -239,9 +266,13 @@ def measured(panel: Panel, device) -> dict[str, list[Found]]:
         for name, value in panel.limits.items():
             setattr(PLAN, name, value)
         for x, scene, camera, changes in panel.shots():
-            truth = render_exact(scene, camera, Settings(**changes), samples=SAMPLES) if panel.against == "truth" else None
+            truth = (
+                render_exact(scene, camera, Settings(**changes), samples=SAMPLES) if panel.against == "truth" else None
+            )
             for method in METHODS:
-                frame = renderers[method].render(scene, camera, Settings(method=method, supersampling=SAMPLES, **changes))
+                frame = renderers[method].render(
+                    scene, camera, Settings(method=method, supersampling=SAMPLES, **changes)
+                )
                 known = truth or firsts.setdefault(method, frame)
                 empty = np.count_nonzero((known.coverage > 0.999) & (frame.coverage == 0))
                 not_finite = sum(np.count_nonzero(~np.isfinite(a)) for a in (frame.color, frame.depth, frame.normal))
@@ -285,14 +316,16 @@ def row(name: str, results: dict[str, list[Found]]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "numerics")
-    parser.add_argument("--only", choices=FIGURES, help="one figure")
+    parser.add_argument("--only", choices=[*FIGURES, "failures"], help="one figure")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     device = open_device("standalone")
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout
     print(f"{device.renderer}, {device.backend}, {datetime.date.today()}, commit {commit.strip()}", flush=True)
+    if options.only in (None, "failures"):
+        draw_failures(options.out / "failures.png", device)
     table = []
-    for file in [options.only] if options.only else FIGURES:
+    for file in FIGURES if options.only is None else FIGURES.keys() & {options.only}:
         results = {}
         for panel in FIGURES[file]:
             results[panel.name] = measured(panel, device)
@@ -301,6 +334,8 @@ def main() -> None:
                 print(f"{panel.name}, {method}: " + ", ".join(values), flush=True)
             table.append(row(panel.name, results[panel.name]))
         draw_figure(options.out / f"{file}.png", FIGURES[file], results)
+    if not table:
+        return
     print("\n| least dB | " + " | ".join(METHODS) + " |\n|" + "---|" * (len(METHODS) + 1))
     print("\n".join(table))
 
