@@ -42,6 +42,9 @@ ShadedSample shaded_sample(ivec2 texel, int look) {
 #else
   vec3 material = shading.material.xyz;
 #endif
+#ifdef SHADOWS
+  shadow_turn = 0.125 + 0.25 * float((texel.x & 1) + 2 * (texel.y & 1));
+#endif
 #ifdef LIGHT_SET_TARGET
   light_set = texelFetch(light_set_sum, texel, 0);
   light_set /= dot(light_set, vec4(1.0));

@@ -6,6 +6,10 @@
 vec4 light_set;  // of the sample that is shaded: its share of each set of objects
 #endif
 
+#ifdef SHADOWS
+#include "shading/shadow.glsl"
+#endif
+
 struct Incident {
   vec3 to_light;    // unit
   vec3 irradiance;  // of a surface that faces it
@@ -18,7 +22,8 @@ struct Incident {
 
 const float LEAST_SIZE = 2e-3;  // half-side over distance, below which a light is a point
 
-Incident incident(int light, vec3 position) {
+// normal: of the surface that is lit.
+Incident incident(int light, vec3 position, vec3 normal) {
   vec4 place = texelFetch(lights, ivec2(0, light), 0);
   vec4 strength = texelFetch(lights, ivec2(1, light), 0);
   vec4 axis = texelFetch(lights, ivec2(2, light), 0);
@@ -53,6 +58,16 @@ Incident incident(int light, vec3 position) {
     // What a sun sends is given as irradiance.
     here.radiance = place.w > 0.5 ? spread * open * open * (3.0 - 2.0 * open)
                                   : strength.rgb / (4.0 * rim * atan(rim));
+  }
+#endif
+#ifdef SHADOWS
+  vec4 caster = texelFetch(lights, ivec2(6, light), 0);
+  if (caster.y > 0.0 && dot(here.irradiance, vec3(1.0)) > 0.0) {
+    float lit = lit_share(caster, position, normal);
+    here.irradiance *= lit;
+#ifdef SIZED_LIGHTS
+    here.radiance *= lit;
+#endif
   }
 #endif
   return here;

@@ -78,7 +78,7 @@ vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
 #ifdef LIGHTS
   int count = int(shading.options.y);
   for (int i = 0; i < count; i++) {
-    Incident light = incident(i, position);
+    Incident light = incident(i, position, normal);
 #ifdef SIZED_LIGHTS
     if (light.is_sized) {
       radiance += from_quad(lobe, light);

@@ -48,7 +48,7 @@ class _LiveMesh:
     content: ExtractedMesh | None = None
     materials: tuple[Material, ...] = ()
     matrices: list[np.ndarray] = field(default_factory=list)
-    light_sets: list[int] = field(default_factory=list)
+    lightings: list[dict] = field(default_factory=list)
     owner: str = ""
     tracked: TrackedSurfels | None = None
     fineness: dict[str, float] = field(default_factory=dict)
@@ -91,19 +91,22 @@ class LiveMeshes:
         self._images.clear()
 
     def add(
-        self, evaluated: bpy.types.Object, owner: bpy.types.Object, matrix_world: np.ndarray, light_set: int, notes
+        self, evaluated: bpy.types.Object, owner: bpy.types.Object, matrix_world: np.ndarray, lighting: dict, notes
     ) -> None:
-        """An entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry lives."""
+        """An entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry lives.
+
+        lighting: of its `Instance`, by field.
+        """
         key = mesh_key(evaluated)
         if key not in self._frame:
             live = self._kept.setdefault(self._lasting_key(evaluated), _LiveMesh())
-            live.matrices, live.light_sets, live.owner = [], [], owner.name
+            live.matrices, live.lightings, live.owner = [], [], owner.name
             if live.key != key or self._changed is None or evaluated.data.name_full in self._changed:
                 self._read(live, evaluated, notes)
                 live.key = key
             self._frame[key] = live
         self._frame[key].matrices.append(matrix_world)
-        self._frame[key].light_sets.append(light_set)
+        self._frame[key].lightings.append(lighting)
 
     def instances(self, depsgraph: bpy.types.Depsgraph, fineness: dict[str, float], notes) -> list[Instance]:
         """All that were added to this frame, sampled; the places of one mesh share its surfels."""
@@ -116,8 +119,8 @@ class LiveMeshes:
             except ValueError as error:
                 notes.add(f"{live.owner} is left out: {error}")
                 continue
-            places = zip(live.matrices, live.light_sets, strict=True)
-            made += [Instance(surfels, matrix, live.materials, light_set=number) for matrix, number in places]
+            places = zip(live.matrices, live.lightings, strict=True)
+            made += [Instance(surfels, matrix, live.materials, **lighting) for matrix, lighting in places]
             self.counts["meshes"] += 1
             self.counts["surfels"] += len(surfels)
         self._kept = {name: live for name, live in self._kept.items() if name in self._names}

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 from ..rendering.methods import METHODS
-from ..rendering.settings import ACCUMULATIONS, MAX_SUPERSAMPLING, SHADINGS, Settings
+from ..rendering.settings import ACCUMULATIONS, MAX_SHADOW_RESOLUTION, MAX_SUPERSAMPLING, SHADINGS, Settings
 from ..rendering.storages import STORAGES
 from .ids import RENDER_SETTINGS
 from .mesh_sampling_settings import MeshSamplingProperties
@@ -55,6 +55,16 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         soft_max=5.0,
         default=Settings.epsilon,
     )
+    shadow_resolution: IntProperty(
+        name="Resolution",
+        description=(
+            "Texels along the side of a shadow map; 0 leaves shadows out. A sun or a spot has one map, a point up to "
+            "six. Each map costs a visibility pass, and each light of a size 64 looks into it a sample"
+        ),
+        min=0,
+        max=MAX_SHADOW_RESOLUTION,
+        default=Settings.shadow_resolution,
+    )
     storage: EnumProperty(
         name="Surfel Storage",
         description="How surfels lie on the graphics device",
@@ -92,6 +102,7 @@ def _settings(scene, **choices) -> Settings:
         method=properties.method,
         shading=properties.shading,
         epsilon=properties.epsilon,
+        shadow_resolution=properties.shadow_resolution,
         storage=properties.storage,
         accumulation=properties.accumulation,
         transparent_film=scene.render.film_transparent,

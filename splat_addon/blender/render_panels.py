@@ -42,6 +42,12 @@ class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):
     properties = ("shading", "epsilon")
 
 
+class RENDER_PT_surfel_shadows(_RenderPanel, bpy.types.Panel):
+    bl_label = "Shadows"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("shadow_resolution",)
+
+
 class RENDER_PT_surfel_performance(_RenderPanel, bpy.types.Panel):
     bl_label = "Performance"
     bl_options = frozenset({"DEFAULT_CLOSED"})
@@ -88,7 +94,13 @@ def stock_panels() -> Iterator[type]:
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (RENDER_PT_surfel_sampling, RENDER_PT_surfel_surface, RENDER_PT_surfel_performance, VIEWLAYER_PT_surfel_passes)
+    (
+        RENDER_PT_surfel_sampling,
+        RENDER_PT_surfel_surface,
+        RENDER_PT_surfel_shadows,
+        RENDER_PT_surfel_performance,
+        VIEWLAYER_PT_surfel_passes,
+    )
 )
 
 

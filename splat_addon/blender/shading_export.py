@@ -37,6 +37,7 @@ def light_of(light: bpy.types.Light, matrix_world: np.ndarray, notes) -> Light |
         light.energy * 2.0**light.exposure,
         position=tuple(matrix_world[:3, 3]),
         direction=tuple(-matrix_world[:3, 2]),
+        casts_shadow=light.use_shadow,
         **shape,
     )
     if light.normalize:

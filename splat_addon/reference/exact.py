@@ -74,24 +74,24 @@ def shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, s
         _, direction = grid.rays(np.arange(grid.count))
         rays[:, :3], rays[:, 3] = WorldLight(scene, camera).background(direction), 1
     hit = surface.rays
-    rays[hit, :3] = SHADERS[settings.shading](surface, grid, scene, camera)
+    rays[hit, :3] = SHADERS[settings.shading](surface, grid, scene, camera, settings.epsilon)
     rays[hit, 3] = rays[hit, 7] = 1
     rays[hit, 4:7] = surface.normal
     return rays.reshape(*grid.shape, 8)
 
 
-def _flat(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera) -> np.ndarray:
+def _flat(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, epsilon: float) -> np.ndarray:
     return surface.color
 
 
-def _principled(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera) -> np.ndarray:
+def _principled(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, epsilon: float) -> np.ndarray:
     origin, direction = grid.rays(surface.rays)
     position = origin + surface.depth[:, None] * direction
-    incident, world = all_incident(scene, camera, position, surface.light_set), WorldLight(scene, camera)
+    incident, world = all_incident(scene, camera, position, surface.light_set, epsilon), WorldLight(scene, camera)
     return surface.emission + principled_radiance(surface, direction, incident, world)
 
 
-#: shading -> (surface, grid, scene, camera) to (n, 3) radiance of the rays that hit
+#: shading -> (surface, grid, scene, camera, epsilon) to (n, 3) radiance of the rays that hit
 SHADERS = {"flat": _flat, "principled": _principled}
 
 

@@ -17,6 +17,7 @@ from ..rendering.camera import Camera
 from ..rendering.light import MAX_SUN_HALF_ANGLE, Light
 from ..rendering.scene import Scene
 from .brdf import unit
+from .shadows import lit_share
 
 #: Half-side over distance below which a light is taken for a point.
 LEAST_SIZE = 2e-3
@@ -100,9 +101,15 @@ def _facing(to_light: np.ndarray, half_side) -> tuple[np.ndarray, np.ndarray]:
     return u * np.reshape(half_side, (-1, 1)), np.cross(to_light, u) * np.reshape(half_side, (-1, 1))
 
 
-def all_incident(scene: Scene, camera: Camera, position: np.ndarray, light_set: np.ndarray) -> list[Incident]:
-    """Of every light of the scene, as far as it lights the sets (n, 4) that places belong to."""
-    return [incident(light, camera, position).times(_linked(light, light_set)) for light in scene.lights]
+def all_incident(scene: Scene, camera: Camera, position, light_set, epsilon: float) -> list[Incident]:
+    """Of every light, at positions (n, 3) that belong to sets (n, 4) of objects; epsilon: of `lit_share`."""
+    arriving = []
+    for light in scene.lights:
+        share = _linked(light, light_set)
+        if light.casts_shadow:
+            share = share * lit_share(light, scene, camera, position, epsilon)
+        arriving.append(incident(light, camera, position).times(share))
+    return arriving
 
 
 def _linked(light: Light, light_set: np.ndarray) -> np.ndarray:

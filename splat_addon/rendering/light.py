@@ -28,6 +28,7 @@ class Light:
     size: radians across a sun, or the radius of a point or spot; 0 is a light without size.
     spot_angle: radians across a spot's cone; spot_blend: 0 to 1, how soft its rim is.
     receivers: numbers of the sets of instances (`Instance.light_set`) that it lights, or None for all.
+    casts_shadow: whether what it meets first keeps it from what lies behind.
     half_axes: (2, 3) world, from an area's middle to the middles of two sides; is_round: they are an ellipse's.
     """
 
@@ -42,6 +43,7 @@ class Light:
     half_axes: tuple[tuple[float, float, float], tuple[float, float, float]] = ((0.5, 0.0, 0.0), (0.0, 0.5, 0.0))
     is_round: bool = False
     receivers: tuple[int, ...] | None = None
+    casts_shadow: bool = False
 
     def __post_init__(self):
         if self.kind not in KINDS:
@@ -69,18 +71,21 @@ class Light:
 
 
 #: Rows of float32 texels a light: see shaders/shading/lights.glsl.
-TEXELS_PER_LIGHT = 6
+TEXELS_PER_LIGHT = 7
 
 #: A square with the area of a disc has this half-side in radii.
 _SQUARED = math.sqrt(math.pi) / 2
 
 
-def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: float) -> np.ndarray:
-    """(L, 6, 4) float32, in scaled view space; world_to_view: (4, 4) float64.
+def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: float, map_ranges=None) -> np.ndarray:
+    """(L, 7, 4) float32, in scaled view space; world_to_view: (4, 4) float64.
+
+    map_ranges: (L, 2) the first and the number of each light's shadow maps, or None without shadows.
 
     place, w: 1, or for a sun the direction to it and 0 | irradiance at distance 1 that faces it (of an area the
     intensity along its axis), half-side of a square as large as it | axis, cosine of a spot's half-angle | half-axis u,
-    1 / width of a spot's rim | half-axis v, 1 for an area | 1 for each set that it lights.
+    1 / width of a spot's rim | half-axis v, 1 for an area | 1 for each set that it lights |
+    first shadow map, number of shadow maps, size of the lamp that casts them.
     """
     texels = np.zeros((len(lights), TEXELS_PER_LIGHT, 4))
     rotation = world_to_view[:3, :3]
@@ -103,6 +108,9 @@ def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: flo
             squared = _SQUARED if light.is_round else 1.0
             row[3, :3], row[4, :3] = (np.asarray(light.half_axes, np.float64) @ rotation.T) * scale * squared
             row[4, 3] = 1.0
+    if map_ranges is not None:
+        texels[:, 6, :2] = map_ranges
+        texels[:, 6, 2] = [_LAMP_SIZES[light.kind](light, scale) for light in lights]
     return texels.astype(np.float32)
 
 
@@ -120,3 +128,11 @@ def _area(light: Light, scale: float) -> tuple[float, float]:
 
 
 _STRENGTHS = {"sun": _sun, "point": _point, "spot": _point, "area": _area}
+
+#: Half the width of what casts soft shadows, in scaled view units; of a sun the tangent of half its angle.
+_LAMP_SIZES = {
+    "sun": lambda light, _: math.tan(min(light.size / 2, MAX_SUN_HALF_ANGLE)),
+    "point": lambda light, scale: light.size * scale,
+    "spot": lambda light, scale: light.size * scale,
+    "area": lambda light, scale: math.sqrt(light.area / math.pi) * scale,
+}

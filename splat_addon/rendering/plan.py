@@ -15,6 +15,7 @@ from .methods import Method, get_method
 from .packing import shared_emission, shared_material
 from .scene import Material, Scene
 from .settings import Settings
+from .shadow import MAX_MAPS, ShadowMap, atlas_size, shadow_maps
 from .storages import get_storage
 from .view import DepthExtent, depth_extent
 
@@ -47,6 +48,7 @@ TEXTURES = {
     "light_set_sum": ("RGBA32F", "sample"),
     "shaded": ("RGBA32F", "sample"),
     "surface": ("RGBA32F", "sample"),
+    "shadow_depth": ("DEPTH32F", "frame"),
     "combined": ("RGBA32F", "pixel"),
     "depth": ("R32F", "pixel"),
     "normal_coverage": ("RGBA32F", "pixel"),
@@ -67,12 +69,14 @@ SPLAT_PASSES = ("visibility", "attributes")
 class PlannedPass:
     """name: also of its pipeline. reason: why the frame needs it.
     reads, writes: names of textures in slot order; "lights" holds the scene's.
+    is_shared: made with the first tile, for all.
     """
 
     name: str
     reason: str
     reads: tuple[str, ...]
     writes: tuple[str, ...]
+    is_shared: bool = False
 
 
 @dataclass(frozen=True)
@@ -85,6 +89,7 @@ class FramePlan:
     storage, accumulation: as in the settings.
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
     features: (name, why), of what shaders do beside the least; each name is defined in their text.
+    shadow_maps: what lights see, in the order of the lights.
     left_out: (what, why), of what other scenes or settings would need.
     """
 
@@ -102,6 +107,7 @@ class FramePlan:
     linear_depth: bool
     passes: tuple[PlannedPass, ...]
     features: tuple[tuple[str, str], ...]
+    shadow_maps: tuple[ShadowMap, ...]
     left_out: tuple[tuple[str, str], ...]
 
     def has(self, feature: str) -> bool:
@@ -120,6 +126,14 @@ class FramePlan:
             "sample": self.samples,
             "visibility sample": self.samples * self.visibility_samples,
         }[TEXTURES[texture][1]]
+
+    def is_shared(self, texture: str) -> bool:
+        """Whether all tiles have it in common."""
+        return TEXTURES[texture][1] == "frame"
+
+    def shared_size(self, texture: str) -> tuple[int, int]:
+        """Width and height of such a one."""
+        return {"shadow_depth": atlas_size}[texture](self.shadow_maps)
 
     def format(self, texture: str) -> str:
         """A name in `device.interface.FORMATS`."""
@@ -162,7 +176,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
             "to 0 and use supersampling, or method quad."
         )
     material, emission = shared_material(scene.surfels), shared_emission(scene.surfels)
-    linear_depth, passes, features, left_out = False, (), (), []
+    linear_depth, passes, features, maps, left_out = False, (), (), (), []
     if not any(len(instance.surfels) for instance in scene.surfels):
         left_out.append(("all other passes", "the scene has no surfels, so the picture is its background"))
         if _shows_environment(scene, settings):
@@ -172,10 +186,14 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         extent = depth_extent(scene, camera, settings.epsilon)
         linear_depth, why_depth = _linear_depth(camera, extent)
         sums = _sums(scene, settings, material, emission, left_out)
+        maps = _shadow_maps(scene, camera, settings, left_out)
+        reads = _read_by_shading(scene, settings, sums, maps, left_out)
+        shadows = (_shadow_pass(scene, maps),) if maps else ()
         passes = (
+            *shadows,
             PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
             *_attribute_passes(method, _why_attributes(scene, method), sums, left_out),
-            *_shading_passes(scene, settings, method, _read_by_shading(scene, settings, sums, left_out), left_out),
+            *_shading_passes(scene, settings, method, reads, left_out),
         )
         features = _splat_features(extent, left_out) + _features(scene, settings, emission, left_out)
         if not linear_depth:
@@ -196,6 +214,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         linear_depth,
         passes,
         features,
+        maps,
         tuple(left_out),
     )
 
@@ -246,7 +265,27 @@ def _attribute_passes(method: Method, why: str, sums: tuple[str, ...], left_out:
     )
 
 
-def _read_by_shading(scene: Scene, settings: Settings, sums: tuple[str, ...], left_out: list) -> tuple[str, ...]:
+def _shadow_maps(scene: Scene, camera: Camera, settings: Settings, left_out: list) -> tuple[ShadowMap, ...]:
+    if settings.shading == "flat" or not settings.shadow_resolution:
+        left_out.append(("shadows", "they are switched off, or nothing is lit"))
+        return ()
+    maps, without = shadow_maps(scene, camera, settings.shadow_resolution)
+    if without:
+        left_out.append((f"shadows of {without} lights", f"there is room for {MAX_MAPS} maps"))
+    if not maps:
+        left_out.append(("shadows", "no light casts any that the picture shows"))
+    return maps
+
+
+def _shadow_pass(scene: Scene, maps: tuple[ShadowMap, ...]) -> PlannedPass:
+    casting = len({made.light for made in maps})
+    why = f"{casting} of {len(scene.lights)} lights cast shadows, through {len(maps)} maps"
+    return PlannedPass("shadow_maps", why, (), ("shadow_depth",), is_shared=True)
+
+
+def _read_by_shading(
+    scene: Scene, settings: Settings, sums: tuple[str, ...], maps: tuple[ShadowMap, ...], left_out: list
+) -> tuple[str, ...]:
     reads = list(sums)
     if settings.shading == "flat":
         left_out.append(("lights", "flat shading does not look at lights"))
@@ -254,6 +293,8 @@ def _read_by_shading(scene: Scene, settings: Settings, sums: tuple[str, ...], le
         reads.append("brdf_table")
         if scene.lights:
             reads.append("lights")
+            if maps:
+                reads += ["shadow_maps", "shadow_depth"]
         else:
             left_out.append(("lights", "the scene has none"))
         if scene.environment:

@@ -17,6 +17,7 @@ from .plan import FramePlan, plan
 from .resources import Resources
 from .scene import Scene
 from .settings import OUTPUTS, Settings
+from .shadow import casting
 from .storages import get_storage
 from .view import look
 
@@ -114,10 +115,11 @@ class Renderer:
             {texture_key(name, size, frame_plan) for name in frame_plan.textures for size in sizes}
         )
         self.resources.forget_atlases_but({instance.textures for instance in scene.surfels})
+        shadow_views = tuple(look(casting(scene), made.camera, settings.epsilon) for made in frame_plan.shadow_maps)
         for number, tile in enumerate(frame_plan.tiles):
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
             view = look(scene, tile_camera, settings.epsilon)
-            context = TileContext(self.resources, frame_plan, scene, tile_camera, settings, view)
+            context = TileContext(self.resources, frame_plan, scene, tile_camera, settings, view, shadow_views)
             stats["splats"] += sum(len(p.instance.surfels) for p in view.placed)
             stats["instances"] += len(view.placed)
             stats["instances_outside"] += view.outside
@@ -126,6 +128,8 @@ class Renderer:
             stats["surfels_coarse"] = max(stats["surfels_coarse"], sum(s.coarse for s in stored))
             target = None
             for step, planned in enumerate(frame_plan.passes):
+                if number and planned.is_shared:
+                    continue
                 done = (number + step / len(frame_plan.passes)) / len(frame_plan.tiles)
                 if progress and progress(done, planned.name) is False:
                     raise RenderCancelled

@@ -65,6 +65,7 @@ class Instance:
     matrix_world: (4, 4), object to world, any invertible affine map (mirrored, non-uniform, sheared).
     materials: what `Surfels.materials` indexes; an index past the end uses the last one.
     light_set: number of the set of instances that the same lights light (`Light.receivers`).
+    casts_shadow: whether it does where a light casts shadows.
     textures: indexed alike; where one is None, and for surfels without texture coordinates, the surfels' own colours
         are shown.
     """
@@ -73,6 +74,7 @@ class Instance:
     matrix_world: np.ndarray = field(default_factory=lambda: np.eye(4))
     materials: tuple[Material, ...] = (Material(),)
     light_set: int = 0
+    casts_shadow: bool = True
     textures: tuple[SurfaceTexture | None, ...] = ()
 
     def __post_init__(self):
@@ -110,6 +112,13 @@ class Instance:
         pick = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
         model_view = self.model_view(camera)
         return np.where(pick, high, low) @ model_view[:3, :3].T + model_view[:3, 3]
+
+    def world_corners(self) -> np.ndarray:
+        """(8, 3) float64 corners of a box around every ellipse, in the world."""
+        low, high = self.surfels.local_bounds
+        pick = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
+        corners = np.where(pick, high, low) + self.surfels.origin
+        return corners @ self.matrix_world[:3, :3].T + self.matrix_world[:3, 3]
 
     def hides_backs(self, camera: Camera) -> bool:
         """Whether no back can be seen: solid, and wholly beyond the near plane, so that the camera is outside."""

@@ -27,6 +27,9 @@ MAX_SUPERSAMPLING = 16
 #: Samples a pixel that hardware may offer; 0 is none of its own.
 MULTISAMPLING = (0, 2, 4, 8)
 
+#: Eight maps of that size beside one another are the widest texture that every tested backend has.
+MAX_SHADOW_RESOLUTION = 2048
+
 #: the arrays of a `Frame`
 OUTPUTS = ("color", "depth", "normal", "coverage")
 
@@ -43,6 +46,7 @@ class Settings:
         threshold, section 4.5); 1 is one splat's centre, 0 covers whatever a splat reaches.
     epsilon: how far, in radii of each splat, the visibility pass moves it back along the view ray;
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
+    shadow_resolution: texels along the side of a shadow map; 0 leaves shadows out.
     transparent_film: leave the background out and keep its alpha at 0.
     outputs: which arrays of the `Frame` are wanted; the others are None and cost nothing.
     storage: the form in which surfels lie on the device, a name in `rendering.storages`.
@@ -57,6 +61,7 @@ class Settings:
     sample_shading: bool = False
     edge_threshold: float = 0.0
     epsilon: float = 0.5
+    shadow_resolution: int = 1024
     transparent_film: bool = False
     outputs: tuple[str, ...] = OUTPUTS
     storage: str = "float32"
@@ -74,6 +79,8 @@ class Settings:
             raise ValueError(f"multisampling must be one of {MULTISAMPLING}, not {self.multisampling!r}.")
         if not (math.isfinite(self.edge_threshold) and self.edge_threshold >= 0):
             raise ValueError(f"edge_threshold must be 0 or more splat weights, not {self.edge_threshold}.")
+        if self.shadow_resolution not in range(MAX_SHADOW_RESOLUTION + 1):
+            raise ValueError(f"shadow_resolution must be 0 to {MAX_SHADOW_RESOLUTION}, not {self.shadow_resolution}.")
         if not set(self.outputs) <= set(OUTPUTS):
             raise ValueError(f"outputs must be among {', '.join(OUTPUTS)}, not {self.outputs!r}.")
         if not (math.isfinite(self.epsilon) and self.epsilon >= 0):

@@ -45,7 +45,7 @@ class PlacedInstance:
 @dataclass(frozen=True, eq=False)
 class View:
     """scale: world to view units, a power of two. near: the camera's, scaled; the clip range may be narrower.
-    far: of the clip range, scaled.
+    first, far: the clip range, scaled.
     projection: (4, 4) float64 for scaled view space. outside: instances that cannot touch the picture.
     degenerate: instances whose matrix flattens space, which have no normals.
     depth_span: how many times the resolution of float32 the hardware's depth resolves at its farthest: far / near, of
@@ -54,6 +54,7 @@ class View:
 
     scale: float
     near: float
+    first: float
     far: float
     projection: np.ndarray
     placed: tuple[PlacedInstance, ...]
@@ -82,7 +83,32 @@ def look(scene: Scene, camera: Camera, epsilon: float) -> View:
         placed.append(PlacedInstance(instance, model_view, normal_matrix, instance.hides_backs(camera)))
     projection = scaled_projection(camera, near, far, scale)
     span = (far - near) * scale if camera.is_orthographic else far / near
-    return View(scale, camera.near * scale, far * scale, projection, tuple(placed), outside, degenerate, span)
+    return View(
+        scale, camera.near * scale, near * scale, far * scale, projection, tuple(placed), outside, degenerate, span
+    )
+
+
+def sees_any(scene: Scene, camera: Camera) -> bool:
+    """Whether some instance may touch the camera's picture."""
+    return bool(_seen(scene, camera)[0])
+
+
+def visible_corners(scene: Scene, camera: Camera) -> tuple[np.ndarray, np.ndarray] | None:
+    """World corners (n, 3) of the boxes of what the camera sees, and (8, 3) of the part of space that it sees it in."""
+    seen, _, _ = _seen(scene, camera)
+    if not seen:
+        return None
+    near, far = _clip_range(camera, seen, 0.0)
+    left, right, bottom, top = camera.window
+    spread = (1.0, 1.0) if camera.is_orthographic else (near, far)
+    eye = [
+        (x * s, y * s, -d)
+        for d, s in zip((near, far), spread, strict=True)
+        for x in (left, right)
+        for y in (bottom, top)
+    ]
+    space = np.array(eye) @ camera.matrix_world[:3, :3].T + camera.matrix_world[:3, 3]
+    return np.concatenate([instance.world_corners() for instance, *_ in seen]), space
 
 
 @dataclass(frozen=True)

@@ -52,14 +52,14 @@ class BlenderDevice:
     def pipeline(self, description):
         return _Pipeline(self._gpu, description)
 
-    def draw_triangles(self, pipeline, target, triangles, block, textures):
+    def draw_triangles(self, pipeline, target, triangles, block, textures, viewport=None):
         if not triangles:
             return
         if self._triangles[0] < triangles:
             # The next power of two: it then grows only a few times.
             size = 1 << max(triangles - 1, 1023).bit_length()
             self._triangles = size, _batch(self._gpu, size)
-        self._draw(pipeline, target, block, textures, self._triangles[1], 3 * triangles)
+        self._draw(pipeline, target, block, textures, self._triangles[1], 3 * triangles, viewport)
 
     def draw_fullscreen(self, pipeline, target, block, textures):
         self._draw(pipeline, target, block, textures, self._triangle, None)
@@ -74,11 +74,12 @@ class BlenderDevice:
         state.depth_mask_set(False)
         self._in_flight.clear()
 
-    def _draw(self, pipeline, target, block, textures, batch, vertices):
+    def _draw(self, pipeline, target, block, textures, batch, vertices, viewport=None):
         gpu, description, shader = self._gpu, pipeline.description, pipeline.shader
         uniforms = gpu.types.GPUUniformBuf(np.ascontiguousarray(block, np.float32))
         self._in_flight.append((uniforms, textures, pipeline, target, batch))
         with target.framebuffer.bind():
+            target.framebuffer.viewport_set(*(viewport or (0, 0, *target.size)))
             gpu.state.blend_set(_BLEND_NAMES[description.blend])
             gpu.state.depth_test_set("LESS_EQUAL" if description.depth_test else "NONE")
             gpu.state.depth_mask_set(description.depth_write)

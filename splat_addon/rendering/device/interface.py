@@ -95,10 +95,13 @@ class Device(Protocol):
     def pipeline(self, description: PipelineDescription) -> Pipeline:
         """Compile and link. Raises RuntimeError with the pipeline's name where the driver refuses."""
 
-    def draw_triangles(self, pipeline, target, triangles: int, block: np.ndarray, textures: list[Texture]) -> None:
+    def draw_triangles(
+        self, pipeline, target, triangles: int, block: np.ndarray, textures: list[Texture], viewport=None
+    ) -> None:
         """Draw triangles 0 to `triangles`, in order: vertex 3 t + c is corner c of triangle t.
 
         block: the uniform block's float32 values in std140 order (matrices column by column).
+        viewport: x, y, width, height in pixels of the part of the target to draw into; None for all of it.
         """
 
     def draw_fullscreen(self, pipeline, target, block: np.ndarray, textures: list[Texture]) -> None:

@@ -56,9 +56,9 @@ class StandaloneDevice:
     def pipeline(self, description):
         return _Pipeline(self._context, description)
 
-    def draw_triangles(self, pipeline, target, triangles, block, textures):
+    def draw_triangles(self, pipeline, target, triangles, block, textures, viewport=None):
         if triangles:
-            self._bind(pipeline, target, block, textures)
+            self._bind(pipeline, target, block, textures, viewport)
             pipeline.vertex_array.render(vertices=3 * triangles)
 
     def draw_fullscreen(self, pipeline, target, block, textures):
@@ -70,10 +70,10 @@ class StandaloneDevice:
     def restore(self):
         self._context.gc()
 
-    def _bind(self, pipeline, target, block, textures):
+    def _bind(self, pipeline, target, block, textures, viewport=None):
         context, description = self._context, pipeline.description
         target.framebuffer.use()
-        context.viewport = (0, 0, *target.size)
+        context.viewport = viewport or (0, 0, *target.size)
         context.enable_only(
             (context.BLEND if description.blend == "add" else 0) | (context.DEPTH_TEST if description.depth_test else 0)
         )

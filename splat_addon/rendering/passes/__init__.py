@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The passes that a plan may name: one file each, with its pipeline's description and how it runs."""
 
-from . import attributes, seen_range, shading, visibility
+from . import attributes, seen_range, shading, shadow_maps, visibility
 
 #: name in a `FramePlan` -> run(tile, planned) -> the target that was drawn into
 RUN = {
     "background": shading.run,
+    "shadow_maps": shadow_maps.run,
     "visibility": visibility.run,
     "seen_range": seen_range.run,
     "attributes": attributes.run,

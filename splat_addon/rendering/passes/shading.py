@@ -11,6 +11,7 @@ from ..light import pack_lights
 from ..packing import pack_materials
 from ..plan import FramePlan, PlannedPass
 from ..shaders import load
+from ..shadow import map_ranges, pack_shadow_maps
 from .blocks import HALF_SUMS, LINEAR_DEPTH, std140
 from .tile import TileContext
 
@@ -40,6 +41,7 @@ _DEFINES = {
     "emission_sum": "EMISSION_TARGET",
     "lights": "LIGHTS",
     "light_set_sum": "LIGHT_SET_TARGET",
+    "shadow_maps": "SHADOWS",
     "environment_image": "ENVIRONMENT",
     "environment_levels": "ENVIRONMENT_LIGHT",
 }
@@ -75,6 +77,7 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
     resources, environment = tile.resources, tile.scene.environment
     made_here = {
         "lights": lambda: _lights(tile),
+        "shadow_maps": lambda: resources.data(_shadow_texels(tile)),
         "brdf_table": lambda: resources.constant(brdf_texels),
         "environment_image": lambda: resources.kept(environment, environment.image_texels),
         "environment_levels": lambda: resources.kept(environment, environment.level_texels),
@@ -93,7 +96,13 @@ def _multisampling(frame: FramePlan):
 
 
 def _lights(tile: TileContext):
-    return tile.resources.data(pack_lights(tile.scene.lights, tile.camera.world_to_view(), tile.view.scale))
+    lights, maps = tile.scene.lights, tile.plan.shadow_maps
+    ranges = map_ranges(maps, len(lights)) if maps else None
+    return tile.resources.data(pack_lights(lights, tile.camera.world_to_view(), tile.view.scale, ranges))
+
+
+def _shadow_texels(tile: TileContext) -> np.ndarray:
+    return pack_shadow_maps(tile.plan.shadow_maps, tile.shadow_views, tile.camera, tile.view.scale)
 
 
 def shading_block(tile: TileContext) -> np.ndarray:

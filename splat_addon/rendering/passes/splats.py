@@ -34,8 +34,10 @@ SPLATS_BLOCK = (
 )
 
 
-def draw_splats(tile: TileContext, pipeline: Pipeline, target: Target, placed_ones: Iterable[PlacedInstance]) -> None:
-    """One draw call an instance."""
+def draw_splats(
+    tile: TileContext, pipeline: Pipeline, target: Target, placed_ones: Iterable[PlacedInstance], viewport=None
+) -> None:
+    """One draw call an instance. viewport: as `Device.draw_quads` takes it."""
     resources, view, storage = tile.resources, tile.view, get_storage(tile.plan.storage)
     least_offset = view.least_offset(tile.plan.linear_depth)
     options = tile.settings.epsilon, view.near, tile.camera.is_orthographic, tile.depth_unit
@@ -56,4 +58,4 @@ def draw_splats(tile: TileContext, pipeline: Pipeline, target: Target, placed_on
         normal_matrix[:3, :3] = placed.normal_matrix
         light_set = np.eye(MAX_LIGHT_SETS)[instance.light_set]
         block = std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set)
-        resources.device.draw_triangles(pipeline, target, len(instance.surfels), block, textures)
+        resources.device.draw_triangles(pipeline, target, len(instance.surfels), block, textures, viewport)

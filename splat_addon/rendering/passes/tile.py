@@ -19,7 +19,10 @@ from ..view import View
 
 @dataclass(frozen=True, eq=False)
 class TileContext:
-    """camera: of the tile with its margin. view: the scene as that camera sees it."""
+    """camera: of the tile with its margin. view: the scene as that camera sees it.
+
+    shadow_views: what casts shadows as the camera of each of the plan's shadow maps sees it.
+    """
 
     resources: Resources
     plan: FramePlan
@@ -27,6 +30,7 @@ class TileContext:
     camera: Camera
     settings: Settings
     view: View
+    shadow_views: tuple[View, ...] = ()
 
     def texture(self, name: str) -> Texture:
         """One that the plan names."""
@@ -66,5 +70,8 @@ class TileContext:
 
 def texture_key(name: str, size: tuple[int, int], plan: FramePlan) -> TextureKey:
     """Of a texture of the plan, for a tile of `size` pixels."""
-    scale = plan.scale(name)
-    return name, size[0] * scale, size[1] * scale, plan.format(name), plan.multisamples_of(name)
+    if plan.is_shared(name):
+        width, height = plan.shared_size(name)
+    else:
+        width, height = (n * plan.scale(name) for n in size)
+    return name, width, height, plan.format(name), plan.multisamples_of(name)

@@ -117,6 +117,46 @@ def test_the_world_lights_the_surface(scene, assert_as_cycles):
     assert_as_cycles(IOR=1.0)
 
 
+SHADOWS = {
+    "sun": ("SUN", 3, (0, 0, 0), (0.4, 0.3, 0), {"angle": 0.0}),
+    "wide sun": ("SUN", 3, (0, 0, 0), (0.4, 0.3, 0), {"angle": 0.3}),
+    "point": ("POINT", 100, (0.6, -0.4, 3), (0, 0, 0), {"shadow_soft_size": 0.01}),
+    "spot": ("SPOT", 100, (0.6, -0.4, 3), (-0.13, 0.2, 0), {"shadow_soft_size": 0.2, "spot_size": 2.5}),
+    "square": ("AREA", 50, (0.6, -0.4, 3), (-0.13, 0.2, 0), {"size": 0.6}),
+}
+
+
+@pytest.mark.parametrize("name", SHADOWS)
+def test_a_shadow_falls_as_in_cycles(name, scene, add_light, add_camera, add_sheet, picture, switch_to_cycles):
+    scene.surfel_splatting.shading, scene.surfel_splatting.supersampling = "principled", 2
+    scene.render.film_transparent = False
+    scene.render.resolution_x = scene.render.resolution_y = 64
+    add_camera((0, 0, 6))
+    add_light(*SHADOWS[name])
+    material = principled(IOR=1.0, **{"Base Color": (1, 1, 1, 1)})
+    floor, above = add_sheet(side=6, count=90), add_sheet(side=1.2, count=150)
+    above.location.z = 1
+    for sheet in (floor, above):
+        sheet.data.materials.append(material)
+    ours = picture()[..., 0]
+    light = next(o for o in scene.objects if o.type == "LIGHT")
+    light.data.use_shadow = False
+    unshadowed = picture()[..., 0]
+    light.data.use_shadow = True
+    for sheet in (floor, above):
+        sheet.hide_render = True
+    for size, height in ((6, 0), (1.2, 1)):
+        bpy.ops.mesh.primitive_plane_add(size=size, location=(0, 0, height))
+        bpy.context.object.data.materials.append(material)
+    scene.cycles.max_bounces = 0
+    switch_to_cycles(samples=64, filter_width=1.0)
+    theirs = picture()[..., 0]
+    # Pixels' filters differ, so what is compared is how much light is missing in all.
+    dark = np.minimum(ours, theirs) < 0.95 * unshadowed
+    assert dark.sum() > 20
+    assert (unshadowed - ours)[dark].sum() == pytest.approx((unshadowed - theirs)[dark].sum(), rel=0.1)
+
+
 @pytest.mark.parametrize("state", ["INCLUDE", "EXCLUDE"])
 def test_a_light_lights_what_it_is_linked_to(state, scene, add_camera, add_light, add_sheet, picture):
     scene.surfel_splatting.shading = "principled"

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shadows by definition: a ray from every lit place to its light, against every splat, in float64."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ..rendering.camera import Camera
+from ..rendering.light import Light
+from ..rendering.scene import Scene
+from ..rendering.shadow import casting
+from .splats import Splats, eye_splats
+
+#: Pairs of a ray and a splat that are met at once.
+CHUNK_PAIRS = 2_000_000
+
+#: Places on a lamp that soft shadows are averaged over.
+LAMP_POINTS = 25
+
+#: Where a sun is taken to stand, in units of the scene's extent.
+FAR_AWAY = 1e4
+
+
+def lit_share(light: Light, scene: Scene, camera: Camera, position: np.ndarray, epsilon: float) -> np.ndarray:
+    """(n,) which share of the lamp positions (n, 3) of the eye space see.
+
+    A splat hides the places that lie more than epsilon, in its radii, behind it as seen from the light.
+    """
+    # Splats are wanted from the light's side: solid instances hide backs by the camera, so they count in full here.
+    splats = eye_splats(_without_solids(casting(scene)), camera)
+    if not len(splats):
+        return np.ones(len(position))
+    extent = float(np.abs(np.concatenate([splats.center, position])).max())
+    lamp = _lamp(light, camera, position, extent)
+    return np.mean([_is_seen(splats, epsilon * splats.radius(), place, position) for place in lamp], axis=0)
+
+
+def _without_solids(scene: Scene) -> Scene:
+    loose = (replace(i, surfels=replace(i.surfels, is_solid=False)) for i in scene.surfels)
+    return replace(scene, surfels=tuple(loose))
+
+
+def _lamp(light: Light, camera: Camera, position: np.ndarray, extent: float) -> np.ndarray:
+    """(k, 1 or n, 3) places on the lamp: by the golden angle over a disc that faces the places it lights."""
+    rotation = camera.matrix_world[:3, :3].T
+    axis = rotation @ np.asarray(light.direction, np.float64)
+    axis /= np.linalg.norm(axis)
+    if light.kind == "sun":
+        middle, radius = -axis * FAR_AWAY * extent, math.tan(light.size / 2) * FAR_AWAY * extent
+    else:
+        middle, radius = rotation @ (np.asarray(light.position, np.float64) - camera.matrix_world[:3, 3]), light.size
+    if not light.is_sized:
+        return middle[None, None]
+    k = np.arange(LAMP_POINTS)
+    r, turn = np.sqrt((k + 0.5) / LAMP_POINTS), k * math.pi * (3 - math.sqrt(5))
+    disc = np.stack([r * np.cos(turn), r * np.sin(turn)], axis=1)
+    if light.kind == "area":
+        u, v = np.asarray(light.half_axes, np.float64) @ rotation.T
+        if not light.is_round:
+            side = math.isqrt(LAMP_POINTS)
+            ticks = (np.arange(side) + 0.5) / side * 2 - 1
+            disc = np.stack(np.meshgrid(ticks, ticks), axis=2).reshape(-1, 2)
+        return (middle + disc @ np.stack([u, v]))[:, None]
+    toward = middle - position.mean(axis=0)
+    side = np.cross(toward, (0.3, 0.8, 0.5))
+    side /= np.linalg.norm(side)
+    other = np.cross(toward, side) / np.linalg.norm(toward)
+    return (middle + radius * disc @ np.stack([side, other]))[:, None]
+
+
+def _is_seen(splats: Splats, moved: np.ndarray, lamp: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """(n,) bool. moved: (N,) how far each splat is moved away from the lamp. lamp: (1, 3)."""
+    rows = max(CHUNK_PAIRS // len(splats), 1)
+    parts = np.split(position, range(rows, len(position), rows))
+    return np.concatenate([_part_is_seen(splats, moved, lamp[0], part) for part in parts])
+
+
+def _part_is_seen(splats: Splats, moved: np.ndarray, lamp: np.ndarray, position: np.ndarray) -> np.ndarray:
+    ray = position - lamp
+    length = np.linalg.norm(ray, axis=1)
+    square = np.einsum("ij,ij->i", splats.plane, splats.plane)[:, None]
+    dual_u, dual_v = np.cross(splats.v, splats.plane) / square, np.cross(splats.plane, splats.u) / square
+    to_center = splats.center - lamp
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        share = np.einsum("ij,ij->i", splats.plane, to_center) / (ray @ splats.plane.T)
+        a = share * (ray @ dual_u.T) - np.einsum("ij,ij->i", dual_u, to_center)
+        b = share * (ray @ dual_v.T) - np.einsum("ij,ij->i", dual_v, to_center)
+        hit = (a * a + b * b <= 1) & (share > 0)
+        distance = share * length[:, None] + moved
+    return ~(hit & (distance < length[:, None])).any(axis=1)

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The shadow pass: what each light sees first, one map beside the other in an atlas (Botsch et al. 2005, section 5)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..device.interface import Target
+from ..plan import PlannedPass
+from . import visibility
+from .splats import draw_splats
+from .tile import TileContext
+
+
+def run(tile: TileContext, planned: PlannedPass) -> Target:
+    """Fill the atlas, a visibility pass a map. Parallel cameras store the hardware's depth, others depth / far."""
+    target = tile.target((), planned.writes[0])
+    target.clear(depth=1.0)
+    for made, view in zip(tile.plan.shadow_maps, tile.shadow_views, strict=True):
+        linear_depth = not made.camera.is_orthographic
+        seen = replace(tile.plan, linear_depth=linear_depth, samples=1, multisamples=0, sample_shading=False)
+        from_light = TileContext(tile.resources, seen, tile.scene, made.camera, tile.settings, view)
+        pipeline = tile.resources.pipeline(visibility.describe(planned, seen))
+        draw_splats(from_light, pipeline, target, view.placed, (*made.place, *made.camera.size))
+    return target

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shadow maps: the cameras through which lights see what casts shadows, and how shaders find places in them.
+
+Sources: Williams 1978, "Casting Curved Shadows on Curved Surfaces"; Botsch et al. 2005, section 5 (splats
+seen by a light are a visibility pass from there).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .camera import Camera, look_at
+from .light import Light
+from .scene import Scene
+from .view import View, sees_any, visible_corners
+
+#: More maps than this do not fit into the atlas; the lights that come last then cast no shadow.
+MAX_MAPS = 64
+
+#: A face of a light that shines all around sees a little more than its sixth, so that a filter finds its neighbours.
+FACE_WINDOW = 1.05
+#: A wider spot is seen through faces, like a point.
+MAX_SPOT_WINDOW = 2.5
+#: Of the farthest caster's distance: nearer ones cast no shadow.
+NEAREST = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class ShadowMap:
+    """light: number in the scene. camera: what the light sees. place: (x, y) of the picture in the atlas, in texels."""
+
+    light: int
+    camera: Camera
+    place: tuple[int, int]
+
+
+def shadow_maps(scene: Scene, camera: Camera, resolution: int) -> tuple[tuple[ShadowMap, ...], int]:
+    """The maps that a picture needs, and how many lights had to go without. resolution: texels along a map's side."""
+    casters = casting(scene)
+    if not casters.surfels or not any(light.casts_shadow for light in scene.lights):
+        return (), 0
+    cameras, without = [], 0
+    for number, light in enumerate(scene.lights):
+        if light.casts_shadow:
+            own = [c for c in _CAMERAS[light.kind](light, casters, scene, camera, resolution) if sees_any(casters, c)]
+            if len(cameras) + len(own) > MAX_MAPS:
+                without += 1
+            else:
+                cameras += [(number, c) for c in own]
+    columns = atlas_columns(len(cameras))
+    places = ((k % columns * resolution, k // columns * resolution) for k in range(len(cameras)))
+    return tuple(ShadowMap(light, c, place) for (light, c), place in zip(cameras, places, strict=True)), without
+
+
+def atlas_columns(maps: int) -> int:
+    """Maps side by side in the atlas."""
+    return max(math.ceil(math.sqrt(maps)), 1)
+
+
+def atlas_size(maps: tuple[ShadowMap, ...]) -> tuple[int, int]:
+    """Width and height in texels."""
+    return tuple(max(m.place[k] + m.camera.size[k] for m in maps) for k in (0, 1))
+
+
+def casting(scene: Scene) -> Scene:
+    """The instances that cast shadows, alone."""
+    return replace(scene, surfels=tuple(i for i in scene.surfels if i.casts_shadow and len(i.surfels)), lights=())
+
+
+def pack_shadow_maps(maps, views: tuple[View, ...], camera: Camera, scale: float) -> np.ndarray:
+    """(M, 6, 4) float32. views: of `view.look`, for each map. camera, scale: of the picture that is shaded.
+
+    Rows of the map from its view space to the light's (3 texels) | window's left, bottom, 1 / width, 1 / height |
+    place in the atlas, resolution, 1 for a parallel camera | depth = x stored + y, texel's size (at depth 1 of a
+    perspective), 0.
+    """
+    texels = np.zeros((len(maps), 6, 4))
+    for row, made, view in zip(texels, maps, views, strict=True):
+        light, rotation = made.camera, made.camera.matrix_world[:3, :3].T
+        row[:3, :3] = rotation @ camera.matrix_world[:3, :3] * (view.scale / scale)
+        row[:3, 3] = rotation @ (camera.matrix_world[:3, 3] - light.matrix_world[:3, 3]) * view.scale
+        left, right, bottom, top = (v * (view.scale if light.is_orthographic else 1.0) for v in light.window)
+        row[3] = left, bottom, 1 / (right - left), 1 / (top - bottom)
+        row[4] = *made.place, light.size[0], light.is_orthographic
+        near, far = (view.first, view.far) if light.is_orthographic else (0.0, view.far)
+        row[5] = far - near, near, max(right - left, top - bottom) / light.size[0], 0
+    return texels.astype(np.float32)
+
+
+def map_ranges(maps: tuple[ShadowMap, ...], lights: int) -> np.ndarray:
+    """(lights, 2) number of each light's first map, and of how many it has."""
+    owners = np.array([m.light for m in maps], int)
+    counts = np.bincount(owners, minlength=lights)
+    return np.stack([np.concatenate([[0], np.cumsum(counts)[:-1]]), counts], axis=1)
+
+
+def _sun(light: Light, casters: Scene, scene: Scene, camera: Camera, resolution: int) -> list[Camera]:
+    """One parallel camera over what is both in the picture and in the scene; it looks back to the farthest caster."""
+    frame = look_at((0, 0, 0), light.direction)
+    to_light = frame[:3, :3].T
+    seen = visible_corners(scene, camera)
+    if seen is None:
+        return []
+    receivers, visible = (corners @ to_light.T for corners in seen)
+    low = np.maximum(receivers.min(axis=0), visible.min(axis=0))[:2]
+    high = np.minimum(receivers.max(axis=0), visible.max(axis=0))[:2]
+    if not (low < high).all():
+        return []
+    margin = 0.02 * (high - low).max()
+    middle, half = (low + high) / 2, max((high - low).max() / 2 + margin, 1e-30)
+    corners = np.concatenate([i.world_corners() for i in casters.surfels]) @ to_light.T
+    nearest, farthest = corners[:, 2].max(), min(corners[:, 2].min(), receivers[:, 2].min())
+    reach = max(nearest - farthest, half) * 1.01
+    frame[:3, 3] = frame[:3, :3] @ (*middle, nearest + 0.005 * reach)
+    return [Camera(frame, (-half, half, -half, half), (resolution, resolution), 0.0, reach, is_orthographic=True)]
+
+
+def _spot(light: Light, casters: Scene, scene: Scene, camera: Camera, resolution: int) -> list[Camera]:
+    half = math.tan(min(light.spot_angle / 2, 1.5)) * FACE_WINDOW
+    if half > MAX_SPOT_WINDOW:
+        return _faces(light, casters, resolution, np.eye(3))
+    return _perspectives(light, casters, resolution, [light.direction], half)
+
+
+def _point(light: Light, casters: Scene, scene: Scene, camera: Camera, resolution: int) -> list[Camera]:
+    return _faces(light, casters, resolution, np.eye(3))
+
+
+def _area(light: Light, casters: Scene, scene: Scene, camera: Camera, resolution: int) -> list[Camera]:
+    """Its front, and the halves of its sides that it shines to."""
+    axes = look_at((0, 0, 0), light.direction)[:3, :3].T
+    return _faces(light, casters, resolution, axes)[:-1]
+
+
+_CAMERAS = {"sun": _sun, "point": _point, "spot": _spot, "area": _area}
+
+
+def _faces(light: Light, casters: Scene, resolution: int, axes: np.ndarray) -> list[Camera]:
+    """Six square cameras; axes: (3, 3), of which the last's back comes first and its front last."""
+    x, y, z = axes
+    return _perspectives(light, casters, resolution, [-z, x, -x, y, -y, z], FACE_WINDOW)
+
+
+def _perspectives(light: Light, casters: Scene, resolution: int, directions, half: float) -> list[Camera]:
+    position = np.asarray(light.position, np.float64)
+    corners = np.concatenate([i.world_corners() for i in casters.surfels])
+    far = float(np.linalg.norm(corners - position, axis=1).max()) * 1.01
+    near = max(NEAREST * far, min(light.size, 0.5 * far))
+    window, size = (-half, half, -half, half), (resolution, resolution)
+    return [Camera(_looking(position, d), window, size, near, far) for d in directions] if far > near else []
+
+
+def _looking(position: np.ndarray, direction) -> np.ndarray:
+    frame = look_at((0, 0, 0), direction)
+    frame[:3, 3] = position
+    return frame
