@@ -13,7 +13,7 @@ from splat_addon.rendering import Camera, Instance, Light, Material, Renderer, S
 from splat_addon.sampling import TriangleMesh, sample_mesh
 
 SIZE = (56, 42)
-SETTINGS = Settings(supersampling=1)
+SETTINGS = Settings(method="quad", supersampling=1)
 CAMERA = Camera.perspective(look_at((4, -5, 4), (0.2, 0, 0.5)), 0.7, SIZE, near=0.1, far=100)
 CHALK = (Material(roughness=1.0, ior=1.0),)
 LIGHTS = {
