@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
-from ..rendering import Instance, Material
+from ..rendering import Instance, Material, SurfaceTexture
 from ..rendering.packing import MAX_SPLATS
 from ..sampling import (
     STRETCHED_SHARE,
@@ -31,6 +31,7 @@ from .camera_density import without_camera
 from .mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
 from .shading_export import shading_material
 from .sources import mesh_key, readable_mesh
+from .surface_textures import kept_textures
 
 #: A sampling is kept until it is coarser or finer than asked for by more than this.
 _TOO_COARSE, _TOO_FINE = 1.26, 2.5
@@ -47,6 +48,8 @@ class _LiveMesh:
     topology: Topology | None = None
     content: ExtractedMesh | None = None
     materials: tuple[Material, ...] = ()
+    textures: tuple[SurfaceTexture | None, ...] = ()
+    texture_mapped: bool = False
     matrices: list[np.ndarray] = field(default_factory=list)
     lightings: list[dict] = field(default_factory=list)
     owner: str = ""
@@ -108,19 +111,25 @@ class LiveMeshes:
         self._frame[key].matrices.append(matrix_world)
         self._frame[key].lightings.append(lighting)
 
-    def instances(self, depsgraph: bpy.types.Depsgraph, fineness: dict[str, float], notes) -> list[Instance]:
+    def instances(
+        self, depsgraph: bpy.types.Depsgraph, fineness: dict[str, float], texture_mapped: bool, notes
+    ) -> list[Instance]:
         """All that were added to this frame, sampled; the places of one mesh share its surfels."""
         made = []
         for live in self._frame.values():
             for sentence in live.content.notes:
                 notes.add(sentence)
             try:
-                surfels = self._sampled(live, depsgraph, fineness)
+                surfels = self._sampled(live, depsgraph, fineness, texture_mapped)
             except ValueError as error:
                 notes.add(f"{live.owner} is left out: {error}")
                 continue
+            live.textures = kept_textures(live.textures, live.content.triangles.surfaces) if surfels.has_uvs else ()
             places = zip(live.matrices, live.lightings, strict=True)
-            made += [Instance(surfels, matrix, live.materials, **lighting) for matrix, lighting in places]
+            made += [
+                Instance(surfels, matrix, live.materials, textures=live.textures, **lighting)
+                for matrix, lighting in places
+            ]
             self.counts["meshes"] += 1
             self.counts["surfels"] += len(surfels)
         self._kept = {name: live for name, live in self._kept.items() if name in self._names}
@@ -144,8 +153,12 @@ class LiveMeshes:
             live.content = read_mesh(evaluated, mesh, live.topology, self._images)
             live.materials = tuple(shading_material(m, notes, OPTIONAL_LAYOUT) for m in slot_materials(evaluated, mesh))
 
-    def _sampled(self, live: _LiveMesh, depsgraph: bpy.types.Depsgraph, fineness: dict[str, float]) -> Surfels:
+    def _sampled(
+        self, live: _LiveMesh, depsgraph: bpy.types.Depsgraph, fineness: dict[str, float], texture_mapped: bool
+    ) -> Surfels:
         """Raises ValueError with a sentence where nothing can be sampled."""
+        if texture_mapped != live.texture_mapped:
+            live.tracked, live.texture_mapped = None, texture_mapped
         mesh, spacing = live.content.triangles, live.spacing_for(fineness, depsgraph)
         if live.tracked is not None and spacing == live.spacing and live.tracked.has_triangles_of(mesh):
             surfels, stretched = live.tracked.at(mesh)
@@ -158,9 +171,13 @@ class LiveMeshes:
         predicted = predict_count(mesh, spacing=spacing)
         if predicted > MAX_SPLATS:
             raise ValueError(f"It would be {predicted:,} surfels and the limit is {MAX_SPLATS:,}; sample it coarser.")
-        live.tracked, live.fineness, live.spacing = TrackedSurfels(mesh, spacing=spacing), fineness, spacing
+        live.tracked, live.fineness, live.spacing = _tracked(mesh, spacing, texture_mapped), fineness, spacing
         self.counts["sampled"] += 1
         return live.tracked.at(mesh)[0]
+
+
+def _tracked(mesh: TriangleMesh, spacing: float, texture_mapped: bool) -> TrackedSurfels:
+    return TrackedSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped)
 
 
 def _by_resolution(live: _LiveMesh, resolution: float, depsgraph) -> float:

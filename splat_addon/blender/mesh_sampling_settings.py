@@ -82,6 +82,18 @@ class MeshSamplingProperties:
         soft_max=10.0,
         update=_read_again,
     )
+    mesh_textures: BoolProperty(
+        name="Texture-Mapped",
+        description=(
+            "Base colours that are one image are looked up in it at every pixel, instead of once a surfel: sharp "
+            "textures with few surfels"
+        ),
+        default=False,
+    )
+
+
+def are_meshes_texture_mapped(scene: bpy.types.Scene) -> bool:
+    return getattr(scene, RENDER_SETTINGS).mesh_textures
 
 
 def mesh_fineness(scene: bpy.types.Scene) -> dict[str, float] | None:
@@ -136,6 +148,7 @@ class RENDER_PT_surfel_meshes(bpy.types.Panel):
         self.layout.active = properties.render_meshes
         self.layout.prop(properties, "mesh_density")
         self.layout.prop(properties, _FINENESS[properties.mesh_density][0])
+        self.layout.prop(properties, "mesh_textures")
 
 
 class OBJECT_PT_surfel_splatting(bpy.types.Panel):

@@ -18,7 +18,7 @@ from ..surfels import Surfels, split
 from .attributes import has_surfels, read_surfels
 from .light_linking import LightSets
 from .live_meshes import LiveMeshes
-from .mesh_sampling_settings import mesh_fineness, renders_as_surfels
+from .mesh_sampling_settings import are_meshes_texture_mapped, mesh_fineness, renders_as_surfels
 from .shading_export import light_of, shading_material
 from .sources import owner_of
 from .surface_textures import TextureStore
@@ -109,7 +109,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
         except ValueError as error:
             notes.add(f"{object_.name} is left out: {error}")
     if fineness is not None:
-        surfels += live_meshes.instances(depsgraph, fineness, notes)
+        surfels += live_meshes.instances(depsgraph, fineness, are_meshes_texture_mapped(depsgraph.scene), notes)
     world, environment = store.world.read(depsgraph.scene.world, notes)
     lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
     return Scene(tuple(surfels), tuple(lights), world, environment), notes

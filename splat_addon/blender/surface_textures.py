@@ -23,6 +23,15 @@ def texture_of(surface: Surface) -> SurfaceTexture | None:
     return None if texture is None else SurfaceTexture(texture.image, surface.color.value[:3])
 
 
+def kept_textures(
+    kept: tuple[SurfaceTexture | None, ...], surfaces: tuple[Surface, ...]
+) -> tuple[SurfaceTexture | None, ...]:
+    """Those of a mesh's surfaces; the same tuple as `kept`, by which the device knows it, while nothing changed."""
+    found = tuple(texture_of(surface) for surface in surfaces)
+    is_same = len(kept) == len(found) and all(map(_are_same, kept, found))
+    return kept if is_same else found
+
+
 class TextureStore:
     """Keeps the textures of materials between frames, the same object while image and constant are the same: what lies
     on the device is known by that.
@@ -77,6 +86,10 @@ class TextureStore:
         if image is not None and image.is_dirty and image.session_uid not in self._is_read:
             self._images = {key: kept for key, kept in self._images.items() if key[0] != image.session_uid}
             self._is_read.add(image.session_uid)
+
+
+def _are_same(a: SurfaceTexture | None, b: SurfaceTexture | None) -> bool:
+    return a is b or (a is not None and b is not None and _same(a, b))
 
 
 def _same(a: SurfaceTexture, b: SurfaceTexture) -> bool:

@@ -191,3 +191,43 @@ def test_the_plan_says_what_is_looked_up(add_textured, image, picture):
     picture()
     assert "1 of 1 instances look textures up" in str(final_render.last_frame_stats["plan"])
     assert not final_render.last_frame_stats["notes"]
+
+
+@pytest.fixture
+def live_square(scene, add_camera, add_square, image):
+    """The square as it is, rendered as 4 x 4 texture-mapped surfels."""
+    add_camera(location=(0.5, 0.5, 5), type="ORTHO", ortho_scale=1.0)
+    square = add_square()
+    square.data.materials.append(textured_material(image))
+    scene.surfel_splatting.render_meshes = scene.surfel_splatting.mesh_textures = True
+    scene.surfel_splatting.mesh_resolution = 4
+    return square
+
+
+def test_a_mesh_that_is_rendered_as_surfels_shows_its_texture(live_square, scene, image, picture):
+    assert np.allclose(picture()[MIDDLES][..., :3], random_pixels()[..., :3], atol=2e-3)
+    paint(image, random_pixels(2))
+    assert np.allclose(picture()[MIDDLES][..., :3], random_pixels(2)[..., :3], atol=2e-3)
+    scene.surfel_splatting.mesh_textures = False
+    assert not np.allclose(picture()[MIDDLES][..., :3], random_pixels(2)[..., :3], atol=0.1)
+
+
+def test_the_texture_follows_a_mesh_that_deforms(live_square, scene, image, tmp_path, read_picture):
+    """Sheared, so that the ellipses get other axes; and back, which is the picture of the first frame."""
+    live_square.shape_key_add(name="Basis")
+    key = live_square.shape_key_add(name="Key")
+    for point, x in zip(key.data, (0.0, 1.0, 1.4, 0.4), strict=True):
+        point.co.x = x
+    for frame, value in ((1, 0.0), (2, 1.0), (3, 0.0)):
+        key.value = value
+        key.keyframe_insert("value", frame=frame)
+    scene.frame_start, scene.frame_end, scene.render.filepath = 1, 3, str(tmp_path / "frame_####.exr")
+    bpy.ops.render.render(animation=True)
+    assert final_render.last_frame_stats["live_meshes"]["followed"] == 1
+    first, second, third = (read_picture(tmp_path / f"frame_000{k}.exr") for k in (1, 2, 3))
+    assert np.allclose(first, third, atol=1e-4)
+    # a sheared texel of the middle row: the point (u, v) lies at x = u + 0.4 v
+    for column in range(3):
+        u, v = (column + 0.5) / TEXELS, 3.5 / TEXELS
+        pixel = second[int(v * SIZE), int((u + 0.4 * v) * SIZE), :3]
+        assert np.allclose(pixel, random_pixels()[3, column, :3], atol=5e-3)
