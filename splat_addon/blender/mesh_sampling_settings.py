@@ -8,7 +8,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 
 from .conversion_settings import DENSITIES
 from .ids import ENGINE, OBJECT_SETTINGS, RENDER_SETTINGS
-from .sources import has_surfaces
+from .sources import has_surfaces, owner_of
 
 #: density -> the property of `MeshSamplingProperties` that holds the number, and the kind of fineness that it is.
 _FINENESS = {
@@ -119,8 +119,12 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
     )
 
 
-def renders_as_surfels(owner: bpy.types.Object) -> bool:
-    return getattr(owner, OBJECT_SETTINGS).render_as_surfels
+def renders_as_surfels(entry: bpy.types.DepsgraphObjectInstance) -> bool:
+    """Whether nobody says otherwise: of an instance its instancer, and of one from a collection the object in there
+    too, whose surfels the conversion has put beside it."""
+    owner = owner_of(entry)
+    asked = [owner, entry.object.original] if owner.instance_type == "COLLECTION" else [owner]
+    return all(getattr(object_, OBJECT_SETTINGS).render_as_surfels for object_ in asked)
 
 
 def leave_to_surfels(source: bpy.types.Object) -> None:

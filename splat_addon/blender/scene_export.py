@@ -100,7 +100,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                 lighting = {"light_set": light_sets.of_instance(entry), "casts_shadow": object_.visible_shadow}
                 if (what := _content(object_)) == "surfels":
                     surfels += _instances(object_, matrix, lighting, store, notes)
-                elif fineness is not None and what == "faces" and renders_as_surfels(owner_of(entry)):
+                elif fineness is not None and what == "faces" and renders_as_surfels(entry):
                     live_meshes.add(object_, owner_of(entry), matrix, lighting, notes)
                 elif fineness is None and what != "nothing":
                     notes.add(_NOT_SAMPLED)

@@ -108,6 +108,20 @@ def test_what_has_been_converted_is_not_drawn_twice(live, picture):
     assert np.array_equal(both, picture())
 
 
+def test_neither_is_an_instance_of_its_collection(live, scene, picture):
+    """Where the surfels are too."""
+    hidden = bpy.data.collections.new("hidden")
+    add_coloured_mirrored_mesh()
+    bpy.ops.object.surfels_from_mesh(resolution=24)
+    for shown in list(scene.collection.objects)[-2:]:
+        hidden.objects.link(shown)
+        scene.collection.objects.unlink(shown)
+    instancer = bpy.data.objects.new("instancer", None)
+    instancer.instance_type, instancer.instance_collection = "COLLECTION", hidden
+    scene.collection.objects.link(instancer)
+    assert picture().any() and counts() == {}
+
+
 def test_an_object_can_be_left_out(live, picture):
     add_coloured_mirrored_mesh()
     bpy.context.object.surfel_splatting.render_as_surfels = False
