@@ -17,7 +17,7 @@ struct Plane {
   float depth;
   float reach;   // how far from it depths lie: in the ellipse, and as far as a filter reaches over its rim
   float beside;  // change of depth from a sample's centre to the visibility sample that it is compared with, at most
-                 // what the ellipse has
+                 // as far as depths lie: a flat view of small splats passes many of them on that way
   float radius;  // the longer half-axis
 };
 
@@ -39,7 +39,7 @@ Plane splat_plane(vec3 position, vec3 axis_u, vec3 axis_v, bool is_orthographic)
   float over_rim = 2.0 * FILTER_SIGMA * length(gradient), furthest = 16.0 * plane.radius;
   plane.reach = length(plane.slope) + (over_rim < furthest ? over_rim : furthest);
   float to_beside = 0.5 * float(1 - VISIBILITY_SAMPLES % 2) / float(VISIBILITY_SAMPLES);
-  plane.beside = clamp(to_beside * (gradient.x + gradient.y), -length(plane.slope), length(plane.slope));
+  plane.beside = clamp(to_beside * (gradient.x + gradient.y), -plane.reach, plane.reach);
   return plane;
 }
 

@@ -22,6 +22,7 @@ def orthographic_torus():
 
 #: Splats smaller than a pixel, as large, and larger.
 SCENES = {
+    "checker of 360,000": lambda: scenes.checker_plane(200, 360_000, 6, SIZE),
     "checker at 6 degrees": lambda: scenes.checker_plane(40, 40_000, 6, SIZE),
     "checker at 60 degrees": lambda: scenes.checker_plane(40, 40_000, 60, SIZE),
     "text": lambda: scenes.text_board(66_000, size=SIZE),
@@ -38,11 +39,12 @@ def exact(name):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_mip_is_above_36_db_and_6_above_the_papers(name, render):
+def test_mip_is_above_39_db_and_6_above_the_papers(name, render):
+    """36 dB are promised; what it reaches is held, so that a fault in a few rows of pixels shows."""
     scene, camera = SCENES[name]()
     frames = {m: render(scene, camera, replace(FLAT, method=m)) for m in ("mip", "raycast", "homogeneous")}
     true = {method: psnr(frame.color, exact(name).color) for method, frame in frames.items()}
-    assert true["mip"] > 36, true
+    assert true["mip"] > 39.5, true
     assert true["mip"] > max(true["raycast"], true["homogeneous"]) + 6, true
 
 
