@@ -19,9 +19,10 @@ vec4 table_at(float roughness, float cosine, int part) {
 }
 
 // What the lobe reflects of an even world, and by what factor light that it scatters more than once adds to it.
-vec3 specular_albedo(vec2 terms, vec3 f0, out vec3 scattered) {
+// f90: reflectance at grazing incidence.
+vec3 specular_albedo(vec2 terms, vec3 f0, float f90, out vec3 scattered) {
   scattered = 1.0 + f0 * (1.0 / max(terms.x + terms.y, 1e-3) - 1.0);
-  return (f0 * terms.x + terms.y) * scattered;
+  return (f0 * terms.x + f90 * terms.y) * scattered;
 }
 
 #ifdef SIZED_LIGHTS

@@ -13,6 +13,9 @@
 const float PI = 3.14159265358979;
 const float MIN_ROUGHNESS = 0.03;
 const float MIN_COSINE = 1e-4;
+// A coat that hardly reflects at normal incidence is hardly there, and does not shine at grazing incidence as Schlick's
+// formula has it (Lagarde & de Rousiers, "Moving Frostbite to PBR", 2014, section 3.1.1).
+const float GRAZING_GAIN = 50.0;
 
 struct Lobe {
   vec3 normal;
@@ -20,7 +23,8 @@ struct Lobe {
   float nv;
   float roughness;
   vec3 diffuse_albedo;
-  vec3 f0;
+  vec3 f0;  // reflectance at normal incidence
+  float f90;  // and at grazing
   vec3 specular_albedo;
   vec3 scattered;  // what light that the coat scatters more than once adds, as a factor
 };
@@ -37,7 +41,7 @@ vec3 from_point(Lobe lobe, vec3 to_light, vec3 irradiance) {
   float d = (nh > 0.0 ? dot(sine, sine) : 1.0) + nh * nh * a2;
   float distribution = a2 / (PI * d * d);
   float masking = 0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));
-  vec3 fresnel = (lobe.f0 + (1.0 - lobe.f0) * pow(1.0 - vh, 5.0)) * lobe.scattered;
+  vec3 fresnel = (lobe.f0 + (lobe.f90 - lobe.f0) * pow(1.0 - vh, 5.0)) * lobe.scattered;
   return (lobe.diffuse_albedo / PI + distribution * masking * fresnel) * irradiance * nl;
 }
 #endif
@@ -67,11 +71,13 @@ vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
   lobe.nv = max(dot(normal, lobe.view), MIN_COSINE);
   float metallic = clamp(material.y, 0.0, 1.0);
   lobe.f0 = mix(vec3(material.z), base, metallic);
+  float coat_f90 = min(GRAZING_GAIN * material.z, 1.0);
+  lobe.f90 = mix(coat_f90, 1.0, metallic);
   vec2 terms = table_at(lobe.roughness, lobe.nv, 1).xy;
   vec3 scattered;
-  vec3 coat = specular_albedo(terms, vec3(material.z), scattered);
+  vec3 coat = specular_albedo(terms, vec3(material.z), coat_f90, scattered);
   lobe.diffuse_albedo = base * (1.0 - metallic) * (1.0 - coat);
-  lobe.specular_albedo = specular_albedo(terms, lobe.f0, lobe.scattered);
+  lobe.specular_albedo = specular_albedo(terms, lobe.f0, lobe.f90, lobe.scattered);
   vec3 mirrored = reflect(-lobe.view, normal);
   vec3 radiance = lobe.diffuse_albedo * world_irradiance(normal)
       + lobe.specular_albedo * world_reflection(mirrored, lobe.roughness);

@@ -17,14 +17,17 @@ import numpy as np
 from ..rendering.brdf_table import LEAST_ROUGHNESS, brdf_table
 
 
-def specular_term(normal, view, to_light, nl, nv, roughness, f0) -> np.ndarray:
-    """(n, 3) value of the GGX specular BRDF, D Vis F. Vectors (n, 3) unit; cosines and roughness (n,); f0 (n, 3)."""
+def specular_term(normal, view, to_light, nl, nv, roughness, f0, f90=1.0) -> np.ndarray:
+    """(n, 3) value of the GGX specular BRDF, D Vis F. Vectors (n, 3) unit; cosines and roughness (n,); f0 (n, 3).
+
+    f90: (n, 1) reflectance at grazing incidence.
+    """
     half = unit(view + to_light)
     nh, vh = np.maximum(dot(normal, half), 0), np.maximum(dot(view, half), 0)
     a2 = roughness**4
     distribution = a2 / (np.pi * (nh**2 * (a2 - 1) + 1) ** 2)
     visibility = 0.5 / (nl * np.sqrt(nv**2 * (1 - a2) + a2) + nv * np.sqrt(nl**2 * (1 - a2) + a2))
-    fresnel = f0 + (1 - f0) * (1 - vh[:, None]) ** 5
+    fresnel = f0 + (f90 - f0) * (1 - vh[:, None]) ** 5
     return (distribution * visibility)[:, None] * fresnel
 
 
@@ -40,14 +43,14 @@ def table_at(roughness, nv) -> np.ndarray:
     return below * (1 - y) + (table[i + 1, j] * (1 - x) + table[i + 1, j + 1] * x) * y
 
 
-def specular_albedo(roughness, nv, f0) -> tuple[np.ndarray, np.ndarray]:
+def specular_albedo(roughness, nv, f0, f90=1.0) -> tuple[np.ndarray, np.ndarray]:
     """(n, 3) directional albedo, and (n, 3) the factor by which light that the coat scatters more than once adds to it.
 
-    roughness, nv: (n,). f0: (n, 3).
+    roughness, nv: (n,). f0: (n, 3). f90: (n, 1).
     """
     scale, bias = table_at(roughness, nv)[:, 4:6].T[:, :, None]
     scattered = 1 + f0 * (1 / np.maximum(scale + bias, 1e-3) - 1)
-    return (f0 * scale + bias) * scattered, scattered
+    return (f0 * scale + f90 * bias) * scattered, scattered
 
 
 def quad_form_factors(corners, normal, view, roughness, nv) -> tuple[np.ndarray, np.ndarray]:

@@ -19,6 +19,10 @@ MIN_ROUGHNESS = 0.03
 #: The least cosine to the viewer, which rays at the silhouette would bring to 0 or, by averaging, below.
 MIN_VIEW_COSINE = 1e-4
 
+#: A coat reflects this many times its reflectance at normal incidence, and 1 at most, at grazing incidence: one that is
+#: hardly there does not shine as Schlick's formula has it (Lagarde & de Rousiers 2014, section 3.1.1).
+GRAZING_GAIN = 50.0
+
 
 def principled_radiance(surface: Surface, direction, lights: list[Incident], world: WorldLight) -> np.ndarray:
     """(n, 3) radiance that leaves towards the viewer.
@@ -31,14 +35,16 @@ def principled_radiance(surface: Surface, direction, lights: list[Incident], wor
     roughness = np.clip(surface.roughness, MIN_ROUGHNESS, 1)
     metallic, coat_f0 = np.clip(surface.metallic, 0, 1)[:, None], surface.f0[:, None] * np.ones(3)
     f0 = coat_f0 + (surface.color - coat_f0) * metallic
-    coat, _ = specular_albedo(roughness, nv, coat_f0)
+    coat_f90 = np.minimum(GRAZING_GAIN * surface.f0[:, None], 1)
+    f90 = coat_f90 + (1 - coat_f90) * metallic
+    coat, _ = specular_albedo(roughness, nv, coat_f0, coat_f90)
     diffuse = surface.color * (1 - metallic) * (1 - coat)
-    specular, scattered = specular_albedo(roughness, nv, f0)
+    specular, scattered = specular_albedo(roughness, nv, f0, f90)
     mirrored = 2 * dot(view, normal)[:, None] * normal - view
     radiance = diffuse * world.irradiance(normal) + specular * world.reflection(mirrored, roughness)
     for light in lights:
         nl = np.maximum(dot(normal, light.to_light), 0)
-        lobe = specular_term(normal, view, light.to_light, nl, nv, roughness, f0) * scattered
+        lobe = specular_term(normal, view, light.to_light, nl, nv, roughness, f0, f90) * scattered
         from_light = (diffuse / np.pi + lobe) * light.irradiance * nl[:, None]
         sized = np.flatnonzero(light.is_sized)
         of_cosine, of_lobe = quad_form_factors(

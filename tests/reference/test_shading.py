@@ -117,3 +117,18 @@ def test_light_and_viewer_can_be_swapped(view, light, roughness):
     back = specular_term(normal, to_light, v, v[:, 2], to_light[:, 2], *rest)
     np.testing.assert_allclose(there, back, rtol=1e-9)
     assert (there >= 0).all()
+
+
+@pytest.mark.parametrize("tilt", [0, 60, 85])
+def test_a_coat_without_reflectance_is_not_there(ellipses, orthographic, tilt):
+    """An index of refraction of 1 leaves the Lambertian base: 0.6 of an even world from every side, black for black."""
+    for color in (0.6, 0.0):
+        seen = radiance(
+            ellipses,
+            orthographic,
+            world=(1, 1, 1),
+            material=Material(roughness=0.5, ior=1.0),
+            color=(color,) * 3,
+            normal=(np.sin(np.radians(tilt)), 0, np.cos(np.radians(tilt))),
+        )
+        np.testing.assert_allclose(seen, color, atol=1e-6)
