@@ -52,6 +52,7 @@ SHADERS = {
         "normal_map": ("Normal",),
     },
     "ShaderNodeBsdfDiffuse": {"color": ("Color",), "normal_map": ("Normal",)},
+    "ShaderNodeEmission": {"emission": ("Color", "Strength")},
 }
 
 
@@ -153,7 +154,7 @@ class _Reader:
 
     def surface(self) -> tuple[Surface, list[Unread]]:
         alpha = self._product("opacity") if "opacity" in self._sockets else Product((1.0,))
-        color, opacity = self._color(alpha)
+        color, opacity = self._color(alpha) if "color" in self._sockets else (Channel((0.0, 0.0, 0.0, 1.0)), None)
         rest = {name: self._channel(name) for name in ("roughness", "metallic", "emission") if name in self._sockets}
         return Surface(color, opacity, normal_map=self._normal_map(), **rest), self._unread
 
@@ -211,7 +212,8 @@ class _Reader:
         return Texture(image, self._layers.uv(name), matrix, weights, uses_alpha, wraps)
 
     def _normal_map(self) -> NormalMap | None:
-        source = linked(self._shader.inputs[self._sockets["normal_map"][0]])
+        sockets = self._sockets.get("normal_map")
+        source = linked(self._shader.inputs[sockets[0]]) if sockets else None
         if source is None:
             return None
         try:

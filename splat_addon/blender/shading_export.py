@@ -84,39 +84,58 @@ def color_times_strength(node: bpy.types.Node, owner: str, notes) -> tuple[float
 
 
 def shading_material(material: bpy.types.Material | None, notes, own: Collection[str] = ()) -> Material:
-    """Roughness, metallic, specular reflectance and emission of the material's Principled node; the defaults without.
+    """How the shader at the material's output answers light, and what it sends out; the default one without a material.
 
     own: fields that the surfels have themselves, whose textures are not missed here.
     """
     if material is None or not material.use_nodes:
         return Material()
-    node = output_source(material.node_tree, "OUTPUT_MATERIAL", "BSDF_PRINCIPLED")
+    node = output_source(material.node_tree, "OUTPUT_MATERIAL", *_SHADERS)
     if node is None:
         notes.add(f"The material {material.name!r} has no Principled BSDF at its output; it is shaded as a default one")
         return Material()
-    sockets = {name: node.inputs[name] for name in _SOCKET_FIELDS}
-    plain = {name: socket.default_value for name, socket in sockets.items()}
-    emission = tuple(c * plain["Emission Strength"] for c in plain["Emission Color"][:3])
-    linked = [n for n, socket in sockets.items() if socket.is_linked and _SOCKET_FIELDS[n] not in own]
-    if not any(emission):
-        linked = [n for n in linked if n != "Emission Color"]
+    fields, make = _SHADERS[node.type]
+    made = make({name: node.inputs[name].default_value for name in fields})
+    linked = [name for name, field in fields.items() if node.inputs[name].is_linked and field not in own]
+    if not any(made.emission):
+        linked = [name for name in linked if fields[name] != "emission" or "Strength" in name]
     if linked:
         notes.add(
             f"The material {material.name!r} textures {', '.join(linked)}, which the surfels do not have; the sockets' "
             "plain values are used. Convert the mesh again to sample them"
         )
+    return made
+
+
+def _principled(plain: dict) -> Material:
     ior = _levelled(plain["IOR"], plain["Specular IOR Level"])
-    return Material(plain["Roughness"], plain["Metallic"], ior, emission)
+    return Material(plain["Roughness"], plain["Metallic"], ior, _sent(plain, "Emission Color", "Emission Strength"))
 
 
-#: socket of a Principled node -> the field of surfels that takes its place, or ""
-_SOCKET_FIELDS = {
-    "Roughness": "roughness",
-    "Metallic": "metallic",
-    "IOR": "",
-    "Specular IOR Level": "",
-    "Emission Color": "emission",
-    "Emission Strength": "emission",
+def _sent(plain: dict, color: str, strength: str) -> tuple[float, float, float]:
+    return tuple(c * plain[strength] for c in plain[color][:3])
+
+
+#: type of a shader node -> its sockets and the field of surfels that takes the place of each, or "", and a function
+#: from their plain values to a `Material`
+_SHADERS = {
+    "BSDF_PRINCIPLED": (
+        {
+            "Roughness": "roughness",
+            "Metallic": "metallic",
+            "IOR": "",
+            "Specular IOR Level": "",
+            "Emission Color": "emission",
+            "Emission Strength": "emission",
+        },
+        _principled,
+    ),
+    # without a coat
+    "BSDF_DIFFUSE": ({}, lambda plain: Material(roughness=1.0, ior=1.0)),
+    "EMISSION": (
+        {"Color": "emission", "Strength": "emission"},
+        lambda plain: Material(roughness=1.0, ior=1.0, emission=_sent(plain, "Color", "Strength")),
+    ),
 }
 
 
@@ -126,10 +145,10 @@ def _levelled(ior: float, level: float) -> float:
     return (1 + root) / (1 - root)
 
 
-def output_source(tree: bpy.types.NodeTree, output_type: str, wanted: str) -> bpy.types.Node | None:
-    """The node of type `wanted` that feeds the tree's active output, or None."""
+def output_source(tree: bpy.types.NodeTree, output_type: str, *wanted: str) -> bpy.types.Node | None:
+    """The node of one of the types `wanted` that feeds the tree's active output, or None."""
     for node in tree.nodes:
         if node.type == output_type and node.is_active_output and node.inputs["Surface"].links:
             source = node.inputs["Surface"].links[0].from_node
-            return source if source.type == wanted else None
+            return source if source.type in wanted else None
     return None

@@ -62,8 +62,39 @@ def wire_plain_emission(tree, inputs):
     inputs["Emission Strength"].default_value = 2.0
 
 
+def at_output(tree, kind):
+    shader = tree.nodes.new(kind)
+    tree.links.new(shader.outputs[0], tree.get_output_node("ALL").inputs["Surface"])
+    return shader.inputs
+
+
+def wire_diffuse_shader(tree, inputs):
+    tree.links.new(texture(tree, HALVES), at_output(tree, "ShaderNodeBsdfDiffuse")["Color"])
+
+
+def wire_emission_shader(tree, inputs):
+    sockets = at_output(tree, "ShaderNodeEmission")
+    tree.links.new(texture(tree, HALVES), sockets["Color"])
+    sockets["Strength"].default_value = 2.5
+
+
+def wire_no_specular(tree, inputs):
+    tree.links.new(texture(tree, HALVES), inputs["Base Color"])
+    inputs["Specular IOR Level"].default_value = 0.0
+
+
 @pytest.mark.parametrize(
-    "wire", [wire_roughness_and_metallic, wire_emission, wire_normal_map, wire_plain_emission], ids=lambda w: w.__name__
+    "wire",
+    [
+        wire_roughness_and_metallic,
+        wire_emission,
+        wire_normal_map,
+        wire_plain_emission,
+        wire_diffuse_shader,
+        wire_emission_shader,
+        wire_no_specular,
+    ],
+    ids=lambda w: w.__name__,
 )
 def test_a_textured_square_is_cycles_square(wire, square, convert, picture, switch_to_cycles, capfd):
     tree = square.data.materials[0].node_tree
