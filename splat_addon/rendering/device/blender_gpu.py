@@ -79,7 +79,8 @@ class BlenderDevice:
         uniforms = gpu.types.GPUUniformBuf(np.ascontiguousarray(block, np.float32))
         self._in_flight.append((uniforms, textures, pipeline, target, batch))
         with target.framebuffer.bind():
-            target.framebuffer.viewport_set(*(viewport or (0, 0, *target.size)))
+            # the frame buffer's own method takes no arguments in Blender 4.5
+            gpu.state.viewport_set(*(viewport or (0, 0, *target.size)))
             gpu.state.blend_set(_BLEND_NAMES[description.blend])
             gpu.state.depth_test_set("LESS_EQUAL" if description.depth_test else "NONE")
             gpu.state.depth_mask_set(description.depth_write)
