@@ -145,7 +145,8 @@ class _SpanWeights:
     """Barycentric weights of corners 1 and 2 at each span's first sample, and their change from one sample to the next.
 
     first, edges: of t triangles, as `_sound_triangles` gives them. of_span: (n,) each span's triangle among the t.
-    Both ends are clamped into the triangle: on the snapped outline a sample can lie 1 / subcells outside the real one.
+    Both ends are moved into the triangle, to where it is nearest: on the snapped outline a sample can lie 0.71 of a
+    sub-cell outside the real one. Clamping the weights themselves would move it any distance along a sliver.
     """
 
     def __init__(self, first: np.ndarray, edges: np.ndarray, axis: int, of_span: np.ndarray, spans: Spans):
@@ -160,13 +161,16 @@ class _SpanWeights:
         ):
             np.multiply(edge, factor, out=part)
         along = self._per_column.take(of_span, axis=1)
+        column, row = spans.columns - u.take(of_span), spans.rows - v.take(of_span)
         start = self._per_row.take(of_span, axis=1)
-        start *= spans.rows - v.take(of_span)
-        start += along * (spans.columns - u.take(of_span))
+        start *= row
+        start += along * column
         steps = spans.counts - 1.0
         along *= steps
         along += start
-        self._first, self._step = _clamped(start), _clamped(along)
+        sides = np.stack([u1, v1, u2, v2])
+        self._first = _moved_inside(start, column, row, sides, of_span)
+        self._step = _moved_inside(along, column + steps, row, sides, of_span)
         self._step -= self._first
         self._step /= np.maximum(steps, 1)
         self._rounded = self._first.astype(np.float32), self._step.astype(np.float32)
@@ -223,11 +227,31 @@ def _at_corners(values: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(rows.T.reshape(3, -1, len(triangles)).swapaxes(0, 1), np.float32)
 
 
-def _clamped(weights: np.ndarray) -> np.ndarray:
-    """(2, n) barycentric weights within the triangle, in place."""
-    np.maximum(weights, 0, out=weights)
-    weights /= np.maximum(weights[0] + weights[1], 1)
+def _moved_inside(
+    weights: np.ndarray, column: np.ndarray, row: np.ndarray, sides: np.ndarray, owner: np.ndarray
+) -> np.ndarray:
+    """(2, n) barycentric weights, in place: of the nearest point of the triangle where they lie outside.
+
+    column, row: (n,) where in the image, from corner 0. sides: (4, t) u and v of the edges from there to the other two
+    corners. owner: (n,) each one's triangle.
+    """
+    w1, w2 = weights
+    outside = np.flatnonzero((w1 < 0) | (w2 < 0) | (w1 + w2 > 1))
+    u1, v1, u2, v2 = sides.take(owner.take(outside), axis=1)
+    x, y = column.take(outside), row.take(outside)
+    along1, off1 = _nearest_on_segment(x, y, u1, v1)
+    along2, off2 = _nearest_on_segment(x, y, u2, v2)
+    between, off = _nearest_on_segment(x - u1, y - v1, u2 - u1, v2 - v1)
+    on1, on2 = (off1 <= off2) & (off1 <= off), off2 <= off
+    w1[outside] = np.where(on1, along1, np.where(on2, 0, 1 - between))
+    w2[outside] = np.where(on1, 0, np.where(on2, along2, between))
     return weights
+
+
+def _nearest_on_segment(x: np.ndarray, y: np.ndarray, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Share of the way from (0, 0) to (u, v) at which (x, y) is nearest, and its squared distance from there."""
+    share = np.clip((x * u + y * v) / np.maximum(u * u + v * v, np.finfo(np.float64).tiny), 0, 1)
+    return share, (x - share * u) ** 2 + (y - share * v) ** 2
 
 
 def _spread(rows: np.ndarray, owner: np.ndarray, out: np.ndarray):

@@ -14,8 +14,7 @@ from .mesh import TriangleMesh
 #: float64 (proved for a product below 2^26.5, measured at 2^26; facts/sampling.md section 1).
 EXACT_BOUND = 2**25
 
-#: Sub-cells a cell: more gain nothing over the unsnapped barycentrics, fewer put slivers 0.01 cell off their plane.
-MAX_SUBCELLS = 16384
+#: Sub-cells a cell; fewer put what is sampled 0.01 cell beside its triangle.
 MIN_SUBCELLS = 64
 
 #: Half-axes are stored as float32, whose normal numbers end at 1e-38.
@@ -68,7 +67,8 @@ def make_grid(mesh: TriangleMesh, spacing: float) -> Grid:
             f"The grid would have {cells:,.0f} cells along its longest edge and is exact up to {finest:,}; "
             f"use a spacing of at least {longest_edge(mesh) / finest:g}."
         )
-    subcells = 2 ** math.floor(math.log2(min(EXACT_BOUND / max(cells, 1.0), MAX_SUBCELLS)))
+    # as many sub-cells as stay exact: what snapping moves is then below what float32 leaves of a position
+    subcells = 2 ** math.floor(math.log2(EXACT_BOUND / max(cells, 1.0)))
     return Grid(mesh.bounds()[0], float(spacing), subcells, math.ceil(cells))
 
 
