@@ -76,7 +76,7 @@ class SurfelStore:
 
     def begin_frame(self, changed: set[str] | None = None, are_materials_edited: bool = False) -> None:
         """Meshes named in `changed` (None: all) are read again the next time they are asked for."""
-        self.textures.begin_frame(are_materials_edited)
+        self.textures.begin_frame(are_materials_edited, is_told=changed is not None)
         self._current = {k for k in self._current if changed is not None and self._kept[k].name not in changed}
 
     def forget_unused(self) -> None:

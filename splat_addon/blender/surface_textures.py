@@ -41,12 +41,15 @@ class TextureStore:
         self._images: dict = {}
         self._kept: dict[int, SurfaceTexture] = {}
         self._is_read: set[int] = set()
+        self._doubted = True
 
-    def begin_frame(self, is_edited: bool = False) -> None:
-        """is_edited: an image or a material was; else only images that are painted on are read again."""
-        self._is_read.clear()
+    def begin_frame(self, is_edited: bool, is_told: bool) -> None:
+        """is_edited: an image or a material was, and all are read again. is_told: edits are told of, as in a viewport;
+        in a final render they are not, and images with unsaved changes are read again."""
         if is_edited:
             self._images.clear()
+        self._doubted = not is_told
+        self._is_read.clear()
 
     def get(self, material: bpy.types.Material | None, notes) -> SurfaceTexture | None:
         """None where the base colour is not one image times a constant, or the image cannot be read, which is noted."""
@@ -83,7 +86,9 @@ class TextureStore:
         return SurfaceTexture(MeshLayers(None, _images=self._images).image(source, uses_alpha), tuple(read.value))
 
     def _forget_if_painted(self, image: bpy.types.Image | None) -> None:
-        if image is not None and image.is_dirty and image.session_uid not in self._is_read:
+        if image is None or not self._doubted:
+            return
+        if image.is_dirty and image.session_uid not in self._is_read:
             self._images = {key: kept for key, kept in self._images.items() if key[0] != image.session_uid}
             self._is_read.add(image.session_uid)
 

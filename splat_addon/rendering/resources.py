@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ..surfels import Surfels
-from .atlas import make_atlas
+from .atlas import FORMAT, make_atlas
 from .device import Device
 from .device.interface import Pipeline, PipelineDescription, Texture
 from .packing import pack_materials, pack_own_materials, pack_uvs
@@ -80,7 +80,7 @@ class Resources:
         """Texels and table of an instance's textures, uploaded once."""
         if textures not in self._atlases:
             atlas = make_atlas(textures)
-            self._atlases[textures] = self.data(atlas.texels), self.data(atlas.table)
+            self._atlases[textures] = self.data(atlas.texels, FORMAT), self.data(atlas.table)
         return self._atlases[textures]
 
     def forget_atlases_but(self, wanted: set[tuple[SurfaceTexture | None, ...]]) -> None:

@@ -96,7 +96,7 @@ def test_a_footprint_without_size_is_the_mean_of_the_texture(bad, on_device):
     atlas = make_atlas((SurfaceTexture(Image(pixels)),))
     variances = np.full((1, 2, 2), bad)
     colors = on_device(lambda device: gpu_colors(device, atlas, np.zeros(1), np.full((1, 2), 0.3), variances))
-    assert np.allclose(colors[0], pixels[..., :3].mean(axis=(0, 1)), atol=1e-5)
+    assert np.allclose(colors[0], pixels[..., :3].mean(axis=(0, 1)), atol=5e-4)
 
 
 def true_mean(pixels, uv, footprint):
@@ -142,4 +142,4 @@ def test_an_atlas_that_would_be_too_large_loses_finest_levels():
     x, y, width, height = atlas.table[0, 2].astype(int)
     assert (width, height) == (32, 32) and atlas.table[1, 1, 2] == 8
     halved = (pixels * [1, 1, 1, 1])[..., 3].reshape(32, 2, 32, 2).mean(axis=(1, 3))
-    assert np.allclose(atlas.texels[y : y + 32, x : x + 32, 3], halved, atol=1e-6)
+    assert np.allclose(atlas.texels[y : y + 32, x : x + 32, 3], halved, atol=1e-3)

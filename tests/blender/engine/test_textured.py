@@ -231,3 +231,18 @@ def test_the_texture_follows_a_mesh_that_deforms(live_square, scene, image, tmp_
         u, v = (column + 0.5) / TEXELS, 3.5 / TEXELS
         pixel = second[int(v * SIZE), int((u + 0.4 * v) * SIZE), :3]
         assert np.allclose(pixel, random_pixels()[3, column, :3], atol=5e-3)
+
+
+def test_a_viewport_reads_an_image_again_only_where_it_is_told(image):
+    """A painted image stays dirty until it is saved, and every move of an object updates the view."""
+    from splat_addon.blender.scene_export import Notes
+    from splat_addon.blender.surface_textures import TextureStore
+
+    material, store, seen = textured_material(image), TextureStore(), []
+    for is_edited in (False, False, True, True):
+        store.begin_frame(is_edited, is_told=True)
+        seen.append(store.get(material, Notes()))
+        paint(image, random_pixels(2))
+    assert image.is_dirty
+    assert seen[0] is seen[1] and seen[1] is not seen[2] and seen[2] is seen[3]
+    assert np.allclose(seen[2].image.pixels, random_pixels(2), atol=1e-6)
