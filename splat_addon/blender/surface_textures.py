@@ -70,9 +70,10 @@ class TextureStore:
 
     def _read(self, material: bpy.types.Material | None) -> SurfaceTexture | None:
         shader = surface_shader(material) if material is not None and uses_nodes(material) else None
-        if shader is None or shader.bl_idname not in SHADERS:
+        sockets = SHADERS.get(shader.bl_idname, {}).get("color") if shader is not None else None
+        if sockets is None:
             return None
-        read = product(shader.inputs[SHADERS[shader.bl_idname]["color"][0]])
+        read = product(shader.inputs[sockets[0]])
         if (
             len(read.sources) != 1
             or not isinstance(read.sources[0], ImageSource)

@@ -246,3 +246,14 @@ def test_a_viewport_reads_an_image_again_only_where_it_is_told(image):
     assert image.is_dirty
     assert seen[0] is seen[1] and seen[1] is not seen[2] and seen[2] is seen[3]
     assert np.allclose(seen[2].image.pixels, random_pixels(2), atol=1e-6)
+
+
+@pytest.mark.parametrize("shader", ["ShaderNodeEmission", "ShaderNodeBsdfGlass", "ShaderNodeMixShader"])
+def test_a_shader_without_a_base_colour_leaves_the_stored_colours(add_textured, image, picture, shader):
+    material = textured_material(image)
+    add_textured(material)
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    output = next(n for n in nodes if n.type == "OUTPUT_MATERIAL")
+    links.new(nodes.new(shader).outputs[0], output.inputs["Surface"])
+    drawn = picture()[MIDDLES][..., :3]
+    assert drawn.any() and not np.allclose(drawn, random_pixels()[..., :3], atol=0.1)
