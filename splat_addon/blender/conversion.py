@@ -175,6 +175,8 @@ def sample(conversion: Conversion, progress: Callable[[float], bool | None] | No
     solid = sampling.keeps_both_sides and is_solid(conversion.whole)
     conversion.surfels = sampling.surfels.as_solid() if solid else sampling.surfels
     conversion.sampling = sampling
+    if choices.texture_mapped and not sampling.surfels.has_uvs:
+        conversion.notes.append("No base colour is one image times a constant, so no surfel is texture-mapped")
     conversion.seconds += time.perf_counter() - start
 
 

@@ -257,3 +257,10 @@ def test_a_shader_without_a_base_colour_leaves_the_stored_colours(add_textured, 
     links.new(nodes.new(shader).outputs[0], output.inputs["Surface"])
     drawn = picture()[MIDDLES][..., :3]
     assert drawn.any() and not np.allclose(drawn, random_pixels()[..., :3], atol=0.1)
+
+
+def test_a_conversion_without_images_says_that_nothing_is_texture_mapped(add_square, convert, said):
+    add_square()
+    (made,) = convert(resolution=4, texture_mapped=True)
+    assert "No base colour is one image times a constant, so no surfel is texture-mapped" in said()
+    assert "uv" not in made.data.attributes
