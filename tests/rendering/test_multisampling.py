@@ -45,6 +45,16 @@ def test_shading_every_sample_is_as_true_as_supersampling(name, render):
     assert each > one + 7, (one, regular, each)
 
 
+@pytest.mark.parametrize("settings", [FOUR, FOUR_EACH])
+def test_textures_are_looked_up_under_what_is_evaluated_once(settings, render):
+    """The paper's way: anisotropic lookups once a pixel, or under the smaller footprint of each sample."""
+    scene, view = scenes.textured_plane(size=(64, 64), elevation=50)
+    settings = replace(settings, shading="flat")
+    truth = render_exact(scene, view, settings, samples=6)
+    inside = np.s_[16:48, 16:48]
+    assert psnr(render(scene, view, settings).color[inside], truth.color[inside]) > 36
+
+
 def test_shading_once_a_pixel_keeps_the_pixel_s_kernel(render):
     """The kernel is looked up at the pixel's centre: the rim of a disc stays hard, as in the papers' hardware."""
     disc = Scene((discs((0.01, 0.02, -3), (0.5, 0, 0), (0, 0.5, 0), (1, 1, 1)),))

@@ -36,12 +36,14 @@ def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> 
     if not textured:
         return plain
     axes = _AXES_VARYINGS if method.works_in == "space" else ()
+    # of what is evaluated once: a sample, or each of its hardware samples, which is a smaller piece of the pixel
+    variance = method.pixel_variance / (frame.multisamples if frame.sample_shading else 1)
     return replace(
         plain,
         name="textured_attributes",
         samplers=(*plain.samplers, *_TEXTURE_SAMPLERS),
         varyings=(*plain.varyings, *_TEXTURE_VARYINGS, *axes),
-        defines=(*plain.defines, ("TEXTURED", "1"), ("PIXEL_VARIANCE", repr(method.pixel_variance))),
+        defines=(*plain.defines, ("TEXTURED", "1"), ("PIXEL_VARIANCE", repr(variance))),
     )
 
 
