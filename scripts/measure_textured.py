@@ -161,6 +161,15 @@ def report(size: int, rounds: int) -> None:
                 flush=True,
             )
     report_merging(image)
+    report_conversion(mesh, rounds)
+
+
+def report_conversion(mesh: TriangleMesh, rounds: int) -> None:
+    """What it costs to keep the coordinates, in turns."""
+    jobs = [partial(sample_surface, mesh, resolution=512, texture_mapped=mapped) for mapped in (False, True)]
+    plain, mapped = milliseconds(jobs, rounds)
+    print(f"Sampling {len(jobs[0]().surfels):,} surfels: {plain:.0f} ms, texture-mapped {mapped:.0f} ms", end="")
+    print(f" ({mapped / plain:.2f})")
 
 
 def report_merging(image: Image) -> None:
