@@ -21,7 +21,7 @@ MAY_IMPORT = {
     "blender": {"surfels", "sampling", "rendering", "interchange"},
 }
 #: `reference` reads rendering's data, never its passes.
-RENDERING_DATA = {"camera", "scene", "light", "environment", "shadow", "settings", "frame", "brdf_table"}
+RENDERING_DATA = {"camera", "scene", "light", "environment", "shadow", "settings", "frame", "brdf_table", "view"}
 #: foreign module -> where it may be imported
 HOMES = {
     "bpy": ("blender/",),

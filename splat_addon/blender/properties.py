@@ -7,7 +7,8 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 from ..rendering.methods import METHODS
-from ..rendering.settings import ACCUMULATIONS, MAX_SHADOW_RESOLUTION, MAX_SUPERSAMPLING, SHADINGS, Settings
+from ..rendering.settings import ACCUMULATIONS, MAX_SHADOW_RESOLUTION, MAX_SUPERSAMPLING, MAX_TOON_STEPS, Settings
+from ..rendering.shading_models import SHADING_MODELS
 from ..rendering.storages import STORAGES
 from .ids import RENDER_SETTINGS
 from .mesh_sampling_settings import MeshSamplingProperties
@@ -23,8 +24,22 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     shading: EnumProperty(
         name="Shading",
         description="How the surface answers light",
-        items=[(name, name.title(), description) for name, description in SHADINGS.items()],
+        items=[(m.name, m.label, f"{m.summary} ({m.source})") for m in SHADING_MODELS.values()],
         default=Settings.shading,
+    )
+    toon_steps: IntProperty(
+        name="Steps",
+        description="Levels of brightness that each light is shown in",
+        min=2,
+        max=MAX_TOON_STEPS,
+        default=Settings.toon_steps,
+    )
+    toon_softness: FloatProperty(
+        name="Softness",
+        description="How much of a level is spent on going over to the next; at 0 its edge is as jagged as the samples",
+        min=0.0,
+        max=1.0,
+        default=Settings.toon_softness,
     )
     supersampling: IntProperty(
         name="Render",
@@ -101,6 +116,8 @@ def _settings(scene, **choices) -> Settings:
     return Settings(
         method=properties.method,
         shading=properties.shading,
+        toon_steps=properties.toon_steps,
+        toon_softness=properties.toon_softness,
         epsilon=properties.epsilon,
         shadow_resolution=properties.shadow_resolution,
         storage=properties.storage,

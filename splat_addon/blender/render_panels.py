@@ -42,6 +42,16 @@ class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):
     properties = ("shading", "epsilon")
 
 
+class RENDER_PT_surfel_toon(_RenderPanel, bpy.types.Panel):
+    bl_label = "Toon"
+    bl_parent_id = "RENDER_PT_surfel_surface"
+    properties = ("toon_steps", "toon_softness")
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and getattr(context.scene, RENDER_SETTINGS).shading == "toon"
+
+
 class RENDER_PT_surfel_shadows(_RenderPanel, bpy.types.Panel):
     bl_label = "Shadows"
     bl_options = frozenset({"DEFAULT_CLOSED"})
@@ -97,6 +107,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
     (
         RENDER_PT_surfel_sampling,
         RENDER_PT_surfel_surface,
+        RENDER_PT_surfel_toon,
         RENDER_PT_surfel_shadows,
         RENDER_PT_surfel_performance,
         VIEWLAYER_PT_surfel_passes,

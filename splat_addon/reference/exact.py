@@ -13,9 +13,8 @@ from ..rendering.frame import EMPTY_DEPTH, Frame
 from ..rendering.scene import Scene
 from ..rendering.settings import Settings
 from .filters import filter_weights, resample
-from .lights import all_incident
 from .rays import RayGrid, Surface, visible_surface
-from .shading import principled_radiance
+from .shading_models import SHADERS
 from .splats import eye_splats, projected_bounds
 from .world import WorldLight
 
@@ -74,25 +73,10 @@ def shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, s
         _, direction = grid.rays(np.arange(grid.count))
         rays[:, :3], rays[:, 3] = WorldLight(scene, camera).background(direction), 1
     hit = surface.rays
-    rays[hit, :3] = SHADERS[settings.shading](surface, grid, scene, camera, settings.epsilon)
+    rays[hit, :3] = SHADERS[settings.shading](surface, grid, scene, camera, settings)
     rays[hit, 3] = rays[hit, 7] = 1
     rays[hit, 4:7] = surface.normal
     return rays.reshape(*grid.shape, 8)
-
-
-def _flat(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, epsilon: float) -> np.ndarray:
-    return surface.color
-
-
-def _principled(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, epsilon: float) -> np.ndarray:
-    origin, direction = grid.rays(surface.rays)
-    position = origin + surface.depth[:, None] * direction
-    incident, world = all_incident(scene, camera, position, surface.light_set, epsilon), WorldLight(scene, camera)
-    return surface.emission + principled_radiance(surface, direction, incident, world)
-
-
-#: shading -> (surface, grid, scene, camera, epsilon) to (n, 3) radiance of the rays that hit
-SHADERS = {"flat": _flat, "principled": _principled}
 
 
 def _nearest_depth(surface: Surface, grid: RayGrid, samples: int, margin: int) -> np.ndarray:

@@ -15,6 +15,7 @@ from .methods import Method, get_method
 from .packing import shared_emission, shared_material
 from .scene import Material, Scene
 from .settings import Settings
+from .shading_models import ShadingModel, get_shading_model
 from .shadow import MAX_MAPS, ShadowMap, atlas_size, shadow_maps
 from .storages import get_storage
 from .view import DepthExtent, depth_extent
@@ -90,6 +91,7 @@ class FramePlan:
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
     features: (name, why), of what shaders do beside the least; each name is defined in their text.
     shadow_maps: what lights see, in the order of the lights.
+    depth_range: nearest and farthest of what is in view, world units.
     left_out: (what, why), of what other scenes or settings would need.
     """
 
@@ -108,6 +110,7 @@ class FramePlan:
     passes: tuple[PlannedPass, ...]
     features: tuple[tuple[str, str], ...]
     shadow_maps: tuple[ShadowMap, ...]
+    depth_range: tuple[float, float]
     left_out: tuple[tuple[str, str], ...]
 
     def has(self, feature: str) -> bool:
@@ -175,8 +178,9 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
             f"Method {method.name} works in the picture, where hardware multisampling sees nothing; set multisampling "
             "to 0 and use supersampling, or method quad."
         )
+    model = get_shading_model(settings.shading)
     material, emission = shared_material(scene.surfels), shared_emission(scene.surfels)
-    linear_depth, passes, features, maps, left_out = False, (), (), (), []
+    linear_depth, passes, features, maps, depth_range, left_out = False, (), (), (), (0.0, 1.0), []
     if not any(len(instance.surfels) for instance in scene.surfels):
         left_out.append(("all other passes", "the scene has no surfels, so the picture is its background"))
         if _shows_environment(scene, settings):
@@ -184,18 +188,19 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
             passes = (PlannedPass("background", "the world is a picture", ("environment_image",), outputs),)
     else:
         extent = depth_extent(scene, camera, settings.epsilon)
+        depth_range = extent.near, extent.far
         linear_depth, why_depth = _linear_depth(camera, extent)
-        sums = _sums(scene, settings, material, emission, left_out)
-        maps = _shadow_maps(scene, camera, settings, left_out)
-        reads = _read_by_shading(scene, settings, sums, maps, left_out)
+        sums = _sums(scene, settings, model, material, emission, left_out)
+        maps = _shadow_maps(scene, camera, settings, model, left_out)
+        reads = _read_by_shading(scene, model, sums, maps, left_out)
         shadows = (_shadow_pass(scene, maps),) if maps else ()
         passes = (
             *shadows,
             PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
             *_attribute_passes(method, _why_attributes(scene, method), sums, left_out),
-            *_shading_passes(scene, settings, method, reads, left_out),
+            *_shading_passes(scene, settings, method, model, reads, left_out),
         )
-        features = _splat_features(extent, left_out) + _features(scene, settings, emission, left_out)
+        features = _splat_features(extent, left_out) + _features(scene, settings, model, emission, left_out)
         if not linear_depth:
             left_out.append(("linear depth", why_depth))
         _say_what_surfels_lack(scene, camera, left_out)
@@ -215,6 +220,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         passes,
         features,
         maps,
+        depth_range,
         tuple(left_out),
     )
 
@@ -228,28 +234,25 @@ def _why_attributes(scene: Scene, method: Method) -> str:
 # What follows decides one thing each, and appends to `left_out` what it decided against.
 
 
-def _sums(scene: Scene, settings: Settings, material: Material | None, emission, left_out: list) -> tuple[str, ...]:
+def _sums(
+    scene: Scene, settings: Settings, model: ShadingModel, material: Material | None, emission, left_out: list
+) -> tuple[str, ...]:
     """What the attribute pass adds up."""
     sums = ["color_sum", "normal_sum"]
     if settings.accumulation == "float16":
         sums.append("depth_sum")
     else:
         left_out.append(("depth_sum", "float32 sums of normals have room for depths"))
-    if settings.shading == "flat":
-        left_out += [(name, "flat shading does not look at materials") for name in ("material_sum", "emission_sum")]
-        return tuple(sums)
-    if material is not None:
-        left_out.append(("material_sum", "all surfels have one material"))
-    else:
-        sums.append("material_sum")
-    if emission is not None:
-        left_out.append(("emission_sum", f"all surfels send out the same light{'' if any(emission) else ', none'}"))
-    else:
-        sums.append("emission_sum")
-    if settings.shading != "flat" and any(light.receivers is not None for light in scene.lights):
-        sums.append("light_set_sum")
-    else:
-        left_out.append(("light_set_sum", "every light lights everything"))
+    blind = "" if model.has_material else f"{model.name} shading does not look at materials"
+    one_light = "all surfels send out the same light" + ("" if emission and any(emission) else ", none")
+    is_linked = model.is_lit and any(light.receivers is not None for light in scene.lights)
+    why_not = {
+        "material_sum": blind or ("" if material is None else "all surfels have one material"),
+        "emission_sum": blind or ("" if emission is None else one_light),
+        "light_set_sum": "" if is_linked else "every light lights everything, or nothing is lit",
+    }
+    sums += [name for name, why in why_not.items() if not why]
+    left_out += [(name, why) for name, why in why_not.items() if why]
     return tuple(sums)
 
 
@@ -265,8 +268,10 @@ def _attribute_passes(method: Method, why: str, sums: tuple[str, ...], left_out:
     )
 
 
-def _shadow_maps(scene: Scene, camera: Camera, settings: Settings, left_out: list) -> tuple[ShadowMap, ...]:
-    if settings.shading == "flat" or not settings.shadow_resolution:
+def _shadow_maps(
+    scene: Scene, camera: Camera, settings: Settings, model: ShadingModel, left_out: list
+) -> tuple[ShadowMap, ...]:
+    if not model.is_lit or not settings.shadow_resolution:
         left_out.append(("shadows", "they are switched off, or nothing is lit"))
         return ()
     maps, without = shadow_maps(scene, camera, settings.shadow_resolution)
@@ -284,21 +289,19 @@ def _shadow_pass(scene: Scene, maps: tuple[ShadowMap, ...]) -> PlannedPass:
 
 
 def _read_by_shading(
-    scene: Scene, settings: Settings, sums: tuple[str, ...], maps: tuple[ShadowMap, ...], left_out: list
+    scene: Scene, model: ShadingModel, sums: tuple[str, ...], maps: tuple[ShadowMap, ...], left_out: list
 ) -> tuple[str, ...]:
-    reads = list(sums)
-    if settings.shading == "flat":
-        left_out.append(("lights", "flat shading does not look at lights"))
+    reads = [*sums, *model.tables]
+    if not model.is_lit:
+        left_out.append(("lights", f"{model.name} shading does not look at lights"))
+    elif not scene.lights:
+        left_out.append(("lights", "the scene has none"))
     else:
-        reads.append("brdf_table")
-        if scene.lights:
-            reads.append("lights")
-            if maps:
-                reads += ["shadow_maps", "shadow_depth"]
-        else:
-            left_out.append(("lights", "the scene has none"))
-        if scene.environment:
-            reads += ["environment_image", "environment_levels"]
+        reads.append("lights")
+        if maps:
+            reads += ["shadow_maps", "shadow_depth"]
+    if model.has_world and scene.environment:
+        reads += ["environment_image", "environment_levels"]
     if not scene.environment:
         left_out.append(("environment", "the world is even"))
     return tuple(reads)
@@ -315,7 +318,9 @@ def _splat_features(extent: DepthExtent, left_out: list) -> tuple[tuple[str, str
     return ()
 
 
-def _features(scene: Scene, settings: Settings, emission, left_out: list) -> tuple[tuple[str, str], ...]:
+def _features(
+    scene: Scene, settings: Settings, model: ShadingModel, emission, left_out: list
+) -> tuple[tuple[str, str], ...]:
     """What shaders do beside the least."""
     features = []
     if settings.edge_threshold == 0:
@@ -324,23 +329,23 @@ def _features(scene: Scene, settings: Settings, emission, left_out: list) -> tup
         left_out.append(("edge threshold", f"the weights of {settings.method} are smaller where it filters"))
     else:
         features.append(("EDGE_THRESHOLD", f"pixels whose weights sum to less than {settings.edge_threshold:g} fade"))
-    if settings.shading == "flat":
-        return tuple(features)
-    if emission is not None and any(emission):
+    if model.has_material and emission is not None and any(emission):
         features.append(("EMISSION", "all surfels send out the same light"))
-    sized = sum(light.is_sized for light in scene.lights)
+    sized = model.is_lit * sum(light.is_sized for light in scene.lights)
     if sized:
         features.append(("SIZED_LIGHTS", f"{sized} of {len(scene.lights)} lights have a size"))
-    elif scene.lights:
+    elif model.is_lit and scene.lights:
         left_out.append(("sized lights", "every light is a point or a direction"))
     return tuple(features)
 
 
-def _shading_passes(scene: Scene, settings: Settings, method: Method, reads: tuple[str, ...], left_out: list):
+def _shading_passes(
+    scene: Scene, settings: Settings, method: Method, model: ShadingModel, reads: tuple[str, ...], left_out: list
+):
     """From sums to pixels: in one pass, or in two where silhouettes are filtered."""
     outputs = _outputs(settings, left_out)
     behind = ("environment_image",) if _shows_environment(scene, settings) else ()
-    once = f"{settings.shading}, once a sample"
+    once = f"{model.name}, once a sample"
     if method.visibility_samples == 1:
         return (PlannedPass("shading", once, tuple(dict.fromkeys((*reads, *behind))), outputs),)
     kept = ("shaded", "surface")

@@ -6,11 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-#: shading -> what it shows
-SHADINGS = {
-    "principled": "Diffuse and GGX specular light of the scene's lights and world",
-    "flat": "The surfels' own colour, unlit",
-}
+from .shading_models import get_shading_model
 
 #: accumulation -> (label, what it costs and gains)
 ACCUMULATIONS = {
@@ -23,6 +19,8 @@ ACCUMULATIONS = {
 }
 
 MAX_SUPERSAMPLING = 16
+
+MAX_TOON_STEPS = 16
 
 #: Samples a pixel that hardware may offer; 0 is none of its own.
 MULTISAMPLING = (0, 2, 4, 8)
@@ -37,7 +35,9 @@ OUTPUTS = ("color", "depth", "normal", "coverage")
 @dataclass(frozen=True)
 class Settings:
     """method: how a splat is rasterised and filtered, a name in `rendering.methods`.
-    shading: a name in `SHADINGS`.
+    shading: a name in `rendering.shading_models`.
+    toon_steps: levels of each light in the toon model, at least 2. toon_softness: width of their edges, as a share of a
+        level's.
     supersampling: N x N samples a pixel, averaged with a box filter.
     multisampling: samples that the hardware tests for depth in each of those, for methods that work in space; a device
         has what its `multisample_counts` name, and Blender's has none.
@@ -56,6 +56,8 @@ class Settings:
 
     method: str = "mip"
     shading: str = "principled"
+    toon_steps: int = 3
+    toon_softness: float = 0.1
     supersampling: int = 1
     multisampling: int = 0
     sample_shading: bool = False
@@ -69,8 +71,11 @@ class Settings:
     profile: bool = False
 
     def __post_init__(self):
-        if self.shading not in SHADINGS:
-            raise ValueError(f"shading must be one of {', '.join(SHADINGS)}, not {self.shading!r}.")
+        get_shading_model(self.shading)
+        if self.toon_steps not in range(2, MAX_TOON_STEPS + 1):
+            raise ValueError(f"toon_steps must be 2 to {MAX_TOON_STEPS}, not {self.toon_steps}.")
+        if not 0 <= self.toon_softness <= 1:
+            raise ValueError(f"toon_softness must be 0 to 1, not {self.toon_softness}.")
         if self.accumulation not in ACCUMULATIONS:
             raise ValueError(f"accumulation must be one of {', '.join(ACCUMULATIONS)}, not {self.accumulation!r}.")
         if int(self.supersampling) != self.supersampling or not 1 <= self.supersampling <= MAX_SUPERSAMPLING:

@@ -113,10 +113,12 @@ def visible_corners(scene: Scene, camera: Camera) -> tuple[np.ndarray, np.ndarra
 
 @dataclass(frozen=True)
 class DepthExtent:
-    """ratio: farthest depth over nearest of what a camera sees. radius: the largest splat's, over the nearest depth.
-    reaches_near: some splat may touch the near plane.
+    """near, far: depths of what a camera sees, world units. ratio: of the farthest to the nearest.
+    radius: the largest splat's, over the nearest depth. reaches_near: some splat may touch the near plane.
     """
 
+    near: float
+    far: float
     ratio: float
     radius: float
     reaches_near: bool
@@ -129,7 +131,8 @@ def depth_extent(scene: Scene, camera: Camera, epsilon: float) -> DepthExtent:
     radius = max((radius for *_, radius in seen), default=0.0)
     # By a radius more: a method may lengthen the shorter half-axis.
     reaches_near = any(float(depths.min()) - reach <= camera.near for _, depths, reach in seen)
-    return DepthExtent(far / near if near else math.inf, radius / near if near else math.inf, reaches_near)
+    ratio, relative_radius = (far / near, radius / near) if near else (math.inf, math.inf)
+    return DepthExtent(near, far, ratio, relative_radius, reaches_near)
 
 
 def scaled_projection(camera: Camera, near: float, far: float, scale: float) -> np.ndarray:

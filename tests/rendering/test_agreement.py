@@ -10,6 +10,7 @@ from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import EMPTY_DEPTH, Environment, Light, Material, Settings
 from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.shading_models import SHADING_MODELS
 
 TOLERANCE = 1e-4
 #: A normal is a sum brought to unit length: where front and back of a fold nearly cancel, that magnifies rounding.
@@ -99,6 +100,9 @@ SCENES = {
 #: Looked up under footprints, which rays do not have: tests/rendering/test_textured.py compares them with the truth.
 TEXTURED = {"textured_plane": lambda: scenes.textured_plane(size=SIZE)}
 
+#: Models that show the surface and not its light.
+UNLIT = [model.name for model in SHADING_MODELS.values() if not model.is_lit]
+
 #: scene, method, other settings
 CASES = [
     *((name, "quad", {}) for name in SCENES),
@@ -106,6 +110,12 @@ CASES = [
     *((name, method, {}) for name in TEXTURED for method in METHODS),
     *(("torus", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
     *(("torus", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
+    *(
+        (name, method, {"shading": shading})
+        for shading in UNLIT
+        for name, method in (("torus", "quad"), ("torus", "mip"))
+    ),
+    *(("shadows", method, {"shading": shading}) for shading in ("phong", "toon") for method in ("quad", "mip")),
     ("own_materials", "mip", {}),
     ("own_materials", "mip", {"storage": "16-bit"}),
 ]

@@ -18,6 +18,7 @@ from .tile import TileContext
 #: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
 #: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights, 1 / far,
 #:     what summed colours are multiplied by. emission: of all surfels. edges: the sum of weights that covers a sample.
+#: model: levels of the toon model and how soft their edges are, nearest and farthest depth in view.
 SHADING_BLOCK = (
     "Shading",
     "shading",
@@ -31,6 +32,7 @@ SHADING_BLOCK = (
         ("vec4", "options"),
         ("vec4", "emission"),
         ("vec4", "edges"),
+        ("vec4", "model"),
     ),
 )
 
@@ -123,4 +125,5 @@ def shading_block(tile: TileContext) -> np.ndarray:
         (camera.is_orthographic, len(scene.lights), tile.depth_unit, 1 / tile.color_scale),
         (*(frame.emission or (0.0, 0.0, 0.0)), 0.0),
         (tile.settings.edge_threshold, 0.0, 0.0, 0.0),
+        (tile.settings.toon_steps, tile.settings.toon_softness, *(d * view.scale for d in frame.depth_range)),
     )

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The shading models in float64: the twins of shaders/shading/*.glsl, by name.
+
+Each takes what rays see (`Surface`), their grid, the scene, its camera and the settings, and gives (n, 3) radiance.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..rendering.camera import Camera
+from ..rendering.scene import Scene
+from ..rendering.settings import Settings
+from ..rendering.view import depth_extent
+from .brdf import dot, unit
+from .lights import all_incident
+from .rays import RayGrid, Surface
+from .shading import MIN_ROUGHNESS, principled_radiance
+from .world import WorldLight
+
+
+def _flat(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    return surface.color
+
+
+def _normals(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    return surface.normal @ camera.matrix_world[:3, :3].T / 2 + 0.5
+
+
+def _depth(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    extent = depth_extent(scene, camera, settings.epsilon)
+    share = (surface.depth - extent.near) / (extent.far - extent.near)
+    return np.repeat(np.clip(share, 0, 1)[:, None], 3, axis=1)
+
+
+def _principled(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    direction, incident = _lighting(surface, grid, scene, camera, settings)
+    return surface.emission + principled_radiance(surface, direction, incident, WorldLight(scene, camera))
+
+
+def _phong(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    direction, incident = _lighting(surface, grid, scene, camera, settings)
+    metallic, f0 = np.clip(surface.metallic, 0, 1)[:, None], surface.f0[:, None]
+    diffuse, specular = surface.color * (1 - metallic), f0 + (surface.color - f0) * metallic
+    exponent = blinn_exponent(surface.roughness)
+    radiance = surface.emission + (diffuse + specular) * WorldLight(scene, camera).irradiance(surface.normal)
+    for light in incident:
+        cosine = np.maximum(dot(surface.normal, light.to_light), 0)[:, None]
+        lobe = (exponent + 8) / (8 * np.pi) * _blinn_lobe(surface.normal, -unit(direction), light.to_light, exponent)
+        radiance = radiance + (diffuse / np.pi + specular * lobe[:, None]) * light.irradiance * cosine
+    return radiance
+
+
+def _toon(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    direction, incident = _lighting(surface, grid, scene, camera, settings)
+    metallic = np.clip(surface.metallic, 0, 1)[:, None]
+    highlight = (1 + (surface.color - 1) * metallic) * (1 - np.clip(surface.roughness, 0, 1))[:, None]
+    exponent = blinn_exponent(surface.roughness)
+    radiance = surface.emission + surface.color * WorldLight(scene, camera).irradiance(surface.normal)
+    for light in incident:
+        cosine = dot(surface.normal, light.to_light)
+        lobe = _blinn_lobe(surface.normal, -unit(direction), light.to_light, exponent)
+        steps = toon_ramp(cosine, settings.toon_steps, settings.toon_softness)[:, None]
+        spot = _soft_step(lobe - 0.5, settings.toon_softness)[:, None]
+        seen = surface.color * steps + highlight * spot
+        radiance = radiance + np.where(cosine[:, None] > 0, seen * light.irradiance / np.pi, 0)
+    return radiance
+
+
+def blinn_exponent(roughness: np.ndarray) -> np.ndarray:
+    """Of the lobe as wide as GGX's at that roughness (Walter et al. 2007, section 5.2)."""
+    return 2 / np.clip(roughness, MIN_ROUGHNESS, 1) ** 4 - 2
+
+
+def toon_ramp(cosine: np.ndarray, steps: int, softness: float) -> np.ndarray:
+    """0 to 1 in `steps` even levels, whose edges lie at multiples of 1 / steps and are `softness` of one wide."""
+    at = cosine * steps
+    edge = np.clip(np.floor(at + 0.5), 1, steps - 1)
+    return (edge - 1 + _soft_step(at - edge, softness)) / (steps - 1)
+
+
+def _soft_step(x: np.ndarray, softness: float) -> np.ndarray:
+    t = np.clip(x / softness + 0.5, 0, 1) if softness > 0 else (x >= 0).astype(float)
+    return t * t * (3 - 2 * t)
+
+
+def _blinn_lobe(normal, view, to_light, exponent) -> np.ndarray:
+    return np.maximum(dot(normal, unit(view + to_light)), 0) ** exponent
+
+
+def _lighting(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings):
+    """Directions of the rays that hit, (n, 3), and what each light sends to where they do."""
+    origin, direction = grid.rays(surface.rays)
+    position = origin + surface.depth[:, None] * direction
+    return direction, all_incident(scene, camera, position, surface.light_set, settings.epsilon)
+
+
+#: name of a shading model -> its twin
+SHADERS = {
+    "principled": _principled,
+    "phong": _phong,
+    "toon": _toon,
+    "flat": _flat,
+    "normals": _normals,
+    "depth": _depth,
+}

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a surface shows of itself and of its light: one entry here, one GLSL file and one float64 twin each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ShadingModel:
+    """name: also of shaders/shading/<name>.glsl and of its twin in `reference.shading_models`. label: for users.
+    source: of the model. summary: what it shows.
+
+    is_lit: it looks at lights, with their shadows and the objects they are linked to.
+    has_material: it looks at roughness, metallic, reflectance and emission.
+    has_world: it looks at the light of the world around.
+    tables: textures that its file reads beside the sums.
+    """
+
+    name: str
+    label: str
+    source: str
+    summary: str
+    is_lit: bool = False
+    has_material: bool = False
+    has_world: bool = False
+    tables: tuple[str, ...] = ()
+
+
+SHADING_MODELS = {
+    model.name: model
+    for model in (
+        ShadingModel(
+            "principled",
+            "Principled",
+            "Walter et al. 2007, Heitz et al. 2016",
+            "Diffuse and GGX specular light of the scene's lights and world",
+            is_lit=True,
+            has_material=True,
+            has_world=True,
+            tables=("brdf_table",),
+        ),
+        ShadingModel(
+            "phong",
+            "Phong",
+            "Blinn 1977, normalised",
+            "Diffuse light and a highlight as sharp as the material is smooth; lights are points",
+            is_lit=True,
+            has_material=True,
+            has_world=True,
+        ),
+        ShadingModel(
+            "toon",
+            "Toon",
+            "Lake et al. 2000",
+            "Each light in a few even steps, with a highlight that has an edge",
+            is_lit=True,
+            has_material=True,
+            has_world=True,
+        ),
+        ShadingModel("flat", "Flat", "none needed", "The surfels' own colour, unlit"),
+        ShadingModel(
+            "normals",
+            "Normals",
+            "none needed",
+            "The direction that the surface faces in the world, -1 to 1 on each axis as 0 to 1 of red, green and blue",
+        ),
+        ShadingModel(
+            "depth",
+            "Depth",
+            "none needed",
+            "The distance along the view, from black at the nearest to white at the farthest of what is in view",
+        ),
+    )
+}
+
+
+def get_shading_model(name: str) -> ShadingModel:
+    """Raises ValueError for a name that is not registered."""
+    if name not in SHADING_MODELS:
+        raise ValueError(f"shading must be one of {', '.join(SHADING_MODELS)}, not {name!r}.")
+    return SHADING_MODELS[name]

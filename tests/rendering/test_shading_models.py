@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Each shading model against what it says by hand, and against its float64 twin."""
+
+import math
+from dataclasses import replace
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import render_exact, scenes
+from splat_addon.reference.shading_models import SHADERS
+from splat_addon.rendering import Camera, Environment, Instance, Light, Material, Scene, Settings, look_at, plan
+from splat_addon.rendering.shading_models import SHADING_MODELS
+from splat_addon.surfels import Surfels
+
+COLOR = np.array((0.8, 0.4, 0.2))
+SIZE = (16, 16)
+ABOVE = Camera.orthographic(look_at((0, 0, 5), (0, 0.001, 0)), 1.0, SIZE, near=0.1, far=20)
+
+
+def floor(height=0.0, half=2.0, side=24):
+    """Surfels on a square that faces up."""
+    axis = (np.arange(side) + 0.5) * 2 * half / side - half
+    x, y = (a.ravel() for a in np.meshgrid(axis, axis))
+    count = len(x)
+    return Surfels(
+        positions=np.stack([x, y, np.full(count, height)], axis=1),
+        rotations=np.tile((1.0, 0, 0, 0), (count, 1)),
+        scales=np.full((count, 2), 3.2 * half / side),
+        normals=np.tile((0.0, 0, 1), (count, 1)),
+        colors=np.tile((*COLOR, 1.0), (count, 1)),
+        materials=np.zeros(count, np.int32),
+    )
+
+
+def center(frame):
+    return frame.color[SIZE[1] // 2, SIZE[0] // 2, :3]
+
+
+def from_above(cosine, energy=2.0, **others):
+    """A sun whose light meets the floor at that cosine."""
+    return Light("sun", energy=energy, direction=(math.sqrt(1 - cosine**2), 0, -cosine), **others)
+
+
+def test_every_model_has_a_twin():
+    assert SHADERS.keys() == SHADING_MODELS.keys()
+
+
+def test_normals_are_those_of_the_world(render):
+    frame = render(Scene([floor()]), ABOVE, Settings(shading="normals"))
+    assert center(frame) == pytest.approx((0.5, 0.5, 1.0), abs=1e-5)
+    below = Camera.orthographic(look_at((0, 0, -5), (0, 0.001, 0)), 1.0, SIZE, near=0.1, far=20)
+    turned = render(Scene([floor()]), below, Settings(shading="normals"))
+    assert center(turned) == pytest.approx((0.5, 0.5, 0.0), abs=1e-5)
+
+
+@pytest.mark.parametrize("edge", [None, 4])
+def test_depth_runs_from_the_nearest_to_the_farthest(edge, render, monkeypatch):
+    """Also where tiles see different parts of the scene."""
+    if edge:
+        monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", edge)
+    step = replace(floor(2.0, half=0.5), positions=floor(2.0, half=0.5).positions + np.float32((-0.5, 0, 0)))
+    frame = render(Scene([floor(), step]), ABOVE, Settings(method="quad", shading="depth", supersampling=1))
+    near, far = frame.stats["plan"].depth_range
+    assert 2.8 < near < 3 and 5 < far < 5.5  # of boxes around splats
+    covered = frame.coverage > 0
+    assert np.allclose(frame.color[covered, 0], ((frame.depth - near) / (far - near))[covered], atol=1e-4)
+    assert frame.color[8, 1, 0] < 0.1 and frame.color[8, 14, 0] > 0.8
+
+
+@pytest.mark.parametrize("metallic", [0.0, 1.0])
+@pytest.mark.parametrize("roughness", [0.3, 1.0])
+def test_phong_is_lambert_and_blinns_lobe(roughness, metallic, render):
+    """Light, viewer and normal in one line, so that all cosines are 1."""
+    material = Material(roughness=roughness, metallic=metallic)
+    scene = Scene([Instance(floor(), materials=(material,))], [from_above(1.0)], world=(0.1, 0.2, 0.3))
+    seen = center(render(scene, ABOVE, Settings(shading="phong")))
+    f0 = ((material.ior - 1) / (material.ior + 1)) ** 2
+    specular = f0 + (COLOR - f0) * metallic
+    exponent = 2 / roughness**4 - 2
+    diffuse = COLOR * (1 - metallic)
+    lit = 2.0 * (diffuse / math.pi + specular * (exponent + 8) / (8 * math.pi))
+    assert seen == pytest.approx(lit + (diffuse + specular) * (0.1, 0.2, 0.3), rel=2e-3)
+
+
+@pytest.mark.parametrize("steps", [2, 3, 5])
+def test_toon_light_comes_in_even_levels(steps, render):
+    levels = set()
+    for cosine in np.linspace(0.05, 0.99, 8):
+        scene = Scene([Instance(floor(), materials=(Material(roughness=1.0),))], [from_above(cosine)])
+        settings = Settings(shading="toon", toon_steps=steps, toon_softness=0.0)
+        seen = center(render(scene, ABOVE, settings))
+        level = min(math.floor(cosine * steps), steps - 1) / (steps - 1)
+        assert seen == pytest.approx(COLOR * level * 2.0 / math.pi, abs=1e-5)
+        levels.add(level)
+    assert len(levels) == steps
+
+
+def test_a_toon_highlight_has_an_edge(render):
+    """On a ball every sample is in the highlight or beside it, and all in it are equally bright."""
+    scene, camera = scenes.sphere(size=(48, 48))
+    (ball,) = scene.surfels
+    white = replace(ball.surfels, colors=np.ones_like(ball.surfels.colors))
+    scene = Scene([replace(ball, surfels=white, materials=(Material(roughness=0.35),))], [from_above(0.6)])
+    seen = render(scene, camera, Settings(method="quad", shading="toon", toon_softness=0.0, supersampling=1)).color
+    values = {round(float(v), 4) for v in seen[..., 0].ravel()}
+    highlight = 2 / math.pi * (1 + 1 - 0.35)
+    assert round(highlight, 4) in values
+    assert len(values) <= 6  # background, three levels, the highlight on two of them
+
+
+@pytest.mark.parametrize("name", [name for name in SHADING_MODELS if name != "principled"])
+def test_picture_is_that_of_the_twin(name, render):
+    scene, camera = scenes.torus(size=(64, 64))
+    settings = Settings(method="quad", supersampling=2, shading=name)
+    frame, exact = render(scene, camera, settings), render_exact(scene, camera, settings, samples=2)
+    different = np.abs(frame.color - exact.color).max(axis=2) > 2e-4
+    assert np.count_nonzero(different) <= 3
+    assert np.ptp(exact.color[..., :3]) > 0.3
+
+
+def test_models_plan_no_more_than_they_look_at():
+    (thing,) = Scene([floor()]).surfels
+    other = replace(thing, materials=(Material(roughness=0.1, emission=(1, 0, 0)),))
+    sky = Environment(np.ones((4, 8, 3), np.float32))
+    lights = [from_above(0.9, casts_shadow=True, size=0.1, receivers=(0,))]
+    for model in SHADING_MODELS.values():
+        planned = plan(Scene([thing, other], lights, environment=sky), ABOVE, Settings(shading=model.name))
+        read = {name for p in planned.passes for name in p.reads if p.name == "sample_shading"}
+        assert ("lights" in read) == ("light_set_sum" in read) == ("shadow_maps" in read) == model.is_lit
+        assert ("material_sum" in read) == ("emission_sum" in read) == model.has_material
+        assert ("environment_levels" in read) == model.has_world
+        assert ("brdf_table" in read) == (model.name == "principled")
+        assert planned.has("SIZED_LIGHTS") == model.is_lit
+
+
+@pytest.mark.parametrize(
+    ("wrong", "why"),
+    [
+        ({"shading": "shiny"}, "shading must be one of principled"),
+        ({"toon_steps": 1}, "toon_steps must be 2 to"),
+        ({"toon_softness": 1.5}, "toon_softness must be 0 to 1"),
+    ],
+)
+def test_unusable_settings_are_refused(wrong, why):
+    with pytest.raises(ValueError, match=why):
+        Settings(**wrong)
