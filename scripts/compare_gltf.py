@@ -25,6 +25,7 @@ from PIL import Image  # noqa: E402
 
 import splat_addon  # noqa: E402
 from splat_addon.reference.metrics import psnr, srgb  # noqa: E402
+from splat_addon.rendering.presets import PRESETS  # noqa: E402
 
 BACKGROUND = 0.18
 #: Of the difference, in the picture.
@@ -36,6 +37,7 @@ def main() -> int:
     parser.add_argument("model", type=Path)
     parser.add_argument("--engine", default="BLENDER_EEVEE", help="Blender's name of the renderer of the meshes")
     parser.add_argument("--samples", type=int, default=32, help="of that renderer, a pixel")
+    parser.add_argument("--preset", choices=tuple(PRESETS), default="final", help="of ours")
     parser.add_argument("--pixels", type=float, default=1.0, help="between surfels, where the model is nearest")
     parser.add_argument("--size", type=int, nargs=2, default=(320, 240))
     parser.add_argument("--angle", type=float, default=40.0, help="degrees of the camera around the model")
@@ -53,10 +55,14 @@ def main() -> int:
 
     scene.render.engine = "SURFEL_SPLATTING"
     scene.surfel_splatting.shading = "principled"
+    for name, value in PRESETS[options.preset].values.items():
+        setattr(scene.surfel_splatting, name, value)
     ours, our_seconds = picture(scene, hidden=meshes)
     scene.render.engine = options.engine
     samples = scene.cycles if options.engine == "CYCLES" else scene.eevee
     setattr(samples, "samples" if options.engine == "CYCLES" else "taa_render_samples", options.samples)
+    if options.engine == "CYCLES":
+        samples.pixel_filter_type = "BOX"  # as ours
     theirs, their_seconds = picture(scene, hidden=surfels)
 
     both = np.minimum(ours[..., 3], theirs[..., 3]) > 0.99
