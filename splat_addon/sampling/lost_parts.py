@@ -22,7 +22,8 @@ _SIEVE_BITS = 16
 
 
 def lost_parts(mesh: TriangleMesh, is_sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The triangles of all parts without a sample, and the part of each, numbered from 0: two (m,) intp arrays.
+    """The triangles of all parts without a sample, and the part of each: two (m,) intp arrays. Parts are numbered from
+    0 in the order of their first triangles.
 
     is_sampled: (T,) bool. Triangles that share the position of a corner are one part.
     """
@@ -40,7 +41,9 @@ def lost_parts(mesh: TriangleMesh, is_sampled: np.ndarray) -> tuple[np.ndarray, 
     is_found[labels[np.flatnonzero(reached[: len(labels)])]] = True
     part = labels[corners[:, 0]]
     lost = ~is_found[part]
-    return rest[lost], np.unique(part[lost], return_inverse=True)[1].reshape(-1)
+    _, first, number = np.unique(part[lost], return_index=True, return_inverse=True)
+    # by their first triangles: the labels are hashes' order
+    return rest[lost], np.argsort(np.argsort(first))[number.reshape(-1)]
 
 
 def _with_unreached_corners(triangles: np.ndarray, reached: np.ndarray) -> np.ndarray:

@@ -70,7 +70,7 @@ def square():
     return build
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def rays():
     """rays(mesh, resolution): the grid, and for each axis the (n, 2) column and row of every sample, unreduced."""
 
