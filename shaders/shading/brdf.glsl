@@ -34,10 +34,19 @@ float edge(vec3 from, vec3 to) {
   return sine > 0.0 ? normal.z * atan(sine, dot(a, b)) / sine : 0.0;
 }
 
-// Share of the half-space's cosine-weighted light that comes through a quad, without what lies below the horizon;
-// corners in order around it. Each edge counts by its part above, and so does the horizon from where the quad leaves
-// it to where it comes back.
-float form_factor(vec3 corners[4]) {
+// Half-axes over distance below which a quad counts as a point with its area: the sum over its edges, in which opposite
+// ones nearly cancel, loses its digits there.
+const float SMALL_QUAD = 0.02;
+
+// Share of the half-space's cosine-weighted light that comes through the quad middle +- u +- v, without what lies below
+// the horizon. Each edge counts by its part above, and so does the horizon from where the quad leaves it to where it
+// comes back.
+float form_factor(vec3 middle, vec3 u, vec3 v) {
+  float distance2 = dot(middle, middle);
+  if (max(dot(u, u), dot(v, v)) < SMALL_QUAD * SMALL_QUAD * distance2) {
+    return max(middle.z, 0.0) * 4.0 * abs(dot(middle, cross(u, v))) / (3.14159265358979 * distance2 * distance2);
+  }
+  vec3 corners[4] = vec3[4](middle - u - v, middle + u - v, middle + u + v, middle - u + v);
   float sum = 0.0;
   vec3 leaves = vec3(0.0), returns = vec3(0.0);
   bool is_cut = false;

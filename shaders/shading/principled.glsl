@@ -51,14 +51,10 @@ vec3 from_quad(Lobe lobe, Incident light) {
   vec3 across = normalize(lobe.view - lobe.normal * dot(lobe.view, lobe.normal) + vec3(1e-7, 2e-7, 0.0));
   mat3 to_tangent = transpose(mat3(across, cross(lobe.normal, across), lobe.normal));
   vec3 middle = to_tangent * light.middle, u = to_tangent * light.half_u, v = to_tangent * light.half_v;
-  vec3 corners[4] = vec3[4](middle - u - v, middle + u - v, middle + u + v, middle - u + v);
-  float diffuse = form_factor(corners);
   vec4 m = table_at(lobe.roughness, lobe.nv, 0);
-  for (int i = 0; i < 4; i++) {
-    vec3 c = corners[i];
-    corners[i] = vec3(m.x * c.x + m.y * c.z, c.y, m.z * c.x + m.w * c.z);
-  }
-  return light.radiance * (lobe.diffuse_albedo * diffuse + lobe.specular_albedo * form_factor(corners));
+  mat3 to_cosine = mat3(m.x, 0.0, m.z, 0.0, 1.0, 0.0, m.y, 0.0, m.w);
+  float diffuse = form_factor(middle, u, v), specular = form_factor(to_cosine * middle, to_cosine * u, to_cosine * v);
+  return light.radiance * (lobe.diffuse_albedo * diffuse + lobe.specular_albedo * specular);
 }
 #endif
 

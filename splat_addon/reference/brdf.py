@@ -16,6 +16,9 @@ import numpy as np
 
 from ..rendering.brdf_table import LEAST_ROUGHNESS, brdf_table
 
+#: Half-axes over distance below which a quad counts as a point with its area, which float32 needs; 4e-4 off at most.
+SMALL_QUAD = 0.02
+
 
 def specular_term(normal, view, to_light, nl, nv, roughness, f0, f90=1.0) -> np.ndarray:
     """(n, 3) value of the GGX specular BRDF, D Vis F. Vectors (n, 3) unit; cosines and roughness (n,); f0 (n, 3).
@@ -73,6 +76,10 @@ def _form_factor(corners: np.ndarray) -> np.ndarray:
     Each edge counts by its part above the horizon, and so does the horizon from where the quad leaves it to where it
     comes back.
     """
+    middle, u, v = corners.mean(axis=1), (corners[:, 1] - corners[:, 0]) / 2, (corners[:, 3] - corners[:, 0]) / 2
+    distance2 = dot(middle, middle)
+    as_point = np.maximum(middle[:, 2], 0) * 4 * np.abs(dot(middle, np.cross(u, v))) / (np.pi * distance2**2)
+    is_small = np.maximum(dot(u, u), dot(v, v)) < SMALL_QUAD**2 * distance2
     total = np.zeros(len(corners))
     leaves, returns = np.zeros((2, len(corners), 3))
     for k in range(4):
@@ -85,7 +92,7 @@ def _form_factor(corners: np.ndarray) -> np.ndarray:
         some = above_a | above_b
         start, end = np.where(above_a[:, None], a, crossing), np.where(above_b[:, None], b, crossing)
         total[some] += _edge(start[some], end[some])
-    return np.abs(total + _edge(leaves, returns)) / (2 * np.pi)
+    return np.where(is_small, as_point, np.abs(total + _edge(leaves, returns)) / (2 * np.pi))
 
 
 def _edge(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -97,7 +97,7 @@ def test_a_point_with_a_radius_gives_what_a_disc_that_faces_the_place_gives(radi
 def test_a_sun_s_energy_is_the_irradiance_of_what_faces_it_whatever_its_angle(angle):
     at = incident(Light("sun", energy=3.0, size=angle), CAMERA, np.zeros((1, 3)))
     share, _ = quad_form_factors(at.corners, UP, UP, np.ones(1), np.ones(1))
-    assert at.radiance[0, 0] * np.pi * share[0] == pytest.approx(3, rel=1e-6)
+    assert at.radiance[0, 0] * np.pi * share[0] == pytest.approx(3, rel=1e-4)
 
 
 def test_a_spot_lights_its_cone_and_nothing_else():
