@@ -24,7 +24,7 @@ void main() {
   bool is_back = outward_cosine(position, axis_u, axis_v, splats.sides.x, is_orthographic) < 0.0;
   if (is_back) offset *= BACK_EPSILON;
 #ifdef LINEAR_DEPTH
-  across_offset = vec3(eye.xy, offset);
+  across_offset = vec3(is_orthographic ? vec2(0.0) : eye.xy, offset);
 #else
   vec4 unmoved = splats.projection * vec4(eye, 1.0);
   offset = max(offset, splats.sides.z * (is_orthographic ? 1.0 : length(eye)));

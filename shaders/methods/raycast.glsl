@@ -6,9 +6,9 @@
 #ifdef VERTEX_STAGE
 void adjust(inout Splat splat, bool straddles) {}
 
-// The ellipse, and the low-pass's disc of sqrt(2) pixels.
+// The ellipse, and the low-pass's disc of sqrt(2) pixels, which lies around the splat's centre: beside the ellipse's.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
-  return 1.05 * max(size, vec2(2.0 * FILTER_SIGMA));
+  return 1.05 * max(size, vec2(2.0 * FILTER_SIGMA)) + length((plane.center - middle) / splats.window.zw);
 }
 #else
 // Weight and depth: the plane's inside the ellipse, the centre's where only the low-pass reaches.

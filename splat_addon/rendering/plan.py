@@ -23,8 +23,8 @@ from .view import DepthExtent, depth_extent
 #: A target's edge in samples; a larger picture is rendered in tiles, so that memory stays below about 1 GB.
 MAX_TARGET_EDGE = 4096
 
-#: Up to this ratio of the farthest depth to the nearest, the hardware's depth resolves 128 / 2^24 = 8e-6 of it: 1.5 %
-#: of the epsilon of a splat as small as a pixel of a 1000-pixel picture.
+#: Up to this ratio of the farthest depth to the nearest, or of a parallel camera's depths to its window, the hardware's
+#: depth resolves 128 / 2^24 = 8e-6 of it: 1.5 % of the epsilon of a splat as small as a pixel of a 1000-pixel picture.
 MAX_HARDWARE_DEPTH_RATIO = 128
 
 #: Up to this radius of a splat at distance 1 its corners may be moved back instead of every fragment.
@@ -373,9 +373,11 @@ def _say_what_surfels_lack(scene: Scene, camera: Camera, left_out: list) -> None
 
 def _linear_depth(camera: Camera, extent: DepthExtent) -> tuple[bool, str]:
     """Whether fragments must write their own depth, which costs the early depth test, and why."""
-    if camera.is_orthographic:
-        return False, "an orthographic camera's depth is linear"
     ratio, radius = extent.ratio, extent.radius
+    if camera.is_orthographic:
+        if ratio > MAX_HARDWARE_DEPTH_RATIO and extent.is_ahead:
+            return True, f"what is seen is {ratio:.3g} windows deep, too much for the hardware's depth"
+        return False, "an orthographic camera's depth is linear"
     if ratio > MAX_HARDWARE_DEPTH_RATIO:
         return True, f"far / near of what is seen is {ratio:.3g}, too much for the hardware's depth"
     if radius > MAX_HARDWARE_DEPTH_RADIUS:

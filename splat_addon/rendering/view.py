@@ -113,8 +113,10 @@ def visible_corners(scene: Scene, camera: Camera) -> tuple[np.ndarray, np.ndarra
 
 @dataclass(frozen=True)
 class DepthExtent:
-    """near, far: depths of what a camera sees, world units. ratio: of the farthest to the nearest.
-    radius: the largest splat's, over the nearest depth. reaches_near: some splat may touch the near plane.
+    """near, far: depths of what a camera sees, world units. ratio: of the farthest to the nearest; of an orthographic
+        camera, the length between them over its window's longer edge.
+    radius: the largest splat's, over the nearest depth, or that edge.
+    reaches_near: some splat may touch the near plane. is_ahead: all depths are above 0.
     """
 
     near: float
@@ -122,17 +124,20 @@ class DepthExtent:
     ratio: float
     radius: float
     reaches_near: bool
+    is_ahead: bool
 
 
 def depth_extent(scene: Scene, camera: Camera, epsilon: float) -> DepthExtent:
-    """Of the scene's surfels that may touch the picture; the ratios mean nothing for an orthographic camera."""
+    """Of the scene's surfels that may touch the picture."""
     seen, _, _ = _seen(scene, camera)
     near, far = _clip_range(camera, seen, epsilon)
     radius = max((radius for *_, radius in seen), default=0.0)
     # By a radius more: a method may lengthen the shorter half-axis.
     reaches_near = any(float(depths.min()) - reach <= camera.near for _, depths, reach in seen)
-    ratio, relative_radius = (far / near, radius / near) if near else (math.inf, math.inf)
-    return DepthExtent(near, far, ratio, relative_radius, reaches_near)
+    left, right, bottom, top = camera.window
+    unit, length = (max(right - left, top - bottom), far - near) if camera.is_orthographic else (near, far)
+    nearest = min((float(depths.min()) for _, depths, _ in seen), default=near)
+    return DepthExtent(near, far, length / unit, radius / unit, reaches_near, max(nearest, camera.near) > 0)
 
 
 def scaled_projection(camera: Camera, near: float, far: float, scale: float) -> np.ndarray:

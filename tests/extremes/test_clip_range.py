@@ -15,11 +15,18 @@ from splat_addon.rendering import Camera, Instance, Settings, look_at, plan
 NEARS = [1e-1, 1e-2, 1e-4, 1e-6]
 
 
-def parallel(far=10.0):
+def parallel(far=10.0, eye=(0.3, -3.6, 2.2), near=0.1):
     """A parallel camera."""
-    return scenes.torus(6000, (64, 64))[0], Camera.orthographic(
-        look_at((0.3, -3.6, 2.2), (0, 0, 0)), 3.2, (64, 64), 0.1, far
-    )
+    matrix = look_at(eye, np.subtract(eye, (0.3, -3.6, 2.2)))
+    return scenes.torus(6000, (64, 64))[0], Camera.orthographic(matrix, 3.2, (64, 64), near, far)
+
+
+def with_disc_behind(scene, camera):
+    """Something right before the far plane."""
+    matrix = camera.matrix_world.copy()
+    matrix[:3, 3] += 0.5 * matrix[:3, 0] - 0.9 * camera.far * matrix[:3, 2]
+    disc = Instance(discs((0, 0, 0), (0.1, 0, 0), (0, 0.1, 0), (1, 0, 0)), matrix)
+    return replace(scene, surfels=(*scene.surfels, disc)), camera
 
 
 WORLDS = {
@@ -60,14 +67,16 @@ def test_depth_is_known_to_a_millionth_at_any_distance(distance, render_all, lit
     np.testing.assert_allclose(frame.depth[8:56, 8:24], distance, rtol=1e-6)
 
 
-@pytest.mark.parametrize("far", [1e2, 1e3, 1e4])
-def test_something_far_behind_costs_a_parallel_camera_nothing(far, hold):
-    """Its depth has 2^-24 of the whole span everywhere: from 1e5 on, what is 1 wide loses its epsilon."""
-    scene, camera = parallel(far)
-    behind = camera.matrix_world.copy()
-    behind[:3, 3] += 0.5 * behind[:3, 0] - 0.9 * far * behind[:3, 2]
-    disc = Instance(discs((0, 0, 0), (0.1, 0, 0), (0, 0.1, 0), (1, 0, 0)), behind)
-    hold({"behind": (replace(scene, surfels=(*scene.surfels, disc)), camera)}, least=60)
+@pytest.mark.parametrize("is_half_behind", [False, True])
+@pytest.mark.parametrize("far", [1e2, 1e4, 1e6])
+def test_something_far_behind_costs_a_parallel_camera_nothing(far, is_half_behind, hold):
+    """Also where the clip range reaches as far behind the camera, as a viewport's does."""
+    hold({"behind": with_disc_behind(*parallel(far, near=-far if is_half_behind else 0.1))}, least=60)
+
+
+def test_a_parallel_camera_within_what_it_sees_reaches_to_a_thousand(hold):
+    """Depths behind it cannot be stored as shares of the farthest: they have 2^-24 of the whole length instead."""
+    hold({"within": with_disc_behind(*parallel(1e3, (0, 0, 0), -1e3))}, least=60)
 
 
 def test_hardware_depth_serves_where_it_is_fine_enough():

@@ -54,8 +54,21 @@ def parallel(draw):
 POSES = {"outside": outside(), "through the surface": through_the_surface(), "parallel": parallel()}
 
 
+#: Their papers' formulas leave gaps before large splats near the eye: which random pose finds one is not known.
+WITH_GAPS = ("ewa", "affine")
+
+
+def test_the_eye_in_the_surface_sees_no_hole(hold):
+    """Splats all around a camera that stands in the outer torus's wall and looks along it."""
+    matrix = look_at((0.706, 0.642, -0.273), (1.326, -0.142, -0.257), (0.667, 0.517, -0.537))
+    camera = Camera.perspective(matrix, np.radians(50), SIZE, 4e-4, 100)
+    hold({"in the wall": (scenes.torus(2500, SIZE)[0], camera)}, least=40)
+
+
 @pytest.mark.parametrize("kind", POSES)
-def test_no_pose_leaves_a_hole(kind, hold):
+def test_no_pose_leaves_a_hole(kind, hold, method):
+    if method in WITH_GAPS:
+        pytest.skip("the gaps of this paper's formula are held by fixed poses, in KNOWN_FAILURES")
     scene, _ = scenes.torus(2500, SIZE)
     covered = []
 

@@ -81,7 +81,7 @@ SPLATS = st.builds(
     angle=st.one_of(st.floats(0, 90), st.floats(80, 90), st.floats(90, 180), st.sampled_from((89.9, 89.999, 90.0))),
     turn=TURNS,
     spin=TURNS,
-    size=powers(1e-5, 30),
+    size=powers(1e-5, 5),
     ratio=st.one_of(st.floats(0.1, 1), powers(1e-6, 1)),
 )
 
