@@ -111,15 +111,17 @@ def test_reductions_by_normals_keep_subsets_and_3_to_1_merges(mesh):
 FARTHEST = (np.sqrt(3) + 0.71) * 2.0**-24
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=40)
 @given(meshes, st.sampled_from([7, 64, 68, 300, 1024]))
 def test_surfels_lie_on_their_triangles_within_float32(mesh, resolution):
     """Of the longest edge 1.46e-7, which is 1e-5 H up to resolution 68. Whatever the shape: slivers too."""
-    mesh, _ = drop_unusable(TriangleMesh(mesh.positions[: 3 * 8], mesh.triangles[:8]))
+    few = 8 if resolution < 100 else 3
+    mesh, _ = drop_unusable(TriangleMesh(mesh.positions[: 3 * few], mesh.triangles[:few]))
     sampling = sample_surface(mesh, resolution=resolution)
     kept = len(sampling.surfels) - sampling.small_parts
     spacing = grid_spacing(mesh, resolution=resolution)
     points = sampling.surfels.origin + sampling.surfels.positions[:kept].astype(np.float64)
+    points = points[:: max(len(points) // 20_000, 1)]
     corners = np.moveaxis(mesh.positions[mesh.triangles], 1, 0)
     away = np.min([distances(points, *triangle) for triangle in np.moveaxis(corners, 1, 0)], axis=0, initial=np.inf)
     bound = FARTHEST * resolution
