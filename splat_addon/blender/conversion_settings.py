@@ -49,7 +49,8 @@ class ConversionProperties:
         name="Resolution",
         description=(
             "Grid cells along the longest edge of the object's bounding box. "
-            "Twice as many shows details half the size, for four times the surfels, memory and time"
+            "Twice as many shows details half the size, for four times the surfels, memory and time: "
+            "a million surfels take 0.2 to 0.6 s of a processor and 140 MB"
         ),
         default=256,
         min=0,
