@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import render_exact, scenes
+from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import EMPTY_DEPTH, Environment, Light, Material, Settings
+from splat_addon.rendering import EMPTY_DEPTH, Camera, Environment, Instance, Light, Material, Settings
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.shading_models import SHADING_MODELS
 
@@ -85,6 +86,15 @@ def own_materials(scene, camera):
     return replace(scene, surfels=(replace(first, surfels=own), *glow)), camera
 
 
+def deep(scene, camera):
+    """The scene before a parallel camera, and a disc 1e5 behind it: linear depth."""
+    matrix = camera.matrix_world.copy()
+    matrix[:3, 3] += 0.5 * matrix[:3, 0] - 1e5 * matrix[:3, 2]
+    disc = Instance(discs((0, 0, 0), (0.2, 0, 0), (0, 0.2, 0), (1, 0, 0)), matrix)
+    parallel = Camera.orthographic(camera.matrix_world, 3.2, camera.size, 0.1, 2e5)
+    return replace(scene, surfels=(*scene.surfels, disc)), parallel
+
+
 SCENES = {
     "sphere": lambda: scenes.sphere(size=SIZE),
     "checker_plane": lambda: scenes.checker_plane(size=SIZE),
@@ -94,6 +104,7 @@ SCENES = {
     "shadows": lambda: shadowed(*scenes.torus(size=SIZE)),
     "environment": lambda: in_a_picture(*scenes.torus(size=SIZE)),
     "own_materials": lambda: own_materials(*scenes.torus(size=SIZE)),
+    "deep": lambda: deep(*scenes.torus(size=SIZE)),
     "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),
 }
 
