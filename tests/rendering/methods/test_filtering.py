@@ -61,3 +61,12 @@ def test_mip_leaves_no_hole_where_the_surface_covers_the_filter(name, render):
     frame = render(*SCENES[name](), replace(FLAT, method="mip"))
     assert np.isfinite(frame.color).all()
     assert not np.count_nonzero((exact(name).coverage > 0.999) & (frame.coverage < 0.95))
+
+
+@pytest.mark.parametrize("name", ["checker at 6 degrees", "text"])
+def test_supersampled_quads_are_above_36_db_under_a_box(name, render):
+    """Against 5 x 5 rays: of 4 x 4 the same picture would be compared with itself."""
+    scene, camera = SCENES[name]()
+    truth = render_exact(scene, camera, FLAT, samples=5, pixel_filter="box")
+    frame = render(scene, camera, replace(FLAT, method="quad", supersampling=4))
+    assert psnr(frame.color, truth.color) > 36
