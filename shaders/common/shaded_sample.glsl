@@ -57,6 +57,9 @@ ShadedSample shaded_sample(ivec2 texel, int look) {
 #ifdef EMISSION
   radiance += shading.emission.rgb;
 #endif
+#ifdef LINES
+  radiance = mix(radiance, shading.line_color.rgb, texelFetch(lines, texel, 0).r);
+#endif
   float coverage = 1.0;
 #ifdef EDGE_THRESHOLD
   float weight = c.w / WEIGHT_SCALE;

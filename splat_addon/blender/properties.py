@@ -3,9 +3,19 @@
 
 from __future__ import annotations
 
-import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+import math
 
+import bpy
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+)
+
+from ..rendering.lines import MAX_WIDTH, Lines
 from ..rendering.methods import METHODS
 from ..rendering.settings import ACCUMULATIONS, MAX_SHADOW_RESOLUTION, MAX_SUPERSAMPLING, MAX_TOON_STEPS, Settings
 from ..rendering.shading_models import SHADING_MODELS
@@ -40,6 +50,41 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         min=0.0,
         max=1.0,
         default=Settings.toon_softness,
+    )
+    use_lines: BoolProperty(
+        name="Lines",
+        description="Draw lines along silhouettes and creases, whatever the shading",
+        default=False,
+    )
+    line_width: FloatProperty(
+        name="Width",
+        description="Of a silhouette, all on the nearer surface; of a crease, half on each side",
+        subtype="PIXEL",
+        min=0.1,
+        max=MAX_WIDTH,
+        soft_max=6.0,
+        default=Lines.width,
+    )
+    line_color: FloatVectorProperty(
+        name="Color", description="Of the lines", subtype="COLOR", min=0.0, max=1.0, default=Lines.color
+    )
+    line_crease_angle: FloatProperty(
+        name="Crease Angle",
+        description=(
+            "Where the surface turns by more than this within about 3 pixels, a crease is drawn; 180 degrees for none. "
+            "Splats larger than that blur a crease away"
+        ),
+        subtype="ANGLE",
+        min=math.radians(1),
+        max=math.pi,
+        default=Lines.crease_angle,
+    )
+    line_depth_threshold: FloatProperty(
+        name="Depth Threshold",
+        description="How much deeper the next surface must lie for a silhouette, in pixels as wide as they are there",
+        min=0.0,
+        soft_max=50.0,
+        default=Lines.depth_threshold,
     )
     supersampling: IntProperty(
         name="Render",
@@ -118,12 +163,22 @@ def _settings(scene, **choices) -> Settings:
         shading=properties.shading,
         toon_steps=properties.toon_steps,
         toon_softness=properties.toon_softness,
+        lines=_lines(properties) if properties.use_lines else None,
         epsilon=properties.epsilon,
         shadow_resolution=properties.shadow_resolution,
         storage=properties.storage,
         accumulation=properties.accumulation,
         transparent_film=scene.render.film_transparent,
         **choices,
+    )
+
+
+def _lines(properties) -> Lines:
+    return Lines(
+        properties.line_width,
+        tuple(properties.line_color),
+        properties.line_crease_angle,
+        properties.line_depth_threshold,
     )
 
 

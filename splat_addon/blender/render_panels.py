@@ -52,6 +52,19 @@ class RENDER_PT_surfel_toon(_RenderPanel, bpy.types.Panel):
         return super().poll(context) and getattr(context.scene, RENDER_SETTINGS).shading == "toon"
 
 
+class RENDER_PT_surfel_lines(_RenderPanel, bpy.types.Panel):
+    bl_label = "Lines"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("line_width", "line_color", "line_crease_angle", "line_depth_threshold")
+
+    def draw_header(self, context):
+        self.layout.prop(getattr(context.scene, RENDER_SETTINGS), "use_lines", text="")
+
+    def draw(self, context):
+        self.layout.active = getattr(context.scene, RENDER_SETTINGS).use_lines
+        super().draw(context)
+
+
 class RENDER_PT_surfel_shadows(_RenderPanel, bpy.types.Panel):
     bl_label = "Shadows"
     bl_options = frozenset({"DEFAULT_CLOSED"})
@@ -108,6 +121,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         RENDER_PT_surfel_sampling,
         RENDER_PT_surfel_surface,
         RENDER_PT_surfel_toon,
+        RENDER_PT_surfel_lines,
         RENDER_PT_surfel_shadows,
         RENDER_PT_surfel_performance,
         VIEWLAYER_PT_surfel_passes,

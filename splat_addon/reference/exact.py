@@ -31,7 +31,7 @@ def render_exact(
 
     samples: samples x samples rays a pixel at (i + 0.5) / samples; takes the place of `settings.supersampling`.
     pixel_filter: a name in `filters.PIXEL_FILTERS`; always say which one a number was measured with.
-    `settings.method` has no meaning here. Opacity is ignored: surfels are opaque.
+    `settings.method` has no meaning here. Opacity is ignored: surfels are opaque. `settings.lines` are not drawn.
 
     A ray sees the splats that lie no deeper than the nearest splat moved back by `settings.epsilon` of its radius
     along the ray, mixes them with weights exp(-2 rho^2), and is shaded once (Botsch et al. 2005, deferred).

@@ -9,6 +9,7 @@ from .device import open_device
 from .environment import Environment
 from .frame import EMPTY_DEPTH, Frame
 from .light import Light
+from .lines import Lines
 from .plan import FramePlan, plan
 from .presets import PRESETS, Preset
 from .renderer import RenderCancelled, Renderer
@@ -24,6 +25,7 @@ __all__ = (
     "FramePlan",
     "Instance",
     "Light",
+    "Lines",
     "Material",
     "Preset",
     "RenderCancelled",

@@ -47,6 +47,7 @@ TEXTURES = {
     "material_sum": ("RGBA32F", "sample"),
     "emission_sum": ("RGBA32F", "sample"),
     "light_set_sum": ("RGBA32F", "sample"),
+    "lines": ("R32F", "sample"),
     "shaded": ("RGBA32F", "sample"),
     "surface": ("RGBA32F", "sample"),
     "shadow_depth": ("DEPTH32F", "frame"),
@@ -92,6 +93,7 @@ class FramePlan:
     features: (name, why), of what shaders do beside the least; each name is defined in their text.
     shadow_maps: what lights see, in the order of the lights.
     depth_range: nearest and farthest of what is in view, world units.
+    line_margin: pixels that lines look at beside their own.
     left_out: (what, why), of what other scenes or settings would need.
     """
 
@@ -111,6 +113,7 @@ class FramePlan:
     features: tuple[tuple[str, str], ...]
     shadow_maps: tuple[ShadowMap, ...]
     depth_range: tuple[float, float]
+    line_margin: int
     left_out: tuple[tuple[str, str], ...]
 
     def has(self, feature: str) -> bool:
@@ -120,7 +123,7 @@ class FramePlan:
     @property
     def margin(self) -> int:
         """Pixels drawn around a tile and not kept."""
-        return FILTER_MARGIN if self.visibility_samples > 1 else 0
+        return (FILTER_MARGIN if self.visibility_samples > 1 else 0) + self.line_margin
 
     def scale(self, texture: str) -> int:
         """Values along each side of a pixel."""
@@ -192,12 +195,14 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         linear_depth, why_depth = _linear_depth(camera, extent)
         sums = _sums(scene, settings, model, material, emission, left_out)
         maps = _shadow_maps(scene, camera, settings, model, left_out)
-        reads = _read_by_shading(scene, model, sums, maps, left_out)
+        lines = _line_passes(settings, method, sums, left_out)
+        reads = _read_by_shading(scene, model, sums, maps, left_out) + (("lines",) if lines else ())
         shadows = (_shadow_pass(scene, maps),) if maps else ()
         passes = (
             *shadows,
             PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
             *_attribute_passes(method, _why_attributes(scene, method), sums, left_out),
+            *lines,
             *_shading_passes(scene, settings, method, model, reads, left_out),
         )
         features = _splat_features(extent, left_out) + _features(scene, settings, model, emission, left_out)
@@ -221,6 +226,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         features,
         maps,
         depth_range,
+        math.ceil(settings.lines.reach) if settings.lines else 0,
         tuple(left_out),
     )
 
@@ -265,6 +271,17 @@ def _attribute_passes(method: Method, why: str, sums: tuple[str, ...], left_out:
     return (
         PlannedPass("seen_range", "splats that are hidden whole are tested away early", ("visibility_depth",), seen),
         PlannedPass("attributes", why, seen, sums),
+    )
+
+
+def _line_passes(settings: Settings, method: Method, sums: tuple[str, ...], left_out: list):
+    if settings.lines is None:
+        left_out.append(("lines", "none are asked for"))
+        return ()
+    seen = ("seen_range",) if method.works_in == "picture" else ()
+    reads = (*(name for name in ("color_sum", "normal_sum", "depth_sum") if name in sums), *seen)
+    return (
+        PlannedPass("lines", "silhouettes and creases are drawn before their samples are mixed", reads, ("lines",)),
     )
 
 

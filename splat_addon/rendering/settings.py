@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from .lines import Lines
 from .shading_models import get_shading_model
 
 #: accumulation -> (label, what it costs and gains)
@@ -38,6 +39,7 @@ class Settings:
     shading: a name in `rendering.shading_models`.
     toon_steps: levels of each light in the toon model, at least 2. toon_softness: width of their edges, as a share of a
         level's.
+    lines: drawn along silhouettes and creases, whatever the shading; None for none.
     supersampling: N x N samples a pixel, averaged with a box filter.
     multisampling: samples that the hardware tests for depth in each of those, for methods that work in space; a device
         has what its `multisample_counts` name, and Blender's has none.
@@ -58,6 +60,7 @@ class Settings:
     shading: str = "principled"
     toon_steps: int = 3
     toon_softness: float = 0.1
+    lines: Lines | None = None
     supersampling: int = 1
     multisampling: int = 0
     sample_shading: bool = False

@@ -9,7 +9,7 @@ import pytest
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import EMPTY_DEPTH, Camera, Environment, Instance, Light, Material, Settings
+from splat_addon.rendering import EMPTY_DEPTH, Camera, Environment, Instance, Light, Lines, Material, Settings
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.shading_models import SHADING_MODELS
 
@@ -127,6 +127,7 @@ CASES = [
         for name, method in (("torus", "quad"), ("torus", "mip"))
     ),
     *(("shadows", method, {"shading": shading}) for shading in ("phong", "toon") for method in ("quad", "mip")),
+    *(("torus", method, {"shading": "flat", "lines": Lines(width=2.0)}) for method in ("quad", "mip")),
     ("own_materials", "mip", {}),
     ("own_materials", "mip", {"storage": "16-bit"}),
 ]
@@ -135,7 +136,8 @@ CASES = [
 @pytest.mark.parametrize(("name", "method", "options"), CASES)
 def test_picture_is_the_same_on_every_device(name, method, options, render, pictures, request):
     frame = render(*(SCENES | TEXTURED)[name](), Settings(method=method, supersampling=1, **options))
-    path = pictures / f"{'-'.join((name, method, *options.values()))}.npz"
+    named = (value if isinstance(value, str) else key for key, value in options.items())
+    path = pictures / f"{'-'.join((name, method, *named))}.npz"
     tolerance = FLOAT16_TOLERANCE if options.get("accumulation") == "float16" else TOLERANCE
     if request.config.getoption("--device") == "standalone":
         np.savez(path, color=frame.color, depth=frame.depth, normal=frame.normal, coverage=frame.coverage)

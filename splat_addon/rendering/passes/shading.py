@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..brdf_table import brdf_texels
 from ..device.interface import PipelineDescription, Target
 from ..light import pack_lights
+from ..lines import Lines
 from ..packing import pack_materials
 from ..plan import FramePlan, PlannedPass
 from ..shaders import load
@@ -19,6 +22,7 @@ from .tile import TileContext
 #: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights, 1 / far,
 #:     what summed colours are multiplied by. emission: of all surfels. edges: the sum of weights that covers a sample.
 #: model: levels of the toon model and how soft their edges are, nearest and farthest depth in view.
+#: lines: their width in samples, 0, the cosine of a crease and the drop at a silhouette in pixels. line_color: rgb.
 SHADING_BLOCK = (
     "Shading",
     "shading",
@@ -33,6 +37,8 @@ SHADING_BLOCK = (
         ("vec4", "emission"),
         ("vec4", "edges"),
         ("vec4", "model"),
+        ("vec4", "lines"),
+        ("vec4", "line_color"),
     ),
 )
 
@@ -42,6 +48,7 @@ _DEFINES = {
     "material_sum": "MATERIAL_TARGET",
     "emission_sum": "EMISSION_TARGET",
     "lights": "LIGHTS",
+    "lines": "LINES",
     "light_set_sum": "LIGHT_SET_TARGET",
     "shadow_maps": "SHADOWS",
     "environment_image": "ENVIRONMENT",
@@ -97,6 +104,12 @@ def _multisampling(frame: FramePlan):
     return (("LOOKS", str(frame.multisamples or 1)),)
 
 
+def _line_values(lines: Lines | None, samples: int):
+    if lines is None:
+        return (0.0,) * 4, (0.0,) * 4
+    return (lines.width * samples, 0.0, math.cos(lines.crease_angle), lines.depth_threshold), (*lines.color, 0.0)
+
+
 def _lights(tile: TileContext):
     lights, maps = tile.scene.lights, tile.plan.shadow_maps
     ranges = map_ranges(maps, len(lights)) if maps else None
@@ -126,4 +139,5 @@ def shading_block(tile: TileContext) -> np.ndarray:
         (*(frame.emission or (0.0, 0.0, 0.0)), 0.0),
         (tile.settings.edge_threshold, 0.0, 0.0, 0.0),
         (tile.settings.toon_steps, tile.settings.toon_softness, *(d * view.scale for d in frame.depth_range)),
+        *_line_values(tile.settings.lines, frame.samples),
     )

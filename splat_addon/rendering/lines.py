@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Drawn lines along silhouettes and creases, over any shading model (Saito and Takahashi 1990)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+MAX_WIDTH = 16.0
+
+#: Pixels beside a line within which a crease must have turned the normal; shaders/lines.frag.glsl has the same.
+CREASE_REACH = 3.0
+
+
+@dataclass(frozen=True)
+class Lines:
+    """width: in pixels, of a silhouette all on the nearer surface, of a crease half on each side.
+    color: linear rgb. crease_angle: radians between normals, above which a turn is a crease.
+    depth_threshold: how much deeper than its own slope the next surface lies beyond a silhouette, in pixels as wide
+        as they are there.
+    """
+
+    width: float = 1.5
+    color: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    crease_angle: float = math.radians(40)
+    depth_threshold: float = 4.0
+
+    def __post_init__(self):
+        object.__setattr__(self, "color", tuple(float(c) for c in self.color))
+        if not 0 < self.width <= MAX_WIDTH:
+            raise ValueError(f"A line's width must be above 0 and at most {MAX_WIDTH:g} pixels, not {self.width}.")
+        if len(self.color) != 3 or not all(math.isfinite(c) and c >= 0 for c in self.color):
+            raise ValueError(f"A line's color must be three numbers of 0 or more, not {self.color}.")
+        if not 0 < self.crease_angle <= math.pi:
+            raise ValueError(f"crease_angle must be above 0 and at most pi, not {self.crease_angle}.")
+        if not (math.isfinite(self.depth_threshold) and self.depth_threshold >= 0):
+            raise ValueError(f"depth_threshold must be 0 or more pixels, not {self.depth_threshold}.")
+
+    @property
+    def reach(self) -> float:
+        """Pixels to each side that a line looks at."""
+        return self.width + 2.0 + CREASE_REACH

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The line pass: how much of each sample lies on a silhouette or a crease, before it is shaded."""
+
+from __future__ import annotations
+
+from ..device.interface import PipelineDescription, Target
+from ..plan import FramePlan, PlannedPass
+from ..shaders import load
+from .blocks import HALF_SUMS
+from .shading import SHADING_BLOCK, shading_block
+from .tile import TileContext
+
+
+def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
+    """What the pass draws with; of hardware samples it takes the mean."""
+    return PipelineDescription(
+        name="lines",
+        vertex=load("fullscreen.vert.glsl"),
+        fragment=load("lines.frag.glsl"),
+        block=SHADING_BLOCK,
+        samplers=planned.reads,
+        multisampled=tuple(name for name in planned.reads if frame.multisamples_of(name)),
+        outputs=(("float", "lines"),),
+        defines=(
+            ("SAMPLES", str(frame.samples)),
+            *((("MEAN_OF", str(frame.multisamples)),) if frame.multisamples else ()),
+            *(HALF_SUMS if "depth_sum" in planned.reads else ()),
+            *((("SEEN_RANGE", "1"),) if "seen_range" in planned.reads else ()),
+        ),
+    )
+
+
+def run(tile: TileContext, planned: PlannedPass) -> Target:
+    """Fill the texture of lines."""
+    target = tile.target(planned.writes)
+    pipeline = tile.resources.pipeline(describe(planned, tile.plan))
+    tile.resources.device.draw_fullscreen(pipeline, target, shading_block(tile), tile.textures(planned.reads, {}))
+    return target

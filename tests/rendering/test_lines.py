@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lines along silhouettes and creases: where they are and how wide, counted in pixels."""
+
+import math
+from dataclasses import replace
+from importlib import import_module
+
+import numpy as np
+import pytest
+import trimesh
+
+from splat_addon.rendering import Camera, Instance, Lines, Renderer, Scene, Settings, look_at, plan
+from splat_addon.sampling import TriangleMesh, sample_mesh
+
+SIZE = (96, 64)
+#: 16 pixels a unit.
+FRONT = Camera.orthographic(look_at((0, -10, 0), (0, 0, 0)), 4.0, SIZE, near=0.1, far=30)
+METHODS = [Settings(method="quad", supersampling=2), Settings(method="mip", supersampling=1)]
+WHITE = (1.0, 1.0, 1.0)
+
+
+def instance(mesh, resolution):
+    smooth = mesh.vertex_normals[mesh.faces] if len(mesh.faces) > 100 else None
+    surfels = sample_mesh(TriangleMesh(mesh.vertices, mesh.faces, smooth), resolution=resolution)
+    return Instance(replace(surfels, colors=np.ones((len(surfels), 4))))
+
+
+@pytest.fixture(scope="module")
+def cube():
+    """Sides of 2, an edge towards the viewer."""
+    turned = trimesh.transformations.rotation_matrix(math.pi / 4, (0, 0, 1))
+    return instance(trimesh.creation.box((2, 2, 2), turned), 90)
+
+
+@pytest.fixture(scope="module")
+def ball():
+    """Of radius 1.5, 24 pixels."""
+    return instance(trimesh.creation.icosphere(4, 1.5), 80)
+
+
+@pytest.fixture
+def darkness(on_device):
+    """darkness(scene, camera, settings, lines) -> (h, w), 1 where a white scene is covered by a black line."""
+
+    def render(instances, camera, settings, lines):
+        chosen = replace(settings, shading="flat", lines=lines)
+        scene = Scene(instances, world=WHITE)
+        return 1 - on_device(lambda device: Renderer(device).render(scene, camera, chosen)).color[..., 0]
+
+    return render
+
+
+@pytest.mark.parametrize("settings", METHODS, ids=lambda s: s.method)
+@pytest.mark.parametrize("width", [1.5, 4.0])
+def test_a_cube_has_its_silhouettes_and_creases_as_wide_as_asked(width, settings, cube, darkness):
+    dark = darkness([cube], FRONT, settings, Lines(width=width))
+    half = 16 * math.sqrt(2)
+    middle = dark[24:40]
+    x = np.arange(SIZE[0]) + 0.5 - SIZE[0] / 2
+    for place in (-half, 0.0, half):
+        near = np.abs(x - place) < width + 2
+        widths = middle[:, near].sum(axis=1)
+        assert widths.mean() == pytest.approx(width, abs=1)
+        assert np.abs(widths - width).max() <= 1.5
+    empty = (np.abs(x) > width + 2) & (np.abs(np.abs(x) - half) > width + 2)
+    assert middle[:, empty].max() < 1e-3
+
+
+@pytest.mark.parametrize("settings", METHODS, ids=lambda s: s.method)
+def test_a_smooth_ball_has_its_silhouette_alone(settings, ball, darkness):
+    dark = darkness([ball], FRONT, settings, Lines(width=3.0))
+    y, x = np.mgrid[: SIZE[1], : SIZE[0]] + 0.5
+    radius = np.hypot(x - SIZE[0] / 2, y - SIZE[1] / 2)
+    assert dark[radius < 24 - 3 - 2].max() < 1e-3
+    assert dark[radius > 24 + 2].max() < 1e-3
+    assert dark.sum() == pytest.approx(math.pi * (24**2 - 21**2), rel=0.2)
+
+
+@pytest.mark.parametrize("settings", METHODS, ids=lambda s: s.method)
+def test_of_two_surfaces_the_nearer_one_has_the_line(settings, ball, darkness):
+    wall = instance(trimesh.creation.box((12, 0.5, 8)).apply_translation((0, 4, 0)), 180)
+    assert darkness([wall], FRONT, settings, Lines(width=3.0)).max() < 1e-3
+    dark = darkness([ball, wall], FRONT, settings, Lines(width=3.0))
+    y, x = np.mgrid[: SIZE[1], : SIZE[0]] + 0.5
+    radius = np.hypot(x - SIZE[0] / 2, y - SIZE[1] / 2)
+    assert dark[radius > 24 + 2].max() < 1e-3
+    assert dark[np.abs(radius - 22.5) < 0.5].min() > 0.9
+    far_apart = Lines(width=3.0, depth_threshold=200.0, crease_angle=math.pi)
+    assert darkness([ball, wall], FRONT, settings, far_apart)[radius < 23].sum() < 1
+
+
+def test_a_crease_is_drawn_above_its_angle(cube, darkness):
+    for angle, is_drawn in ((80, True), (100, False)):
+        dark = darkness([cube], FRONT, METHODS[0], Lines(width=2.0, crease_angle=math.radians(angle)))
+        assert (dark[24:40, 46:50].sum() > 16) == is_drawn
+
+
+@pytest.mark.parametrize("settings", METHODS, ids=lambda s: s.method)
+def test_no_seam_shows_between_tiles(settings, cube, darkness, monkeypatch):
+    camera = Camera.perspective(look_at((1, -5, 2), (0, 0, 0)), 0.7, SIZE, near=0.1, far=30)
+    whole = darkness([cube], camera, settings, Lines(width=4.0))
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", 40)
+    tiled = darkness([cube], camera, settings, Lines(width=4.0))
+    assert np.count_nonzero(np.abs(whole - tiled) > 1e-3) <= 2
+
+
+@pytest.mark.parametrize(
+    "others",
+    [{"accumulation": "float16"}, {"multisampling": 4}, {"multisampling": 4, "sample_shading": True}],
+    ids=lambda o: "-".join(o),
+)
+def test_lines_are_drawn_with_every_kind_of_sum(others, cube, darkness, request):
+    if "multisampling" in others and request.config.getoption("--device") == "blender":
+        pytest.skip("Blender's textures cannot be multisampled")
+    settings = Settings(method="quad", supersampling=1)
+    usual = darkness([cube], FRONT, settings, Lines(width=3.0))
+    dark = darkness([cube], FRONT, replace(settings, **others), Lines(width=3.0))
+    assert dark.sum() == pytest.approx(usual.sum(), rel=0.2)
+
+
+def test_lines_are_planned_only_where_they_are_asked_for(cube):
+    without = plan(Scene([cube]), FRONT, Settings())
+    assert "lines" not in without.textures and without.margin == 2
+    assert "lines" in dict(without.left_out)
+    planned = plan(Scene([cube]), FRONT, Settings(lines=Lines(width=2.5)))
+    assert [p.name for p in planned.passes].count("lines") == 1
+    assert planned.margin == 2 + math.ceil(2.5 + 5)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "why"),
+    [
+        ({"width": 0}, "width must be above 0"),
+        ({"width": math.nan}, "width must be above 0"),
+        ({"color": (1, 2)}, "color must be three numbers"),
+        ({"crease_angle": 4}, "crease_angle must be"),
+        ({"depth_threshold": -1}, "depth_threshold must be"),
+    ],
+)
+def test_unusable_lines_are_refused(wrong, why):
+    with pytest.raises(ValueError, match=why):
+        Lines(**wrong)
