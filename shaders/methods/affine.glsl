@@ -6,7 +6,7 @@
 const float LEAST_COSINE = 0.1;  // a disc seen flatter is drawn as one seen at this angle
 
 #ifdef VERTEX_STAGE
-void adjust(inout Splat splat, bool straddles) {}
+void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   float scale = splats.options.z > 0.5 ? 1.0 : 1.0 / plane.depth;

@@ -7,7 +7,7 @@ const float KERNEL_VARIANCE = 0.25;
 const float FILTER_VARIANCE = 0.5;  // square pixels
 
 #ifdef VERTEX_STAGE
-void adjust(inout Splat splat, bool straddles) {}
+void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
 // Only about what the exact ellipse covers: the affine one of a near splat can fill the picture.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {

@@ -10,7 +10,7 @@ const float FILTER_VARIANCE = 0.5;  // square pixels
 const vec2 NORMAL = vec2(1.5976, 0.070565);  // 1 / (1 + exp(-x (NORMAL.x + NORMAL.y x^2))) is within 2e-4 of it
 
 #ifdef VERTEX_STAGE
-void adjust(inout Splat splat, bool straddles) {}
+void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
 // Beyond 2 sigma of kernel and filter, and 1 pixel from the splat's rim, nothing counts.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {

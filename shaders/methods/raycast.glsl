@@ -4,7 +4,7 @@
 //          The twin of rendering/methods/raycast.py.
 
 #ifdef VERTEX_STAGE
-void adjust(inout Splat splat, bool straddles) {}
+void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
 // The ellipse, and the low-pass's disc of sqrt(2) pixels, which lies around the splat's centre: beside the ellipse's.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {

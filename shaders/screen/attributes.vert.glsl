@@ -28,15 +28,12 @@ void main() {
 #else
   const bool straddles = false;
 #endif
-#ifdef TEXTURED
-  Plane true_plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic);
-#endif
-  adjust(splat, straddles);
+  Plane true_plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic), plane = true_plane;
+  if (!straddles) adjust(splat, plane, is_orthographic);
 #ifdef STRADDLING
   straddles = -splat.position.z - length(vec2(splat.axis_u.z, splat.axis_v.z)) <= splats.options.y;
   straddling = straddles ? 1.0 : 0.0;
 #endif
-  Plane plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic);
   // The same three varyings carry the plane of a splat before the eye, or centre and half-axes of a straddling one.
   plane_ab = straddles ? vec4(splat.position, 0.0) : vec4(plane.a, plane.b);
   plane_center_gh = straddles ? vec4(splat.axis_u, 0.0) : vec4(plane.center, plane.gh);

@@ -22,6 +22,12 @@ struct Plane {
 };
 
 #ifdef VERTEX_STAGE
+// Change of depth with the picture point, at the centre.
+vec2 depth_gradient(Plane plane) {
+  vec2 a = plane.a, b = plane.b, slope = plane.slope;
+  return vec2(slope.x * b.y - slope.y * a.y, slope.y * a.x - slope.x * b.x) / (a.x * b.y - a.y * b.x);
+}
+
 Plane splat_plane(vec3 position, vec3 axis_u, vec3 axis_v, bool is_orthographic) {
   Plane plane;
   plane.depth = -position.z;
@@ -32,10 +38,7 @@ Plane splat_plane(vec3 position, vec3 axis_u, vec3 axis_v, bool is_orthographic)
   plane.a = axis_u.xy * scale - plane.center * plane.gh.x;
   plane.b = axis_v.xy * scale - plane.center * plane.gh.y;
   plane.radius = sqrt(max(dot(axis_u, axis_u), dot(axis_v, axis_v)));
-  float det = plane.a.x * plane.b.y - plane.a.y * plane.b.x;
-  // Change of depth from pixel to pixel, at the centre.
-  vec2 gradient = vec2(plane.slope.x * plane.b.y - plane.slope.y * plane.a.y,
-                       plane.slope.y * plane.a.x - plane.slope.x * plane.b.x) * splats.window.zw / det;
+  vec2 gradient = depth_gradient(plane) * splats.window.zw;
   float over_rim = 2.0 * FILTER_SIGMA * length(gradient), furthest = 16.0 * plane.radius;
   plane.reach = length(plane.slope) + (over_rim < furthest ? over_rim : furthest);
   float to_beside = 0.5 * float(1 - VISIBILITY_SAMPLES % 2) / float(VISIBILITY_SAMPLES);

@@ -200,8 +200,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         shadows = (_shadow_pass(scene, maps),) if maps else ()
         passes = (
             *shadows,
-            PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",)),
-            *_attribute_passes(method, _why_attributes(scene, method), sums, left_out),
+            *_splat_passes(method, _why_attributes(scene, method), why_depth, sums, left_out),
             *lines,
             *_shading_passes(scene, settings, method, model, reads, left_out),
         )
@@ -262,13 +261,18 @@ def _sums(
     return tuple(sums)
 
 
-def _attribute_passes(method: Method, why: str, sums: tuple[str, ...], left_out: list):
-    """The sums, and before them what a method that works in the picture tests its depths with."""
+def _splat_passes(method: Method, why: str, why_depth: str, sums: tuple[str, ...], left_out: list):
+    """Visibility and sums, and between them what a method that works in the picture tests its depths with."""
+    if method.works_in == "sprites":
+        left_out.append(("visibility", f"of {method.name} the nearest splat wins, and nothing blends"))
+        return (PlannedPass("attributes", "the nearest splat wins", (), (*sums, "seen_depth")),)
+    visibility = PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",))
     if method.works_in == "space":
         left_out.append(("seen_range", f"{method.name} is tested by the hardware, with the depth of visibility"))
-        return (PlannedPass("attributes", why, ("visibility_depth",), sums),)
+        return visibility, PlannedPass("attributes", why, ("visibility_depth",), sums)
     seen = ("seen_range", "seen_depth")
     return (
+        visibility,
         PlannedPass("seen_range", "splats that are hidden whole are tested away early", ("visibility_depth",), seen),
         PlannedPass("attributes", why, seen, sums),
     )

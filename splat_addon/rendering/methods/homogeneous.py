@@ -8,17 +8,29 @@ from dataclasses import replace
 import numpy as np
 
 from . import quad
-from .plane import Plane, splat_plane
+from .plane import Plane, places, splat_plane
 
 FILTER_RADIUS = 2**0.5
 
 
-def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(M,) weights and (M,) depths at (M, 2) picture points (Guennebaud et al. 2006, equations 8 to 10)."""
-    return quad.samples(adjusted(plane, pixel), points, pixel)
+def samples(
+    plane: Plane, points: np.ndarray, pixel: np.ndarray, as_printed: bool = False
+) -> tuple[np.ndarray, np.ndarray]:
+    """(M,) weights and (M,) depths at (M, 2) picture points (Guennebaud et al. 2006, equations 8 to 10).
+
+    as_printed: without the repairs for discs that face the ray, and for depths.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        wide = adjusted(plane, pixel, as_printed)
+        weights, depths = quad.samples(wide, points, pixel)
+        if as_printed:
+            return weights, depths
+        along = plane.gradient @ np.stack([wide.a, wide.b], axis=1)
+        offset = places(wide, points).uv @ along
+        return weights, plane.depth + np.clip(offset, -plane.radius, plane.radius)
 
 
-def adjusted(plane: Plane, pixel: np.ndarray) -> Plane:
+def adjusted(plane: Plane, pixel: np.ndarray, as_printed: bool = False) -> Plane:
     """The plane of the disc whose half-axes are no shorter than the filter."""
     is_orthographic = plane.scale == 1.0 and not plane.gh.any() and plane.slope.any()
     depth = 1.0 if is_orthographic else plane.depth
@@ -27,7 +39,7 @@ def adjusted(plane: Plane, pixel: np.ndarray) -> Plane:
     normal = plane.normal / np.linalg.norm(plane.normal)
     across = np.cross(ray, normal)
     axes = _axes(plane)
-    if np.linalg.norm(across) > 1e-4 * np.linalg.norm(ray):
+    if as_printed or np.linalg.norm(across) > 1e-4 * np.linalg.norm(ray):
         axes = [plane.radius * v / np.linalg.norm(v) for v in (across, np.cross(normal, across))]
     axes = [_at_least_filter(axis, position, pixel, depth, is_orthographic) for axis in axes]
     return replace(splat_plane(position, *axes, is_orthographic), normal=plane.normal)

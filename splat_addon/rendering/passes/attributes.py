@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ..device.interface import PipelineDescription, Target
 from ..methods import get_method
-from ..plan import FramePlan, PlannedPass
+from ..plan import TEXTURES, FramePlan, PlannedPass
 from ..shaders import load
 from ..storages import get_storage
 from .blocks import HALF_SUMS, LINEAR_DEPTH, material_defines
@@ -22,6 +22,18 @@ _AXES_VARYINGS = (("flat", "vec3", "texture_axis_u"), ("flat", "vec3", "texture_
 _TEXTURE_SAMPLERS = ("surfel_uvs", "texture_atlas", "texture_table")
 
 
+def _is_depth(texture: str) -> bool:
+    return TEXTURES[texture][0] == "DEPTH32F"
+
+
+def _sums(planned: PlannedPass) -> tuple[str, ...]:
+    return tuple(name for name in planned.writes if not _is_depth(name))
+
+
+def _outputs(planned: PlannedPass) -> tuple[tuple[str, str], ...]:
+    return tuple((_OUTPUT_TYPES.get(name, "vec4"), name) for name in _sums(planned))
+
+
 def _material_varyings(planned: PlannedPass) -> tuple[tuple[str, str, str], ...]:
     return tuple(("flat", "vec3", name) for name in ("material", "emission") if f"{name}_sum" in planned.writes)
 
@@ -29,11 +41,12 @@ def _material_varyings(planned: PlannedPass) -> tuple[tuple[str, str, str], ...]
 def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> PipelineDescription:
     """What the pass draws with, by the space that the method works in.
 
-    textured: for instances whose colours are looked up in textures; the others do not pay for them.
+    textured: for instances whose colours are looked up in textures; the others do not pay for them. A sprite has one
+    colour.
     """
     method = get_method(frame.method)
     plain = _MAKERS[method.works_in](planned, frame)
-    if not textured:
+    if not textured or method.works_in == "sprites":
         return plain
     axes = _AXES_VARYINGS if method.works_in == "space" else ()
     # of what is evaluated once: a sample, or each of its hardware samples, which is a smaller piece of the pixel
@@ -61,7 +74,7 @@ def _in_space(planned, frame):
             ("flat", "vec3", "normal"),
             *_material_varyings(planned),
         ),
-        outputs=tuple((_OUTPUT_TYPES.get(name, "vec4"), name) for name in planned.writes),
+        outputs=_outputs(planned),
         defines=(
             *with_materials,
             *((("LIGHT_SET_TARGET", "1"),) if "light_set_sum" in planned.writes else ()),
@@ -98,7 +111,7 @@ def _in_picture(planned, frame):
             ("flat", "vec3", "normal"),
             *_material_varyings(planned),
         ),
-        outputs=tuple((_OUTPUT_TYPES.get(name, "vec4"), name) for name in planned.writes),
+        outputs=_outputs(planned),
         defines=(
             ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
             *((("STRADDLING", "1"),) if frame.has("STRADDLING") else ()),
@@ -112,14 +125,42 @@ def _in_picture(planned, frame):
     )
 
 
-_MAKERS = {"space": _in_space, "picture": _in_picture}
+def _in_sprites(planned, frame):
+    with_materials = material_defines(planned.writes)
+    return PipelineDescription(
+        name="attributes",
+        vertex=load("sprites/attributes.vert.glsl", method=frame.method, storage=frame.storage),
+        fragment=load("sprites/attributes.frag.glsl", method=frame.method),
+        block=SPLATS_BLOCK,
+        samplers=(*get_storage(frame.storage).samplers, *(("materials",) if with_materials else ())),
+        varyings=(
+            ("smooth", "vec2", "place"),
+            ("flat", "vec3", "tilt_depth"),
+            ("flat", "vec4", "color_weight"),
+            ("flat", "vec3", "normal"),
+            *_material_varyings(planned),
+        ),
+        outputs=_outputs(planned),
+        defines=(
+            *with_materials,
+            *((("LIGHT_SET_TARGET", "1"),) if "light_set_sum" in planned.writes else ()),
+            *(HALF_SUMS if frame.accumulation == "float16" else ()),
+            *(LINEAR_DEPTH if frame.linear_depth else ()),
+        ),
+        depth_test=True,
+        depth_write=True,
+    )
+
+
+_MAKERS = {"space": _in_space, "picture": _in_picture, "sprites": _in_sprites}
 
 
 def run(tile: TileContext, planned: PlannedPass) -> Target:
-    """Fill the sums, tested with the last depth that the plan has."""
+    """Fill the sums, tested with the depth that the plan names."""
     description = describe(planned, tile.plan)
-    target = tile.target(planned.writes, planned.reads[-1] if description.depth_test else None)
-    target.clear(color=0.0)
+    depth = next(filter(_is_depth, (*planned.writes, *planned.reads)))
+    target = tile.target(_sums(planned), depth if description.depth_test else None)
+    target.clear(color=0.0, depth=1.0 if description.depth_write else None)
     for textured in (False, True):
         placed = [p for p in tile.view.placed if p.instance.is_textured is textured]
         if placed:

@@ -37,7 +37,7 @@ SPLATS_BLOCK = (
 def draw_splats(
     tile: TileContext, pipeline: Pipeline, target: Target, placed_ones: Iterable[PlacedInstance], viewport=None
 ) -> None:
-    """One draw call an instance. viewport: as `Device.draw_quads` takes it."""
+    """One draw call an instance. viewport: as `Device.draw_triangles` takes it."""
     resources, view, storage = tile.resources, tile.view, get_storage(tile.plan.storage)
     least_offset = view.least_offset(tile.plan.linear_depth)
     options = tile.settings.epsilon, view.near, tile.camera.is_orthographic, tile.depth_unit

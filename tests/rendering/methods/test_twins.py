@@ -105,7 +105,8 @@ def twin_weights(method, axes, camera, shift=(0.0, 0.0)):
     x, y = np.meshgrid(np.arange(SIZE) + 0.5 + shift[0], np.arange(SIZE) + 0.5 + shift[1])
     points = np.stack([left + x.ravel() * pixel[0], bottom + y.ravel() * pixel[1]], axis=1)
     position, u, v = axes
-    if -position[2] - np.hypot(u[2], v[2]) <= NEAR:
+    is_sprite = METHODS[method].works_in == "sprites"  # drawn whole or not at all
+    if -position[2] - np.hypot(u[2], v[2]) <= NEAR and not is_sprite:
         weights, depths = straddling_samples(position, u, v, points, camera.is_orthographic)
     else:
         plane = splat_plane(position, u, v, camera.is_orthographic)

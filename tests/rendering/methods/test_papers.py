@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a paper's own level or formula is beside the method that was made of it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import render_exact, scenes
+from splat_addon.reference.extremes import discs, sheet
+from splat_addon.reference.metrics import psnr
+from splat_addon.rendering import Camera, Scene, Settings, plan
+
+SIZE = (128, 128)
+FLAT = Settings(shading="flat", supersampling=1)
+ONE_PASS, PRINTED, REPAIRED = (
+    replace(FLAT, method=name) for name in ("affine_unfiltered", "homogeneous_printed", "homogeneous")
+)
+AHEAD = Camera.perspective(np.eye(4), 1.0, SIZE, 0.01, 100)
+
+POSES = {
+    "torus": scenes.torus(8_000, SIZE),
+    "across the near plane": (Scene((discs((0.1, -0.05, -0.011), (1, 0, 0), (0, 0.3, -1)),)), AHEAD),
+    "centre behind the camera": (Scene((discs((0.1, -0.2, 0.5), (2, 0, 0), (0, 0.2, -2)),)), AHEAD),
+    "edge-on": (Scene((sheet(30, 1.0, 90.0, 2.0),)), AHEAD),
+    "facing": (Scene((discs((0, 0, -2), (0.3, 0, 0), (0, 0.3, 0)),)), AHEAD),
+}
+
+
+@pytest.mark.parametrize("settings", [ONE_PASS, PRINTED], ids=lambda s: s.method)
+@pytest.mark.parametrize("pose", POSES)
+def test_no_number_is_non_finite(pose, settings, render):
+    frame = render(*POSES[pose], settings)
+    assert all(np.isfinite(getattr(frame, name)).all() for name in ("color", "depth", "normal", "coverage"))
+
+
+def test_a_disc_that_faces_the_ray_vanishes_as_printed_and_stays_repaired(render):
+    scene, camera = POSES["facing"]
+    truth = render_exact(scene, camera, FLAT, samples=1)
+    assert not render(scene, camera, PRINTED).coverage.any()
+    assert np.count_nonzero(render(scene, camera, REPAIRED).coverage != truth.coverage) <= 4
+
+
+def test_a_grazing_sheet_is_truer_where_its_small_splats_keep_the_depth_of_their_planes(render):
+    scene, camera = scenes.checker_plane(40, 20_000, 6, SIZE)
+    truth = render_exact(scene, camera, FLAT, samples=4, pixel_filter="gaussian")
+    printed, repaired = (psnr(render(scene, camera, s).color, truth.color) for s in (PRINTED, REPAIRED))
+    assert repaired > printed + 2
+
+
+def test_one_pass_is_one_pass():
+    planned = plan(*POSES["torus"], ONE_PASS)
+    assert [p.name for p in planned.passes] == ["attributes", "shading"]
+    assert "visibility_depth" not in planned.textures
+    assert any(what == "visibility" for what, _ in planned.left_out)
+
+
+def test_in_one_pass_every_pixel_is_a_splat_and_the_nearest_wins(render):
+    colors = {"near": (1.0, 0.0, 0.0), "far": (0.0, 1.0, 0.0)}
+    near, far = (
+        replace(discs((x, 0, z), (0.5, 0, 0), (0, 0.5, 0)), colors=np.array([[*colors[name], 1]], np.float32))
+        for name, x, z in (("near", -0.2, -2.0), ("far", 0.2, -2.1))
+    )
+    for order in ((near, far), (far, near)):
+        frame = render(Scene(order, world=(0, 0, 1)), AHEAD, ONE_PASS)
+        seen = {tuple(c) for c in frame.color[..., :3].reshape(-1, 3)}
+        assert seen == {(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)}
+        np.testing.assert_array_equal(frame.color[64, 64, :3], colors["near"])
+        assert frame.depth[64, 64] == pytest.approx(2.0, rel=1e-6)
