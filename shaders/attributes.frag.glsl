@@ -15,7 +15,7 @@ void main() {
 #ifdef TEXTURED
   vec2 point = splats.window.xy + gl_FragCoord.xy * splats.window.zw;
   mat2 change = space_place_change(texture_axis_u, texture_axis_v, point, place_depth.z);
-  vec3 color = splat_texture_color(color_weight.rgb, texture_place, texture_along, place_depth.xy, change);
+  vec3 color = splat_texture_color(color_weight.rgb, texture_place, texture_along, texture_border, place_depth.xy, change);
 #else
   vec3 color = color_weight.rgb;
 #endif

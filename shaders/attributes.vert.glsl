@@ -19,7 +19,7 @@ void main() {
   color_weight = splat.color_weight;
   normal = splat.normal;
 #ifdef TEXTURED
-  texture_place = fetch_texture_place(gl_VertexID / 3, splat.material, texture_along);
+  texture_place = fetch_texture_place(gl_VertexID / 3, splat.material, texture_along, texture_border);
   texture_axis_u = splat.axis_u;
   texture_axis_v = splat.axis_v;
 #endif

@@ -33,6 +33,7 @@ OPTIONAL_LAYOUT = {
     "uvs": (2, np.float32, 0.0),
     "uv_along_x": (2, np.float32, 0.0),
     "uv_along_y": (2, np.float32, 0.0),
+    "uv_border": (2, np.float32, 0.0),
 }
 
 #: How far a quaternion or a normal may be from unit length before it is refused (float32 rounding is 1e-7).
@@ -56,6 +57,7 @@ class Surfels:
     emission: (N, 3) float32, scene-linear radiance, in place of their material's; None: the material's.
     uvs: (N, 2) float32 texture coordinates at the centres; uv_along_x, uv_along_y: (N, 2) their change along the local
         x and y half-axis. Where both changes are 0, and without all three, no texture is looked up: `colors` shows.
+    uv_border: (N, 2) m of a line m . q = 1 in half-axes, beyond which the texture is not looked up; 0 and None: none.
 
     Raises ValueError with one sentence for a wrong shape, a non-finite or an out-of-range value;
     `valid_surfels` drops and counts such rows instead.
@@ -75,6 +77,7 @@ class Surfels:
     uvs: np.ndarray | None = None
     uv_along_x: np.ndarray | None = None
     uv_along_y: np.ndarray | None = None
+    uv_border: np.ndarray | None = None
 
     def __post_init__(self):
         arrays = _shaped(self.arrays())

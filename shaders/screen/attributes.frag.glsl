@@ -48,7 +48,7 @@ vec3 textured_color(Plane plane, vec2 point) {
     change = space_place_change(plane_center_gh.xyz, plane_depths.xyz, point, in_space.z);
   }
 #endif
-  return splat_texture_color(color_weight.rgb, texture_place, texture_along, q, change);
+  return splat_texture_color(color_weight.rgb, texture_place, texture_along, texture_border, q, change);
 }
 #endif
 

@@ -43,11 +43,13 @@ void main() {
   color_weight = splat.color_weight;
   normal = splat.normal;
 #ifdef TEXTURED
-  texture_place = fetch_texture_place(gl_VertexID / 3, splat.material, texture_along);
+  texture_place = fetch_texture_place(gl_VertexID / 3, splat.material, texture_along, texture_border);
   // Axes that the method replaced move in the picture as others of the true plane do.
   if (true_plane.a != plane.a || true_plane.b != plane.b) {
-    mat2 along = mat2(texture_along.xy, texture_along.zw) * inverse(mat2(true_plane.a, true_plane.b)) * mat2(plane.a, plane.b);
+    mat2 to_true = inverse(mat2(true_plane.a, true_plane.b)) * mat2(plane.a, plane.b);
+    mat2 along = mat2(texture_along.xy, texture_along.zw) * to_true;
     texture_along = vec4(along[0], along[1]);
+    texture_border = texture_border * to_true;
   }
 #endif
 #ifdef WITH_MATERIALS

@@ -63,4 +63,5 @@ POINT_ATTRIBUTES = {
     "uvs": PointAttribute("uv", "FLOAT2", "vector", 2),
     "uv_along_x": PointAttribute("uv_along_x", "FLOAT2", "vector", 2),
     "uv_along_y": PointAttribute("uv_along_y", "FLOAT2", "vector", 2),
+    "uv_border": PointAttribute("uv_border", "FLOAT2", "vector", 2),
 }

@@ -37,10 +37,15 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
     y = np.cross(geometric, x)
     uvs = {}
     if surfels.has_uvs:
-        along_x = surfels.uv_along_x * np.cos(angle) + surfels.uv_along_y * np.sin(angle)
-        along_y = surfels.uv_along_y * np.cos(angle) - surfels.uv_along_x * np.sin(angle)
         # a mirrored frame is made right-handed by turning y
-        uvs = {"uv_along_x": along_x, "uv_along_y": along_y * np.sign(np.einsum("ij,ij->i", y, short))[:, None]}
+        cosine, sine, side = np.cos(angle), np.sin(angle), np.sign(np.einsum("ij,ij->i", y, short))[:, None]
+        uvs["uv_along_x"] = surfels.uv_along_x * cosine + surfels.uv_along_y * sine
+        uvs["uv_along_y"] = (surfels.uv_along_y * cosine - surfels.uv_along_x * sine) * side
+        if surfels.uv_border is not None:
+            across, up = surfels.uv_border.T[..., None]
+            uvs["uv_border"] = np.concatenate(
+                [across * cosine + up * sine, (up * cosine - across * sine) * side], axis=1
+            )
     return replace(
         surfels,
         origin=origin,

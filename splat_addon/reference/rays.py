@@ -146,7 +146,9 @@ def _look_textures_up(splats: Splats, splat: np.ndarray, place: np.ndarray, colo
     """Put the textures' colours at (m, 2) places of m hit splats into (3, m) colours, where there are textures."""
     for texture in set(splats.texture) - {None}:
         at = np.flatnonzero(splats.texture[splat] == texture)
-        uvs = splats.uv[splat[at]] + np.einsum("nk,nkc->nc", place[at], splats.uv_along[splat[at]])
+        q, border = place[at], splats.uv_border[splat[at]]
+        beyond = np.maximum(np.einsum("nk,nk->n", q, border) - 1, 0) / np.maximum((border**2).sum(axis=1), 1e-300)
+        uvs = splats.uv[splat[at]] + np.einsum("nk,nkc->nc", q - border * beyond[:, None], splats.uv_along[splat[at]])
         colors[:, at] = point_colors(texture, uvs).T
 
 

@@ -32,7 +32,8 @@ class Splats:
         column of the set of objects that it belongs to.
     is_back: (N,) bool: its inward side is seen.
     texture: (N,) objects, the `SurfaceTexture` that takes the place of color, or None. uv: (N, 2) at the centre;
-    uv_along: (N, 2, 2), its change along u (row 0) and v (row 1).
+    uv_along: (N, 2, 2), its change along u (row 0) and v (row 1). uv_border: (N, 2) m of the line m . q = 1 behind
+    which the texture is not looked up.
     """
 
     center: np.ndarray
@@ -46,6 +47,7 @@ class Splats:
     texture: np.ndarray
     uv: np.ndarray
     uv_along: np.ndarray
+    uv_border: np.ndarray
 
     def __len__(self) -> int:
         return len(self.center)
@@ -88,14 +90,15 @@ def _instance_splats(instance: Instance, camera: Camera) -> Splats:
     color = surfels.colors[:, :3].astype(np.float64)
     uvs = _no_uvs(len(surfels))
     if instance.is_textured:
-        uvs = surfels.uvs.astype(np.float64), np.stack([surfels.uv_along_x, surfels.uv_along_y], axis=1)
+        border = uvs[2] if surfels.uv_border is None else surfels.uv_border.astype(np.float64)
+        uvs = surfels.uvs.astype(np.float64), np.stack([surfels.uv_along_x, surfels.uv_along_y], axis=1), border
     textures = surfel_textures(instance)
     splats = Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0, textures, *uvs)
     return splats.take(np.flatnonzero(cosine >= 0)) if instance.hides_backs(camera) else splats
 
 
-def _no_uvs(count: int) -> tuple[np.ndarray, np.ndarray]:
-    return np.zeros((count, 2)), np.zeros((count, 2, 2))
+def _no_uvs(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    return np.zeros((count, 2)), np.zeros((count, 2, 2)), np.zeros((count, 2))
 
 
 def _cofactors(linear: np.ndarray) -> np.ndarray:

@@ -37,7 +37,7 @@ def pack_surfels(surfels: Surfels) -> np.ndarray:
 
 
 def pack_uvs(surfels: Surfels, order=slice(None)) -> np.ndarray:
-    """(rows, 1024, 4) float32, two texels a splat: uv, its change along the local x half-axis  |  along y, 0, 0.
+    """(rows, 1024, 4) float32, two texels a splat: uv, its change along the local x half-axis  |  along y, border.
 
     order: in which the surfels are stored.
     """
@@ -46,6 +46,8 @@ def pack_uvs(surfels: Surfels, order=slice(None)) -> np.ndarray:
     filled = texels[: len(surfels)]
     columns = surfels.uvs, surfels.uv_along_x, surfels.uv_along_y
     filled[:, 0, :2], filled[:, 0, 2:], filled[:, 1, :2] = (column[order] for column in columns)
+    if surfels.uv_border is not None:
+        filled[:, 1, 2:] = surfels.uv_border[order]
     return texels.reshape(rows, SPLATS_PER_ROW * 2, 4)
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..surfels import LAYOUT, quaternion_axes
 from .ellipses import ellipse_rotations, ellipse_scales
-from .texture_mapping import UV_FIELDS, from_uv_planes, is_mapped, slips, uv_planes
+from .texture_mapping import BORDER, UV_FIELDS, from_uv_planes, is_mapped, slips, uv_planes
 
 #: Doublings of the spacing. The renderer tells surfaces apart at half a splat's radius, so larger discs would show
 #: what lies several spacings behind them.
@@ -95,7 +95,7 @@ def merge_flat(
     while len(levels) <= LEVELS and len(levels[-1].keys):
         levels.append(_parents(levels[-1], 2 ** (len(levels) - 1), spacing, tolerance))
     parts, error = [], 0.0
-    optional = {name: array for name, array in arrays.items() if name not in (*LAYOUT, *UV_FIELDS)}
+    optional = {name: array for name, array in arrays.items() if name not in (*LAYOUT, *UV_FIELDS, BORDER)}
     has_uvs = "uvs" in arrays
     wanted = np.arange(len(levels[-1].keys))
     for level in range(len(levels) - 1, 0, -1):
@@ -125,7 +125,7 @@ def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
     planes = np.stack([pw, -nu / nw, -nv / nw], axis=1)
     order = np.lexsort((pw, keys))
     zeros = np.zeros(len(axes))
-    averaged = (array for name, array in arrays.items() if name not in (*LAYOUT, *UV_FIELDS))
+    averaged = (array for name, array in arrays.items() if name not in (*LAYOUT, *UV_FIELDS, BORDER))
     colors = np.column_stack([arrays["colors"], *averaged])
     uvs = uv_planes(arrays, axes, spacing)
     nodes = _Nodes(

@@ -15,7 +15,8 @@ from .grid import Grid
 from .mesh import TriangleMesh, corner_indices, corners_at, crossed, doubled_areas
 from .palette import Palette, Samples
 from .scan_conversion import Spans, expand
-from .texture_mapping import axis_steps, fill_uvs
+from .texture_mapping import BORDER, axis_steps, fill_uvs
+from .texture_seams import border_lines
 
 #: A projected triangle this much smaller than its snapped twin, or turned over, has no usable barycentrics of its own.
 _LEAST_AREA_RATIO = 1e-6
@@ -44,10 +45,12 @@ class SampleFiller:
         half_size: float,
         palette: Palette,
         tangents: np.ndarray | None,
+        seams: np.ndarray | None,
         arrays: dict[str, np.ndarray],
     ):
         self._mesh, self._coordinates, self._grid = mesh, coordinates, grid
         self._half_size, self._palette, self._tangents, self._arrays = half_size, palette, tangents, arrays
+        self._seams = seams
         self._centres = grid.centres()
 
     def fill(self, spans: Spans, axis: int, rows: slice):
@@ -78,7 +81,12 @@ class SampleFiller:
             _write_unit(vectors, normals, triangle, out["normals"])
         samples = self._paint(out, triangles, triangle, weights, line)
         if "uvs" in out:
-            fill_uvs(out, self._mesh.surfaces, samples, axis_steps(out, axis, spacing))
+            steps = axis_steps(out, axis, spacing)
+            fill_uvs(out, self._mesh.surfaces, samples, steps)
+            out[BORDER][...] = 0
+            if self._seams is not None:
+                at_samples = weights.at_samples(line), weights.changes(steps, triangle)
+                out[BORDER][...] = border_lines(self._seams.take(triangles, axis=0).take(triangle, axis=0), *at_samples)
 
     @_quietly
     def _paint(
@@ -188,6 +196,18 @@ class _SpanWeights:
             rise *= step
             change = change + rise
         return start, change
+
+    def at_samples(self, line: _Lines) -> np.ndarray:
+        """(3, n) float32 weights of the corners."""
+        zero, one = (np.full(self._per_column.shape[1], value, np.float32) for value in (0, 1))
+        second, third = (line.samples(*self.interpolate(zero, *rises)) for rises in ((one, zero), (zero, one)))
+        return np.stack([1 - second - third, second, third])
+
+    def changes(self, steps: np.ndarray, triangle: np.ndarray) -> np.ndarray:
+        """(3, 2, n) change of the weights along the half-axes, which are (2, 2, n) `steps` of columns and rows."""
+        per_step = np.stack([self._per_column, self._per_row]).take(triangle, axis=2)
+        rest = np.einsum("akn,kwn->wan", steps, per_step)
+        return np.concatenate([-rest.sum(axis=0, keepdims=True), rest])
 
     def gradients(self, corners: np.ndarray) -> np.ndarray:
         """(2, c, t) change of (3, c, t) corner values from one column, and from one row, to the next."""

@@ -71,7 +71,8 @@ class Binding:
         rest, finite = self._surfels, np.isfinite(mesh.positions).all(axis=1)
         shift = mesh.positions.mean(axis=0) - self._middle
         origin = rest.origin + np.where(np.isfinite(shift), shift, 0.0)
-        names = ("positions", "rotations", "scales", "normals", *(("uv_along_x", "uv_along_y") if rest.has_uvs else ()))
+        uv_fields = [name for name in ("uv_along_x", "uv_along_y", "uv_border") if getattr(rest, name) is not None]
+        names = ("positions", "rotations", "scales", "normals", *uv_fields)
         out, stretched = {name: np.array(getattr(rest, name)) for name in names}, 0
         for chunk in triangle_chunks(len(self._triangles)):
             rows, of_run = self._rows(chunk)
@@ -91,6 +92,10 @@ class Binding:
                 cosine, sine = ellipse.cosine[of_run, None], ellipse.sine[of_run, None]
                 x, y = rest.uv_along_x[rows], rest.uv_along_y[rows]
                 here["uv_along_x"][...], here["uv_along_y"][...] = x * cosine + y * sine, y * cosine - x * sine
+                if rest.uv_border is not None:
+                    across, up = rest.uv_border[rows, :1], rest.uv_border[rows, 1:]
+                    turned = across * cosine + up * sine, up * cosine - across * sine
+                    here["uv_border"][...] = np.concatenate(turned, axis=1)
             too_far = _stretch(p, q, sizes) > LARGEST_STRETCH
             stretched += int(np.count_nonzero(too_far.take(of_run)))
         return out, origin, max(stretched / max(len(rest), 1), self._grown_share(mesh))

@@ -34,7 +34,7 @@ def nearest_to_lattice(arrays: dict[str, np.ndarray], spacing: float) -> dict[st
     if "uvs" in kept:
         x, y, _ = quaternion_axes(kept["rotations"], 2)
         half_axes = x * kept["scales"][:, :1], y * kept["scales"][:, 1:]
-        kept["uvs"] = moved(kept, half_axes, positions - kept["positions"])
+        kept |= moved(kept, half_axes, positions - kept["positions"])
     kept["positions"] = positions
     return kept
 

@@ -12,7 +12,7 @@ from .ellipses import ellipse_rotations
 from .grid import Grid
 from .mesh import TriangleMesh, doubled_areas, gather_corners
 from .palette import Palette, Samples
-from .texture_mapping import UV_FIELDS, fill_uvs
+from .texture_mapping import BORDER, UV_FIELDS, fill_uvs
 
 #: Half-axis of the smallest disc, in spacings: dust of no measurable area is still a surfel.
 _LEAST_RADIUS = 1e-3
@@ -69,7 +69,7 @@ def part_surfels(
     samples = _samples(mesh, palette, tangents, triangles[largest], materials)
     palette.fill(arrays, samples)
     if texture_mapped:
-        arrays |= {name: np.empty((count, 2), np.float32) for name in UV_FIELDS}
+        arrays |= {name: np.zeros((count, 2), np.float32) for name in (*UV_FIELDS, BORDER)}
         fill_uvs(arrays, mesh.surfaces, samples, _axis_steps(corners[:, :, largest] * grid.spacing, arrays))
     return arrays
 

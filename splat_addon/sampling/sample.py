@@ -28,7 +28,8 @@ from .progress import Progress, stage
 from .reductions import DEFAULT_GRAZING_ANGLE, check_grazing_angle, find_reduction
 from .scan_conversion import BATCH, Spans, batches
 from .tangents import layered_tangents
-from .texture_mapping import UV_FIELDS, is_texture_mapped
+from .texture_mapping import BORDER, UV_FIELDS, is_texture_mapped
+from .texture_seams import seam_edges
 
 #: Half-axis of a splat in H. At 1 the seams between the regions of two axes leave 0.025 % of the armadillo uncovered
 #: at resolution 256, single dark specks in a picture; at 1.25 none of 200,000 points on it was uncovered.
@@ -103,11 +104,12 @@ def sample_surface(
     total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
     coordinates = grid.coordinates(mesh.positions)
     palette = Palette(mesh.surfaces)
-    uv_fields = UV_FIELDS if texture_mapped and is_texture_mapped(mesh.surfaces) else ()
+    uv_fields = (*UV_FIELDS, BORDER) if texture_mapped and is_texture_mapped(mesh.surfaces) else ()
+    seams = seam_edges(mesh) if uv_fields and mesh.corner_uvs is not None else None
     layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in (*palette.optional, *uv_fields)}
     arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
     tangents = layered_tangents(mesh) if palette.needs_tangents else None
-    filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, palette, tangents, arrays)
+    filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, palette, tangents, seams, arrays)
     _fill(filler, images, stage(progress, 0.5, 1.0))
     if chosen.merge is not None:
         arrays = chosen.merge(arrays, grid.spacing)

@@ -16,6 +16,8 @@ from .surfaces import Surface
 
 #: The fields of `Surfels` that are filled.
 UV_FIELDS = ("uvs", "uv_along_x", "uv_along_y")
+#: And the one that says where the map ends: `texture_seams`.
+BORDER = "uv_border"
 
 
 def is_texture_mapped(surfaces: tuple[Surface, ...]) -> bool:
@@ -77,8 +79,9 @@ def from_uv_planes(planes: np.ndarray, arrays: dict[str, np.ndarray], axes: np.n
     """`UV_FIELDS` of the surfels of `arrays`, the inverse of `uv_planes`."""
     steps = axis_steps(arrays, axes, spacing)
     along = (planes[:, :, 1] * c[:, None] + planes[:, :, 2] * r[:, None] for c, r in steps)
-    values = (planes[:, :, 0], *along)
-    return {name: value.astype(np.float32) for name, value in zip(UV_FIELDS, values, strict=True)}
+    # The map goes on around a merged disc.
+    values = (planes[:, :, 0], *along, np.zeros((len(planes), 2)))
+    return {name: value.astype(np.float32) for name, value in zip((*UV_FIELDS, BORDER), values, strict=True)}
 
 
 def slips(difference: np.ndarray, planes: np.ndarray) -> np.ndarray:
@@ -96,7 +99,12 @@ def is_mapped(planes: np.ndarray) -> np.ndarray:
     return (planes[:, :, 1:] != 0).any(axis=(1, 2))
 
 
-def moved(arrays: dict[str, np.ndarray], half_axes: tuple[np.ndarray, np.ndarray], offset: np.ndarray) -> np.ndarray:
-    """(n, 2) texture coordinates of surfels whose centres move by (n, 3) `offset`, in their planes."""
+def moved(arrays: dict[str, np.ndarray], half_axes: tuple[np.ndarray, np.ndarray], offset: np.ndarray) -> dict:
+    """What changes of surfels whose centres move by (n, 3) `offset`, in their planes."""
     x, y = (np.einsum("ij,ij->i", offset, a) / np.einsum("ij,ij->i", a, a) for a in half_axes)
-    return arrays["uvs"] + arrays["uv_along_x"] * x[:, None] + arrays["uv_along_y"] * y[:, None]
+    line = arrays[BORDER]
+    left = np.maximum(1 - line[:, 0] * x - line[:, 1] * y, 1e-3)[:, None]
+    return {
+        "uvs": arrays["uvs"] + arrays["uv_along_x"] * x[:, None] + arrays["uv_along_y"] * y[:, None],
+        BORDER: (line / left).astype(np.float32),
+    }

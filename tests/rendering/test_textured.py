@@ -15,7 +15,7 @@ from splat_addon.reference.textures import point_colors
 from splat_addon.rendering import Camera, Renderer, Scene, Settings, look_at
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.scene import SurfaceTexture
-from splat_addon.surfels import concatenate
+from splat_addon.surfels import Surfels, concatenate
 
 SIZE = 96
 #: What each pixel filter is the truth of, and how close to it the methods come that have it.
@@ -173,3 +173,25 @@ def test_an_atlas_leaves_with_the_last_frame_that_uses_it(on_device):
         return kept
 
     assert on_device(counts) == [1, 0]
+
+
+@pytest.mark.parametrize("method", ["quad", "mip"])
+def test_a_splat_over_a_seam_shows_nothing_of_the_next_chart(method, render):
+    """A plane whose image is red beyond the line at which the map of every splat ends."""
+    scene, camera = whole_plane(50)
+    (instance,) = scene.surfels
+    image = np.ones((64, 64, 4), np.float32) * (0.1, 0.6, 0.2, 1)
+    image[:, 30:] = (1, 0, 0, 1)
+    u = instance.surfels.uvs[:, 0]
+    to_seam = (30 / 64 - u) / instance.surfels.uv_along_x[:, 0]
+    near = np.abs(to_seam) < 1
+    border = np.where((near & (to_seam > 0))[:, None], np.stack([1 / to_seam, 0 * to_seam], axis=1), 0)
+    kept = u < 30 / 64
+    arrays = {name: array[kept] for name, array in replace(instance.surfels, uv_border=border).arrays().items()}
+    for surfels, least, most in (
+        (Surfels(**arrays), 0.0, 0.13),
+        (Surfels(**(arrays | {"uv_border": None})), 0.5, 1.0),
+    ):
+        textured = replace(instance, surfels=surfels, textures=(SurfaceTexture(Image(image, "EXTEND")),))
+        color = render(Scene((textured,)), camera, Settings(method=method, supersampling=1, shading="flat")).color
+        assert least <= (color[..., 0] / np.maximum(color[..., 3], 1e-6)).max() <= most

@@ -132,3 +132,36 @@ def test_coordinates_that_are_not_finite_leave_the_surfel_its_own_colour(square)
 def test_nothing_is_kept_where_nobody_asks_or_nothing_is_textured(square):
     assert not sample_surface(textured(square()), resolution=8).surfels.has_uvs
     assert sample_surface(square(), resolution=8, texture_mapped=True).surfels.uvs is None
+
+
+def charts(cube):
+    """The cube with a chart for each face, 3 x 2 of them side by side without a margin."""
+    mesh = cube(-0.5)
+    square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
+    uvs = np.zeros((12, 3, 2))
+    for face in range(6):
+        chart = (square + np.array((face % 3, face // 3))) / (3, 2)
+        uvs[face], uvs[face + 6] = chart[[0, 1, 2]], chart[[0, 2, 3]]
+    return TriangleMesh(mesh.positions, mesh.triangles, corner_uvs=uvs, surfaces=(TEXTURED,))
+
+
+def test_the_map_ends_at_the_edges_between_charts(cube):
+    """On a face the diagonal is no border, its outline is: the nearest such edge of the surfel's own triangle."""
+    surfels = sample_surface(charts(cube), resolution=8, texture_mapped=True).surfels
+    lined = (surfels.uv_border != 0).any(axis=1)
+    centre = surfels.origin + surfels.positions.astype(np.float64)
+    u, v = surfels.half_axes()
+    to_line = surfels.uv_border / np.maximum((surfels.uv_border**2).sum(axis=1, keepdims=True), 1e-30)
+    ends = (centre + u * to_line[:, :1] + v * to_line[:, 1:])[lined]
+    inside = np.sort(np.abs(ends), axis=1)
+    np.testing.assert_allclose(inside[:, 1:], 0.5, atol=1e-5)  # on an edge of the cube
+    is_near = np.sort(np.abs(centre), axis=1)[:, 1] > 0.5 - 1.5 / 8
+    # all but those in the corners whose nearest edge is the other triangle's
+    assert lined[is_near].mean() > 0.8 and 0.2 < lined.mean() < 0.8
+
+
+def test_a_map_without_seams_has_no_borders_but_the_meshes_own(square):
+    surfels = sample_surface(textured(square(3.0)), resolution=16, texture_mapped=True).surfels
+    x, y = (surfels.origin + surfels.positions)[:, :2].T
+    far = np.minimum(np.minimum(x, 3 - x), np.minimum(y, 3 - y)) > 1.5 * surfels.radius
+    assert (surfels.uv_border[far] == 0).all() and (surfels.uv_border[~far] != 0).any()

@@ -16,8 +16,12 @@ from .tile import TileContext
 
 #: Of the sums that are not vec4.
 _OUTPUT_TYPES = {"depth_sum": "vec2"}
-#: Of texture-mapped splats: uv and slot, change of uv along the half-axes; and the half-axes.
-_TEXTURE_VARYINGS = (("flat", "vec3", "texture_place"), ("flat", "vec4", "texture_along"))
+#: Of texture-mapped splats: uv and slot, change of uv along the half-axes, where the map ends; and the half-axes.
+_TEXTURE_VARYINGS = (
+    ("flat", "vec3", "texture_place"),
+    ("flat", "vec4", "texture_along"),
+    ("flat", "vec2", "texture_border"),
+)
 _AXES_VARYINGS = (("flat", "vec3", "texture_axis_u"), ("flat", "vec3", "texture_axis_v"))
 _TEXTURE_SAMPLERS = ("surfel_uvs", "texture_atlas", "texture_table")
 
