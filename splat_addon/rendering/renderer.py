@@ -8,6 +8,7 @@ from time import perf_counter
 
 import numpy as np
 
+from .accumulation import mean_frame, sample_cameras
 from .camera import Camera
 from .device import Device
 from .frame import EMPTY_DEPTH, Frame
@@ -48,6 +49,15 @@ class Renderer:
         """
         settings = settings or Settings()
         self._check(settings)
+        if settings.samples == 1:
+            return self._frame(scene, camera, settings, progress)
+        return mean_frame(
+            self._frame(scene, moved, settings, progress and _share(progress, number, settings.samples))
+            for number, moved in enumerate(sample_cameras(camera, settings.samples))
+        )
+
+    def _frame(self, scene: Scene, camera: Camera, settings: Settings, progress: Progress | None) -> Frame:
+        """The picture of one sample."""
         frame_plan = plan(scene, camera, settings)
         stats = self._new_stats(frame_plan)
         started = perf_counter()
@@ -63,7 +73,7 @@ class Renderer:
         return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[tuple[Tile, object]]:
-        """For a viewport: yields each tile (with its margin) and the colour texture to show there.
+        """For a viewport, one sample: yields each tile (with its margin) and the colour texture to show there.
 
         A texture is good until the next tile is asked for.
         """
@@ -140,6 +150,11 @@ class Renderer:
                     elapsed = 1e3 * (perf_counter() - started)
                     stats["passes"][planned.name] = stats["passes"].get(planned.name, 0.0) + elapsed
             yield tile, target
+
+
+def _share(progress: Progress, number: int, count: int) -> Progress:
+    """What the `number`th of `count` samples tells."""
+    return lambda done, step: progress((number + done) / count, f"sample {number + 1}/{count}: {step}")
 
 
 def background_pixel(scene: Scene, settings: Settings) -> tuple[float, float, float, float]:

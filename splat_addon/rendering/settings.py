@@ -21,6 +21,8 @@ ACCUMULATIONS = {
 
 MAX_SUPERSAMPLING = 16
 
+MAX_SAMPLES = 4096
+
 MAX_TOON_STEPS = 16
 
 #: Samples a pixel that hardware may offer; 0 is none of its own.
@@ -41,6 +43,8 @@ class Settings:
         level's.
     lines: drawn along silhouettes and creases, whatever the shading; None for none.
     supersampling: N x N samples a pixel, averaged with a box filter.
+    samples: pictures that a render is the mean of, each seen through another place in the pixel: a box filter one
+        pixel wide over what the method draws.
     multisampling: samples that the hardware tests for depth in each of those, for methods that work in space; a device
         has what its `multisample_counts` name, and Blender's has none.
     sample_shading: of multisampling, evaluate splats and light at every sample, not once a pixel.
@@ -62,6 +66,7 @@ class Settings:
     toon_softness: float = 0.1
     lines: Lines | None = None
     supersampling: int = 1
+    samples: int = 1
     multisampling: int = 0
     sample_shading: bool = False
     edge_threshold: float = 0.0
@@ -83,6 +88,8 @@ class Settings:
             raise ValueError(f"accumulation must be one of {', '.join(ACCUMULATIONS)}, not {self.accumulation!r}.")
         if int(self.supersampling) != self.supersampling or not 1 <= self.supersampling <= MAX_SUPERSAMPLING:
             raise ValueError(f"supersampling must be 1 to {MAX_SUPERSAMPLING}, not {self.supersampling}.")
+        if int(self.samples) != self.samples or not 1 <= self.samples <= MAX_SAMPLES:
+            raise ValueError(f"samples must be 1 to {MAX_SAMPLES}, not {self.samples}.")
         if self.multisampling not in MULTISAMPLING:
             raise ValueError(f"multisampling must be one of {MULTISAMPLING}, not {self.multisampling!r}.")
         if not (math.isfinite(self.edge_threshold) and self.edge_threshold >= 0):

@@ -130,6 +130,7 @@ CASES = [
     *(("torus", method, {"shading": "flat", "lines": Lines(width=2.0)}) for method in ("quad", "mip")),
     ("own_materials", "mip", {}),
     ("own_materials", "mip", {"storage": "16-bit"}),
+    ("checker_plane", "quad", {"samples": 3}),
 ]
 
 

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Samples converge to the box filter of the exact picture, and cost nothing where there is one."""
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import render_exact, scenes
+from splat_addon.reference.metrics import psnr
+from splat_addon.rendering import RenderCancelled, Settings
+from splat_addon.rendering.accumulation import sample_points
+
+FLAT = {"method": "quad", "shading": "flat"}
+
+
+@pytest.fixture(scope="module")
+def checker():
+    return scenes.checker_plane(count=10_000, size=(64, 64))
+
+
+@pytest.fixture(scope="module")
+def exact(checker):
+    return render_exact(*checker, Settings(shading="flat"), samples=16, pixel_filter="box")
+
+
+def test_more_samples_are_closer_to_box_filtered_pixels(checker, exact, render):
+    counts = (1, 4, 16, 64)
+    frames = [render(*checker, Settings(samples=count, **FLAT)) for count in counts]
+    gains = np.diff([psnr(frame.color, exact.color) for frame in frames])
+    assert (gains > 4).all(), gains
+    assert psnr(frames[-1].color, exact.color) > 40
+    assert np.abs(frames[-1].coverage - exact.coverage).max() < 0.06
+    assert np.abs(frames[-1].normal - exact.normal).max() < 0.06
+
+
+def test_a_depth_is_the_nearest_samples(checker, render):
+    one, many = (render(*checker, Settings(samples=count, **FLAT)).depth for count in (1, 8))
+    assert (many <= one).all() and (many < one).mean() > 0.5
+
+
+def test_one_sample_is_the_picture_as_it_was(checker, render):
+    """The first of any number of samples is the pixel's centre."""
+    np.testing.assert_array_equal(sample_points(1)[0], 0.5)
+    frame = render(*checker, Settings(**FLAT))
+    assert "samples" not in frame.stats and psnr(frame.color, render(*checker, Settings(samples=2, **FLAT)).color) < 40
+
+
+def test_any_first_points_are_spread_evenly():
+    """Each of 16 boxes of the pixel, and of the lens, has its share of 64 points, within 2."""
+    points = sample_points(64)
+    for pair in (points[:, :2], points[:, 2:]):
+        counts, *_ = np.histogram2d(*pair.T, bins=4, range=[(0, 1)] * 2)
+        assert np.abs(counts - 4).max() <= 2
+
+
+def test_only_wanted_arrays_are_kept(checker, render):
+    frame = render(*checker, Settings(samples=2, outputs=("color",), profile=True, **FLAT))
+    assert frame.depth is None and frame.normal is None and frame.coverage is None
+    assert frame.stats["samples"] == 2 and frame.stats["milliseconds"] > sum(frame.stats["passes"].values()) * 0.5
+
+
+def test_progress_runs_once_over_all_samples(checker, render):
+    told = []
+    render(*checker, Settings(samples=3, **FLAT), progress=lambda done, step: told.append((done, step)) or True)
+    shares = [done for done, _ in told]
+    assert shares == sorted(shares) and shares[0] == 0 and 2 / 3 < shares[-1] < 1
+    assert told[0][1].startswith("sample 1/3: ") and told[-1][1].startswith("sample 3/3: ")
+
+
+def test_a_cancelled_render_stops_in_the_middle(checker, render):
+    with pytest.raises(RenderCancelled):
+        render(*checker, Settings(samples=4096, **FLAT), progress=lambda done, step: done < 2 / 4096)
+
+
+@pytest.mark.parametrize("samples", [0, 1.5, 4097])
+def test_other_numbers_are_refused(samples):
+    with pytest.raises(ValueError, match=f"samples must be 1 to 4096, not {samples}"):
+        Settings(samples=samples)
