@@ -127,7 +127,7 @@ def report(models: Path, cases, rounds: int, slow_rounds: int) -> None:
             f"{extra_bytes(mesh, resolution):.0f}",
         )  # fmt: skip
         print("| " + " | ".join(cells) + " |", flush=True)
-    print_rivals(times, rival_times)
+    print_rivals(times, rival_times, rivals)
 
 
 def prepared_rivals(mesh: TriangleMesh, resolution: int) -> dict:
@@ -137,19 +137,31 @@ def prepared_rivals(mesh: TriangleMesh, resolution: int) -> dict:
     return {name: job for name, prepare in RIVALS.items() if (job := prepare(usable, resolution, count)) is not None}
 
 
-def print_rivals(times: dict, rival_times: dict) -> None:
-    """Their seconds over ours, turn by turn: on the clock, in work of all processors, and that for a sample."""
+def print_rivals(times: dict, rival_times: dict, rivals: dict) -> None:
+    """Their seconds over ours, turn by turn: on the clock, in work of all processors, that for a sample, and that with
+    the building of a tree, which a user who samples a mesh once waits for."""
     print("\nOthers: how many times longer they take than our sampling (without cleaning), turn by turn.\n")
-    print("| model | other | its samples | its seconds | on the clock | in work | in work, a sample |")
-    print("|---|---|---|---|---|---|---|")
+    print("| model | other | its samples | its seconds | on the clock | in work | in work, a sample | with its tree |")
+    print("|---|---|---|---|---|---|---|---|")
     for case, others in rival_times.items():
         for name, rows in others.items():
             turns = [(theirs, ours) for theirs, (_, ours) in zip(rows, times[case], strict=False)]
             clock, work = ([getattr(t, k) / getattr(o, k) for t, o in turns] for k in ("clock", "work"))
             each = [ratio * o.result / t.result for ratio, (t, o) in zip(work, turns, strict=True)]
+            built = getattr(rivals[case][name], "preparation", 0.0)
+            whole = [(t.work + built) / o.work for t, o in turns]
             label = f"{case[0].split('.')[0]} at {case[1]}"
             seconds = spread([row.clock for row in rows])
-            cells = (label, name, f"{rows[0].result:,}", seconds, spread(clock), spread(work), spread(each))
+            cells = (
+                label,
+                name,
+                f"{rows[0].result:,}",
+                seconds,
+                spread(clock),
+                spread(work),
+                spread(each),
+                spread(whole),
+            )
             print("| " + " | ".join(cells) + " |", flush=True)
 
 

@@ -2,10 +2,13 @@
 """Other ways to sample a mesh, ready to be timed beside ours by measure_conversion.py.
 
 Each takes a usable mesh, a resolution and the number of surfels that we make of it, and gives a function to time that
-returns its number of samples; or None where it is not installed. `SLOW` ones are not worth every round.
+returns its number of samples; or None where it is not installed. `SLOW` ones are not worth every round. A function's
+`preparation`, where it has one, is what it took to build its tree, in processor seconds.
 """
 
 from __future__ import annotations
+
+import time
 
 import numpy as np
 
@@ -22,10 +25,13 @@ def open3d_intersections(mesh, resolution, count):
         import open3d
     except ImportError:
         return None
+    rays = open3d.core.Tensor(hitting_rays(mesh, resolution))
+    started = time.process_time()
     scene = open3d.t.geometry.RaycastingScene()
     triangles = np.ascontiguousarray(mesh.triangles, np.uint32)
     scene.add_triangles(np.ascontiguousarray(mesh.positions, np.float32), triangles)
-    rays = open3d.core.Tensor(hitting_rays(mesh, resolution))
+    scene.cast_rays(rays[:1])  # the tree is built with the first ray
+    preparation = time.process_time() - started
 
     def job():
         hits = scene.list_intersections(rays)
@@ -36,6 +42,7 @@ def open3d_intersections(mesh, resolution, count):
         positions = (mesh.positions[mesh.triangles[ids]] * weights).sum(axis=1)
         return len(positions)
 
+    job.preparation = preparation
     return job
 
 
@@ -89,7 +96,9 @@ def blender_bvh(mesh, resolution, count):
         return None
     from splat_addon.sampling import grid_spacing
 
+    started = time.process_time()
     tree = BVHTree.FromPolygons(mesh.positions.tolist(), mesh.triangles.tolist(), all_triangles=True)
+    preparation = time.process_time() - started
     rays = [(Vector(ray[:3]), Vector(ray[3:])) for ray in hitting_rays(mesh, resolution).tolist()]
     step = STEP * grid_spacing(mesh, resolution=resolution)
 
@@ -105,6 +114,7 @@ def blender_bvh(mesh, resolution, count):
                 origin = place + onward
         return len(samples)
 
+    job.preparation = preparation
     return job
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .mesh import TriangleMesh
+from .mesh import CHUNK, TriangleMesh
 
 #: Cells along the longest edge times sub-cells a cell: up to this every step of the scan conversion is exact in
 #: float64 (proved for a product below 2^26.5, measured at 2^26; facts/sampling.md section 1).
@@ -37,10 +37,12 @@ class Grid:
 
     def coordinates(self, positions: np.ndarray) -> np.ndarray:
         """(3, V) float64 grid coordinates of (V, 3) positions, each component contiguous."""
-        coordinates = positions.T.copy()
-        coordinates -= self.origin[:, None]
-        coordinates /= self.spacing
-        coordinates -= 0.5
+        coordinates = np.empty((3, len(positions)))
+        for start in range(0, len(positions), CHUNK):
+            part = coordinates[:, start : start + CHUNK]
+            np.subtract(positions[start : start + CHUNK].T, self.origin[:, None], out=part)
+            part /= self.spacing
+            part -= 0.5
         return coordinates
 
     def snapped(self, coordinates: np.ndarray) -> np.ndarray:

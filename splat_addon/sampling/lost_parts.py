@@ -29,7 +29,7 @@ def lost_parts(mesh: TriangleMesh, is_sampled: np.ndarray) -> tuple[np.ndarray, 
     """
     reached = np.zeros(len(mesh.positions), bool)
     reached[mesh.triangles.take(np.flatnonzero(is_sampled), axis=0).ravel()] = True
-    rest = _with_unreached_corners(mesh.triangles, reached)
+    rest = _untouched(mesh.triangles, reached)
     corners, rest = _unreached(mesh.triangles.take(rest, axis=0), rest, reached)
     if len(rest):
         corners, reached = _welded(mesh.positions, corners, reached)
@@ -46,15 +46,16 @@ def lost_parts(mesh: TriangleMesh, is_sampled: np.ndarray) -> tuple[np.ndarray, 
     return rest[lost], np.argsort(np.argsort(first))[number.reshape(-1)]
 
 
-def _with_unreached_corners(triangles: np.ndarray, reached: np.ndarray) -> np.ndarray:
-    """Which of the (T, 3) triangles have a vertex that is not among the (V,) reached ones; others have
-    no say."""
-    if reached.all():
-        return np.zeros(0, np.intp)
+def _untouched(triangles: np.ndarray, reached: np.ndarray) -> np.ndarray:
+    """Which of the (T, 3) triangles have no vertex among the (V,) reached ones, which grow by a step on the way."""
     found = []
     for chunk in triangle_chunks(len(triangles)):
-        a, b, c = reached.take(corner_indices(triangles[chunk]))
-        found.append(np.flatnonzero(~(a & b & c)) + chunk.start)
+        indices = corner_indices(triangles[chunk])
+        a, b, c = reached.take(indices)
+        touched = a | b | c
+        grown = np.flatnonzero(touched & ~(a & b & c))
+        reached[indices.take(grown, axis=1).ravel()] = True
+        found.append(np.flatnonzero(~touched) + chunk.start)
     return np.concatenate(found)
 
 
