@@ -17,7 +17,8 @@ ENCODINGS = {"srgb": srgb, "linear": lambda linear: np.asarray(linear, np.float6
 
 
 def psnr(a: np.ndarray, b: np.ndarray, of: str = "srgb") -> float:
-    """Peak signal to noise ratio in dB of two pictures (h, w, c) of peak 1; infinite where they are equal.
+    """Peak signal to noise ratio in dB of two pictures (h, w, c) of peak 1; infinite where they are equal, NaN where
+    either holds a NaN.
 
     of: "srgb" compares what is seen on a screen, "linear" the values themselves. Only the first three channels
     are compared. Raises ValueError for an unknown encoding or different shapes.
@@ -28,4 +29,4 @@ def psnr(a: np.ndarray, b: np.ndarray, of: str = "srgb") -> float:
         raise ValueError(f"Only pictures of the same shape can be compared, not {np.shape(a)} and {np.shape(b)}.")
     a, b = (ENCODINGS[of](picture)[..., :3] for picture in (a, b))
     error = np.mean((a - b) ** 2)
-    return float(-10 * np.log10(error)) if error > 0 else float("inf")
+    return float(-10 * np.log10(error)) if error != 0 else float("inf")

@@ -14,6 +14,13 @@ def test_equal_pictures_have_infinite_psnr():
     assert psnr(picture, picture) == math.inf
 
 
+def test_a_picture_with_a_nan_is_not_equal_to_anything():
+    picture = np.zeros((4, 5, 4))
+    picture[0, 0, 0] = np.nan
+    assert math.isnan(psnr(picture, np.zeros((4, 5, 4))))
+    assert math.isnan(psnr(picture, picture))
+
+
 def test_a_tenth_everywhere_is_20_db_in_linear():
     assert psnr(np.full((4, 4, 3), 0.5), np.full((4, 4, 3), 0.6), of="linear") == pytest.approx(20)
 
