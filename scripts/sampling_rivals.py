@@ -90,6 +90,7 @@ def trimesh_even(mesh, resolution, count):
 def blender_bvh(mesh, resolution, count):
     """The same rays, one after another through Blender's BVH tree, on from each hit: what a script would do."""
     try:
+        import bpy  # noqa: F401 - brings mathutils
         from mathutils import Vector
         from mathutils.bvhtree import BVHTree
     except ImportError:
