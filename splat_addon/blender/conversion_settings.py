@@ -160,8 +160,8 @@ class ConversionProperties:
         description=(
             "Surfels whose base colour is one image look it up at every pixel of a render, instead of keeping one "
             "colour each, and an edited image shows at once. A globe of text is 20 to 28 dB truer for it, at 3.6 to 6 "
-            "times the time of a frame in software; sampling takes twice as long. With Adaptive, a flat board of text keeps "
-            "1 surfel in 13"
+            "times the time of a frame in software; sampling takes twice as long. With Adaptive, a flat board of text "
+            "keeps 1 surfel in 13"
         ),
         default=False,
     )
