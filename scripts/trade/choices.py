@@ -10,7 +10,7 @@ from splat_addon.rendering import Settings
 from splat_addon.rendering.methods import METHODS
 
 #: Methods that take a splat's own kernel at a sample, without the pixel's filter.
-UNFILTERED = frozenset({"quad"})
+UNFILTERED = frozenset({"quad", "affine_unfiltered"})
 
 #: What every time is divided by.
 YARDSTICK = Settings(method="quad", supersampling=1, shading="flat")
