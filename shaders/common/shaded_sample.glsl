@@ -45,6 +45,12 @@ ShadedSample shaded_sample(ivec2 texel, int look) {
 #ifdef SHADOWS
   shadow_turn = 0.125 + 0.25 * float((texel.x & 1) + 2 * (texel.y & 1));
 #endif
+#ifdef OVERDRAW_TARGET
+  overdraw = SUM_AT(overdraw_sum, texel, look).r;
+#endif
+#ifdef SUM_OF_WEIGHTS
+  sum_of_weights = c.w / WEIGHT_SCALE;
+#endif
 #ifdef LIGHT_SET_TARGET
   light_set = texelFetch(light_set_sum, texel, 0);
   light_set /= dot(light_set, vec4(1.0));

@@ -20,6 +20,9 @@ void add_to_sums(vec3 color, float weight, float depth) {
   color_sum = vec4(color, 1.0) * weight;
   normal_sum = vec4(normal, depth) * weight;
 #endif
+#ifdef OVERDRAW_TARGET
+  overdraw_sum = 1.0;
+#endif
 #ifdef LIGHT_SET_TARGET
   light_set_sum = splats.light_set * weight;
 #endif

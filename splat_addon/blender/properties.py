@@ -16,6 +16,7 @@ from bpy.props import (
 )
 
 from ..rendering.lines import MAX_WIDTH, Lines
+from ..rendering.matcap import Matcap
 from ..rendering.methods import METHODS
 from ..rendering.settings import (
     ACCUMULATIONS,
@@ -28,6 +29,7 @@ from ..rendering.settings import (
 from ..rendering.shading_models import SHADING_MODELS
 from ..rendering.storages import STORAGES
 from .ids import RENDER_SETTINGS
+from .matcap_images import matcap_of
 from .mesh_sampling_settings import MeshSamplingProperties
 
 
@@ -57,6 +59,14 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         min=0.0,
         max=1.0,
         default=Settings.toon_softness,
+    )
+    matcap: PointerProperty(
+        name="Matcap",
+        description=(
+            "A picture of a lit ball that fills it. Blender's own can be opened where they have a single layer: all of "
+            "4.5's; of most of 5.2's, save a layer as an image first"
+        ),
+        type=bpy.types.Image,
     )
     use_lines: BoolProperty(
         name="Lines",
@@ -185,6 +195,7 @@ def _settings(scene, **choices) -> Settings:
         shading=properties.shading,
         toon_steps=properties.toon_steps,
         toon_softness=properties.toon_softness,
+        matcap=_matcap(properties),
         lines=_lines(properties) if properties.use_lines else None,
         epsilon=properties.epsilon,
         shadow_resolution=properties.shadow_resolution,
@@ -193,6 +204,11 @@ def _settings(scene, **choices) -> Settings:
         transparent_film=scene.render.film_transparent,
         **choices,
     )
+
+
+def _matcap(properties) -> Matcap | None:
+    is_read = "matcap" in SHADING_MODELS[properties.shading].tables
+    return matcap_of(properties.matcap) if is_read and properties.matcap else None
 
 
 def _lines(properties) -> Lines:

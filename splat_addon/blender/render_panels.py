@@ -52,6 +52,18 @@ class RENDER_PT_surfel_toon(_RenderPanel, bpy.types.Panel):
         return super().poll(context) and getattr(context.scene, RENDER_SETTINGS).shading == "toon"
 
 
+class RENDER_PT_surfel_matcap(_RenderPanel, bpy.types.Panel):
+    bl_label = "Matcap"
+    bl_parent_id = "RENDER_PT_surfel_surface"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and getattr(context.scene, RENDER_SETTINGS).shading == "matcap"
+
+    def draw(self, context):
+        self.layout.template_ID(getattr(context.scene, RENDER_SETTINGS), "matcap", open="image.open")
+
+
 class RENDER_PT_surfel_lines(_RenderPanel, bpy.types.Panel):
     bl_label = "Lines"
     bl_options = frozenset({"DEFAULT_CLOSED"})
@@ -121,6 +133,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         RENDER_PT_surfel_sampling,
         RENDER_PT_surfel_surface,
         RENDER_PT_surfel_toon,
+        RENDER_PT_surfel_matcap,
         RENDER_PT_surfel_lines,
         RENDER_PT_surfel_shadows,
         RENDER_PT_surfel_performance,

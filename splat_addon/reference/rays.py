@@ -78,6 +78,7 @@ class Surface:
 
     rays: (n,) numbers in the grid. color: (n, 3). normal: (n, 3) unit. depth: (n,).
     roughness, metallic, f0: (n,). emission: (n, 3). light_set: (n, 4) the share of each set of objects.
+    weight: (n,) sum of the splats' weights. count: (n,) of splats.
     """
 
     rays: np.ndarray
@@ -89,6 +90,8 @@ class Surface:
     f0: np.ndarray
     emission: np.ndarray
     light_set: np.ndarray
+    weight: np.ndarray
+    count: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,16 +133,17 @@ def _seen(splats: Splats, boxes, grid: RayGrid, visibility: np.ndarray):
 
 def average(splats: Splats, grid: RayGrid, contributions) -> Surface:
     """Weighted means. contributions: chunks of rays, splats, weights and depths, each (m,), and places (m, 2)."""
-    sums = np.zeros((18, grid.count))
+    sums, count = np.zeros((18, grid.count)), np.zeros(grid.count)
     attributes = np.concatenate([splats.color, splats.normal, splats.surface], axis=1).T
     for ray, splat, weight, depth, place in contributions:
+        count += np.bincount(ray, minlength=grid.count)
         sums[0] += np.bincount(ray, weight, grid.count)
         sums[1] += np.bincount(ray, weight * depth, grid.count)
         values = attributes[:, splat]
         _look_textures_up(splats, splat, place, values[:3])
         for total, row in zip(sums[2:], values, strict=True):
             total += np.bincount(ray, weight * row, grid.count)
-    return _averages(sums)
+    return _averages(sums, count)
 
 
 def _look_textures_up(splats: Splats, splat: np.ndarray, place: np.ndarray, colors: np.ndarray):
@@ -152,14 +156,14 @@ def _look_textures_up(splats: Splats, splat: np.ndarray, place: np.ndarray, colo
         colors[:, at] = point_colors(texture, uvs).T
 
 
-def _averages(sums: np.ndarray) -> Surface:
+def _averages(sums: np.ndarray, count: np.ndarray) -> Surface:
     rays = np.flatnonzero(sums[0] > 0)
     depth, *columns = sums[1:, rays] / sums[0, rays]
     color, normal = np.stack(columns[:3], axis=1), np.stack(columns[3:6], axis=1)
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = np.where(length > CANCELLED, normal / np.maximum(length, CANCELLED), TO_VIEWER)
     emission, light_set = np.stack(columns[9:12], axis=1), np.stack(columns[12:], axis=1)
-    return Surface(rays, color, normal, depth, *columns[6:9], emission, light_set)
+    return Surface(rays, color, normal, depth, *columns[6:9], emission, light_set, sums[0, rays], count[rays])
 
 
 def splats_in(splats: Splats, bounds, grid: RayGrid):

@@ -67,6 +67,36 @@ def _toon(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, setting
     return radiance
 
 
+def _matcap(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    """The normal in a basis around the ray, as Blender's Workbench has it, is a place in the picture."""
+    view = -unit(grid.rays(surface.rays)[1])
+    a, b = 1 / (1 + view[:, 2]), -view[:, 0] * view[:, 1] / (1 + view[:, 2])
+    across = np.stack([1 - view[:, 0] ** 2 * a, b, -view[:, 0]], axis=1)
+    up = np.stack([b, 1 - view[:, 1] ** 2 * a, -view[:, 1]], axis=1)
+    place = np.stack([dot(across, surface.normal), dot(up, surface.normal)], axis=1) * 0.496 + 0.5
+    pixels = settings.matcap.pixels.astype(np.float64)
+    size = np.array(pixels.shape[1::-1])
+    at = np.clip(place * size - 0.5, 0, size - 1)
+    low = np.floor(at).astype(int)
+    (x0, y0), (x1, y1), (sx, sy) = low.T, np.minimum(low + 1, size - 1).T, (at - low).T[..., None]
+    below = pixels[y0, x0] * (1 - sx) + pixels[y0, x1] * sx
+    return surface.color * (below * (1 - sy) + (pixels[y1, x0] * (1 - sx) + pixels[y1, x1] * sx) * sy)
+
+
+def _overdraw(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    return heat(np.log2(surface.count) / 8)
+
+
+def _weight(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    return heat(np.log2(surface.weight) / 8 + 0.5)
+
+
+def heat(t: np.ndarray) -> np.ndarray:
+    """(n, 3) blue, cyan, green, yellow and red in even steps from 0 to 1."""
+    stops = np.array(((0, 0, 1), (0, 1, 1), (0, 1, 0), (1, 1, 0), (1, 0, 0)), np.float64)
+    return np.stack([np.interp(t, np.linspace(0, 1, 5), channel) for channel in stops.T], axis=1)
+
+
 def blinn_exponent(roughness: np.ndarray) -> np.ndarray:
     """Of the lobe as wide as GGX's at that roughness (Walter et al. 2007, section 5.2)."""
     return 2 / np.clip(roughness, MIN_ROUGHNESS, 1) ** 4 - 2
@@ -103,4 +133,7 @@ SHADERS = {
     "flat": _flat,
     "normals": _normals,
     "depth": _depth,
+    "matcap": _matcap,
+    "overdraw": _overdraw,
+    "weight": _weight,
 }

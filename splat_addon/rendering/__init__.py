@@ -10,6 +10,7 @@ from .environment import Environment
 from .frame import EMPTY_DEPTH, Frame
 from .light import Light
 from .lines import Lines
+from .matcap import Matcap
 from .plan import FramePlan, plan
 from .presets import PRESETS, Preset
 from .renderer import RenderCancelled, Renderer
@@ -26,6 +27,7 @@ __all__ = (
     "Instance",
     "Light",
     "Lines",
+    "Matcap",
     "Material",
     "Preset",
     "RenderCancelled",

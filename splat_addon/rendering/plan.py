@@ -47,6 +47,7 @@ TEXTURES = {
     "material_sum": ("RGBA32F", "sample"),
     "emission_sum": ("RGBA32F", "sample"),
     "light_set_sum": ("RGBA32F", "sample"),
+    "overdraw_sum": ("R32F", "sample"),
     "lines": ("R32F", "sample"),
     "shaded": ("RGBA32F", "sample"),
     "surface": ("RGBA32F", "sample"),
@@ -256,7 +257,7 @@ def _sums(
         "emission_sum": blind or ("" if emission is None else one_light),
         "light_set_sum": "" if is_linked else "every light lights everything, or nothing is lit",
     }
-    sums += [name for name, why in why_not.items() if not why]
+    sums += [name for name, why in why_not.items() if not why] + list(model.sums)
     left_out += [(name, why) for name, why in why_not.items() if why]
     return tuple(sums)
 
@@ -343,7 +344,7 @@ def _features(
     scene: Scene, settings: Settings, model: ShadingModel, emission, left_out: list
 ) -> tuple[tuple[str, str], ...]:
     """What shaders do beside the least."""
-    features = []
+    features = [*model.features]
     if settings.edge_threshold == 0:
         left_out.append(("edge threshold", "it is 0: whatever a splat reaches is covered"))
     elif get_method(settings.method).works_in != "space":

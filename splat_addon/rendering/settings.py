@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 
 from .lines import Lines
+from .matcap import Matcap
 from .shading_models import get_shading_model
 
 #: accumulation -> (label, what it costs and gains)
@@ -41,6 +42,7 @@ class Settings:
     shading: a name in `rendering.shading_models`.
     toon_steps: levels of each light in the toon model, at least 2. toon_softness: width of their edges, as a share of a
         level's.
+    matcap: what that model looks up.
     lines: drawn along silhouettes and creases, whatever the shading; None for none.
     supersampling: N x N samples a pixel, averaged with a box filter.
     samples: pictures that a render is the mean of, each seen through another place in the pixel: a box filter one
@@ -64,6 +66,7 @@ class Settings:
     shading: str = "principled"
     toon_steps: int = 3
     toon_softness: float = 0.1
+    matcap: Matcap | None = None
     lines: Lines | None = None
     supersampling: int = 1
     samples: int = 1
@@ -79,7 +82,8 @@ class Settings:
     profile: bool = False
 
     def __post_init__(self):
-        get_shading_model(self.shading)
+        if "matcap" in get_shading_model(self.shading).tables and self.matcap is None:
+            raise ValueError("Matcap shading needs a picture of a ball: choose one as its matcap.")
         if self.toon_steps not in range(2, MAX_TOON_STEPS + 1):
             raise ValueError(f"toon_steps must be 2 to {MAX_TOON_STEPS}, not {self.toon_steps}.")
         if not 0 <= self.toon_softness <= 1:

@@ -14,7 +14,8 @@ class ShadingModel:
     is_lit: it looks at lights, with their shadows and the objects they are linked to.
     has_material: it looks at roughness, metallic, reflectance and emission.
     has_world: it looks at the light of the world around.
-    tables: textures that its file reads beside the sums.
+    tables: textures that its file reads beside the sums. sums: added up for it alone.
+    features: (name, why) of what is defined for it alone.
     """
 
     name: str
@@ -25,6 +26,8 @@ class ShadingModel:
     has_material: bool = False
     has_world: bool = False
     tables: tuple[str, ...] = ()
+    sums: tuple[str, ...] = ()
+    features: tuple[tuple[str, str], ...] = ()
 
 
 SHADING_MODELS = {
@@ -70,6 +73,27 @@ SHADING_MODELS = {
             "Depth",
             "none needed",
             "The distance along the view, from black at the nearest to white at the farthest of what is in view",
+        ),
+        ShadingModel(
+            "matcap",
+            "Matcap",
+            "Sloan et al. 2001",
+            "The surfels' own colour, times that of a ball in a picture where it faces the same way",
+            tables=("matcap",),
+        ),
+        ShadingModel(
+            "overdraw",
+            "Overdraw",
+            "none needed",
+            "How many splats a sample is the mean of: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red",
+            sums=("overdraw_sum",),
+        ),
+        ShadingModel(
+            "weight",
+            "Weight",
+            "none needed",
+            "The weights that a sample is the mean by: 1/16 blue, 1/4 cyan, 1 green, 4 yellow, 16 and more red",
+            features=(("SUM_OF_WEIGHTS", "the model shows it"),),
         ),
     )
 }

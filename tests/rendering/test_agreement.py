@@ -9,7 +9,7 @@ import pytest
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import EMPTY_DEPTH, Camera, Environment, Instance, Light, Lines, Material, Settings
+from splat_addon.rendering import EMPTY_DEPTH, Camera, Environment, Instance, Light, Lines, Matcap, Material, Settings
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.shading_models import SHADING_MODELS
 
@@ -111,6 +111,8 @@ SCENES = {
 #: Looked up under footprints, which rays do not have: tests/rendering/test_textured.py compares them with the truth.
 TEXTURED = {"textured_plane": lambda: scenes.textured_plane(size=SIZE)}
 
+BALL = Matcap(environment().pixels)
+
 #: Models that show the surface and not its light.
 UNLIT = [model.name for model in SHADING_MODELS.values() if not model.is_lit]
 
@@ -121,12 +123,9 @@ CASES = [
     *((name, method, {}) for name in TEXTURED for method in METHODS),
     *(("torus", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
     *(("torus", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
-    *(
-        (name, method, {"shading": shading})
-        for shading in UNLIT
-        for name, method in (("torus", "quad"), ("torus", "mip"))
-    ),
-    *(("shadows", method, {"shading": shading}) for shading in ("phong", "toon") for method in ("quad", "mip")),
+    *(("torus", "mip", {"shading": shading}) for shading in UNLIT if shading != "matcap"),
+    ("torus", "mip", {"shading": "matcap", "matcap": BALL}),
+    *(("shadows", "quad", {"shading": shading}) for shading in ("phong", "toon")),
     *(("torus", method, {"shading": "flat", "lines": Lines(width=2.0)}) for method in ("quad", "mip")),
     ("own_materials", "mip", {}),
     ("own_materials", "mip", {"storage": "16-bit"}),

@@ -9,14 +9,18 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import render_exact, scenes
-from splat_addon.reference.shading_models import SHADERS
-from splat_addon.rendering import Camera, Environment, Instance, Light, Material, Scene, Settings, look_at, plan
+from splat_addon.reference.shading_models import SHADERS, heat
+from splat_addon.rendering import Camera, Environment, Instance, Light, Matcap, Material, Scene, Settings, look_at, plan
 from splat_addon.rendering.shading_models import SHADING_MODELS
 from splat_addon.surfels import Surfels
 
 COLOR = np.array((0.8, 0.4, 0.2))
 SIZE = (16, 16)
 ABOVE = Camera.orthographic(look_at((0, 0, 5), (0, 0.001, 0)), 1.0, SIZE, near=0.1, far=20)
+
+
+#: Brighter to the right in red, to the top in green.
+BALL = Matcap(np.stack([*np.meshgrid(np.linspace(0, 1, 32), np.linspace(0, 1, 16)), np.full((16, 32), 0.5)], axis=2))
 
 
 def floor(height=0.0, half=2.0, side=24):
@@ -110,10 +114,31 @@ def test_a_toon_highlight_has_an_edge(render):
     assert len(values) <= 6  # background, three levels, the highlight on two of them
 
 
+def test_a_matcap_is_looked_up_where_its_ball_faces_the_same_way(render):
+    """Seen from above, a floor faces as the middle of the ball; seen from a slant, as its top."""
+    scene, settings = Scene([floor()]), Settings(shading="matcap", matcap=BALL)
+    assert center(render(scene, ABOVE, settings)) == pytest.approx(COLOR * (0.5, 0.5, 0.5), abs=1e-3)
+    slant = Camera.orthographic(look_at((0, -5, 5 * math.tan(math.radians(30))), (0, 0, 0)), 1.0, SIZE, 0.1, 20)
+    up = np.interp((0.496 * math.cos(math.radians(30)) + 0.5) * 16 - 0.5, np.arange(16), np.linspace(0, 1, 16))
+    assert center(render(scene, slant, settings)) == pytest.approx(COLOR * (0.5, up, 0.5), abs=1e-3)
+
+
+@pytest.mark.parametrize("count", [1, 4, 16, 64])
+def test_overdraw_and_weight_are_counted(count, render):
+    """So many splats at one place, whose centre is looked at."""
+    names = ("rotations", "scales", "normals", "colors", "materials")
+    splat = Surfels(np.zeros((count, 3)), **{name: getattr(floor(), name)[:count] for name in names})
+    for shading, value in (("overdraw", count), ("weight", 16 * count)):
+        frame = render(Scene([splat]), ABOVE, Settings(method="quad", supersampling=1, shading=shading))
+        (expected,) = heat(np.log2([value]) / 8)
+        assert center(frame) == pytest.approx(expected, abs=0.06 if shading == "weight" else 1e-5)
+        assert np.ptp(frame.color[..., :3]) > 0
+
+
 @pytest.mark.parametrize("name", [name for name in SHADING_MODELS if name != "principled"])
 def test_picture_is_that_of_the_twin(name, render):
     scene, camera = scenes.torus(size=(64, 64))
-    settings = Settings(method="quad", supersampling=2, shading=name)
+    settings = Settings(method="quad", supersampling=2, shading=name, matcap=BALL)
     frame, exact = render(scene, camera, settings), render_exact(scene, camera, settings, samples=2)
     different = np.abs(frame.color - exact.color).max(axis=2) > 2e-4
     assert np.count_nonzero(different) <= 3
@@ -126,7 +151,7 @@ def test_models_plan_no_more_than_they_look_at():
     sky = Environment(np.ones((4, 8, 3), np.float32))
     lights = [from_above(0.9, casts_shadow=True, size=0.1, receivers=(0,))]
     for model in SHADING_MODELS.values():
-        planned = plan(Scene([thing, other], lights, environment=sky), ABOVE, Settings(shading=model.name))
+        planned = plan(Scene([thing, other], lights, environment=sky), ABOVE, Settings(shading=model.name, matcap=BALL))
         read = {name for p in planned.passes for name in p.reads if p.name == "sample_shading"}
         assert ("lights" in read) == ("light_set_sum" in read) == ("shadow_maps" in read) == model.is_lit
         assert ("material_sum" in read) == ("emission_sum" in read) == model.has_material
@@ -139,6 +164,7 @@ def test_models_plan_no_more_than_they_look_at():
     ("wrong", "why"),
     [
         ({"shading": "shiny"}, "shading must be one of principled"),
+        ({"shading": "matcap"}, "needs a picture"),
         ({"toon_steps": 1}, "toon_steps must be 2 to"),
         ({"toon_softness": 1.5}, "toon_softness must be 0 to 1"),
     ],

@@ -15,7 +15,9 @@ from .splats import SPLATS_BLOCK, draw_splats
 from .tile import TileContext
 
 #: Of the sums that are not vec4.
-_OUTPUT_TYPES = {"depth_sum": "vec2"}
+_OUTPUT_TYPES = {"depth_sum": "vec2", "overdraw_sum": "float"}
+#: What is defined for sums that some scenes or models have.
+_DEFINES = {"light_set_sum": "LIGHT_SET_TARGET", "overdraw_sum": "OVERDRAW_TARGET"}
 #: Of texture-mapped splats: uv and slot, change of uv along the half-axes, where the map ends; and the half-axes.
 _TEXTURE_VARYINGS = (
     ("flat", "vec3", "texture_place"),
@@ -36,6 +38,10 @@ def _sums(planned: PlannedPass) -> tuple[str, ...]:
 
 def _outputs(planned: PlannedPass) -> tuple[tuple[str, str], ...]:
     return tuple((_OUTPUT_TYPES.get(name, "vec4"), name) for name in _sums(planned))
+
+
+def _own_defines(planned: PlannedPass) -> tuple[tuple[str, str], ...]:
+    return tuple((define, "1") for name, define in _DEFINES.items() if name in planned.writes)
 
 
 def _material_varyings(planned: PlannedPass) -> tuple[tuple[str, str, str], ...]:
@@ -81,7 +87,7 @@ def _in_space(planned, frame):
         outputs=_outputs(planned),
         defines=(
             *with_materials,
-            *((("LIGHT_SET_TARGET", "1"),) if "light_set_sum" in planned.writes else ()),
+            *_own_defines(planned),
             *(HALF_SUMS if frame.accumulation == "float16" else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
@@ -120,7 +126,7 @@ def _in_picture(planned, frame):
             ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
             *((("STRADDLING", "1"),) if frame.has("STRADDLING") else ()),
             *with_materials,
-            *((("LIGHT_SET_TARGET", "1"),) if "light_set_sum" in planned.writes else ()),
+            *_own_defines(planned),
             *(HALF_SUMS if frame.accumulation == "float16" else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),

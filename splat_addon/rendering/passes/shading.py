@@ -50,6 +50,7 @@ _DEFINES = {
     "lights": "LIGHTS",
     "lines": "LINES",
     "light_set_sum": "LIGHT_SET_TARGET",
+    "overdraw_sum": "OVERDRAW_TARGET",
     "shadow_maps": "SHADOWS",
     "environment_image": "ENVIRONMENT",
     "environment_levels": "ENVIRONMENT_LIGHT",
@@ -87,6 +88,7 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
     made_here = {
         "lights": lambda: _lights(tile),
         "shadow_maps": lambda: resources.data(_shadow_texels(tile)),
+        "matcap": lambda: resources.kept(tile.settings.matcap, tile.settings.matcap.texels),
         "brdf_table": lambda: resources.constant(brdf_texels),
         "environment_image": lambda: resources.kept(environment, environment.image_texels),
         "environment_levels": lambda: resources.kept(environment, environment.level_texels),

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A picture of a lit ball, which the matcap shading looks colours up in (Sloan et al. 2001)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Matcap:
+    """pixels: (h, w, 3) linear rgb, row 0 at the bottom; the ball fills the picture. Compared by identity."""
+
+    pixels: np.ndarray
+
+    def __post_init__(self):
+        pixels = np.ascontiguousarray(self.pixels, np.float32)
+        if pixels.ndim != 3 or pixels.shape[2] != 3 or 0 in pixels.shape:
+            raise ValueError(f"A matcap's pixels must be (height, width, 3), not {pixels.shape}.")
+        if not np.isfinite(pixels).all():
+            raise ValueError("A matcap's pixels must be finite.")
+        object.__setattr__(self, "pixels", pixels)
+
+    def texels(self) -> np.ndarray:
+        """(h, w, 4) as they lie on the device."""
+        return np.concatenate([self.pixels, np.ones((*self.pixels.shape[:2], 1), np.float32)], axis=2)

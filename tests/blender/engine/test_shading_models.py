@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What Blender's properties make of shading models, lines and matcaps."""
+
+import math
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.rendering.shading_models import SHADING_MODELS
+
+
+@pytest.fixture
+def sheet(scene, add_sheet, add_camera):
+    """A sheet that faces the camera from below it."""
+    add_sheet(colors=(1.0, 0.5, 0.25, 1.0))
+    add_camera((0, 0, 10), type="ORTHO", ortho_scale=3.0)
+    return scene.surfel_splatting
+
+
+def center(picture):
+    return picture[14:18, 14:18, :3].mean(axis=(0, 1))
+
+
+def own_matcaps():
+    return [light for light in bpy.context.preferences.studio_lights if light.type == "MATCAP"]
+
+
+def test_every_model_can_be_chosen(sheet):
+    names = bpy.types.Scene.bl_rna.properties["surfel_splatting"].fixed_type.properties["shading"].enum_items.keys()
+    assert names == list(SHADING_MODELS)
+
+
+def test_a_model_is_rendered(sheet, picture):
+    sheet.shading = "normals"
+    assert center(picture()) == pytest.approx((0.5, 0.5, 1.0), abs=1e-3)
+
+
+def test_lines_have_their_width_and_colour(sheet, picture):
+    """Of the sheet's silhouette: 2 / 3 of 32 pixels a side, its splats half a pixel more."""
+    sheet.use_lines, sheet.line_width, sheet.line_color = True, 2.0, (0.0, 0.0, 1.0)
+    row = picture()[16]
+    is_line = (row[:, 2] > 0.9) & (row[:, 0] < 0.1)
+    covered = np.flatnonzero(row[:, 3] > 0.5)
+    assert list(np.flatnonzero(is_line)) == [*covered[:2], *covered[-2:]]
+
+
+def test_a_matcap_is_an_image(sheet, picture):
+    image = bpy.data.images.new("ball", 8, 8, float_buffer=True)
+    image.pixels.foreach_set(np.tile(np.float32((0.5, 1.0, 2.0, 1.0)), 64))
+    sheet.shading, sheet.matcap = "matcap", image
+    assert center(picture()) == pytest.approx((0.5, 0.5, 0.5), abs=1e-3)
+
+
+def test_blenders_own_matcaps_are_read_or_refused(sheet, picture):
+    sheet.shading = "matcap"
+    assert own_matcaps()
+    for light in own_matcaps()[:2]:
+        sheet.matcap = bpy.data.images.load(light.path)
+        height, width = tuple(sheet.matcap.size)[::-1]  # reads the file, which says what type it is
+        if sheet.matcap.type == "MULTILAYER":
+            with pytest.raises(RuntimeError, match="is a multilayer file, which scripts cannot read"):
+                picture()
+        else:
+            pixels = np.array(sheet.matcap.pixels).reshape(height, width, -1)
+            middle = pixels[255:257, 255:257, :3].mean(axis=(0, 1)) * (1.0, 0.5, 0.25)
+            assert center(picture()) == pytest.approx(middle, abs=math.ldexp(1, -6))
+
+
+def test_a_matcap_that_is_missing_is_said(sheet, picture):
+    sheet.shading = "matcap"
+    with pytest.raises(RuntimeError, match="Matcap shading needs a picture of a ball"):
+        picture()
