@@ -28,7 +28,9 @@ vec2 splat_sample(Plane plane, vec2 point) {
   vec2 across = scale * pixel * place.d.yx;
   float det = spread * spread
       + KERNEL_VARIANCE * (FILTER_VARIANCE * (dot(j[0], j[0]) + dot(j[1], j[1])) + KERNEL_VARIANCE);
-  float rho2 = KERNEL_VARIANCE / det * (KERNEL_VARIANCE * dot(q, q) + FILTER_VARIANCE * dot(across, across));
+  float amplitude = inversesqrt(det);
+  float rho2 = KERNEL_VARIANCE * amplitude * amplitude
+      * (KERNEL_VARIANCE * dot(q, q) + FILTER_VARIANCE * dot(across, across));
   // The kernel ends at its rim. Along the line from the centre, kernel times pixel is a Gaussian about share of
   // the way: what of it lies within the rim, its normal distribution, is what the pixel sees of the splat.
   float reach2 = max(dot(q, q), 1e-30);
@@ -36,8 +38,7 @@ vec2 splat_sample(Plane plane, vec2 point) {
   float along = FILTER_VARIANCE * dot(across_rim, across_rim) / reach2;
   float share = KERNEL_VARIANCE / (KERNEL_VARIANCE + along);
   float x = clamp((sqrt(reach2) * share - 1.0) * inversesqrt(max(along * share, 1e-12)), -8.0, 8.0);
-  float within = 1.0 / (1.0 + exp(x * (NORMAL.x + NORMAL.y * x * x)));
-  float weight = within * KERNEL_VARIANCE * inversesqrt(det) * exp(-2.0 * rho2);
+  float weight = KERNEL_VARIANCE * amplitude * exp(-2.0 * rho2) / (1.0 + exp(x * (NORMAL.x + NORMAL.y * x * x)));
   return vec2(place.k > 0.0 ? weight : 0.0, plane_depth(plane, place));
 }
 #endif

@@ -21,7 +21,7 @@ Place place_at(Plane plane, vec2 point) {
   place.det = plane.a.x * plane.b.y - plane.a.y * plane.b.x
       - d.x * (plane.gh.x * plane.b.y - plane.gh.y * plane.a.y)
       - d.y * (plane.gh.y * plane.a.x - plane.gh.x * plane.b.x);
-  place.uv = vec2(d.x * plane.b.y - d.y * plane.b.x, plane.a.x * d.y - plane.a.y * d.x) / place.det;
+  place.uv = vec2(d.x * plane.b.y - d.y * plane.b.x, plane.a.x * d.y - plane.a.y * d.x) * (1.0 / place.det);
   place.k = 1.0 + dot(plane.gh, place.uv);
   return place;
 }
