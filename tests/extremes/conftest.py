@@ -68,8 +68,9 @@ WORLD = (0.1, 0.1, 0.1)
 
 
 def pytest_generate_tests(metafunc):
-    """Every test that draws, for every method; a new method joins by itself."""
-    if "method" in metafunc.fixturenames:
+    """Every test that draws, for every method but where it names its own; a new method joins by itself."""
+    named = any("method" in mark.args[0] for mark in metafunc.definition.iter_markers("parametrize"))
+    if "method" in metafunc.fixturenames and not named:
         metafunc.parametrize("method", [method for method in METHODS if method not in COMPARED_ONLY])
 
 

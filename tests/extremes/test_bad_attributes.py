@@ -30,6 +30,7 @@ def shot(scene, camera, surfels):
     return Scene((Instance(surfels, materials=scene.surfels[0].materials),), scene.lights, scene.world), camera, None
 
 
+@pytest.mark.parametrize("method", ["mip", "quad"])
 @pytest.mark.parametrize(("field", "value"), UNUSABLE)
 def test_unusable_surfels_are_counted_and_the_rest_is_drawn(field, value, world, render_all):
     scene, camera, arrays = world

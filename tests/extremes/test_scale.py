@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
-from splat_addon.reference.extremes import transformed
+from splat_addon.reference.extremes import sheet, transformed
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, look_at
 
@@ -58,3 +58,10 @@ def test_a_depth_beyond_that_of_nothing_is_kept(hold, is_unfiltered):
     ((frame, truth),) = hold({"1e12": transformed(*perspective(), scaled(1e12))}).values()
     hit = (frame.coverage > 0) & (truth.coverage > 0)
     assert np.median(np.abs(frame.depth[hit] / truth.depth[hit] - 1)) < (1e-6 if is_unfiltered else 1e-2)
+
+
+@pytest.mark.parametrize("depth", [0, 1e-30, 1e-12])
+def test_a_parallel_camera_may_stand_in_what_it_sees(depth, hold, lit):
+    """Its view is scaled by its window where depths are next to nothing."""
+    wall = lit(sheet(12, 1.2, 0, depth))
+    hold({f"{depth}": (wall, Camera.orthographic(np.eye(4), 2.0, SIZE, -1, 1))}, least=60)
