@@ -43,7 +43,10 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     shading: EnumProperty(
         name="Shading",
         description="How the surface answers light",
-        items=[(m.name, m.label, f"{m.summary} ({m.source})") for m in SHADING_MODELS.values()],
+        items=[
+            (m.name, m.label, f"{m.summary} ({m.source}). {m.cost:g} times the frame of Flat")
+            for m in SHADING_MODELS.values()
+        ],
         default=Settings.shading,
     )
     toon_steps: IntProperty(
@@ -70,7 +73,10 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     )
     use_lines: BoolProperty(
         name="Lines",
-        description="Draw lines along silhouettes and creases, whatever the shading",
+        description=(
+            "Draw lines along silhouettes and creases, whatever the shading. 1.6 times the time of a frame of flat "
+            "shading without a graphics card, 1.8 with lines of 4 pixels"
+        ),
         default=False,
     )
     line_width: FloatProperty(

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 @dataclass(frozen=True)
 class ShadingModel:
     """name: also of shaders/shading/<name>.glsl and of its twin in `reference.shading_models`. label: for users.
-    source: of the model. summary: what it shows.
+    source: of the model. summary: what it shows. cost: time of a frame, as a multiple of flat's (docs/features.md).
 
     is_lit: it looks at lights, with their shadows and the objects they are linked to.
     has_material: it looks at roughness, metallic, reflectance and emission.
@@ -22,6 +22,7 @@ class ShadingModel:
     label: str
     source: str
     summary: str
+    cost: float
     is_lit: bool = False
     has_material: bool = False
     has_world: bool = False
@@ -38,6 +39,7 @@ SHADING_MODELS = {
             "Principled",
             "Walter et al. 2007, Heitz et al. 2016",
             "Diffuse and GGX specular light of the scene's lights and world",
+            1.24,
             is_lit=True,
             has_material=True,
             has_world=True,
@@ -48,6 +50,7 @@ SHADING_MODELS = {
             "Phong",
             "Blinn 1977, normalised",
             "Diffuse light and a highlight as sharp as the material is smooth; lights are points",
+            1.17,
             is_lit=True,
             has_material=True,
             has_world=True,
@@ -57,28 +60,32 @@ SHADING_MODELS = {
             "Toon",
             "Lake et al. 2000",
             "Each light in a few even steps, with a highlight that has an edge",
+            1.12,
             is_lit=True,
             has_material=True,
             has_world=True,
         ),
-        ShadingModel("flat", "Flat", "none needed", "The surfels' own colour, unlit"),
+        ShadingModel("flat", "Flat", "none needed", "The surfels' own colour, unlit", 1.0),
         ShadingModel(
             "normals",
             "Normals",
             "none needed",
             "The direction that the surface faces in the world, -1 to 1 on each axis as 0 to 1 of red, green and blue",
+            0.99,
         ),
         ShadingModel(
             "depth",
             "Depth",
             "none needed",
             "The distance along the view, from black at the nearest to white at the farthest of what is in view",
+            0.99,
         ),
         ShadingModel(
             "matcap",
             "Matcap",
             "Sloan et al. 2001",
             "The surfels' own colour, times that of a ball in a picture where it faces the same way",
+            1.0,
             tables=("matcap",),
         ),
         ShadingModel(
@@ -86,6 +93,7 @@ SHADING_MODELS = {
             "Overdraw",
             "none needed",
             "How many splats a sample is the mean of: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red",
+            1.02,
             sums=("overdraw_sum",),
         ),
         ShadingModel(
@@ -93,6 +101,7 @@ SHADING_MODELS = {
             "Weight",
             "none needed",
             "The weights that a sample is the mean by: 1/16 blue, 1/4 cyan, 1 green, 4 yellow, 16 and more red",
+            0.99,
             features=(("SUM_OF_WEIGHTS", "the model shows it"),),
         ),
     )
