@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+
 import bpy
 import numpy as np
 
-from ..rendering import Camera
+from ..rendering import Camera, Lens
 
 
 def picture_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
@@ -47,7 +50,37 @@ def final_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object
     x, y, border_width, border_height = border(scene.render)
     if border_width < 1 or border_height < 1:
         raise ValueError("The render border is less than a pixel; draw a larger one or switch it off.")
-    return whole.cropped(x, y, border_width, border_height)
+    return replace(whole, lens=_lens(camera_object, depsgraph)).cropped(x, y, border_width, border_height)
+
+
+def depth_of_field_notes(camera_object: bpy.types.Object, camera: Camera, samples: int) -> Iterator[str]:
+    """Why a camera that asks for depth of field will not show any."""
+    if camera_object.data.dof.use_dof and not camera.lens:
+        yield "Depth of field is for perspective cameras: this picture is sharp all over"
+    elif camera.lens and samples == 1:
+        yield "Depth of field needs more than one of the render properties' Samples: this picture is sharp all over"
+
+
+def _lens(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Lens | None:
+    """Of a perspective camera with depth of field, as Cycles reads it: millimetres of focal length over the F-stop."""
+    data, dof = camera_object.data, camera_object.data.dof
+    if not dof.use_dof or data.type != "PERSP":
+        return None
+    radius = 1e-3 * data.lens / (2 * max(dof.aperture_fstop, 1e-5))
+    distance = dof.focus_distance
+    if dof.focus_object:
+        distance = _distance_along_view(camera_object, dof.focus_object.evaluated_get(depsgraph), dof.focus_subtarget)
+    return Lens(radius, distance, dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio)
+
+
+def _distance_along_view(camera_object: bpy.types.Object, target: bpy.types.Object, bone: str) -> float:
+    """Of an object, or a bone of it, along the camera's axis, on either side."""
+    matrix = np.array(target.matrix_world, np.float64)
+    if target.pose and bone in target.pose.bones:
+        matrix = matrix @ np.array(target.pose.bones[bone].matrix, np.float64)
+    eye = np.array(camera_object.matrix_world, np.float64)
+    axis = eye[:3, 2] / np.linalg.norm(eye[:3, 2])
+    return abs(float(axis @ (eye[:3, 3] - matrix[:3, 3])))
 
 
 def viewport_camera(context: bpy.types.Context) -> Camera:

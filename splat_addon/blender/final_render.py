@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from ..rendering import Frame, RenderCancelled, Renderer, open_device
-from .camera_export import final_camera
+from .camera_export import depth_of_field_notes, final_camera
 from .live_meshes import LiveMeshes
 from .properties import final_settings
 from .scene_export import SurfelStore, export_scene
@@ -48,7 +48,8 @@ def passes_of(view_layer: bpy.types.ViewLayer) -> Iterator[tuple[str, int, str, 
 
 def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
     """Render one view layer. Raises ValueError or RuntimeError with a sentence for the user."""
-    camera = final_camera(depsgraph, engine.camera_override or depsgraph.scene.camera)
+    camera_object = engine.camera_override or depsgraph.scene.camera
+    camera = final_camera(depsgraph, camera_object)
     passes = _asked_for(depsgraph.view_layer)
     settings = final_settings(depsgraph.scene, tuple(p.output for p in passes))
     engine.update_stats("", "Reading surfels")
@@ -66,6 +67,8 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
     notes.add(_COARSE, frame.stats["surfels_coarse"])
     if "transparency" in dict(frame.stats["plan"].left_out):
         notes.add(_OPAQUE)
+    for sentence in depth_of_field_notes(camera_object, camera, settings.samples):
+        notes.add(sentence)
     for sentence in notes.sentences():
         engine.report({"WARNING"}, sentence)
     last_frame_stats.clear()

@@ -132,10 +132,10 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     samples: IntProperty(
         name="Samples",
         description=(
-            "Pictures that a final render is the mean of, each seen through another place in the pixel; the viewport "
-            "draws one. Beyond one, with Quads, 4 are 2 to 9 dB truer, 16 are 15 to 22, 64 are 23 to 30 "
-            "(box-filtered pixels); with Mip, 16 are 2 to 9 (its Gaussian). Each takes a picture's time or more: "
-            "16 took 15 times as long with Mip, 34 with Quads"
+            "Pictures that a final render is the mean of, each seen through another place in the pixel and, with "
+            "depth of field, on the lens; the viewport draws one. Beyond one, with Quads, 4 are 2 to 9 dB truer, "
+            "16 are 15 to 22, 64 are 23 to 30 (box-filtered pixels); with Mip, 16 are 2 to 9 (its Gaussian). "
+            "Each takes a picture's time or more: 16 took 15 times as long with Mip, 34 with Quads"
         ),
         min=1,
         max=MAX_SAMPLES,

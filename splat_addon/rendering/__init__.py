@@ -8,6 +8,7 @@ from .camera import Camera, look_at
 from .device import open_device
 from .environment import Environment
 from .frame import EMPTY_DEPTH, Frame
+from .lens import Lens
 from .light import Light
 from .lines import Lines
 from .matcap import Matcap
@@ -25,6 +26,7 @@ __all__ = (
     "Frame",
     "FramePlan",
     "Instance",
+    "Lens",
     "Light",
     "Lines",
     "Matcap",

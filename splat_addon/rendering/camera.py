@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .lens import Lens
+
 
 @dataclass(frozen=True, eq=False)
 class Camera:
@@ -18,6 +20,7 @@ class Camera:
     window: left, right, bottom, top of the picture; for a perspective camera on the plane at distance 1,
         for an orthographic one in world units.
     size: width, height in pixels. near, far: clip distances along -Z, world units.
+    lens: what renders of many samples look through, for perspective cameras; None is a pinhole.
     """
 
     matrix_world: np.ndarray
@@ -26,6 +29,7 @@ class Camera:
     near: float = 0.1
     far: float = 1000.0
     is_orthographic: bool = False
+    lens: Lens | None = None
 
     def __post_init__(self):
         matrix = np.array(self.matrix_world, np.float64)
@@ -47,6 +51,9 @@ class Camera:
         object.__setattr__(self, "size", (int(width), int(height)))
         if not self.near < self.far < math.inf or (not self.is_orthographic and not self.near > 0):
             raise ValueError(f"Clip distances must be 0 < near < far, not near {self.near}, far {self.far}.")
+
+        if self.lens and self.is_orthographic:
+            raise ValueError("A lens needs a perspective camera: through one, parallel views are no longer parallel.")
 
     @classmethod
     def perspective(cls, matrix_world, vertical_fov: float, size, near=0.1, far=1000.0, shift=(0.0, 0.0)) -> Camera:

@@ -45,8 +45,8 @@ class Settings:
     matcap: what that model looks up.
     lines: drawn along silhouettes and creases, whatever the shading; None for none.
     supersampling: N x N samples a pixel, averaged with a box filter.
-    samples: pictures that a render is the mean of, each seen through another place in the pixel: a box filter one
-        pixel wide over what the method draws.
+    samples: pictures that a render is the mean of, each seen through another place in the pixel, a box filter one
+        pixel wide over what the method draws, and through another place on the camera's lens, if it has one.
     multisampling: samples that the hardware tests for depth in each of those, for methods that work in space; a device
         has what its `multisample_counts` name, and Blender's has none.
     sample_shading: of multisampling, evaluate splats and light at every sample, not once a pixel.

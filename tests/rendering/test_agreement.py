@@ -9,7 +9,18 @@ import pytest
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import EMPTY_DEPTH, Camera, Environment, Instance, Light, Lines, Matcap, Material, Settings
+from splat_addon.rendering import (
+    EMPTY_DEPTH,
+    Camera,
+    Environment,
+    Instance,
+    Lens,
+    Light,
+    Lines,
+    Matcap,
+    Material,
+    Settings,
+)
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.shading_models import SHADING_MODELS
 
@@ -65,6 +76,11 @@ def environment():
     return Environment(pixels, np.array(((0.0, 1, 0), (-1, 0, 0), (0, 0, 1))))
 
 
+def blurred(scene, camera):
+    """The scene through a lens of six blades, focused on its middle."""
+    return scene, replace(camera, lens=Lens(0.1, float(np.linalg.norm(camera.matrix_world[:3, 3])), 6))
+
+
 def in_a_picture(scene, camera):
     """The scene in a world that is a picture; its two materials reflect it."""
     rough, metal = scene.surfels
@@ -113,6 +129,9 @@ TEXTURED = {"textured_plane": lambda: scenes.textured_plane(size=SIZE)}
 
 BALL = Matcap(environment().pixels)
 
+#: The exact picture has a pinhole: tests/rendering/test_lens.py has closed forms.
+BLURRED = {"depth_of_field": lambda: blurred(*scenes.checker_plane(size=SIZE))}
+
 #: Models that show the surface and not its light.
 UNLIT = [model.name for model in SHADING_MODELS.values() if not model.is_lit]
 
@@ -129,13 +148,13 @@ CASES = [
     *(("torus", method, {"shading": "flat", "lines": Lines(width=2.0)}) for method in ("quad", "mip")),
     ("own_materials", "mip", {}),
     ("own_materials", "mip", {"storage": "16-bit"}),
-    ("checker_plane", "quad", {"samples": 3}),
+    ("depth_of_field", "quad", {"samples": 3}),
 ]
 
 
 @pytest.mark.parametrize(("name", "method", "options"), CASES)
 def test_picture_is_the_same_on_every_device(name, method, options, render, pictures, request):
-    frame = render(*(SCENES | TEXTURED)[name](), Settings(method=method, supersampling=1, **options))
+    frame = render(*(SCENES | TEXTURED | BLURRED)[name](), Settings(method=method, supersampling=1, **options))
     named = (value if isinstance(value, str) else key for key, value in options.items())
     path = pictures / f"{'-'.join((name, method, *named))}.npz"
     tolerance = FLOAT16_TOLERANCE if options.get("accumulation") == "float16" else TOLERANCE
