@@ -7,7 +7,6 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-import trimesh
 
 from splat_addon.rendering import Camera, Instance, Lines, Renderer, Scene, Settings, look_at, plan
 from splat_addon.sampling import TriangleMesh, sample_mesh
@@ -19,23 +18,39 @@ METHODS = [Settings(method="quad", supersampling=2), Settings(method="mip", supe
 WHITE = (1.0, 1.0, 1.0)
 
 
-def instance(mesh, resolution):
-    smooth = mesh.vertex_normals[mesh.faces] if len(mesh.faces) > 100 else None
-    surfels = sample_mesh(TriangleMesh(mesh.vertices, mesh.faces, smooth), resolution=resolution)
+def instance(vertices, triangles, resolution, normals=None):
+    surfels = sample_mesh(TriangleMesh(vertices, triangles, normals), resolution=resolution)
     return Instance(replace(surfels, colors=np.ones((len(surfels), 4))))
+
+
+def quads(corners):
+    """(T, 3) triangles of (Q, 4) corners."""
+    return np.concatenate([corners[:, (0, 1, 2)], corners[:, (0, 2, 3)]])
+
+
+def box(size, center=(0, 0, 0), turn=0.0, resolution=90):
+    corners = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * size
+    rotation = np.array(((math.cos(turn), -math.sin(turn), 0), (math.sin(turn), math.cos(turn), 0), (0, 0, 1)))
+    sides = np.array(((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)))
+    return instance(corners @ rotation.T + center, quads(sides), resolution)
 
 
 @pytest.fixture(scope="module")
 def cube():
     """Sides of 2, an edge towards the viewer."""
-    turned = trimesh.transformations.rotation_matrix(math.pi / 4, (0, 0, 1))
-    return instance(trimesh.creation.box((2, 2, 2), turned), 90)
+    return box((2, 2, 2), turn=math.pi / 4)
 
 
 @pytest.fixture(scope="module")
 def ball():
-    """Of radius 1.5, 24 pixels."""
-    return instance(trimesh.creation.icosphere(4, 1.5), 80)
+    """Of radius 1.5, 24 pixels; smooth."""
+    around, up = np.meshgrid(np.arange(48) * math.tau / 48, np.linspace(-math.pi / 2, math.pi / 2, 25))
+    normals = np.stack([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)], axis=2).reshape(-1, 3)
+    row, column = (i.ravel() for i in np.mgrid[:24, :48])
+    right = (column + 1) % 48
+    corners = np.stack([row * 48 + column, row * 48 + right, (row + 1) * 48 + right, (row + 1) * 48 + column], axis=1)
+    triangles = quads(corners)
+    return instance(1.5 * normals, triangles, 80, normals[triangles])
 
 
 @pytest.fixture
@@ -78,7 +93,7 @@ def test_a_smooth_ball_has_its_silhouette_alone(settings, ball, darkness):
 
 @pytest.mark.parametrize("settings", METHODS, ids=lambda s: s.method)
 def test_of_two_surfaces_the_nearer_one_has_the_line(settings, ball, darkness):
-    wall = instance(trimesh.creation.box((12, 0.5, 8)).apply_translation((0, 4, 0)), 180)
+    wall = box((12, 0.5, 8), (0, 4, 0), resolution=180)
     assert darkness([wall], FRONT, settings, Lines(width=3.0)).max() < 1e-3
     dark = darkness([ball, wall], FRONT, settings, Lines(width=3.0))
     y, x = np.mgrid[: SIZE[1], : SIZE[0]] + 0.5
