@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What each feature of a scene adds to the plan: exactly its passes, its textures and what its shaders read."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.rendering import Camera, Environment, Instance, Light, Material, Scene, Settings, look_at, plan
+from splat_addon.rendering.settings import Lines
+from splat_addon.surfels import Surfels
+
+CAMERA = Camera.perspective(look_at((0, -4, 1), (0, 0, 0)), 0.8, (32, 32))
+SUN = Light("sun")
+PICTURE = Environment(np.ones((4, 8, 3)))
+
+
+def surfels(**fields) -> Surfels:
+    """Two discs."""
+    up = np.tile((0.0, 0, 1), (2, 1))
+    return Surfels(
+        up * 0.1, np.tile((1.0, 0, 0, 0), (2, 1)), np.full((2, 2), 0.5), up, np.ones((2, 4)), [0, 0], **fields
+    )
+
+
+PLAIN = Scene([Instance(surfels())])
+IN_PICTURE = replace(PLAIN, environment=PICTURE)
+ROUGH, SHINY, GLOWING = Material(roughness=0.9), Material(roughness=0.1), Material(emission=(1, 2, 3))
+
+#: Of the plain scene by Quads.
+PASSES = ("visibility", "attributes", "shading")
+TEXTURES = {"visibility_depth", "color_sum", "normal_sum", "combined", "depth", "normal_coverage"}
+READS = {"brdf_table"}
+
+
+def lit(**options) -> Scene:
+    return replace(PLAIN, lights=(Light("sun", **options),))
+
+
+def of(*materials) -> Scene:
+    return Scene([Instance(surfels(), materials=(material,)) for material in materials])
+
+
+#: name: scene, settings, passes, textures beside TEXTURES (or "-" and one less), reads beside READS, features
+TABLE = {
+    "plain": (PLAIN, {}, PASSES, "", "", ()),
+    "flat": (PLAIN, {"shading": "flat"}, PASSES, "", "-brdf_table", ()),
+    "light": (lit(), {}, PASSES, "", "lights", ()),
+    "flat under a light": (lit(), {"shading": "flat"}, PASSES, "", "-brdf_table", ()),
+    "light with a size": (lit(size=0.1), {}, PASSES, "", "lights", ("SIZED_LIGHTS",)),
+    "shadow": (lit(casts_shadow=True), {}, ("shadow_maps", *PASSES), "shadow_depth", "lights shadow_maps", ()),
+    "shadow, switched off": (lit(casts_shadow=True), {"shadow_resolution": 0}, PASSES, "", "lights", ()),
+    "linked light": (lit(receivers=(1,)), {}, PASSES, "light_set_sum", "lights", ()),
+    "world's picture": (IN_PICTURE, {}, PASSES, "", "environment_image environment_levels", ()),
+    "the same, flat": (IN_PICTURE, {"shading": "flat"}, PASSES, "", "-brdf_table environment_image", ()),
+    "two materials": (of(ROUGH, SHINY), {}, PASSES, "material_sum", "", ()),
+    "two materials, flat": (of(ROUGH, SHINY), {"shading": "flat"}, PASSES, "", "-brdf_table", ()),
+    "one emission": (of(GLOWING), {}, PASSES, "", "", ("EMISSION",)),
+    "two emissions": (of(GLOWING, Material()), {}, PASSES, "emission_sum", "", ()),
+    "own roughness": (Scene([Instance(surfels(roughness=[0.1, 0.9]))]), {}, PASSES, "material_sum", "", ()),
+    "float16 sums": (PLAIN, {"accumulation": "float16"}, PASSES, "depth_sum", "", ()),
+    "colour alone": (PLAIN, {"outputs": ("color",)}, PASSES, "-normal_coverage", "", ()),
+    "lines": (PLAIN, {"lines": Lines()}, ("visibility", "attributes", "lines", "shading"), "lines", "", ()),
+    "overdraw": (PLAIN, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", ()),
+    "mip": (
+        PLAIN, {"method": "mip"}, ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
+        "seen_range seen_depth shaded surface", "", (),
+    ),
+    "one pass": (
+        PLAIN, {"method": "affine_unfiltered"}, ("attributes", "shading"), "-visibility_depth seen_depth", "", (),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", TABLE)
+def test_a_scene_gets_what_it_needs_and_nothing_else(name):
+    scene, settings, passes, textures, reads, features = TABLE[name]
+    made = plan(scene, CAMERA, Settings(**{"method": "quad", **settings}))
+    assert tuple(p.name for p in made.passes) == passes
+    assert set(made.textures) == changed(TEXTURES, textures)
+    assert {read for p in made.passes for read in p.reads} - set(made.textures) == changed(READS, reads)
+    assert tuple(feature for feature, _ in made.features) == features
+    assert all(p.reason for p in made.passes)
+
+
+def changed(usual: set[str], words: str) -> set[str]:
+    """With each of the words, and without those that follow a minus."""
+    less = {word[1:] for word in words.split() if word.startswith("-")}
+    return usual - less | {word for word in words.split() if not word.startswith("-")}
+
+
+def test_a_scene_of_nothing_gets_nothing():
+    assert not plan(Scene(lights=(SUN,)), CAMERA, Settings()).passes
+
+
+@pytest.mark.parametrize("name", TABLE)
+def test_the_plan_prints_each_pass_with_its_reason(name):
+    scene, settings, *_ = TABLE[name]
+    made = plan(scene, CAMERA, Settings(**{"method": "quad", **settings}))
+    printed = str(made)
+    for planned in made.passes:
+        assert planned.name in printed and planned.reason in printed
+    for what, why in made.left_out:
+        assert f"without {what}: {why}" in printed
