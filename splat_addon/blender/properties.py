@@ -156,7 +156,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         name="Resolution",
         description=(
             "Texels along the side of a shadow map; 0 leaves shadows out. A sun or a spot has one map, a point up to "
-            "six. Each map costs a visibility pass (a quarter of a frame of 188,000 surfels under one sun, in software), "
+            "six. Each map costs a visibility pass (a quarter of a frame of 188,000 surfels under a sun, in software) "
             "and each light of a size 64 looks into it a sample"
         ),
         min=0,
