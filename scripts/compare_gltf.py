@@ -10,9 +10,11 @@ the difference.
 
 import argparse
 import math
+import os
 import sys
 import tempfile
 import time
+import traceback
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -150,4 +152,12 @@ def over_background(premultiplied: np.ndarray) -> np.ndarray:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    exit_code = 1
+    try:
+        exit_code = main()
+    except Exception:
+        traceback.print_exc()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # Some wheels of Blender hang or crash while the interpreter ends.
+    os._exit(exit_code)
