@@ -11,7 +11,7 @@
 const float MAGNIFIED = 0.2;     // variance across, in texels, below which bilinear lookups are needed
 const float NARROWEST = 0.6;     // variance across, in texels of the level, of the texels' weights
 const float LONGEST = 64.0;      // variance along over variance across that is kept; what is longer is blurred across
-const float LARGEST = 1e12;      // variance beyond which only the mean of the texture is left
+const float LARGEST = 16.0;      // variance, in texels of the coarsest level, that bounds the loops: the mean is left
 const float REACH2 = 8.0;        // square of the deviations after which weights (1 - rho^2)^2 end: that is their variance
 const int MAX_PROBES = 24;       // of a magnified texture, along
 const float PROBES_PER_DEVIATION = 3.0;
@@ -120,8 +120,9 @@ vec3 texture_color(SurfaceTexture t, vec2 uv, vec3 variances) {
   float xy = variances.z * t.size.x * t.size.y;
   float tilt = 0.5 * (xx - yy), root = sqrt(tilt * tilt + xy * xy);
   float along = 0.5 * (xx + yy) + root;
-  if (!(along < LARGEST)) {  // nor NaN
-    xx = yy = along = LARGEST;
+  float largest = LARGEST * exp2(2.0 * float(t.levels - 1));
+  if (!(along < largest)) {  // nor NaN
+    xx = yy = along = largest;
     xy = tilt = root = 0.0;
   }
   // A round footprint has no long axis: the bias gives it one that rounding does not turn.

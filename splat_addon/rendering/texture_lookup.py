@@ -10,7 +10,7 @@ from .atlas import Atlas
 MAGNIFIED = 0.2
 NARROWEST = 0.6
 LONGEST = 64.0
-LARGEST = 1e12
+LARGEST = 16.0
 REACH2 = 8.0
 MAX_PROBES = 24
 PROBES_PER_DEVIATION = 3.0
@@ -33,8 +33,9 @@ def _color(atlas: Atlas, slot: int, uv: np.ndarray, variance: np.ndarray) -> np.
     row = atlas.table[slot].astype(np.float64)
     factor, count, size = row[0, :3], int(row[0, 3]), row[1, 2:]
     variance = variance * np.outer(size, size)
-    if not np.trace(variance) < LARGEST:
-        variance = LARGEST * np.eye(2)
+    largest = LARGEST * 4.0 ** (count - 1)
+    if not np.linalg.eigvalsh(np.nan_to_num(variance, nan=1e300, posinf=1e300)).max() < largest:
+        variance = largest * np.eye(2)
     across, along = np.maximum(np.linalg.eigvalsh(variance), 0)
     axis = np.linalg.eigh(variance + np.diag([2 * AXIS_BIAS * np.trace(variance), 0]))[1][:, 1]
     blur = max(along / LONGEST - across, 0)
