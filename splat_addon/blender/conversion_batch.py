@@ -7,6 +7,7 @@ with nothing usable does not stop the others.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 
 import bpy
@@ -17,7 +18,7 @@ from .gathering import groups
 from .surfel_objects import select_only
 
 
-class Batch:
+class Batch(ABC):
     """Groups of objects on their way, each to one surfel object: read, sample, place, which subclasses do.
 
     refused: (object name, sentence) of each group that could not be converted. share: finished part, 0 to 1.
@@ -72,16 +73,17 @@ class Batch:
         select_only(context, [new for _, new in made])
         return made
 
+    @abstractmethod
     def _prepare(self, sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph):
         """What `_sample` needs, with a `name`. Raises ValueError with a sentence."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _sample(self, conversion, progress) -> None:
         """Touches nothing of Blender's. Raises what sampling does."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _place(self, conversion, context: bpy.types.Context) -> bpy.types.Object:
-        raise NotImplementedError
+        """The new surfel object, in the file."""
 
 
 class ConversionBatch(Batch):

@@ -8,11 +8,12 @@ from .camera import Camera, look_at
 from .device import open_device
 from .environment import Environment
 from .frame import EMPTY_DEPTH, Frame
+from .frame_plan import FramePlan
 from .lens import Lens
 from .light import Light
 from .lines import Lines
 from .matcap import Matcap
-from .plan import FramePlan, plan
+from .plan import plan
 from .presets import PRESETS, Preset
 from .renderer import RenderCancelled, Renderer
 from .scene import Instance, Material, Scene, SurfaceTexture

@@ -12,9 +12,10 @@ from .accumulation import mean_frame, sample_cameras
 from .camera import Camera
 from .device import Device
 from .frame import EMPTY_DEPTH, Frame
+from .frame_plan import FramePlan
 from .passes import RUN
 from .passes.tile import TileContext, texture_key
-from .plan import FramePlan, plan
+from .plan import plan
 from .resources import Resources
 from .scene import Scene
 from .settings import OUTPUTS, Settings
@@ -125,7 +126,8 @@ class Renderer:
             {texture_key(name, size, frame_plan) for name in frame_plan.textures for size in sizes}
         )
         self.resources.forget_atlases_but({instance.textures for instance in scene.surfels})
-        shadow_views = tuple(look(casting(scene), made.camera, settings.epsilon) for made in frame_plan.shadow_maps)
+        casters = casting(scene)
+        shadow_views = tuple(look(casters, made.camera, settings.epsilon) for made in frame_plan.shadow_maps)
         for number, tile in enumerate(frame_plan.tiles):
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
             view = look(scene, tile_camera, settings.epsilon)

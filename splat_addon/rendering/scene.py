@@ -108,17 +108,18 @@ class Instance:
 
     def corners(self, camera: Camera) -> np.ndarray:
         """(8, 3) float64 corners of a box around every ellipse, in the camera's view space."""
-        low, high = self.surfels.local_bounds
-        pick = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
         model_view = self.model_view(camera)
-        return np.where(pick, high, low) @ model_view[:3, :3].T + model_view[:3, 3]
+        return self._local_corners() @ model_view[:3, :3].T + model_view[:3, 3]
 
     def world_corners(self) -> np.ndarray:
         """(8, 3) float64 corners of a box around every ellipse, in the world."""
+        corners = self._local_corners() + self.surfels.origin
+        return corners @ self.matrix_world[:3, :3].T + self.matrix_world[:3, 3]
+
+    def _local_corners(self) -> np.ndarray:
         low, high = self.surfels.local_bounds
         pick = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
-        corners = np.where(pick, high, low) + self.surfels.origin
-        return corners @ self.matrix_world[:3, :3].T + self.matrix_world[:3, 3]
+        return np.where(pick, high, low)
 
     def hides_backs(self, camera: Camera) -> bool:
         """Whether no back can be seen: solid, and wholly beyond the near plane, so that the camera is outside."""

@@ -42,10 +42,12 @@ def shadow_maps(scene: Scene, camera: Camera, resolution: int) -> tuple[tuple[Sh
     casters = casting(scene)
     if not casters.surfels or not any(light.casts_shadow for light in scene.lights):
         return (), 0
+    corners = np.concatenate([instance.world_corners() for instance in casters.surfels])
+    seen = visible_corners(scene, camera)
     cameras, without = [], 0
     for number, light in enumerate(scene.lights):
         if light.casts_shadow:
-            own = [c for c in _CAMERAS[light.kind](light, casters, scene, camera, resolution) if sees_any(casters, c)]
+            own = [c for c in _CAMERAS[light.kind](light, corners, seen, resolution) if sees_any(casters, c)]
             if len(cameras) + len(own) > MAX_MAPS:
                 without += 1
             else:
@@ -97,56 +99,56 @@ def map_ranges(maps: tuple[ShadowMap, ...], lights: int) -> np.ndarray:
     return np.stack([np.concatenate([[0], np.cumsum(counts)[:-1]]), counts], axis=1)
 
 
-def _sun(light: Light, casters: Scene, scene: Scene, camera: Camera, resolution: int) -> list[Camera]:
+# Each gives the cameras of a light. corners: (n, 3) world, of what casts shadows. seen: `view.visible_corners`.
+
+
+def _sun(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
     """One parallel camera over what is both in the picture and in the scene; it looks back to the farthest caster."""
     frame = look_at((0, 0, 0), light.direction)
     to_light = frame[:3, :3].T
-    seen = visible_corners(scene, camera)
     if seen is None:
         return []
-    receivers, visible = (corners @ to_light.T for corners in seen)
+    receivers, visible, casters = (places @ to_light.T for places in (*seen, corners))
     low = np.maximum(receivers.min(axis=0), visible.min(axis=0))[:2]
     high = np.minimum(receivers.max(axis=0), visible.max(axis=0))[:2]
     if not (low < high).all():
         return []
     margin = 0.02 * (high - low).max()
     middle, half = (low + high) / 2, max((high - low).max() / 2 + margin, 1e-30)
-    corners = np.concatenate([i.world_corners() for i in casters.surfels]) @ to_light.T
-    nearest, farthest = corners[:, 2].max(), min(corners[:, 2].min(), receivers[:, 2].min())
+    nearest, farthest = casters[:, 2].max(), min(casters[:, 2].min(), receivers[:, 2].min())
     reach = max(nearest - farthest, half) * 1.01
     frame[:3, 3] = frame[:3, :3] @ (*middle, nearest + 0.005 * reach)
     return [Camera(frame, (-half, half, -half, half), (resolution, resolution), 0.0, reach, is_orthographic=True)]
 
 
-def _spot(light: Light, casters: Scene, scene: Scene, camera: Camera, resolution: int) -> list[Camera]:
+def _spot(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
     half = math.tan(min(light.spot_angle / 2, 1.5)) * FACE_WINDOW
     if half > MAX_SPOT_WINDOW:
-        return _faces(light, casters, resolution, np.eye(3))
-    return _perspectives(light, casters, resolution, [light.direction], half)
+        return _faces(light, corners, resolution, np.eye(3))
+    return _perspectives(light, corners, resolution, [light.direction], half)
 
 
-def _point(light: Light, casters: Scene, scene: Scene, camera: Camera, resolution: int) -> list[Camera]:
-    return _faces(light, casters, resolution, np.eye(3))
+def _point(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
+    return _faces(light, corners, resolution, np.eye(3))
 
 
-def _area(light: Light, casters: Scene, scene: Scene, camera: Camera, resolution: int) -> list[Camera]:
+def _area(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
     """Its front, and the halves of its sides that it shines to."""
     axes = look_at((0, 0, 0), light.direction)[:3, :3].T
-    return _faces(light, casters, resolution, axes)[:-1]
+    return _faces(light, corners, resolution, axes)[:-1]
 
 
 _CAMERAS = {"sun": _sun, "point": _point, "spot": _spot, "area": _area}
 
 
-def _faces(light: Light, casters: Scene, resolution: int, axes: np.ndarray) -> list[Camera]:
+def _faces(light: Light, corners: np.ndarray, resolution: int, axes: np.ndarray) -> list[Camera]:
     """Six square cameras; axes: (3, 3), of which the last's back comes first and its front last."""
     x, y, z = axes
-    return _perspectives(light, casters, resolution, [-z, x, -x, y, -y, z], FACE_WINDOW)
+    return _perspectives(light, corners, resolution, [-z, x, -x, y, -y, z], FACE_WINDOW)
 
 
-def _perspectives(light: Light, casters: Scene, resolution: int, directions, half: float) -> list[Camera]:
+def _perspectives(light: Light, corners: np.ndarray, resolution: int, directions, half: float) -> list[Camera]:
     position = np.asarray(light.position, np.float64)
-    corners = np.concatenate([i.world_corners() for i in casters.surfels])
     far = float(np.linalg.norm(corners - position, axis=1).max()) * 1.01
     near = max(NEAREST * far, min(light.size, 0.5 * far))
     window, size = (-half, half, -half, half), (resolution, resolution)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from splat_addon.rendering import Camera, Environment, Instance, Light, Material, Scene, Settings, look_at, plan
+from splat_addon.rendering.passes.attributes import describe
 from splat_addon.rendering.settings import Lines
 from splat_addon.surfels import Surfels
 
@@ -102,3 +103,18 @@ def test_the_plan_prints_each_pass_with_its_reason(name):
         assert planned.name in printed and planned.reason in printed
     for what, why in made.left_out:
         assert f"without {what}: {why}" in printed
+
+
+@pytest.mark.parametrize("method", ["quad", "mip", "affine_unfiltered"])
+@pytest.mark.parametrize(
+    ("name", "define", "scene", "settings"),
+    [
+        ("light_set_sum", "LIGHT_SET_TARGET", lit(receivers=(1,)), {}),
+        ("overdraw_sum", "OVERDRAW_TARGET", PLAIN, {"shading": "overdraw"}),
+    ],
+)
+def test_every_planned_sum_is_written_in_whatever_space_a_method_works(name, define, scene, settings, method):
+    made = plan(scene, CAMERA, Settings(method=method, **settings))
+    (attributes,) = [p for p in made.passes if p.name == "attributes"]
+    assert name in attributes.writes
+    assert (define, "1") in describe(attributes, made).defines

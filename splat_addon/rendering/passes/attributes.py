@@ -6,8 +6,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..device.interface import PipelineDescription, Target
+from ..frame_plan import TEXTURES, FramePlan, PlannedPass
 from ..methods import get_method
-from ..plan import TEXTURES, FramePlan, PlannedPass
 from ..shaders import load
 from ..storages import get_storage
 from .blocks import HALF_SUMS, LINEAR_DEPTH, material_defines
@@ -71,26 +71,11 @@ def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> 
 
 
 def _in_space(planned, frame):
-    with_materials = material_defines(planned.writes)
-    return PipelineDescription(
-        name="attributes",
-        vertex=load("attributes.vert.glsl", method=frame.method, storage=frame.storage),
-        fragment=load("attributes.frag.glsl", method=frame.method),
-        block=SPLATS_BLOCK,
-        samplers=(*get_storage(frame.storage).samplers, *(("materials",) if with_materials else ())),
-        varyings=(
-            ("smooth", "vec3", "place_depth"),
-            ("flat", "vec4", "color_weight"),
-            ("flat", "vec3", "normal"),
-            *_material_varyings(planned),
-        ),
-        outputs=_outputs(planned),
-        defines=(
-            *with_materials,
-            *_own_defines(planned),
-            *(HALF_SUMS if frame.accumulation == "float16" else ()),
-            *(LINEAR_DEPTH if frame.linear_depth else ()),
-        ),
+    return _description(
+        planned,
+        frame,
+        folder="",
+        varyings=(("smooth", "vec3", "place_depth"),),
         blend="add",
         depth_test=True,
         fragment_depth=frame.linear_depth,
@@ -99,36 +84,23 @@ def _in_space(planned, frame):
 
 
 def _in_picture(planned, frame):
-    with_materials = material_defines(planned.writes)
-    return PipelineDescription(
-        name="attributes",
-        vertex=load("screen/attributes.vert.glsl", method=frame.method, storage=frame.storage),
-        fragment=load("screen/attributes.frag.glsl", method=frame.method),
-        block=SPLATS_BLOCK,
-        samplers=(
-            *get_storage(frame.storage).samplers,
-            *(("materials",) if with_materials else ()),
-            "seen_range",
-        ),
+    straddling = frame.has("STRADDLING")
+    return _description(
+        planned,
+        frame,
+        folder="screen/",
+        samplers=("seen_range",),
         varyings=(
-            *((("flat", "float", "straddling"),) if frame.has("STRADDLING") else ()),
+            *((("flat", "float", "straddling"),) if straddling else ()),
             ("flat", "vec4", "plane_ab"),
             ("flat", "vec4", "plane_center_gh"),
             ("flat", "vec4", "plane_depths"),
             ("flat", "vec2", "beside_radius"),
             ("smooth", "vec2", "on_footprint"),
-            ("flat", "vec4", "color_weight"),
-            ("flat", "vec3", "normal"),
-            *_material_varyings(planned),
         ),
-        outputs=_outputs(planned),
         defines=(
             ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
-            *((("STRADDLING", "1"),) if frame.has("STRADDLING") else ()),
-            *with_materials,
-            *_own_defines(planned),
-            *(HALF_SUMS if frame.accumulation == "float16" else ()),
-            *(LINEAR_DEPTH if frame.linear_depth else ()),
+            *((("STRADDLING", "1"),) if straddling else ()),
         ),
         blend="add",
         depth_test=not frame.linear_depth,
@@ -136,29 +108,40 @@ def _in_picture(planned, frame):
 
 
 def _in_sprites(planned, frame):
+    return _description(
+        planned,
+        frame,
+        folder="sprites/",
+        varyings=(("smooth", "vec2", "place"), ("flat", "vec3", "tilt_depth")),
+        depth_test=True,
+        depth_write=True,
+    )
+
+
+def _description(planned, frame, folder, varyings, samplers=(), defines=(), **state) -> PipelineDescription:
+    """What every space has in common, and what one has beside it. folder: of its two shaders."""
     with_materials = material_defines(planned.writes)
     return PipelineDescription(
         name="attributes",
-        vertex=load("sprites/attributes.vert.glsl", method=frame.method, storage=frame.storage),
-        fragment=load("sprites/attributes.frag.glsl", method=frame.method),
+        vertex=load(f"{folder}attributes.vert.glsl", method=frame.method, storage=frame.storage),
+        fragment=load(f"{folder}attributes.frag.glsl", method=frame.method),
         block=SPLATS_BLOCK,
-        samplers=(*get_storage(frame.storage).samplers, *(("materials",) if with_materials else ())),
+        samplers=(*get_storage(frame.storage).samplers, *(("materials",) if with_materials else ()), *samplers),
         varyings=(
-            ("smooth", "vec2", "place"),
-            ("flat", "vec3", "tilt_depth"),
+            *varyings,
             ("flat", "vec4", "color_weight"),
             ("flat", "vec3", "normal"),
             *_material_varyings(planned),
         ),
         outputs=_outputs(planned),
         defines=(
+            *defines,
             *with_materials,
-            *((("LIGHT_SET_TARGET", "1"),) if "light_set_sum" in planned.writes else ()),
+            *_own_defines(planned),
             *(HALF_SUMS if frame.accumulation == "float16" else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
-        depth_test=True,
-        depth_write=True,
+        **state,
     )
 
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..device.interface import PipelineDescription, Target
-from ..plan import FramePlan, PlannedPass
+from ..frame_plan import FramePlan, PlannedPass
 from ..shaders import load
 from .shading import SHADING_BLOCK, shading_block
 from .tile import TileContext

@@ -9,10 +9,10 @@ import numpy as np
 
 from ..brdf_table import brdf_texels
 from ..device.interface import PipelineDescription, Target
+from ..frame_plan import FramePlan, PlannedPass
 from ..light import pack_lights
 from ..lines import Lines
 from ..packing import pack_materials
-from ..plan import FramePlan, PlannedPass
 from ..shaders import load
 from ..shadow import map_ranges, pack_shadow_maps
 from .blocks import HALF_SUMS, LINEAR_DEPTH, std140

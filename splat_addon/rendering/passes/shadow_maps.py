@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..device.interface import Target
-from ..plan import PlannedPass
+from ..frame_plan import PlannedPass
 from . import visibility
 from .splats import draw_splats
 from .tile import TileContext

@@ -10,7 +10,7 @@ from functools import cached_property
 
 from ..camera import Camera
 from ..device.interface import Texture
-from ..plan import FramePlan
+from ..frame_plan import FramePlan
 from ..resources import Resources, TextureKey
 from ..scene import Scene
 from ..settings import Settings
@@ -70,8 +70,4 @@ class TileContext:
 
 def texture_key(name: str, size: tuple[int, int], plan: FramePlan) -> TextureKey:
     """Of a texture of the plan, for a tile of `size` pixels."""
-    if plan.is_shared(name):
-        width, height = plan.shared_size(name)
-    else:
-        width, height = (n * plan.scale(name) for n in size)
-    return name, width, height, plan.format(name), plan.multisamples_of(name)
+    return name, *plan.size(name, size), plan.format(name), plan.multisamples_of(name)

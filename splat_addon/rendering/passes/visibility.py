@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..device.interface import PipelineDescription, Target
-from ..plan import FramePlan, PlannedPass
+from ..frame_plan import FramePlan, PlannedPass
 from ..shaders import load
 from ..storages import get_storage
 from .blocks import LINEAR_DEPTH

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a plan is: the passes of a frame with their reasons, and the textures that they write."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .scene import Material
+from .shadow import ShadowMap, atlas_size
+
+#: Pixels that shaders/resolve.frag.glsl reads to each side.
+FILTER_MARGIN = 2
+
+#: texture -> (format, what it holds one value for)
+TEXTURES = {
+    "visibility_depth": ("DEPTH32F", "visibility sample"),
+    "seen_range": ("RGBA32F", "sample"),
+    "seen_depth": ("DEPTH32F", "sample"),
+    "color_sum": ("RGBA32F", "sample"),
+    "normal_sum": ("RGBA32F", "sample"),
+    "depth_sum": ("RG32F", "sample"),
+    "material_sum": ("RGBA32F", "sample"),
+    "emission_sum": ("RGBA32F", "sample"),
+    "light_set_sum": ("RGBA32F", "sample"),
+    "overdraw_sum": ("R32F", "sample"),
+    "lines": ("R32F", "sample"),
+    "shaded": ("RGBA32F", "sample"),
+    "surface": ("RGBA32F", "sample"),
+    "shadow_depth": ("DEPTH32F", "frame"),
+    "combined": ("RGBA32F", "pixel"),
+    "depth": ("R32F", "pixel"),
+    "normal_coverage": ("RGBA32F", "pixel"),
+}
+
+#: accumulation -> texture -> format, where it is not the one above; emission has no bound that a half could hold.
+SUM_FORMATS = {
+    "float32": {},
+    "float16": {"color_sum": "RGBA16F", "normal_sum": "RGBA16F", "material_sum": "RGBA16F", "light_set_sum": "RGBA16F"},
+}
+
+
+#: Those that draw splats.
+SPLAT_PASSES = ("visibility", "attributes")
+
+
+@dataclass(frozen=True)
+class PlannedPass:
+    """name: also of its pipeline. reason: why the frame needs it.
+    reads, writes: names of textures in slot order; "lights" holds the scene's.
+    is_shared: made with the first tile, for all.
+    """
+
+    name: str
+    reason: str
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    is_shared: bool = False
+
+
+@dataclass(frozen=True)
+class FramePlan:
+    """tiles: (x, y, width, height) in pixels, each rendered with all passes and, where silhouettes are filtered, with a
+        margin that the filter reads.
+    samples: N of the N x N samples a pixel. visibility_samples: V of the V x V a sample.
+    material, emission: the one that all surfels share, or None.
+    multisamples: M hardware samples of each of them, or 0. sample_shading: they are evaluated and lit one by one.
+    storage, accumulation: as in the settings.
+    linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
+    features: (name, why), of what shaders do beside the least; each name is defined in their text.
+    shadow_maps: what lights see, in the order of the lights.
+    depth_range: nearest and farthest of what is in view, world units.
+    line_margin: pixels that lines look at beside their own.
+    left_out: (what, why), of what other scenes or settings would need.
+    """
+
+    tiles: tuple[tuple[int, int, int, int], ...]
+    samples: int
+    visibility_samples: int
+    method: str
+    shading: str
+    multisamples: int
+    sample_shading: bool
+    storage: str
+    accumulation: str
+    material: Material | None
+    emission: tuple[float, float, float] | None
+    linear_depth: bool
+    passes: tuple[PlannedPass, ...]
+    features: tuple[tuple[str, str], ...]
+    shadow_maps: tuple[ShadowMap, ...]
+    depth_range: tuple[float, float]
+    line_margin: int
+    left_out: tuple[tuple[str, str], ...]
+
+    def has(self, feature: str) -> bool:
+        """Whether shaders do this."""
+        return feature in (name for name, _ in self.features)
+
+    @property
+    def margin(self) -> int:
+        """Pixels drawn around a tile and not kept."""
+        return (FILTER_MARGIN if self.visibility_samples > 1 else 0) + self.line_margin
+
+    def size(self, texture: str, pixels: tuple[int, int]) -> tuple[int, int]:
+        """Width and height of a texture, for a tile of so many pixels; the frame's are common to all tiles."""
+        what_for = TEXTURES[texture][1]
+        if what_for == "frame":
+            return atlas_size(self.shadow_maps)
+        along = {
+            "pixel": 1,
+            "sample": self.samples,
+            "visibility sample": self.samples * self.visibility_samples,
+        }[what_for]
+        return pixels[0] * along, pixels[1] * along
+
+    def format(self, texture: str) -> str:
+        """A name in `device.interface.FORMATS`."""
+        return SUM_FORMATS[self.accumulation].get(texture, TEXTURES[texture][0])
+
+    def multisamples_of(self, texture: str) -> int:
+        """Samples a texel, 0 for one: what splats are drawn into has them."""
+        drawn = {name for p in self.passes if p.name in SPLAT_PASSES for name in p.writes}
+        return self.multisamples if texture in drawn else 0
+
+    @property
+    def textures(self) -> tuple[str, ...]:
+        """Names of every texture that some pass writes, once each."""
+        return tuple(dict.fromkeys(name for p in self.passes for name in p.writes))
+
+    def __str__(self) -> str:
+        depth = "linear" if self.linear_depth else "hardware"
+        lines = [
+            f"{len(self.tiles)} tile(s), {self.samples} x {self.samples} samples, method {self.method}, {depth} depth, "
+            f"{self.storage} splats, {self.accumulation} sums"
+        ]
+        if self.multisamples:
+            each = "evaluated and lit one by one" if self.sample_shading else "evaluated once, lit once for their mean"
+            lines.append(f"  with {self.multisamples} hardware samples in each: {each}")
+        for p in self.passes:
+            lines.append(f"  {p.name}: {', '.join(p.writes)} <- {', '.join(p.reads) or 'splats'}; {p.reason}")
+        lines += [f"  with {name}: {why}" for name, why in self.features]
+        lines += [f"  without {what}: {why}" for what, why in self.left_out]
+        return "\n".join(lines)
