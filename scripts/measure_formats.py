@@ -26,6 +26,7 @@ sys.path.insert(0, str(ROOT))
 import numpy as np  # noqa: E402
 from PIL import Image  # noqa: E402
 
+from scripts.costs.planned import BYTES  # noqa: E402
 from scripts.measure_models import load, median_seconds, scene_of  # noqa: E402
 from splat_addon.reference import render_exact, scenes  # noqa: E402
 from splat_addon.reference.extremes import discs  # noqa: E402
@@ -34,7 +35,6 @@ from splat_addon.rendering import Camera, Frame, Light, Renderer, Scene, Setting
 from splat_addon.rendering.storages import STORAGES  # noqa: E402
 from splat_addon.sampling import sample_mesh  # noqa: E402
 
-BYTES = {"RGBA32F": 16, "RGBA16F": 8, "RGBA16": 8, "RG32F": 8, "DEPTH32F": 4}
 FORMATS = {
     "16-bit storage": {"storage": "16-bit"},
     "float16 sums": {"accumulation": "float16"},

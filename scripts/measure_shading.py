@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What shading costs: against overdraw, each model against flat, and lines; with a contact sheet of the models.
+"""What shading costs against overdraw; with a contact sheet of the models. What each costs: measure_features.py.
 
     PYTHON scripts/measure_shading.py [--size 256] [--rounds 15] [--picture PNG]
 
@@ -23,12 +23,12 @@ sys.path.insert(0, str(ROOT))
 
 import numpy as np  # noqa: E402
 
+from scripts.costs.shots import ball  # noqa: E402
 from splat_addon.reference import scenes  # noqa: E402
 from splat_addon.rendering import (  # noqa: E402
     Camera,
     Light,
     Lines,
-    Matcap,
     Renderer,
     Scene,
     Settings,
@@ -59,14 +59,6 @@ def board(overdraw: int) -> Scene:
     return Scene([surfels], lights)
 
 
-def ball() -> Matcap:
-    """A ball of clay under a light from the top left."""
-    y, x = np.mgrid[-1:1:128j, -1:1:128j]
-    z = np.sqrt(np.maximum(1 - x * x - y * y, 0))
-    lit = np.maximum(-0.5 * x + 0.6 * y + 0.62 * z, 0)
-    return Matcap(lit[..., None] ** 1.5 * (1.2, 0.9, 0.75) + (0.05, 0.05, 0.09))
-
-
 def medians(renderer, cases: dict, rounds: int) -> dict:
     """case -> pass -> median milliseconds. cases: name -> scene, camera, settings."""
     times = {name: [] for name in cases}
@@ -86,21 +78,6 @@ def print_overdraw(renderer, size: int, rounds: int) -> None:
     for n in OVERDRAWS:
         attributes, shading = (taken[n][p] / taken[1][p] for p in ("attributes", "shading"))
         print(f"| {n} | {attributes:.2f} | {shading:.2f} |")
-
-
-def print_models(renderer, size: int, rounds: int) -> None:
-    scene, camera = scenes.torus(size=(size, size))
-    flat = Settings(method="quad", supersampling=1, shading="flat", matcap=ball())
-    cases = {name: (scene, camera, replace(flat, shading=name)) for name in SHADING_MODELS}
-    cases["flat with lines of 1.5 pixels"] = scene, camera, replace(flat, lines=Lines())
-    cases["flat with lines of 4 pixels"] = scene, camera, replace(flat, lines=Lines(width=4.0))
-    taken = medians(renderer, cases, rounds)
-    print("\n| shading | shading pass (and lines) | whole frame |\n|---|---|---|")
-    for name, passes in taken.items():
-        ends = (sum(t[p] for p in ("shading", "lines") if p in t) for t in (passes, taken["flat"]))
-        frames = (sum(t.values()) for t in (passes, taken["flat"]))
-        (end, flat_end), (frame, flat_frame) = ends, frames
-        print(f"| {name} | {end / flat_end:.2f} | {frame / flat_frame:.2f} |")
 
 
 def draw_sheet(renderer, path: Path) -> None:
@@ -128,7 +105,6 @@ def main() -> None:
         draw_sheet(renderer, chosen.picture)
     print(f"{renderer.device.renderer}, {os.cpu_count()} cores, {platform.system()}; {chosen.rounds} rounds\n")
     print_overdraw(renderer, chosen.size, chosen.rounds)
-    print_models(renderer, chosen.size, chosen.rounds)
 
 
 if __name__ == "__main__":

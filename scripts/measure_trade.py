@@ -69,7 +69,9 @@ def run(options: argparse.Namespace) -> None:
     names = options.scenes or [c.name for c in CASES.values() if c.is_promised or not options.quick]
     renderer = Renderer(open_device(options.device))
     chosen = choices(options.quick, renderer.device.multisample_counts)
-    head = header(renderer.device, plan.size, plan.turns, plan.samples)
+    size, turns, samples = plan.size, plan.turns, plan.samples
+    how = f"{size} x {size} pixels, medians of {turns} turns, truth of {samples} x {samples} samples"
+    head = header(renderer.device, how)
     print(head, flush=True)
     rows, skipped = [], {}
     with progress_bar() as progress:

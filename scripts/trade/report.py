@@ -79,13 +79,12 @@ def table(names: list[str], lines: list[list[str]]) -> str:
     return "\n".join([*head, *(f"| {' | '.join(cells)} |" for cells in lines)])
 
 
-def header(device, size: int, turns: int, samples: int) -> str:
+def header(device, how: str) -> str:
     """Machine, driver, date, commit and how it was measured."""
     git = ["git", "describe", "--always", "--dirty"]
     commit = subprocess.run(git, cwd=ROOT, capture_output=True, text=True).stdout.strip() or "unknown"
     machine = f"{processor()}, {os.cpu_count()} cores, {device.renderer}"
     where = f"{device.kind} device on {device.backend}, {_version(device)}"
-    how = f"{size} x {size} pixels, medians of {turns} turns, truth of {samples} x {samples} samples"
     return f"{machine}; {where}; {datetime.date.today()}, commit {commit}; {how}."
 
 

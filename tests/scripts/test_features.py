@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/measure_features.py: each feature is there on one side only, and the table says what the plan adds for it."""
+
+import csv
+import platform
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from costs.features import FEATURES
+from costs.planned import added, planned_bytes
+from costs.shots import plain
+
+from splat_addon.rendering import Renderer, plan
+
+SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "measure_features.py"
+SIZE = (48, 48)
+
+
+def measure(*arguments):
+    command = [sys.executable, str(SCRIPT), *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+def sides(feature):
+    """The picture without it and the one with it."""
+    return [change(plain(1000, SIZE)) for change in (feature.absent, feature.present)]
+
+
+@pytest.mark.parametrize("feature", FEATURES, ids=lambda feature: f"{feature.group}-{feature.name}")
+def test_each_feature_makes_another_picture_or_another_plan(feature, on_device):
+    absent, present = sides(feature)
+    plans = [plan(*shot) for shot in (absent, present)]
+    if plans[0] != plans[1]:
+        return
+    frames = on_device(lambda device: [Renderer(device).render(*shot) for shot in (absent, present)])
+    assert not np.array_equal(frames[0].color, frames[1].color)
+
+
+@pytest.mark.parametrize(
+    ("name", "passes", "textures", "more"),
+    [
+        ("hard shadow of a sun", "shadow_maps", "shadow_depth, shadow_maps", 1024 * 1024 * 4),
+        ("two materials", "", "material_sum", 48 * 48 * 16),
+        ("lines of 1.5 pixels", "lines", "lines", None),
+        ("a picture of the world", "", "environment_image, environment_levels", 0),
+        ("float16 sums", "", "depth_sum", 48 * 48 * (8 - 8 - 8)),
+        ("depth written by fragments, 1000 times as deep", "linear depth", "", 0),
+        ("a splat at the near plane, drawn in space", "straddling", "", 0),
+        ("4 hardware samples a pixel", "", "", 3 * 48 * 48 * (4 + 16 + 16)),
+    ],
+)
+def test_what_a_plan_adds_is_named_with_its_bytes(name, passes, textures, more):
+    (feature,) = [f for f in FEATURES if f.name == name]
+    absent, present = (plan(*shot) for shot in sides(feature))
+    assert added(absent, present) == (passes, textures)
+    if more is not None:
+        assert planned_bytes(present) - planned_bytes(absent) == more
+
+
+@pytest.mark.parametrize("device", ["standalone", "blender"])
+def test_a_table_and_a_csv_are_left_and_name_no_host(device, tmp_path):
+    done = measure(
+        "--device", device, "--quick", "--size", 32, "--turns", 2, "--out", tmp_path, "--only", "format", "lines of 4"
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    with (tmp_path / "costs.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["feature"] for row in rows] == ["lines of 4 pixels", "float16 sums", "16-bit surfels"]
+    for row in rows:
+        assert float(row["ratio_min"]) <= float(row["ratio"]) <= float(row["ratio_max"])
+    text = (tmp_path / "costs.md").read_text(encoding="utf-8")
+    assert "32 x 32 pixels, 10,000 splats, medians of 2 turns" in text and "| lines of 4 pixels | flat |" in text
+    assert platform.node() not in text.split()
+
+
+def test_a_name_that_is_not_there_is_said(tmp_path):
+    done = measure("--out", tmp_path, "--only", "caustics")
+    assert done.returncode == 2 and "caustics" in done.stderr and "light" in done.stderr
