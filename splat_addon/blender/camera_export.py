@@ -53,11 +53,38 @@ def final_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object
     return replace(whole, lens=_lens(camera_object, depsgraph)).cropped(x, y, border_width, border_height)
 
 
-def depth_of_field_notes(camera_object: bpy.types.Object, camera: Camera, samples: int) -> Iterator[str]:
+def view_camera(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> Camera:
+    """The camera of a final render's active view: each eye's of a stereo camera, in its place and with its shift.
+
+    Raises as `final_camera`.
+    """
+    scene, camera_object = depsgraph.scene, engine.camera_override or depsgraph.scene.camera
+    camera = final_camera(depsgraph, camera_object)
+    if not scene.render.use_multiview:
+        return camera
+    shift = engine.camera_shift_x(camera_object) - camera_object.data.shift_x
+    left, right, bottom, top = camera.window
+    across = shift * _shift_pixels(camera_object.data, scene.render) * (right - left) / camera.size[0]
+    matrix_world = np.array(engine.camera_model_matrix(camera_object), np.float64)
+    return replace(camera, matrix_world=matrix_world, window=(left + across, right + across, bottom, top))
+
+
+def _shift_pixels(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> float:
+    """Pixels across the whole picture by which a shift of 1 moves it: the edge that the sensor is fitted to."""
+    width, height = picture_size(render)
+    aspect_x, aspect_y = render.pixel_aspect_x, render.pixel_aspect_y
+    is_wide = width * aspect_x >= height * aspect_y
+    fits_width = data.sensor_fit == "HORIZONTAL" or (data.sensor_fit == "AUTO" and is_wide)
+    return width if fits_width else height * aspect_y / aspect_x
+
+
+def depth_of_field_notes(camera_object: bpy.types.Object, samples: int) -> Iterator[str]:
     """Why a camera that asks for depth of field will not show any."""
-    if camera_object.data.dof.use_dof and not camera.lens:
+    if not camera_object.data.dof.use_dof:
+        return
+    if camera_object.data.type != "PERSP":
         yield "Depth of field is for perspective cameras: this picture is sharp all over"
-    elif camera.lens and samples == 1:
+    elif samples == 1:
         yield "Depth of field needs more than one of the render properties' Samples: this picture is sharp all over"
 
 

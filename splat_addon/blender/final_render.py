@@ -12,10 +12,11 @@ import bpy
 import numpy as np
 
 from ..rendering import Frame, RenderCancelled, Renderer, open_device
-from .camera_export import depth_of_field_notes, final_camera
+from .camera_export import depth_of_field_notes, view_camera
 from .live_meshes import LiveMeshes
+from .motion_blur import motion_blur_notes, moving_time, shutter_times
 from .properties import final_settings
-from .scene_export import SurfelStore, export_scene
+from .scene_export import Notes, SurfelStore, export_scene
 
 
 class RenderPass(NamedTuple):
@@ -48,33 +49,61 @@ def passes_of(view_layer: bpy.types.ViewLayer) -> Iterator[tuple[str, int, str, 
 
 def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
     """Render one view layer. Raises ValueError or RuntimeError with a sentence for the user."""
-    camera_object = engine.camera_override or depsgraph.scene.camera
-    camera = final_camera(depsgraph, camera_object)
     passes = _asked_for(depsgraph.view_layer)
     settings = final_settings(depsgraph.scene, tuple(p.output for p in passes))
     engine.update_stats("", "Reading surfels")
     resources = _acquire_resources()
+    is_cancelled = False
     try:
-        scene, notes = _read(depsgraph, resources)
-        frame = resources.renderer.render(scene, camera, settings, progress=lambda *step: _progress(engine, *step))
+        views = [view.name for view in engine.get_result().views]
+        for number, view in enumerate(views):
+            engine.active_view_set(view)
+            frame, notes = _picture(engine, depsgraph, resources, settings, (number, len(views)))
+            _tell(engine, frame, notes, resources)
+            _hand_over(engine, depsgraph.view_layer, view, passes, frame)
     except RenderCancelled:
-        _release_resources()
-        return
+        is_cancelled = True
     finally:
-        if _is_last_of_render(engine, depsgraph):
+        if (is_cancelled or _is_last_of_render(engine, depsgraph)) and not depsgraph.scene.render.use_persistent_data:
             _release_resources()
+
+
+def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int, int]) -> tuple[Frame, Notes]:
+    """Of the engine's active view, the `turn[0]`th of `turn[1]`."""
+    scene, notes = depsgraph.scene, Notes()
+    times = shutter_times(scene, settings.samples)
+
+    def moments(go):
+        for time in times or [None]:
+            if time is not None:
+                go(time)
+            exported, said = _read(depsgraph, resources)
+            notes.counts |= said.counts
+            yield exported, view_camera(engine, depsgraph)
+
+    with moving_time(engine, depsgraph) as go:
+        frame = resources.renderer.render_moments(
+            moments(go), max(len(times), 1), settings, progress=lambda *step: _progress(engine, turn, *step)
+        )
+    camera_object = engine.camera_override or scene.camera
+    for sentence in depth_of_field_notes(camera_object, settings.samples):
+        notes.add(sentence)
+    for sentence in motion_blur_notes(scene, settings.samples):
+        notes.add(sentence)
+    return frame, notes
+
+
+def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
+    """What the user and scripts are told of a picture."""
     notes.add(_FLATTENED, frame.stats["instances_degenerate"])
     notes.add(_COARSE, frame.stats["surfels_coarse"])
     if "transparency" in dict(frame.stats["plan"].left_out):
         notes.add(_OPAQUE)
-    for sentence in depth_of_field_notes(camera_object, camera, settings.samples):
-        notes.add(sentence)
     for sentence in notes.sentences():
         engine.report({"WARNING"}, sentence)
     last_frame_stats.clear()
     last_frame_stats.update(frame.stats, notes=notes.sentences(), live_meshes=dict(resources.live_meshes.counts))
     engine.update_stats("", f"{frame.stats['splats']:,} splats in {frame.stats['milliseconds']:.0f} ms")
-    _hand_over(engine, depsgraph.view_layer, camera.size, passes, frame)
 
 
 _OPAQUE = "Surfels whose opacity, the alpha of Col, is below 1 are drawn opaque"
@@ -103,8 +132,9 @@ class _Resources:
 
     It belongs to this module and not to the engine's instance, which Blender frees without a graphics context, as it
     calls its handlers. Textures that go then abort Blender 4.5, and spoil the next render on 5.2's OpenGL; so they go
-    in `render`, with the last picture. A render that ends before its scene's last frame, by Esc between two frames
-    or because the operator was given a shorter range, leaves them to the next one.
+    in `render`, with the last picture, unless the scene's Persistent Data keeps them for the next render. A render that
+    ends before its scene's last frame, by Esc between two frames or because the operator was given a shorter range,
+    leaves them to the next one too.
     """
 
     def __init__(self):
@@ -146,14 +176,15 @@ def _asked_for(view_layer) -> list[RenderPass]:
     return [p for p in RENDER_PASSES if p.flag is None or getattr(view_layer, p.flag)]
 
 
-def _progress(engine, done: float, step: str) -> bool:
-    engine.update_progress(done)
+def _progress(engine, turn: tuple[int, int], done: float, step: str) -> bool:
+    engine.update_progress((turn[0] + done) / turn[1])
     engine.update_stats("", step.title())
     return not engine.test_break()
 
 
-def _hand_over(engine, view_layer, size, passes, frame: Frame) -> None:
-    result = engine.begin_result(0, 0, *size, layer=view_layer.name)
+def _hand_over(engine, view_layer, view: str, passes, frame: Frame) -> None:
+    height, width = frame.color.shape[:2]
+    result = engine.begin_result(0, 0, width, height, layer=view_layer.name, view=view)
     targets = result.layers[0].passes
     for render_pass in passes:
         values = getattr(frame, render_pass.output)

@@ -142,6 +142,17 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         soft_max=256,
         default=Settings.samples,
     )
+    motion_blur_steps: IntProperty(
+        name="Steps",
+        description=(
+            "Moments of the open shutter at which the scene is evaluated and read anew, at most one a sample. Fewer "
+            "save that time; what moves then shows as so many pictures"
+        ),
+        min=1,
+        max=MAX_SAMPLES,
+        soft_max=256,
+        default=64,
+    )
     epsilon: FloatProperty(
         name="Blend Depth",
         description=(

@@ -77,6 +77,24 @@ class RENDER_PT_surfel_lines(_RenderPanel, bpy.types.Panel):
         super().draw(context)
 
 
+class RENDER_PT_surfel_motion_blur(_RenderPanel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("motion_blur_steps",)
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        render = context.scene.render
+        self.layout.use_property_split = True
+        self.layout.active = render.use_motion_blur
+        self.layout.prop(render, "motion_blur_position", text="Position")
+        self.layout.prop(render, "motion_blur_shutter")
+        super().draw(context)
+        self.layout.template_curve_mapping(render, "motion_blur_shutter_curve")
+
+
 class RENDER_PT_surfel_shadows(_RenderPanel, bpy.types.Panel):
     bl_label = "Shadows"
     bl_options = frozenset({"DEFAULT_CLOSED"})
@@ -87,6 +105,10 @@ class RENDER_PT_surfel_performance(_RenderPanel, bpy.types.Panel):
     bl_label = "Performance"
     bl_options = frozenset({"DEFAULT_CLOSED"})
     properties = ("storage", "accumulation", "profile")
+
+    def draw(self, context):
+        super().draw(context)
+        self.layout.prop(context.scene.render, "use_persistent_data", text="Persistent Data")
 
 
 class VIEWLAYER_PT_surfel_passes(bpy.types.Panel):
@@ -135,6 +157,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         RENDER_PT_surfel_toon,
         RENDER_PT_surfel_matcap,
         RENDER_PT_surfel_lines,
+        RENDER_PT_surfel_motion_blur,
         RENDER_PT_surfel_shadows,
         RENDER_PT_surfel_performance,
         VIEWLAYER_PT_surfel_passes,

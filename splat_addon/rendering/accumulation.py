@@ -4,12 +4,15 @@
 The cameras follow sequences of low discrepancy that may stop anywhere, so more samples are always better. Places in the
 pixel: additive recurrence by the generalised golden ratio (Roberts, "The unreasonable effectiveness of quasirandom
 sequences", 2018). Places on the lens: Halton 1960, bases 2 and 3; two more of Roberts' nearly repeat every 13 samples.
+Times of an open shutter: base 5. Times that run with the number are a little better on average, but at some speeds (2.3
+pixels a picture of 16 samples) what moves keeps pace with the places in the pixel.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -21,9 +24,11 @@ from .frame import Frame
 _RATIO = 1.1673039782614187
 
 
-def sample_points(count: int) -> np.ndarray:
-    """(count, 4) float64 in [0, 1): two coordinates in the pixel, two on the lens. The first is the middle of both."""
-    number = np.arange(count)
+def sample_points(count: int, first: int = 0) -> np.ndarray:
+    """(count, 4) float64 in [0, 1): two coordinates in the pixel, two on the lens, of samples number `first` and on.
+    Number 0 is the middle of both.
+    """
+    number = np.arange(first, first + count)
     in_pixel = number[:, None] * _RATIO ** -np.array((1.0, 2.0))
     on_lens = np.stack([_mirrored(number, base) for base in (2, 3)], axis=1)
     return (0.5 + np.concatenate([in_pixel, on_lens], axis=1)) % 1
@@ -39,15 +44,32 @@ def _mirrored(number: np.ndarray, base: int) -> np.ndarray:
     return value
 
 
-def sample_cameras(camera: Camera, count: int) -> Iterator[Camera]:
-    """The camera of each sample: a pinhole at that sample's place on the lens of `camera`, whose pixel centres lie at
+def sample_camera(camera: Camera, number: int) -> Camera:
+    """The camera of a sample: a pinhole at that sample's place on the lens of `camera`, whose pixel centres lie at
     that sample's place in its pixels.
 
-    One sample is `camera` itself. Evenly over the pixel: the mean is that of a box filter one pixel wide.
+    Evenly over the pixel: the mean is that of a box filter one pixel wide.
     """
-    for x, y, *on_lens in sample_points(count):
-        moved = _moved(camera, x - 0.5, y - 0.5)
-        yield _through(moved, camera.lens.points(np.array(on_lens))) if camera.lens else moved
+    ((x, y, *on_lens),) = sample_points(1, number)
+    moved = _moved(camera, x - 0.5, y - 0.5)
+    return _through(moved, camera.lens.points(np.array(on_lens))) if camera.lens else moved
+
+
+def sample_blocks(samples: int, moments: int) -> list[list[int]]:
+    """The numbers of the samples that are taken at each moment of an open shutter, in the order of time, as many at
+    each as can be. Raises ValueError for more moments than samples.
+    """
+    if not 1 <= moments <= samples:
+        raise ValueError(f"The moments of an open shutter must be 1 to {samples}, one a sample, not {moments}.")
+    in_time = np.argsort(_mirrored(np.arange(samples), 5)).tolist() if moments > 1 else list(range(samples))
+    ends = [samples * number // moments for number in range(moments + 1)]
+    return [in_time[start:end] for start, end in pairwise(ends)]
+
+
+def moment_places(samples: int, moments: int) -> list[float]:
+    """When each block's moment is, 0 to 1 of the time that the shutter is open: the middle of its samples' share."""
+    ends = np.cumsum([0, *(len(block) for block in sample_blocks(samples, moments))]) / samples
+    return ((ends[1:] + ends[:-1]) / 2).tolist()
 
 
 def mean_frame(frames: Iterable[Frame]) -> Frame:

@@ -7,7 +7,7 @@ Right-handed, looking down its local -Z. Pixel centres lie at +0.5 and row 0 is 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -86,6 +86,12 @@ class Camera:
         step_x, step_y = (right - left) / self.size[0], (top - bottom) / self.size[1]
         window = (left + x * step_x, left + (x + width) * step_x, bottom + y * step_y, bottom + (y + height) * step_y)
         return replace(self, window=window, size=(width, height))
+
+    def is_same(self, other: Camera) -> bool:
+        """Whether both show the same of every scene."""
+        names = [f.name for f in fields(self) if f.name != "matrix_world"]
+        same_values = all(getattr(self, name) == getattr(other, name) for name in names)
+        return same_values and np.array_equal(self.matrix_world, other.matrix_world)
 
     def world_to_view(self) -> np.ndarray:
         """(4, 4) float64: the inverse of `matrix_world`, whose rotation is orthonormal."""

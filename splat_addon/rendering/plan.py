@@ -34,9 +34,12 @@ MAX_HARDWARE_DEPTH_RADIUS = 0.25
 OPAQUE = 0.999
 
 
-def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
-    """The passes that this picture needs. Raises ValueError for an unknown method or storage, and for multisampling
-    with a method that does not work in space.
+def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera | None = None) -> FramePlan:
+    """The passes that this picture needs.
+
+    shadow_camera: to whose view shadow maps are fitted, if it is another, so that cameras which differ little share
+    them. Raises ValueError for an unknown method or storage, and for multisampling with a method that does not work in
+    space.
     """
     method = get_method(settings.method)
     if settings.multisampling and method.works_in != "space":
@@ -57,7 +60,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings) -> FramePlan:
         depth_range = extent.near, extent.far
         linear_depth, why_depth = _linear_depth(camera, extent)
         sums = _sums(scene, settings, model, material, emission, left_out)
-        maps = _shadow_maps(scene, camera, settings, model, left_out)
+        maps = _shadow_maps(scene, shadow_camera or camera, settings, model, left_out)
         lines = _line_passes(settings, method, sums, left_out)
         reads = _read_by_shading(scene, model, sums, maps, left_out) + (("lines",) if lines else ())
         shadows = (_shadow_pass(scene, maps),) if maps else ()

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from time import perf_counter
 
 import numpy as np
 
-from .accumulation import mean_frame, sample_cameras
+from .accumulation import mean_frame, sample_blocks, sample_camera
 from .camera import Camera
 from .device import Device
 from .frame import EMPTY_DEPTH, Frame
@@ -19,7 +19,7 @@ from .plan import plan
 from .resources import Resources
 from .scene import Scene
 from .settings import OUTPUTS, Settings
-from .shadow import casting
+from .shadow import casting, same_maps
 from .storages import get_storage
 from .view import look
 
@@ -48,24 +48,56 @@ class Renderer:
 
         Raises ValueError for settings that do not fit, RuntimeError where the device fails, RenderCancelled.
         """
+        return self.render_moments([(scene, camera)], 1, settings, progress)
+
+    def render_moments(
+        self,
+        moments: Iterable[tuple[Scene, Camera]],
+        count: int,
+        settings: Settings | None = None,
+        progress: Progress | None = None,
+    ) -> Frame:
+        """The mean over the time that a shutter is open: of `count` moments, each with its share of the samples.
+
+        moments: each is asked for when the one before is drawn; `accumulation.moment_places` says when they are.
+        Raises as `render`, and ValueError for more moments than samples.
+        """
         settings = settings or Settings()
         self._check(settings)
+        blocks = sample_blocks(settings.samples, count)
         if settings.samples == 1:
+            ((scene, camera),) = moments
             return self._frame(scene, camera, settings, progress)
+        turns = (progress and _share(progress, turn, settings.samples) for turn in range(settings.samples))
         return mean_frame(
-            self._frame(scene, moved, settings, progress and _share(progress, number, settings.samples))
-            for number, moved in enumerate(sample_cameras(camera, settings.samples))
+            frame
+            for block, (scene, camera) in zip(blocks, moments, strict=True)
+            for frame in self._samples(scene, camera, settings, block, turns)
         )
 
-    def _frame(self, scene: Scene, camera: Camera, settings: Settings, progress: Progress | None) -> Frame:
-        """The picture of one sample."""
-        frame_plan = plan(scene, camera, settings)
+    def _samples(self, scene, camera, settings, numbers: list[int], turns: Iterator) -> Iterator[Frame]:
+        """The pictures of these samples. Shadow maps are fitted to what the camera sees through its pixels' centres;
+        they are drawn again where a lens moves what a sun's map is fitted to.
+        """
+        maps = None
+        for number in numbers:
+            moved = sample_camera(camera, number)
+            frame_plan = plan(scene, moved, settings, shadow_camera=moved if camera.lens else camera)
+            are_shared_done = maps is not None and same_maps(maps, frame_plan.shadow_maps)
+            maps = frame_plan.shadow_maps
+            yield self._frame(scene, moved, settings, next(turns), frame_plan, are_shared_done)
+
+    def _frame(
+        self, scene: Scene, camera: Camera, settings: Settings, progress, frame_plan=None, are_shared_done=False
+    ) -> Frame:
+        """The picture of one sample. are_shared_done: what all tiles share is still there, of the sample before."""
+        frame_plan = frame_plan or plan(scene, camera, settings)
         stats = self._new_stats(frame_plan)
         started = perf_counter()
         try:
             tiles = [
                 (tile, _read(target, settings.outputs, frame_plan.margin))
-                for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress)
+                for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress, are_shared_done)
             ]
         finally:
             self.device.restore()
@@ -118,7 +150,7 @@ class Renderer:
             "passes": {},
         }
 
-    def _tiles(self, scene, camera, settings, frame_plan, stats, progress):
+    def _tiles(self, scene, camera, settings, frame_plan, stats, progress, are_shared_done=False):
         if not frame_plan.passes:
             return
         sizes = {_drawn(tile, frame_plan)[2:] for tile in frame_plan.tiles}
@@ -140,7 +172,7 @@ class Renderer:
             stats["surfels_coarse"] = max(stats["surfels_coarse"], sum(s.coarse for s in stored))
             target = None
             for step, planned in enumerate(frame_plan.passes):
-                if number and planned.is_shared:
+                if planned.is_shared and (number or are_shared_done):
                     continue
                 done = (number + step / len(frame_plan.passes)) / len(frame_plan.tiles)
                 if progress and progress(done, planned.name) is False:
@@ -154,9 +186,9 @@ class Renderer:
             yield tile, target
 
 
-def _share(progress: Progress, number: int, count: int) -> Progress:
-    """What the `number`th of `count` samples tells."""
-    return lambda done, step: progress((number + done) / count, f"sample {number + 1}/{count}: {step}")
+def _share(progress: Progress, turn: int, count: int) -> Progress:
+    """What the `turn`th of `count` samples tells."""
+    return lambda done, step: progress((turn + done) / count, f"sample {turn + 1}/{count}: {step}")
 
 
 def background_pixel(scene: Scene, settings: Settings) -> tuple[float, float, float, float]:

@@ -57,6 +57,14 @@ def shadow_maps(scene: Scene, camera: Camera, resolution: int) -> tuple[tuple[Sh
     return tuple(ShadowMap(light, c, place) for (light, c), place in zip(cameras, places, strict=True)), without
 
 
+def same_maps(some: tuple[ShadowMap, ...], others: tuple[ShadowMap, ...]) -> bool:
+    """Whether, of one scene, they hold the same."""
+    return len(some) == len(others) and all(
+        a.light == b.light and a.place == b.place and a.camera.is_same(b.camera)
+        for a, b in zip(some, others, strict=True)
+    )
+
+
 def atlas_columns(maps: int) -> int:
     """Maps side by side in the atlas."""
     return max(math.ceil(math.sqrt(maps)), 1)

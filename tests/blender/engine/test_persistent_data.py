@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Persistent Data: what lies on the device stays there for the next render, which shows what has changed since."""
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender import final_render
+from splat_addon.rendering import storages
+
+
+@pytest.fixture
+def uploads(monkeypatch):
+    """The surfels that were packed for the device, one entry each time."""
+    packed, pack = [], storages.pack_surfels
+    monkeypatch.setattr(storages, "pack_surfels", lambda surfels: packed.append(surfels) or pack(surfels))
+    return packed
+
+
+@pytest.fixture
+def persistent(scene, picture):
+    """The scene with persistent data; in the end a render without lets it go."""
+    scene.render.use_persistent_data = True
+    yield scene
+    scene.render.use_persistent_data = False
+    picture()
+    assert final_render._resources is None
+
+
+def test_surfels_are_uploaded_once_for_all_renders(persistent, add_camera, add_surfels, picture, uploads):
+    add_camera()
+    add_surfels([(0, 0, 0), (1, 1, 0)], size=0.5)
+    first = picture()
+    np.testing.assert_array_equal(picture(), first)
+    assert first.any() and len(uploads) == 1 and final_render._resources is not None
+
+
+def test_what_changed_is_seen(persistent, add_camera, add_surfels, picture, uploads):
+    add_camera()
+    made = add_surfels([(0, 0, 0), (1, 1, 0)], size=0.5)
+    first = picture()
+    made.location.x = 1
+    moved = picture()
+    made.data.attributes["position"].data[0].vector = (-2, 0, 0)
+    made.data.update()
+    edited = picture()
+    assert len(uploads) == 2
+    assert np.abs(moved - first).max() > 0.5 and np.abs(edited - moved).max() > 0.5
+
+
+def test_live_meshes_are_sampled_once(persistent, add_camera, picture):
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    add_camera()
+    persistent.surfel_splatting.render_meshes = True
+    first = picture()
+    assert final_render.last_frame_stats["live_meshes"]["sampled"] == 1
+    np.testing.assert_array_equal(picture(), first)
+    assert final_render.last_frame_stats["live_meshes"]["followed"] == 1
+
+
+def test_a_failure_lets_everything_go(persistent, add_camera, add_surfels, picture):
+    camera = add_camera()
+    add_surfels([(0, 0, 0)], size=0.5)
+    picture()
+    camera.data.clip_start = 2000
+    with pytest.raises(RuntimeError, match="near 2000"):
+        picture()
+    assert final_render._resources is None
+    camera.data.clip_start = 0.1

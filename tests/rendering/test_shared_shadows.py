@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Samples of one picture share their shadow maps, but where a lens moves what a sun's map is fitted to."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import scenes
+from splat_addon.rendering import Lens, Light, Settings, renderer
+from splat_addon.rendering.passes import RUN
+
+SETTINGS = Settings(method="quad", samples=4, shadow_resolution=128)
+SUN = Light("sun", energy=2.0, direction=(1, -0.5, -1), casts_shadow=True)
+LAMP = Light("point", energy=60, position=(-2, 1, 2), casts_shadow=True)
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """The plans of the frames whose shadow maps were drawn."""
+    plans, run = [], RUN["shadow_maps"]
+
+    def counting(tile, planned):
+        plans.append(tile.plan)
+        return run(tile, planned)
+
+    monkeypatch.setitem(RUN, "shadow_maps", counting)
+    return plans
+
+
+def under(*lights):
+    scene, camera = scenes.torus(count=4000, size=(48, 48))
+    return replace(scene, lights=lights), camera
+
+
+def test_maps_are_drawn_once_and_the_picture_is_as_with_each_its_own(drawn, render, monkeypatch):
+    shared = render(*under(SUN, LAMP), SETTINGS)
+    assert len(drawn) == 1
+    monkeypatch.setattr(renderer, "same_maps", lambda *_: False)
+    own = render(*under(SUN, LAMP), SETTINGS)
+    assert len(drawn) == 5
+    np.testing.assert_array_equal(shared.color, own.color)
+    assert np.abs(shared.color - render(*under(), SETTINGS).color).max() > 0.1
+
+
+@pytest.mark.parametrize(("lights", "times"), [((LAMP,), 1), ((SUN, LAMP), 4)])
+def test_through_a_lens_maps_of_lamps_are_shared(lights, times, drawn, render):
+    scene, camera = under(*lights)
+    render(scene, replace(camera.cropped(20, 20, 8, 8), lens=Lens(0.1, 4.0)), SETTINGS)
+    assert len(drawn) == times
