@@ -1,6 +1,7 @@
 // References: none needed.
 // Summary: the picture of a world without anything in it.
 
+#include "common/outputs.glsl"
 #include "common/world.glsl"
 
 void main() {
@@ -10,7 +11,8 @@ void main() {
   }
   combined = total / float(SAMPLES * SAMPLES);
   depth = 1e10;
-#ifdef NORMAL_OUTPUT
+#ifdef NORMAL_COVERAGE_OUTPUT
   normal_coverage = vec4(0.0);
 #endif
+  write_outputs(NO_OUTPUTS);
 }

@@ -7,6 +7,7 @@
 #define PROJECTION shading.projection
 #define PARALLEL (shading.options.x > 0.5)
 #define DEPTH_UNIT shading.options.z
+#include "common/sample_outputs.glsl"
 #include "common/stored_depth.glsl"
 #include "common/world.glsl"
 
@@ -51,7 +52,7 @@ vec2 reached_range(ivec2 texel, ivec2 size) {
   return reached;
 }
 
-vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit) {
+vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit, out Outputs outputs) {
   ivec2 size = textureSize(shaded, 0);
   vec4 own = texelFetch(shaded, texel, 0);
   float depth = texelFetch(surface, texel, 0).w;
@@ -64,6 +65,7 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit) {
   vec4 background = world_background(texel);
   vec4 color = vec4(0.0);
   float total = 0.0;
+  outputs = NO_OUTPUTS;
   coverage = 0.0;
   is_hit = false;
   // Inside a surface and beside all surfaces there is nothing to filter, and the loops have no turn to make.
@@ -75,6 +77,7 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit) {
     coverage = is_inside ? 1.0 : 0.0;
     total = 1.0;
     is_hit = is_inside;
+    if (is_inside) outputs = sample_outputs(texel);
   }
   int reach = is_even ? 0 : FILTER_REACH;
   ivec2 first = texel * VISIBILITY_SAMPLES;
@@ -87,9 +90,11 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit) {
       vec4 here = background;
       if (seen < 1.0) {
         ivec2 home = clamp(at / VISIBILITY_SAMPLES, ivec2(0), size - 1);
-        here = seen >= range.x && seen <= range.y ? own : texelFetch(shaded, home, 0);
-        here = here.w > 0.0 ? here : own;
+        vec4 there = texelFetch(shaded, home, 0);
+        bool is_own = (seen >= range.x && seen <= range.y) || !(there.w > 0.0);
+        here = is_own ? own : there;
         here = here.w > 0.0 ? here : background;
+        outputs = added(outputs, sample_outputs(is_own ? texel : home), weight);
         coverage += weight;
         is_hit = is_hit || home == texel;
       }
@@ -102,6 +107,7 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit) {
     row_ratio *= RATIO_RATIO;
   }
   coverage /= total;
+  outputs = added(NO_OUTPUTS, outputs, 1.0 / total);
   return color / total;
 }
 
@@ -109,13 +115,16 @@ void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * SAMPLES;
   vec4 color_total = vec4(0.0);
   vec4 normal_total = vec4(0.0);
+  Outputs outputs_total = NO_OUTPUTS;
   float nearest = FARTHEST;
   for (int y = 0; y < SAMPLES; y++) {
     for (int x = 0; x < SAMPLES; x++) {
       ivec2 texel = first + ivec2(x, y);
       float coverage;
       bool is_hit;
-      color_total += resolve_sample(texel, coverage, is_hit);
+      Outputs outputs;
+      color_total += resolve_sample(texel, coverage, is_hit, outputs);
+      outputs_total = added(outputs_total, outputs, 1.0);
       vec4 s = texelFetch(surface, texel, 0);
       normal_total += vec4(s.xyz, 1.0) * coverage;
       if (is_hit && s.w > 0.0) nearest = min(nearest, s.w * shading.material.w);
@@ -124,7 +133,8 @@ void main() {
   float share = 1.0 / float(SAMPLES * SAMPLES);
   combined = color_total * share;
   depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
-#ifdef NORMAL_OUTPUT
+#ifdef NORMAL_COVERAGE_OUTPUT
   normal_coverage = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
 #endif
+  write_outputs(added(NO_OUTPUTS, outputs_total, share));
 }

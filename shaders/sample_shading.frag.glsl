@@ -8,9 +8,12 @@ void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   shaded = vec4(0.0);
   surface = vec4(0.0);
+  Outputs outputs = NO_OUTPUTS;
   if (SUM_AT(color_sum, texel, 0).w > 0.0) {
     ShadedSample here = shaded_sample(texel, 0);
     shaded = vec4(here.color, 1.0);
     surface = vec4(here.normal, here.depth);
+    outputs = here.outputs;
   }
+  write_outputs(outputs);
 }

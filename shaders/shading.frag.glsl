@@ -13,6 +13,7 @@ void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * SAMPLES;
   vec4 color_total = vec4(0.0);
   vec4 normal_total = vec4(0.0);
+  Outputs outputs_total = NO_OUTPUTS;
   float nearest = FARTHEST;
   for (int y = 0; y < SAMPLES; y++) {
     for (int x = 0; x < SAMPLES; x++) {
@@ -24,6 +25,7 @@ void main() {
           coverage = here.coverage;
           color_total += vec4(here.color, 1.0) * coverage;
           normal_total += vec4(here.normal, 1.0) * coverage;
+          outputs_total = added(outputs_total, here.outputs, coverage);
           nearest = min(nearest, here.depth * shading.material.w);
         }
         if (coverage < 1.0) color_total += world_background(texel) * (1.0 - coverage);
@@ -33,7 +35,8 @@ void main() {
   float share = 1.0 / float(SAMPLES * SAMPLES * LOOKS);
   combined = color_total * share;
   depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
-#ifdef NORMAL_OUTPUT
+#ifdef NORMAL_COVERAGE_OUTPUT
   normal_coverage = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
 #endif
+  write_outputs(added(NO_OUTPUTS, outputs_total, share));
 }

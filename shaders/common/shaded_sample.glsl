@@ -1,14 +1,19 @@
 // References: Botsch et al. 2005, section 4 (normalise, then light once).
 // Summary: a sample's sums as a lit surface; the includer has included a shading model.
 
+#include "common/outputs.glsl"
 #include "common/sum_at.glsl"
 #include "common/weight_scale.glsl"
+#ifdef OVERDRAW_TARGET
+#include "common/overdraw.glsl"
+#endif
 
 struct ShadedSample {
   vec3 color;
   vec3 normal;
   float depth;
   float coverage;  // below 1 only where an edge threshold is planned
+  Outputs outputs;
 };
 
 // A mean normal shorter than this is what rounding left of normals that cancel; the surface then faces the viewer.
@@ -55,13 +60,29 @@ ShadedSample shaded_sample(ivec2 texel, int look) {
   light_set = texelFetch(light_set_sum, texel, 0);
   light_set /= dot(light_set, vec4(1.0));
 #endif
+#ifdef SHADOW_SHARE
+  light_arriving = light_unshadowed = vec3(0.0);
+#endif
   vec3 radiance = shade(position, normal, c.rgb / c.w, material);
+  Outputs outputs = NO_OUTPUTS;
+#ifdef METALS
+  outputs.diffuse_color = c.rgb / c.w * (1.0 - clamp(material.y, 0.0, 1.0));
+#else
+  outputs.diffuse_color = c.rgb / c.w;
+#endif
 #ifdef EMISSION_TARGET
   vec4 e = SUM_AT(emission_sum, texel, look);
-  radiance += e.rgb / e.w;  // its own weights: those of float16 sums are scaled
+  outputs.emission = e.rgb / e.w;  // its own weights: those of float16 sums are scaled
 #endif
 #ifdef EMISSION
-  radiance += shading.emission.rgb;
+  outputs.emission = shading.emission.rgb;
+#endif
+  radiance += outputs.emission;
+#ifdef SHADOW_SHARE
+  outputs.shadow_overdraw.rgb = shadow_share();
+#endif
+#ifdef OVERDRAW_TARGET
+  outputs.shadow_overdraw.a = overdraw;
 #endif
 #ifdef LINES
   radiance = mix(radiance, shading.line_color.rgb, texelFetch(lines, texel, 0).r);
@@ -72,5 +93,5 @@ ShadedSample shaded_sample(ivec2 texel, int look) {
   if (weight < LEAST_FRONT) weight /= BACK_WEIGHT;
   coverage = min(weight / shading.edges.x, 1.0);
 #endif
-  return ShadedSample(radiance, normal, n.w, coverage);
+  return ShadedSample(radiance, normal, n.w, coverage, outputs);
 }

@@ -10,6 +10,15 @@ vec4 light_set;  // of the sample that is shaded: its share of each set of objec
 #include "shading/shadow.glsl"
 #endif
 
+#ifdef SHADOW_SHARE
+vec3 light_arriving, light_unshadowed;  // at the sample that is shaded: sums of irradiance
+
+// Of each colour; 0 where no light comes from the front, as EEVEE has it.
+vec3 shadow_share() {
+  return light_arriving / mix(light_unshadowed, vec3(1.0), equal(light_unshadowed, vec3(0.0)));
+}
+#endif
+
 struct Incident {
   vec3 to_light;    // unit
   vec3 irradiance;  // of a surface that faces it
@@ -60,6 +69,9 @@ Incident incident(int light, vec3 position, vec3 normal) {
                                   : strength.rgb / (4.0 * rim * atan(rim));
   }
 #endif
+#ifdef SHADOW_SHARE
+  light_unshadowed += here.irradiance * max(dot(normal, here.to_light), 0.0);
+#endif
 #ifdef SHADOWS
   vec4 caster = texelFetch(lights, ivec2(6, light), 0);
   if (caster.y > 0.0 && dot(here.irradiance, vec3(1.0)) > 0.0) {
@@ -69,6 +81,9 @@ Incident incident(int light, vec3 position, vec3 normal) {
     here.radiance *= lit;
 #endif
   }
+#endif
+#ifdef SHADOW_SHARE
+  light_arriving += here.irradiance * max(dot(normal, here.to_light), 0.0);
 #endif
   return here;
 }

@@ -9,18 +9,22 @@ from . import (
     engine,
     mesh_sampling_settings,
     operators,
+    passes_panel,
     points_panel,
     prediction,
     properties,
     render_panels,
+    render_passes,
     sidebar,
 )
 
 #: In the order of registration: what others refer to comes first.
 MODULES = (
     properties,
+    render_passes,
     engine,
     render_panels,
+    passes_panel,
     mesh_sampling_settings,
     conversion_settings,
     operators,

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import final_render, viewport
+from . import final_render, render_passes, viewport
 from .ids import ENGINE, ENGINE_LABEL
 
 
@@ -18,8 +18,7 @@ class SurfelSplattingEngine(bpy.types.RenderEngine):
     bl_use_shading_nodes_custom = False
 
     def update_render_passes(self, scene=None, renderlayer=None):
-        for name, channels, letters, kind in final_render.passes_of(renderlayer):
-            self.register_pass(scene, renderlayer, name, channels, letters, kind)
+        render_passes.register_passes(self, scene, renderlayer)
 
     def render(self, depsgraph):
         # Blender ignores an exception in here: only a report fails the operator and the process.

@@ -5,52 +5,25 @@ from __future__ import annotations
 
 import sys
 import traceback
-from collections.abc import Iterator
-from typing import NamedTuple
 
 import bpy
-import numpy as np
 
 from ..rendering import Frame, RenderCancelled, Renderer, open_device
 from .camera_export import depth_of_field_notes, view_camera
 from .live_meshes import LiveMeshes
 from .motion_blur import motion_blur_notes, moving_time, shutter_times
 from .properties import final_settings
+from .render_passes import hand_over, outputs_of
 from .scene_export import Notes, SurfelStore, export_scene
-
-
-class RenderPass(NamedTuple):
-    """output: the array of `Frame` that fills it. flag: the view layer's property that asks for it, if any."""
-
-    name: str
-    channels: int
-    letters: str
-    kind: str
-    output: str
-    flag: str | None
-
-
-RENDER_PASSES = (
-    RenderPass("Combined", 4, "RGBA", "COLOR", "color", None),
-    RenderPass("Depth", 1, "Z", "VALUE", "depth", "use_pass_z"),
-    RenderPass("Normal", 3, "XYZ", "VECTOR", "normal", "use_pass_normal"),
-)
 
 #: Statistics of the last frame that was rendered, for scripts: see `Renderer`, plus `notes`, and as `live_meshes` the
 #: counts of `LiveMeshes`.
 last_frame_stats: dict = {}
 
 
-def passes_of(view_layer: bpy.types.ViewLayer) -> Iterator[tuple[str, int, str, str]]:
-    """Name, channels, letters and kind of every pass that the view layer asks for."""
-    for render_pass in _asked_for(view_layer):
-        yield render_pass[:4]
-
-
 def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
     """Render one view layer. Raises ValueError or RuntimeError with a sentence for the user."""
-    passes = _asked_for(depsgraph.view_layer)
-    settings = final_settings(depsgraph.scene, tuple(p.output for p in passes))
+    settings = final_settings(depsgraph.scene, outputs_of(depsgraph.view_layer))
     engine.update_stats("", "Reading surfels")
     resources = _acquire_resources()
     is_cancelled = False
@@ -60,7 +33,7 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
             engine.active_view_set(view)
             frame, notes = _picture(engine, depsgraph, resources, settings, (number, len(views)))
             _tell(engine, frame, notes, resources)
-            _hand_over(engine, depsgraph.view_layer, view, passes, frame)
+            hand_over(engine, depsgraph.view_layer, view, frame)
     except RenderCancelled:
         is_cancelled = True
     finally:
@@ -172,21 +145,7 @@ def _is_last_of_render(engine, depsgraph) -> bool:
 _ARE_FRAMES_NAMED = bool({"-f", "--render-frame"} & set(sys.argv))
 
 
-def _asked_for(view_layer) -> list[RenderPass]:
-    return [p for p in RENDER_PASSES if p.flag is None or getattr(view_layer, p.flag)]
-
-
 def _progress(engine, turn: tuple[int, int], done: float, step: str) -> bool:
     engine.update_progress((turn[0] + done) / turn[1])
     engine.update_stats("", step.title())
     return not engine.test_break()
-
-
-def _hand_over(engine, view_layer, view: str, passes, frame: Frame) -> None:
-    height, width = frame.color.shape[:2]
-    result = engine.begin_result(0, 0, width, height, layer=view_layer.name, view=view)
-    targets = result.layers[0].passes
-    for render_pass in passes:
-        values = getattr(frame, render_pass.output)
-        targets[render_pass.name].rect.foreach_set(np.ascontiguousarray(values, np.float32).ravel())
-    engine.end_result(result)

@@ -29,6 +29,9 @@ SOLID = "surfels_solid"
 #: How a picture is rendered: `scene.surfel_splatting`.
 RENDER_SETTINGS = "surfel_splatting"
 
+#: The passes that only this engine has: `view_layer.surfel_splatting`.
+LAYER_SETTINGS = "surfel_splatting"
+
 #: What an object says about its rendering: `object.surfel_splatting`.
 OBJECT_SETTINGS = "surfel_splatting"
 

@@ -111,25 +111,6 @@ class RENDER_PT_surfel_performance(_RenderPanel, bpy.types.Panel):
         self.layout.prop(context.scene.render, "use_persistent_data", text="Persistent Data")
 
 
-class VIEWLAYER_PT_surfel_passes(bpy.types.Panel):
-    bl_label = "Passes"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "view_layer"
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine == ENGINE
-
-    def draw(self, context):
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        column = layout.column(heading="Data")
-        column.prop(context.view_layer, "use_pass_z")
-        column.prop(context.view_layer, "use_pass_normal")
-
-
 #: Blender's panels whose settings this engine does not have, or replaces with its own.
 _NOT_JOINED = frozenset(
     {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle", "RENDER_PT_simplify"}
@@ -160,7 +141,6 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         RENDER_PT_surfel_motion_blur,
         RENDER_PT_surfel_shadows,
         RENDER_PT_surfel_performance,
-        VIEWLAYER_PT_surfel_passes,
     )
 )
 

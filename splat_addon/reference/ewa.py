@@ -72,7 +72,7 @@ def render_ewa(
     normal = rays[..., 4:7] @ camera.matrix_world[:3, :3].T
     arrays = rays[..., :4], depth.reshape(grid.shape), normal, rays[..., 7]
     stats = {"surfels": len(splats), "left_out": int(np.count_nonzero(~before)), "filter_sigma": filter_sigma}
-    return Frame(*(a.astype(np.float32) for a in arrays), stats)
+    return Frame(*(a.astype(np.float32) for a in arrays), stats=stats)
 
 
 def project(splats: Splats, camera: Camera, filter_sigma: float) -> Projections:

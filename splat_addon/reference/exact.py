@@ -13,6 +13,7 @@ from ..rendering.frame import EMPTY_DEPTH, Frame
 from ..rendering.scene import Scene
 from ..rendering.settings import Settings
 from .filters import filter_weights, resample
+from .outputs import OUTPUTS
 from .rays import RayGrid, Surface, visible_surface
 from .shading_models import SHADERS
 from .splats import eye_splats, projected_bounds
@@ -36,26 +37,46 @@ def render_exact(
     A ray sees the splats that lie no deeper than the nearest splat moved back by `settings.epsilon` of its radius
     along the ray, mixes them with weights exp(-2 rho^2), and is shaded once (Botsch et al. 2005, deferred).
 
-    Returns a Frame: colour, normal and coverage go through the pixel filter, a depth is that of the nearest of
-    the pixel's own rays. Raises ValueError for an unknown filter or a sample count below 1.
+    Returns a Frame: means go through the pixel filter, a depth is that of the nearest of the pixel's own rays; beside
+    the usual arrays it has what `settings.outputs` asks for. Raises ValueError for an unknown filter or a sample count
+    below 1.
     """
     weights = filter_weights(pixel_filter, samples)
     margin = (len(weights) // samples - 1) // 2
     splats = eye_splats(scene, camera)
     bounds = projected_bounds(splats, camera)
     width, height = camera.size
-    color, normal = np.empty((height, width, 4)), np.empty((height, width, 3))
-    depth, coverage = np.empty((height, width)), np.empty((height, width))
+    depth, means = np.empty((height, width)), {}
+    columns = _columns(settings)
     for x, y, w, h in _tiles(width, height, samples, margin):
         grid = RayGrid.of_pixels(camera, samples, x - margin, y - margin, w + 2 * margin, h + 2 * margin)
         surface = visible_surface(splats, bounds, grid, settings.epsilon)
         shaded = resample(shaded_rays(surface, grid, scene, camera, settings), weights, samples)
         here = np.s_[y : y + h, x : x + w]
-        color[here], normal[here], coverage[here] = shaded[..., :4], shaded[..., 4:7], shaded[..., 7]
+        for name, column in columns.items():
+            part = shaded[..., column]
+            means.setdefault(name, np.empty((height, width, *part.shape[2:])))[here] = part
         depth[here] = _nearest_depth(surface, grid, samples, margin)
-    normal = normal @ camera.matrix_world[:3, :3].T
+    arrays = {**means, "depth": depth, "normal": means["normal"] @ camera.matrix_world[:3, :3].T}
+    if "position" in settings.outputs:
+        is_hit = depth < EMPTY_DEPTH
+        arrays["position"] = camera.points_at(np.where(is_hit, depth, 0)) * is_hit[..., None]
     stats = {"surfels": len(splats), "samples": samples, "pixel_filter": pixel_filter}
-    return Frame(*(a.astype(np.float32) for a in (color, depth, normal, coverage)), stats)
+    return Frame(**{name: values.astype(np.float32) for name, values in arrays.items()}, stats=stats)
+
+
+def _columns(settings: Settings) -> dict[str, slice | int]:
+    """Where in `shaded_rays` the arrays of a frame are."""
+    columns, first = {"color": slice(0, 4), "normal": slice(4, 7), "coverage": 7}, 8
+    for name in _more_outputs(settings):
+        count = OUTPUTS[name][0]
+        columns[name] = slice(first, first + count) if count > 1 else first
+        first += count
+    return columns
+
+
+def _more_outputs(settings: Settings) -> list[str]:
+    return [name for name in OUTPUTS if name in settings.outputs]
 
 
 def _tiles(width: int, height: int, samples: int, margin: int):
@@ -67,8 +88,9 @@ def _tiles(width: int, height: int, samples: int, margin: int):
 
 
 def shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
-    """(rows, columns, 8): premultiplied rgba, eye-space normal and coverage of every ray."""
-    rays = np.zeros((grid.count, 8))
+    """(rows, columns, 8 or more): premultiplied rgba, eye-space normal, coverage and more outputs of every ray."""
+    more = [OUTPUTS[name][1](surface, grid, scene, camera, settings) for name in _more_outputs(settings)]
+    rays = np.zeros((grid.count, 8 + sum(values.shape[1] for values in more)))
     if not settings.transparent_film:
         _, direction = grid.rays(np.arange(grid.count))
         rays[:, :3], rays[:, 3] = WorldLight(scene, camera).background(direction), 1
@@ -76,7 +98,8 @@ def shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, s
     rays[hit, :3] = SHADERS[settings.shading](surface, grid, scene, camera, settings)
     rays[hit, 3] = rays[hit, 7] = 1
     rays[hit, 4:7] = surface.normal
-    return rays.reshape(*grid.shape, 8)
+    rays[hit, 8:] = np.concatenate([np.zeros((len(hit), 0)), *more], axis=1)
+    return rays.reshape(*grid.shape, -1)
 
 
 def _nearest_depth(surface: Surface, grid: RayGrid, samples: int, margin: int) -> np.ndarray:

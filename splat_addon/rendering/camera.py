@@ -100,6 +100,17 @@ class Camera:
         inverse[:3, 3] = -inverse[:3, :3] @ self.matrix_world[:3, 3]
         return inverse
 
+    def points_at(self, depths: np.ndarray) -> np.ndarray:
+        """(h, w, 3) float64 points of the world that the centres of the pixels see, at (h, w) distances along -Z."""
+        left, right, bottom, top = self.window
+        width, height = self.size
+        x = left + (np.arange(width) + 0.5) * (right - left) / width
+        y = bottom + (np.arange(height) + 0.5) * (top - bottom) / height
+        depths = np.asarray(depths, np.float64)
+        spread = 1.0 if self.is_orthographic else depths
+        eye = np.stack([x * spread + 0 * depths, y[:, None] * spread + 0 * depths, -depths], axis=-1)
+        return eye @ self.matrix_world[:3, :3].T + self.matrix_world[:3, 3]
+
     def projection(self, near: float, far: float) -> np.ndarray:
         """(4, 4) float64 OpenGL projection (clip z from -w to w) of this window between two depths."""
         left, right, bottom, top = self.window

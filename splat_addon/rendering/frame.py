@@ -21,6 +21,14 @@ class Frame:
     normal: (h, w, 3) world-space shading normal turned to the viewer, averaged over the pixel's samples,
         empty ones counting as 0.
     coverage: (h, w) share of the pixel's samples that hit a splat.
+    position: (h, w, 3) world-space point of that depth, seen through the pixel's centre; 0 where nothing was hit.
+    diffuse_color: (h, w, 3) the surface's own colour, unlit; of models that look at materials without what is metal.
+    emission: (h, w, 3) the part of `color` that surfaces send out themselves; 0 of models that do not look at
+        materials.
+    shadow: (h, w, 3) share of the lights' irradiance that shadows leave, of each colour; 0 where none comes from the
+        front, and of models that do not look at lights.
+    overdraw: (h, w) splats that a sample is the mean of.
+        These four are means over the pixel's samples, as `color`, empty ones counting as 0.
     stats: what was drawn, and milliseconds by pass where `Settings.profile` asked for them.
     """
 
@@ -28,4 +36,9 @@ class Frame:
     depth: np.ndarray | None
     normal: np.ndarray | None
     coverage: np.ndarray | None
+    position: np.ndarray | None = None
+    diffuse_color: np.ndarray | None = None
+    emission: np.ndarray | None = None
+    shadow: np.ndarray | None = None
+    overdraw: np.ndarray | None = None
     stats: dict = field(default_factory=dict)

@@ -26,10 +26,28 @@ TEXTURES = {
     "lines": ("R32F", "sample"),
     "shaded": ("RGBA32F", "sample"),
     "surface": ("RGBA32F", "sample"),
+    "sample_diffuse_color": ("RGBA32F", "sample"),
+    "sample_emission": ("RGBA32F", "sample"),
+    "sample_shadow_overdraw": ("RGBA32F", "sample"),
     "shadow_depth": ("DEPTH32F", "frame"),
     "combined": ("RGBA32F", "pixel"),
     "depth": ("R32F", "pixel"),
     "normal_coverage": ("RGBA32F", "pixel"),
+    "diffuse_color": ("RGBA32F", "pixel"),
+    "emission": ("RGBA32F", "pixel"),
+    "shadow_overdraw": ("RGBA32F", "pixel"),
+}
+
+#: array of a `Frame` -> the texture of the last pass that holds it, and where in its last axis
+HELD_BY = {
+    "color": ("combined", slice(0, 4)),
+    "depth": ("depth", 0),
+    "normal": ("normal_coverage", slice(0, 3)),
+    "coverage": ("normal_coverage", 3),
+    "diffuse_color": ("diffuse_color", slice(0, 3)),
+    "emission": ("emission", slice(0, 3)),
+    "shadow": ("shadow_overdraw", slice(0, 3)),
+    "overdraw": ("shadow_overdraw", 3),
 }
 
 #: accumulation -> texture -> format, where it is not the one above; emission has no bound that a half could hold.

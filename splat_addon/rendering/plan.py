@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from .camera import Camera
-from .frame_plan import FramePlan, PlannedPass
+from .frame_plan import HELD_BY, TEXTURES, FramePlan, PlannedPass
 from .methods import Method, get_method
 from .packing import shared_emission, shared_material
 from .scene import Material, Scene
@@ -114,6 +114,10 @@ def _sums(
         sums.append("depth_sum")
     else:
         left_out.append(("depth_sum", "float32 sums of normals have room for depths"))
+    if "overdraw" in settings.outputs or "overdraw_sum" in model.sums:
+        sums.append("overdraw_sum")
+    else:
+        left_out.append(("overdraw_sum", "nobody asks how many splats a sample is the mean of"))
     blind = "" if model.has_material else f"{model.name} shading does not look at materials"
     one_light = "all surfels send out the same light" + ("" if emission and any(emission) else ", none")
     is_linked = model.is_lit and any(light.receivers is not None for light in scene.lights)
@@ -122,7 +126,7 @@ def _sums(
         "emission_sum": blind or ("" if emission is None else one_light),
         "light_set_sum": "" if is_linked else "every light lights everything, or nothing is lit",
     }
-    sums += [name for name, why in why_not.items() if not why] + list(model.sums)
+    sums += [name for name, why in why_not.items() if not why]
     left_out += [(name, why) for name, why in why_not.items() if why]
     return tuple(sums)
 
@@ -216,6 +220,10 @@ def _features(
         left_out.append(("edge threshold", f"the weights of {settings.method} are smaller where it filters"))
     else:
         features.append(("EDGE_THRESHOLD", f"pixels whose weights sum to less than {settings.edge_threshold:g} fade"))
+    if model.has_material and "diffuse_color" in settings.outputs:
+        features.append(("METALS", "of its diffuse colour a surface shows what is not metal"))
+    if model.is_lit and scene.lights and "shadow" in settings.outputs:
+        features.append(("SHADOW_SHARE", "the share of the lights that arrives is asked for"))
     if model.has_material and emission is not None and any(emission):
         features.append(("EMISSION", "all surfels send out the same light"))
     sized = model.is_lit * sum(light.is_sized for light in scene.lights)
@@ -235,7 +243,7 @@ def _shading_passes(
     once = f"{model.name}, once a sample"
     if method.visibility_samples == 1:
         return (PlannedPass("shading", once, tuple(dict.fromkeys((*reads, *behind))), outputs),)
-    kept = ("shaded", "surface")
+    kept = ("shaded", "surface", *(f"sample_{name}" for name in outputs if f"sample_{name}" in TEXTURES))
     return (
         PlannedPass("sample_shading", once, reads, kept),
         PlannedPass("resolve", "silhouettes are filtered", (*kept, "visibility_depth", "seen_range", *behind), outputs),
@@ -244,10 +252,11 @@ def _shading_passes(
 
 def _outputs(settings: Settings, left_out: list) -> tuple[str, ...]:
     """What the last pass writes."""
-    if {"normal", "coverage"} & set(settings.outputs):
-        return "combined", "depth", "normal_coverage"
-    left_out.append(("normal_coverage", "neither the normal nor the coverage is asked for"))
-    return "combined", "depth"
+    asked_for = {HELD_BY[name][0] for name in settings.outputs if name in HELD_BY}
+    textures = dict.fromkeys(texture for texture, _ in HELD_BY.values())
+    outputs = tuple(name for name in textures if name in {"combined", "depth"} | asked_for)
+    left_out += [(name, "nothing that it holds is asked for") for name in textures if name not in outputs]
+    return outputs
 
 
 def _say_what_surfels_lack(scene: Scene, camera: Camera, left_out: list) -> None:

@@ -12,7 +12,7 @@ from .accumulation import mean_frame, sample_blocks, sample_camera
 from .camera import Camera
 from .device import Device
 from .frame import EMPTY_DEPTH, Frame
-from .frame_plan import FramePlan
+from .frame_plan import HELD_BY, FramePlan
 from .passes import RUN
 from .passes.tile import TileContext, texture_key
 from .plan import plan
@@ -96,13 +96,15 @@ class Renderer:
         started = perf_counter()
         try:
             tiles = [
-                (tile, _read(target, settings.outputs, frame_plan.margin))
+                (tile, _read(target, frame_plan, settings.outputs))
                 for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress, are_shared_done)
             ]
         finally:
             self.device.restore()
         arrays = _assembled(tiles, camera.size) if tiles else _background(scene, camera.size, settings)
         stats["milliseconds"] = 1e3 * (perf_counter() - started)
+        if "position" in settings.outputs:
+            arrays["position"] = _positions(camera, arrays["depth"])
         return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[tuple[Tile, object]]:
@@ -199,11 +201,13 @@ def background_pixel(scene: Scene, settings: Settings) -> tuple[float, float, fl
 def _background(scene: Scene, size, settings: Settings) -> dict[str, np.ndarray]:
     """The arrays of a picture without a single splat."""
     width, height = size
-    pixels = {"color": background_pixel(scene, settings), "depth": EMPTY_DEPTH, "normal": (0.0,) * 3, "coverage": 0.0}
-    return {
-        name: np.broadcast_to(np.float32(pixels[name]), (height, width, *np.shape(pixels[name]))).copy()
-        for name in settings.outputs
-    }
+    pixels = {"color": background_pixel(scene, settings), "depth": EMPTY_DEPTH}
+    arrays = {}
+    for name in _read_arrays(settings.outputs):
+        where = HELD_BY[name][1]
+        shape = (height, width) if isinstance(where, int) else (height, width, where.stop - where.start)
+        arrays[name] = np.full(shape, pixels.get(name, 0.0), np.float32)
+    return arrays
 
 
 def _drawn(tile: Tile, frame_plan: FramePlan) -> Tile:
@@ -212,18 +216,29 @@ def _drawn(tile: Tile, frame_plan: FramePlan) -> Tile:
     return x - margin, y - margin, width + 2 * margin, height + 2 * margin
 
 
-def _read(target, outputs: tuple[str, ...], margin: int) -> dict[str, np.ndarray]:
+def _read_arrays(outputs: tuple[str, ...]) -> tuple[str, ...]:
+    """Those that the device holds: positions are made of depths."""
+    wanted = {*outputs, "depth"} if "position" in outputs else set(outputs)
+    return tuple(name for name in HELD_BY if name in wanted)
+
+
+def _read(target, frame_plan: FramePlan, outputs: tuple[str, ...]) -> dict[str, np.ndarray]:
     """The wanted arrays of one tile, without its margin."""
-    kept = slice(margin, -margin or None)
+    kept = slice(frame_plan.margin, -frame_plan.margin or None)
+    names, held = _read_arrays(outputs), frame_plan.passes[-1].writes
+    textures = {HELD_BY[name][0] for name in names}
+    texels = {name: target.read(slot) for slot, name in enumerate(held) if name in textures}
     arrays = {}
-    if "color" in outputs:
-        arrays["color"] = target.read(0)
-    if "depth" in outputs:
-        arrays["depth"] = target.read(1)[..., 0]
-    if "normal" in outputs or "coverage" in outputs:
-        normal_coverage = target.read(2)
-        arrays["normal"], arrays["coverage"] = normal_coverage[..., :3], normal_coverage[..., 3]
-    return {name: np.ascontiguousarray(arrays[name][kept, kept]) for name in outputs}
+    for name in names:
+        texture, where = HELD_BY[name]
+        arrays[name] = np.ascontiguousarray(texels[texture][kept, kept, where])
+    return arrays
+
+
+def _positions(camera: Camera, depth: np.ndarray) -> np.ndarray:
+    """(h, w, 3) float32, 0 where nothing was hit."""
+    is_hit = depth < EMPTY_DEPTH
+    return np.where(is_hit[..., None], camera.points_at(np.where(is_hit, depth, 0.0)), 0.0).astype(np.float32)
 
 
 def _assembled(tiles, size) -> dict[str, np.ndarray]:

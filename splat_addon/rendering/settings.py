@@ -33,7 +33,7 @@ MULTISAMPLING = (0, 2, 4, 8)
 MAX_SHADOW_RESOLUTION = 2048
 
 #: the arrays of a `Frame`
-OUTPUTS = ("color", "depth", "normal", "coverage")
+OUTPUTS = ("color", "depth", "normal", "coverage", "position", "diffuse_color", "emission", "shadow", "overdraw")
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,8 @@ class Settings:
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
     shadow_resolution: texels along the side of a shadow map; 0 leaves shadows out.
     transparent_film: leave the background out and keep its alpha at 0.
-    outputs: which arrays of the `Frame` are wanted; the others are None and cost nothing.
+    outputs: which arrays of the `Frame` are wanted; the others are None and cost nothing. A position brings the depth
+        that it is made of.
     storage: the form in which surfels lie on the device, a name in `rendering.storages`.
     accumulation: of the sums of colour and material, a name in `ACCUMULATIONS`.
     profile: wait for the device after each pass, so that the frame's statistics hold a time for each.
@@ -76,7 +77,7 @@ class Settings:
     epsilon: float = 0.5
     shadow_resolution: int = 1024
     transparent_film: bool = False
-    outputs: tuple[str, ...] = OUTPUTS
+    outputs: tuple[str, ...] = ("color", "depth", "normal", "coverage")
     storage: str = "float32"
     accumulation: str = "float32"
     profile: bool = False

@@ -14,7 +14,7 @@ class ShadingModel:
     is_lit: it looks at lights, with their shadows and the objects they are linked to.
     has_material: it looks at roughness, metallic, reflectance and emission.
     has_world: it looks at the light of the world around.
-    tables: textures that its file reads beside the sums. sums: added up for it alone.
+    tables: textures that its file reads beside the sums. sums: added up for it, and for an output of that name.
     features: (name, why) of what is defined for it alone.
     """
 

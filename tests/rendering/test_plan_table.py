@@ -61,11 +61,33 @@ TABLE = {
     "own roughness": (Scene([Instance(surfels(roughness=[0.1, 0.9]))]), {}, PASSES, "material_sum", "", ()),
     "float16 sums": (PLAIN, {"accumulation": "float16"}, PASSES, "depth_sum", "", ()),
     "colour alone": (PLAIN, {"outputs": ("color",)}, PASSES, "-normal_coverage", "", ()),
+    "diffuse colour": (
+        PLAIN, {"outputs": ("color", "diffuse_color")}, PASSES, "-normal_coverage diffuse_color", "", ("METALS",),
+    ),
+    "diffuse colour, flat": (
+        PLAIN, {"outputs": ("diffuse_color",), "shading": "flat"},
+        PASSES, "-normal_coverage diffuse_color", "-brdf_table", (),
+    ),
+    "emission": (PLAIN, {"outputs": ("emission",)}, PASSES, "-normal_coverage emission", "", ()),
+    "shadow share": (
+        lit(casts_shadow=True), {"outputs": ("shadow",)}, ("shadow_maps", *PASSES),
+        "-normal_coverage shadow_depth shadow_overdraw", "lights shadow_maps", ("SHADOW_SHARE",),
+    ),
+    "count of splats": (
+        PLAIN, {"outputs": ("overdraw",)}, PASSES, "-normal_coverage overdraw_sum shadow_overdraw", "", (),
+    ),
+    "position": (PLAIN, {"outputs": ("position",)}, PASSES, "-normal_coverage", "", ()),
     "lines": (PLAIN, {"lines": Lines()}, ("visibility", "attributes", "lines", "shading"), "lines", "", ()),
     "overdraw": (PLAIN, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", ()),
     "mip": (
         PLAIN, {"method": "mip"}, ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
         "seen_range seen_depth shaded surface", "", (),
+    ),
+    "mip, more outputs": (
+        PLAIN, {"method": "mip", "outputs": ("emission", "overdraw")},
+        ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
+        "-normal_coverage seen_range seen_depth shaded surface emission sample_emission overdraw_sum shadow_overdraw "
+        "sample_shadow_overdraw", "", (),
     ),
     "one pass": (
         PLAIN, {"method": "affine_unfiltered"}, ("attributes", "shading"), "-visibility_depth seen_depth", "", (),

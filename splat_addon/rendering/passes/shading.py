@@ -57,6 +57,10 @@ _DEFINES = {
 }
 
 
+#: Shaders need not be told of them.
+_ALWAYS_WRITTEN = ("combined", "depth", "shaded", "surface")
+
+
 def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
     """What the pass draws with; its fragment shader has its name."""
     kinds = {"depth": "float"}
@@ -73,7 +77,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
             ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
             *_multisampling(frame),
             *(HALF_SUMS if "depth_sum" in planned.reads else ()),
-            *((("NORMAL_OUTPUT", "1"),) if "normal_coverage" in planned.writes else ()),
+            *((f"{name.upper()}_OUTPUT", "1") for name in planned.writes if name not in _ALWAYS_WRITTEN),
             *((define, "1") for texture, define in _DEFINES.items() if texture in planned.reads),
             *((name, "1") for name, _ in frame.features),
             *(LINEAR_DEPTH if frame.linear_depth else ()),

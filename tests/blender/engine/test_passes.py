@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Combined, Depth and Normal: as Cycles' passes of the same surface, and exact in a multilayer file."""
+"""Passes: as Cycles' of the same surface, and exact in a multilayer file."""
 
 import bmesh
 import bpy
@@ -21,13 +21,13 @@ def layer(scene):
 @pytest.fixture
 def frames(monkeypatch):
     """Every Frame that the renderer has given out."""
-    given, render = [], Renderer.render
+    given, render = [], Renderer.render_moments
 
     def recorded(self, *arguments, **options):
         given.append(render(self, *arguments, **options))
         return given[-1]
 
-    monkeypatch.setattr(Renderer, "render", recorded)
+    monkeypatch.setattr(Renderer, "render_moments", recorded)
     return given
 
 
@@ -132,3 +132,83 @@ def test_every_view_layer_has_its_own_objects_and_passes(scene, layer, add_camer
         hit = stored[f"{name}.Depth"] < EMPTY_DEPTH
         assert hit.any() and hit[drawn].sum() == hit.sum()
         assert np.array_equal(hit, stored[f"{name}.Combined"][..., 3] > 0)
+
+
+#: flag -> name from 5.0 on, name before, array of the frame
+MORE_PASSES = {
+    "use_pass_position": ("Position", "Position", "position"),
+    "use_pass_diffuse_color": ("Diffuse Color", "DiffCol", "diffuse_color"),
+    "use_pass_emit": ("Emission", "Emit", "emission"),
+    "use_pass_shadow": ("Shadow", "Shadow", "shadow"),
+    "use_pass_coverage": ("Coverage", "Coverage", "coverage"),
+    "use_pass_overdraw": ("Overdraw", "Overdraw", "overdraw"),
+}
+
+
+def ask_for(layer, flag):
+    owner = layer if hasattr(layer, flag) else layer.surfel_splatting
+    setattr(owner, flag, True)
+    long, short, array = MORE_PASSES[flag]
+    return f"ViewLayer.{long if bpy.app.version >= (5, 0, 0) else short}", array
+
+
+@pytest.fixture
+def glowing_sheet(scene, add_camera, add_sheet):
+    """A metallic sheet that glows, and a sun over it, seen from the side."""
+    scene.surfel_splatting.shading = "principled"
+    add_camera((1, 0, 3), (0.1, 0.3, 0.2))
+    sheet = add_sheet(colors=(0.1, 0.7, 1 / 3, 1))
+    material = bpy.data.materials.new("glow")
+    material.use_nodes = True
+    values = material.node_tree.nodes["Principled BSDF"].inputs
+    values["Metallic"].default_value = 0.25
+    values["Emission Color"].default_value, values["Emission Strength"].default_value = (1, 0.5, 0.25, 1), 2
+    sheet.data.materials.append(material)
+    sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
+    scene.collection.objects.link(sun)
+    return sheet
+
+
+def test_every_pass_is_in_the_file_bit_for_bit(layer, glowing_sheet, passes, frames):
+    names = dict(ask_for(layer, flag) for flag in MORE_PASSES)
+    stored = passes()
+    (frame,) = frames
+    assert stored.keys() == {"ViewLayer.Combined", "ViewLayer.Depth", "ViewLayer.Normal", *names}
+    for name, array in names.items():
+        assert getattr(frame, array).any() and np.array_equal(stored[name], getattr(frame, array)), name
+    middle = stored["ViewLayer.Depth"] < EMPTY_DEPTH
+    middle &= stored["ViewLayer.Coverage"] == 1
+    emission, diffuse = (
+        next(stored[n] for n, array in names.items() if array == a) for a in ("emission", "diffuse_color")
+    )
+    np.testing.assert_allclose(emission[middle], np.broadcast_to((2, 1, 0.5), (middle.sum(), 3)), 1e-5)
+    np.testing.assert_allclose(diffuse[middle], np.broadcast_to((0.075, 0.525, 0.25), (middle.sum(), 3)), 1e-5)
+    assert (stored["ViewLayer.Shadow"][middle] > 0.99).all()
+    np.testing.assert_allclose(stored["ViewLayer.Position"][middle][:, 2], 0, atol=1e-5)
+
+
+@pytest.mark.parametrize("flag", MORE_PASSES)
+def test_each_pass_is_made_alone(flag, scene, glowing_sheet, passes, frames):
+    name, array = ask_for(scene.view_layers[0], flag)
+    assert passes().keys() == {"ViewLayer.Combined", name}
+    there = {a for _, _, a in MORE_PASSES.values() if getattr(frames[0], a) is not None}
+    assert there == {array}
+
+
+def test_positions_are_cycles_positions(layer, add_camera, add_sheet, passes, cycles_passes):
+    layer.use_pass_position = True
+    add_camera((0.5, -0.4, 5), (0.2, 0.1, 0), shift_x=0.1)
+    tilt = Matrix.Translation((0.3, 0.2, 0)) @ Matrix.Rotation(0.8, 4, (1, 2, 0))
+    sheet = add_sheet(side=2.5, count=60)
+    sheet.matrix_world = tilt
+    ours = passes()
+    sheet.hide_render = True
+    bpy.ops.mesh.primitive_plane_add(size=2.5)
+    bpy.context.object.matrix_world = tilt
+    theirs = cycles_passes()
+    both = (ours["ViewLayer.Depth"] < EMPTY_DEPTH) & (theirs["ViewLayer.Depth"] < EMPTY_DEPTH)
+    assert both.mean() > 0.2 and np.ptp(theirs["ViewLayer.Position"][both][:, 0]) > 1
+    np.testing.assert_allclose(ours["ViewLayer.Position"][both], theirs["ViewLayer.Position"][both], atol=0.02)
+    empty = (ours["ViewLayer.Depth"] == EMPTY_DEPTH) & (theirs["ViewLayer.Depth"] == EMPTY_DEPTH)
+    assert empty.any() and not ours["ViewLayer.Position"][empty].any()
+    assert not theirs["ViewLayer.Position"][empty].any()

@@ -1,0 +1,37 @@
+// References: Blender manual, "Passes" (what Cycles and EEVEE hand on beside the picture).
+// Summary: what a sample hands on beside its colour, depth and normal, and the targets of those that are asked for:
+//          of samples that are still to be filtered, or of pixels.
+
+struct Outputs {
+  vec3 diffuse_color;
+  vec3 emission;
+  vec4 shadow_overdraw;  // share of the lights that arrives, number of splats
+};
+
+const Outputs NO_OUTPUTS = Outputs(vec3(0.0), vec3(0.0), vec4(0.0));
+
+Outputs added(Outputs a, Outputs b, float weight) {
+  return Outputs(a.diffuse_color + b.diffuse_color * weight, a.emission + b.emission * weight,
+                 a.shadow_overdraw + b.shadow_overdraw * weight);
+}
+
+void write_outputs(Outputs values) {
+#ifdef DIFFUSE_COLOR_OUTPUT
+  diffuse_color = vec4(values.diffuse_color, 1.0);
+#endif
+#ifdef EMISSION_OUTPUT
+  emission = vec4(values.emission, 1.0);
+#endif
+#ifdef SHADOW_OVERDRAW_OUTPUT
+  shadow_overdraw = values.shadow_overdraw;
+#endif
+#ifdef SAMPLE_DIFFUSE_COLOR_OUTPUT
+  sample_diffuse_color = vec4(values.diffuse_color, 1.0);
+#endif
+#ifdef SAMPLE_EMISSION_OUTPUT
+  sample_emission = vec4(values.emission, 1.0);
+#endif
+#ifdef SAMPLE_SHADOW_OVERDRAW_OUTPUT
+  sample_shadow_overdraw = values.shadow_overdraw;
+#endif
+}

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The passes of a view layer in its properties: Blender's own switches of those that this engine has, and ours."""
+
+from __future__ import annotations
+
+import bpy
+
+from .ids import ENGINE, LAYER_SETTINGS
+from .render_passes import ViewLayerPasses
+
+#: heading -> the properties under it
+_SWITCHES = {
+    "Data": ("use_pass_z", "use_pass_position", "use_pass_normal"),
+    "Light": ("use_pass_diffuse_color", "use_pass_emit", "use_pass_shadow"),
+    "Splats": ("use_pass_coverage", "use_pass_overdraw"),
+}
+
+
+class VIEWLAYER_PT_surfel_passes(bpy.types.Panel):
+    bl_label = "Passes"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "view_layer"
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine == ENGINE
+
+    def draw(self, context):
+        layout, view_layer = self.layout, context.view_layer
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        for heading, flags in _SWITCHES.items():
+            column = layout.column(heading=heading)
+            for flag in flags:
+                is_ours = flag in ViewLayerPasses.__annotations__
+                column.prop(getattr(view_layer, LAYER_SETTINGS) if is_ours else view_layer, flag)
+
+
+register, unregister = bpy.utils.register_classes_factory((VIEWLAYER_PT_surfel_passes,))

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a frame hands on of the surface beside its colour, by definition: the twin of shaders/common/outputs.glsl."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..rendering.camera import Camera
+from ..rendering.scene import Scene
+from ..rendering.settings import Settings
+from .brdf import dot
+from .lights import all_incident
+from .rays import RayGrid, Surface
+
+#: The shading models that look at lights, and at materials.
+LIT = ("principled", "phong", "toon")
+
+
+def _diffuse_color(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    if settings.shading not in LIT:
+        return surface.color
+    return surface.color * (1 - np.clip(surface.metallic, 0, 1))[:, None]
+
+
+def _emission(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    return surface.emission * (settings.shading in LIT)
+
+
+def _shadow(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    """Irradiance that arrives over irradiance without shadows, of each colour; 0 of 0 is 0."""
+    if settings.shading not in LIT:
+        return np.zeros_like(surface.color)
+    origin, direction = grid.rays(surface.rays)
+    position = origin + surface.depth[:, None] * direction
+    shadowless = replace(scene, lights=tuple(replace(light, casts_shadow=False) for light in scene.lights))
+    arriving, unshadowed = (
+        sum(
+            (
+                light.irradiance * np.maximum(dot(surface.normal, light.to_light), 0)[:, None]
+                for light in all_incident(lit, camera, position, surface.light_set, settings.epsilon)
+            ),
+            np.zeros_like(surface.color),
+        )
+        for lit in (scene, shadowless)
+    )
+    return np.divide(arriving, unshadowed, out=np.zeros_like(arriving), where=unshadowed > 0)
+
+
+def _overdraw(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    return surface.count[:, None]
+
+
+#: array of a `Frame` that is a mean over rays -> how many numbers it has, and a function of what rays see
+OUTPUTS = {
+    "diffuse_color": (3, _diffuse_color),
+    "emission": (3, _emission),
+    "shadow": (3, _shadow),
+    "overdraw": (1, _overdraw),
+}

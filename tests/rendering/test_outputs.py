@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a frame hands on beside its colour: against closed forms, against the exact picture, and on every device."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import render_exact, scenes
+from splat_addon.reference.extremes import discs, sheet
+from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Light, Material, Scene, Settings, look_at
+from splat_addon.rendering.settings import OUTPUTS
+
+SIZE = (48, 36)
+CAMERA = Camera.perspective(np.eye(4), 0.9, SIZE)
+#: A sheet that fills the left half of the picture, 4 away, its colours alike.
+GREY = (0.2, 0.4, 0.6)
+WALL = replace(sheet(60, 3.0, 0.0, 4.0), colors=np.tile((*GREY, 1.0), (3600, 1)))
+LEFT = np.eye(4)
+LEFT[0, 3] = -3.0
+#: Over a sample of the wall: pi r^2 over a cell is 2.26, as the corners are reached 1.2 times; filters reach farther.
+SPLATS = {"quad": (2.1, 2.4), "mip": (5, 30), "raycast": (2.3, 10), "affine_unfiltered": (0.999, 1.001)}
+METHODS = tuple(SPLATS)
+
+
+def wall(**material) -> Scene:
+    return Scene([Instance(WALL, LEFT, (Material(**material),))], world=(0.5, 0.5, 0.5))
+
+
+def outputs(**choices) -> Settings:
+    return Settings(**{"outputs": OUTPUTS, "supersampling": 1, **choices})
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_passes_of_a_wall_are_its_own(method, render):
+    frame = render(wall(metallic=0.25, emission=(1, 2, 3)), CAMERA, outputs(method=method))
+    inside, outside = np.s_[4:-4, 4:20], np.s_[:, 28:]
+    np.testing.assert_allclose(frame.diffuse_color[inside], np.broadcast_to(0.75 * np.array(GREY), (28, 16, 3)), 1e-5)
+    np.testing.assert_allclose(frame.emission[inside], np.broadcast_to((1.0, 2, 3), (28, 16, 3)), 1e-5)
+    np.testing.assert_allclose(frame.depth[inside], 4.0, 1e-5)
+    np.testing.assert_allclose(frame.position[inside], CAMERA.points_at(np.full(SIZE[::-1], 4.0))[inside], 1e-4)
+    low, high = SPLATS[method]
+    assert frame.overdraw[inside].min() >= 1 and low < frame.overdraw[inside].mean() < high
+    for name in OUTPUTS[4:]:
+        assert not getattr(frame, name)[outside].any()
+    assert (frame.depth[outside] == EMPTY_DEPTH).all() and not frame.shadow.any()
+
+
+def test_half_a_pixel_has_half_of_each(render):
+    """Means over samples, of which empty ones count as 0: as the coverage has it."""
+    frame = render(wall(emission=(1, 1, 1)), CAMERA, outputs(method="quad", supersampling=8))
+    edge = (frame.coverage > 0) & (frame.coverage < 1)
+    assert edge.sum() >= 30
+    np.testing.assert_allclose(frame.emission[edge], frame.coverage[edge, None] * np.ones(3), 1e-5)
+    np.testing.assert_allclose(frame.diffuse_color[edge], frame.coverage[edge, None] * np.array(GREY), 1e-5)
+
+
+def test_mips_silhouettes_filter_each_as_the_coverage(render):
+    frame = render(wall(emission=(1, 1, 1)), CAMERA, outputs(method="mip"))
+    edge = (frame.coverage > 0) & (frame.coverage < 1)
+    assert edge.sum() >= 30
+    np.testing.assert_allclose(frame.emission[edge], frame.coverage[edge, None] * np.ones(3), 1e-5)
+    np.testing.assert_allclose(frame.diffuse_color[edge], frame.coverage[edge, None] * np.array(GREY), 1e-5)
+
+
+def test_models_blind_to_materials_and_lights_have_neither(render):
+    scene = replace(wall(metallic=1.0, emission=(1, 2, 3)), lights=(Light("sun", direction=(0, 0, -1)),))
+    flat = render(scene, CAMERA, outputs(method="quad", shading="flat"))
+    np.testing.assert_allclose(
+        flat.diffuse_color, flat.color[..., :3] - 0.5 * (1 - flat.coverage[..., None]), atol=1e-6
+    )
+    assert flat.diffuse_color.any() and not flat.emission.any() and not flat.shadow.any()
+
+
+def sunlit(casts_shadow=True):
+    """The wall under a red sun from the front, which a large disc before it shadows, and a blue one without shadows."""
+    disc = discs((-1.2, 0, -2), (0.4, 0, 0), (0, 0.4, 0))
+    suns = (
+        Light("sun", (1, 0, 0), 2.0, direction=(0, 0, -1), casts_shadow=casts_shadow),
+        Light("sun", (1, 0, 1), 1.0, direction=(0, 0, -1)),
+    )
+    return Scene([Instance(WALL, LEFT), Instance(disc, casts_shadow=True)], suns)
+
+
+def test_shadow_is_the_share_of_each_colour_that_arrives(render):
+    """Behind the disc a third of the red, all of the blue; of green there is no light at all."""
+    frame = render(sunlit(), CAMERA, outputs(method="quad"))
+    is_wall = frame.depth > 3
+    behind = is_wall & (np.linalg.norm(frame.position[..., :2] - (-1.2, 0), axis=2) < 0.3) & (frame.depth < 10)
+    beside = is_wall & (np.linalg.norm(frame.position[..., :2] - (-1.2, 0), axis=2) > 0.5) & (frame.coverage == 1)
+    assert behind.sum() > 3 and beside.sum() > 100
+    np.testing.assert_allclose(frame.shadow[behind], np.broadcast_to((1 / 3, 0, 1), (behind.sum(), 3)), 1e-4)
+    np.testing.assert_allclose(frame.shadow[beside], np.broadcast_to((1.0, 0, 1), (beside.sum(), 3)), 1e-4)
+    assert not render(sunlit(), CAMERA, outputs(method="quad", shading="normals")).shadow.any()
+
+
+def glowing():
+    scene, camera = scenes.torus(size=(64, 64))
+    first, *others = scene.surfels
+    x, y, _ = (first.surfels.positions / np.abs(first.surfels.positions).max()).T
+    own = replace(first.surfels, metallic=np.clip(0.5 + y, 0, 1), emission=np.stack([x * x, y * y, 0 * x], axis=1))
+    lights = (Light("sun", (1, 0.8, 0.6), 2.0, direction=(1, -0.5, -1)), Light("sun", direction=(-1, 0.2, -1)))
+    return replace(scene, surfels=(replace(first, surfels=own), *others), lights=lights), camera
+
+
+def test_the_passes_are_the_exact_ones(render):
+    scene, camera = glowing()
+    settings = outputs(method="quad", supersampling=2)
+    frame, exact = render(scene, camera, settings), render_exact(scene, camera, settings, samples=2)
+    for name in OUTPUTS[4:]:
+        ours, true = (getattr(f, name).reshape(64 * 64, -1) for f in (frame, exact))
+        assert true.any() and np.count_nonzero(np.abs(ours - true).max(axis=1) > 1e-4) <= 4, name
+
+
+def test_a_shadow_is_the_exact_one(render):
+    few = replace(sunlit(), surfels=(Instance(sheet(16, 1.5, 0.0, 4.0)), sunlit().surfels[1]))
+    camera = Camera.perspective(look_at((1, 1, 0), (-0.5, 0, -3)), 0.9, (24, 18))
+    frame = render(few, camera, outputs(method="quad"))
+    exact = render_exact(few, camera, outputs(), samples=1)
+    assert np.abs(frame.shadow - exact.shadow).mean() < 0.01 and np.ptp(exact.shadow[..., 0]) > 0.5
+
+
+@pytest.mark.parametrize("options", [{"accumulation": "float16"}, {"storage": "16-bit"}])
+def test_whatever_the_sums_and_the_storage(options, render):
+    scene, camera = glowing()
+    frame, plain = (render(scene, camera, outputs(method="quad", **more)) for more in (options, {}))
+    inside = (frame.coverage == 1) & (plain.coverage == 1)
+    for name in OUTPUTS[4:]:
+        ours, usual = getattr(frame, name)[inside], getattr(plain, name)[inside]
+        assert ours.any() and np.abs(ours - usual).mean() < (0.2 if name == "overdraw" else 0.02), name
+
+
+def test_a_position_is_that_of_the_nearest_sample(render):
+    """Each on the torus, and at its pixel's depth; through whichever sample's camera."""
+    scene, camera = glowing()
+    frame = render(scene, camera, outputs(method="quad", samples=5))
+    hit = frame.depth < EMPTY_DEPTH
+    eye = (frame.position - camera.matrix_world[:3, 3]) @ camera.matrix_world[:3, :3]
+    np.testing.assert_allclose(-eye[hit][:, 2], frame.depth[hit], 1e-5)
+    assert not frame.position[~hit].any()
+
+
+def test_outputs_that_are_not_asked_for_are_not_there(render):
+    frame = render(wall(), CAMERA, Settings(outputs=("color", "emission")))
+    assert frame.emission is not None
+    assert all(getattr(frame, name) is None for name in OUTPUTS if name not in ("color", "emission"))
+    assert frame.stats["plan"].textures[-2:] == ("depth", "emission")
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_of_nothing_all_is_empty(method, render):
+    frame = render(Scene(world=(1, 1, 1)), CAMERA, outputs(method=method))
+    assert (frame.color == 1).all() and (frame.depth == EMPTY_DEPTH).all()
+    assert not any(getattr(frame, name).any() for name in OUTPUTS[2:])
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_they_are_the_same_on_every_device(method, render, pictures, request):
+    scene, camera = glowing()
+    frame = render(scene, camera, outputs(method=method))
+    path = pictures / f"outputs-{method}.npz"
+    if request.config.getoption("--device") == "standalone":
+        np.savez(path, **{name: getattr(frame, name) for name in OUTPUTS})
+        return
+    assert path.exists(), f"{path} is missing: run the tests with --device standalone first (scripts/test.py does)"
+    standalone = np.load(path)
+    for name in OUTPUTS[4:]:
+        values, others = (array.reshape(64 * 64, -1) for array in (getattr(frame, name), standalone[name]))
+        assert np.count_nonzero(np.abs(values - others).max(axis=1) > 1e-4) <= 1, name
