@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sampling: a mesh becomes surfels by exact scan conversion onto a layered depth cube. Numpy only.
 
-Flow: `mesh` (`joining`) -> `cleaning` -> `fineness`, `grid` -> `depth_cube` (`reductions`, `scan_conversion`) ->
-`attributes` (`ellipses`, `palette` of `surfaces`, `tangents`) -> `merging`, `adaptive` -> `lost_parts`, `part_surfels`
--> `Surfels`; `sample` puts them in order.
+Flow: `mesh` (`joining`) -> `cleaning` (`survey`) -> `fineness`, `grid` -> `depth_cube` (`reductions`,
+`scan_conversion`) -> `attributes` (`ellipses`, `palette` of `surfaces`, `tangents`) -> `merging`, `adaptive` ->
+`lost_parts`, `part_surfels` -> `Surfels`; `sample` puts them in order.
 `closest_approach` says how fine a camera needs it. `tracked` surfels follow a mesh that deforms, by their `binding`.
 Points without faces become surfels in `points`.
 """

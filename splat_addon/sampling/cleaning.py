@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from .mesh import TriangleMesh, corner_indices, doubled_areas, gather_corners, triangle_chunks
+from .mesh import TriangleMesh
+from .survey import survey
 
 #: Beyond this the square of an area leaves float32's range; no scene is that large, but broken files are.
 MAX_COORDINATE = 1e18
@@ -18,107 +19,61 @@ def drop_unusable(mesh: TriangleMesh) -> tuple[TriangleMesh, dict[str, int]]:
 
     Each triangle is counted once, under the first reason that applies. Triangles that share the positions
     of all three corners with an earlier one, in either orientation, are dropped: they would double every sample.
-    A mesh that was returned by this function is returned as it is.
+    A mesh in which all is usable is returned as it is.
     """
     if mesh.known_usable:
         return mesh, {}
-    kept, dropped, facing_area = None, {}, 0.0
-    triangles = mesh.triangles
-    for reason, is_bad in _CHECKS.items():
-        bad = is_bad(mesh.positions, triangles)
-        if reason == _NO_AREA:
-            bad, facing_area = bad
-        if bad is not None and bad.any():
-            good = np.flatnonzero(~bad)
-            dropped[reason] = int(len(bad) - len(good))
-            kept = good if kept is None else kept.take(good)
-            triangles = triangles.take(good, axis=0)
-    if kept is not None:
-        mesh = replace(mesh, **{name: array.take(kept, axis=0) for name, array in mesh.per_triangle().items()})
-    usable = _without_unused_vertices(mesh)
-    object.__setattr__(usable, "facing_area", facing_area)
-    return usable, dropped
-
-
-def _without_unused_vertices(mesh: TriangleMesh) -> TriangleMesh:
-    """The same triangles over the vertices that they use, marked as usable; the bounds then hold no strays."""
-    used = np.zeros(len(mesh.positions), bool)
-    used[mesh.triangles.ravel()] = True
-    if used.all():
-        mesh = replace(mesh)
-    else:
-        new_index = np.cumsum(used) - 1
-        mesh = replace(mesh, positions=mesh.positions[used], triangles=new_index[mesh.triangles])
+    dropped: dict[str, int] = {}
+    low, high = mesh.bounds() if len(mesh) else (0, 0)
+    if not (np.all(low >= -MAX_COORDINATE) and np.all(high <= MAX_COORDINATE)):
+        for reason, is_bad_value in _BAD_VERTICES.items():
+            is_bad = is_bad_value(mesh.positions).any(axis=1)
+            mesh = _without({reason: np.flatnonzero(is_bad[mesh.triangles].any(axis=1))}, mesh, dropped)
+    found = survey(mesh)
+    pinched = found.flat[_repeats_index(mesh.triangles.take(found.flat, axis=0))]
+    repeating = _repeating(mesh, np.setdiff1d(found.suspects, pinched))
+    collinear = np.setdiff1d(found.flat, np.concatenate([pinched, repeating]))
+    bad = {"with a repeated vertex": pinched, "that repeat another": repeating, "of zero area": collinear}
+    mesh = _without(bad, mesh, dropped)
+    if len(np.setdiff1d(repeating, found.flat)):
+        found = survey(mesh)
+    if not found.is_used.all():
+        new_index = np.cumsum(found.is_used) - 1
+        mesh = replace(mesh, positions=mesh.positions[found.is_used], triangles=new_index[mesh.triangles])
     object.__setattr__(mesh, "known_usable", True)
-    return mesh
+    object.__setattr__(mesh, "facing_area", found.facing_area)
+    return mesh, dropped
 
 
-def _with_bad_vertex(is_bad_value):
-    """A check that finds the triangles of vertices with such a value; None where there is none."""
-
-    def check(positions, triangles):
-        values = is_bad_value(positions)
-        return values.any(axis=1)[triangles].any(axis=1) if values.any() else None
-
-    return check
-
-
-def _repeats_index(positions, triangles):
-    bad = np.empty(len(triangles), bool)
-    for chunk in triangle_chunks(len(triangles)):
-        a, b, c = np.ascontiguousarray(triangles[chunk].T)
-        bad[chunk] = (a == b) | (b == c) | (c == a)
-    return bad
+def _without(bad: dict[str, np.ndarray], mesh: TriangleMesh, dropped: dict[str, int]) -> TriangleMesh:
+    """The mesh without the triangles of each reason, which are counted in `dropped`; itself where there are none."""
+    dropped |= {reason: len(rows) for reason, rows in bad.items() if len(rows)}
+    rows = np.concatenate(list(bad.values()))
+    if not len(rows):
+        return mesh
+    is_kept = np.ones(len(mesh), bool)
+    is_kept[rows] = False
+    kept = np.flatnonzero(is_kept)
+    left = replace(mesh, **{name: array.take(kept, axis=0) for name, array in mesh.per_triangle().items()})
+    left.share_places_with(mesh)
+    return left
 
 
-def _has_no_area(positions, triangles):
-    """The (t,) bad ones, and what the others make up as `TriangleMesh.facing_area`, which is next to nothing here."""
-    components = np.ascontiguousarray(positions.T)
-    bad, facing_area = np.empty(len(triangles), bool), 0.0
-    # A corner that was refused is gone from `triangles`, so nothing here overflows.
-    for chunk in triangle_chunks(len(triangles)):
-        x, y, z = doubled_areas(gather_corners(components, triangles[chunk]))
-        bad[chunk] = (x == 0) & (y == 0) & (z == 0)
-        facing_area += float(np.maximum(np.maximum(np.abs(x), np.abs(y)), np.abs(z)).sum()) / 2
-    return bad, facing_area
+def _repeats_index(triangles: np.ndarray) -> np.ndarray:
+    a, b, c = triangles.T
+    return (a == b) | (b == c) | (c == a)
 
 
-def _repeats_another(positions, triangles):
+def _repeating(mesh: TriangleMesh, suspects: np.ndarray) -> np.ndarray:
     """All but the first of the triangles with the same three corner positions in any order.
 
-    Sums of 64-bit vertex hashes find the suspects in one sort; only those are compared exactly.
+    suspects: (k,) the triangles to compare, ascending.
     """
-    vertex_keys = vertex_hashes(positions)
-    keys = np.empty(len(triangles), np.uint64)
-    for chunk in triangle_chunks(len(triangles)):
-        a, b, c = vertex_keys.take(corner_indices(triangles[chunk]))
-        keys[chunk] = a + b + c
-    ordered = np.sort(keys)
-    shared = ordered[1:][ordered[1:] == ordered[:-1]]
-    if not len(shared):
-        return None
-    suspects = np.flatnonzero(np.isin(keys, shared))
-    vertices, corners = np.unique(triangles[suspects], return_inverse=True)
-    place = _equal_rows(positions[vertices])
+    vertices, corners = np.unique(mesh.triangles[suspects], return_inverse=True)
+    place = _equal_rows(mesh.positions[vertices])
     corners = np.sort(place[corners.reshape(-1, 3)], axis=1)
-    group = _equal_rows(corners)
-    _, first = np.unique(group, return_index=True)
-    bad = np.zeros(len(triangles), bool)
-    bad[suspects] = True
-    bad[suspects[first]] = False
-    return bad
-
-
-def vertex_hashes(positions: np.ndarray) -> np.ndarray:
-    """(V,) uint64 that are equal for equal positions; adding 0.0 turns -0.0 into 0.0."""
-    keys = np.zeros(len(positions), np.uint64)
-    for column in positions.T:
-        keys ^= np.ascontiguousarray(column + 0.0).view(np.uint64)
-        keys *= np.uint64(0x9E3779B97F4A7C15)
-        keys ^= keys >> np.uint64(29)
-        keys *= np.uint64(0xBF58476D1CE4E5B9)
-        keys ^= keys >> np.uint64(32)
-    return keys
+    _, first = np.unique(_equal_rows(corners), return_index=True)
+    return np.delete(suspects, first)
 
 
 def _equal_rows(rows: np.ndarray) -> np.ndarray:
@@ -130,16 +85,8 @@ def _equal_rows(rows: np.ndarray) -> np.ndarray:
     return label
 
 
-_NO_AREA = "of zero area"
-
-#: reason -> function of (positions, remaining triangles) giving the (t,) bad ones, or None for none. The areas come
-#: last: only then are they those of the triangles that stay.
-_CHECKS = {
-    "with a non-finite vertex": _with_bad_vertex(lambda p: ~np.isfinite(p)),
-    f"with a vertex beyond {MAX_COORDINATE:g}": _with_bad_vertex(
-        lambda p: np.isfinite(p) & (np.abs(p) > MAX_COORDINATE)
-    ),
-    "with a repeated vertex": _repeats_index,
-    "that repeat another": _repeats_another,
-    _NO_AREA: _has_no_area,
+#: reason -> function of (V, 3) positions giving the bad values.
+_BAD_VERTICES = {
+    "with a non-finite vertex": lambda p: ~np.isfinite(p),
+    f"with a vertex beyond {MAX_COORDINATE:g}": lambda p: np.isfinite(p) & (np.abs(p) > MAX_COORDINATE),
 }

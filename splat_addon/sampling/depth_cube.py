@@ -22,7 +22,7 @@ _CELL_BITS = 21
 
 
 def depth_cube(
-    positions: np.ndarray,
+    coordinates: np.ndarray,
     triangles: np.ndarray,
     grid: Grid,
     keeps: Callable[[np.ndarray], np.ndarray],
@@ -30,13 +30,15 @@ def depth_cube(
 ) -> tuple[Spans, Spans, Spans]:
     """One `Spans` for the image along each of x, y, z.
 
-    positions: (V, 3) float64, of the vertices. triangles: (T, 3).
+    coordinates: (3, V) float64, of the vertices on the grid. triangles: (T, 3).
     keeps: (3, t) absolute normal components -> the (3, t) images that sample a triangle.
     report: called with the finished share, 0 to 1. The axis is chosen from the snapped corners, whose normal is exact.
     Raises ValueError with one sentence where there would be more samples than `MAX_SAMPLES`.
     """
-    snapped = grid.snapped(grid.coordinates(positions))
-    cells = _packed_cells(snapped, grid.subcells)
+    snapped, cells = np.empty_like(coordinates), np.empty(coordinates.shape[1], np.int64)
+    for chunk in triangle_chunks(len(cells)):
+        snapped[:, chunk] = grid.snapped(coordinates[:, chunk])
+        cells[chunk] = _packed_cells(snapped[:, chunk], grid.subcells)
     images: tuple[list, list, list] = ([], [], [])
     total = 0
     for chunk in triangle_chunks(len(triangles)):

@@ -9,16 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from .cleaning import vertex_hashes
-from .connectivity import part_labels
+from .connectivity import among, part_labels
 from .mesh import TriangleMesh, corner_indices, triangle_chunks
 
 #: The sampled surface stops growing when a step takes less than this share of what is left, and this many triangles
 #: cost a step next to nothing; labels do the rest.
 _WORTHWHILE_SHARE, _FEW = 0.1, 4096
-
-#: Of a hash, that sort out vertices; the table has this power of two entries.
-_SIEVE_BITS = 16
 
 
 def lost_parts(mesh: TriangleMesh, is_sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -32,7 +28,7 @@ def lost_parts(mesh: TriangleMesh, is_sampled: np.ndarray) -> tuple[np.ndarray, 
     rest = _untouched(mesh.triangles, reached)
     corners, rest = _unreached(mesh.triangles.take(rest, axis=0), rest, reached)
     if len(rest):
-        corners, reached = _welded(mesh.positions, corners, reached)
+        corners, reached = _welded(mesh.places, corners, reached)
         corners, rest = _unreached(corners, rest, reached)
     if not len(rest):
         return rest, rest
@@ -59,17 +55,15 @@ def _untouched(triangles: np.ndarray, reached: np.ndarray) -> np.ndarray:
     return np.concatenate(found)
 
 
-def _welded(positions: np.ndarray, corners: np.ndarray, reached: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(m, 3) corners that name places instead of vertices, and the (p,) places where a reached vertex is."""
-    places, named = np.unique(vertex_hashes(positions.take(corners.ravel(), axis=0)), return_inverse=True)
-    # A few bits of one coordinate tell nearly all vertices apart from the few places in question.
-    bits = (vertex_hashes(positions[:, :1]) >> np.uint64(64 - _SIEVE_BITS)).astype(np.intp)
-    is_wanted = np.zeros(1 << _SIEVE_BITS, bool)
-    is_wanted[bits.take(corners)] = True
-    others = vertex_hashes(positions.take(np.flatnonzero(is_wanted.take(bits) & reached), axis=0))
-    place = np.minimum(np.searchsorted(places, others), len(places) - 1)
+def _welded(hashes: np.ndarray, corners: np.ndarray, reached: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(m, 3) corners that name places instead of vertices, and the (p,) places where a reached vertex is.
+
+    hashes: (V,) of the vertices' places.
+    """
+    places, named = np.unique(hashes.take(corners.ravel()), return_inverse=True)
+    at = among(hashes, places)
     is_reached = np.zeros(len(places), bool)
-    is_reached[place[places[place] == others]] = True
+    is_reached[np.searchsorted(places, hashes.take(at[reached.take(at)]))] = True
     return named.reshape(-1, 3), is_reached
 
 

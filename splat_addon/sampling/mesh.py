@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from .places import vertex_hashes
 from .surfaces import Surface
 
 #: Triangles handled at a time: their temporaries stay in the processor's cache (facts: 32k has the lowest memory).
@@ -26,9 +27,10 @@ _LAYERED = ("corner_colors", "corner_uvs")
 
 @dataclass(frozen=True, eq=False)
 class TriangleMesh:
-    """T triangles over V vertices; the arrays are viewed, not copied, and must not change afterwards.
+    """T triangles over V vertices; arrays are viewed where they are of the form below, and must not change afterwards.
 
-    positions: (V, 3) float64, object units; values that are not finite are allowed, `drop_unusable` sorts them out.
+    positions: (V, 3) float64 in Fortran's order, object units; values that are not finite are allowed, `drop_unusable`
+        sorts them out.
     triangles: (T, 3) integer vertex indices, counter-clockwise seen from outside.
     corner_normals: (T, 3, 3) shading normals of any length; None or zero: the triangle's own normal.
     corner_colors: (T, 3, 4) scene-linear. corner_uvs: (T, 3, 2). Both may have several layers, one behind the other in
@@ -36,7 +38,7 @@ class TriangleMesh:
     materials: (T,) integer index into `surfaces` and into the object's material slots; None: all 0.
     surfaces: what each material is made of; an index past the end uses the last.
     known_usable, facing_area: set by `drop_unusable` alone. The latter is the area as the images see it that each
-        triangle faces most, object units squared.
+        triangle faces most, object units squared. surveyed: what `survey` found, kept by it alone.
 
     Raises ValueError with one sentence for a wrong shape or type or an index out of range.
     """
@@ -50,9 +52,11 @@ class TriangleMesh:
     surfaces: tuple[Surface, ...] = (Surface(),)
     known_usable: bool = field(default=False, init=False, repr=False)
     facing_area: float = field(default=0.0, init=False, repr=False)
+    surveyed: object = field(default=None, init=False, repr=False)
 
     def __post_init__(self):
-        positions = np.ascontiguousarray(self.positions, np.float64)
+        # each component contiguous, as nearly all that is asked of them goes by components
+        positions = np.asfortranarray(self.positions, np.float64)
         if positions.ndim != 2 or positions.shape[1] != 3:
             raise ValueError(f"Mesh positions must have shape (V, 3), not {positions.shape}.")
         triangles = np.asarray(self.triangles)
@@ -85,9 +89,17 @@ class TriangleMesh:
 
     @cached_property
     def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        # By columns: numpy is 50 times slower along the long axis of three columns.
-        columns = self.positions.T
-        return np.array([c.min() for c in columns]), np.array([c.max() for c in columns])
+        return self.positions.min(axis=0), self.positions.max(axis=0)
+
+    @cached_property
+    def places(self) -> np.ndarray:
+        """(V,) uint64: `vertex_hashes`, equal for vertices at one place."""
+        return vertex_hashes(self.positions)
+
+    def share_places_with(self, other: TriangleMesh):
+        """For a mesh over the same vertices: what is known of these need not be found again."""
+        for name in ("_bounds", "places"):
+            object.__setattr__(self, name, getattr(other, name))
 
     def per_triangle(self) -> dict[str, np.ndarray]:
         """The arrays that hold one entry a triangle, by field name."""

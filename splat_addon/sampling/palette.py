@@ -15,6 +15,9 @@ from .surfaces import WRAPS, Channel, NormalMap, Surface, Texture, VertexColors
 #: The pixel of a normal map that leaves the normal.
 _FLAT = np.array((0.5, 0.5, 1.0), np.float32)
 
+#: Of the size of one colour.
+_ROW = np.complex128
+
 #: Components of one layer of texture coordinates and of vertex colours.
 _UV, _RGBA = 2, 4
 
@@ -70,9 +73,12 @@ class Palette:
     def _fill(self, out, at, surface: Surface, samples: Samples) -> None:
         looked_up: dict = {}
         colors = self._values(surface.color, samples, looked_up)
-        # By columns: numpy is many times slower in spreading a row of four.
-        for k in range(4):
-            out["colors"][at, k] = colors[..., k]
+        # numpy is many times slower in spreading a row of four
+        if colors.ndim == 1:
+            out["colors"].view(_ROW)[at] = colors.view(_ROW)
+        else:
+            for k in range(4):
+                out["colors"][at, k] = colors[:, k]
         if surface.opacity is not None:
             out["colors"][at, 3] *= self._values(surface.opacity, samples, looked_up)[..., 0]
         for name in self.optional:

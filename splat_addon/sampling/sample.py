@@ -98,11 +98,11 @@ def sample_surface(
     how = {"reduction": reduction, "grazing_angle": grazing_angle}
     grid = make_grid(mesh, grid_spacing(mesh, spacing=spacing, resolution=resolution, count=count, **how))
     keeps = partial(chosen.keeps, grazing_angle=grazing_angle)
-    images = depth_cube(mesh.positions, mesh.triangles, grid, keeps, stage(progress, 0.0, 0.5))
+    coordinates = grid.coordinates(mesh.positions)
+    images = depth_cube(coordinates, mesh.triangles, grid, keeps, stage(progress, 0.0, 0.5))
     lost = lost_parts(mesh, _is_sampled(images, len(mesh)))
 
     total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
-    coordinates = grid.coordinates(mesh.positions)
     palette = Palette(mesh.surfaces)
     uv_fields = (*UV_FIELDS, BORDER) if texture_mapped and is_texture_mapped(mesh.surfaces) else ()
     seams = seam_edges(mesh) if uv_fields and mesh.corner_uvs is not None else None

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .cleaning import vertex_hashes
 from .mesh import TriangleMesh
+from .places import vertex_hashes
 
 #: Lines farther from the centre than this, in half-axes, limit nothing that is looked up.
 FARTHEST = 1.5
@@ -21,7 +21,7 @@ _NEAREST = 1e-3
 def seam_edges(mesh: TriangleMesh) -> np.ndarray:
     """(T, 3) bool: whether the edge opposite each corner is shared with no triangle of the same material that has the
     same texture coordinates there."""
-    places = vertex_hashes(mesh.positions)[mesh.triangles]
+    places = mesh.places[mesh.triangles]
     uvs = np.asarray(mesh.corner_uvs, np.float32)
     corners = places ^ vertex_hashes(uvs.reshape(-1, uvs.shape[2]).astype(np.float64)).reshape(places.shape)
     # a sum names an edge alike from both sides

@@ -77,7 +77,8 @@ def rays():
     def shoot(mesh, resolution):
         mesh, _ = drop_unusable(mesh)
         grid = make_grid(mesh, grid_spacing(mesh, resolution=resolution))
-        images = depth_cube(mesh.positions, mesh.triangles, grid, lambda normals: normals > 0, lambda share: None)
+        coordinates = grid.coordinates(mesh.positions)
+        images = depth_cube(coordinates, mesh.triangles, grid, lambda normals: normals > 0, lambda share: None)
         hits = []
         for spans in images:
             owner, step = expand(spans.counts)

@@ -19,7 +19,7 @@ def test_each_face_of_a_cube_gets_one_sample_a_cell_wherever_the_grid_starts(cub
     mesh = cube()
     grid = Grid(np.full(3, -shift / 32), 1 / 32, subcells=1024, size=33)
     keeps = partial(keep_dominant, grazing_angle=0)
-    images = depth_cube(mesh.positions, mesh.triangles, grid, keeps, lambda share: None)
+    images = depth_cube(grid.coordinates(mesh.positions), mesh.triangles, grid, keeps, lambda share: None)
     assert [spans.counts.sum() for spans in images] == [2 * 32**2] * 3
 
 

@@ -134,3 +134,9 @@ def test_a_long_strip_is_one_part():
     count = 3000
     corners = np.random.default_rng(0).permutation(count + 2)[np.arange(count)[:, None] + np.arange(3)]
     assert len(set(part_labels(corners))) == 1
+
+
+def test_vertices_that_are_one_beforehand_join_their_parts():
+    corners = np.arange(12).reshape(4, 3)
+    twins = np.array([0, 1, 2, 0, 4, 5, 6, 7, 8, 9, 6, 11, 12])
+    assert part_labels(corners, twins).tolist() == [0] * 6 + [6] * 6 + [12]

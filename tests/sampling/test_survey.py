@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What one look at all triangles finds, against slower ways to find it."""
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from splat_addon.sampling import TriangleMesh
+from splat_addon.sampling import survey as survey_module
+from splat_addon.sampling.survey import signed_volumes, survey
+
+#: Few places, so that triangles collapse, repeat and close by accident.
+TRIANGLES = st.lists(st.tuples(*[st.integers(0, 5)] * 3), min_size=1, max_size=30)
+
+
+def mesh_of(triangles):
+    """Over the corners of an octahedron, one of them twice: 1 and 5 lie at one place."""
+    places = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, 0, -1), (0, 1, -0.0)])
+    return TriangleMesh(places, np.array(triangles))
+
+
+def boundary(triangles):
+    """The directed edges that no other runs against, as counts: an empty dictionary where the boundary vanishes."""
+    counts = {}
+    for corners in np.where(np.array(triangles) == 5, 1, triangles).tolist():
+        for a, b in zip(corners, corners[1:] + corners[:1], strict=True):
+            if a != b:
+                key, sign = ((a, b), 1) if a < b else ((b, a), -1)
+                counts[key] = counts.get(key, 0) + sign
+    return {edge: count for edge, count in counts.items() if count}
+
+
+@pytest.fixture(params=[3, 16384], ids=["small chunks", "one chunk"])
+def chunk(request, monkeypatch):
+    monkeypatch.setattr(survey_module, "_CHUNK", request.param)
+
+
+@pytest.mark.usefixtures("chunk")
+def test_areas_uses_and_repeats_are_those_of_each_triangle():
+    @settings(deadline=None, max_examples=200)
+    @given(TRIANGLES)
+    def check_one(triangles):
+        mesh = mesh_of(triangles)
+        found = survey(mesh)
+        corners = mesh.positions[mesh.triangles]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        has_area = normals.any(axis=1)
+        assert found.flat.tolist() == np.flatnonzero(~has_area).tolist()
+        assert found.facing_area == np.abs(normals).max(axis=1).sum() / 2
+        used = np.zeros(6, bool)
+        used[mesh.triangles[has_area].ravel()] = True
+        assert (found.is_used == used).all()
+        keys = [tuple(sorted(1 if corner == 5 else corner for corner in row)) for row in mesh.triangles.tolist()]
+        assert found.suspects.tolist() == [k for k, key in enumerate(keys) if keys.count(key) > 1]
+
+    check_one()
+
+
+@pytest.mark.usefixtures("chunk")
+def test_a_surface_is_closed_exactly_where_its_boundary_vanishes():
+    closed = set()
+
+    @settings(deadline=None, max_examples=200)
+    @given(TRIANGLES, st.booleans())
+    def check_one(triangles, is_doubled):
+        triangles = [*triangles, *(row[::-1] for row in triangles)] if is_doubled else triangles
+        found = survey(mesh_of(triangles)).is_closed
+        assert found == (not boundary(triangles))
+        closed.add(found)
+
+    check_one()
+    assert closed == {True, False}
+
+
+@pytest.mark.usefixtures("chunk")
+def test_volumes_add_up_to_that_of_the_surface_wherever_it_is():
+    ball = trimesh.creation.icosphere(3)
+    for shift in (0, 100):
+        mesh = TriangleMesh(ball.vertices + shift, ball.faces)
+        assert np.isclose(survey(mesh).volumes.sum() / 6, ball.volume, rtol=1e-9)
+        assert (signed_volumes(mesh.positions, mesh.triangles) == survey(mesh).volumes).all()
+
+
+def test_an_open_surface_has_no_volumes():
+    ball = trimesh.creation.icosphere(1)
+    assert survey(TriangleMesh(ball.vertices, ball.faces[1:])).volumes is None
