@@ -2,6 +2,9 @@
 // Summary: adds weighted colour, normal, depth and material to their sums; the depth test keeps what is visible.
 
 #include "common/depth.glsl"
+#ifdef LAYER
+#include "common/layer_sample.glsl"
+#endif
 #include "common/sums.glsl"
 #include "methods/{method}.glsl"
 #ifdef TEXTURED
@@ -11,6 +14,9 @@
 void main() {
   float weight = kernel_weight(place_depth.xy) * color_weight.w;
   if (!(weight > 0.0)) discard;
+#ifdef LAYER
+  if (!is_in_layer(place_depth.z, ivec2(gl_FragCoord.xy))) discard;
+#endif
   write_depth(place_depth.z);
 #ifdef TEXTURED
   vec2 point = splats.window.xy + gl_FragCoord.xy * splats.window.zw;

@@ -18,6 +18,9 @@ void main() {
   place_depth = vec3(corner, -eye.z);
   color_weight = splat.color_weight;
   normal = splat.normal;
+#ifdef LAYER
+  opacity = splat.opacity;
+#endif
 #ifdef TEXTURED
   texture_place = fetch_texture_place(gl_VertexID / 3, splat.material, texture_along, texture_border);
   texture_axis_u = splat.axis_u;

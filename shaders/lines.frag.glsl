@@ -31,7 +31,7 @@ vec4 sight_at(ivec2 texel) {
 #endif
   if (!is_seen) return vec4(0.0, 0.0, 0.0, EMPTY);
   vec4 sums = SUM_AT(normal_sum, texel, 0);
-#ifdef HALF_SUMS
+#ifdef DEPTH_SUM
   vec2 depths = SUM_AT(depth_sum, texel, 0).xy;
   float depth = depths.x / depths.y;
 #else

@@ -2,7 +2,20 @@
 //             is Chajdas, McGuire, Luebke, "Subpixel Reconstruction Antialiasing", I3D 2011.
 // Summary: colours inside a surface were filtered with their splats; here its silhouettes are. The visibility pass has
 //          several samples to each shaded one. Those around a pixel that see the pixel's own surface take its colour,
-//          others the colour of the pixel they lie in, empty ones the background, all under the pixel's Gaussian.
+//          others the colour of the pixel they lie in, empty ones the background, all under the pixel's Gaussian. Where
+//          there are transparent layers, each sample counts by what the nearer ones let through there.
+
+#ifdef LAYER
+#define visibility_depth layer_depth
+#include "common/layer_at.glsl"
+#endif
+#ifdef LAYERS
+#include "common/before_layers.glsl"
+#endif
+#if defined(LAYER) || defined(LAYERS)
+#define BEHIND_LAYERS
+#include "common/peeled.glsl"
+#endif
 
 #define PROJECTION shading.projection
 #define PARALLEL (shading.options.x > 0.5)
@@ -52,7 +65,10 @@ vec2 reached_range(ivec2 texel, ivec2 size) {
   return reached;
 }
 
-vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit, out Outputs outputs) {
+// coverage: what is covered and not by nearer layers. first: the share of which this is the surface that depth and
+// normal are of. is_hit: whether such a visibility sample is in the texel; is_behind: whether one is in a nearer layer.
+vec4 resolve_sample(ivec2 texel, out float coverage, out float first, out bool is_hit, out bool is_behind,
+                    out Outputs outputs) {
   ivec2 size = textureSize(shaded, 0);
   vec4 own = texelFetch(shaded, texel, 0);
   float depth = texelFetch(surface, texel, 0).w;
@@ -62,43 +78,73 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit, out Output
     float tolerance = same_surface(texel, size, depth);
     range = vec2(stored_depth(max(depth - tolerance, 0.5 * depth)), stored_depth(depth + tolerance));
   }
+#ifdef LAYER
+  const vec4 background = vec4(0.0);
+#else
   vec4 background = world_background(texel);
+#endif
   vec4 color = vec4(0.0);
   float total = 0.0;
   outputs = NO_OUTPUTS;
   coverage = 0.0;
+  first = 0.0;
   is_hit = false;
+  is_behind = false;
   // Inside a surface and beside all surfaces there is nothing to filter, and the loops have no turn to make.
   vec2 reached = reached_range(texel, size);
   bool is_inside = reached.x >= range.x && reached.y <= range.y && reached.y < 1.0;
+#ifdef BEHIND_LAYERS
+  is_inside = false;
+#endif
+#ifdef LAYERS
+  bool is_even = false;
+#else
   bool is_even = is_inside || reached.x == 1.0;
+#endif
   if (is_even) {
     color = is_inside ? own : background;
     coverage = is_inside ? 1.0 : 0.0;
+    first = coverage;
     total = 1.0;
     is_hit = is_inside;
     if (is_inside) outputs = sample_outputs(texel);
   }
   int reach = is_even ? 0 : FILTER_REACH;
-  ivec2 first = texel * VISIBILITY_SAMPLES;
+  ivec2 corner = texel * VISIBILITY_SAMPLES - FILTER_REACH + VISIBILITY_SAMPLES / 2;
+  ivec2 last = size * VISIBILITY_SAMPLES - 1;
   float row = FIRST_WEIGHT, row_ratio = FIRST_RATIO;
   for (int y = 0; y < 2 * reach; y++) {
     float weight = row * FIRST_WEIGHT, ratio = FIRST_RATIO;
     for (int x = 0; x < 2 * reach; x++) {
-      ivec2 at = first + ivec2(x, y) - FILTER_REACH + VISIBILITY_SAMPLES / 2;
-      float seen = texelFetch(visibility_depth, clamp(at, ivec2(0), size * VISIBILITY_SAMPLES - 1), 0).r;
+      ivec2 at = clamp(corner + ivec2(x, y), ivec2(0), last), home = at / VISIBILITY_SAMPLES;
+      float seen = texelFetch(visibility_depth, at, 0).r;
       vec4 here = background;
+      float shown = weight;
+#ifdef BEHIND_LAYERS
+      shown *= let_through(at);
+      bool is_first = is_first_surface(at);
+      is_behind = is_behind || (home == texel && !is_first);
+#else
+      const bool is_first = true;
+#endif
       if (seen < 1.0) {
-        ivec2 home = clamp(at / VISIBILITY_SAMPLES, ivec2(0), size - 1);
+#ifdef LAYER
+        bool is_own = seen >= range.x && seen <= range.y;
+        here = layer_at(home);
+        if (is_own) here = own * (here.w / own.w);
+        is_first = is_first && here.w >= shading.edges.y;
+#else
         vec4 there = texelFetch(shaded, home, 0);
         bool is_own = (seen >= range.x && seen <= range.y) || !(there.w > 0.0);
         here = is_own ? own : there;
         here = here.w > 0.0 ? here : background;
-        outputs = added(outputs, sample_outputs(is_own ? texel : home), weight);
-        coverage += weight;
-        is_hit = is_hit || home == texel;
+        outputs = added(outputs, sample_outputs(is_own ? texel : home), shown);
+#endif
+        coverage += shown;
+        first += is_first ? weight : 0.0;
+        is_hit = is_hit || (home == texel && is_first);
       }
-      color += weight * here;
+      color += shown * here;
       total += weight;
       weight *= ratio;
       ratio *= RATIO_RATIO;
@@ -108,33 +154,49 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out bool is_hit, out Output
   }
   coverage /= total;
   outputs = added(NO_OUTPUTS, outputs, 1.0 / total);
+  first /= total;
   return color / total;
 }
 
 void main() {
-  ivec2 first = ivec2(gl_FragCoord.xy) * SAMPLES;
+  ivec2 origin = ivec2(gl_FragCoord.xy) * SAMPLES;
   vec4 color_total = vec4(0.0);
   vec4 normal_total = vec4(0.0);
   Outputs outputs_total = NO_OUTPUTS;
   float nearest = FARTHEST;
+  bool is_seen_nearer = false;
   for (int y = 0; y < SAMPLES; y++) {
     for (int x = 0; x < SAMPLES; x++) {
-      ivec2 texel = first + ivec2(x, y);
-      float coverage;
-      bool is_hit;
+      ivec2 texel = origin + ivec2(x, y);
+      float coverage, first;
+      bool is_hit, is_behind;
       Outputs outputs;
-      color_total += resolve_sample(texel, coverage, is_hit, outputs);
+      color_total += resolve_sample(texel, coverage, first, is_hit, is_behind, outputs);
       outputs_total = added(outputs_total, outputs, 1.0);
+      is_seen_nearer = is_seen_nearer || is_behind;
       vec4 s = texelFetch(surface, texel, 0);
-      normal_total += vec4(s.xyz, 1.0) * coverage;
+      normal_total += vec4(s.xyz * first, coverage);
       if (is_hit && s.w > 0.0) nearest = min(nearest, s.w * shading.material.w);
     }
   }
   float share = 1.0 / float(SAMPLES * SAMPLES);
-  combined = color_total * share;
-  depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
+#ifdef LAYER
+  layers = color_total * share;
+  layers_depth = nearest < FARTHEST && !is_seen_nearer ? nearest : 0.0;
+#ifdef LAYERS_NORMAL_OUTPUT
+  layers_normal = vec4(mat3(shading.view_to_world) * normal_total.xyz, 0.0) * share;
+#endif
+#else
+  vec4 color = color_total * share;
+  vec4 normal = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
+#ifdef LAYERS
+  put_layers_before(color, normal, nearest);
+#endif
+  combined = color;
 #ifdef NORMAL_COVERAGE_OUTPUT
-  normal_coverage = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
+  normal_coverage = normal;
 #endif
   write_outputs(added(NO_OUTPUTS, outputs_total, share));
+  depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
+#endif
 }

@@ -1,5 +1,6 @@
 // References: Botsch et al. 2005, section 4.
-// Summary: shades every sample and keeps it, for methods whose silhouettes `resolve.frag.glsl` filters afterwards.
+// Summary: shades every sample and keeps it, for methods whose silhouettes `resolve.frag.glsl` filters afterwards, and
+//          for what is transparent, premultiplied.
 
 #include "shading/{shading}.glsl"
 #include "common/shaded_sample.glsl"
@@ -11,7 +12,7 @@ void main() {
   Outputs outputs = NO_OUTPUTS;
   if (SUM_AT(color_sum, texel, 0).w > 0.0) {
     ShadedSample here = shaded_sample(texel, 0);
-    shaded = vec4(here.color, 1.0);
+    shaded = vec4(here.color, 1.0) * here.coverage;
     surface = vec4(here.normal, here.depth);
     outputs = here.outputs;
   }

@@ -1,10 +1,15 @@
 // References: Botsch et al. 2005, section 4 (one shading pass a frame, whatever the overdraw).
 // Summary: normalises the sums of every sample in the pixel, lights it and averages (a box filter); the depth is
-//          the nearest sample's, the normal the mean of the samples'.
+//          the nearest sample's, the normal the mean of the samples'. What transparent layers let through of it is added
+//          to them.
 
 #include "shading/{shading}.glsl"
 #include "common/shaded_sample.glsl"
 #include "common/world.glsl"
+#ifdef LAYERS
+#include "common/before_layers.glsl"
+#include "common/peeled.glsl"
+#endif
 
 const float EMPTY_DEPTH = 1e10;
 const float FARTHEST = 3.4e38;
@@ -18,25 +23,37 @@ void main() {
   for (int y = 0; y < SAMPLES; y++) {
     for (int x = 0; x < SAMPLES; x++) {
       ivec2 texel = first + ivec2(x, y);
+#ifdef LAYERS
+      float through = let_through(texel);
+      bool is_first = is_first_surface(texel);
+#else
+      const float through = 1.0;
+      const bool is_first = true;
+#endif
       for (int look = 0; look < LOOKS; look++) {
         float coverage = 0.0;
         if (SUM_AT(color_sum, texel, look).w > 0.0) {
           ShadedSample here = shaded_sample(texel, look);
           coverage = here.coverage;
-          color_total += vec4(here.color, 1.0) * coverage;
-          normal_total += vec4(here.normal, 1.0) * coverage;
-          outputs_total = added(outputs_total, here.outputs, coverage);
-          nearest = min(nearest, here.depth * shading.material.w);
+          color_total += vec4(here.color, 1.0) * (coverage * through);
+          normal_total += vec4(is_first ? here.normal : vec3(0.0), through) * coverage;
+          if (is_first) nearest = min(nearest, here.depth * shading.material.w);
+          outputs_total = added(outputs_total, here.outputs, coverage * through);
         }
-        if (coverage < 1.0) color_total += world_background(texel) * (1.0 - coverage);
+        if (coverage < 1.0) color_total += world_background(texel) * ((1.0 - coverage) * through);
       }
     }
   }
   float share = 1.0 / float(SAMPLES * SAMPLES * LOOKS);
-  combined = color_total * share;
-  depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
+  vec4 color = color_total * share;
+  vec4 normal = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
+#ifdef LAYERS
+  put_layers_before(color, normal, nearest);
+#endif
+  combined = color;
 #ifdef NORMAL_COVERAGE_OUTPUT
-  normal_coverage = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
+  normal_coverage = normal;
 #endif
   write_outputs(added(NO_OUTPUTS, outputs_total, share));
+  depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
 }

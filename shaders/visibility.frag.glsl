@@ -1,11 +1,17 @@
 // References: as visibility.vert.glsl.
 // Summary: depth only; what lies outside the ellipse, or before the near plane (where only the offset brought it
-//          into view), leaves none.
+//          into view), leaves none. Of a transparent layer, neither does what is in a nearer one or behind what is opaque.
 
 #include "common/depth.glsl"
+#ifdef LAYER
+#include "common/layer_sample.glsl"
+#endif
 
 void main() {
   if (!(dot(place_depth.xy, place_depth.xy) <= 1.0 && place_depth.z >= splats.options.y)) discard;
+#ifdef LAYER
+  if (!is_in_layer(place_depth.z, ivec2(gl_FragCoord.xy))) discard;
+#endif
 #ifdef LINEAR_DEPTH
   float distance = length(vec3(across_offset.xy, place_depth.z));
   write_depth(place_depth.z * (1.0 + max(across_offset.z / distance, splats.sides.z)));

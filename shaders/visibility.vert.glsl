@@ -35,5 +35,9 @@ void main() {
   // Moving brings nothing beyond the far plane.
   moved.z = min(moved.z, moved.w * max(unmoved.z / unmoved.w, 2.0 * FARTHEST_STORED - 1.0));
 #endif
-  gl_Position = is_back && splats.sides.y > 0.5 ? NOWHERE : moved;
+  bool is_hidden = is_back && splats.sides.y > 0.5;
+#ifdef LAYER
+  is_hidden = is_hidden || stored.color.a < LEAST_OPACITY;
+#endif
+  gl_Position = is_hidden ? NOWHERE : moved;
 }

@@ -36,6 +36,9 @@ OPTIONAL_LAYOUT = {
     "uv_border": (2, np.float32, 0.0),
 }
 
+#: Least alpha of an opaque surfel: filtering an image of ones leaves them a few roundings short of 1.
+OPAQUE = 0.999
+
 #: How far a quaternion or a normal may be from unit length before it is refused (float32 rounding is 1e-7).
 UNIT_TOLERANCE = 1e-3
 
@@ -139,6 +142,11 @@ class Surfels:
     def brightest(self) -> float:
         """The largest absolute colour (0 when empty)."""
         return float(np.abs(self.colors[:, :3]).max(initial=0.0))
+
+    @cached_property
+    def is_transparent(self) -> bool:
+        """Whether something shows through one of them."""
+        return bool((self.colors[:, 3] < OPAQUE).any())
 
     @cached_property
     def local_bounds(self) -> tuple[np.ndarray, np.ndarray]:

@@ -12,7 +12,7 @@ struct ShadedSample {
   vec3 color;
   vec3 normal;
   float depth;
-  float coverage;  // below 1 only where an edge threshold is planned
+  float coverage;  // below 1 only where an edge threshold is planned, or what is transparent
   Outputs outputs;
 };
 
@@ -32,10 +32,19 @@ const float LEAST_FRONT = 0.02;
 // Only where the sum of weights is above 0. look: which of the texel's hardware samples, 0 where it has one.
 ShadedSample shaded_sample(ivec2 texel, int look) {
   vec4 c = SUM_AT(color_sum, texel, look);
-  vec4 n = SUM_AT(normal_sum, texel, look) / c.w;
-#ifdef HALF_SUMS
+#ifdef DEPTH_SUM
   vec2 depths = SUM_AT(depth_sum, texel, look).xy;
+#endif
+#ifdef LAYER
+  float weights = depths.y;
+#else
+  float weights = c.w;
+#endif
+  vec4 n = SUM_AT(normal_sum, texel, look) / weights;
+#ifdef DEPTH_SUM
   n.w = depths.x / depths.y;
+#endif
+#ifdef HALF_SUMS
   c.rgb *= shading.options.w;
 #endif
   vec2 place = shading.window.xy + (vec2(texel) + 0.5) * shading.window.zw;
@@ -43,7 +52,7 @@ ShadedSample shaded_sample(ivec2 texel, int look) {
   float size = length(n.xyz);
   vec3 normal = size > CANCELLED ? n.xyz / size : vec3(0.0, 0.0, 1.0);
 #ifdef MATERIAL_TARGET
-  vec3 material = SUM_AT(material_sum, texel, look).xyz / c.w;
+  vec3 material = SUM_AT(material_sum, texel, look).xyz / weights;
 #else
   vec3 material = shading.material.xyz;
 #endif
@@ -54,7 +63,7 @@ ShadedSample shaded_sample(ivec2 texel, int look) {
   overdraw = SUM_AT(overdraw_sum, texel, look).r;
 #endif
 #ifdef SUM_OF_WEIGHTS
-  sum_of_weights = c.w / WEIGHT_SCALE;
+  sum_of_weights = weights / WEIGHT_SCALE;
 #endif
 #ifdef LIGHT_SET_TARGET
   light_set = texelFetch(light_set_sum, texel, 0);
@@ -87,11 +96,15 @@ ShadedSample shaded_sample(ivec2 texel, int look) {
 #ifdef LINES
   radiance = mix(radiance, shading.line_color.rgb, texelFetch(lines, texel, 0).r);
 #endif
+#ifdef LAYER
+  float coverage = min(c.w / weights, 1.0);
+#else
   float coverage = 1.0;
+#endif
 #ifdef EDGE_THRESHOLD
-  float weight = c.w / WEIGHT_SCALE;
+  float weight = weights / WEIGHT_SCALE;
   if (weight < LEAST_FRONT) weight /= BACK_WEIGHT;
-  coverage = min(weight / shading.edges.x, 1.0);
+  coverage *= min(weight / shading.edges.x, 1.0);
 #endif
   return ShadedSample(radiance, normal, n.w, coverage, outputs);
 }

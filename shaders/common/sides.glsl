@@ -10,6 +10,9 @@ const float GRAZING_COSINE = 0.3;   // a back seen this flat is the rim of a fro
 // Where backs are hidden, every corner of such a splat goes here, beyond the near plane.
 const vec4 NOWHERE = vec4(0.0, 0.0, -2.0, 1.0);
 
+// A splat that shows less of itself is not there at all, and holds no layer.
+const float LEAST_OPACITY = 1e-3;
+
 // Cosine between the splat's outward side and the direction to the viewer; orientation is -1 in a mirrored object.
 float outward_cosine(vec3 position, vec3 axis_u, vec3 axis_v, float orientation, bool is_orthographic) {
   vec3 outward = cross(axis_u, axis_v) * orientation;

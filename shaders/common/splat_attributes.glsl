@@ -11,7 +11,8 @@ struct Splat {
   vec4 color_weight;  // colour, and what the side that is seen weighs
   vec3 normal;        // shading normal on the side that is seen, view space
   float material;     // index
-  bool is_hidden;     // the back of a solid
+  float opacity;
+  bool is_hidden;     // the back of a solid, or of no opacity
 };
 
 Splat fetch_splat(int index) {
@@ -27,6 +28,10 @@ Splat fetch_splat(int index) {
   splat.normal = normalize(mat3(splats.normal_matrix) * stored.normal);
   float side = cosine < -GRAZING_COSINE ? -splats.sides.x : splats.sides.x;
   if (dot(splat.normal, cross(splat.axis_u, splat.axis_v)) * side < 0.0) splat.normal = -splat.normal;
+  splat.opacity = clamp(stored.color.a, 0.0, 1.0);
   splat.is_hidden = cosine < 0.0 && splats.sides.y > 0.5;
+#ifdef LAYER
+  splat.is_hidden = splat.is_hidden || splat.opacity < LEAST_OPACITY;
+#endif
   return splat;
 }

@@ -1,6 +1,7 @@
 // References: Botsch et al. 2005, sections 3 and 4 (accumulation, normalised by the sum of weights in a later pass).
 // Summary: what a splat adds to a sample's sums. Where sums are float16 (HALF_SUMS), depths and their weights have a
-//          float32 target of their own, and colours are scaled so that the scene's brightest is at most 1.
+//          float32 target of their own, and colours are scaled so that the scene's brightest is at most 1. In a layer of
+//          what is transparent, too; colours then count by their opacity, whose sum stands beside theirs.
 
 #include "common/weight_scale.glsl"
 
@@ -13,11 +14,17 @@ const float LEAST_WEIGHT = 3.8147e-6;
 void add_to_sums(vec3 color, float weight, float depth) {
 #ifdef HALF_SUMS
   weight = max(weight * WEIGHT_SCALE, LEAST_WEIGHT);
-  color_sum = vec4(color * splats.sides.w, 1.0) * weight;
+#endif
+#ifdef LAYER
+  float shown = weight * opacity;
+#else
+  float shown = weight;
+#endif
+  color_sum = vec4(color * splats.sides.w, 1.0) * shown;
+#ifdef DEPTH_SUM
   normal_sum = vec4(normal, 0.0) * weight;
   depth_sum = vec2(depth, 1.0) * weight;
 #else
-  color_sum = vec4(color, 1.0) * weight;
   normal_sum = vec4(normal, depth) * weight;
 #endif
 #ifdef OVERDRAW_TARGET

@@ -7,6 +7,9 @@
 #define DEPTH_UNIT splats.options.w
 #include "common/stored_depth.glsl"
 #include "common/sums.glsl"
+#ifdef LAYER
+#include "common/peeled.glsl"
+#endif
 #include "screen/place.glsl"
 #include "methods/{method}.glsl"
 #ifdef TEXTURED
@@ -68,6 +71,9 @@ void main() {
   float seen = texelFetch(seen_range, ivec2(gl_FragCoord.xy), 0).z;
   float depth = weight_depth.y + plane.beside;
   if (stored_depth(depth) > seen) discard;
+#ifdef LAYER
+  if (is_peeled(stored_depth(depth), ivec2(gl_FragCoord.xy) * VISIBILITY_SAMPLES + VISIBILITY_SAMPLES / 2)) discard;
+#endif
 #if VISIBILITY_SAMPLES > 1
   // Where the filter reaches past a silhouette, what is seen behind it is another surface, which keeps the sample: its
   // depth, moved back by up to 2 epsilon, is more than that and a radius behind this splat's.

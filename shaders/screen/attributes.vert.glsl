@@ -42,6 +42,9 @@ void main() {
   on_footprint = straddles ? vec2(0.0) : corner;
   color_weight = splat.color_weight;
   normal = splat.normal;
+#ifdef LAYER
+  opacity = splat.opacity;
+#endif
 #ifdef TEXTURED
   texture_place = fetch_texture_place(gl_VertexID / 3, splat.material, texture_along, texture_border);
   // Axes that the method replaced move in the picture as others of the true plane do.

@@ -70,8 +70,8 @@ def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
     """What the user and scripts are told of a picture."""
     notes.add(_FLATTENED, frame.stats["instances_degenerate"])
     notes.add(_COARSE, frame.stats["surfels_coarse"])
-    if "transparency" in dict(frame.stats["plan"].left_out):
-        notes.add(_OPAQUE)
+    if why := dict(frame.stats["plan"].left_out).get("transparency"):
+        notes.add(why[0].upper() + why[1:])
     for sentence in notes.sentences():
         engine.report({"WARNING"}, sentence)
     last_frame_stats.clear()
@@ -79,7 +79,6 @@ def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
     engine.update_stats("", f"{frame.stats['splats']:,} splats in {frame.stats['milliseconds']:.0f} ms")
 
 
-_OPAQUE = "Surfels whose opacity, the alpha of Col, is below 1 are drawn opaque"
 _COARSE = "16-bit storage moves surfels visibly where they lie far apart; choose Float 32 as their storage"
 _FLATTENED = "Surfel objects with a scale of 0 on some axis are left out; give every axis a scale"
 

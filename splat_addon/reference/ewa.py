@@ -56,10 +56,10 @@ def render_ewa(
     cutoff: where a resampling kernel ends, in its standard deviations; 2 is where `render_exact`'s kernels end.
 
     A splat's projection is taken as affine at its centre; one whose centre lies before the near plane has none and is
-    left out (`stats["left_out"]` counts them). What is visible is found by the unfiltered splats on the rays through
-    the pixels' centres, as `render_exact` does; the sums are normalised and shaded once a pixel.
+    left out (`stats["left_out"]` counts them). All are opaque. What is visible is found by the unfiltered splats on the
+    rays through the pixels' centres, as `render_exact` does; the sums are normalised and shaded once a pixel.
     """
-    splats = eye_splats(scene, camera)
+    splats = eye_splats(scene, camera).as_opaque()
     before = -splats.center[:, 2] > (-np.inf if camera.is_orthographic else camera.near)
     grid = RayGrid.of_pixels(camera, 1, 0, 0, *camera.size)
     visibility = _visibility(splats, grid, settings.epsilon)

@@ -14,9 +14,9 @@ from ..rendering.scene import Scene
 from ..rendering.settings import Settings
 from .filters import filter_weights, resample
 from .outputs import OUTPUTS
-from .rays import RayGrid, Surface, visible_surface
-from .shading_models import SHADERS
-from .splats import eye_splats, projected_bounds
+from .rays import RayGrid, Surface, layer_surfaces, splats_in, visible_depth, visible_surface
+from .shading_models import DIAGNOSTIC, SHADERS
+from .splats import LEAST_OPACITY, Splats, eye_splats, projected_bounds
 from .world import WorldLight
 
 #: Rays of a tile: enough for numpy to be quick, few enough that a tile's arrays stay below 100 MB.
@@ -32,7 +32,8 @@ def render_exact(
 
     samples: samples x samples rays a pixel at (i + 0.5) / samples; takes the place of `settings.supersampling`.
     pixel_filter: a name in `filters.PIXEL_FILTERS`; always say which one a number was measured with.
-    `settings.method` has no meaning here. Opacity is ignored: surfels are opaque. `settings.lines` are not drawn.
+    `settings.method` and `settings.layers` have no meaning here: of what is transparent there are as many layers as the
+    rays meet. `settings.lines` are not drawn.
 
     A ray sees the splats that lie no deeper than the nearest splat moved back by `settings.epsilon` of its radius
     along the ray, mixes them with weights exp(-2 rho^2), and is shaded once (Botsch et al. 2005, deferred).
@@ -50,13 +51,13 @@ def render_exact(
     columns = _columns(settings)
     for x, y, w, h in _tiles(width, height, samples, margin):
         grid = RayGrid.of_pixels(camera, samples, x - margin, y - margin, w + 2 * margin, h + 2 * margin)
-        surface = visible_surface(splats, bounds, grid, settings.epsilon)
-        shaded = resample(shaded_rays(surface, grid, scene, camera, settings), weights, samples)
+        rays, depths = _layered_rays(splats, bounds, grid, scene, camera, settings)
+        shaded = resample(rays, weights, samples)
         here = np.s_[y : y + h, x : x + w]
         for name, column in columns.items():
             part = shaded[..., column]
             means.setdefault(name, np.empty((height, width, *part.shape[2:])))[here] = part
-        depth[here] = _nearest_depth(surface, grid, samples, margin)
+        depth[here] = _nearest_depth(depths, grid, samples, margin)
     arrays = {**means, "depth": depth, "normal": means["normal"] @ camera.matrix_world[:3, :3].T}
     if "position" in settings.outputs:
         is_hit = depth < EMPTY_DEPTH
@@ -102,10 +103,47 @@ def shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, s
     return rays.reshape(*grid.shape, -1)
 
 
-def _nearest_depth(surface: Surface, grid: RayGrid, samples: int, margin: int) -> np.ndarray:
-    """(h, w) depth of the nearest ray of each pixel that is not margin; `EMPTY_DEPTH` where none hit."""
-    rays = np.full(grid.count, np.inf)
-    rays[surface.rays] = surface.depth
+def _layered_rays(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings):
+    """`shaded_rays` of what is opaque, with the transparent layers before it; and (count,) depths.
+
+    Depth and normal are those of the nearest surface that is opaque enough (`settings.alpha_threshold`).
+    """
+    groups = _opaque_and_transparent(splats, bounds, settings)
+    opaque, surface = groups[0], visible_surface(*groups[0], grid, settings.epsilon)
+    rays, depths = shaded_rays(surface, grid, scene, camera, settings), np.full(grid.count, np.inf)
+    depths[surface.rays] = surface.depth
+    if not len(groups[1][0]):
+        return rays, depths
+    rays = rays.reshape(grid.count, -1)
+    until = visible_depth(*splats_in(*opaque, grid), grid, settings.epsilon)
+    total, through, is_seen = np.zeros_like(rays), np.ones(grid.count), np.zeros(grid.count, bool)
+    for layer in layer_surfaces(*groups[1], grid, settings.epsilon, until):
+        hit, radiance = layer.rays, SHADERS[settings.shading](layer, grid, scene, camera, settings)
+        total[hit, :3] += (through[hit] * layer.opacity)[:, None] * radiance
+        total[hit, 3] += through[hit] * layer.opacity
+        through[hit] *= 1 - layer.opacity
+        first = (layer.opacity >= settings.alpha_threshold) & ~is_seen[hit]
+        total[hit[first], 4:7], depths[hit[first]] = layer.normal[first], layer.depth[first]
+        is_seen[hit[first]] = True
+    total[:, 7] = total[:, 3]
+    behind = rays * through[:, None]
+    behind[:, 4:7] = np.where(is_seen[:, None], 0, rays[:, 4:7])
+    return (total + behind).reshape(*grid.shape, -1), depths
+
+
+def _opaque_and_transparent(splats: Splats, bounds, settings: Settings):
+    """Splats and bounds of both; those of no opacity are in neither."""
+    if settings.shading in DIAGNOSTIC:
+        return (splats.as_opaque(), bounds), (splats.take(np.arange(0)), bounds)
+    groups = ~splats.is_transparent, splats.is_transparent & (splats.opacity >= LEAST_OPACITY)
+    return tuple((splats.take(at), tuple(b[at] for b in bounds)) for at in map(np.flatnonzero, groups))
+
+
+def _nearest_depth(rays: np.ndarray, grid: RayGrid, samples: int, margin: int) -> np.ndarray:
+    """(h, w) depth of the nearest ray of each pixel that is not margin; `EMPTY_DEPTH` where none hit.
+
+    rays: (count,) depths, infinite where nothing is hit.
+    """
     rows, columns = (n // samples for n in grid.shape)
     pixels = rays.reshape(rows, samples, columns, samples).min(axis=(1, 3))
     pixels = np.where(np.isfinite(pixels), pixels, EMPTY_DEPTH)

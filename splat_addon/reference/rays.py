@@ -7,6 +7,7 @@ visibility sweep finds how deep a ray may look, the attribute sweep averages wha
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -79,6 +80,7 @@ class Surface:
     rays: (n,) numbers in the grid. color: (n, 3). normal: (n, 3) unit. depth: (n,).
     roughness, metallic, f0: (n,). emission: (n, 3). light_set: (n, 4) the share of each set of objects.
     weight: (n,) sum of the splats' weights. count: (n,) of splats.
+    opacity: (n,); the splats' own weigh their colours, too.
     """
 
     rays: np.ndarray
@@ -92,6 +94,7 @@ class Surface:
     light_set: np.ndarray
     weight: np.ndarray
     count: np.ndarray
+    opacity: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,36 +116,64 @@ def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float) -> Su
     return average(splats, grid, _seen(splats, boxes, grid, visible_depth(splats, boxes, grid, epsilon)))
 
 
-def visible_depth(splats: Splats, boxes, grid: RayGrid, epsilon: float) -> np.ndarray:
-    """(count,) how deep each ray may look: the nearest of its hits, each splat moved back by its epsilon."""
+def visible_depth(splats: Splats, boxes, grid: RayGrid, epsilon: float, after=-np.inf, until=np.inf) -> np.ndarray:
+    """(count,) how deep each ray may look: the nearest of its hits, each splat moved back by its epsilon.
+
+    after, until: depths, or (count,) of them; only the hits beyond the one and not beyond the other count.
+    """
     push = splats.push(epsilon)
     visibility = np.full(grid.count, np.inf)
     for hits in _hits(splats, boxes, grid):
+        between = _between(hits, grid, after, until)
         # A point e moved back to e (1 + push / |e|) gains push / |direction| in depth, as |e| = depth |direction|.
-        np.minimum.at(visibility, hits.ray, hits.depth + push[hits.splat] / hits.stretch)
+        moved = hits.depth + push[hits.splat] / hits.stretch
+        np.minimum.at(visibility, hits.ray[between], moved[between])
     return visibility
 
 
-def _seen(splats: Splats, boxes, grid: RayGrid, visibility: np.ndarray):
+def layer_surfaces(splats: Splats, bounds, grid: RayGrid, epsilon: float, opaque: np.ndarray) -> Iterator[Surface]:
+    """What every ray sees of each transparent layer, from the nearest (Guennebaud et al. 2006, section 6).
+
+    A layer holds the hits beyond the last one's depth, and not beyond its own: that of the nearest of them, moved back.
+    opaque: (count,) how deep each ray may look for what is opaque.
+    """
+    splats, boxes = splats_in(splats, bounds, grid)
+    peeled = np.full(grid.count, -np.inf)
+    while True:
+        depth = visible_depth(splats, boxes, grid, epsilon, peeled, opaque)
+        if not np.isfinite(depth).any():
+            return
+        yield average(splats, grid, _seen(splats, boxes, grid, np.minimum(depth, opaque), peeled))
+        peeled = depth
+
+
+def _between(hits: Hits, grid: RayGrid, after, until) -> np.ndarray:
+    """Numbers of the hits beyond `after` and not beyond `until`."""
+    after, until = (np.broadcast_to(limit, grid.count)[hits.ray] for limit in (after, until))
+    return np.flatnonzero((hits.depth > after) & (hits.depth <= until))
+
+
+def _seen(splats: Splats, boxes, grid: RayGrid, visibility: np.ndarray, after=-np.inf):
     side = np.where(splats.is_back, BACK_WEIGHT, 1.0)
     for hits in _hits(splats, boxes, grid):
-        seen = np.flatnonzero(hits.depth <= visibility[hits.ray])
+        seen = _between(hits, grid, after, visibility)
         splat = hits.splat[seen]
         yield hits.ray[seen], splat, np.exp(-2 * hits.rho2[seen]) * side[splat], hits.depth[seen], hits.place[seen]
 
 
 def average(splats: Splats, grid: RayGrid, contributions) -> Surface:
     """Weighted means. contributions: chunks of rays, splats, weights and depths, each (m,), and places (m, 2)."""
-    sums, count = np.zeros((18, grid.count)), np.zeros(grid.count)
+    sums, count = np.zeros((19, grid.count)), np.zeros(grid.count)
     attributes = np.concatenate([splats.color, splats.normal, splats.surface], axis=1).T
     for ray, splat, weight, depth, place in contributions:
         count += np.bincount(ray, minlength=grid.count)
         sums[0] += np.bincount(ray, weight, grid.count)
         sums[1] += np.bincount(ray, weight * depth, grid.count)
-        values = attributes[:, splat]
+        values, shown = attributes[:, splat], weight * splats.opacity[splat]
+        sums[18] += np.bincount(ray, shown, grid.count)
         _look_textures_up(splats, splat, place, values[:3])
-        for total, row in zip(sums[2:], values, strict=True):
-            total += np.bincount(ray, weight * row, grid.count)
+        for k, (total, row) in enumerate(zip(sums[2:18], values, strict=True)):
+            total += np.bincount(ray, (shown if k < 3 else weight) * row, grid.count)
     return _averages(sums, count)
 
 
@@ -158,12 +189,14 @@ def _look_textures_up(splats: Splats, splat: np.ndarray, place: np.ndarray, colo
 
 def _averages(sums: np.ndarray, count: np.ndarray) -> Surface:
     rays = np.flatnonzero(sums[0] > 0)
-    depth, *columns = sums[1:, rays] / sums[0, rays]
+    depth, *columns = sums[1:18, rays] / sums[0, rays]
+    columns[:3] = sums[2:5, rays] / sums[18, rays]
     color, normal = np.stack(columns[:3], axis=1), np.stack(columns[3:6], axis=1)
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = np.where(length > CANCELLED, normal / np.maximum(length, CANCELLED), TO_VIEWER)
     emission, light_set = np.stack(columns[9:12], axis=1), np.stack(columns[12:], axis=1)
-    return Surface(rays, color, normal, depth, *columns[6:9], emission, light_set, sums[0, rays], count[rays])
+    weight, opacity = sums[0, rays], sums[18, rays] / sums[0, rays]
+    return Surface(rays, color, normal, depth, *columns[6:9], emission, light_set, weight, count[rays], opacity)
 
 
 def splats_in(splats: Splats, bounds, grid: RayGrid):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Five scenes that the engine and the truth are compared on: numpy builders, the same for every run.
+"""Six scenes that the engine and the truth are compared on: numpy builders, the same for every run.
 
 Each returns a `Scene` and a `Camera`. The splats are ellipses of seeded random orientation and aspect, overlap
 about as much as converted meshes do, and carry colours with edges, so that filters have something to do.
@@ -24,25 +24,50 @@ LEAST_ASPECT = 0.7
 
 SUN = Light("sun", (1.0, 0.95, 0.85), energy=2.5, direction=(0.5, 0.6, -1.0))
 LAMP = Light("point", (0.5, 0.7, 1.0), energy=120.0, position=(-2.0, -2.5, 1.5))
+#: Of each of the transparent spheres, which stand 1 apart.
+SPHERES_RADIUS = 0.42
 WORLD = (0.05, 0.06, 0.08)
 
 
 def sphere(count: int = 20_000, size=(128, 128), seed: int = 0) -> tuple[Scene, Camera]:
     """A unit sphere with coloured stripes of longitude and latitude, seen whole.
 
-    count: surfels, on a Fibonacci lattice (Swinbank & Purser 2006).
+    count: surfels.
     """
-    k = np.arange(count) + 0.5
-    z, longitude = 1 - 2 * k / count, k * math.pi * (3 - math.sqrt(5))
-    ring = np.sqrt(1 - z * z)
-    points = np.stack([ring * np.cos(longitude), ring * np.sin(longitude), z], axis=1)
+    points = fibonacci_sphere(count)
     stripes = (
-        np.floor(np.arctan2(points[:, 1], points[:, 0]) * 6 / math.pi) + np.floor(np.arcsin(z) * 6 / math.pi)
+        np.floor(np.arctan2(points[:, 1], points[:, 0]) * 6 / math.pi) + np.floor(np.arcsin(points[:, 2]) * 6 / math.pi)
     ) % 2
     colors = _two_colors(stripes, (0.8, 0.25, 0.1), (0.85, 0.8, 0.7))
     surfels = _surfels(points, points, colors, math.sqrt(4 * math.pi / count), seed)
     camera = Camera.perspective(look_at((0, -3.2, 1.2), (0, 0, 0)), math.radians(42), size, near=0.1, far=10)
     return Scene((Instance(surfels, materials=(Material(roughness=0.35),)),), (SUN, LAMP), WORLD), camera
+
+
+def transparent_spheres(count: int = 3000, opacity: float = 0.35, size=(128, 128)) -> tuple[Scene, Camera]:
+    """27 spheres in a cube that something shows through, of six colours, as in figure 6 of Guennebaud et al. 2006.
+
+    count: surfels of each.
+    """
+    colors = ((0.8, 0.1, 0.1), (0.1, 0.5, 0.8), (0.15, 0.7, 0.2), (0.9, 0.7, 0.1), (0.6, 0.2, 0.7), (0.85, 0.85, 0.85))
+    points, spacing = fibonacci_sphere(count), math.sqrt(4 * math.pi / count)
+    balls = [_surfels(points, points, np.tile(c, (count, 1)), spacing, n, opacity) for n, c in enumerate(colors)]
+    places = np.stack(np.meshgrid(*[(-1.0, 0.0, 1.0)] * 3), axis=-1).reshape(-1, 3)
+    instances = []
+    for number, place in enumerate(places):
+        matrix = np.diag((*(SPHERES_RADIUS,) * 3, 1.0))
+        matrix[:3, 3] = place
+        instances.append(Instance(balls[number % 6], matrix, materials=(Material(roughness=0.35),)))
+    camera = Camera.perspective(look_at((1.2, -5.4, 1.9), (0, 0, 0)), math.radians(36), size, near=0.1, far=20)
+    return Scene(tuple(instances), (SUN, LAMP), (0.5, 0.5, 0.5)), camera
+
+
+def fibonacci_sphere(count: int) -> np.ndarray:
+    """(count, 3) points on the unit sphere, on a Fibonacci lattice (Swinbank & Purser 2006)."""
+    k = np.arange(count) + 0.5
+    z, longitude = 1 - 2 * k / count, k * math.pi * (3 - math.sqrt(5))
+    ring = np.sqrt(1 - z * z)
+    return np.stack([ring * np.cos(longitude), ring * np.sin(longitude), z], axis=1)
 
 
 def checker_plane(
@@ -185,7 +210,7 @@ def _two_colors(choice: np.ndarray, first, second) -> np.ndarray:
     return np.where(choice[:, None] > 0, second, first)
 
 
-def _surfels(points, normals, colors, spacing: float, seed: int) -> Surfels:
+def _surfels(points, normals, colors, spacing: float, seed: int, opacity: float = 1.0) -> Surfels:
     """Ellipses in the planes of the normals, turned and stretched at random."""
     random = np.random.default_rng(seed)
     x, y = _tangents(normals, random.uniform(0, 2 * math.pi, len(points)))
@@ -196,7 +221,7 @@ def _surfels(points, normals, colors, spacing: float, seed: int) -> Surfels:
         rotations=axes_quaternions(x, y, np.asarray(normals)),
         scales=scales,
         normals=normals,
-        colors=np.concatenate([colors, np.ones((len(points), 1))], axis=1),
+        colors=np.concatenate([colors, np.full((len(points), 1), opacity)], axis=1),
         materials=np.zeros(len(points), np.int32),
     )
 

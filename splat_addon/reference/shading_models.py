@@ -125,6 +125,9 @@ def _lighting(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, set
     return direction, all_incident(scene, camera, position, surface.light_set, settings.epsilon)
 
 
+#: Those that show how splats add up; to them, all are opaque.
+DIAGNOSTIC = ("overdraw", "weight")
+
 #: name of a shading model -> its twin
 SHADERS = {
     "principled": _principled,

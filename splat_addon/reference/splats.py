@@ -6,7 +6,7 @@ First step of `render_exact`: everything that depends on one splat and the camer
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -21,6 +21,9 @@ BACK_WEIGHT = 1e-3
 BACK_EPSILON = 2.0
 GRAZING_COSINE = 0.3
 
+#: A splat that shows less of itself is not there at all: shaders/common/sides.glsl.
+LEAST_OPACITY = 1e-3
+
 
 @dataclass(frozen=True, eq=False)
 class Splats:
@@ -34,6 +37,7 @@ class Splats:
     texture: (N,) objects, the `SurfaceTexture` that takes the place of color, or None. uv: (N, 2) at the centre;
     uv_along: (N, 2, 2), its change along u (row 0) and v (row 1). uv_border: (N, 2) m of the line m . q = 1 behind
     which the texture is not looked up.
+    opacity: (N,), 1 where not is_transparent: (N,) bool, of instances that something shows through.
     """
 
     center: np.ndarray
@@ -48,6 +52,8 @@ class Splats:
     uv: np.ndarray
     uv_along: np.ndarray
     uv_border: np.ndarray
+    opacity: np.ndarray
+    is_transparent: np.ndarray
 
     def __len__(self) -> int:
         return len(self.center)
@@ -64,12 +70,17 @@ class Splats:
         """The splats of some rows."""
         return Splats(*(getattr(self, f.name)[rows] for f in fields(self)))
 
+    def as_opaque(self) -> Splats:
+        """The same, and nothing shows through them."""
+        return replace(self, opacity=np.ones(len(self)), is_transparent=np.zeros(len(self), bool))
+
 
 def eye_splats(scene: Scene, camera: Camera) -> Splats:
     """Every instance's surfels in the eye space of `camera`."""
     parts = [_instance_splats(instance, camera) for instance in scene.surfels]
     if not parts:
-        return Splats(*np.zeros((6, 0, 3)), np.zeros((0, 10)), np.zeros(0, bool), np.zeros(0, object), *_no_uvs(0))
+        vectors, rest = np.zeros((6, 0, 3)), (np.zeros(0, bool), np.zeros(0, object), *_no_uvs(0), *_opaque(0))
+        return Splats(*vectors, np.zeros((0, 10)), *rest)
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
 
 
@@ -93,12 +104,19 @@ def _instance_splats(instance: Instance, camera: Camera) -> Splats:
         border = uvs[2] if surfels.uv_border is None else surfels.uv_border.astype(np.float64)
         uvs = surfels.uvs.astype(np.float64), np.stack([surfels.uv_along_x, surfels.uv_along_y], axis=1), border
     textures = surfel_textures(instance)
-    splats = Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0, textures, *uvs)
+    opacity = _opaque(len(surfels))
+    if surfels.is_transparent:
+        opacity = np.clip(surfels.colors[:, 3].astype(np.float64), 0, 1), np.ones(len(surfels), bool)
+    splats = Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0, textures, *uvs, *opacity)
     return splats.take(np.flatnonzero(cosine >= 0)) if instance.hides_backs(camera) else splats
 
 
 def _no_uvs(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.zeros((count, 2)), np.zeros((count, 2, 2)), np.zeros((count, 2))
+
+
+def _opaque(count: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.ones(count), np.zeros(count, bool)
 
 
 def _cofactors(linear: np.ndarray) -> np.ndarray:

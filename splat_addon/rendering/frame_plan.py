@@ -24,6 +24,13 @@ TEXTURES = {
     "light_set_sum": ("RGBA32F", "sample"),
     "overdraw_sum": ("R32F", "sample"),
     "lines": ("R32F", "sample"),
+    "layer_depth": ("DEPTH32F", "visibility sample"),
+    "left": ("R32F", "block"),
+    "peeled": ("RG32F", "visibility sample"),
+    "peeled_next": ("RG32F", "visibility sample"),
+    "layers": ("RGBA32F", "pixel"),
+    "layers_depth": ("R32F", "pixel"),
+    "layers_normal": ("RGBA32F", "pixel"),
     "shaded": ("RGBA32F", "sample"),
     "surface": ("RGBA32F", "sample"),
     "sample_diffuse_color": ("RGBA32F", "sample"),
@@ -57,6 +64,9 @@ SUM_FORMATS = {
 }
 
 
+#: Of a picture along each side, for which "left" holds one value each.
+BLOCKS = 64
+
 #: Those that draw splats.
 SPLAT_PASSES = ("visibility", "attributes")
 
@@ -66,6 +76,7 @@ class PlannedPass:
     """name: also of its pipeline. reason: why the frame needs it.
     reads, writes: names of textures in slot order; "lights" holds the scene's.
     is_shared: made with the first tile, for all.
+    layer: number of the transparent layer that it makes, from the nearest, 1; 0 where it makes none.
     """
 
     name: str
@@ -73,6 +84,7 @@ class PlannedPass:
     reads: tuple[str, ...]
     writes: tuple[str, ...]
     is_shared: bool = False
+    layer: int = 0
 
 
 @dataclass(frozen=True)
@@ -115,6 +127,11 @@ class FramePlan:
         return feature in (name for name, _ in self.features)
 
     @property
+    def layers(self) -> int:
+        """How many transparent layers are peeled at most."""
+        return max((p.layer for p in self.passes), default=0)
+
+    @property
     def margin(self) -> int:
         """Pixels drawn around a tile and not kept."""
         return (FILTER_MARGIN if self.visibility_samples > 1 else 0) + self.line_margin
@@ -124,6 +141,8 @@ class FramePlan:
         what_for = TEXTURES[texture][1]
         if what_for == "frame":
             return atlas_size(self.shadow_maps)
+        if what_for == "block":
+            return BLOCKS, BLOCKS
         along = {
             "pixel": 1,
             "sample": self.samples,
@@ -155,7 +174,8 @@ class FramePlan:
             each = "evaluated and lit one by one" if self.sample_shading else "evaluated once, lit once for their mean"
             lines.append(f"  with {self.multisamples} hardware samples in each: {each}")
         for p in self.passes:
-            lines.append(f"  {p.name}: {', '.join(p.writes)} <- {', '.join(p.reads) or 'splats'}; {p.reason}")
+            layer = f" of layer {p.layer}" if p.layer else ""
+            lines.append(f"  {p.name}{layer}: {', '.join(p.writes)} <- {', '.join(p.reads) or 'splats'}; {p.reason}")
         lines += [f"  with {name}: {why}" for name, why in self.features]
         lines += [f"  without {what}: {why}" for what, why in self.left_out]
         return "\n".join(lines)

@@ -11,6 +11,7 @@ import math
 
 from .camera import Camera
 from .frame_plan import HELD_BY, TEXTURES, FramePlan, PlannedPass
+from .layers import layer_outputs, layer_passes, layers_of
 from .methods import Method, get_method
 from .packing import shared_emission, shared_material
 from .scene import Material, Scene
@@ -29,9 +30,6 @@ MAX_HARDWARE_DEPTH_RATIO = 128
 
 #: Up to this radius of a splat at distance 1 its corners may be moved back instead of every fragment.
 MAX_HARDWARE_DEPTH_RADIUS = 0.25
-
-#: Least alpha of an opaque surfel: filtering an image of ones leaves them a few roundings short of 1.
-OPAQUE = 0.999
 
 
 def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera | None = None) -> FramePlan:
@@ -64,11 +62,15 @@ def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera
         lines = _line_passes(settings, method, sums, left_out)
         reads = _read_by_shading(scene, model, sums, maps, left_out) + (("lines",) if lines else ())
         shadows = (_shadow_pass(scene, maps),) if maps else ()
+        layers = layers_of(scene, settings, method, model, left_out)
+        first, *splats = _splat_passes(method, _why_attributes(scene, method), why_depth, sums, left_out)
         passes = (
             *shadows,
-            *_splat_passes(method, _why_attributes(scene, method), why_depth, sums, left_out),
+            first,
+            *layer_passes(layers, settings, method, model, sums, reads),
+            *splats,
             *lines,
-            *_shading_passes(scene, settings, method, model, reads, left_out),
+            *_shading_passes(scene, settings, method, model, reads, layers, left_out),
         )
         features = _splat_features(extent, left_out) + _features(scene, settings, model, emission, left_out)
         if not linear_depth:
@@ -235,11 +237,19 @@ def _features(
 
 
 def _shading_passes(
-    scene: Scene, settings: Settings, method: Method, model: ShadingModel, reads: tuple[str, ...], left_out: list
+    scene: Scene,
+    settings: Settings,
+    method: Method,
+    model: ShadingModel,
+    reads: tuple[str, ...],
+    layers: int,
+    left_out: list,
 ):
     """From sums to pixels: in one pass, or in two where silhouettes are filtered."""
     outputs = _outputs(settings, left_out)
     behind = ("environment_image",) if _shows_environment(scene, settings) else ()
+    if layers:
+        behind += ("peeled", *layer_outputs(settings))
     once = f"{model.name}, once a sample"
     if method.visibility_samples == 1:
         return (PlannedPass("shading", once, tuple(dict.fromkeys((*reads, *behind))), outputs),)
@@ -263,8 +273,6 @@ def _say_what_surfels_lack(scene: Scene, camera: Camera, left_out: list) -> None
     solid = sum(instance.hides_backs(camera) for instance in scene.surfels)
     if solid:
         left_out.append(("backs of splats", f"{solid} of {len(scene.surfels)} instances are solid"))
-    if any((instance.surfels.colors[:, 3] < OPAQUE).any() for instance in scene.surfels):
-        left_out.append(("transparency", "surfels whose opacity is below 1 are drawn opaque"))
 
 
 def _linear_depth(camera: Camera, extent: DepthExtent) -> tuple[bool, str]:

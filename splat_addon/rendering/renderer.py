@@ -149,6 +149,7 @@ class Renderer:
             "instances_outside": 0,
             "instances_degenerate": 0,
             "surfels_coarse": 0,
+            "layers": 0,
             "passes": {},
         }
 
@@ -172,9 +173,11 @@ class Renderer:
             stats["instances_degenerate"] = view.degenerate
             stored = [self.resources.surfels(p.instance.surfels, get_storage(frame_plan.storage)) for p in view.placed]
             stats["surfels_coarse"] = max(stats["surfels_coarse"], sum(s.coarse for s in stored))
-            target = None
+            target, is_peeled = None, False
             for step, planned in enumerate(frame_plan.passes):
                 if planned.is_shared and (number or are_shared_done):
+                    continue
+                if planned.layer and is_peeled:
                     continue
                 done = (number + step / len(frame_plan.passes)) / len(frame_plan.tiles)
                 if progress and progress(done, planned.name) is False:
@@ -185,6 +188,9 @@ class Renderer:
                     self.device.finish(target)
                     elapsed = 1e3 * (perf_counter() - started)
                     stats["passes"][planned.name] = stats["passes"].get(planned.name, 0.0) + elapsed
+                if "left" in planned.writes:
+                    is_peeled = not target.read(0).any()
+                    stats["layers"] = max(stats["layers"], planned.layer - is_peeled)
             yield tile, target
 
 

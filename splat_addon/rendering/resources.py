@@ -111,6 +111,10 @@ class Resources:
             self.textures[key] = self.device.texture((width, height), format, samples=samples)
         return self.textures[key]
 
+    def swap(self, key: TextureKey, other: TextureKey) -> None:
+        """Let two textures change their keys."""
+        self.textures[key], self.textures[other] = self.texture(other), self.texture(key)
+
     def forget_textures_but(self, wanted: set[TextureKey]) -> None:
         """Let go of textures of a size or kind that this frame does not use: they are not kept for one that may."""
         self.textures = {key: texture for key, texture in self.textures.items() if key in wanted}

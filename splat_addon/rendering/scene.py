@@ -122,8 +122,11 @@ class Instance:
         return np.where(pick, high, low)
 
     def hides_backs(self, camera: Camera) -> bool:
-        """Whether no back can be seen: solid, and wholly beyond the near plane, so that the camera is outside."""
-        return self.surfels.is_solid and bool((-self.corners(camera)[:, 2] >= camera.near).all())
+        """Whether no back can be seen: solid and opaque, and wholly beyond the near plane, so that the camera is
+        outside.
+        """
+        is_closed = self.surfels.is_solid and not self.surfels.is_transparent
+        return is_closed and bool((-self.corners(camera)[:, 2] >= camera.near).all())
 
 
 @dataclass(frozen=True, eq=False)

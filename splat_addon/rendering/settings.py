@@ -32,6 +32,8 @@ MULTISAMPLING = (0, 2, 4, 8)
 #: Eight maps of that size beside one another are the widest texture that every tested backend has.
 MAX_SHADOW_RESOLUTION = 2048
 
+MAX_LAYERS = 64
+
 #: the arrays of a `Frame`
 OUTPUTS = ("color", "depth", "normal", "coverage", "position", "diffuse_color", "emission", "shadow", "overdraw")
 
@@ -55,6 +57,9 @@ class Settings:
     epsilon: how far, in radii of each splat, the visibility pass moves it back along the view ray;
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
     shadow_resolution: texels along the side of a shadow map; 0 leaves shadows out.
+    layers: of transparent surfaces behind one another that are peeled at most, in each pixel; what is behind them is
+        lost.
+    alpha_threshold: the least opacity of a surface that the depth and the normal are taken from.
     transparent_film: leave the background out and keep its alpha at 0.
     outputs: which arrays of the `Frame` are wanted; the others are None and cost nothing. A position brings the depth
         that it is made of.
@@ -76,6 +81,8 @@ class Settings:
     edge_threshold: float = 0.0
     epsilon: float = 0.5
     shadow_resolution: int = 1024
+    layers: int = 8
+    alpha_threshold: float = 0.5
     transparent_film: bool = False
     outputs: tuple[str, ...] = ("color", "depth", "normal", "coverage")
     storage: str = "float32"
@@ -101,6 +108,10 @@ class Settings:
             raise ValueError(f"edge_threshold must be 0 or more splat weights, not {self.edge_threshold}.")
         if self.shadow_resolution not in range(MAX_SHADOW_RESOLUTION + 1):
             raise ValueError(f"shadow_resolution must be 0 to {MAX_SHADOW_RESOLUTION}, not {self.shadow_resolution}.")
+        if self.layers not in range(1, MAX_LAYERS + 1):
+            raise ValueError(f"layers must be 1 to {MAX_LAYERS}, not {self.layers}.")
+        if not 0 <= self.alpha_threshold <= 1:
+            raise ValueError(f"alpha_threshold must be 0 to 1, not {self.alpha_threshold}.")
         if not set(self.outputs) <= set(OUTPUTS):
             raise ValueError(f"outputs must be among {', '.join(OUTPUTS)}, not {self.outputs!r}.")
         if not (math.isfinite(self.epsilon) and self.epsilon >= 0):

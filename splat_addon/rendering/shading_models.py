@@ -30,6 +30,11 @@ class ShadingModel:
     sums: tuple[str, ...] = ()
     features: tuple[tuple[str, str], ...] = ()
 
+    @property
+    def is_diagnostic(self) -> bool:
+        """Whether it shows how the picture is made."""
+        return bool(self.sums or self.features)
+
 
 SHADING_MODELS = {
     model.name: model

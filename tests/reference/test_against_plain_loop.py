@@ -22,7 +22,7 @@ def random_surfels(count: int) -> Surfels:
         rotations=rotations / np.linalg.norm(rotations, axis=1, keepdims=True),
         scales=random.uniform(0.05, 0.6, (count, 2)),
         normals=normals / np.linalg.norm(normals, axis=1, keepdims=True),
-        colors=random.uniform(0, 1, (count, 4)),
+        colors=np.concatenate([random.uniform(0, 1, (count, 3)), np.ones((count, 1))], axis=1),
         materials=np.zeros(count, int),
         origin=(0.5, -0.25, 0.125),
     )

@@ -124,6 +124,9 @@ SCENES = {
     "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),
 }
 
+#: Compared with the truth, with as many layers as there are, in tests/rendering/test_transparency.py.
+TRANSPARENT = {"transparent_spheres": lambda: scenes.transparent_spheres(count=600, size=SIZE)}
+
 #: Looked up under footprints, which rays do not have: tests/rendering/test_textured.py compares them with the truth.
 TEXTURED = {"textured_plane": lambda: scenes.textured_plane(size=SIZE)}
 
@@ -140,6 +143,7 @@ CASES = [
     *((name, "quad", {}) for name in SCENES),
     *(("torus", method, {}) for method in METHODS if method != "quad"),
     *((name, method, {}) for name in TEXTURED for method in METHODS),
+    *(("transparent_spheres", method, {}) for method in ("quad", "mip")),
     *(("torus", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
     *(("torus", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
     *(("torus", "mip", {"shading": shading}) for shading in UNLIT if shading != "matcap"),
@@ -154,7 +158,8 @@ CASES = [
 
 @pytest.mark.parametrize(("name", "method", "options"), CASES)
 def test_picture_is_the_same_on_every_device(name, method, options, render, pictures, request):
-    frame = render(*(SCENES | TEXTURED | BLURRED)[name](), Settings(method=method, supersampling=1, **options))
+    made = (SCENES | TEXTURED | BLURRED | TRANSPARENT)[name]()
+    frame = render(*made, Settings(method=method, supersampling=1, **options))
     named = (value if isinstance(value, str) else key for key, value in options.items())
     path = pictures / f"{'-'.join((name, method, *named))}.npz"
     tolerance = FLOAT16_TOLERANCE if options.get("accumulation") == "float16" else TOLERANCE

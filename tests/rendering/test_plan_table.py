@@ -32,6 +32,11 @@ ROUGH, SHINY, GLOWING = Material(roughness=0.9), Material(roughness=0.1), Materi
 PASSES = ("visibility", "attributes", "shading")
 TEXTURES = {"visibility_depth", "color_sum", "normal_sum", "combined", "depth", "normal_coverage"}
 READS = {"brdf_table"}
+LAYER = ("visibility", "left", "attributes", "sample_shading", "layer", "peel")
+LAYER_TEXTURES = "layer_depth left depth_sum shaded surface peeled peeled_next layers layers_depth layers_normal"
+
+
+TRANSPARENT = Scene([Instance(replace(surfels(), colors=np.full((2, 4), 0.5)))])
 
 
 def lit(**options) -> Scene:
@@ -89,6 +94,24 @@ TABLE = {
         "-normal_coverage seen_range seen_depth shaded surface emission sample_emission overdraw_sum shadow_overdraw "
         "sample_shadow_overdraw", "", (),
     ),
+    "transparent": (
+        TRANSPARENT, {"layers": 2}, ("visibility", "start_layers", *LAYER, *LAYER, "attributes", "shading"),
+        LAYER_TEXTURES, "", (),
+    ),
+    "transparent, by mip": (
+        TRANSPARENT, {"layers": 1, "method": "mip"},
+        ("visibility", "start_layers", "visibility", "left", "seen_range", "attributes", "sample_shading", "resolve",
+         "peel", "seen_range", "attributes", "sample_shading", "resolve"),
+        LAYER_TEXTURES + " seen_range seen_depth", "", (),
+    ),
+    "transparent, colour alone": (
+        TRANSPARENT, {"layers": 1, "outputs": ("color",)},
+        ("visibility", "start_layers", *LAYER, "attributes", "shading"),
+        LAYER_TEXTURES + " -normal_coverage -layers_normal", "", (),
+    ),
+    "transparent, overdraw": (
+        TRANSPARENT, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", (),
+    ),
     "one pass": (
         PLAIN, {"method": "affine_unfiltered"}, ("attributes", "shading"), "-visibility_depth seen_depth", "", (),
     ),
@@ -109,7 +132,7 @@ def test_a_scene_gets_what_it_needs_and_nothing_else(name):
 def changed(usual: set[str], words: str) -> set[str]:
     """With each of the words, and without those that follow a minus."""
     less = {word[1:] for word in words.split() if word.startswith("-")}
-    return usual - less | {word for word in words.split() if not word.startswith("-")}
+    return (usual | {word for word in words.split() if not word.startswith("-")}) - less
 
 
 def test_a_scene_of_nothing_gets_nothing():

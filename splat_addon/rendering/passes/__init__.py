@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The passes that a plan may name: one file each, with its pipeline's description and how it runs."""
 
-from . import attributes, lines, seen_range, shading, shadow_maps, visibility
+from . import attributes, layers, lines, seen_range, shading, shadow_maps, visibility
 
 #: name in a `FramePlan` -> run(tile, planned) -> the target that was drawn into
 RUN = {
@@ -10,6 +10,10 @@ RUN = {
     "visibility": visibility.run,
     "seen_range": seen_range.run,
     "attributes": attributes.run,
+    "start_layers": layers.start,
+    "left": shading.run,
+    "layer": shading.run,
+    "peel": layers.peel,
     "lines": lines.run,
     "shading": shading.run,
     "sample_shading": shading.run,

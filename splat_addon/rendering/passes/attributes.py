@@ -10,8 +10,8 @@ from ..frame_plan import TEXTURES, FramePlan, PlannedPass
 from ..methods import get_method
 from ..shaders import load
 from ..storages import get_storage
-from .blocks import HALF_SUMS, LINEAR_DEPTH, material_defines
-from .splats import SPLATS_BLOCK, draw_splats
+from .blocks import LAYER, LINEAR_DEPTH, material_defines, sum_defines
+from .splats import SPLATS_BLOCK, draw_splats, drawn_by
 from .tile import TileContext
 
 #: Of the sums that are not vec4.
@@ -25,6 +25,8 @@ _TEXTURE_VARYINGS = (
     ("flat", "vec2", "texture_border"),
 )
 _AXES_VARYINGS = (("flat", "vec3", "texture_axis_u"), ("flat", "vec3", "texture_axis_v"))
+#: Of what transparent layers are tested with.
+_LAYER_SAMPLERS = ("peeled", "visibility_depth")
 _TEXTURE_SAMPLERS = ("surfel_uvs", "texture_atlas", "texture_table")
 
 
@@ -126,11 +128,17 @@ def _description(planned, frame, folder, varyings, samplers=(), defines=(), **st
         vertex=load(f"{folder}attributes.vert.glsl", method=frame.method, storage=frame.storage),
         fragment=load(f"{folder}attributes.frag.glsl", method=frame.method),
         block=SPLATS_BLOCK,
-        samplers=(*get_storage(frame.storage).samplers, *(("materials",) if with_materials else ()), *samplers),
+        samplers=(
+            *get_storage(frame.storage).samplers,
+            *(("materials",) if with_materials else ()),
+            *samplers,
+            *(name for name in planned.reads if name in _LAYER_SAMPLERS and planned.layer),
+        ),
         varyings=(
             *varyings,
             ("flat", "vec4", "color_weight"),
             ("flat", "vec3", "normal"),
+            *((("flat", "float", "opacity"),) if planned.layer else ()),
             *_material_varyings(planned),
         ),
         outputs=_outputs(planned),
@@ -138,7 +146,8 @@ def _description(planned, frame, folder, varyings, samplers=(), defines=(), **st
             *defines,
             *with_materials,
             *_own_defines(planned),
-            *(HALF_SUMS if frame.accumulation == "float16" else ()),
+            *sum_defines(planned.writes, frame.accumulation),
+            *(LAYER if planned.layer else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
         **state,
@@ -155,7 +164,7 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
     target = tile.target(_sums(planned), depth if description.depth_test else None)
     target.clear(color=0.0, depth=1.0 if description.depth_write else None)
     for textured in (False, True):
-        placed = [p for p in tile.view.placed if p.instance.is_textured is textured]
+        placed = [p for p in drawn_by(planned, tile) if p.instance.is_textured is textured]
         if placed:
             draw_splats(tile, tile.resources.pipeline(describe(planned, tile.plan, textured)), target, placed)
     return target

@@ -21,5 +21,11 @@ def material_defines(names: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
     return (*targets, ("WITH_MATERIALS", "1")) if targets else ()
 
 
-#: Defined where sums are float16.
-HALF_SUMS = (("HALF_SUMS", "1"),)
+def sum_defines(names: tuple[str, ...], accumulation: str) -> tuple[tuple[str, str], ...]:
+    """What is defined where a pass reads or writes these sums: depths may be apart, and numbers smaller."""
+    is_half = accumulation == "float16"
+    return (*((("DEPTH_SUM", "1"),) if "depth_sum" in names else ()), *((("HALF_SUMS", "1"),) if is_half else ()))
+
+
+#: Defined where a transparent layer is made.
+LAYER = (("LAYER", "1"),)

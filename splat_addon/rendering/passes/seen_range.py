@@ -6,6 +6,7 @@ from __future__ import annotations
 from ..device.interface import PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
 from ..shaders import load
+from .blocks import LAYER
 from .shading import SHADING_BLOCK, shading_block
 from .tile import TileContext
 
@@ -19,7 +20,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
         block=SHADING_BLOCK,
         samplers=planned.reads,
         outputs=(("vec4", "seen_range"),),
-        defines=(("VISIBILITY_SAMPLES", str(frame.visibility_samples)),),
+        defines=(("VISIBILITY_SAMPLES", str(frame.visibility_samples)), *(LAYER if planned.layer else ())),
         depth_test=True,
         depth_write=True,
         fragment_depth=True,

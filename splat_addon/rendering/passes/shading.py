@@ -9,18 +9,19 @@ import numpy as np
 
 from ..brdf_table import brdf_texels
 from ..device.interface import PipelineDescription, Target
-from ..frame_plan import FramePlan, PlannedPass
+from ..frame_plan import BLOCKS, FramePlan, PlannedPass
 from ..light import pack_lights
 from ..lines import Lines
 from ..packing import pack_materials
 from ..shaders import load
 from ..shadow import map_ranges, pack_shadow_maps
-from .blocks import HALF_SUMS, LINEAR_DEPTH, std140
+from .blocks import LAYER, LINEAR_DEPTH, std140, sum_defines
 from .tile import TileContext
 
 #: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
 #: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights, 1 / far,
-#:     what summed colours are multiplied by. emission: of all surfels. edges: the sum of weights that covers a sample.
+#:     what summed colours are multiplied by. emission: of all surfels. edges: the sum of weights that covers a sample,
+#:     and the least opacity of a surface that depth and normal are taken from.
 #: model: levels of the toon model and how soft their edges are, nearest and farthest depth in view.
 #: lines: their width in samples, 0, the cosine of a crease and the drop at a silhouette in pixels. line_color: rgb.
 SHADING_BLOCK = (
@@ -54,6 +55,7 @@ _DEFINES = {
     "shadow_maps": "SHADOWS",
     "environment_image": "ENVIRONMENT",
     "environment_levels": "ENVIRONMENT_LIGHT",
+    "layers": "LAYERS",
 }
 
 
@@ -63,7 +65,7 @@ _ALWAYS_WRITTEN = ("combined", "depth", "shaded", "surface")
 
 def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
     """What the pass draws with; its fragment shader has its name."""
-    kinds = {"depth": "float"}
+    kinds = {"depth": "float", "layers_depth": "float", "left": "float", "peeled_next": "vec2"}
     return PipelineDescription(
         name=planned.name,
         vertex=load("fullscreen.vert.glsl"),
@@ -75,13 +77,16 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
         defines=(
             ("SAMPLES", str(frame.samples)),
             ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
+            ("BLOCKS", str(BLOCKS)),
             *_multisampling(frame),
-            *(HALF_SUMS if "depth_sum" in planned.reads else ()),
+            *sum_defines(planned.reads, frame.accumulation),
+            *(LAYER if planned.layer else ()),
             *((f"{name.upper()}_OUTPUT", "1") for name in planned.writes if name not in _ALWAYS_WRITTEN),
             *((define, "1") for texture, define in _DEFINES.items() if texture in planned.reads),
             *((name, "1") for name, _ in frame.features),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
+        blend="add" if "layers" in planned.writes else "none",
     )
 
 
@@ -143,7 +148,7 @@ def shading_block(tile: TileContext) -> np.ndarray:
         (*material, 1.0 / view.scale),
         (camera.is_orthographic, len(scene.lights), tile.depth_unit, 1 / tile.color_scale),
         (*(frame.emission or (0.0, 0.0, 0.0)), 0.0),
-        (tile.settings.edge_threshold, 0.0, 0.0, 0.0),
+        (tile.settings.edge_threshold, tile.settings.alpha_threshold, 0.0, 0.0),
         (tile.settings.toon_steps, tile.settings.toon_softness, *(d * view.scale for d in frame.depth_range)),
         *_line_values(tile.settings.lines, frame.samples),
     )

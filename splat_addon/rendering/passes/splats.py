@@ -8,6 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..device.interface import Pipeline, Target
+from ..frame_plan import PlannedPass
 from ..light import MAX_LIGHT_SETS
 from ..storages import get_storage
 from ..view import PlacedInstance
@@ -32,6 +33,14 @@ SPLATS_BLOCK = (
         ("vec4", "light_set"),
     ),
 )
+
+
+def drawn_by(planned: PlannedPass, tile: TileContext) -> tuple[PlacedInstance, ...]:
+    """What a pass draws of the tile's view: where transparent layers are planned, those or all the rest."""
+    if not tile.plan.layers:
+        return tile.view.placed
+    is_layer = planned.layer > 0
+    return tuple(p for p in tile.view.placed if p.instance.surfels.is_transparent is is_layer)
 
 
 def draw_splats(

@@ -36,6 +36,10 @@ class TileContext:
         """One that the plan names."""
         return self.resources.texture(texture_key(name, self.camera.size, self.plan))
 
+    def swap(self, name: str, other: str) -> None:
+        """Let two textures of one size and format change their names."""
+        self.resources.swap(*(texture_key(n, self.camera.size, self.plan) for n in (name, other)))
+
     def textures(self, names: tuple[str, ...], made_here: dict[str, Callable[[], Texture]]) -> list[Texture]:
         """Those that the plan names and those that `made_here` makes, in the order of `names`."""
         return [made_here[name]() if name in made_here else self.texture(name) for name in names]

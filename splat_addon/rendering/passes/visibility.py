@@ -7,8 +7,8 @@ from ..device.interface import PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
 from ..shaders import load
 from ..storages import get_storage
-from .blocks import LINEAR_DEPTH
-from .splats import SPLATS_BLOCK, draw_splats
+from .blocks import LAYER, LINEAR_DEPTH
+from .splats import SPLATS_BLOCK, draw_splats, drawn_by
 from .tile import TileContext
 
 
@@ -19,12 +19,12 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
         vertex=load("visibility.vert.glsl", storage=frame.storage),
         fragment=load("visibility.frag.glsl"),
         block=SPLATS_BLOCK,
-        samplers=get_storage(frame.storage).samplers,
+        samplers=(*get_storage(frame.storage).samplers, *planned.reads),
         varyings=(
             ("smooth", "vec3", "place_depth"),
             *((("smooth", "vec3", "across_offset"),) if frame.linear_depth else ()),
         ),
-        defines=LINEAR_DEPTH if frame.linear_depth else (),
+        defines=(*(LINEAR_DEPTH if frame.linear_depth else ()), *(LAYER if planned.layer else ())),
         depth_test=True,
         depth_write=True,
         fragment_depth=frame.linear_depth,
@@ -36,5 +36,5 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
     """Fill the depth texture."""
     target = tile.target((), planned.writes[0])
     target.clear(depth=1.0)
-    draw_splats(tile, tile.resources.pipeline(describe(planned, tile.plan)), target, tile.view.placed)
+    draw_splats(tile, tile.resources.pipeline(describe(planned, tile.plan)), target, drawn_by(planned, tile))
     return target

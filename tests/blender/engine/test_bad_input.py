@@ -231,7 +231,14 @@ def test_a_material_index_past_the_slots_is_no_mishap(good, assert_good_is_drawn
     assert_good_is_drawn()
 
 
-def test_opacity_below_one_is_said_to_be_ignored(add_surfels, assert_good_is_drawn, said):
+def test_opacity_below_one_is_no_mishap(add_surfels, assert_good_is_drawn, said):
+    add_surfels([(-1, 0, 0)], colors=(1, 1, 1, 0.5))
+    assert_good_is_drawn()
+    assert "Warning" not in said()
+
+
+def test_opacity_that_the_method_cannot_draw_is_said_to_be_ignored(scene, add_surfels, assert_good_is_drawn, said):
+    scene.surfel_splatting.method = "affine_unfiltered"
     add_surfels([(-1, 0, 0)], colors=(1, 1, 1, 0.5))
     assert_good_is_drawn()
     assert "drawn opaque" in said()

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which transparent layers a frame peels, and the passes of each (Guennebaud et al. 2006, section 6).
+
+Opaque surfels are seen first, and hide what lies behind them. Then, from the nearest to the farthest, a layer of what
+is transparent is made as an opaque picture is: by visibility, attributes and shading; but every splat that a nearer
+layer holds is left out. As a layer holds just what lies no deeper than its nearest splat moved back by its epsilon,
+each splat is in one layer at each visibility sample, and the overlapping splats of a surface are in the same one.
+
+Layers are put on one another where visibility is known: each adds to the pixel what the nearer ones let through at each
+of its visibility samples, and the opaque picture what all of them do.
+"""
+
+from __future__ import annotations
+
+from .frame_plan import PlannedPass
+from .methods import Method
+from .scene import Scene
+from .settings import Settings
+from .shading_models import ShadingModel
+
+
+def layers_of(scene: Scene, settings: Settings, method: Method, model: ShadingModel, left_out: list) -> int:
+    """How many layers are peeled at most; why none are is appended to `left_out`, as "transparency" where some should.
+
+    Raises ValueError where hardware multisampling is asked for, whose samples hold one depth each but are shaded
+    together.
+    """
+    if not any(instance.surfels.is_transparent for instance in scene.surfels):
+        left_out.append(("transparent layers", "every surfel is opaque"))
+        return 0
+    why_not = ""
+    if method.works_in == "sprites":
+        why_not = f"of {method.name} the nearest splat wins"
+    elif model.is_diagnostic:
+        why_not = f"{model.name} shows how splats add up"
+    elif settings.multisampling:
+        raise ValueError(
+            f"Transparent surfels cannot be peeled with multisampling {settings.multisampling}; set it to 0 and use "
+            "supersampling."
+        )
+    if why_not:
+        left_out.append(("transparency", f"surfels whose opacity is below 1 are drawn opaque: {why_not}"))
+        return 0
+    return settings.layers
+
+
+def layer_outputs(settings: Settings) -> tuple[str, ...]:
+    """What layers add up to in each pixel."""
+    has_normal = bool({"normal", "coverage"} & set(settings.outputs))
+    return ("layers", "layers_depth", "layers_normal") if has_normal else ("layers", "layers_depth")
+
+
+def layer_passes(
+    layers: int, settings: Settings, method: Method, model: ShadingModel, sums: tuple[str, ...], reads: tuple[str, ...]
+) -> tuple[PlannedPass, ...]:
+    """Of all layers. sums: of the attribute pass of opaque surfels. reads: of their shading."""
+    if not layers:
+        return ()
+    start = PlannedPass("start_layers", "nothing is peeled yet", (), ("peeled", *layer_outputs(settings)))
+    made = (p for number in range(1, layers + 1) for p in _layer(number, settings, method, sums, reads))
+    return start, *made
+
+
+def _layer(number: int, settings: Settings, method: Method, sums, reads) -> tuple[PlannedPass, ...]:
+    in_space, is_filtered = method.works_in == "space", method.visibility_samples > 1
+    # Of what frames hand on beside colour, depth and normal, layers have nothing.
+    sums = tuple(dict.fromkeys(name for name in (*sums, "depth_sum") if name != "overdraw_sum"))
+    seen = ("seen_range", "seen_depth")
+    tested = ("layer_depth", "visibility_depth", "peeled") if in_space else (*seen, "peeled")
+    shading = tuple(dict.fromkeys((*sums, *(name for name in reads if name not in ("lines", "overdraw_sum")))))
+    resolved = ("shaded", "surface", "peeled", "layer_depth", *(("seen_range",) if is_filtered else ()))
+    passes = [
+        ("visibility", "behind nearer layers, before what is opaque", ("peeled", "visibility_depth"), ("layer_depth",)),
+        ("left", "layers end where nothing is left", ("layer_depth",), ("left",)),
+        ("seen_range", "splats that are hidden whole are tested away early", ("layer_depth", "visibility_depth"), seen),
+        ("attributes", "splats of one layer blend", tested, sums),
+        ("sample_shading", "a layer is lit once", shading, ("shaded", "surface")),
+        ("resolve" if is_filtered else "layer", "nearer layers cover it", resolved, layer_outputs(settings)),
+        ("peel", "the next layer lies behind this one", ("peeled", "layer_depth", "shaded"), ("peeled_next",)),
+    ]
+    return tuple(PlannedPass(*p, layer=number) for p in passes if not (in_space and p[0] == "seen_range"))

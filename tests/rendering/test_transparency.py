@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Transparent layers: closed forms, and the picture by definition (Guennebaud et al. 2006, section 6)."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import render_exact, scenes
+from splat_addon.reference.metrics import psnr
+from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Scene, Settings, look_at, plan
+from splat_addon.rendering.methods import METHODS
+from splat_addon.surfels import Surfels
+
+PEELING = [name for name, method in METHODS.items() if method.works_in != "sprites"]
+SPACES = ["quad", "mip"]
+CAMERA = Camera.perspective(look_at((0, 0, 4), (0, 0, 0), (0, 1, 0)), 0.5, (32, 32), 0.1, 50)
+WORLD = (0.2, 0.4, 0.8)
+
+
+def sheet(z: float, color, opacity: float, half: float = 3.0) -> Instance:
+    """A square across the view: 16 x 16 overlapping discs."""
+    axis = (np.arange(16) + 0.5) / 8 - 1
+    x, y = (a.ravel() * half for a in np.meshgrid(axis, axis))
+    up = np.tile((0.0, 0, 1), (256, 1))
+    return Instance(
+        Surfels(
+            np.stack([x, y, np.full(256, z)], axis=1),
+            np.tile((1.0, 0, 0, 0), (256, 1)),
+            np.full((256, 2), half / 5),
+            up,
+            np.tile((*color, opacity), (256, 1)),
+            np.zeros(256, int),
+        )
+    )
+
+
+def flat(**choices) -> Settings:
+    return Settings(**{"shading": "flat", **choices})
+
+
+@pytest.mark.parametrize("method", PEELING)
+def test_sheets_cover_what_is_behind_them_by_their_opacity(method, render):
+    """k sheets of opacity a over b: b (1 - a)^k, and each sheet what the nearer ones let through of it."""
+    opacity, colors = 0.4, ((1.0, 0, 0), (0, 1.0, 0), (0, 0, 1.0))
+    scene = Scene([sheet(-z, c, opacity) for z, c in enumerate(colors)], world=WORLD)
+    frame = render(scene, CAMERA, flat(method=method))
+    let_through = (1 - opacity) ** np.arange(4)
+    expected = let_through[3] * np.array(WORLD) + sum(
+        opacity * t * np.array(c) for t, c in zip(let_through, colors, strict=False)
+    )
+    assert np.abs(frame.color - (*expected, 1)).max() < 1e-5
+    assert frame.stats["layers"] == 3
+
+
+@pytest.mark.parametrize("method", SPACES)
+def test_what_is_opaque_hides_and_is_covered(method, render):
+    red, wall, green = sheet(1, (1, 0, 0), 0.25), sheet(0, (0.5, 0.5, 0.5), 1.0), sheet(-1, (0, 1, 0), 0.5)
+    frame = render(Scene([green, wall, red], world=WORLD), CAMERA, flat(method=method))
+    assert np.abs(frame.color - (0.25 + 0.375, 0.375, 0.375, 1)).max() < 1e-5
+    assert frame.stats["layers"] == 1
+
+
+@pytest.mark.parametrize("method", SPACES)
+def test_what_lies_behind_the_last_layer_is_lost(method, render):
+    scene = Scene([sheet(-z, (1, 1, 1), 0.5) for z in range(4)])
+    frame = render(scene, CAMERA, flat(method=method, layers=2, transparent_film=True))
+    assert np.abs(frame.color - 0.75).max() < 1e-5
+
+
+@pytest.mark.parametrize("method", SPACES)
+def test_colours_of_little_opacity_count_for_little(method, render):
+    """A sheet whose left half is white and hardly there stays red up to its middle."""
+    red = sheet(0, (1, 0, 0), 0.5)
+    colors = red.surfels.colors.copy()
+    colors[red.surfels.positions[:, 0] < 0] = (1, 1, 1, 0.001)
+    scene = Scene([replace(red, surfels=replace(red.surfels, colors=colors))])
+    frame = render(scene, CAMERA, flat(method=method, transparent_film=True))
+    seen = frame.color[..., 3] > 0.1
+    assert seen[:, 17:].all() and not seen[:, 0].any()
+    assert (frame.color[seen][:, 1] < 0.01 * frame.color[seen][:, 0]).all()
+
+
+def spheres(size):
+    return scenes.transparent_spheres(count=600, size=(size, size))
+
+
+@pytest.mark.parametrize("shading", ["flat", "principled"])
+def test_picture_is_the_exact_one(shading, render):
+    scene, camera = spheres(64)
+    settings = Settings(method="quad", shading=shading, layers=32, supersampling=2)
+    frame, exact = render(scene, camera, settings), render_exact(scene, camera, settings, samples=2)
+    differs = np.abs(frame.color - exact.color).max(axis=2) > 1e-4
+    # The more layers, the more places where two depths tie in float32.
+    assert np.count_nonzero(differs) <= differs.size / 500
+    assert psnr(frame.color[~differs][None], exact.color[~differs][None]) > 90
+    assert np.count_nonzero((frame.depth < EMPTY_DEPTH) != (exact.depth < EMPTY_DEPTH)) <= 4
+
+
+@pytest.mark.parametrize("method", PEELING)
+def test_a_transparent_film_composites_over_any_background(method, render):
+    """Premultiplied edges have no rim: over a background, the picture is the one before that background."""
+    scene, camera = spheres(96)
+    film = render(scene, camera, flat(method=method, transparent_film=True)).color
+    for world in ((1, 1, 1), (0, 0, 0), (0.1, 0.8, 0.3)):
+        whole = render(replace(scene, world=world), camera, flat(method=method)).color
+        over = film[..., :3] + (1 - film[..., 3:]) * np.array(world)
+        assert np.abs(over - whole[..., :3]).max() < 1e-5
+        assert np.abs(whole[..., 3] - 1).max() < 1e-5
+    assert (film[..., :3] <= film[..., 3:] + 1e-5).all()
+
+
+@pytest.mark.parametrize("method", SPACES)
+def test_depth_and_normal_are_of_the_first_surface_that_is_opaque_enough(method, render):
+    scene = Scene([sheet(1, (1, 1, 1), 0.3), sheet(0, (1, 1, 1), 0.6), sheet(-1, (1, 1, 1), 1.0)])
+    for threshold, depth in ((0.0, 3), (0.5, 4), (0.9, 5)):
+        frame = render(scene, CAMERA, flat(method=method, alpha_threshold=threshold))
+        assert np.abs(frame.depth - depth).max() < 1e-4
+        assert np.abs(frame.normal - (0, 0, 1)).max() < 1e-4
+        assert np.abs(frame.coverage - 1).max() < 1e-5
+
+
+@pytest.mark.parametrize("method", SPACES)
+def test_coverage_is_what_is_hidden(method, render):
+    frame = render(Scene([sheet(0, (1, 1, 1), 0.3), sheet(1, (1, 1, 1), 0.3)]), CAMERA, flat(method=method))
+    assert np.abs(frame.coverage - 0.51).max() < 1e-5
+    assert (frame.depth == EMPTY_DEPTH).all()
+
+
+@pytest.mark.parametrize(("storage", "accumulation"), [("16-bit", "float32"), ("float32", "float16")])
+def test_smaller_formats_hold_layers(storage, accumulation, render):
+    scene, camera = spheres(64)
+    whole = render(scene, camera, Settings()).color
+    small = render(scene, camera, Settings(storage=storage, accumulation=accumulation)).color
+    assert psnr(small, whole) > 50
+
+
+def test_far_and_near_layers_have_linear_depth(render):
+    far = sheet(0, (0, 1, 0), 0.5, half=3e3)
+    matrix = np.eye(4)
+    matrix[2, 3] = -4000
+    scene = Scene([sheet(3.9, (1, 0, 0), 0.5), replace(far, matrix_world=matrix)])
+    camera = replace(CAMERA, far=1e4, near=1e-3)
+    assert plan(scene, camera, Settings()).linear_depth
+    for method in SPACES:
+        frame = render(scene, camera, flat(method=method, transparent_film=True))
+        assert np.abs(frame.color - (0.5, 0.25, 0, 0.75)).max() < 1e-5
+
+
+def test_an_orthographic_camera_has_layers(render):
+    camera = Camera.orthographic(CAMERA.matrix_world, 2.0, (16, 16), 0.1, 50)
+    scene = Scene([sheet(-z, (1, 1, 1), 0.5) for z in range(3)])
+    for method in SPACES:
+        frame = render(scene, camera, flat(method=method, transparent_film=True))
+        assert np.abs(frame.color - 0.875).max() < 1e-5
+
+
+def test_tiles_hide_no_seam(render, monkeypatch):
+    scene, camera = spheres(64)
+    whole = render(scene, camera, Settings()).color
+    monkeypatch.setitem(plan.__globals__, "MAX_TARGET_EDGE", 60)
+    assert len(plan(scene, camera, Settings()).tiles) > 1
+    assert np.abs(render(scene, camera, Settings()).color - whole).max() < 1e-4
+
+
+def test_multisampling_is_refused():
+    scene, camera = spheres(16)
+    with pytest.raises(ValueError, match="cannot be peeled with multisampling 4; set it to 0"):
+        plan(scene, camera, Settings(method="quad", multisampling=4))
+
+
+@pytest.mark.parametrize("settings", [{"method": "affine_unfiltered"}, {"shading": "overdraw"}])
+def test_what_cannot_peel_says_so(settings):
+    scene, camera = spheres(16)
+    made = plan(scene, camera, Settings(**settings))
+    assert made.layers == 0
+    assert "drawn opaque" in dict(made.left_out)["transparency"]
+
+
+def test_nothing_of_an_opaque_scene_is_for_layers():
+    scene, camera = scenes.sphere(count=100)
+    made = plan(scene, camera, Settings())
+    assert made.layers == 0 and not any("layer" in t or "peeled" in t for t in made.textures)
