@@ -66,8 +66,9 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     matcap: PointerProperty(
         name="Matcap",
         description=(
-            "A picture of a lit ball that fills it. Blender's own can be opened where they have a single layer: all of "
-            "4.5's; of most of 5.2's, save a layer as an image first"
+            "A picture of a lit ball that fills it. Of a multilayer file, as most of Blender 5's own are, the first "
+            "layer is shown: what Solid mode shows without Specular Highlights. It is read once, in 0.7 s; metals, "
+            "whose first layer is black, are refused"
         ),
         type=bpy.types.Image,
     )

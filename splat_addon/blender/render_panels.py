@@ -61,7 +61,10 @@ class RENDER_PT_surfel_matcap(_RenderPanel, bpy.types.Panel):
         return super().poll(context) and getattr(context.scene, RENDER_SETTINGS).shading == "matcap"
 
     def draw(self, context):
-        self.layout.template_ID(getattr(context.scene, RENDER_SETTINGS), "matcap", open="image.open")
+        properties = getattr(context.scene, RENDER_SETTINGS)
+        self.layout.template_ID(properties, "matcap", open="image.open")
+        if properties.matcap and properties.matcap.type == "MULTILAYER":
+            self.layout.label(text="Its first layer, without Specular Highlights", icon="INFO")
 
 
 class RENDER_PT_surfel_lines(_RenderPanel, bpy.types.Panel):

@@ -37,6 +37,8 @@ def update(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph
     state.live_meshes.begin_frame(changed)
     state.scene, notes = export_scene(depsgraph, state.store, state.live_meshes)
     state.store.forget_unused()
+    # A multilayer matcap is read through a data-block, which Blender lets nobody make while it draws.
+    viewport_settings(depsgraph.scene)
     engine.update_stats("", "; ".join(notes.sentences()))
 
 

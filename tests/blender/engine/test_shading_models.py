@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What Blender's properties make of shading models, lines and matcaps."""
 
-import math
-
 import bpy
 import numpy as np
 import pytest
@@ -52,19 +50,35 @@ def test_a_matcap_is_an_image(sheet, picture):
     assert center(picture()) == pytest.approx((0.5, 0.5, 0.5), abs=1e-3)
 
 
-def test_blenders_own_matcaps_are_read_or_refused(sheet, picture):
-    sheet.shading = "matcap"
-    assert own_matcaps()
-    for light in own_matcaps()[:2]:
-        sheet.matcap = bpy.data.images.load(light.path)
-        height, width = tuple(sheet.matcap.size)[::-1]  # reads the file, which says what type it is
-        if sheet.matcap.type == "MULTILAYER":
-            with pytest.raises(RuntimeError, match="is a multilayer file, which scripts cannot read"):
-                picture()
-        else:
-            pixels = np.array(sheet.matcap.pixels).reshape(height, width, -1)
-            middle = pixels[255:257, 255:257, :3].mean(axis=(0, 1)) * (1.0, 0.5, 0.25)
-            assert center(picture()) == pytest.approx(middle, abs=math.ldexp(1, -6))
+def workbench(scene, light):
+    """What Workbench shows of a matcap on what faces the viewer, without highlights."""
+    scene.render.engine = "BLENDER_WORKBENCH"
+    shading = scene.display.shading
+    shading.light, shading.color_type, shading.single_color = "MATCAP", "SINGLE", (1.0, 0.5, 0.25)
+    shading.studio_light, shading.show_specular_highlight = light.name, False
+
+
+@pytest.mark.parametrize("number", [0, 2, 13])
+def test_blenders_own_matcaps_are_what_workbench_shows_without_highlights(number, sheet, scene, picture):
+    """Within a few of its pixels: Workbench turns the ball's rim and its 8 bits of normals round."""
+    light = own_matcaps()[number]
+    sheet.shading, sheet.matcap = "matcap", bpy.data.images.load(light.path)
+    ours = center(picture())
+    cube = bpy.data.meshes.new("quad")
+    cube.from_pydata([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], [], [(0, 1, 2, 3)])
+    scene.collection.objects.link(bpy.data.objects.new("quad", cube))
+    workbench(scene, light)
+    assert ours == pytest.approx(center(picture()), rel=0.02, abs=0.01)
+
+
+def test_a_multilayer_matcap_whose_first_layer_is_black_is_said(sheet, picture):
+    """Metals of Blender 5 are all highlight."""
+    lights = [light for light in own_matcaps() if light.name == "metal_bronze.exr"]
+    if not lights:
+        pytest.skip("this Blender has no such matcap")
+    sheet.shading, sheet.matcap = "matcap", bpy.data.images.load(lights[0].path)
+    with pytest.raises(RuntimeError, match="whose first layer is black"):
+        picture()
 
 
 def test_a_matcap_that_is_missing_is_said(sheet, picture):
