@@ -42,19 +42,30 @@ def unread_sentences(unread: Iterable[tuple[bpy.types.Material, Unread]]) -> lis
 @dataclass(frozen=True, eq=False)
 class Topology:
     """What stays while a mesh deforms. corner_vertices: (C,). faces: how many. corners: (T, 3) face corners of its
-    triangles, and face_of: (T,) the faces that these are of, None: each its own. They are those of the mesh as it was
-    first seen; of a face that has been bent since, Blender may make other ones."""
+    triangles, and face_of: (T,) the faces that these are of; None, both: each face is a triangle. They are those of the
+    mesh as it was first seen; of a face that has been bent since, Blender may make other ones."""
 
     corner_vertices: np.ndarray
     faces: int
-    corners: np.ndarray
+    corners: np.ndarray | None
     face_of: np.ndarray | None
+
+    def __len__(self) -> int:
+        return self.faces if self.face_of is None else len(self.face_of)
+
+    def at_corners(self, values: np.ndarray) -> np.ndarray:
+        """(T, 3, ...) of (C, ...) values at face corners."""
+        return values.reshape(-1, 3, *values.shape[1:]) if self.corners is None else values.take(self.corners, axis=0)
+
+    def on_faces(self, values: np.ndarray) -> np.ndarray:
+        """(T, ...) of values of the faces."""
+        return values if self.face_of is None else values.take(self.face_of, axis=0)
 
 
 def read_topology(mesh: bpy.types.Mesh, known: Topology | None = None) -> Topology:
     """That of the mesh; `known` itself where it still is the same."""
     vertices = _corner_vertices(mesh)
-    if known and known.faces == len(mesh.polygons) and np.array_equal(known.corner_vertices, vertices):
+    if known is not None and known.faces == len(mesh.polygons) and np.array_equal(known.corner_vertices, vertices):
         return known
     return Topology(vertices, len(mesh.polygons), *_triangle_corners(mesh))
 
@@ -67,18 +78,17 @@ def read_mesh(
     topology: the mesh's, if it is known. images: keeps the textures' pixels from one call to the next.
     """
     slots = slot_materials(evaluated, mesh)
-    topology = topology or read_topology(mesh)
-    corners, faces = topology.corners, topology.face_of
-    vertices = topology.corner_vertices.take(corners)
-    indices = _material_indices(mesh, faces, max(len(slots), 1))
+    topology = read_topology(mesh) if topology is None else topology
+    indices = _material_indices(mesh, topology, max(len(slots), 1))
+    used = np.arange(min(len(topology), 1)) if indices is None else np.flatnonzero(np.bincount(indices))
     layers = MeshLayers(mesh) if images is None else MeshLayers(mesh, _images=images)
-    surfaces, unread = _surfaces(slots, np.flatnonzero(np.bincount(indices)), layers)
+    surfaces, unread = _surfaces(slots, used, layers)
     triangles = TriangleMesh(
         positions=_positions(mesh),
-        triangles=vertices,
-        corner_normals=_corner_normals(mesh, corners),
-        corner_colors=_layered(_color_reader(mesh, corners, vertices, faces), layers.colors),
-        corner_uvs=_layered(_uv_reader(mesh, corners), layers.uvs),
+        triangles=topology.at_corners(topology.corner_vertices),
+        corner_normals=_corner_normals(mesh, topology),
+        corner_colors=_layered(_color_reader(mesh, topology), layers.colors),
+        corner_uvs=_layered(_uv_reader(mesh, topology), layers.uvs),
         materials=indices,
         surfaces=surfaces,
     )
@@ -87,7 +97,8 @@ def read_mesh(
 
 def read_triangles(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> ExtractedMesh:
     """Only the positions and triangles, for predictions."""
-    return ExtractedMesh(TriangleMesh(_positions(mesh), _corner_vertices(mesh).take(_triangle_corners(mesh)[0])), ())
+    topology = read_topology(mesh)
+    return ExtractedMesh(TriangleMesh(_positions(mesh), topology.at_corners(topology.corner_vertices)), ())
 
 
 @contextmanager
@@ -121,30 +132,30 @@ def _corner_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
     return _read(mesh.attributes[".corner_vert"].data, "value", 1, count, np.int32) if count else np.empty(0, np.int32)
 
 
-def _triangle_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray | None]:
-    """(T, 3) int32 face corners of the triangles, and the (T,) faces they are of; None: each its own."""
+def _triangle_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """(T, 3) int32 face corners of the triangles, and the (T,) faces they are of; None, both: each face is one."""
     if len(mesh.loops) == 3 * len(mesh.polygons):
-        return np.arange(len(mesh.loops), dtype=np.int32).reshape(-1, 3), None
+        return None, None
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
     corners = _read(mesh.loop_triangles, "loops", 3, count, np.int32)
     return corners, _read(mesh.loop_triangle_polygons, "value", 1, count, np.int32)
 
 
-def _corner_normals(mesh: bpy.types.Mesh, corners: np.ndarray) -> np.ndarray | None:
+def _corner_normals(mesh: bpy.types.Mesh, topology: Topology) -> np.ndarray | None:
     """(T, 3, 3) shading normals; None where every triangle is flat, so that its own normal is meant."""
-    if not len(corners) or (mesh.normals_domain == "FACE" and len(corners) == len(mesh.polygons)):
+    if not len(topology) or (mesh.normals_domain == "FACE" and len(topology) == len(mesh.polygons)):
         return None
-    return _read(mesh.corner_normals, "vector", 3, len(mesh.loops)).take(corners, axis=0)
+    return topology.at_corners(_read(mesh.corner_normals, "vector", 3, len(mesh.loops)))
 
 
-def _material_indices(mesh: bpy.types.Mesh, faces: np.ndarray | None, slots: int) -> np.ndarray:
-    """(T,) int32 slot of each triangle; like Blender, an index past the last slot means the last."""
+def _material_indices(mesh: bpy.types.Mesh, topology: Topology, slots: int) -> np.ndarray | None:
+    """(T,) int32 slot of each triangle, None: all 0; like Blender, an index past the last slot means the last."""
     attribute = mesh.attributes.get("material_index")
     if attribute is None:
-        return np.zeros(len(mesh.polygons) if faces is None else len(faces), np.int32)
-    indices = np.clip(_read(attribute.data, "value", 1, len(mesh.polygons), np.int32), 0, slots - 1)
-    return indices if faces is None else indices.take(faces)
+        return None
+    indices = _read(attribute.data, "value", 1, len(mesh.polygons), np.int32)
+    return topology.on_faces(np.clip(indices, 0, slots - 1))
 
 
 def slot_materials(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> list[bpy.types.Material | None]:
@@ -172,7 +183,7 @@ def _layered(read, names: list[str]) -> np.ndarray | None:
     return (np.concatenate(layers, axis=2) if len(layers) > 1 else layers[0]) if layers else None
 
 
-def _color_reader(mesh: bpy.types.Mesh, corners: np.ndarray, vertices: np.ndarray, faces: np.ndarray | None):
+def _color_reader(mesh: bpy.types.Mesh, topology: Topology):
     """Function of an attribute's name giving (T, 3, 4): what it is as a colour, as shaders have it."""
 
     def read(name: str) -> np.ndarray:
@@ -185,12 +196,13 @@ def _color_reader(mesh: bpy.types.Mesh, corners: np.ndarray, vertices: np.ndarra
             rgba[:, 3] = 1
             values = rgba
         if attribute.domain == "FACE":
-            of_triangle = np.arange(len(corners)) if faces is None else faces
-            return np.broadcast_to(values[of_triangle][:, None], (len(corners), 3, 4))
-        return values.take(vertices if attribute.domain == "POINT" else corners, axis=0)
+            return np.broadcast_to(topology.on_faces(values)[:, None], (len(topology), 3, 4))
+        if attribute.domain == "POINT":
+            values = values.take(topology.corner_vertices, axis=0)
+        return topology.at_corners(values)
 
     return read
 
 
-def _uv_reader(mesh: bpy.types.Mesh, corners: np.ndarray):
-    return lambda name: _read(mesh.uv_layers[name].uv, "vector", 2, len(mesh.loops)).take(corners, axis=0)
+def _uv_reader(mesh: bpy.types.Mesh, topology: Topology):
+    return lambda name: topology.at_corners(_read(mesh.uv_layers[name].uv, "vector", 2, len(mesh.loops)))
