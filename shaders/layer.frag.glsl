@@ -1,6 +1,6 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6.
 // Summary: what a transparent layer adds to a pixel, under the nearer ones, and the depth and normal of its surface where
-//          no nearer one is opaque enough to have them; of methods that have one visibility sample to a shaded one.
+//          no nearer one is opaque enough to have them; of methods that filter no silhouettes.
 
 #include "common/layer_at.glsl"
 #include "common/peeled.glsl"

@@ -27,7 +27,7 @@ vec4 sight_at(ivec2 texel) {
   bool is_seen = weight > 0.0;
 #ifdef SEEN_RANGE
   // A filter reaches past silhouettes.
-  is_seen = is_seen && texelFetch(seen_range, texel, 0).z < 1.0;
+  is_seen = is_seen && texelFetch(seen_range, texel, 0).z < 1e38;
 #endif
   if (!is_seen) return vec4(0.0, 0.0, 0.0, EMPTY);
   vec4 sums = SUM_AT(normal_sum, texel, 0);

@@ -1,5 +1,5 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6; common/peeled.glsl, which reads the result.
-// Summary: how deep each visibility sample is peeled after a layer, and what lies before that hides.
+// Summary: how deep each sample is peeled after a layer, and what lies before that hides.
 
 #include "common/layer_at.glsl"
 
@@ -8,7 +8,7 @@ void main() {
   float before = texelFetch(peeled, at, 0).y, depth = texelFetch(layer_depth, at, 0).r;
   peeled_next = vec2(1.0, before);
   if (depth < 1.0) {
-    float opacity = layer_at(at / VISIBILITY_SAMPLES).w;
+    float opacity = layer_at(at).w;
     float hidden = 1.0 - (1.0 - abs(before)) * (1.0 - opacity);
     bool is_surface = before < 0.0 || (opacity >= shading.edges.y && hidden > 0.0);
     peeled_next = vec2(depth, is_surface ? -hidden : hidden);

@@ -1,9 +1,9 @@
 // References: this project; the idea of taking the colour of a sub-sample from the nearest pixel that sees its surface
 //             is Chajdas, McGuire, Luebke, "Subpixel Reconstruction Antialiasing", I3D 2011.
-// Summary: colours inside a surface were filtered with their splats; here its silhouettes are. The visibility pass has
-//          several samples to each shaded one. Those around a pixel that see the pixel's own surface take its colour,
-//          others the colour of the pixel they lie in, empty ones the background, all under the pixel's Gaussian. Where
-//          there are transparent layers, each sample counts by what the nearer ones let through there.
+// Summary: colours inside a surface were filtered with their splats; here its silhouettes are. Of the samples around one,
+//          those that see its own surface take its colour, others keep their own, empty ones have the background's, all
+//          under the pixel's Gaussian. Where there are transparent layers, each counts by what the nearer ones let
+//          through there.
 
 #ifdef LAYER
 #define visibility_depth layer_depth
@@ -22,19 +22,16 @@
 #define DEPTH_UNIT shading.options.z
 #include "common/sample_outputs.glsl"
 #include "common/stored_depth.glsl"
+#include "common/silhouette_filter.glsl"
 #include "common/world.glsl"
 
 const float EMPTY_DEPTH = 1e10;
 const float FARTHEST = 3.4e38;
 const float FILTER_VARIANCE = 0.5;  // of the Gaussian, in samples
-const int FILTER_REACH = 2 * VISIBILITY_SAMPLES - VISIBILITY_SAMPLES / 2;
-const int HOME_REACH = (FILTER_REACH + VISIBILITY_SAMPLES / 2 - 1) / VISIBILITY_SAMPLES;  // in samples
 // The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes.
-const float STEP = 1.0 / float(VISIBILITY_SAMPLES);
-const float START = (0.5 - float(FILTER_REACH)) * STEP;
-const float FIRST_WEIGHT = exp(-0.5 * START * START / FILTER_VARIANCE);
-const float FIRST_RATIO = exp(-(START * STEP + 0.5 * STEP * STEP) / FILTER_VARIANCE);
-const float RATIO_RATIO = exp(-STEP * STEP / FILTER_VARIANCE);
+const float FIRST_WEIGHT = exp(-0.5 * float(FILTER_REACH * FILTER_REACH) / FILTER_VARIANCE);
+const float FIRST_RATIO = exp((float(FILTER_REACH) - 0.5) / FILTER_VARIANCE);
+const float RATIO_RATIO = exp(-1.0 / FILTER_VARIANCE);
 
 float depth_at(ivec2 texel, ivec2 size, float otherwise) {
   vec4 s = texelFetch(surface, clamp(texel, ivec2(0), size - 1), 0);
@@ -44,8 +41,7 @@ float depth_at(ivec2 texel, ivec2 size, float otherwise) {
 // How far depths of one surface may lie apart within the filter: twice its slope, and twice what the visibility pass
 // moved it back here. The slope is the lesser one of both sides, which a silhouette on one side does not spoil.
 float same_surface(ivec2 texel, ivec2 size, float depth) {
-  ivec2 at = texel * VISIBILITY_SAMPLES + VISIBILITY_SAMPLES / 2;
-  float moved = abs(view_depth(texelFetch(visibility_depth, at, 0).r) - depth);
+  float moved = abs(view_depth(texelFetch(visibility_depth, texel, 0).r) - depth);
   vec2 before = vec2(depth_at(texel - ivec2(1, 0), size, 1e30), depth_at(texel - ivec2(0, 1), size, 1e30));
   vec2 after = vec2(depth_at(texel + ivec2(1, 0), size, 1e30), depth_at(texel + ivec2(0, 1), size, 1e30));
   vec2 slope = min(abs(before - depth), abs(after - depth));
@@ -56,17 +52,15 @@ float same_surface(ivec2 texel, ivec2 size, float depth) {
 // Nearest and farthest of all stored depths that the filter reaches from here.
 vec2 reached_range(ivec2 texel, ivec2 size) {
   vec2 reached = vec2(1.0, 0.0);
-  for (int y = -HOME_REACH; y <= HOME_REACH; y++) {
-    for (int x = -HOME_REACH; x <= HOME_REACH; x++) {
-      vec2 seen = texelFetch(seen_range, clamp(texel + ivec2(x, y), ivec2(0), size - 1), 0).xy;
-      reached = vec2(min(reached.x, seen.x), max(reached.y, seen.y));
-    }
+  for (int y = -FILTER_REACH; y <= FILTER_REACH; y++) {
+    vec2 row = texelFetch(seen_range, ivec2(texel.x, clamp(texel.y + y, 0, size.y - 1)), 0).xy;
+    reached = vec2(min(reached.x, row.x), max(reached.y, row.y));
   }
   return reached;
 }
 
 // coverage: what is covered and not by nearer layers. first: the share of which this is the surface that depth and
-// normal are of. is_hit: whether such a visibility sample is in the texel; is_behind: whether one is in a nearer layer.
+// normal are of. is_hit: whether the texel sees such; is_behind: whether it is in a nearer layer.
 vec4 resolve_sample(ivec2 texel, out float coverage, out float first, out bool is_hit, out bool is_behind,
                     out Outputs outputs) {
   ivec2 size = textureSize(shaded, 0);
@@ -109,40 +103,38 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out float first, out bool i
     is_hit = is_inside;
     if (is_inside) outputs = sample_outputs(texel);
   }
-  int reach = is_even ? 0 : FILTER_REACH;
-  ivec2 corner = texel * VISIBILITY_SAMPLES - FILTER_REACH + VISIBILITY_SAMPLES / 2;
-  ivec2 last = size * VISIBILITY_SAMPLES - 1;
+  int across = is_even ? 0 : 2 * FILTER_REACH + 1;
   float row = FIRST_WEIGHT, row_ratio = FIRST_RATIO;
-  for (int y = 0; y < 2 * reach; y++) {
+  for (int y = 0; y < across; y++) {
     float weight = row * FIRST_WEIGHT, ratio = FIRST_RATIO;
-    for (int x = 0; x < 2 * reach; x++) {
-      ivec2 at = clamp(corner + ivec2(x, y), ivec2(0), last), home = at / VISIBILITY_SAMPLES;
+    for (int x = 0; x < across; x++) {
+      ivec2 at = clamp(texel + ivec2(x, y) - FILTER_REACH, ivec2(0), size - 1);
       float seen = texelFetch(visibility_depth, at, 0).r;
       vec4 here = background;
       float shown = weight;
 #ifdef BEHIND_LAYERS
       shown *= let_through(at);
       bool is_first = is_first_surface(at);
-      is_behind = is_behind || (home == texel && !is_first);
+      is_behind = is_behind || (at == texel && !is_first);
 #else
       const bool is_first = true;
 #endif
       if (seen < 1.0) {
 #ifdef LAYER
         bool is_own = seen >= range.x && seen <= range.y;
-        here = layer_at(home);
+        here = layer_at(at);
         if (is_own) here = own * (here.w / own.w);
         is_first = is_first && here.w >= shading.edges.y;
 #else
-        vec4 there = texelFetch(shaded, home, 0);
+        vec4 there = texelFetch(shaded, at, 0);
         bool is_own = (seen >= range.x && seen <= range.y) || !(there.w > 0.0);
         here = is_own ? own : there;
         here = here.w > 0.0 ? here : background;
-        outputs = added(outputs, sample_outputs(is_own ? texel : home), shown);
+        outputs = added(outputs, sample_outputs(is_own ? texel : at), shown);
 #endif
         coverage += shown;
         first += is_first ? weight : 0.0;
-        is_hit = is_hit || (home == texel && is_first);
+        is_hit = is_hit || (at == texel && is_first);
       }
       color += shown * here;
       total += weight;

@@ -1,7 +1,13 @@
 // References: none needed.
-// Summary: of each sample's visibility samples the nearest and the farthest stored depth, and the one at its centre,
-//          which becomes the depth that the attribute pass is tested with. Of a transparent layer that is never behind
-//          what is opaque there.
+// Summary: how far each sample sees, as depth along the view: in z what hides nothing where there is nothing, in w what
+//          nothing is before. Of a transparent layer that is never behind what is opaque there. Where silhouettes are
+//          filtered, x and y are the nearest and the farthest stored depth of the row of samples that the filter reaches.
+
+#define PROJECTION shading.projection
+#define PARALLEL (shading.options.x > 0.5)
+#define DEPTH_UNIT shading.options.z
+#include "common/stored_depth.glsl"
+#include "common/silhouette_filter.glsl"
 
 #ifdef LAYER
 #define SEEN layer_depth
@@ -9,20 +15,22 @@
 #define SEEN visibility_depth
 #endif
 
+const float FARTHEST = 3e38;
+
 void main() {
-  ivec2 first = ivec2(gl_FragCoord.xy) * VISIBILITY_SAMPLES;
-  float low = 1.0, high = 0.0;
-  for (int y = 0; y < VISIBILITY_SAMPLES; y++) {
-    for (int x = 0; x < VISIBILITY_SAMPLES; x++) {
-      float seen = texelFetch(SEEN, first + ivec2(x, y), 0).r;
-      low = min(low, seen);
-      high = max(high, seen);
-    }
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  float own = texelFetch(SEEN, texel, 0).r;
+  vec2 row = vec2(own);
+#ifdef FILTERS_SILHOUETTES
+  int last = textureSize(SEEN, 0).x - 1;
+  for (int x = -FILTER_REACH; x <= FILTER_REACH; x++) {
+    float other = texelFetch(SEEN, ivec2(clamp(texel.x + x, 0, last), texel.y), 0).r;
+    row = vec2(min(row.x, other), max(row.y, other));
   }
-  float center = texelFetch(SEEN, first + VISIBILITY_SAMPLES / 2, 0).r;
-#ifdef LAYER
-  center = min(center, texelFetch(visibility_depth, first + VISIBILITY_SAMPLES / 2, 0).r);
 #endif
-  seen_range = vec4(low, high, center, 0.0);
-  gl_FragDepth = center;
+#ifdef LAYER
+  own = min(own, texelFetch(visibility_depth, texel, 0).r);
+#endif
+  float depth = view_depth(own);
+  seen_range = vec4(row, own < 1.0 ? vec2(depth) : vec2(FARTHEST, -FARTHEST));
 }

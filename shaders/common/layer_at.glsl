@@ -1,7 +1,7 @@
 // References: none needed.
-// Summary: the shaded sample of a transparent layer that a visibility sample lies in, premultiplied. The layer's rim may be
+// Summary: the shaded sample of a transparent layer at a sample, premultiplied. The layer's rim may be
 //          seen where the shaded sample's centre does not see it: then the mean of those around that have one. What adds
-//          layers up and what peels them ask here both, so that in each visibility sample all shares sum to 1.
+//          layers up and what peels them ask here both, so that in each sample all shares sum to 1.
 
 vec4 layer_at(ivec2 home) {
   vec4 total = texelFetch(shaded, home, 0);

@@ -1,5 +1,5 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6 (depth peeling of splats).
-// Summary: what nearer transparent layers leave at each visibility sample: `peeled` holds the stored depth up to which
+// Summary: what nearer transparent layers leave at each sample: `peeled` holds the stored depth up to which
 //          splats are in them, 0 before the first and 1 where nothing is left; and the share of what lies behind that
 //          they hide, negative where one of them is opaque enough to be the surface that depth and normal are of.
 

@@ -15,14 +15,15 @@ vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
 }
 #else
 // Weight and depth.
-vec2 splat_sample(Plane plane, vec2 point) {
+vec2 splat_sample(Plane plane, vec2 pixel) {
   float scale = splats.options.z > 0.5 ? 1.0 : 1.0 / plane.depth;
   float radius = plane.radius;
-  vec3 axis_u = vec3((plane.a + plane.center * plane.gh.x) / scale, -plane.slope.x);
-  vec3 axis_v = vec3((plane.b + plane.center * plane.gh.y) / scale, -plane.slope.y);
+  vec2 unit = splats.window.zw, center = splats.window.xy + plane.center * unit;
+  vec3 axis_u = vec3((plane.a * unit + center * plane.gh.x) / scale, -plane.slope.x);
+  vec3 axis_v = vec3((plane.b * unit + center * plane.gh.y) / scale, -plane.slope.y);
   vec3 disc = normalize(cross(axis_u, axis_v));
   disc *= disc.z < 0.0 ? -1.0 : 1.0;
-  vec2 q = (point - plane.center) / (radius * scale);
+  vec2 q = (pixel - plane.center) * unit / (radius * scale);
   float offset = -dot(disc.xy, q) / max(disc.z, LEAST_COSINE);
   float rho2 = dot(q, q) + offset * offset;
   return vec2(rho2 <= 1.0 ? exp(-2.0 * rho2) : 0.0, plane.depth - radius * offset);

@@ -15,10 +15,10 @@ vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
 }
 #else
 // Weight and depth.
-vec2 splat_sample(Plane plane, vec2 point) {
-  Place place = place_at(plane, point);
-  vec2 a = plane.a / splats.window.zw, b = plane.b / splats.window.zw, e = place.d / splats.window.zw;
-  float area = KERNEL_VARIANCE * (a.x * b.y - a.y * b.x);
+vec2 splat_sample(Plane plane, vec2 pixel) {
+  Place place = place_at(plane, pixel);
+  vec2 a = plane.a, b = plane.b, e = place.d;
+  float area = KERNEL_VARIANCE * plane.det.z;
   float trace = KERNEL_VARIANCE * (dot(a, a) + dot(b, b));
   float det = area * area + FILTER_VARIANCE * (trace + FILTER_VARIANCE);
   // e V^-1 e det, as squares: seen edge-on or stretched, the differences in V^-1 have no digits left in float32.

@@ -48,8 +48,8 @@ vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
 }
 #else
 // Weight and depth.
-vec2 splat_sample(Plane plane, vec2 point) {
-  Place place = place_at(plane, point);
+vec2 splat_sample(Plane plane, vec2 pixel) {
+  Place place = place_at(plane, pixel);
   float rho2 = dot(place.uv, place.uv);
   return vec2(rho2 <= 1.0 && place.k > 0.0 ? exp(-2.0 * rho2) : 0.0, plane_depth(plane, place));
 }

@@ -7,7 +7,9 @@
 
 const float KERNEL_VARIANCE = 0.25;
 const float FILTER_VARIANCE = 0.5;  // square pixels
-const vec2 NORMAL = vec2(1.5976, 0.070565);  // 1 / (1 + exp(-x (NORMAL.x + NORMAL.y x^2))) is within 2e-4 of it
+// 0.5 - x (NORMAL.x + x^2 (NORMAL.y + ...)) is within 7e-4 of a normal distribution's share beyond x, up to NORMAL_END.
+const vec4 NORMAL = vec4(0.396668, -0.0613809, 0.00673240, -0.000320832);
+const float NORMAL_END = 2.6;
 
 #ifdef VERTEX_STAGE
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
@@ -18,27 +20,28 @@ vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
 }
 #else
 // Weight and depth.
-vec2 splat_sample(Plane plane, vec2 point) {
-  Place place = place_at(plane, point);
-  mat2 j = place_gradient(plane, place);
-  vec2 q = place.uv, pixel = splats.window.zw;
-  // det J and q x J, multiplied out: edge-on, the differences that they stand for have no digits left in float32.
-  float scale = place.k / place.det;
-  float spread = FILTER_VARIANCE * place.k * scale * pixel.x * pixel.y;
-  vec2 across = scale * pixel * place.d.yx;
+vec2 splat_sample(Plane plane, vec2 pixel) {
+  Place place = place_at(plane, pixel);
+  mat2 turn = place_turn(plane, place);
+  vec2 q = place.uv, across_rim = q * turn;
+  // The pixel's variance in the plane, along both axes and across: FILTER_VARIANCE J J^T with J = scale turn. det J and
+  // q x J are multiplied out: edge-on, the differences that they stand for have no digits left in float32.
+  float variance = FILTER_VARIANCE * place.scale * place.scale;
+  float spread = FILTER_VARIANCE * place.k * place.scale;
   float det = spread * spread
-      + KERNEL_VARIANCE * (FILTER_VARIANCE * (dot(j[0], j[0]) + dot(j[1], j[1])) + KERNEL_VARIANCE);
-  float amplitude = inversesqrt(det);
+      + KERNEL_VARIANCE * (variance * (dot(turn[0], turn[0]) + dot(turn[1], turn[1])) + KERNEL_VARIANCE);
+  float amplitude = inversesqrt(det), reach2 = max(dot(q, q), 1e-30);
   float rho2 = KERNEL_VARIANCE * amplitude * amplitude
-      * (KERNEL_VARIANCE * dot(q, q) + FILTER_VARIANCE * dot(across, across));
-  // The kernel ends at its rim. Along the line from the centre, kernel times pixel is a Gaussian about share of
-  // the way: what of it lies within the rim, its normal distribution, is what the pixel sees of the splat.
-  float reach2 = max(dot(q, q), 1e-30);
-  vec2 across_rim = q * j;
-  float along = FILTER_VARIANCE * dot(across_rim, across_rim) / reach2;
-  float share = KERNEL_VARIANCE / (KERNEL_VARIANCE + along);
-  float x = clamp((sqrt(reach2) * share - 1.0) * inversesqrt(max(along * share, 1e-12)), -8.0, 8.0);
-  float weight = KERNEL_VARIANCE * amplitude * exp(-2.0 * rho2) / (1.0 + exp(x * (NORMAL.x + NORMAL.y * x * x)));
+      * (KERNEL_VARIANCE * reach2 + variance * dot(place.d, place.d));
+  // The kernel ends at its rim. Along the line from the centre, kernel times pixel is a Gaussian about
+  // KERNEL_VARIANCE / both of the way: what of it lies within the rim is what the pixel sees of the splat.
+  float over_reach = inversesqrt(reach2);
+  float along = clamp(variance * over_reach * over_reach * dot(across_rim, across_rim), 1e-12, 1e15);
+  float both = KERNEL_VARIANCE + along;
+  float x = (KERNEL_VARIANCE * reach2 * over_reach - both) * inversesqrt(both * KERNEL_VARIANCE * along);
+  x = clamp(x, -NORMAL_END, NORMAL_END);
+  float x2 = x * x, within = 0.5 - x * (NORMAL.x + x2 * (NORMAL.y + x2 * (NORMAL.z + x2 * NORMAL.w)));
+  float weight = KERNEL_VARIANCE * amplitude * exp(-2.0 * rho2) * within;
   return vec2(place.k > 0.0 ? weight : 0.0, plane_depth(plane, place));
 }
 #endif

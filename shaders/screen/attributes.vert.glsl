@@ -34,11 +34,11 @@ void main() {
   straddles = -splat.position.z - length(vec2(splat.axis_u.z, splat.axis_v.z)) <= splats.options.y;
   straddling = straddles ? 1.0 : 0.0;
 #endif
-  // The same three varyings carry the plane of a splat before the eye, or centre and half-axes of a straddling one.
+  // The first three varyings carry the plane of a splat before the eye, or centre and half-axes of a straddling one.
   plane_ab = straddles ? vec4(splat.position, 0.0) : vec4(plane.a, plane.b);
   plane_center_gh = straddles ? vec4(splat.axis_u, 0.0) : vec4(plane.center, plane.gh);
   plane_depths = straddles ? vec4(splat.axis_v, 0.0) : vec4(plane.slope, plane.depth, plane.reach);
-  beside_radius = straddles ? vec2(0.0) : vec2(plane.beside, plane.radius);
+  plane_det_radius = straddles ? vec4(0.0) : vec4(plane.det, plane.radius);
   on_footprint = straddles ? vec2(0.0) : corner;
   color_weight = splat.color_weight;
   normal = splat.normal;
@@ -70,7 +70,7 @@ void main() {
     mat2 axes = projected_ellipse(plane, size, middle);
     vec2 half_axes = footprint(plane, size, middle);
     vec2 pixels = axes * (half_axes * corner);
-    vec4 clip = splats.projection * vec4(middle + pixels * splats.window.zw, -1.0, 1.0);
+    vec4 clip = splats.projection * vec4(splats.window.xy + (middle + pixels) * splats.window.zw, -1.0, 1.0);
     gl_Position = vec4(clip.xy / clip.w, clamp(2.0 * stored_depth(nearest_depth(plane)) - 1.0, -1.0, 1.0), 1.0);
   }
 }

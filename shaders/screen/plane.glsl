@@ -3,8 +3,8 @@
 // Summary: from a point of the picture to the place in a splat's plane, for perspective and parallel cameras alike.
 //          The twin of rendering/methods/plane.py.
 //
-// Depth z counts forwards. A picture point is x / z, y / z (perspective) or x, y (parallel), in units of the plane at
-// distance 1; `splats.window` holds the lower left corner and the step of one pixel.
+// Depth z counts forwards. Places and lengths in the picture are in pixels from its lower left corner, as
+// gl_FragCoord is. `splats.window` holds that corner and the step of one pixel, on the plane at distance 1.
 
 const float FILTER_SIGMA = 0.70710678;  // of the pixel's Gaussian, in pixels
 
@@ -16,16 +16,15 @@ struct Plane {
   vec2 slope;    // change of depth along u, v
   float depth;
   float reach;   // how far from it depths lie: in the ellipse, and as far as a filter reaches over its rim
-  float beside;  // change of depth from a sample's centre to the visibility sample that it is compared with, at most
-                 // as far as depths lie: a flat view of small splats passes many of them on that way
   float radius;  // the longer half-axis
+  vec3 det;      // of the map from the picture to the plane, times depth at the centre over depth: det.z - d . det.xy
 };
 
 #ifdef VERTEX_STAGE
-// Change of depth with the picture point, at the centre.
+// Change of depth from pixel to pixel, at the centre.
 vec2 depth_gradient(Plane plane) {
   vec2 a = plane.a, b = plane.b, slope = plane.slope;
-  return vec2(slope.x * b.y - slope.y * a.y, slope.y * a.x - slope.x * b.x) / (a.x * b.y - a.y * b.x);
+  return vec2(slope.x * b.y - slope.y * a.y, slope.y * a.x - slope.x * b.x) / plane.det.z;
 }
 
 Plane splat_plane(vec3 position, vec3 axis_u, vec3 axis_v, bool is_orthographic) {
@@ -33,28 +32,26 @@ Plane splat_plane(vec3 position, vec3 axis_u, vec3 axis_v, bool is_orthographic)
   plane.depth = -position.z;
   plane.slope = -vec2(axis_u.z, axis_v.z);
   float scale = is_orthographic ? 1.0 : 1.0 / plane.depth;
-  plane.center = position.xy * scale;
+  vec2 center = position.xy * scale, pixel = splats.window.zw;
+  plane.center = (center - splats.window.xy) / pixel;
   plane.gh = is_orthographic ? vec2(0.0) : plane.slope * scale;
-  plane.a = axis_u.xy * scale - plane.center * plane.gh.x;
-  plane.b = axis_v.xy * scale - plane.center * plane.gh.y;
+  plane.a = (axis_u.xy * scale - center * plane.gh.x) / pixel;
+  plane.b = (axis_v.xy * scale - center * plane.gh.y) / pixel;
+  plane.det = vec3(plane.gh.x * plane.b.y - plane.gh.y * plane.a.y, plane.gh.y * plane.a.x - plane.gh.x * plane.b.x,
+                   plane.a.x * plane.b.y - plane.a.y * plane.b.x);
   plane.radius = sqrt(max(dot(axis_u, axis_u), dot(axis_v, axis_v)));
-  vec2 gradient = depth_gradient(plane) * splats.window.zw;
-  float over_rim = 2.0 * FILTER_SIGMA * length(gradient), furthest = 16.0 * plane.radius;
+  float over_rim = 2.0 * FILTER_SIGMA * length(depth_gradient(plane)), furthest = 16.0 * plane.radius;
   plane.reach = length(plane.slope) + (over_rim < furthest ? over_rim : furthest);
-  float to_beside = 0.5 * float(1 - VISIBILITY_SAMPLES % 2) / float(VISIBILITY_SAMPLES);
-  plane.beside = clamp(to_beside * (gradient.x + gradient.y), -plane.reach, plane.reach);
   return plane;
 }
 
-// Half-axes of the splat's projection in pixels, the longer first, their lengths in `size`, and its centre in `middle`;
+// Half-axes of the splat's projection, the longer first, their lengths in `size`, and its centre in `middle`;
 // exact for an ellipse before the eye.
 mat2 projected_ellipse(Plane plane, out vec2 size, out vec2 middle) {
-  vec2 pixel = splats.window.zw;
   float d = 1.0 - dot(plane.gh, plane.gh);
   vec2 c = -(plane.a * plane.gh.x + plane.b * plane.gh.y) / d;
   middle = plane.center + c;
-  c /= pixel;
-  vec2 a = plane.a / pixel * inversesqrt(d), b = plane.b / pixel * inversesqrt(d);
+  vec2 a = plane.a * inversesqrt(d), b = plane.b * inversesqrt(d);
   vec2 on = a * a + b * b + c * c;
   float across = a.x * a.y + b.x * b.y + c.x * c.y;
   // The determinant as Cauchy and Binet have it: nothing cancels.
@@ -69,6 +66,6 @@ mat2 projected_ellipse(Plane plane, out vec2 size, out vec2 middle) {
 
 // No method puts a part of the splat nearer.
 float nearest_depth(Plane plane) {
-  return max(plane.depth - max(plane.reach, plane.radius) - abs(plane.beside), splats.options.y);
+  return max(plane.depth - max(plane.reach, plane.radius), splats.options.y);
 }
 #endif

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from .scene import Material
 from .shadow import ShadowMap, atlas_size
 
-#: Pixels that shaders/resolve.frag.glsl reads to each side.
+#: Samples that shaders/resolve.frag.glsl reads to each side; shaders/common/silhouette_filter.glsl has the same.
 FILTER_MARGIN = 2
 
 #: texture -> (format, what it holds one value for)
 TEXTURES = {
-    "visibility_depth": ("DEPTH32F", "visibility sample"),
+    "visibility_depth": ("DEPTH32F", "sample"),
     "seen_range": ("RGBA32F", "sample"),
     "seen_depth": ("DEPTH32F", "sample"),
     "color_sum": ("RGBA32F", "sample"),
@@ -24,10 +24,10 @@ TEXTURES = {
     "light_set_sum": ("RGBA32F", "sample"),
     "overdraw_sum": ("R32F", "sample"),
     "lines": ("R32F", "sample"),
-    "layer_depth": ("DEPTH32F", "visibility sample"),
+    "layer_depth": ("DEPTH32F", "sample"),
     "left": ("R32F", "block"),
-    "peeled": ("RG32F", "visibility sample"),
-    "peeled_next": ("RG32F", "visibility sample"),
+    "peeled": ("RG32F", "sample"),
+    "peeled_next": ("RG32F", "sample"),
     "layers": ("RGBA32F", "pixel"),
     "layers_depth": ("R32F", "pixel"),
     "layers_normal": ("RGBA32F", "pixel"),
@@ -91,7 +91,7 @@ class PlannedPass:
 class FramePlan:
     """tiles: (x, y, width, height) in pixels, each rendered with all passes and, where silhouettes are filtered, with a
         margin that the filter reads.
-    samples: N of the N x N samples a pixel. visibility_samples: V of the V x V a sample.
+    samples: N of the N x N samples a pixel.
     material, emission: the one that all surfels share, or None.
     multisamples: M hardware samples of each of them, or 0. sample_shading: they are evaluated and lit one by one.
     storage, accumulation: as in the settings.
@@ -105,7 +105,6 @@ class FramePlan:
 
     tiles: tuple[tuple[int, int, int, int], ...]
     samples: int
-    visibility_samples: int
     method: str
     shading: str
     multisamples: int
@@ -134,7 +133,12 @@ class FramePlan:
     @property
     def margin(self) -> int:
         """Pixels drawn around a tile and not kept."""
-        return (FILTER_MARGIN if self.visibility_samples > 1 else 0) + self.line_margin
+        return (FILTER_MARGIN if self.filters_silhouettes else 0) + self.line_margin
+
+    @property
+    def filters_silhouettes(self) -> bool:
+        """Whether a resolve pass does."""
+        return any(p.name == "resolve" for p in self.passes)
 
     def size(self, texture: str, pixels: tuple[int, int]) -> tuple[int, int]:
         """Width and height of a texture, for a tile of so many pixels; the frame's are common to all tiles."""
@@ -143,11 +147,7 @@ class FramePlan:
             return atlas_size(self.shadow_maps)
         if what_for == "block":
             return BLOCKS, BLOCKS
-        along = {
-            "pixel": 1,
-            "sample": self.samples,
-            "visibility sample": self.samples * self.visibility_samples,
-        }[what_for]
+        along = {"pixel": 1, "sample": self.samples}[what_for]
         return pixels[0] * along, pixels[1] * along
 
     def format(self, texture: str) -> str:

@@ -4,10 +4,10 @@
 Opaque surfels are seen first, and hide what lies behind them. Then, from the nearest to the farthest, a layer of what
 is transparent is made as an opaque picture is: by visibility, attributes and shading; but every splat that a nearer
 layer holds is left out. As a layer holds just what lies no deeper than its nearest splat moved back by its epsilon,
-each splat is in one layer at each visibility sample, and the overlapping splats of a surface are in the same one.
+each splat is in one layer at each sample, and the overlapping splats of a surface are in the same one.
 
 Layers are put on one another where visibility is known: each adds to the pixel what the nearer ones let through at each
-of its visibility samples, and the opaque picture what all of them do.
+of its samples, and the opaque picture what all of them do.
 """
 
 from __future__ import annotations
@@ -62,17 +62,16 @@ def layer_passes(
 
 
 def _layer(number: int, settings: Settings, method: Method, sums, reads) -> tuple[PlannedPass, ...]:
-    in_space, is_filtered = method.works_in == "space", method.visibility_samples > 1
+    in_space, is_filtered = method.works_in == "space", method.filters_silhouettes
     # Of what frames hand on beside colour, depth and normal, layers have nothing.
     sums = tuple(dict.fromkeys(name for name in (*sums, "depth_sum") if name != "overdraw_sum"))
-    seen = ("seen_range", "seen_depth")
-    tested = ("layer_depth", "visibility_depth", "peeled") if in_space else (*seen, "peeled")
+    tested = ("layer_depth", "visibility_depth", "peeled") if in_space else ("seen_range", "layer_depth", "peeled")
     shading = tuple(dict.fromkeys((*sums, *(name for name in reads if name not in ("lines", "overdraw_sum")))))
     resolved = ("shaded", "surface", "peeled", "layer_depth", *(("seen_range",) if is_filtered else ()))
     passes = [
         ("visibility", "behind nearer layers, before what is opaque", ("peeled", "visibility_depth"), ("layer_depth",)),
         ("left", "layers end where nothing is left", ("layer_depth",), ("left",)),
-        ("seen_range", "splats that are hidden whole are tested away early", ("layer_depth", "visibility_depth"), seen),
+        ("seen_range", "depths are compared in the shader", ("layer_depth", "visibility_depth"), ("seen_range",)),
         ("attributes", "splats of one layer blend", tested, sums),
         ("sample_shading", "a layer is lit once", shading, ("shaded", "surface")),
         ("resolve" if is_filtered else "layer", "nearer layers cover it", resolved, layer_outputs(settings)),

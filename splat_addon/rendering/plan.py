@@ -79,7 +79,6 @@ def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera
     return FramePlan(
         _tiles(camera.size, _tile_edge(settings, method)),
         settings.supersampling,
-        method.visibility_samples,
         settings.method,
         settings.shading,
         settings.multisampling,
@@ -142,11 +141,11 @@ def _splat_passes(method: Method, why: str, why_depth: str, sums: tuple[str, ...
     if method.works_in == "space":
         left_out.append(("seen_range", f"{method.name} is tested by the hardware, with the depth of visibility"))
         return visibility, PlannedPass("attributes", why, ("visibility_depth",), sums)
-    seen = ("seen_range", "seen_depth")
+    compared = f"{method.name} computes its depths, which are compared in the shader"
     return (
         visibility,
-        PlannedPass("seen_range", "splats that are hidden whole are tested away early", ("visibility_depth",), seen),
-        PlannedPass("attributes", why, seen, sums),
+        PlannedPass("seen_range", compared, ("visibility_depth",), ("seen_range",)),
+        PlannedPass("attributes", why, ("seen_range", "visibility_depth"), sums),
     )
 
 
@@ -251,7 +250,7 @@ def _shading_passes(
     if layers:
         behind += ("peeled", *layer_outputs(settings))
     once = f"{model.name}, once a sample"
-    if method.visibility_samples == 1:
+    if not method.filters_silhouettes:
         return (PlannedPass("shading", once, tuple(dict.fromkeys((*reads, *behind))), outputs),)
     kept = ("shaded", "surface", *(f"sample_{name}" for name in outputs if f"sample_{name}" in TEXTURES))
     return (
@@ -290,8 +289,11 @@ def _linear_depth(camera: Camera, extent: DepthExtent) -> tuple[bool, str]:
 
 
 def _tile_edge(settings: Settings, method: Method) -> int:
-    """In pixels: along it lie the samples, and the square root of the hardware's samples in each."""
-    across = settings.supersampling * method.visibility_samples * math.ceil(math.sqrt(max(settings.multisampling, 1)))
+    """In pixels: along it lie the samples, and the square root of the hardware's samples in each. To filter silhouettes
+    takes half as many textures again.
+    """
+    room = 2 if method.filters_silhouettes else 1
+    across = settings.supersampling * room * math.ceil(math.sqrt(max(settings.multisampling, 1)))
     return max(MAX_TARGET_EDGE // across, 1)
 
 

@@ -9,11 +9,14 @@ import numpy as np
 import pytest
 
 from splat_addon.rendering import Camera, Instance, Lines, Renderer, Scene, Settings, look_at, plan
+from splat_addon.rendering.frame_plan import FILTER_MARGIN
 from splat_addon.sampling import TriangleMesh, sample_mesh
 
 SIZE = (96, 64)
 #: 16 pixels a unit.
 FRONT = Camera.orthographic(look_at((0, -10, 0), (0, 0, 0)), 4.0, SIZE, near=0.1, far=30)
+#: Pixels beyond its edge to which a filtered silhouette reaches: sample centres are half a pixel from pixels' edges.
+FILTERED = FILTER_MARGIN + 0.5
 METHODS = [Settings(method="quad", supersampling=2), Settings(method="mip", supersampling=1)]
 WHITE = (1.0, 1.0, 1.0)
 
@@ -87,7 +90,7 @@ def test_a_smooth_ball_has_its_silhouette_alone(settings, ball, darkness):
     y, x = np.mgrid[: SIZE[1], : SIZE[0]] + 0.5
     radius = np.hypot(x - SIZE[0] / 2, y - SIZE[1] / 2)
     assert dark[radius < 24 - 3 - 2].max() < 1e-3
-    assert dark[radius > 24 + 2].max() < 1e-3
+    assert dark[radius > 24 + FILTERED].max() < 1e-3
     assert dark.sum() == pytest.approx(math.pi * (24**2 - 21**2), rel=0.2)
 
 
@@ -98,7 +101,7 @@ def test_of_two_surfaces_the_nearer_one_has_the_line(settings, ball, darkness):
     dark = darkness([ball, wall], FRONT, settings, Lines(width=3.0))
     y, x = np.mgrid[: SIZE[1], : SIZE[0]] + 0.5
     radius = np.hypot(x - SIZE[0] / 2, y - SIZE[1] / 2)
-    assert dark[radius > 24 + 2].max() < 1e-3
+    assert dark[radius > 24 + FILTERED].max() < 1e-3
     assert dark[np.abs(radius - 22.5) < 0.5].min() > 0.9
     far_apart = Lines(width=3.0, depth_threshold=200.0, crease_angle=math.pi)
     assert darkness([ball, wall], FRONT, settings, far_apart)[radius < 23].sum() < 1

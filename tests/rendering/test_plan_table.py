@@ -86,12 +86,12 @@ TABLE = {
     "overdraw": (PLAIN, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", ()),
     "mip": (
         PLAIN, {"method": "mip"}, ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
-        "seen_range seen_depth shaded surface", "", (),
+        "seen_range shaded surface", "", (),
     ),
     "mip, more outputs": (
         PLAIN, {"method": "mip", "outputs": ("emission", "overdraw")},
         ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
-        "-normal_coverage seen_range seen_depth shaded surface emission sample_emission overdraw_sum shadow_overdraw "
+        "-normal_coverage seen_range shaded surface emission sample_emission overdraw_sum shadow_overdraw "
         "sample_shadow_overdraw", "", (),
     ),
     "transparent": (
@@ -102,7 +102,7 @@ TABLE = {
         TRANSPARENT, {"layers": 1, "method": "mip"},
         ("visibility", "start_layers", "visibility", "left", "seen_range", "attributes", "sample_shading", "resolve",
          "peel", "seen_range", "attributes", "sample_shading", "resolve"),
-        LAYER_TEXTURES + " seen_range seen_depth", "", (),
+        LAYER_TEXTURES + " seen_range", "", (),
     ),
     "transparent, colour alone": (
         TRANSPARENT, {"layers": 1, "outputs": ("color",)},

@@ -16,8 +16,7 @@ class Method:
 
     works_in: "space" (what the hardware clips, interpolates and hides), "picture" (a triangle around each footprint,
         every pixel computed) or "sprites" (parallel to the picture; the nearest wins, in one pass, and nothing blends).
-    visibility_samples: along each side of a sample, of the visibility pass; above 1 a resolve pass
-        filters silhouettes as the colours are.
+    filters_silhouettes: a resolve pass filters them as the colours are.
     pixel_variance: of its pixel filter, samples squared; 1/12 is that of a box. Textures are looked up under it.
     twin: the same functions in numpy.
     """
@@ -28,7 +27,7 @@ class Method:
     summary: str
     twin: ModuleType
     works_in: str = "picture"
-    visibility_samples: int = 1
+    filters_silhouettes: bool = False
     pixel_variance: float = 0.5
 
 
@@ -41,7 +40,7 @@ METHODS = {
             "this project, after Zwicker et al. 2001",
             "Smooth and still at one sample a pixel: 42 to 49 dB in 1.9 to 2.5 times the time of Quads",
             mip,
-            visibility_samples=2,
+            filters_silhouettes=True,
         ),
         Method(
             "quad",

@@ -9,8 +9,9 @@ from .plane import Plane, gradients, in_footprint, places, plane_depth
 
 KERNEL_VARIANCE = 0.25
 FILTER_SIGMA = 0.5**0.5
-#: 1 / (1 + exp(-x (a + b x^2))) is within 2e-4 of the normal distribution.
-NORMAL = 1.5976, 0.070565
+#: 0.5 - x (a + b x^2 + ...) is within 7e-4 of a normal distribution's share beyond x, up to NORMAL_END.
+NORMAL = 0.396668, -0.0613809, 0.00673240, -0.000320832
+NORMAL_END = 2.6
 
 
 def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -44,8 +45,8 @@ def _within_rim(reach: np.ndarray, along: np.ndarray) -> np.ndarray:
     """
     share = KERNEL_VARIANCE / (KERNEL_VARIANCE + along**2)
     deviation = np.maximum(np.sqrt(KERNEL_VARIANCE * (1 - share)), 1e-6)
-    x = np.clip((reach * share - 1) / deviation, -8, 8)
-    return 1 / (1 + np.exp(x * (NORMAL[0] + NORMAL[1] * x * x)))
+    x = np.clip((reach * share - 1) / deviation, -NORMAL_END, NORMAL_END)
+    return 0.5 - x * sum(factor * x ** (2 * power) for power, factor in enumerate(NORMAL))
 
 
 def _footprint(size: np.ndarray) -> np.ndarray:

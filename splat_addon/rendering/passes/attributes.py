@@ -10,7 +10,7 @@ from ..frame_plan import TEXTURES, FramePlan, PlannedPass
 from ..methods import get_method
 from ..shaders import load
 from ..storages import get_storage
-from .blocks import LAYER, LINEAR_DEPTH, material_defines, sum_defines
+from .blocks import FILTERS_SILHOUETTES, LAYER, LINEAR_DEPTH, material_defines, sum_defines
 from .splats import SPLATS_BLOCK, draw_splats, drawn_by
 from .tile import TileContext
 
@@ -97,11 +97,11 @@ def _in_picture(planned, frame):
             ("flat", "vec4", "plane_ab"),
             ("flat", "vec4", "plane_center_gh"),
             ("flat", "vec4", "plane_depths"),
-            ("flat", "vec2", "beside_radius"),
+            ("flat", "vec4", "plane_det_radius"),
             ("smooth", "vec2", "on_footprint"),
         ),
         defines=(
-            ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
+            *(FILTERS_SILHOUETTES if frame.filters_silhouettes else ()),
             *((("STRADDLING", "1"),) if straddling else ()),
         ),
         blend="add",

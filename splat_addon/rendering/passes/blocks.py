@@ -27,5 +27,8 @@ def sum_defines(names: tuple[str, ...], accumulation: str) -> tuple[tuple[str, s
     return (*((("DEPTH_SUM", "1"),) if "depth_sum" in names else ()), *((("HALF_SUMS", "1"),) if is_half else ()))
 
 
+#: Defined where a resolve pass filters silhouettes.
+FILTERS_SILHOUETTES = (("FILTERS_SILHOUETTES", "1"),)
+
 #: Defined where a transparent layer is made.
 LAYER = (("LAYER", "1"),)

@@ -19,7 +19,7 @@ def start(tile: TileContext, planned: PlannedPass) -> Target:
 
 
 def peel(tile: TileContext, planned: PlannedPass) -> Target:
-    """How deep each visibility sample is peeled now and what lies before that hides; it is read as "peeled" then."""
+    """How deep each sample is peeled now and what lies before that hides; it is read as "peeled" then."""
     target = shading.run(tile, planned)
     tile.swap("peeled", "peeled_next")
     return target

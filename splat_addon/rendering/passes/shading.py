@@ -76,7 +76,6 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
         outputs=tuple((kinds.get(name, "vec4"), name) for name in planned.writes),
         defines=(
             ("SAMPLES", str(frame.samples)),
-            ("VISIBILITY_SAMPLES", str(frame.visibility_samples)),
             ("BLOCKS", str(BLOCKS)),
             *_multisampling(frame),
             *sum_defines(planned.reads, frame.accumulation),
