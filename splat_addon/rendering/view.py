@@ -15,7 +15,8 @@ import numpy as np
 from .camera import Camera
 from .scene import Instance, Scene
 
-#: The clip range reaches this share of its length further than the bounds, so that rounding clips nothing.
+#: The clip range reaches this share of its ends (a parallel camera's, of its length or window) further than the bounds,
+#: so that rounding clips nothing, be they as near to one another as they may.
 _MARGIN = 1e-3
 
 #: A matrix whose shortest axis is this share of its longest leaves no direction for a normal.
@@ -197,9 +198,12 @@ def _clip_range(camera: Camera, seen, epsilon: float) -> tuple[float, float]:
         return camera.near, camera.far
     nearest = min(float(depths.min()) for _, depths, _ in seen)
     farthest = max(float(depths.max()) + epsilon * radius for _, depths, radius in seen)
-    margin = _MARGIN * (farthest - nearest)
-    near = max(camera.near, nearest - margin if camera.is_orthographic else nearest * (1 - _MARGIN))
-    far = min(camera.far, farthest + margin)
+    before, behind = abs(nearest), abs(farthest)
+    if camera.is_orthographic:
+        left, right, bottom, top = camera.window
+        before = behind = max(farthest - nearest, right - left, top - bottom)
+    near = max(camera.near, nearest - _MARGIN * before)
+    far = min(camera.far, farthest + _MARGIN * behind)
     return near, max(far, near + max(abs(near) * _MARGIN, 1e-300))
 
 

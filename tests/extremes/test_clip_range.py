@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
-from splat_addon.reference.extremes import discs, speck
+from splat_addon.reference.extremes import discs, sheet, speck
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Instance, Settings, look_at, plan
+from splat_addon.rendering.view import look
 
 NEARS = [1e-1, 1e-2, 1e-4, 1e-6]
 
@@ -51,6 +52,29 @@ def test_a_wide_clip_range_alone_costs_nothing(name, render_all):
     scene, camera = parallel() if name == "parallel" else WORLDS[name]()
     base, wide = render_all([(scene, camera, None), (scene, replace(camera, near=1e-6, far=1e6), None)])
     np.testing.assert_array_equal(wide.color, base.color)
+
+
+@pytest.mark.parametrize("fov", [1e-3, 1e-5])
+@pytest.mark.parametrize("depth", [0.3, 0.7, 1.0, 1.1, 3.7])
+def test_a_wall_as_deep_as_its_distance_rounds_is_whole(depth, fov, hold, lit, camera):
+    """Seen through a telescope: the narrowed clip range reaches beyond its ends, or rounding would clip the wall."""
+    half = 0.8 * depth * np.tan(np.radians(fov / 2))
+    hold({f"{depth}": (lit(sheet(20, half, 0, depth)), camera(fov))})
+
+
+def test_the_clip_range_ends_a_thousandth_beyond_what_is_there(lit, camera):
+    seen = look(lit(discs([(0, 0, -0.7), (0, 0, -3.7)], (1e-5, 0, 0), (0, 1e-5, 0))), camera(far=1e6), 0.0)
+    first, last = seen.first / seen.scale, seen.far / seen.scale
+    assert 0.998 * 0.7 < first < 0.9995 * 0.7
+    assert 1.0005 * 3.7 < last < 1.002 * 3.7
+
+
+@pytest.mark.parametrize("distance", [1e-24, 1e24])
+def test_a_few_surfels_far_from_the_others_do_not_set_the_scale(distance, hold):
+    """The view's units are the depth of most surfels: of other units their squares would leave float32."""
+    scene, camera = WORLDS["torus"]()
+    camera = replace(camera, near=1e-26, far=1e26)
+    hold({f"{distance:g}": (replace(scene, surfels=(*scene.surfels, speck(camera, distance))), camera)}, least=60)
 
 
 @pytest.mark.parametrize("near", NEARS)

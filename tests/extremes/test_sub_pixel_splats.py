@@ -39,3 +39,20 @@ def test_splats_below_the_rasterisers_grid_break_nothing(render_all, camera):
     camera = camera(size=(4, 4))
     (frame,) = render_all([(crowd(camera, 10_000, 1e-6), camera, FLAT)])
     assert np.isfinite(frame.color).all()
+
+
+@pytest.mark.parametrize(
+    ("method", "radius"),
+    [(method, r) for method in ("raycast", "homogeneous") for r in (1e-6, 1e-12, 1e-18)]
+    + [("raycast", 1e-21), ("raycast", 1e-24)],
+)
+def test_a_splat_of_next_to_no_size_is_as_large_as_the_filter_that_it_is_joined_with(
+    radius, method, render_all, camera
+):
+    """Where squares of its size leave float32, a shape of 0 / 0 would lose it."""
+    splat = discs((0.003, 0.004, -1), (radius, 0, 0), (0, radius, 0), (1, 1, 1))
+    settings = Settings(supersampling=1, shading="flat", transparent_film=True)
+    (frame,) = render_all([(Scene((splat,)), camera(size=(16, 16)), settings)])
+    assert np.isfinite(frame.color).all()
+    covered = np.argwhere(frame.coverage > 0)
+    assert 4 <= len(covered) <= 12 and np.abs(covered - 7.5).max() < 2.5
