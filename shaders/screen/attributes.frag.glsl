@@ -77,14 +77,19 @@ void main() {
   float weight = weight_depth.x * color_weight.w;
   if (!(weight > 0.0 && dot(on_footprint, on_footprint) <= 1.0 && weight_depth.y >= splats.options.y)) discard;
   vec4 seen = texelFetch(seen_range, ivec2(gl_FragCoord.xy), 0);
-  if (weight_depth.y > seen.z) discard;
+  float depth = weight_depth.y;
 #ifdef LAYER
-  if (is_in_nearer_layer(weight_depth.y)) discard;
+  // Where a filter reaches over its rim, a splat is in the layers that the rim itself is in.
+  if (!straddles) depth = clamp(depth, plane.depth - length(plane.slope), plane.depth + length(plane.slope));
+#endif
+  if (depth > seen.z) discard;
+#ifdef LAYER
+  if (is_in_nearer_layer(depth)) discard;
 #endif
 #ifdef FILTERS_SILHOUETTES
   // Where the filter reaches past a silhouette, what is seen behind it is another surface, which keeps the sample: its
   // depth, moved back by up to 2 epsilon, is more than that and a radius behind this splat's.
-  if (!straddles && seen.w - weight_depth.y > (1.0 + 4.0 * splats.options.x) * plane.radius) discard;
+  if (!straddles && seen.w - depth > (1.0 + 4.0 * splats.options.x) * plane.radius) discard;
 #endif
 #ifdef TEXTURED
   vec3 color = textured_color(plane);
