@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from splat_addon.rendering import EMPTY_DEPTH, Camera, Renderer, Scene, Settings
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.methods.plane import splat_plane, straddling_samples
+from splat_addon.rendering.view import look
 from splat_addon.surfels import Surfels, axes_quaternions
 
 SIZE = 48
@@ -92,9 +93,14 @@ def drawn(renderer, method, surfels, camera):
     """(SIZE, SIZE) sums of weights that the attribute pass leaves, and the frame's depths."""
     settings = Settings(method=method, supersampling=1, shading="flat", epsilon=1e9)
     frame = renderer.render(Scene((surfels,)), camera, settings)
-    sums = next(texture for key, texture in renderer.resources.textures.items() if key[0] == "color_sum")
-    margin = (sums.size[0] - SIZE) // 2
-    return renderer.device.target([sums]).read(0)[margin : margin + SIZE, margin : margin + SIZE, 3], frame.depth
+    return sum_of(renderer, "color_sum")[..., 3], frame.depth
+
+
+def sum_of(renderer, name):
+    """(SIZE, SIZE, 4) of what was drawn last."""
+    texture = next(texture for key, texture in renderer.resources.textures.items() if key[0] == name)
+    margin = (texture.size[0] - SIZE) // 2
+    return renderer.device.target([texture]).read(0)[margin : margin + SIZE, margin : margin + SIZE]
 
 
 def twin_weights(method, axes, camera, shift=(0.0, 0.0)):
@@ -176,3 +182,34 @@ def test_weights_and_depths_are_the_twins(method, kind, on_device):
 
     on_device(job)
     assert np.count_nonzero(compared) > EXAMPLES / 4
+
+
+@pytest.mark.parametrize("kind", CAMERAS)
+@pytest.mark.parametrize("method", ["mip", "ewa"])
+def test_depths_that_a_filter_reaches_beyond_a_grazing_splat_are_held_near_it(method, kind, on_device):
+    """At some pixels as far as the twin says, where the plane goes on."""
+    camera, is_held = CAMERAS[kind], []
+    splats = [
+        Splat(1.0, (0.1, -0.2), angle, 1.0, 0.3, size, 0.8)
+        for angle in (70, 80, 86, 89)
+        for size in (0.003, 0.01, 0.03)
+    ]
+
+    def job(device):
+        renderer = Renderer(device)
+        for splat in splats:
+            picture, _ = drawn(renderer, method, splat.surfels(camera), camera)
+            yield picture, sum_of(renderer, "normal_sum")[..., 3]
+
+    for splat, (picture, depth_sum) in zip(splats, on_device(lambda device: list(job(device))), strict=True):
+        surfels = splat.surfels(camera)
+        axes = [a.astype(np.float64) for a in (surfels.positions[0], *(h[0] for h in surfels.half_axes()))]
+        weights, depths = twin_weights(method, axes, camera)
+        is_seen = (weights > 1e-6) & (picture > 1e-6)
+        assert is_seen.any()
+        depths = depths[is_seen]
+        drawn_depths = depth_sum[is_seen] / picture[is_seen] / look(Scene((surfels,)), camera, 1e9).scale
+        np.testing.assert_allclose(drawn_depths, depths, rtol=0, atol=0.02 * splat.size)
+        reach = np.abs(depths + axes[0][2])
+        is_held.append(np.count_nonzero(np.isclose(reach, reach.max(), rtol=1e-9)) > 1)
+    assert sum(is_held) >= 3
