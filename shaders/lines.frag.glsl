@@ -4,7 +4,7 @@
 //          background or to a drop in depth, there is a silhouette; where the normal turns between two opposite ones,
 //          and most of that in a few pixels, there is a crease, in the middle of the turn.
 
-#include "common/sum_at.glsl"
+#include "common/mean_surface.glsl"
 
 const float EMPTY = 3e38;
 const float OUTSIDE = -3e38;
@@ -23,22 +23,15 @@ vec4 sight_at(ivec2 texel) {
   ivec2 size = textureSize(color_sum, 0);
 #endif
   if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size))) return vec4(0.0, 0.0, 0.0, OUTSIDE);
-  float weight = SUM_AT(color_sum, texel, 0).w;
-  bool is_seen = weight > 0.0;
+  MeanSurface mean = mean_surface(texel, 0);
+  bool is_seen = mean.coverage > 0.0;
 #ifdef SEEN_RANGE
   // A filter reaches past silhouettes.
   is_seen = is_seen && texelFetch(seen_range, texel, 0).z < 1e38;
 #endif
   if (!is_seen) return vec4(0.0, 0.0, 0.0, EMPTY);
-  vec4 sums = SUM_AT(normal_sum, texel, 0);
-#ifdef DEPTH_SUM
-  vec2 depths = SUM_AT(depth_sum, texel, 0).xy;
-  float depth = depths.x / depths.y;
-#else
-  float depth = sums.w / weight;
-#endif
-  float size_of_normal = length(sums.xyz);
-  return vec4(size_of_normal > 0.0 ? sums.xyz / size_of_normal : vec3(0.0, 0.0, 1.0), depth);
+  float size_of_normal = length(mean.normal);
+  return vec4(size_of_normal > 0.0 ? mean.normal / size_of_normal : vec3(0.0, 0.0, 1.0), mean.depth);
 }
 
 // By how much the depth of the sample's plane changes over that many samples.
@@ -125,7 +118,7 @@ void main() {
   vec4 own = sight_at(texel);
   lines = 0.0;
   if (own.w == EMPTY) {
-    lines = SUM_AT(color_sum, texel, 0).w > 0.0 ? 1.0 : 0.0;
+    lines = mean_surface(texel, 0).coverage > 0.0 ? 1.0 : 0.0;
     return;
   }
   float width = shading.lines.x, beside = 0.5 * width + float(SAMPLES);

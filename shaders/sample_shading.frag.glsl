@@ -10,8 +10,9 @@ void main() {
   shaded = vec4(0.0);
   surface = vec4(0.0);
   Outputs outputs = NO_OUTPUTS;
-  if (SUM_AT(color_sum, texel, 0).w > 0.0) {
-    ShadedSample here = shaded_sample(texel, 0);
+  MeanSurface mean = mean_surface(texel, 0);
+  if (mean.coverage > 0.0) {
+    ShadedSample here = shaded_sample(mean, texel, 0);
     shaded = vec4(here.color, 1.0) * here.coverage;
     surface = vec4(here.normal, here.depth);
     outputs = here.outputs;

@@ -32,8 +32,9 @@ void main() {
 #endif
       for (int look = 0; look < LOOKS; look++) {
         float coverage = 0.0;
-        if (SUM_AT(color_sum, texel, look).w > 0.0) {
-          ShadedSample here = shaded_sample(texel, look);
+        MeanSurface mean = mean_surface(texel, look);
+        if (mean.coverage > 0.0) {
+          ShadedSample here = shaded_sample(mean, texel, look);
           coverage = here.coverage;
           color_total += vec4(here.color, 1.0) * (coverage * through);
           normal_total += vec4(is_first ? here.normal : vec3(0.0), through) * coverage;

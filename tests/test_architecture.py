@@ -22,6 +22,7 @@ MAY_IMPORT = {
 }
 #: `reference` reads rendering's data, never its passes.
 RENDERING_DATA = {"camera", "scene", "light", "environment", "shadow", "settings", "frame", "brdf_table", "view"}
+RENDERING_DATA |= {"polygons"}
 #: foreign module -> where it may be imported
 HOMES = {
     "bpy": ("blender/",),

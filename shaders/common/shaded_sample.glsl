@@ -2,8 +2,7 @@
 // Summary: a sample's sums as a lit surface; the includer has included a shading model.
 
 #include "common/outputs.glsl"
-#include "common/sum_at.glsl"
-#include "common/weight_scale.glsl"
+#include "common/mean_surface.glsl"
 #ifdef OVERDRAW_TARGET
 #include "common/overdraw.glsl"
 #endif
@@ -23,36 +22,17 @@ const float CANCELLED = 4e-3;
 const float CANCELLED = 1e-6;
 #endif
 
-#ifdef EDGE_THRESHOLD
-#include "common/sides.glsl"
-// Weights of backs sum to less; the rim of a front weighs 0.135, or a quarter of it in the mean of four samples.
-const float LEAST_FRONT = 0.02;
-#endif
-
-// Only where the sum of weights is above 0. look: which of the texel's hardware samples, 0 where it has one.
-ShadedSample shaded_sample(ivec2 texel, int look) {
-  vec4 c = SUM_AT(color_sum, texel, look);
-#ifdef DEPTH_SUM
-  vec2 depths = SUM_AT(depth_sum, texel, look).xy;
-#endif
-#ifdef LAYER
-  float weights = depths.y;
-#else
-  float weights = c.w;
-#endif
-  vec4 n = SUM_AT(normal_sum, texel, look) / weights;
-#ifdef DEPTH_SUM
-  n.w = depths.x / depths.y;
-#endif
-#ifdef HALF_SUMS
-  c.rgb *= shading.options.w;
-#endif
+// mean: where its coverage is above 0. look: which of the texel's hardware samples, 0 where it has one.
+ShadedSample shaded_sample(MeanSurface mean, ivec2 texel, int look) {
   vec2 place = shading.window.xy + (vec2(texel) + 0.5) * shading.window.zw;
-  vec3 position = vec3(shading.options.x > 0.5 ? place : place * n.w, -n.w);
-  float size = length(n.xyz);
-  vec3 normal = size > CANCELLED ? n.xyz / size : vec3(0.0, 0.0, 1.0);
+  vec3 position = vec3(shading.options.x > 0.5 ? place : place * mean.depth, -mean.depth);
+  float size = length(mean.normal);
+  vec3 normal = size > CANCELLED ? mean.normal / size : vec3(0.0, 0.0, 1.0);
 #ifdef MATERIAL_TARGET
-  vec3 material = SUM_AT(material_sum, texel, look).xyz / weights;
+  vec3 material = mean.weight > 0.0 ? SUM_AT(material_sum, texel, look).xyz / mean.weight : vec3(0.0);
+#ifdef POLYGONS
+  material = mix(material, SUM_AT(polygon_material, texel, look).xyz / mean.sees, mean.polygon);
+#endif
 #else
   vec3 material = shading.material.xyz;
 #endif
@@ -63,25 +43,33 @@ ShadedSample shaded_sample(ivec2 texel, int look) {
   overdraw = SUM_AT(overdraw_sum, texel, look).r;
 #endif
 #ifdef SUM_OF_WEIGHTS
-  sum_of_weights = weights / WEIGHT_SCALE;
+  sum_of_weights = mean.weight / WEIGHT_SCALE;
 #endif
 #ifdef LIGHT_SET_TARGET
   light_set = texelFetch(light_set_sum, texel, 0);
-  light_set /= dot(light_set, vec4(1.0));
+  light_set /= max(dot(light_set, vec4(1.0)), 1e-30);
+#ifdef POLYGONS
+  int set = int(texelFetch(polygon_material, texel, 0).w);
+  light_set = mix(light_set, vec4(equal(ivec4(0, 1, 2, 3), ivec4(set))), mean.polygon);
+#endif
 #endif
 #ifdef SHADOW_SHARE
   light_arriving = light_unshadowed = vec3(0.0);
 #endif
-  vec3 radiance = shade(position, normal, c.rgb / c.w, material);
+  vec3 radiance = shade(position, normal, mean.color, material);
   Outputs outputs = NO_OUTPUTS;
 #ifdef METALS
-  outputs.diffuse_color = c.rgb / c.w * (1.0 - clamp(material.y, 0.0, 1.0));
+  outputs.diffuse_color = mean.color * (1.0 - clamp(material.y, 0.0, 1.0));
 #else
-  outputs.diffuse_color = c.rgb / c.w;
+  outputs.diffuse_color = mean.color;
 #endif
 #ifdef EMISSION_TARGET
   vec4 e = SUM_AT(emission_sum, texel, look);
-  outputs.emission = e.rgb / e.w;  // its own weights: those of float16 sums are scaled
+  // Its own weights: those of float16 sums are scaled.
+  outputs.emission = e.w > 0.0 ? e.rgb / e.w : vec3(0.0);
+#ifdef POLYGONS
+  outputs.emission = mix(outputs.emission, SUM_AT(polygon_emission, texel, look).rgb / mean.sees, mean.polygon);
+#endif
 #endif
 #ifdef EMISSION
   outputs.emission = shading.emission.rgb;
@@ -96,15 +84,9 @@ ShadedSample shaded_sample(ivec2 texel, int look) {
 #ifdef LINES
   radiance = mix(radiance, shading.line_color.rgb, texelFetch(lines, texel, 0).r);
 #endif
-#ifdef LAYER
-  float coverage = min(c.w / weights, 1.0);
-#else
-  float coverage = 1.0;
-#endif
+  float coverage = mean.coverage;
 #ifdef EDGE_THRESHOLD
-  float weight = weights / WEIGHT_SCALE;
-  if (weight < LEAST_FRONT) weight /= BACK_WEIGHT;
-  coverage *= min(weight / shading.edges.x, 1.0);
+  if (mean.polygon == 0.0) coverage *= min(front_weight(mean.weight) / shading.edges.x, 1.0);
 #endif
-  return ShadedSample(radiance, normal, n.w, coverage, outputs);
+  return ShadedSample(radiance, normal, mean.depth, coverage, outputs);
 }

@@ -14,6 +14,7 @@ from ..rendering.scene import Scene
 from ..rendering.settings import Settings
 from .filters import filter_weights, resample
 from .outputs import OUTPUTS
+from .polygons import contact, joined, polygon_hits
 from .rays import RayGrid, Surface, layer_surfaces, splats_in, visible_depth, visible_surface
 from .shading_models import DIAGNOSTIC, SHADERS
 from .splats import LEAST_OPACITY, Splats, eye_splats, projected_bounds
@@ -109,13 +110,13 @@ def _layered_rays(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: C
     Depth and normal are those of the nearest surface that is opaque enough (`settings.alpha_threshold`).
     """
     groups = _opaque_and_transparent(splats, bounds, settings)
-    opaque, surface = groups[0], visible_surface(*groups[0], grid, settings.epsilon)
+    opaque, (surface, limit) = groups[0], _opaque_surface(*groups[0], grid, scene, camera, settings.epsilon)
     rays, depths = shaded_rays(surface, grid, scene, camera, settings), np.full(grid.count, np.inf)
     depths[surface.rays] = surface.depth
     if not len(groups[1][0]):
         return rays, depths
     rays = rays.reshape(grid.count, -1)
-    until = visible_depth(*splats_in(*opaque, grid), grid, settings.epsilon)
+    until = np.minimum(visible_depth(*splats_in(*opaque, grid), grid, settings.epsilon), limit)
     total, through, is_seen = np.zeros_like(rays), np.ones(grid.count), np.zeros(grid.count, bool)
     for layer in layer_surfaces(*groups[1], grid, settings.epsilon, until):
         hit, radiance = layer.rays, SHADERS[settings.shading](layer, grid, scene, camera, settings)
@@ -129,6 +130,16 @@ def _layered_rays(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: C
     behind = rays * through[:, None]
     behind[:, 4:7] = np.where(is_seen[:, None], 0, rays[:, 4:7])
     return (total + behind).reshape(*grid.shape, -1), depths
+
+
+def _opaque_surface(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: Camera, epsilon: float):
+    """What every ray sees of opaque splats and polygons, and the depth beyond which the latter hide everything."""
+    if not scene.polygons:
+        return visible_surface(splats, bounds, grid, epsilon), np.inf
+    hits = polygon_hits(scene, camera, grid, epsilon)
+    limit = hits.depth + hits.overlap / np.linalg.norm(grid.rays(np.arange(grid.count))[1], axis=1)
+    surface = visible_surface(splats, bounds, grid, epsilon, limit)
+    return joined(surface, hits, contact(scene, epsilon)), limit
 
 
 def _opaque_and_transparent(splats: Splats, bounds, settings: Settings):

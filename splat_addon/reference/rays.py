@@ -110,10 +110,14 @@ class Hits:
     stretch: np.ndarray
 
 
-def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float) -> Surface:
-    """What every ray of the grid sees. bounds: `projected_bounds` of the splats. epsilon: in radii of each splat."""
+def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float, limit=np.inf) -> Surface:
+    """What every ray of the grid sees. bounds: `projected_bounds` of the splats. epsilon: in radii of each splat.
+
+    limit: (count,) depth beyond which something else hides splats.
+    """
     splats, boxes = splats_in(splats, bounds, grid)
-    return average(splats, grid, _seen(splats, boxes, grid, visible_depth(splats, boxes, grid, epsilon)))
+    seen = np.minimum(visible_depth(splats, boxes, grid, epsilon), limit)
+    return average(splats, grid, _seen(splats, boxes, grid, seen))
 
 
 def visible_depth(splats: Splats, boxes, grid: RayGrid, epsilon: float, after=-np.inf, until=np.inf) -> np.ndarray:

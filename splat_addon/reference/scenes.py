@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Six scenes that the engine and the truth are compared on: numpy builders, the same for every run.
+"""Scenes that the engine and the truth are compared on: numpy builders, the same for every run.
 
 Each returns a `Scene` and a `Camera`. The splats are ellipses of seeded random orientation and aspect, overlap
 about as much as converted meshes do, and carry colours with edges, so that filters have something to do.
@@ -8,13 +8,15 @@ about as much as converted meshes do, and carry colours with edges, so that filt
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from ..images import Image
 from ..rendering.camera import Camera, look_at
 from ..rendering.light import Light
-from ..rendering.scene import Instance, Material, Scene, SurfaceTexture
+from ..rendering.polygons import Polygons, make_polygons
+from ..rendering.scene import Instance, Material, PolygonInstance, Scene, SurfaceTexture
 from ..surfels import Surfels, axes_quaternions
 from .lettering import PLACE, page
 
@@ -188,6 +190,39 @@ def torus(count: int = 40_000, size=(128, 128), seed: int = 2) -> tuple[Scene, C
     )
     camera = Camera.perspective(look_at((0.3, -3.6, 2.2), (0, 0, 0)), math.radians(42), size, near=0.1, far=10)
     return Scene(instances, (SUN, LAMP), WORLD), camera
+
+
+def polygons(count: int = 20_000, size=(128, 128)) -> tuple[Scene, Camera]:
+    """The sphere of surfels, cut by a floor of polygons of four colours, beside a smooth metal ball of polygons."""
+    scene, camera = sphere(count, size)
+    square, colors = np.array([(-2, -2), (2, -2), (2, 2), (-2, 2)]), np.array([(0.1, 0.3, 0.7), (0.7, 0.7, 0.2)] * 2)
+    corners = [0, 1, 2, 0, 2, 3]
+    floor = make_polygons(
+        np.column_stack([square, np.full(4, -0.35)]),
+        np.reshape(corners, (2, 3)),
+        colors=np.column_stack([colors[corners], np.ones(6)]),
+    )
+    ball = PolygonInstance(round_polygons(12), _moved((0.75, -0.8, -0.1), 0.35), (Material(0.3, 1.0),))
+    among = PolygonInstance(floor, materials=(Material(roughness=0.8),)), ball
+    return replace(scene, polygons=among), camera
+
+
+def round_polygons(rings: int) -> Polygons:
+    """A unit sphere of rings x 2 rings fields, split into triangles, with its own normals."""
+    latitude, longitude = np.linspace(-math.pi / 2, math.pi / 2, rings + 1), np.linspace(0, 2 * math.pi, 2 * rings + 1)
+    up, around = np.meshgrid(latitude, longitude[:-1], indexing="ij")
+    points = np.stack([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)], axis=2).reshape(-1, 3)
+    row, column = np.meshgrid(np.arange(rings), np.arange(2 * rings), indexing="ij")
+    beside = (column + 1) % (2 * rings)
+    a, b, c, d = (r * 2 * rings + k for r, k in ((row, column), (row, beside), (row + 1, beside), (row + 1, column)))
+    triangles = np.concatenate([np.stack([a, b, c], axis=2)[1:], np.stack([a, c, d], axis=2)[:-1]]).reshape(-1, 3)
+    return make_polygons(points, triangles, points[triangles], (0.9, 0.6, 0.3, 1.0))
+
+
+def _moved(place, scale: float) -> np.ndarray:
+    matrix = np.diag((scale, scale, scale, 1.0))
+    matrix[:3, 3] = place
+    return matrix
 
 
 def _torus_points(count: int, tube: float, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:

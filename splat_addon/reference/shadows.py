@@ -12,6 +12,7 @@ from ..rendering.camera import Camera
 from ..rendering.light import Light
 from ..rendering.scene import Scene
 from ..rendering.shadow import casting
+from .polygons import are_lit
 from .splats import Splats, eye_splats
 
 #: Pairs of a ray and a splat that are met at once.
@@ -19,6 +20,9 @@ CHUNK_PAIRS = 2_000_000
 
 #: Places on a lamp that soft shadows are averaged over.
 LAMP_POINTS = 25
+
+#: Of the way from a lamp, at its end: what a polygon does not shadow of itself.
+OWN_SURFACE = 1e-9
 
 #: Where a sun is taken to stand, in units of the scene's extent.
 FAR_AWAY = 1e4
@@ -30,12 +34,19 @@ def lit_share(light: Light, scene: Scene, camera: Camera, position: np.ndarray, 
     A splat hides the places that lie more than epsilon, in its radii, behind it as seen from the light.
     """
     # Splats are wanted from the light's side: solid instances hide backs by the camera, so they count in full here.
-    splats = eye_splats(_without_solids(casting(scene)), camera)
-    if not len(splats):
+    casters = casting(scene)
+    splats = eye_splats(_without_solids(casters), camera)
+    if not casters.shown:
         return np.ones(len(position))
     extent = float(np.abs(np.concatenate([splats.center, position])).max())
     lamp = _lamp(light, camera, position, extent)
-    return np.mean([_is_seen(splats, epsilon * splats.radius(), place, position) for place in lamp], axis=0)
+    return np.mean([_is_lit(casters, camera, splats, epsilon, place, position) for place in lamp], axis=0)
+
+
+def _is_lit(casters: Scene, camera: Camera, splats: Splats, epsilon: float, lamp: np.ndarray, position: np.ndarray):
+    """(n,) bool."""
+    lit = are_lit(casters, camera, lamp, position, OWN_SURFACE)
+    return lit & _is_seen(splats, epsilon * splats.radius(), lamp, position) if len(splats) else lit
 
 
 def _without_solids(scene: Scene) -> Scene:

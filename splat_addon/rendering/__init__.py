@@ -14,9 +14,10 @@ from .light import Light
 from .lines import Lines
 from .matcap import Matcap
 from .plan import plan
+from .polygons import Polygons, make_polygons
 from .presets import PRESETS, Preset
 from .renderer import RenderCancelled, Renderer
-from .scene import Instance, Material, Scene, SurfaceTexture
+from .scene import Instance, Material, PolygonInstance, Scene, SurfaceTexture
 from .settings import Settings
 
 __all__ = (
@@ -32,6 +33,8 @@ __all__ = (
     "Lines",
     "Matcap",
     "Material",
+    "PolygonInstance",
+    "Polygons",
     "Preset",
     "RenderCancelled",
     "Renderer",
@@ -39,6 +42,7 @@ __all__ = (
     "Settings",
     "SurfaceTexture",
     "look_at",
+    "make_polygons",
     "open_device",
     "plan",
 )

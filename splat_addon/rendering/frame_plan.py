@@ -23,6 +23,11 @@ TEXTURES = {
     "emission_sum": ("RGBA32F", "sample"),
     "light_set_sum": ("RGBA32F", "sample"),
     "overdraw_sum": ("R32F", "sample"),
+    "polygon_color": ("RGBA32F", "sample"),
+    "polygon_normal": ("RGBA32F", "sample"),
+    "polygon_material": ("RGBA32F", "sample"),
+    "polygon_emission": ("RGBA32F", "sample"),
+    "polygon_depth": ("DEPTH32F", "sample"),
     "lines": ("R32F", "sample"),
     "layer_depth": ("DEPTH32F", "sample"),
     "left": ("R32F", "block"),
@@ -67,8 +72,8 @@ SUM_FORMATS = {
 #: Of a picture along each side, for which "left" holds one value each.
 BLOCKS = 64
 
-#: Those that draw splats.
-SPLAT_PASSES = ("visibility", "attributes")
+#: Those that draw splats and polygons.
+SPLAT_PASSES = ("visibility", "polygons", "attributes")
 
 
 @dataclass(frozen=True)
@@ -175,7 +180,9 @@ class FramePlan:
             lines.append(f"  with {self.multisamples} hardware samples in each: {each}")
         for p in self.passes:
             layer = f" of layer {p.layer}" if p.layer else ""
-            lines.append(f"  {p.name}{layer}: {', '.join(p.writes)} <- {', '.join(p.reads) or 'splats'}; {p.reason}")
+            lines.append(
+                f"  {p.name}{layer}: {', '.join(p.writes)} <- {', '.join(p.reads) or 'what is placed'}; {p.reason}"
+            )
         lines += [f"  with {name}: {why}" for name, why in self.features]
         lines += [f"  without {what}: {why}" for what, why in self.left_out]
         return "\n".join(lines)

@@ -61,12 +61,16 @@ def layer_passes(
     return start, *made
 
 
+#: Of what the shading of the opaque picture may read, what a layer has nothing of.
+_OPAQUE_ONLY = {"lines", "overdraw_sum", "polygon_color", "polygon_normal", "polygon_material", "polygon_emission"}
+
+
 def _layer(number: int, settings: Settings, method: Method, sums, reads) -> tuple[PlannedPass, ...]:
     in_space, is_filtered = method.works_in == "space", method.filters_silhouettes
     # Of what frames hand on beside colour, depth and normal, layers have nothing.
     sums = tuple(dict.fromkeys(name for name in (*sums, "depth_sum") if name != "overdraw_sum"))
     tested = ("layer_depth", "visibility_depth", "peeled") if in_space else ("seen_range", "layer_depth", "peeled")
-    shading = tuple(dict.fromkeys((*sums, *(name for name in reads if name not in ("lines", "overdraw_sum")))))
+    shading = tuple(dict.fromkeys((*sums, *(name for name in reads if name not in _OPAQUE_ONLY))))
     resolved = ("shaded", "surface", "peeled", "layer_depth", *(("seen_range",) if is_filtered else ()))
     passes = [
         ("visibility", "behind nearer layers, before what is opaque", ("peeled", "visibility_depth"), ("layer_depth",)),

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..surfels import Surfels
-from .scene import Instance, Material
+from .scene import Material, Placed
 
 SPLATS_PER_ROW = 512
 TEXELS_PER_SPLAT = 4
@@ -108,17 +108,17 @@ def reflectance(ior: float) -> float:
     return ((ior - 1) / (ior + 1)) ** 2
 
 
-def shared_material(instances: tuple[Instance, ...]) -> Material | None:
+def shared_material(instances: tuple[Placed, ...]) -> Material | None:
     """The one material that all surfels of the instances answer light with, or None; its emission means nothing."""
-    if any(i.surfels.roughness is not None or i.surfels.metallic is not None for i in instances):
+    if any(i.shape.roughness is not None or i.shape.metallic is not None for i in instances):
         return None
     materials = {replace(m, emission=(0.0, 0.0, 0.0)) for instance in instances for m in instance.materials}
     return materials.pop() if len(materials) == 1 else None
 
 
-def shared_emission(instances: tuple[Instance, ...]) -> tuple[float, float, float] | None:
+def shared_emission(instances: tuple[Placed, ...]) -> tuple[float, float, float] | None:
     """The one radiance that all surfels of the instances send out, or None where they differ."""
-    if any(instance.surfels.emission is not None for instance in instances):
+    if any(instance.shape.emission is not None for instance in instances):
         return None
     emissions = {tuple(m.emission) for instance in instances for m in instance.materials}
     return emissions.pop() if len(emissions) == 1 else None

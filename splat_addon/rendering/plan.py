@@ -19,7 +19,7 @@ from .settings import Settings
 from .shading_models import ShadingModel, get_shading_model
 from .shadow import MAX_MAPS, ShadowMap, shadow_maps
 from .storages import get_storage
-from .view import DepthExtent, depth_extent
+from .view import DepthExtent, depth_extent, overlapping_radii
 
 #: A target's edge in samples; a larger picture is rendered in tiles, so that memory stays below about 1 GB.
 MAX_TARGET_EDGE = 4096
@@ -46,10 +46,12 @@ def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera
             "to 0 and use supersampling, or method quad."
         )
     model = get_shading_model(settings.shading)
-    material, emission = shared_material(scene.surfels), shared_emission(scene.surfels)
+    material, emission = shared_material(scene.shown), shared_emission(scene.shown)
     linear_depth, passes, features, maps, depth_range, left_out = False, (), (), (), (0.0, 1.0), []
-    if not any(len(instance.surfels) for instance in scene.surfels):
-        left_out.append(("all other passes", "the scene has no surfels, so the picture is its background"))
+    if not scene.shown:
+        left_out.append(
+            ("all other passes", "the scene has neither surfels nor polygons: the picture is its background")
+        )
         if _shows_environment(scene, settings):
             outputs = _outputs(settings, left_out)
             passes = (PlannedPass("background", "the world is a picture", ("environment_image",), outputs),)
@@ -59,8 +61,10 @@ def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera
         linear_depth, why_depth = _linear_depth(camera, extent)
         sums = _sums(scene, settings, model, material, emission, left_out)
         maps = _shadow_maps(scene, shadow_camera or camera, settings, model, left_out)
-        lines = _line_passes(settings, method, sums, left_out)
-        reads = _read_by_shading(scene, model, sums, maps, left_out) + (("lines",) if lines else ())
+        polygons = _polygon_passes(scene, method, sums, left_out)
+        kept = (*sums, *(name for p in polygons for name in p.writes if name != "polygon_depth"))
+        lines = _line_passes(settings, method, kept, left_out)
+        reads = _read_by_shading(scene, model, kept, maps, left_out) + (("lines",) if lines else ())
         shadows = (_shadow_pass(scene, maps),) if maps else ()
         layers = layers_of(scene, settings, method, model, left_out)
         first, *splats = _splat_passes(method, _why_attributes(scene, method), why_depth, sums, left_out)
@@ -69,6 +73,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera
             first,
             *layer_passes(layers, settings, method, model, sums, reads),
             *splats,
+            *polygons,
             *lines,
             *_shading_passes(scene, settings, method, model, reads, layers, left_out),
         )
@@ -98,6 +103,8 @@ def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera
 
 
 def _why_attributes(scene: Scene, method: Method) -> str:
+    if not any(len(instance.surfels) for instance in scene.surfels):
+        return "there are no splats: their sums stay empty"
     textured = sum(instance.is_textured for instance in scene.surfels)
     looked_up = f"; {textured} of {len(scene.surfels)} instances look textures up" if textured else ""
     return f"overlapping splats blend by {method.name}{looked_up}"
@@ -149,12 +156,29 @@ def _splat_passes(method: Method, why: str, why_depth: str, sums: tuple[str, ...
     )
 
 
+def _polygon_passes(scene: Scene, method: Method, sums: tuple[str, ...], left_out: list) -> tuple[PlannedPass, ...]:
+    """What of polygons is kept beside the sums over splats, which shading joins with it."""
+    if not scene.polygons:
+        left_out.append(("polygons", "the scene has none"))
+        return ()
+    kept = ["polygon_color", "polygon_normal"]
+    if {"material_sum", "light_set_sum"} & set(sums):
+        kept.append("polygon_material")
+    if "emission_sum" in sums:
+        kept.append("polygon_emission")
+    touching = len(overlapping_radii(scene))
+    why = f"{len(scene.polygons)} instances are polygons, of which {touching} touch surfels and may blend with them"
+    seen = ("seen_range",) if method.works_in == "picture" else ()
+    return (PlannedPass("polygons", why, seen, (*kept, "polygon_depth")),)
+
+
 def _line_passes(settings: Settings, method: Method, sums: tuple[str, ...], left_out: list):
     if settings.lines is None:
         left_out.append(("lines", "none are asked for"))
         return ()
     seen = ("seen_range",) if method.works_in == "picture" else ()
-    reads = (*(name for name in ("color_sum", "normal_sum", "depth_sum") if name in sums), *seen)
+    known = "color_sum", "normal_sum", "depth_sum", "polygon_color", "polygon_normal"
+    reads = (*(name for name in known if name in sums), *seen)
     return (
         PlannedPass("lines", "silhouettes and creases are drawn before their samples are mixed", reads, ("lines",)),
     )
@@ -269,9 +293,9 @@ def _outputs(settings: Settings, left_out: list) -> tuple[str, ...]:
 
 
 def _say_what_surfels_lack(scene: Scene, camera: Camera, left_out: list) -> None:
-    solid = sum(instance.hides_backs(camera) for instance in scene.surfels)
+    solid = sum(placed.hides_backs(camera) for placed in scene.shown)
     if solid:
-        left_out.append(("backs of splats", f"{solid} of {len(scene.surfels)} instances are solid"))
+        left_out.append(("backs", f"{solid} of {len(scene.shown)} instances are solid"))
 
 
 def _linear_depth(camera: Camera, extent: DepthExtent) -> tuple[bool, str]:

@@ -145,6 +145,7 @@ class Renderer:
             "device": self.device.renderer,
             "plan": frame_plan,
             "splats": 0,
+            "polygons": 0,
             "instances": 0,
             "instances_outside": 0,
             "instances_degenerate": 0,
@@ -160,7 +161,7 @@ class Renderer:
         self.resources.forget_textures_but(
             {texture_key(name, size, frame_plan) for name in frame_plan.textures for size in sizes}
         )
-        self.resources.forget_atlases_but({instance.textures for instance in scene.surfels})
+        self.resources.forget_atlases_but({placed.textures for placed in scene.shown})
         casters = casting(scene)
         shadow_views = tuple(look(casters, made.camera, settings.epsilon) for made in frame_plan.shadow_maps)
         for number, tile in enumerate(frame_plan.tiles):
@@ -168,7 +169,8 @@ class Renderer:
             view = look(scene, tile_camera, settings.epsilon)
             context = TileContext(self.resources, frame_plan, scene, tile_camera, settings, view, shadow_views)
             stats["splats"] += sum(len(p.instance.surfels) for p in view.placed)
-            stats["instances"] += len(view.placed)
+            stats["polygons"] += sum(p.instance.polygons.triangles for p in view.polygons)
+            stats["instances"] += len(view.placed) + len(view.polygons)
             stats["instances_outside"] += view.outside
             stats["instances_degenerate"] = view.degenerate
             stored = [self.resources.surfels(p.instance.surfels, get_storage(frame_plan.storage)) for p in view.placed]

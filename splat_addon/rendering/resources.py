@@ -14,7 +14,8 @@ from .atlas import FORMAT, make_atlas
 from .device import Device
 from .device.interface import Pipeline, PipelineDescription, Texture
 from .packing import pack_materials, pack_own_materials, pack_uvs
-from .scene import Instance, SurfaceTexture
+from .polygons import Polygons, pack_polygon_uvs, pack_polygons
+from .scene import Placed, SurfaceTexture
 from .storages import Storage
 
 #: name, width, height, format, samples a texel (0 for one) of a texture that a pass writes.
@@ -37,6 +38,8 @@ class Resources:
     def __init__(self, device: Device):
         self.device = device
         self._surfels = WeakKeyDictionary()
+        self._polygons = WeakKeyDictionary()
+        self._polygon_uvs = WeakKeyDictionary()
         self._kept = WeakKeyDictionary()
         self._own_materials = WeakKeyDictionary()
         self._constants = {}
@@ -57,15 +60,30 @@ class Resources:
             stored = self._surfels[surfels] = StoredSurfels(storage, textures, coarse)
         return stored
 
-    def materials(self, instance: Instance, storage: Storage, with_emission: bool) -> Texture:
-        """Those of its slots; where surfels have their own, one of each, uploaded once."""
-        surfels, slots = instance.surfels, instance.materials
+    def polygons(self, polygons: Polygons) -> Texture:
+        """Their corners, uploaded once."""
+        if polygons not in self._polygons:
+            self._polygons[polygons] = self.data(pack_polygons(polygons))
+        return self._polygons[polygons]
+
+    def polygon_uvs(self, polygons: Polygons) -> Texture:
+        """Their texture coordinates, uploaded once."""
+        if polygons not in self._polygon_uvs:
+            self._polygon_uvs[polygons] = self.data(pack_polygon_uvs(polygons))
+        return self._polygon_uvs[polygons]
+
+    def materials(self, instance: Placed, storage: Storage | None, with_emission: bool) -> Texture:
+        """Those of its slots; where surfels, or the corners of polygons, have their own, one of each, uploaded once.
+
+        storage: of surfels, whose order it may change.
+        """
+        surfels, slots = instance.shape, instance.materials
         if not surfels.has_own_material:
             return self.data(pack_materials(slots, with_emission))
         known, texture = self._own_materials.get(surfels, (None, None))
-        if known != (slots, storage.name, with_emission):
+        if known != (slots, storage, with_emission):
             texture = self.data(pack_own_materials(surfels, slots, _order(surfels, storage), with_emission))
-            self._own_materials[surfels] = (slots, storage.name, with_emission), texture
+            self._own_materials[surfels] = (slots, storage, with_emission), texture
         return texture
 
     def surfel_uvs(self, surfels: Surfels, storage: Storage) -> Texture:
@@ -128,6 +146,8 @@ class Resources:
     def release(self) -> None:
         """Let go of everything on the device."""
         self._surfels.clear()
+        self._polygons.clear()
+        self._polygon_uvs.clear()
         self._kept.clear()
         self._own_materials.clear()
         self._constants.clear()
@@ -137,6 +157,6 @@ class Resources:
         self.textures.clear()
 
 
-def _order(surfels: Surfels, storage: Storage):
+def _order(surfels: Surfels, storage: Storage | None):
     """The index of surfels that brings them into the order in which they are stored."""
-    return storage.order(surfels) if storage.order else slice(None)
+    return storage.order(surfels) if storage and storage.order else slice(None)

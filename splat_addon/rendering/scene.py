@@ -16,6 +16,7 @@ from ..surfels import Surfels
 from .camera import Camera
 from .environment import Environment
 from .light import MAX_LIGHT_SETS, Light
+from .polygons import Polygons
 
 
 @dataclass(frozen=True)
@@ -58,8 +59,61 @@ class SurfaceTexture:
         return float(np.max(self.image.pixels[..., :3].max(axis=(0, 1)) * self.factor))
 
 
+class Placed:
+    """What surfels and polygons that stand in the world have in common; `shape` is what stands there."""
+
+    def __post_init__(self):
+        if not 0 <= self.light_set < MAX_LIGHT_SETS:
+            raise ValueError(f"An instance's light set must be 0 to {MAX_LIGHT_SETS - 1}, not {self.light_set}.")
+        matrix = np.array(self.matrix_world, np.float64)
+        if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
+            raise ValueError("An instance's matrix_world must be 4 x 4 finite numbers.")
+        matrix.flags.writeable = False
+        object.__setattr__(self, "matrix_world", matrix)
+        object.__setattr__(self, "materials", tuple(self.materials) or (Material(),))
+        object.__setattr__(self, "textures", tuple(self.textures))
+
+    @property
+    def is_textured(self) -> bool:
+        """Whether some of its colours are to be looked up."""
+        return self.shape.has_uvs and any(texture is not None for texture in self.textures)
+
+    def model_view(self, camera: Camera) -> np.ndarray:
+        """(4, 4) float64, positions (without origin) to the camera's view space.
+
+        The camera is subtracted from the origin before anything else, so that both may be far from the world's.
+        """
+        rotation, linear = camera.matrix_world[:3, :3].T, self.matrix_world[:3, :3]
+        matrix = np.eye(4)
+        matrix[:3, :3] = rotation @ linear
+        matrix[:3, 3] = rotation @ (self.matrix_world[:3, 3] - camera.matrix_world[:3, 3] + linear @ self.shape.origin)
+        return matrix
+
+    def corners(self, camera: Camera) -> np.ndarray:
+        """(8, 3) float64 corners of a box around it all, in the camera's view space."""
+        model_view = self.model_view(camera)
+        return self._local_corners() @ model_view[:3, :3].T + model_view[:3, 3]
+
+    def world_corners(self) -> np.ndarray:
+        """(8, 3) float64 corners of a box around it all, in the world."""
+        corners = self._local_corners() + self.shape.origin
+        return corners @ self.matrix_world[:3, :3].T + self.matrix_world[:3, 3]
+
+    def _local_corners(self) -> np.ndarray:
+        low, high = self.shape.local_bounds
+        pick = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
+        return np.where(pick, high, low)
+
+    def hides_backs(self, camera: Camera) -> bool:
+        """Whether no back can be seen: solid and opaque, and wholly beyond the near plane, so that the camera is
+        outside.
+        """
+        is_closed = self.shape.is_solid and not self.shape.is_transparent
+        return is_closed and bool((-self.corners(camera)[:, 2] >= camera.near).all())
+
+
 @dataclass(frozen=True, eq=False)
-class Instance:
+class Instance(Placed):
     """Surfels placed in the world.
 
     matrix_world: (4, 4), object to world, any invertible affine map (mirrored, non-uniform, sheared).
@@ -77,56 +131,37 @@ class Instance:
     casts_shadow: bool = True
     textures: tuple[SurfaceTexture | None, ...] = ()
 
-    def __post_init__(self):
-        if not 0 <= self.light_set < MAX_LIGHT_SETS:
-            raise ValueError(f"An instance's light set must be 0 to {MAX_LIGHT_SETS - 1}, not {self.light_set}.")
-        matrix = np.array(self.matrix_world, np.float64)
-        if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
-            raise ValueError("An instance's matrix_world must be 4 x 4 finite numbers.")
-        matrix.flags.writeable = False
-        object.__setattr__(self, "matrix_world", matrix)
-        object.__setattr__(self, "materials", tuple(self.materials) or (Material(),))
-        object.__setattr__(self, "textures", tuple(self.textures))
+    @property
+    def shape(self) -> Surfels:
+        return self.surfels
 
     @property
-    def is_textured(self) -> bool:
-        """Whether some surfel's colour is to be looked up."""
-        return self.surfels.has_uvs and any(texture is not None for texture in self.textures)
+    def radius(self) -> float:
+        """The largest surfel's in the world."""
+        if not len(self.surfels):
+            return 0.0
+        return float(self.surfels.scales.max()) * float(np.linalg.norm(self.matrix_world[:3, :3], 2))
 
-    def model_view(self, camera: Camera) -> np.ndarray:
-        """(4, 4) float64, surfel positions (without origin) to the camera's view space.
 
-        The camera is subtracted from the origin before anything else, so that both may be far from the world's.
-        """
-        rotation, linear = camera.matrix_world[:3, :3].T, self.matrix_world[:3, :3]
-        matrix = np.eye(4)
-        matrix[:3, :3] = rotation @ linear
-        matrix[:3, 3] = rotation @ (
-            self.matrix_world[:3, 3] - camera.matrix_world[:3, 3] + linear @ self.surfels.origin
-        )
-        return matrix
+@dataclass(frozen=True, eq=False)
+class PolygonInstance(Placed):
+    """Polygons placed in the world; the fields are an `Instance`'s."""
 
-    def corners(self, camera: Camera) -> np.ndarray:
-        """(8, 3) float64 corners of a box around every ellipse, in the camera's view space."""
-        model_view = self.model_view(camera)
-        return self._local_corners() @ model_view[:3, :3].T + model_view[:3, 3]
+    polygons: Polygons
+    matrix_world: np.ndarray = field(default_factory=lambda: np.eye(4))
+    materials: tuple[Material, ...] = (Material(),)
+    light_set: int = 0
+    casts_shadow: bool = True
+    textures: tuple[SurfaceTexture | None, ...] = ()
 
-    def world_corners(self) -> np.ndarray:
-        """(8, 3) float64 corners of a box around every ellipse, in the world."""
-        corners = self._local_corners() + self.surfels.origin
-        return corners @ self.matrix_world[:3, :3].T + self.matrix_world[:3, 3]
+    @property
+    def shape(self) -> Polygons:
+        return self.polygons
 
-    def _local_corners(self) -> np.ndarray:
-        low, high = self.surfels.local_bounds
-        pick = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
-        return np.where(pick, high, low)
-
-    def hides_backs(self, camera: Camera) -> bool:
-        """Whether no back can be seen: solid and opaque, and wholly beyond the near plane, so that the camera is
-        outside.
-        """
-        is_closed = self.surfels.is_solid and not self.surfels.is_transparent
-        return is_closed and bool((-self.corners(camera)[:, 2] >= camera.near).all())
+    @property
+    def radius(self) -> float:
+        """Nothing sticks out of polygons."""
+        return 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,18 +171,27 @@ class Scene:
     surfels: `Instance`s, or bare `Surfels` standing at the world's origin.
     world: (3,) scene-linear radiance that reaches every surface and fills the background.
     environment: a picture all around, which `world` then multiplies.
+    polygons: `PolygonInstance`s, or bare `Polygons`, among the surfels.
     """
 
     surfels: tuple[Instance, ...] = ()
     lights: tuple[Light, ...] = ()
     world: tuple[float, float, float] = (0.0, 0.0, 0.0)
     environment: Environment | None = None
+    polygons: tuple[PolygonInstance, ...] = ()
 
     def __post_init__(self):
         instances = tuple(s if isinstance(s, Instance) else Instance(s) for s in self.surfels)
         object.__setattr__(self, "surfels", instances)
         object.__setattr__(self, "lights", tuple(self.lights))
+        among = tuple(p if isinstance(p, PolygonInstance) else PolygonInstance(p) for p in self.polygons)
+        object.__setattr__(self, "polygons", among)
         world = tuple(float(c) for c in self.world)
         if len(world) != 3 or not np.isfinite(world).all():
             raise ValueError(f"The world's radiance must be 3 finite numbers, not {self.world!r}.")
         object.__setattr__(self, "world", world)
+
+    @property
+    def shown(self) -> tuple[Placed, ...]:
+        """What there is to see, of either kind."""
+        return tuple(placed for placed in (*self.surfels, *self.polygons) if len(placed.shape))

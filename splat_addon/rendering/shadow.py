@@ -24,6 +24,8 @@ MAX_MAPS = 64
 FACE_WINDOW = 1.05
 #: A wider spot is seen through faces, like a point.
 MAX_SPOT_WINDOW = 2.5
+#: fields of `Scene` that hold what casts shadows
+_KINDS = ("surfels", "polygons")
 #: Of the farthest caster's distance: nearer ones cast no shadow.
 NEAREST = 1e-4
 
@@ -40,9 +42,9 @@ class ShadowMap:
 def shadow_maps(scene: Scene, camera: Camera, resolution: int) -> tuple[tuple[ShadowMap, ...], int]:
     """The maps that a picture needs, and how many lights had to go without. resolution: texels along a map's side."""
     casters = casting(scene)
-    if not casters.surfels or not any(light.casts_shadow for light in scene.lights):
+    if not casters.shown or not any(light.casts_shadow for light in scene.lights):
         return (), 0
-    corners = np.concatenate([instance.world_corners() for instance in casters.surfels])
+    corners = np.concatenate([instance.world_corners() for instance in casters.shown])
     seen = visible_corners(scene, camera)
     cameras, without = [], 0
     for number, light in enumerate(scene.lights):
@@ -77,7 +79,8 @@ def atlas_size(maps: tuple[ShadowMap, ...]) -> tuple[int, int]:
 
 def casting(scene: Scene) -> Scene:
     """The instances that cast shadows, alone."""
-    return replace(scene, surfels=tuple(i for i in scene.surfels if i.casts_shadow and len(i.surfels)), lights=())
+    kinds = {name: tuple(i for i in getattr(scene, name) if i.casts_shadow and len(i.shape)) for name in _KINDS}
+    return replace(scene, **kinds, lights=())
 
 
 def pack_shadow_maps(maps, views: tuple[View, ...], camera: Camera, scale: float) -> np.ndarray:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .camera import Camera
-from .scene import Instance, Scene
+from .scene import Instance, Placed, PolygonInstance, Scene
 
 #: The clip range reaches this share of its ends (a parallel camera's, of its length or window) further than the bounds,
 #: so that rounding clips nothing, be they as near to one another as they may.
@@ -32,15 +32,17 @@ _DEPTH_SAMPLES = 256
 
 @dataclass(frozen=True, eq=False)
 class PlacedInstance:
-    """model_view: (4, 4) float64, surfel positions (without origin) to scaled view space.
+    """model_view: (4, 4) float64, positions (without origin) to scaled view space.
     normal_matrix: (3, 3) float64, its inverse transpose up to a positive factor.
-    hides_backs: splats that show their back are left out.
+    hides_backs: splats or polygons that show their back are left out.
+    overlap: of polygons, how far behind them splats still count, view units (`overlaps`).
     """
 
-    instance: Instance
+    instance: Placed
     model_view: np.ndarray
     normal_matrix: np.ndarray
     hides_backs: bool
+    overlap: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +53,7 @@ class View:
     degenerate: instances whose matrix flattens space, which have no normals.
     depth_span: how many times the resolution of float32 the hardware's depth resolves at its farthest: far / near, of
         an orthographic camera far - near in view units.
+    polygons: those among the splats. contact: how deep polygons may lie behind splats and be their surface's still.
     """
 
     scale: float
@@ -62,6 +65,8 @@ class View:
     outside: int
     degenerate: int
     depth_span: float
+    polygons: tuple[PlacedInstance, ...] = ()
+    contact: float = 0.0
 
     def least_offset(self, linear_depth: bool) -> float:
         """What moves a splat back by a few steps of the depth's resolution: a share of its distance, or for an
@@ -75,18 +80,49 @@ def look(scene: Scene, camera: Camera, epsilon: float) -> View:
     seen, outside, degenerate = _seen(scene, camera)
     near, far = _clip_range(camera, seen, epsilon)
     scale = _power_of_two_scale(camera, seen, near)
-    placed = []
+    radii = overlapping_radii(scene)
+    placed = {Instance: [], PolygonInstance: []}
     for instance, _, _ in seen:
         model_view = instance.model_view(camera)
         normal_matrix = np.linalg.inv(model_view[:3, :3]).T
         normal_matrix /= np.abs(normal_matrix).max()
         model_view[:3] *= scale
-        placed.append(PlacedInstance(instance, model_view, normal_matrix, instance.hides_backs(camera)))
-    projection = scaled_projection(camera, near, far, scale)
-    span = (far - near) * scale if camera.is_orthographic else far / near
+        overlap = epsilon * radii.get(instance, 0.0) * scale
+        of_kind = placed[type(instance)]
+        of_kind.append(PlacedInstance(instance, model_view, normal_matrix, instance.hides_backs(camera), overlap))
     return View(
-        scale, camera.near * scale, near * scale, far * scale, projection, tuple(placed), outside, degenerate, span
+        scale=scale,
+        near=camera.near * scale,
+        first=near * scale,
+        far=far * scale,
+        projection=scaled_projection(camera, near, far, scale),
+        placed=tuple(placed[Instance]),
+        outside=outside,
+        degenerate=degenerate,
+        depth_span=(far - near) * scale if camera.is_orthographic else far / near,
+        polygons=tuple(placed[PolygonInstance]),
+        contact=(1 + 4 * epsilon) * max(radii.values(), default=0.0) * scale,
     )
+
+
+def overlapping_radii(scene: Scene) -> dict[PolygonInstance, float]:
+    """Of polygons whose box touches that of surfels: the largest of these surfels' radii, in the world."""
+    if not scene.polygons or not scene.surfels:
+        return {}
+    splats = [(*_world_box(instance), instance.radius) for instance in scene.surfels if len(instance.surfels)]
+    radii = {}
+    for instance in scene.polygons:
+        if len(instance.polygons):
+            low, high = _world_box(instance)
+            touching = [r for first, last, r in splats if (first <= high).all() and (low <= last).all()]
+            if touching:
+                radii[instance] = max(touching)
+    return radii
+
+
+def _world_box(instance: Placed) -> tuple[np.ndarray, np.ndarray]:
+    corners = instance.world_corners()
+    return corners.min(axis=0), corners.max(axis=0)
 
 
 def sees_any(scene: Scene, camera: Camera) -> bool:
@@ -129,12 +165,12 @@ class DepthExtent:
 
 
 def depth_extent(scene: Scene, camera: Camera, epsilon: float) -> DepthExtent:
-    """Of the scene's surfels that may touch the picture."""
+    """Of what may touch the picture."""
     seen, _, _ = _seen(scene, camera)
     near, far = _clip_range(camera, seen, epsilon)
     radius = max((radius for *_, radius in seen), default=0.0)
     # By a radius more: a method may lengthen the shorter half-axis.
-    reaches_near = any(float(depths.min()) - reach <= camera.near for _, depths, reach in seen)
+    reaches_near = any(float(depths.min()) - reach <= camera.near for _, depths, reach in seen if reach)
     left, right, bottom, top = camera.window
     unit, length = (max(right - left, top - bottom), far - near) if camera.is_orthographic else (near, far)
     nearest = min((float(depths.min()) for _, depths, _ in seen), default=near)
@@ -156,9 +192,7 @@ def _seen(scene: Scene, camera: Camera) -> tuple[list, int, int]:
     of instances that cannot, and of those that flatten space.
     """
     seen, outside, degenerate = [], 0, 0
-    for instance in scene.surfels:
-        if not len(instance.surfels):
-            continue
+    for instance in scene.shown:
         linear = instance.matrix_world[:3, :3]
         if not _invertible(linear):
             degenerate += 1
@@ -167,8 +201,7 @@ def _seen(scene: Scene, camera: Camera) -> tuple[list, int, int]:
         if _outside(corners, camera):
             outside += 1
             continue
-        radius = float(instance.surfels.scales.max()) * float(np.linalg.norm(linear, 2))
-        seen.append((instance, -corners[:, 2], radius))
+        seen.append((instance, -corners[:, 2], instance.radius))
     return seen, outside, degenerate
 
 
@@ -215,15 +248,15 @@ def _power_of_two_scale(camera: Camera, seen, near: float) -> float:
     if camera.is_orthographic:
         left, right, bottom, top = camera.window
         depths = np.maximum(np.abs(depths), max(right - left, top - bottom))
-    counts = np.array([len(instance.surfels) for instance, *_ in seen])
+    counts = np.array([len(instance.shape) for instance, *_ in seen])
     order = np.argsort(depths)
     half = np.searchsorted(np.cumsum(counts[order]), counts.sum() / 2)
     return math.ldexp(1.0, -round(math.log2(depths[order][min(half, len(order) - 1)])))
 
 
-def _median_depth(instance: Instance, camera: Camera, near: float) -> float:
-    """Of some surfels between the clip planes: stray ones far away do not count for more."""
-    positions = instance.surfels.positions[:: -(-len(instance.surfels) // _DEPTH_SAMPLES)]
+def _median_depth(instance: Placed, camera: Camera, near: float) -> float:
+    """Of some places between the clip planes: stray ones far away do not count for more."""
+    positions = instance.shape.positions[:: -(-len(instance.shape) // _DEPTH_SAMPLES)]
     axis = -instance.model_view(camera)[2]
     depths = positions @ axis[:3] + axis[3]
     depths = depths[(depths > near) & (depths < camera.far)]

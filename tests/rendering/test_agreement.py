@@ -121,6 +121,7 @@ SCENES = {
     "environment": lambda: in_a_picture(*scenes.torus(size=SIZE)),
     "own_materials": lambda: own_materials(*scenes.torus(size=SIZE)),
     "deep": lambda: deep(*scenes.torus(size=SIZE)),
+    "polygons": lambda: scenes.polygons(size=SIZE),
     "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),
 }
 
@@ -150,6 +151,9 @@ CASES = [
     ("torus", "mip", {"shading": "matcap", "matcap": BALL}),
     *(("shadows", "quad", {"shading": shading}) for shading in ("phong", "toon")),
     *(("torus", method, {"shading": "flat", "lines": Lines(width=2.0)}) for method in ("quad", "mip")),
+    *(("polygons", method, {}) for method in METHODS if method != "quad"),
+    *(("polygons", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
+    ("polygons", "mip", {"shading": "flat", "lines": Lines(width=2.0)}),
     ("own_materials", "mip", {}),
     ("own_materials", "mip", {"storage": "16-bit"}),
     ("depth_of_field", "quad", {"samples": 3}),

@@ -6,7 +6,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from splat_addon.rendering import Camera, Environment, Instance, Light, Material, Scene, Settings, look_at, plan
+from splat_addon.rendering import (
+    Camera,
+    Environment,
+    Instance,
+    Light,
+    Material,
+    PolygonInstance,
+    Scene,
+    Settings,
+    look_at,
+    make_polygons,
+    plan,
+)
 from splat_addon.rendering.passes.attributes import describe
 from splat_addon.rendering.settings import Lines
 from splat_addon.surfels import Surfels
@@ -28,8 +40,16 @@ PLAIN = Scene([Instance(surfels())])
 IN_PICTURE = replace(PLAIN, environment=PICTURE)
 ROUGH, SHINY, GLOWING = Material(roughness=0.9), Material(roughness=0.1), Material(emission=(1, 2, 3))
 
+TRIANGLE = make_polygons([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+HYBRID = replace(PLAIN, polygons=(PolygonInstance(TRIANGLE),))
+OTHERS = replace(
+    PLAIN, polygons=(PolygonInstance(TRIANGLE, materials=(GLOWING,)),), lights=(Light("sun", receivers=(1,)),)
+)
+
 #: Of the plain scene by Quads.
 PASSES = ("visibility", "attributes", "shading")
+AMONG = ("visibility", "attributes", "polygons", "shading")
+AMONG_TEXTURES = "polygon_color polygon_normal polygon_depth"
 TEXTURES = {"visibility_depth", "color_sum", "normal_sum", "combined", "depth", "normal_coverage"}
 READS = {"brdf_table"}
 LAYER = ("visibility", "left", "attributes", "sample_shading", "layer", "peel")
@@ -82,6 +102,17 @@ TABLE = {
         PLAIN, {"outputs": ("overdraw",)}, PASSES, "-normal_coverage overdraw_sum shadow_overdraw", "", (),
     ),
     "position": (PLAIN, {"outputs": ("position",)}, PASSES, "-normal_coverage", "", ()),
+    "polygons": (HYBRID, {}, AMONG, AMONG_TEXTURES, "", ()),
+    "polygons alone": (replace(HYBRID, surfels=()), {}, AMONG, AMONG_TEXTURES, "", ()),
+    "polygons of another material under a linked light": (
+        OTHERS, {}, AMONG, f"{AMONG_TEXTURES} polygon_material polygon_emission emission_sum light_set_sum", "lights",
+        (),
+    ),
+    "polygons, flat, by mip": (
+        OTHERS, {"shading": "flat", "method": "mip"},
+        ("visibility", "seen_range", "attributes", "polygons", "sample_shading", "resolve"),
+        f"{AMONG_TEXTURES} seen_range shaded surface", "-brdf_table", (),
+    ),
     "lines": (PLAIN, {"lines": Lines()}, ("visibility", "attributes", "lines", "shading"), "lines", "", ()),
     "overdraw": (PLAIN, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", ()),
     "mip": (

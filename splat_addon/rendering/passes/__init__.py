@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The passes that a plan may name: one file each, with its pipeline's description and how it runs."""
 
-from . import attributes, layers, lines, seen_range, shading, shadow_maps, visibility
+from . import attributes, layers, lines, polygons, seen_range, shading, shadow_maps, visibility
 
 #: name in a `FramePlan` -> run(tile, planned) -> the target that was drawn into
 RUN = {
@@ -10,6 +10,7 @@ RUN = {
     "visibility": visibility.run,
     "seen_range": seen_range.run,
     "attributes": attributes.run,
+    "polygons": polygons.run,
     "start_layers": layers.start,
     "left": shading.run,
     "layer": shading.run,

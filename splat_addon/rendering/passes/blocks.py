@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..frame_plan import FramePlan, PlannedPass
+
 
 def std140(*parts) -> np.ndarray:
     """float32 values: matrices column by column, vectors of four."""
@@ -25,6 +27,13 @@ def sum_defines(names: tuple[str, ...], accumulation: str) -> tuple[tuple[str, s
     """What is defined where a pass reads or writes these sums: depths may be apart, and numbers smaller."""
     is_half = accumulation == "float16"
     return (*((("DEPTH_SUM", "1"),) if "depth_sum" in names else ()), *((("HALF_SUMS", "1"),) if is_half else ()))
+
+
+def polygon_defines(planned: PlannedPass, frame: FramePlan) -> tuple[tuple[str, str], ...]:
+    """What is defined for a pass that joins polygons with splats, and where the former are known to be seen."""
+    if "polygon_color" not in planned.reads:
+        return ()
+    return (("POLYGONS", "1"), *((("SEEN_POLYGONS", "1"),) if "seen_range" in frame.textures else ()))
 
 
 #: Defined where a resolve pass filters silhouettes.

@@ -6,7 +6,7 @@ from __future__ import annotations
 from ..device.interface import PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
 from ..shaders import load
-from .blocks import sum_defines
+from .blocks import polygon_defines, sum_defines
 from .shading import SHADING_BLOCK, shading_block
 from .tile import TileContext
 
@@ -24,6 +24,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
         defines=(
             ("SAMPLES", str(frame.samples)),
             *((("MEAN_OF", str(frame.multisamples)),) if frame.multisamples else ()),
+            *polygon_defines(planned, frame),
             *sum_defines(planned.reads, frame.accumulation),
             *((("SEEN_RANGE", "1"),) if "seen_range" in planned.reads else ()),
         ),

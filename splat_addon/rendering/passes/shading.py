@@ -15,13 +15,14 @@ from ..lines import Lines
 from ..packing import pack_materials
 from ..shaders import load
 from ..shadow import map_ranges, pack_shadow_maps
-from .blocks import LAYER, LINEAR_DEPTH, std140, sum_defines
+from .blocks import LAYER, LINEAR_DEPTH, polygon_defines, std140, sum_defines
 from .tile import TileContext
 
 #: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
 #: material: of all surfels, and in w the view-to-world length. options: 1 for orthographic, number of lights, 1 / far,
 #:     what summed colours are multiplied by. emission: of all surfels. edges: the sum of weights that covers a sample,
-#:     and the least opacity of a surface that depth and normal are taken from.
+#:     the least opacity of a surface that depth and normal are taken from, how deep polygons may lie behind splats of
+#:     their surface.
 #: model: levels of the toon model and how soft their edges are, nearest and farthest depth in view.
 #: lines: their width in samples, 0, the cosine of a crease and the drop at a silhouette in pixels. line_color: rgb.
 SHADING_BLOCK = (
@@ -78,6 +79,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
             ("SAMPLES", str(frame.samples)),
             ("BLOCKS", str(BLOCKS)),
             *_multisampling(frame),
+            *polygon_defines(planned, frame),
             *sum_defines(planned.reads, frame.accumulation),
             *(LAYER if planned.layer else ()),
             *((f"{name.upper()}_OUTPUT", "1") for name in planned.writes if name not in _ALWAYS_WRITTEN),
@@ -147,7 +149,7 @@ def shading_block(tile: TileContext) -> np.ndarray:
         (*material, 1.0 / view.scale),
         (camera.is_orthographic, len(scene.lights), tile.depth_unit, 1 / tile.color_scale),
         (*(frame.emission or (0.0, 0.0, 0.0)), 0.0),
-        (tile.settings.edge_threshold, tile.settings.alpha_threshold, 0.0, 0.0),
+        (tile.settings.edge_threshold, tile.settings.alpha_threshold, view.contact, 0.0),
         (tile.settings.toon_steps, tile.settings.toon_softness, *(d * view.scale for d in frame.depth_range)),
         *_line_values(tile.settings.lines, frame.samples),
     )

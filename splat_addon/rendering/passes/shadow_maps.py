@@ -8,7 +8,6 @@ from dataclasses import replace
 from ..device.interface import Target
 from ..frame_plan import PlannedPass
 from . import visibility
-from .splats import draw_splats
 from .tile import TileContext
 
 
@@ -20,6 +19,5 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
         linear_depth = not made.camera.is_orthographic
         seen = replace(tile.plan, linear_depth=linear_depth, samples=1, multisamples=0, sample_shading=False)
         from_light = TileContext(tile.resources, seen, tile.scene, made.camera, tile.settings, view)
-        pipeline = tile.resources.pipeline(visibility.describe(planned, seen))
-        draw_splats(from_light, pipeline, target, view.placed, (*made.place, *made.camera.size))
+        visibility.draw_visible(from_light, planned, target, view.placed, (*made.place, *made.camera.size))
     return target

@@ -47,9 +47,7 @@ def draw_splats(
     tile: TileContext, pipeline: Pipeline, target: Target, placed_ones: Iterable[PlacedInstance], viewport=None
 ) -> None:
     """One draw call an instance. viewport: as `Device.draw_triangles` takes it."""
-    resources, view, storage = tile.resources, tile.view, get_storage(tile.plan.storage)
-    least_offset = view.least_offset(tile.plan.linear_depth)
-    options = tile.settings.epsilon, view.near, tile.camera.is_orthographic, tile.depth_unit
+    resources, storage = tile.resources, get_storage(tile.plan.storage)
     for placed in placed_ones:
         instance = placed.instance
         stored = resources.surfels(instance.surfels, storage)
@@ -61,10 +59,17 @@ def draw_splats(
             "texture_table": lambda i=instance: resources.atlas(i.textures)[1],
         }
         textures = tile.textures(pipeline.description.samplers, made_here)
-        orientation = np.sign(np.linalg.det(placed.normal_matrix))
-        sides = orientation, placed.hides_backs, least_offset, tile.color_scale
-        normal_matrix = np.eye(4)
-        normal_matrix[:3, :3] = placed.normal_matrix
-        light_set = np.eye(MAX_LIGHT_SETS)[instance.light_set]
-        block = std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set)
+        block = splats_block(tile, placed, tile.settings.epsilon)
         resources.device.draw_triangles(pipeline, target, len(instance.surfels), block, textures, viewport)
+
+
+def splats_block(tile: TileContext, placed: PlacedInstance, epsilon: float) -> np.ndarray:
+    """Values of `SPLATS_BLOCK`."""
+    view = tile.view
+    options = epsilon, view.near, tile.camera.is_orthographic, tile.depth_unit
+    orientation = np.sign(np.linalg.det(placed.normal_matrix))
+    sides = orientation, placed.hides_backs, view.least_offset(tile.plan.linear_depth), tile.color_scale
+    normal_matrix = np.eye(4)
+    normal_matrix[:3, :3] = placed.normal_matrix
+    light_set = np.eye(MAX_LIGHT_SETS)[placed.instance.light_set]
+    return std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set)

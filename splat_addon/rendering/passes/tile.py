@@ -58,7 +58,7 @@ class TileContext:
         """What float16 sums multiply colours by, a power of two: the scene's brightest is then at most 1."""
         if self.plan.accumulation == "float32":
             return 1.0
-        surfels = [instance.surfels for instance in self.scene.surfels]
+        surfels = [instance.surfels for instance in self.scene.surfels]  # polygons are not summed
         textures = [t for instance in self.scene.surfels if instance.is_textured for t in instance.textures if t]
         brightest = max((source.brightest for source in (*surfels, *textures)), default=0.0)
         return math.ldexp(1.0, -math.ceil(math.log2(brightest))) if brightest > 0 else 1.0

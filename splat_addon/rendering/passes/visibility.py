@@ -3,17 +3,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ..device.interface import PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
 from ..shaders import load
 from ..storages import get_storage
 from .blocks import LAYER, LINEAR_DEPTH
+from .polygons import draw_polygons
 from .splats import SPLATS_BLOCK, draw_splats, drawn_by
 from .tile import TileContext
 
 
 def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
-    """What the pass draws with."""
+    """What the pass draws splats with."""
     return PipelineDescription(
         name="visibility",
         vertex=load("visibility.vert.glsl", storage=frame.storage),
@@ -32,9 +35,25 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
     )
 
 
+def describe_polygons(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
+    """What it draws polygons with."""
+    vertex = load("polygons/visibility.vert.glsl")
+    splats = describe(planned, frame)
+    return replace(splats, name="polygon_visibility", vertex=vertex, samplers=("polygon_corners",))
+
+
+def draw_visible(tile: TileContext, planned: PlannedPass, target: Target, splats, viewport=None) -> None:
+    """splats: placed instances; and, where no transparent layer is made, all polygons of the tile's view."""
+    if splats:
+        draw_splats(tile, tile.resources.pipeline(describe(planned, tile.plan)), target, splats, viewport)
+    if tile.view.polygons and not planned.layer:
+        pipeline = tile.resources.pipeline(describe_polygons(planned, tile.plan))
+        draw_polygons(tile, pipeline, target, tile.view.polygons, viewport)
+
+
 def run(tile: TileContext, planned: PlannedPass) -> Target:
     """Fill the depth texture."""
     target = tile.target((), planned.writes[0])
     target.clear(depth=1.0)
-    draw_splats(tile, tile.resources.pipeline(describe(planned, tile.plan)), target, drawn_by(planned, tile))
+    draw_visible(tile, planned, target, drawn_by(planned, tile))
     return target

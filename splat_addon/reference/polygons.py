@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Polygons by definition: every ray against every triangle, joined with what the ray sees of splats, in float64."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ..rendering.camera import Camera
+from ..rendering.light import MAX_LIGHT_SETS
+from ..rendering.scene import PolygonInstance, Scene
+from ..rendering.view import overlapping_radii
+from .rays import RayGrid, Surface
+from .splats import BACK_WEIGHT
+from .textures import point_colors
+
+#: The least weight of a front, the least cosine between normals of one surface: shaders/common/mean_surface.glsl.
+LEAST_FRONT = 0.02
+SAME_SURFACE = 0.7
+
+#: Pairs of a ray and a triangle that are met at once.
+CHUNK_PAIRS = 2_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """The nearest polygon of each of n rays: depth (n,), infinite where there is none; how far behind it splats of its
+    surface may lie (n,); color (n, 3), unit normal (n, 3) on the side that is seen, and (n, 10) as `Splats.surface`.
+    """
+
+    depth: np.ndarray
+    overlap: np.ndarray
+    color: np.ndarray
+    normal: np.ndarray
+    surface: np.ndarray
+
+
+def polygon_hits(scene: Scene, camera: Camera, grid: RayGrid, epsilon: float) -> Hits:
+    """What the rays of the grid see of polygons alone."""
+    origin, direction = grid.rays(np.arange(grid.count))
+    n = grid.count
+    found = Hits(np.full(n, np.inf), np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 10)))
+    radii = overlapping_radii(scene)
+    for instance in scene.polygons:
+        corners = eye_corners(instance, camera)
+        depth, triangle, shares = nearest_hits(corners, origin, direction, camera.near, camera.far)
+        rays = np.flatnonzero(depth < found.depth)
+        if len(rays):
+            found.depth[rays] = depth[rays]
+            found.overlap[rays] = epsilon * radii.get(instance, 0.0)
+            _take(instance, camera, corners, rays, triangle[rays], shares[rays], direction[rays], found)
+    return found
+
+
+def eye_corners(instance: PolygonInstance, camera: Camera) -> np.ndarray:
+    """(T, 3, 3) float64: triangle, corner, place in the camera's eye space."""
+    model_view = instance.model_view(camera)
+    positions = instance.polygons.positions.astype(np.float64)
+    return (positions @ model_view[:3, :3].T + model_view[:3, 3]).reshape(-1, 3, 3)
+
+
+def nearest_hits(corners: np.ndarray, origin: np.ndarray, direction: np.ndarray, near: float, far: float):
+    """(n,) parameters along the rays, infinite for a miss, (n,) triangles, (n, 3) shares of their corners.
+
+    Moeller, Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
+    """
+    n = len(direction)
+    depth, triangle, shares = np.full(n, np.inf), np.zeros(n, int), np.zeros((n, 3))
+    a, along, beside = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    for part in np.array_split(np.arange(n), max(n * len(corners) // CHUNK_PAIRS, 1)):
+        ray, start = direction[part][:, None], origin[part][:, None] - a
+        with np.errstate(divide="ignore", invalid="ignore"):
+            p, q = np.cross(ray, beside), np.cross(start, along)
+            scale = 1 / np.einsum("rtk,tk->rt", p, along)
+            u, v = (
+                np.einsum("rtk,rtk->rt", start, p) * scale,
+                np.einsum("rtk,rtk->rt", np.broadcast_to(ray, q.shape), q) * scale,
+            )
+            t = np.einsum("rtk,tk->rt", q, beside) * scale
+            t = np.where((u >= 0) & (v >= 0) & (u + v <= 1) & (t >= near) & (t <= far), t, np.inf)
+        first = t.argmin(axis=1)
+        rows = np.arange(len(part))
+        depth[part], triangle[part] = t[rows, first], first
+        shares[part] = np.stack([1 - u - v, u, v], axis=2)[rows, first]
+    return depth, triangle, shares
+
+
+def _take(instance, camera, corners, rays, triangle, shares, direction, found: Hits):
+    shape, normal_matrix = instance.polygons, np.linalg.inv(instance.model_view(camera)[:3, :3])
+    rows = 3 * triangle[:, None] + np.arange(3)
+
+    def mean(values):
+        return np.einsum("rk,rk...->r...", shares, values.astype(np.float64)[rows])
+
+    places = corners[triangle]
+    outward = np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0])
+    outward *= np.sign(np.linalg.det(normal_matrix))
+    toward = np.where(camera.is_orthographic, (0.0, 0.0, 1.0), -places[:, 0])
+    side = np.where(np.einsum("rk,rk->r", outward, toward) < 0, -1.0, 1.0)
+    corner_normals = shape.normals.astype(np.float64) @ normal_matrix
+    corner_normals /= np.linalg.norm(corner_normals, axis=1, keepdims=True)
+    normal = mean(corner_normals)
+    found.normal[rays] = normal / np.linalg.norm(normal, axis=1, keepdims=True) * side[:, None]
+    found.color[rays] = mean(shape.colors)[:, :3]
+    slots = np.minimum(shape.materials[rows[:, 0]], len(instance.materials) - 1)
+    if instance.is_textured:
+        of_slot = np.array([*instance.textures, None], object)[np.minimum(slots, len(instance.textures) - 1)]
+        for texture in set(of_slot) - {None}:
+            at = of_slot == texture
+            found.color[rays[at]] = point_colors(texture, mean(shape.uvs)[at])
+    table = [(m.roughness, m.metallic, ((m.ior - 1) / (m.ior + 1)) ** 2, *m.emission) for m in instance.materials]
+    surface = np.array(table)[slots]
+    for columns, own in ((0, shape.roughness), (1, shape.metallic), (slice(3, 6), shape.emission)):
+        if own is not None:
+            surface[:, columns] = mean(own)
+    found.surface[rays] = np.concatenate(
+        [surface, np.tile(np.eye(MAX_LIGHT_SETS)[instance.light_set], (len(rays), 1))], 1
+    )
+
+
+def joined(splats: Surface, polygons: Hits, contact: float) -> Surface:
+    """Guennebaud et al. 2006, section 5.1: where both are of one surface, the sum of weights, up to 1, blends them.
+
+    contact: how deep a polygon may lie behind splats of its surface.
+    """
+    count = len(polygons.depth)
+    weight, share = np.zeros(count), np.where(np.isfinite(polygons.depth), 1.0, 0.0)
+    weight[splats.rays] = splats.weight
+    at = splats.rays[np.isfinite(polygons.depth[splats.rays])]
+    row = np.searchsorted(splats.rays, at)
+    behind = polygons.depth[at] - splats.depth[row]
+    front = np.where(splats.weight[row] < LEAST_FRONT, splats.weight[row] / BACK_WEIGHT, splats.weight[row])
+    is_same = np.einsum("rk,rk->r", polygons.normal[at], splats.normal[row]) > SAME_SURFACE
+    blended = np.where((behind < 0) & ~is_same, 1.0, 1 - np.minimum(front, 1))
+    share[at] = np.where(behind > contact, 0.0, blended)
+    rays = np.flatnonzero((weight > 0) | (share > 0))
+    values = {
+        f.name: np.zeros((count, *getattr(splats, f.name).shape[1:])) for f in fields(Surface) if f.name != "rays"
+    }
+    for name, whole in values.items():
+        whole[splats.rays] = getattr(splats, name)
+    of_polygon = {
+        "color": polygons.color, "normal": polygons.normal, "depth": np.where(share > 0, polygons.depth, 0.0),
+        "roughness": polygons.surface[:, 0], "metallic": polygons.surface[:, 1], "f0": polygons.surface[:, 2],
+        "emission": polygons.surface[:, 3:6], "light_set": polygons.surface[:, 6:],
+    }  # fmt: skip
+    for name, other in of_polygon.items():
+        s = share.reshape(-1, *(1,) * (other.ndim - 1))
+        values[name] = (1 - s) * values[name] + s * other
+    length = np.linalg.norm(values["normal"], axis=1, keepdims=True)
+    values["normal"] = values["normal"] / np.maximum(length, 1e-30)
+    return Surface(rays, **{name: whole[rays] for name, whole in values.items()})
+
+
+def contact(scene: Scene, epsilon: float) -> float:
+    """How deep polygons may lie behind splats of their surface, world units; as `View.contact`."""
+    return (1 + 4 * epsilon) * max(overlapping_radii(scene).values(), default=0.0)
+
+
+def are_lit(scene: Scene, camera: Camera, lamp: np.ndarray, position: np.ndarray, room: float) -> np.ndarray:
+    """(n,) bool: no polygon that casts shadows lies between the lamp (1 or n, 3) and positions (n, 3) of the eye space.
+
+    room: share of the way, at its end, that hides nothing.
+    """
+    lit = np.ones(len(position), bool)
+    for instance in scene.polygons:
+        corners = eye_corners(instance, camera)
+        start = np.broadcast_to(lamp, position.shape)
+        lit &= ~np.isfinite(nearest_hits(corners, start, position - start, 0.0, 1 - room)[0])
+    return lit

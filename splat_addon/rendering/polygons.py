@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Polygons among the splats: triangles as the renderer takes them, and as texels, the form in which shaders pull them.
+
+Source: Guennebaud, Barthe, Paulin 2006, section 5 (splats and polygons in one rendering).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+#: Corners in a row of a texture, and rows that every tested backend's textures can have.
+CORNERS_PER_ROW = 512
+MAX_ROWS = 16384
+MAX_TRIANGLES = CORNERS_PER_ROW * MAX_ROWS // 3
+TEXELS_PER_CORNER = 3
+
+#: field -> (columns, dtype) of one corner, where one column is stored flat; the last four are there where needed.
+_LAYOUT = {
+    "positions": (3, np.float32),
+    "normals": (3, np.float32),
+    "colors": (4, np.float32),
+    "materials": (1, np.int32),
+    "roughness": (1, np.float32),
+    "metallic": (1, np.float32),
+    "emission": (3, np.float32),
+    "uvs": (2, np.float32),
+}
+_OPTIONAL = ("roughness", "metallic", "emission", "uvs")
+
+
+@dataclass(frozen=True, eq=False)
+class Polygons:
+    """T triangles of three corners each: corner k of triangle t is row 3 t + k, counter-clockwise seen from outside.
+
+    positions: (3 T, 3) float32, object units, relative to `origin` (3,) float64. normals: (3 T, 3), for shading, of any
+    length; where one is zero the triangle's own is meant. colors: (3 T, 4) scene-linear; alpha is not looked at.
+    materials: (3 T,) of the instance's slots, the same at the three corners. is_solid: closed and never seen from
+    inside. roughness, metallic: (3 T,), emission: (3 T, 3): where given, they take the place of the slots'.
+    uvs: (3 T, 2), where the instance's textures are looked up.
+
+    Raises ValueError with one sentence for a wrong shape, a number that is not finite, or too many triangles.
+    """
+
+    positions: np.ndarray
+    normals: np.ndarray
+    colors: np.ndarray
+    materials: np.ndarray
+    origin: np.ndarray = (0.0, 0.0, 0.0)
+    is_solid: bool = False
+    roughness: np.ndarray | None = None
+    metallic: np.ndarray | None = None
+    emission: np.ndarray | None = None
+    uvs: np.ndarray | None = None
+
+    def __post_init__(self):
+        count = len(self.positions)
+        if count % 3 or count > 3 * MAX_TRIANGLES:
+            raise ValueError(
+                f"Polygons need three corners each of at most {MAX_TRIANGLES:,} triangles, not {count:,} corners."
+            )
+        for name, (columns, dtype) in _LAYOUT.items():
+            if name in _OPTIONAL and getattr(self, name) is None:
+                continue
+            array = np.ascontiguousarray(getattr(self, name), dtype)
+            wanted = (count, columns) if columns > 1 else (count,)
+            if array.shape != wanted:
+                raise ValueError(f"Polygon {name} must have shape {wanted}, not {array.shape}.")
+            if not np.isfinite(array).all():
+                raise ValueError(f"Polygon {name} must be finite numbers; leave triangles out that have others.")
+            object.__setattr__(self, name, array)
+        if count and self.materials.min() < 0:
+            raise ValueError(f"Polygon materials must be 0 or more, not {self.materials.min()}.")
+        object.__setattr__(self, "normals", _unit_or_own(self.normals, self.positions))
+        object.__setattr__(self, "origin", np.array(self.origin, np.float64))
+
+    def __len__(self) -> int:
+        """Corners: what is stored of each is looked up by its number."""
+        return len(self.positions)
+
+    @property
+    def triangles(self) -> int:
+        """How many."""
+        return len(self.positions) // 3
+
+    @property
+    def has_uvs(self) -> bool:
+        """Whether textures can be looked up."""
+        return self.uvs is not None
+
+    @property
+    def has_own_material(self) -> bool:
+        """Whether something of their materials is in their own fields."""
+        return not all(a is None for a in (self.roughness, self.metallic, self.emission))
+
+    @property
+    def is_transparent(self) -> bool:
+        """Polygons are opaque."""
+        return False
+
+    @cached_property
+    def brightest(self) -> float:
+        """The largest absolute colour (0 when empty)."""
+        return float(np.abs(self.colors[:, :3]).max(initial=0.0))
+
+    @cached_property
+    def local_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Two (3,) float64 corners, relative to `origin`, of a box that holds them all (NaN when empty)."""
+        if not len(self):
+            return np.full(3, np.nan), np.full(3, np.nan)
+        columns = self.positions.T
+        return tuple(np.array([end(column) for column in columns], np.float64) for end in (np.min, np.max))
+
+
+def make_polygons(
+    vertices: np.ndarray, triangles: np.ndarray, corner_normals=None, color=(0.8, 0.8, 0.8, 1.0), **fields
+) -> Polygons:
+    """`Polygons` of one colour from (V, 3) vertices and (T, 3) indices. corner_normals: (T, 3, 3), None: flat."""
+    vertices, count = np.asarray(vertices, np.float64), 3 * len(triangles)
+    low, high = (vertices.min(axis=0), vertices.max(axis=0)) if count else (np.zeros(3),) * 2
+    origin = fields.pop("origin", (low + high) / 2)
+    positions = (vertices - origin)[np.asarray(triangles).ravel()]
+    normals = np.zeros((count, 3)) if corner_normals is None else np.asarray(corner_normals).reshape(-1, 3)
+    given = {"colors": np.tile(np.float32(color), (count, 1)), "materials": np.zeros(count, np.int32)} | fields
+    return Polygons(positions, normals, origin=origin, **given)
+
+
+def pack_polygons(shape: Polygons) -> np.ndarray:
+    """(rows, 1536, 4) float32, three texels a corner: position, slot  |  normal, 0  |  colour."""
+    texels = np.zeros((_rows(shape) * CORNERS_PER_ROW, TEXELS_PER_CORNER, 4), np.float32)
+    filled = texels[: len(shape)]
+    filled[:, 0, :3], filled[:, 0, 3] = shape.positions, shape.materials
+    filled[:, 1, :3], filled[:, 2] = shape.normals, shape.colors
+    return texels.reshape(-1, CORNERS_PER_ROW * TEXELS_PER_CORNER, 4)
+
+
+def pack_polygon_uvs(shape: Polygons) -> np.ndarray:
+    """(rows, 512, 4) float32: uv, 0, 0 of each corner."""
+    texels = np.zeros((_rows(shape) * CORNERS_PER_ROW, 4), np.float32)
+    texels[: len(shape), :2] = shape.uvs
+    return texels.reshape(-1, CORNERS_PER_ROW, 4)
+
+
+def _rows(shape: Polygons) -> int:
+    return max(-(-len(shape) // CORNERS_PER_ROW), 1)
+
+
+def _unit_or_own(normals: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """(3 T, 3) of unit length; the triangle's own where there is none, which of a triangle without area is up."""
+    length = np.linalg.norm(normals.astype(np.float64), axis=1, keepdims=True)
+    if (length > 0).all():
+        return (normals / length).astype(np.float32)
+    a, b, c = positions.astype(np.float64).reshape(-1, 3, 3).transpose(1, 0, 2)
+    own = np.cross(b - a, c - a)
+    size = np.linalg.norm(own, axis=1, keepdims=True)
+    own = np.where(size > 0, own / np.where(size > 0, size, 1), (0.0, 0.0, 1.0))
+    own = np.repeat(own, 3, axis=0)
+    return np.where(length > 0, normals / np.where(length > 0, length, 1), own).astype(np.float32)
