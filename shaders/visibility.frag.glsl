@@ -1,6 +1,7 @@
 // References: as visibility.vert.glsl.
-// Summary: depth only; what lies outside the ellipse, or before the near plane (where only the offset brought it
-//          into view), leaves none. Of a transparent layer, neither does what is in a nearer one or behind what is opaque.
+// Summary: depth, and whose it is where that is asked for; what lies outside the ellipse, or before the near plane (where
+//          only the offset brought it into view), leaves none. Of a transparent layer, neither does what is in a nearer
+//          one or behind what is opaque.
 
 #include "common/depth.glsl"
 #ifdef LAYER
@@ -15,5 +16,8 @@ void main() {
 #ifdef LINEAR_DEPTH
   float distance = length(vec3(across_offset.xy, place_depth.z));
   write_depth(place_depth.z * (1.0 + max(across_offset.z / distance, splats.sides.z)));
+#endif
+#ifdef IDENTITY_TARGET
+  identity = vec2(number, place_depth.z);
 #endif
 }

@@ -6,6 +6,9 @@
 
 #define VERTEX_STAGE
 #include "common/depth.glsl"
+#ifdef IDENTITY_TARGET
+#include "common/identity.glsl"
+#endif
 #include "common/sides.glsl"
 #include "common/stored_splat.glsl"
 #include "methods/quad.glsl"
@@ -19,6 +22,9 @@ void main() {
   vec3 axis_v = linear * stored.axis_v;
   vec3 eye = footprint_corner(position, axis_u, axis_v, corner);
   place_depth = vec3(corner, -eye.z);
+#ifdef IDENTITY_TARGET
+  number = splat_number(stored.material);
+#endif
   bool is_orthographic = splats.options.z > 0.5;
   float offset = splats.options.x * sqrt(max(dot(axis_u, axis_u), dot(axis_v, axis_v)));
   bool is_back = outward_cosine(position, axis_u, axis_v, splats.sides.x, is_orthographic) < 0.0;

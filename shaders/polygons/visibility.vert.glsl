@@ -4,6 +4,9 @@
 
 #define VERTEX_STAGE
 #include "common/depth.glsl"
+#ifdef IDENTITY_TARGET
+#include "common/identity.glsl"
+#endif
 #include "polygons/corner.glsl"
 
 void main() {
@@ -11,6 +14,9 @@ void main() {
   vec3 outward = triangle_normal(gl_VertexID, first);
   bool is_orthographic = splats.options.z > 0.5, is_hidden = splats.sides.y > 0.5 && shows_back(outward, first);
   place_depth = vec3(0.0, 0.0, -eye.z);
+#ifdef IDENTITY_TARGET
+  number = splat_number(corner_texel(gl_VertexID / 3 * 3, 0).w);
+#endif
   float offset = splats.options.x;
 #ifdef LINEAR_DEPTH
   across_offset = vec3(is_orthographic ? vec2(0.0) : eye.xy, offset);

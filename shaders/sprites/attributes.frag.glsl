@@ -7,4 +7,7 @@
 void main() {
   if (!is_in_disc(place, tilt_depth.xy)) discard;
   add_to_sums(color_weight.rgb, color_weight.w, tilt_depth.z);
+#ifdef IDENTITY_TARGET
+  identity = vec2(number, tilt_depth.z);
+#endif
 }

@@ -6,6 +6,9 @@
 #define PROJECTION splats.projection
 #define PARALLEL (splats.options.z > 0.5)
 #define DEPTH_UNIT splats.options.w
+#ifdef IDENTITY_TARGET
+#include "common/identity.glsl"
+#endif
 #include "common/splat_attributes.glsl"
 #ifdef WITH_MATERIALS
 #include "common/splat_material.glsl"
@@ -22,6 +25,9 @@ void main() {
   tilt_depth = vec3(tilt, depth);
   color_weight = splat.color_weight;
   normal = splat.normal;
+#ifdef IDENTITY_TARGET
+  number = splat_number(splat.material);
+#endif
 #ifdef WITH_MATERIALS
   fetch_material(gl_VertexID / 3, splat.material);
 #endif

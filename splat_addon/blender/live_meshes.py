@@ -51,7 +51,7 @@ class _LiveMesh:
     textures: tuple[SurfaceTexture | None, ...] = ()
     texture_mapped: bool = False
     matrices: list[np.ndarray] = field(default_factory=list)
-    lightings: list[dict] = field(default_factory=list)
+    fields: list[dict] = field(default_factory=list)
     owner: str = ""
     tracked: TrackedSurfels | None = None
     fineness: dict[str, float] = field(default_factory=dict)
@@ -94,22 +94,22 @@ class LiveMeshes:
         self._images.clear()
 
     def add(
-        self, evaluated: bpy.types.Object, owner: bpy.types.Object, matrix_world: np.ndarray, lighting: dict, notes
+        self, evaluated: bpy.types.Object, owner: bpy.types.Object, matrix_world: np.ndarray, fields: dict, notes
     ) -> None:
         """An entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry lives.
 
-        lighting: of its `Instance`, by field.
+        fields: of its `Instance`, by name.
         """
         key = mesh_key(evaluated)
         if key not in self._frame:
             live = self._kept.setdefault(self._lasting_key(evaluated), _LiveMesh())
-            live.matrices, live.lightings, live.owner = [], [], owner.name
+            live.matrices, live.fields, live.owner = [], [], owner.name
             if live.key != key or self._changed is None or evaluated.data.name_full in self._changed:
                 self._read(live, evaluated, notes)
                 live.key = key
             self._frame[key] = live
         self._frame[key].matrices.append(matrix_world)
-        self._frame[key].lightings.append(lighting)
+        self._frame[key].fields.append(fields)
 
     def instances(
         self, depsgraph: bpy.types.Depsgraph, fineness: dict[str, float], texture_mapped: bool, notes
@@ -125,10 +125,9 @@ class LiveMeshes:
                 notes.add(f"{live.owner} is left out: {error}")
                 continue
             live.textures = kept_textures(live.textures, live.content.triangles.surfaces) if surfels.has_uvs else ()
-            places = zip(live.matrices, live.lightings, strict=True)
+            places = zip(live.matrices, live.fields, strict=True)
             made += [
-                Instance(surfels, matrix, live.materials, textures=live.textures, **lighting)
-                for matrix, lighting in places
+                Instance(surfels, matrix, live.materials, textures=live.textures, **fields) for matrix, fields in places
             ]
             self.counts["meshes"] += 1
             self.counts["surfels"] += len(surfels)

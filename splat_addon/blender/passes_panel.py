@@ -11,6 +11,7 @@ from .render_passes import ViewLayerPasses
 #: heading -> the properties under it
 _SWITCHES = {
     "Data": ("use_pass_z", "use_pass_position", "use_pass_normal"),
+    "Index": ("use_pass_object_index", "use_pass_material_index"),
     "Light": ("use_pass_diffuse_color", "use_pass_emit", "use_pass_shadow"),
     "Splats": ("use_pass_coverage", "use_pass_overdraw"),
 }
@@ -35,6 +36,11 @@ class VIEWLAYER_PT_surfel_passes(bpy.types.Panel):
             for flag in flags:
                 is_ours = flag in ViewLayerPasses.__annotations__
                 column.prop(getattr(view_layer, LAYER_SETTINGS) if is_ours else view_layer, flag)
+        column = layout.column(heading="Cryptomatte")
+        column.prop(view_layer, "use_pass_cryptomatte_object")
+        levels = layout.column()
+        levels.active = view_layer.use_pass_cryptomatte_object
+        levels.prop(view_layer, "pass_cryptomatte_depth", text="Levels")
 
 
 register, unregister = bpy.utils.register_classes_factory((VIEWLAYER_PT_surfel_passes,))

@@ -9,11 +9,15 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, PointerProperty
 
-from ..rendering import Frame
+from ..rendering import Cryptomatte, Frame
 from .ids import LAYER_SETTINGS
 
 #: From 5.0 on passes have the names that users read.
 _HAS_LONG_NAMES = bpy.app.version >= (5, 0, 0)
+
+
+#: Of a Cryptomatte pass: the names in each of its layers.
+_RANKS_PER_LAYER = 2
 
 
 class RenderPass(NamedTuple):
@@ -29,6 +33,10 @@ class RenderPass(NamedTuple):
     is_ours: bool = False
 
 
+#: The name of the matte's layers, before their numbers.
+_MATTE = "CryptoObject"
+
+
 def _named(long: str, short: str) -> str:
     return long if _HAS_LONG_NAMES else short
 
@@ -41,6 +49,8 @@ RENDER_PASSES = (
     RenderPass(_named("Diffuse Color", "DiffCol"), "RGB", "COLOR", "diffuse_color", "use_pass_diffuse_color"),
     RenderPass(_named("Emission", "Emit"), "RGB", "COLOR", "emission", "use_pass_emit"),
     RenderPass("Shadow", "RGB", "COLOR", "shadow", "use_pass_shadow"),
+    RenderPass(_named("Object Index", "IndexOB"), "X", "VALUE", "object_index", "use_pass_object_index"),
+    RenderPass(_named("Material Index", "IndexMA"), "X", "VALUE", "material_index", "use_pass_material_index"),
     RenderPass("Coverage", "X", "VALUE", "coverage", "use_pass_coverage", is_ours=True),
     RenderPass("Overdraw", "X", "VALUE", "overdraw", "use_pass_overdraw", is_ours=True),
 )
@@ -60,9 +70,17 @@ class ViewLayerPasses(bpy.types.PropertyGroup):
 
 
 def asked_for(view_layer: bpy.types.ViewLayer) -> list[RenderPass]:
-    """What is switched on in the view layer, in the order of `RENDER_PASSES`."""
+    """What is switched on in the view layer, in the order of `RENDER_PASSES`, and the layers of its matte."""
     ours = getattr(view_layer, LAYER_SETTINGS)
-    return [p for p in RENDER_PASSES if p.flag is None or getattr(ours if p.is_ours else view_layer, p.flag)]
+    passes = [p for p in RENDER_PASSES if p.flag is None or getattr(ours if p.is_ours else view_layer, p.flag)]
+    return passes + [RenderPass(name, "rgba", "COLOR", "cryptomatte") for name in _matte_layers(view_layer)]
+
+
+def _matte_layers(view_layer: bpy.types.ViewLayer) -> list[str]:
+    if not view_layer.use_pass_cryptomatte_object:
+        return []
+    count = -(-view_layer.pass_cryptomatte_depth // _RANKS_PER_LAYER)
+    return [f"{_MATTE}{number:02d}" for number in range(count)]
 
 
 def outputs_of(view_layer: bpy.types.ViewLayer) -> tuple[str, ...]:
@@ -82,8 +100,21 @@ def hand_over(engine: bpy.types.RenderEngine, view_layer: bpy.types.ViewLayer, v
     result = engine.begin_result(0, 0, width, height, layer=view_layer.name, view=view)
     targets = result.layers[0].passes
     for p in asked_for(view_layer):
-        _fill(targets[p.name], getattr(frame, p.output))
+        if p.output != "cryptomatte":
+            _fill(targets[p.name], getattr(frame, p.output))
+    if frame.cryptomatte is not None:
+        _fill_matte(targets, _matte_layers(view_layer), frame.cryptomatte)
     engine.end_result(result)
+    if frame.cryptomatte is not None:
+        for field, value in frame.cryptomatte.metadata(f"{view_layer.name}.{_MATTE}").items():
+            engine.get_result().stamp_data_add_field(field, value)
+
+
+def _fill_matte(targets: bpy.types.RenderPasses, layers: list[str], matte: Cryptomatte) -> None:
+    """Two names and their shares a layer, the largest first."""
+    ranks = matte.ranks(_RANKS_PER_LAYER * len(layers))
+    for number, name in enumerate(layers):
+        _fill(targets[name], ranks[:, :, _RANKS_PER_LAYER * number : _RANKS_PER_LAYER * (number + 1)])
 
 
 def _fill(target: bpy.types.RenderPass, values: np.ndarray) -> None:

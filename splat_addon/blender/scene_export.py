@@ -97,11 +97,16 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
             continue
         try:
             if object_.type == "MESH":
-                lighting = {"light_set": light_sets.of_instance(entry), "casts_shadow": object_.visible_shadow}
+                fields = {
+                    "light_set": light_sets.of_instance(entry),
+                    "casts_shadow": object_.visible_shadow,
+                    "name": object_.name,
+                    "index": object_.pass_index,
+                }
                 if (what := _content(object_)) == "surfels":
-                    surfels += _instances(object_, matrix, lighting, store, notes)
+                    surfels += _instances(object_, matrix, fields, store, notes)
                 elif fineness is not None and what == "faces" and renders_as_surfels(entry):
-                    live_meshes.add(object_, owner_of(entry), matrix, lighting, notes)
+                    live_meshes.add(object_, owner_of(entry), matrix, fields, notes)
                 elif fineness is None and what != "nothing":
                     notes.add(_NOT_SAMPLED)
             elif object_.type in _NOT_DRAWN:
@@ -149,7 +154,7 @@ def _content(object_: bpy.types.Object) -> str:
         return "surfels" if has_surfels(mesh) else "faces" if mesh.polygons else "points"
 
 
-def _instances(object_, matrix_world: np.ndarray, lighting: dict, store: SurfelStore, notes: Notes) -> list[Instance]:
+def _instances(object_, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes: Notes) -> list[Instance]:
     """Of an object that has surfels; one, unless it has more than the renderer holds in one.
 
     Raises ValueError for broken attributes or an unusable matrix.
@@ -162,7 +167,7 @@ def _instances(object_, matrix_world: np.ndarray, lighting: dict, store: SurfelS
     materials = tuple(shading_material(slot.material, notes, own) for slot in object_.material_slots)
     slots = object_.material_slots if parts[0].has_uvs else ()
     textures = tuple(store.textures.get(slot.material, notes) for slot in slots)
-    return [Instance(part, matrix_world, materials, textures=textures, **lighting) for part in parts]
+    return [Instance(part, matrix_world, materials, textures=textures, **fields) for part in parts]
 
 
 @contextmanager

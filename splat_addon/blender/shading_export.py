@@ -89,11 +89,11 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
     own: fields that the surfels have themselves, whose textures are not missed here.
     """
     if material is None or not material.use_nodes:
-        return Material()
+        return Material(index=material.pass_index if material else 0)
     node = output_source(material.node_tree, "OUTPUT_MATERIAL", *_SHADERS)
     if node is None:
         notes.add(f"The material {material.name!r} has no Principled BSDF at its output; it is shaded as a default one")
-        return Material()
+        return Material(index=material.pass_index)
     fields, make = _SHADERS[node.type]
     made = make({name: node.inputs[name].default_value for name in fields})
     linked = [name for name, field in fields.items() if node.inputs[name].is_linked and field not in own]
@@ -104,7 +104,7 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
             f"The material {material.name!r} textures {', '.join(linked)}, which the surfels do not have; the sockets' "
             "plain values are used. Convert the mesh again to sample them"
         )
-    return made
+    return replace(made, index=material.pass_index)
 
 
 def _principled(plain: dict) -> Material:

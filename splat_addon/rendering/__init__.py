@@ -5,6 +5,7 @@ scene, camera, settings -> plan -> view -> passes on a device -> Frame
 """
 
 from .camera import Camera, look_at
+from .cryptomatte import Cryptomatte
 from .device import open_device
 from .environment import Environment
 from .frame import EMPTY_DEPTH, Frame
@@ -24,6 +25,7 @@ __all__ = (
     "EMPTY_DEPTH",
     "PRESETS",
     "Camera",
+    "Cryptomatte",
     "Environment",
     "Frame",
     "FramePlan",

@@ -18,11 +18,10 @@ import numpy as np
 
 from .camera import Camera
 from .frame import Frame
-from .settings import OUTPUTS
+from .settings import NEAREST, OUTPUTS
 
-#: Arrays of a frame that follow its nearest sample; the others are means.
-_NEAREST = ("depth", "position")
-_MEANS = tuple(name for name in OUTPUTS if name not in _NEAREST)
+#: Arrays of a frame that are means over its samples.
+_MEANS = tuple(name for name in OUTPUTS if name not in (*NEAREST, "cryptomatte"))
 
 #: The root above 1 of x^5 = x + 1. Of its powers, the first two serve pixels better than those of x^3 = x + 1: the
 #: error along random edges with 16 samples is a third less.
@@ -78,25 +77,28 @@ def moment_places(samples: int, moments: int) -> list[float]:
 
 
 def mean_frame(frames: Iterable[Frame]) -> Frame:
-    """Means of what is a mean over a pixel's samples; depth and position of the nearest; times added up, other
+    """Means of what is a mean over a pixel's samples; depth, position and indices of the nearest; times added up, other
     statistics of the last frame.
 
     Holds one sum and one frame at a time, in float32: a thousand frames round to about 1e-6.
     """
-    count, sums, nearest, milliseconds, passes, stats = 0, {}, {}, 0.0, {}, {}
+    count, sums, nearest, matte, milliseconds, passes, stats = 0, {}, {}, None, 0.0, {}, {}
     for frame in frames:
         for name in _MEANS:
             if (values := getattr(frame, name)) is not None:
                 sums[name] = values + sums[name] if name in sums else values
-        following = {name: getattr(frame, name) for name in _NEAREST}
+        following = {name: getattr(frame, name) for name in NEAREST}
         nearest = _nearer(nearest, {name: values for name, values in following.items() if values is not None})
+        if frame.cryptomatte is not None:
+            matte = matte.plus(frame.cryptomatte) if matte else frame.cryptomatte
         milliseconds += frame.stats["milliseconds"]
         for name, elapsed in frame.stats["passes"].items():
             passes[name] = passes.get(name, 0.0) + elapsed
         count, stats = count + 1, frame.stats
     stats = {**stats, "milliseconds": milliseconds, "passes": passes, "samples": count}
     means = {name: total / np.float32(count) for name, total in sums.items()}
-    return Frame(**{name: means.get(name, nearest.get(name)) for name in OUTPUTS}, stats=stats)
+    arrays = means | nearest | {"cryptomatte": matte and matte.over(count)}
+    return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)
 
 
 def _nearer(kept: dict[str, np.ndarray], arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .cryptomatte import Cryptomatte
+
 #: Depth where nothing was hit, as Cycles writes it.
 EMPTY_DEPTH = 1e10
 
@@ -29,6 +31,9 @@ class Frame:
         front, and of models that do not look at lights.
     overdraw: (h, w) splats that a sample is the mean of.
         These four are means over the pixel's samples, as `color`, empty ones counting as 0.
+    object_index, material_index: (h, w) of what is nearest in the pixel, never mixed; 0 where nothing was hit.
+    cryptomatte: which share of each pixel belongs to which name; they add up to the coverage, but where a method's
+        filter reaches past what it sees.
     stats: what was drawn, and milliseconds by pass where `Settings.profile` asked for them.
     """
 
@@ -41,4 +46,7 @@ class Frame:
     emission: np.ndarray | None = None
     shadow: np.ndarray | None = None
     overdraw: np.ndarray | None = None
+    object_index: np.ndarray | None = None
+    material_index: np.ndarray | None = None
+    cryptomatte: Cryptomatte | None = None
     stats: dict = field(default_factory=dict)

@@ -14,6 +14,7 @@ FILTER_MARGIN = 2
 #: texture -> (format, what it holds one value for)
 TEXTURES = {
     "visibility_depth": ("DEPTH32F", "sample"),
+    "identity": ("RG32F", "sample"),
     "seen_range": ("RGBA32F", "sample"),
     "seen_depth": ("DEPTH32F", "sample"),
     "color_sum": ("RGBA32F", "sample"),

@@ -109,10 +109,12 @@ def reflectance(ior: float) -> float:
 
 
 def shared_material(instances: tuple[Placed, ...]) -> Material | None:
-    """The one material that all surfels of the instances answer light with, or None; its emission means nothing."""
+    """The one material that all surfels of the instances answer light with, or None; its emission and its index mean
+    nothing.
+    """
     if any(i.shape.roughness is not None or i.shape.metallic is not None for i in instances):
         return None
-    materials = {replace(m, emission=(0.0, 0.0, 0.0)) for instance in instances for m in instance.materials}
+    materials = {replace(m, emission=(0.0, 0.0, 0.0), index=0) for instance in instances for m in instance.materials}
     return materials.pop() if len(materials) == 1 else None
 
 

@@ -11,6 +11,7 @@ import math
 
 from .camera import Camera
 from .frame_plan import HELD_BY, TEXTURES, FramePlan, PlannedPass
+from .identity import NUMBERED
 from .layers import layer_outputs, layer_passes, layers_of
 from .methods import Method, get_method
 from .packing import shared_emission, shared_material
@@ -67,7 +68,8 @@ def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera
         reads = _read_by_shading(scene, model, kept, maps, left_out) + (("lines",) if lines else ())
         shadows = (_shadow_pass(scene, maps),) if maps else ()
         layers = layers_of(scene, settings, method, model, left_out)
-        first, *splats = _splat_passes(method, _why_attributes(scene, method), why_depth, sums, left_out)
+        why_attributes = _why_attributes(scene, method)
+        first, *splats = _splat_passes(settings, method, why_attributes, why_depth, sums, left_out)
         passes = (
             *shadows,
             first,
@@ -139,12 +141,15 @@ def _sums(
     return tuple(sums)
 
 
-def _splat_passes(method: Method, why: str, why_depth: str, sums: tuple[str, ...], left_out: list):
+def _splat_passes(settings: Settings, method: Method, why: str, why_depth: str, sums: tuple[str, ...], left_out: list):
     """Visibility and sums, and between them what a method that works in the picture tests its depths with."""
+    identity, why_identity = _identity(settings, left_out)
     if method.works_in == "sprites":
         left_out.append(("visibility", f"of {method.name} the nearest splat wins, and nothing blends"))
-        return (PlannedPass("attributes", "the nearest splat wins", (), (*sums, "seen_depth")),)
-    visibility = PlannedPass("visibility", f"splats may hide one another; {why_depth}", (), ("visibility_depth",))
+        writes = *sums, *identity, "seen_depth"
+        return (PlannedPass("attributes", f"the nearest splat wins{why_identity}", (), writes),)
+    why_visibility = f"splats may hide one another; {why_depth}{why_identity}"
+    visibility = PlannedPass("visibility", why_visibility, (), ("visibility_depth", *identity))
     if method.works_in == "space":
         left_out.append(("seen_range", f"{method.name} is tested by the hardware, with the depth of visibility"))
         return visibility, PlannedPass("attributes", why, ("visibility_depth",), sums)
@@ -170,6 +175,20 @@ def _polygon_passes(scene: Scene, method: Method, sums: tuple[str, ...], left_ou
     why = f"{len(scene.polygons)} instances are polygons, of which {touching} touch surfels and may blend with them"
     seen = ("seen_range",) if method.works_in == "picture" else ()
     return (PlannedPass("polygons", why, seen, (*kept, "polygon_depth")),)
+
+
+def _identity(settings: Settings, left_out: list) -> tuple[tuple[str, ...], str]:
+    """Whether the pass that finds what is nearest says whose it is, and why."""
+    asked_for = [name for name in NUMBERED if name in settings.outputs]
+    if not asked_for:
+        left_out.append(("identity", "no index or matte tells objects or materials apart"))
+        return (), ""
+    if settings.multisampling:
+        raise ValueError(
+            f"Hardware samples are not told apart by object: leave {', '.join(asked_for)} out of the outputs, or set "
+            "multisampling to 0 and use supersampling."
+        )
+    return ("identity",), f"; {', '.join(asked_for)} tell whose it is"
 
 
 def _line_passes(settings: Settings, method: Method, sums: tuple[str, ...], left_out: list):

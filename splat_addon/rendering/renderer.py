@@ -13,12 +13,13 @@ from .camera import Camera
 from .device import Device
 from .frame import EMPTY_DEPTH, Frame
 from .frame_plan import HELD_BY, FramePlan
+from .identity import Identified
 from .passes import RUN
 from .passes.tile import TileContext, texture_key
 from .plan import plan
 from .resources import Resources
 from .scene import Scene
-from .settings import OUTPUTS, Settings
+from .settings import NEAREST, OUTPUTS, Settings
 from .shadow import casting, same_maps
 from .storages import get_storage
 from .view import look
@@ -95,17 +96,24 @@ class Renderer:
         stats = self._new_stats(frame_plan)
         started = perf_counter()
         try:
-            tiles = [
-                (tile, _read(target, frame_plan, settings.outputs))
-                for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress, are_shared_done)
-            ]
+            tiles, identified = [], Identified(scene, camera.size, settings.outputs)
+            for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress, are_shared_done):
+                tiles.append((tile, _read(target, frame_plan, settings.outputs)))
+                if "identity" in frame_plan.textures:
+                    identified.add(tile, self._read_whole("identity", tile, frame_plan), frame_plan)
         finally:
             self.device.restore()
         arrays = _assembled(tiles, camera.size) if tiles else _background(scene, camera.size, settings)
+        arrays |= identified.arrays
         stats["milliseconds"] = 1e3 * (perf_counter() - started)
         if "position" in settings.outputs:
             arrays["position"] = _positions(camera, arrays["depth"])
         return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)
+
+    def _read_whole(self, texture: str, tile: Tile, frame_plan: FramePlan) -> np.ndarray:
+        """A texture of the plan, with the tile's margin."""
+        key = texture_key(texture, _drawn(tile, frame_plan)[2:], frame_plan)
+        return self.device.target([self.resources.texture(key)]).read(0)
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[tuple[Tile, object]]:
         """For a viewport, one sample: yields each tile (with its margin) and the colour texture to show there.
@@ -225,8 +233,8 @@ def _drawn(tile: Tile, frame_plan: FramePlan) -> Tile:
 
 
 def _read_arrays(outputs: tuple[str, ...]) -> tuple[str, ...]:
-    """Those that the device holds: positions are made of depths."""
-    wanted = {*outputs, "depth"} if "position" in outputs else set(outputs)
+    """Those that the device holds as they are; what follows the nearest sample needs its depth."""
+    wanted = {*outputs, "depth"} if set(outputs) & set(NEAREST) else set(outputs)
     return tuple(name for name in HELD_BY if name in wanted)
 
 

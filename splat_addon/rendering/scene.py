@@ -25,6 +25,7 @@ class Material:
 
     roughness, metallic: 0 to 1. ior: index of refraction of the dielectric coat, which sets its
     reflectance at normal incidence, ((ior - 1) / (ior + 1))^2. emission: scene-linear radiance that leaves it evenly.
+    index: what the frame's `material_index` shows of it.
     Surfels may have their own roughness, metallic and emission, which take the place of these.
     """
 
@@ -32,6 +33,7 @@ class Material:
     metallic: float = 0.0
     ior: float = 1.5
     emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    index: int = 0
 
     def __post_init__(self):
         numbers = [self.roughness, self.metallic, self.ior, *self.emission]
@@ -122,6 +124,8 @@ class Instance(Placed):
     casts_shadow: whether it does where a light casts shadows.
     textures: indexed alike; where one is None, and for surfels without texture coordinates, the surfels' own colours
         are shown.
+    name: by which the frame's `cryptomatte` tells it from others; those of one name are one. index: what its
+        `object_index` shows.
     """
 
     surfels: Surfels
@@ -130,6 +134,8 @@ class Instance(Placed):
     light_set: int = 0
     casts_shadow: bool = True
     textures: tuple[SurfaceTexture | None, ...] = ()
+    name: str = ""
+    index: int = 0
 
     @property
     def shape(self) -> Surfels:
@@ -153,6 +159,8 @@ class PolygonInstance(Placed):
     light_set: int = 0
     casts_shadow: bool = True
     textures: tuple[SurfaceTexture | None, ...] = ()
+    name: str = ""
+    index: int = 0
 
     @property
     def shape(self) -> Polygons:

@@ -35,7 +35,23 @@ MAX_SHADOW_RESOLUTION = 2048
 MAX_LAYERS = 64
 
 #: the arrays of a `Frame`
-OUTPUTS = ("color", "depth", "normal", "coverage", "position", "diffuse_color", "emission", "shadow", "overdraw")
+OUTPUTS = (
+    "color",
+    "depth",
+    "normal",
+    "coverage",
+    "position",
+    "diffuse_color",
+    "emission",
+    "shadow",
+    "overdraw",
+    "object_index",
+    "material_index",
+    "cryptomatte",
+)
+
+#: Those that follow the nearest sample of a pixel.
+NEAREST = ("depth", "position", "object_index", "material_index")
 
 
 @dataclass(frozen=True)
@@ -61,8 +77,8 @@ class Settings:
         lost.
     alpha_threshold: the least opacity of a surface that the depth and the normal are taken from.
     transparent_film: leave the background out and keep its alpha at 0.
-    outputs: which arrays of the `Frame` are wanted; the others are None and cost nothing. A position brings the depth
-        that it is made of.
+    outputs: which arrays of the `Frame` are wanted; the others are None and cost nothing. A position and
+        an index bring the depth that they belong to.
     storage: the form in which surfels lie on the device, a name in `rendering.storages`.
     accumulation: of the sums of colour and material, a name in `ACCUMULATIONS`.
     profile: wait for the device after each pass, so that the frame's statistics hold a time for each.

@@ -9,8 +9,11 @@ import pytest
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs, sheet
 from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Light, Material, Scene, Settings, look_at
-from splat_addon.rendering.settings import OUTPUTS
+from splat_addon.rendering.identity import NUMBERED
+from splat_addon.rendering.settings import OUTPUTS as ALL_OUTPUTS
 
+#: tests/rendering/test_identity.py has the others.
+OUTPUTS = tuple(name for name in ALL_OUTPUTS if name not in NUMBERED)
 SIZE = (48, 36)
 CAMERA = Camera.perspective(np.eye(4), 0.9, SIZE)
 #: A sheet that fills the left half of the picture, 4 away, its colours alike.

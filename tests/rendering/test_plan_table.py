@@ -113,6 +113,7 @@ TABLE = {
         ("visibility", "seen_range", "attributes", "polygons", "sample_shading", "resolve"),
         f"{AMONG_TEXTURES} seen_range shaded surface", "-brdf_table", (),
     ),
+    "whose it is": (PLAIN, {"outputs": ("object_index",)}, PASSES, "-normal_coverage identity", "", ()),
     "lines": (PLAIN, {"lines": Lines()}, ("visibility", "attributes", "lines", "shading"), "lines", "", ()),
     "overdraw": (PLAIN, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", ()),
     "mip": (

@@ -10,12 +10,20 @@ from ..frame_plan import TEXTURES, FramePlan, PlannedPass
 from ..methods import get_method
 from ..shaders import load
 from ..storages import get_storage
-from .blocks import FILTERS_SILHOUETTES, LAYER, LINEAR_DEPTH, material_defines, sum_defines
+from .blocks import (
+    FILTERS_SILHOUETTES,
+    LAYER,
+    LINEAR_DEPTH,
+    identity_defines,
+    identity_varyings,
+    material_defines,
+    sum_defines,
+)
 from .splats import SPLATS_BLOCK, draw_splats, drawn_by
 from .tile import TileContext
 
 #: Of the sums that are not vec4.
-_OUTPUT_TYPES = {"depth_sum": "vec2", "overdraw_sum": "float"}
+_OUTPUT_TYPES = {"depth_sum": "vec2", "overdraw_sum": "float", "identity": "vec2"}
 #: What is defined for sums that some scenes or models have.
 _DEFINES = {"light_set_sum": "LIGHT_SET_TARGET", "overdraw_sum": "OVERDRAW_TARGET"}
 #: Of texture-mapped splats: uv and slot, change of uv along the half-axes, where the map ends; and the half-axes.
@@ -140,12 +148,14 @@ def _description(planned, frame, folder, varyings, samplers=(), defines=(), **st
             ("flat", "vec3", "normal"),
             *((("flat", "float", "opacity"),) if planned.layer else ()),
             *_material_varyings(planned),
+            *identity_varyings(planned),
         ),
         outputs=_outputs(planned),
         defines=(
             *defines,
             *with_materials,
             *_own_defines(planned),
+            *identity_defines(planned),
             *sum_defines(planned.writes, frame.accumulation),
             *(LAYER if planned.layer else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),

@@ -23,6 +23,16 @@ def material_defines(names: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
     return (*targets, ("WITH_MATERIALS", "1")) if targets else ()
 
 
+def identity_defines(planned: PlannedPass) -> tuple[tuple[str, str], ...]:
+    """What is defined where a pass says whose the splats are that it sees."""
+    return (("IDENTITY_TARGET", "1"),) if "identity" in planned.writes else ()
+
+
+def identity_varyings(planned: PlannedPass) -> tuple[tuple[str, str, str], ...]:
+    """What its fragments are told for that."""
+    return (("flat", "float", "number"),) if "identity" in planned.writes else ()
+
+
 def sum_defines(names: tuple[str, ...], accumulation: str) -> tuple[tuple[str, str], ...]:
     """What is defined where a pass reads or writes these sums: depths may be apart, and numbers smaller."""
     is_half = accumulation == "float16"

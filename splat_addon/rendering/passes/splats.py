@@ -20,6 +20,7 @@ from .tile import TileContext
 #:     share of the distance; of an orthographic camera a length), what colours are multiplied by.
 #: light_set: 1 in the channel of the instance's set.
 #: window: left, bottom and step of one sample on the plane at depth 1.
+#: identity: number of the instance's first material slot, and of slots after it.
 SPLATS_BLOCK = (
     "Splats",
     "splats",
@@ -31,6 +32,7 @@ SPLATS_BLOCK = (
         ("vec4", "sides"),
         ("vec4", "window"),
         ("vec4", "light_set"),
+        ("vec4", "identity"),
     ),
 )
 
@@ -72,4 +74,5 @@ def splats_block(tile: TileContext, placed: PlacedInstance, epsilon: float) -> n
     normal_matrix = np.eye(4)
     normal_matrix[:3, :3] = placed.normal_matrix
     light_set = np.eye(MAX_LIGHT_SETS)[placed.instance.light_set]
-    return std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set)
+    identity = tile.identities.firsts[placed.instance], len(placed.instance.materials) - 1, 0.0, 0.0
+    return std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set, identity)

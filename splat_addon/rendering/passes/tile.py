@@ -11,6 +11,7 @@ from functools import cached_property
 from ..camera import Camera
 from ..device.interface import Texture
 from ..frame_plan import FramePlan
+from ..identity import Identities
 from ..resources import Resources, TextureKey
 from ..scene import Scene
 from ..settings import Settings
@@ -47,6 +48,11 @@ class TileContext:
     def target(self, colors: tuple[str, ...], depth: str | None = None):
         """The named textures to draw into."""
         return self.resources.device.target([self.texture(name) for name in colors], depth and self.texture(depth))
+
+    @cached_property
+    def identities(self) -> Identities:
+        """What the scene's numbers mean."""
+        return Identities(self.scene)
 
     @property
     def depth_unit(self) -> float:

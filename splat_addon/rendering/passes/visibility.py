@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The visibility pass: depth only, every splat moved back by its epsilon (Botsch et al. 2005, section 3)."""
+"""The visibility pass: depth, every splat moved back by its epsilon (Botsch et al. 2005, section 3); and whose it is,
+where that is asked for.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,7 @@ from ..device.interface import PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
 from ..shaders import load
 from ..storages import get_storage
-from .blocks import LAYER, LINEAR_DEPTH
+from .blocks import LAYER, LINEAR_DEPTH, identity_defines, identity_varyings
 from .polygons import draw_polygons
 from .splats import SPLATS_BLOCK, draw_splats, drawn_by
 from .tile import TileContext
@@ -26,8 +28,14 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
         varyings=(
             ("smooth", "vec3", "place_depth"),
             *((("smooth", "vec3", "across_offset"),) if frame.linear_depth else ()),
+            *identity_varyings(planned),
         ),
-        defines=(*(LINEAR_DEPTH if frame.linear_depth else ()), *(LAYER if planned.layer else ())),
+        outputs=(("vec2", "identity"),) if "identity" in planned.writes else (),
+        defines=(
+            *(LINEAR_DEPTH if frame.linear_depth else ()),
+            *(LAYER if planned.layer else ()),
+            *identity_defines(planned),
+        ),
         depth_test=True,
         depth_write=True,
         fragment_depth=frame.linear_depth,
@@ -52,8 +60,9 @@ def draw_visible(tile: TileContext, planned: PlannedPass, target: Target, splats
 
 
 def run(tile: TileContext, planned: PlannedPass) -> Target:
-    """Fill the depth texture."""
-    target = tile.target((), planned.writes[0])
-    target.clear(depth=1.0)
+    """Fill the depth texture, and that of numbers."""
+    depth, *colors = planned.writes
+    target = tile.target(tuple(colors), depth)
+    target.clear(color=0.0 if colors else None, depth=1.0)
     draw_visible(tile, planned, target, drawn_by(planned, tile))
     return target

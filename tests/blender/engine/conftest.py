@@ -139,7 +139,7 @@ def read_passes(path) -> dict[str, np.ndarray]:
 
 
 def _joined(letters: dict[str, np.ndarray]) -> np.ndarray:
-    channels = [letters[letter] for letter in sorted(letters, key="RGBAXYZ".index)]
+    channels = [letters[letter] for letter in sorted(letters, key="RGBArgbaXYZ".index)]
     return np.stack(channels, axis=-1) if len(channels) > 1 else channels[0]
 
 

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whose each pixel is, by shares: Friedman and Jones, "Fully Automatic ID Mattes with Support for Motion Blur and
+Transparency", 2015, and the Cryptomatte specification 1.2.0 (how names become numbers, and what files say of them).
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+
+_MASK = 0xFFFFFFFF
+
+
+def murmur3_32(data: bytes) -> int:
+    """MurmurHash3_x86_32 with seed 0 (Appleby, 2011)."""
+    value, length = 0, len(data)
+    for start in range(0, length, 4):
+        word = int.from_bytes(data[start : start + 4], "little")
+        word = _rotated(word * 0xCC9E2D51 & _MASK, 15) * 0x1B873593 & _MASK
+        value ^= word
+        if start + 4 <= length:
+            value = (_rotated(value, 13) * 5 + 0xE6546B64) & _MASK
+    value ^= length
+    value = (value ^ value >> 16) * 0x85EBCA6B & _MASK
+    value = (value ^ value >> 13) * 0xC2B2AE35 & _MASK
+    return value ^ value >> 16
+
+
+def _rotated(value: int, bits: int) -> int:
+    return (value << bits | value >> (32 - bits)) & _MASK
+
+
+def name_hash(name: str) -> int:
+    """The bits of the float32 that stands for a name; never those of zero, a denormal number, infinity or NaN."""
+    bits = murmur3_32(name.encode("utf-8"))
+    return bits ^ 1 << 23 if bits >> 23 & 0xFF in (0, 0xFF) else bits
+
+
+@dataclass(frozen=True, eq=False)
+class Cryptomatte:
+    """Which share of each pixel belongs to whom; what nothing covers is left out.
+
+    size: width, height. keys: (n,) uint64, sorted, pixel (row by row from the bottom left) times 2^32 plus hash of the
+    name. shares: (n,) float64. names: of all that may be there, to their hashes.
+    """
+
+    size: tuple[int, int]
+    keys: np.ndarray
+    shares: np.ndarray
+    names: dict[str, int]
+
+    def plus(self, other: Cryptomatte) -> Cryptomatte:
+        """The sums of both, for pictures of one size."""
+        keys, shares = added_up(np.concatenate([self.keys, other.keys]), np.concatenate([self.shares, other.shares]))
+        return Cryptomatte(self.size, keys, shares, self.names | other.names)
+
+    def over(self, count: int) -> Cryptomatte:
+        """Each share divided by a number."""
+        return Cryptomatte(self.size, self.keys, self.shares / count, self.names)
+
+    def ranks(self, count: int) -> np.ndarray:
+        """(h, w, count, 2) float32: hash, as the bits of a number, and share of the `count` largest in each pixel, the
+        largest first; 0, 0 after the last.
+        """
+        width, height = self.size
+        pixels = (self.keys >> np.uint64(32)).astype(np.int64)
+        order = np.lexsort((-self.shares, pixels))
+        pixels = pixels[order]
+        starts = np.flatnonzero(np.diff(pixels, prepend=-1))
+        rank = np.arange(len(pixels)) - np.repeat(starts, np.diff(starts, append=len(pixels)))
+        kept = rank < count
+        ranks = np.zeros((height * width, count, 2), np.float32)
+        hashes = (self.keys[order] & np.uint64(_MASK)).astype(np.uint32).view(np.float32)
+        ranks[pixels[kept], rank[kept], 0], ranks[pixels[kept], rank[kept], 1] = hashes[kept], self.shares[order][kept]
+        return ranks.reshape(height, width, count, 2)
+
+    def share_of(self, name: str) -> np.ndarray:
+        """(h, w) float64: the matte of one name."""
+        matte = np.zeros(self.size[0] * self.size[1])
+        is_its = (self.keys & np.uint64(_MASK)) == np.uint64(name_hash(name))
+        matte[(self.keys[is_its] >> np.uint64(32)).astype(np.int64)] = self.shares[is_its]
+        return matte.reshape(self.size[::-1])
+
+    def metadata(self, layer: str) -> dict[str, str]:
+        """What a file that holds the matte says of it. layer: name of the channels before the numbers."""
+        prefix = f"cryptomatte/{murmur3_32(layer.encode('utf-8')):08x}"[:19]
+        manifest = {name: f"{bits:08x}" for name, bits in self.names.items()}
+        return {
+            f"{prefix}/name": layer,
+            f"{prefix}/hash": "MurmurHash3_32",
+            f"{prefix}/conversion": "uint32_to_float32",
+            f"{prefix}/manifest": json.dumps(manifest, separators=(",", ":"), ensure_ascii=False),
+        }
+
+
+def added_up(keys: np.ndarray, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Sorted keys, each once, and the sums of their shares."""
+    order = np.argsort(keys, kind="stable")
+    keys = keys[order]
+    starts = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]])) if len(keys) else np.zeros(0, np.int64)
+    return keys[starts], np.add.reduceat(shares[order], starts) if len(keys) else shares

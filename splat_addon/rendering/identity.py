@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Who is seen: every material slot of every instance has a number, which the visibility pass leaves beside its depth.
+
+No filter mixes numbers. The nearest of a pixel's samples says whose it is; and by the weights under which silhouettes
+are filtered, all samples around say whose it is by which share (`Cryptomatte`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .cryptomatte import Cryptomatte, added_up, name_hash
+from .frame_plan import FILTER_MARGIN, FramePlan
+from .scene import Placed, Scene
+
+INDICES = ("object_index", "material_index")
+
+#: The arrays of a frame that need numbers.
+NUMBERED = (*INDICES, "cryptomatte")
+
+#: Of the Gaussian of shaders/resolve.frag.glsl, in samples.
+_FILTER_VARIANCE = 0.5
+
+#: Pixels at a rim that are looked at in one go.
+_CHUNK = 50_000
+
+
+@dataclass(frozen=True, eq=False)
+class Identities:
+    """What the numbers of a scene mean. 0 is nothing."""
+
+    scene: Scene
+
+    @property
+    def _placed(self) -> tuple[Placed, ...]:
+        return *self.scene.surfels, *self.scene.polygons
+
+    @cached_property
+    def firsts(self) -> dict[Placed, int]:
+        """The number of each instance's first slot; the others follow."""
+        numbers, following = {}, 1
+        for instance in self._placed:
+            if instance not in numbers:
+                numbers[instance] = following
+                following += len(instance.materials)
+        return numbers
+
+    @cached_property
+    def indices(self) -> dict[str, np.ndarray]:
+        """(n,) float32 pass index of each number's object and of its material."""
+        objects = [0, *(instance.index for instance in self.firsts for _ in instance.materials)]
+        materials = [0, *(material.index for instance in self.firsts for material in instance.materials)]
+        return {"object_index": np.array(objects, np.float32), "material_index": np.array(materials, np.float32)}
+
+    @cached_property
+    def names(self) -> dict[str, int]:
+        """Of all instances, to their hashes."""
+        return {name: name_hash(name) for name in dict.fromkeys(placed.name for placed in self._placed)}
+
+    @cached_property
+    def hashes(self) -> np.ndarray:
+        """(n,) uint32 of each number's name; 0 is nothing's."""
+        of_numbers = (self.names[instance.name] for instance in self.firsts for _ in instance.materials)
+        return np.array([0, *of_numbers], np.uint32)
+
+
+class Identified:
+    """The arrays of a frame that need numbers, tile by tile; those of `outputs`, empty where no tile has been added."""
+
+    def __init__(self, scene: Scene, size: tuple[int, int], outputs: tuple[str, ...]):
+        self._identities = Identities(scene)
+        self.arrays = {name: np.zeros(size[::-1], np.float32) for name in INDICES if name in outputs}
+        if "cryptomatte" in outputs:
+            nothing = np.zeros(0, np.uint64), np.zeros(0)
+            self.arrays["cryptomatte"] = Cryptomatte(size, *nothing, self._identities.names)
+
+    def add(self, tile: tuple[int, int, int, int], seen: np.ndarray, plan: FramePlan) -> None:
+        """A tile's x, y, width, height in pixels; and number and depth of its samples, (rows, columns, 2) float32, with
+        its margin.
+        """
+        x, y, width, height = tile
+        indices = [name for name in INDICES if name in self.arrays]
+        numbers = nearest_numbers(seen, plan) if indices else None
+        for name in indices:
+            self.arrays[name][y : y + height, x : x + width] = self._identities.indices[name][numbers]
+        if matte := self.arrays.get("cryptomatte"):
+            self.arrays["cryptomatte"] = matte.plus(tile_matte(seen, tile, matte.size, plan, self._identities))
+
+
+def nearest_numbers(seen: np.ndarray, plan: FramePlan) -> np.ndarray:
+    """(h, w) number of the nearest sample of each pixel.
+
+    seen: (rows, columns, 2) float32, number and depth of a tile's samples, with its margin.
+    """
+    across = plan.samples
+    edge = plan.margin * across
+    kept = seen[edge : len(seen) - edge, edge : seen.shape[1] - edge]
+    rows, columns = kept.shape[0] // across, kept.shape[1] // across
+    samples = kept.reshape(rows, across, columns, across, 2).swapaxes(1, 2).reshape(rows, columns, across * across, 2)
+    nearest = np.where(samples[..., 0] > 0, samples[..., 1], np.inf).argmin(axis=2)
+    return np.take_along_axis(samples[..., 0], nearest[..., None], axis=2)[..., 0].astype(np.int64)
+
+
+def tile_matte(seen: np.ndarray, tile, size: tuple[int, int], plan: FramePlan, identities: Identities) -> Cryptomatte:
+    """What a tile, x, y, width and height in a picture of that size, holds of whom."""
+    x, y, width, height = tile
+    step, (kernel, lead) = plan.samples, _kernel(plan)
+    edge = plan.margin * step - lead
+    reach = len(kernel)
+    hashes = identities.hashes[seen[..., 0].astype(np.int64)]
+    hashes = hashes[edge : edge + (height - 1) * step + reach, edge : edge + (width - 1) * step + reach]
+    low, high = (_window_extreme(hashes, step, reach, extreme) for extreme in (np.minimum, np.maximum))
+    rows, columns = np.nonzero((low == high) & (low > 0))
+    whole = low[rows, columns].astype(np.uint64), np.ones(len(rows)), rows, columns
+    parts = [whole, *_mixed(hashes, np.argwhere(low != high), kernel, step)]
+    keys = np.concatenate([_key(x + columns, y + rows, size, names) for names, _, rows, columns in parts])
+    keys, shares = added_up(keys, np.concatenate([shares for _, shares, *_ in parts]))
+    return Cryptomatte(size, keys, shares, identities.names)
+
+
+def _key(x: np.ndarray, y: np.ndarray, size: tuple[int, int], hashes: np.ndarray) -> np.ndarray:
+    return (y * size[0] + x).astype(np.uint64) << np.uint64(32) | hashes
+
+
+def _kernel(plan: FramePlan) -> tuple[np.ndarray, int]:
+    """Weights of a row of samples under a pixel, and how many of them lie before it."""
+    even = np.full(plan.samples, 1 / plan.samples)
+    if not plan.filters_silhouettes:
+        return even, 0
+    gaussian = np.exp(-0.5 * np.arange(-FILTER_MARGIN, FILTER_MARGIN + 1) ** 2 / _FILTER_VARIANCE)
+    return np.convolve(even, gaussian / gaussian.sum()), FILTER_MARGIN
+
+
+def _window_extreme(values: np.ndarray, step: int, reach: int, extreme) -> np.ndarray:
+    """Least or greatest value of the window of `reach` x `reach` samples of every pixel."""
+    for _ in range(2):
+        values = values.swapaxes(0, 1)
+        last = len(values) - reach + 1
+        values = extreme.reduce([values[first : first + last : step] for first in range(reach)])
+    return values
+
+
+def _mixed(hashes: np.ndarray, places: np.ndarray, kernel: np.ndarray, step: int):
+    """Hashes, shares, rows and columns of what pixels with more than one thing in their window hold, pixel by pixel."""
+    weights, along = np.outer(kernel, kernel).ravel(), np.arange(len(kernel))
+    for chunk in np.array_split(places, math.ceil(len(places) / _CHUNK)) if len(places) else ():
+        rows, columns = (chunk * step)[:, 0, None, None], (chunk * step)[:, 1, None, None]
+        found = hashes[rows + along[:, None], columns + along].reshape(len(chunk), -1)
+        order = np.argsort(found, axis=1, kind="stable")
+        found, shares = np.take_along_axis(found, order, axis=1), weights[order]
+        is_first = np.concatenate([np.ones((len(chunk), 1), bool), found[:, 1:] != found[:, :-1]], axis=1)
+        shares = np.add.reduceat(shares.ravel(), np.flatnonzero(is_first))
+        names, pixel = found[is_first], np.nonzero(is_first)[0]
+        is_something = names > 0
+        pixel = pixel[is_something]
+        yield names[is_something].astype(np.uint64), shares[is_something], chunk[pixel, 0], chunk[pixel, 1]
