@@ -25,6 +25,9 @@ _LEAST_AREA_RATIO = 1e-6
 _USABLE_SQUARES = (1e-30, 1e30)
 
 
+#: Up to so many spans a triangle, working out a triangle for each of its spans costs less than handing on what it is.
+_FEW_SPANS = 1.3
+
 #: What a mesh stores at its corners may be infinite or NaN; the result is looked at, so the way there need not warn.
 _quietly = np.errstate(over="ignore", invalid="ignore")
 
@@ -56,12 +59,12 @@ class SampleFiller:
     def fill(self, spans: Spans, axis: int, rows: slice):
         """Writes the samples of these spans of the image along `axis` to `rows` of the arrays."""
         out = {name: array[rows] for name, array in self._arrays.items()}
-        triangles, of_span = _distinct(spans.triangles)
+        triangles, of_span = _grouped(spans.triangles)
         first, edges, normals = self._sound_triangles(triangles, axis)
-        weights = _SpanWeights(first, edges, axis, of_span, spans)
+        weights = _SpanWeights(first, edges, normals[axis], axis, of_span, spans)
         span, step = expand(spans.counts)
         line = _Lines(span, step)
-        triangle = of_span.take(span)
+        triangle = span if of_span is None else of_span.take(span)
 
         column = spans.columns.take(span)
         column += step
@@ -71,11 +74,11 @@ class SampleFiller:
         ends = weights.interpolate((first[axis] + 0.5) * spacing, *(edges[axis] * spacing))
         out["positions"][:, axis] = line.samples(*ends)
 
-        normals /= np.sqrt(sum(component * component for component in normals))
-        _spread(ellipse_rotations(normals, axis), triangle, out["rotations"])
-        _spread(ellipse_scales(normals[axis], self._half_size), triangle, out["scales"])
+        normals /= np.sqrt(_squares(normals))
+        _write_rows(ellipse_rotations(normals, axis), triangle, out["rotations"])
+        _write_rows(ellipse_scales(normals[axis], self._half_size), triangle, out["scales"])
         if self._mesh.corner_normals is None:
-            _spread(np.ascontiguousarray(normals.T, np.float32), triangle, out["normals"])
+            _write_rows(np.ascontiguousarray(normals.T, np.float32), triangle, out["normals"])
         else:
             vectors = self._samples(self._mesh.corner_normals, triangles, weights, line)
             _write_unit(vectors, normals, triangle, out["normals"])
@@ -140,9 +143,14 @@ class SampleFiller:
     def _poor(self, corners: np.ndarray, edges: np.ndarray, areas: np.ndarray, axis: int) -> np.ndarray:
         """The triangles whose (t,) area in the image is lost beside what snapping does to it, or turned over by it."""
         # No component of an edge changes by more than 1 / subcells, so most are seen to be sound from afar.
-        reach = sum(np.abs(edges[(axis + k) % 3]).sum(axis=0) for k in (1, 2))
+        (u1, u2), (v1, v2) = (np.abs(edges[(axis + k) % 3]) for k in (1, 2))
+        reach = u1 + u2
+        reach += v1
+        reach += v2
         reach += 1
         poor = np.flatnonzero(~(np.abs(areas) * (self._grid.subcells / 2) > reach))
+        if not len(poor):
+            return poor
         snapped = self._grid.snapped(corners.take(poor, axis=2))
         snapped_areas = doubled_areas(snapped)[axis]
         least = np.abs(snapped_areas) * (_LEAST_AREA_RATIO / self._grid.subcells**2)
@@ -152,33 +160,42 @@ class SampleFiller:
 class _SpanWeights:
     """Barycentric weights of corners 1 and 2 at each span's first sample, and their change from one sample to the next.
 
-    first, edges: of t triangles, as `_sound_triangles` gives them. of_span: (n,) each span's triangle among the t.
+    first, edges, areas: of t triangles, as `_sound_triangles` gives them; the last is the normals' component along the
+    axis. of_span: (n,) each span's triangle among the t, as `_grouped` has it.
     Both ends are moved into the triangle, to where it is nearest: on the snapped outline a sample can lie 0.71 of a
     sub-cell outside the real one. Clamping the weights themselves would move it any distance along a sliver.
     """
 
-    def __init__(self, first: np.ndarray, edges: np.ndarray, axis: int, of_span: np.ndarray, spans: Spans):
+    def __init__(
+        self,
+        first: np.ndarray,
+        edges: np.ndarray,
+        areas: np.ndarray,
+        axis: int,
+        of_span: np.ndarray | None,
+        spans: Spans,
+    ):
         self._of_span = of_span
         (u, v), ((u1, u2), (v1, v2)) = ([rows[(axis + k) % 3] for k in (1, 2)] for rows in (first, edges))
-        inverse = 1 / (u1 * v2 - v1 * u2)
+        inverse = 1 / areas
+        negative = -inverse
         #: Change of the two weights per column and per row: (2, t) each.
         self._per_column, self._per_row = np.empty_like(edges[0]), np.empty_like(edges[0])
         parts = (*self._per_column, *self._per_row)
         for part, (edge, factor) in zip(
-            parts, ((v2, inverse), (v1, -inverse), (u2, -inverse), (u1, inverse)), strict=True
+            parts, ((v2, inverse), (v1, negative), (u2, negative), (u1, inverse)), strict=True
         ):
             np.multiply(edge, factor, out=part)
-        along = self._per_column.take(of_span, axis=1)
-        column, row = spans.columns - u.take(of_span), spans.rows - v.take(of_span)
-        start = self._per_row.take(of_span, axis=1)
-        start *= row
+        column, row = spans.columns - _spread(u, of_span), spans.rows - _spread(v, of_span)
+        along = _spread(self._per_column, of_span)
+        start = _spread(self._per_row, of_span) * row
         start += along * column
         steps = spans.counts - 1.0
-        along *= steps
-        along += start
-        sides = np.stack([u1, v1, u2, v2])
+        end = along * steps
+        end += start
+        sides = u1, v1, u2, v2
         self._first = _moved_inside(start, column, row, sides, of_span)
-        self._step = _moved_inside(along, column + steps, row, sides, of_span)
+        self._step = _moved_inside(end, column + steps, row, sides, of_span)
         self._step -= self._first
         self._step /= np.maximum(steps, 1)
         self._rounded = self._first.astype(np.float32), self._step.astype(np.float32)
@@ -189,13 +206,11 @@ class _SpanWeights:
         value: (t,) float32 or float64, at corner 0. rises: (t,) twice, from there to the corners 1 and 2.
         """
         firsts, steps = (self._first, self._step) if value.dtype == np.float64 else self._rounded
-        start, change = value.take(self._of_span), 0
-        for rise, first, step in zip(rises, firsts, steps, strict=True):
-            rise = rise.take(self._of_span)
-            start += rise * first
-            rise *= step
-            change = change + rise
-        return start, change
+        value, second, third = (_spread(row, self._of_span) for row in (value, *rises))
+        start, step = value + second * firsts[0], second * steps[0]
+        start += third * firsts[1]
+        step += third * steps[1]
+        return start, step
 
     def at_samples(self, line: _Lines) -> np.ndarray:
         """(3, n) float32 weights of the corners."""
@@ -231,14 +246,22 @@ class _Lines:
         return values
 
 
-def _distinct(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The distinct values of an ascending array, and which of them each entry is."""
+def _grouped(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+    """The distinct values of an ascending array, and which of them each entry is; where few repeat, the array itself
+    and None: each its own."""
     is_new = np.empty(len(ordered), bool)
     is_new[:1] = True
     np.not_equal(ordered[1:], ordered[:-1], out=is_new[1:])
+    if len(ordered) <= _FEW_SPANS * np.count_nonzero(is_new):
+        return ordered, None
     place = np.cumsum(is_new)
     place -= 1
     return ordered.take(np.flatnonzero(is_new)), place
+
+
+def _spread(values: np.ndarray, owner: np.ndarray | None) -> np.ndarray:
+    """(..., n) of (..., t) values, as `_grouped` has their owners; not to be changed."""
+    return values if owner is None else values.take(owner, axis=-1)
 
 
 def _at_corners(values: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -248,16 +271,18 @@ def _at_corners(values: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 def _moved_inside(
-    weights: np.ndarray, column: np.ndarray, row: np.ndarray, sides: np.ndarray, owner: np.ndarray
+    weights: np.ndarray, column: np.ndarray, row: np.ndarray, sides: tuple[np.ndarray, ...], owner: np.ndarray | None
 ) -> np.ndarray:
     """(2, n) barycentric weights, in place: of the nearest point of the triangle where they lie outside.
 
-    column, row: (n,) where in the image, from corner 0. sides: (4, t) u and v of the edges from there to the other two
-    corners. owner: (n,) each one's triangle.
+    column, row: (n,) where in the image, from corner 0. sides: (t,) each, u and v of the edges from there to the other
+    two corners. owner: (n,) each one's triangle, as `_grouped` has it.
     """
     w1, w2 = weights
     outside = np.flatnonzero((w1 < 0) | (w2 < 0) | (w1 + w2 > 1))
-    u1, v1, u2, v2 = sides.take(owner.take(outside), axis=1)
+    if not len(outside):
+        return weights
+    u1, v1, u2, v2 = (_spread(side, owner).take(outside) for side in sides)
     x, y = column.take(outside), row.take(outside)
     along1, off1 = _nearest_on_segment(x, y, u1, v1)
     along2, off2 = _nearest_on_segment(x, y, u2, v2)
@@ -274,16 +299,22 @@ def _nearest_on_segment(x: np.ndarray, y: np.ndarray, u: np.ndarray, v: np.ndarr
     return share, (x - share * u) ** 2 + (y - share * v) ** 2
 
 
-def _spread(rows: np.ndarray, owner: np.ndarray, out: np.ndarray):
+def _squares(vectors: np.ndarray) -> np.ndarray:
+    """(n,) squared lengths of (3, n) vectors."""
+    squares = vectors[0] * vectors[0]
+    squares += vectors[1] * vectors[1]
+    squares += vectors[2] * vectors[2]
+    return squares
+
+
+def _write_rows(rows: np.ndarray, owner: np.ndarray, out: np.ndarray):
     np.take(rows, owner, axis=0, out=out, mode="clip")
 
 
 def _write_unit(vectors: np.ndarray, fallbacks: np.ndarray, owner: np.ndarray, out: np.ndarray):
     """Normalises (3, n) vectors into (n, 3) `out`; one of no usable length becomes its owner's of (3, t) fallbacks."""
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        squares = vectors[0] * vectors[0]
-        squares += vectors[1] * vectors[1]
-        squares += vectors[2] * vectors[2]
+        squares = _squares(vectors)
         inverse = 1 / np.sqrt(squares)
         for column, component in zip(out.T, vectors, strict=True):
             np.multiply(component, inverse, out=column)

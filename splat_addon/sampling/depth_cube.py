@@ -37,19 +37,21 @@ def depth_cube(
     """
     snapped, cells = np.empty_like(coordinates), np.empty(coordinates.shape[1], np.int64)
     for chunk in triangle_chunks(len(cells)):
-        snapped[:, chunk] = grid.snapped(coordinates[:, chunk])
+        grid.snapped(coordinates[:, chunk], out=snapped[:, chunk])
         cells[chunk] = _packed_cells(snapped[:, chunk], grid.subcells)
     images: tuple[list, list, list] = ([], [], [])
     total = 0
     for chunk in triangle_chunks(len(triangles)):
         indices = corner_indices(triangles[chunk])
-        may_hit = _boxes_with_samples(*cells.take(indices))
-        candidates = np.flatnonzero(may_hit[0] | may_hit[1] | may_hit[2])
+        hits = _images_with_samples(*cells.take(indices))
+        candidates = np.flatnonzero(hits)
+        hits = hits.take(candidates)
         corners = corners_at(snapped, indices.take(candidates, axis=1))
-        normals = np.abs(doubled_areas(corners))
+        normals = doubled_areas(corners)
+        np.abs(normals, out=normals)
         kept = keeps(normals)
         for axis, spans in enumerate(images):
-            picked = np.flatnonzero(kept[axis] & may_hit[axis].take(candidates) & (normals[axis] > 0))
+            picked = np.flatnonzero(kept[axis] & (hits & (1 << axis)).astype(bool) & (normals[axis] > 0))
             u, v = (corners[(axis + k) % 3].take(picked, axis=1) for k in (1, 2))
             for part in scan_convert(u, v, candidates.take(picked) + chunk.start, grid.subcells):
                 spans.append(part)
@@ -69,12 +71,14 @@ def _packed_cells(snapped: np.ndarray, subcells: int) -> np.ndarray:
     return packed
 
 
-def _boxes_with_samples(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> list[np.ndarray]:
-    """For each image, (t,) whether any of its rays goes through the box of a triangle with its corners in these cells.
+def _images_with_samples(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """(t,) uint8, for each triangle with its corners in these cells a bit for each image: whether any of its rays goes
+    through the triangle's box.
 
     Between corners with the same first cell centre lies none, half-open as in the scan conversion.
     """
-    differ = (a ^ b) | (a ^ c)
+    differ = a ^ b
+    differ |= a ^ c
     mask = (1 << _CELL_BITS) - 1
-    x, y, z = ((differ & (mask << shift)) != 0 for shift in (2 * _CELL_BITS, _CELL_BITS, 0))
-    return [y & z, z & x, x & y]
+    x, y, z = (((differ & (mask << shift)) != 0).view(np.uint8) for shift in (2 * _CELL_BITS, _CELL_BITS, 0))
+    return (y & z) | (z & x) << 1 | (x & y) << 2

@@ -38,7 +38,9 @@ def ellipse_rotations(normals: np.ndarray, axis: int) -> np.ndarray:
     """
     u, v, a = (normals[(axis + k) % 3] for k in (1, 2, 0))
     r = np.sqrt(u * u + v * v)
-    cosine = np.divide(u, r, out=np.ones_like(r), where=r > 0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        cosine = u / r
+    cosine[np.flatnonzero(r == 0)] = 1
     cosine_half, sine_half = _half_angle(cosine)
     np.copysign(sine_half, v, out=sine_half)
     upright, tilted = _half_angle(a)
@@ -52,10 +54,10 @@ def ellipse_rotations(normals: np.ndarray, axis: int) -> np.ndarray:
 
 def _half_angle(cosine: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Cosine and sine of half the angle, 0 to a quarter of a turn; a cosine may be beyond 1 by its rounding."""
-    halves = np.stack([cosine, -cosine])
-    halves += 1
+    halves, half = np.empty((2, len(cosine))), 0.5 * cosine
+    np.add(0.5, half, out=halves[0])
+    np.subtract(0.5, half, out=halves[1])
     np.maximum(halves, 0, out=halves)
-    halves *= 0.5
     return tuple(np.sqrt(halves, out=halves))
 
 

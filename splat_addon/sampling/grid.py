@@ -45,9 +45,9 @@ class Grid:
             part -= 0.5
         return coordinates
 
-    def snapped(self, coordinates: np.ndarray) -> np.ndarray:
+    def snapped(self, coordinates: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
         """Grid coordinates in whole sub-cells: integers held in float64."""
-        snapped = coordinates * self.subcells
+        snapped = np.multiply(coordinates, self.subcells, out=out)
         return np.rint(snapped, out=snapped)
 
     def centres(self) -> np.ndarray:

@@ -12,8 +12,8 @@ import numpy as np
 from .places import vertex_hashes
 from .surfaces import Surface
 
-#: Triangles handled at a time: their temporaries stay in the processor's cache (facts: 32k has the lowest memory).
-CHUNK = 32768
+#: Triangles, or vertices, handled at a time: few enough that their temporaries stay in the processor's cache.
+CHUNK = 16384
 
 #: field -> shape of one triangle's entry, of one layer where it may have several, and dtype.
 _PER_TRIANGLE = {

@@ -87,6 +87,9 @@ def expand(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def batches(counts: np.ndarray, limit: int) -> Iterator[slice]:
     """Slices of neighbouring entries whose counts sum up to at most `limit`; an entry above it comes alone."""
+    if 0 < len(counts) and counts.sum(dtype=np.int64) <= limit:
+        yield slice(0, len(counts))
+        return
     ends = np.cumsum(counts, dtype=np.int64)
     start = 0
     while start < len(counts):

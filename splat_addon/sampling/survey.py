@@ -12,9 +12,6 @@ import numpy as np
 
 from .mesh import TriangleMesh, corner_indices, corners_at, doubled_areas, triangle_chunks
 
-#: Triangles at a time: fewer than elsewhere, as more is held of each.
-_CHUNK = 16384
-
 
 @dataclass(frozen=True, eq=False)
 class Survey:
@@ -52,7 +49,7 @@ def _survey(mesh: TriangleMesh) -> Survey:
     is_used = np.zeros(len(mesh.positions), bool)
     facing_area, boundary = 0.0, np.uint64(0)
     with np.errstate(over="ignore", invalid="ignore"):
-        for chunk in triangle_chunks(count, _CHUNK):
+        for chunk in triangle_chunks(count):
             indices = corner_indices(mesh.triangles[chunk])
             a, b, c = keys.take(indices)
             np.add(a, b, out=sums[chunk])
@@ -86,7 +83,7 @@ def signed_volumes(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """(T,) float64: six times what lies between each triangle and (0, 0, 0), above 0 where the triangle turns away from
     there. Of a closed surface they add up to six times its volume. positions: (V, 3)."""
     components, volumes = np.ascontiguousarray(positions.T), np.empty(len(triangles))
-    for chunk in triangle_chunks(len(triangles), _CHUNK):
+    for chunk in triangle_chunks(len(triangles)):
         corners = corners_at(components, corner_indices(triangles[chunk]))
         _volumes(corners[:, 0], doubled_areas(corners), out=volumes[chunk])
     return volumes

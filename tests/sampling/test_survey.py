@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from splat_addon.sampling import TriangleMesh
-from splat_addon.sampling import survey as survey_module
+from splat_addon.sampling.mesh import triangle_chunks
 from splat_addon.sampling.survey import signed_volumes, survey
 
 #: Few places, so that triangles collapse, repeat and close by accident.
@@ -34,7 +34,7 @@ def boundary(triangles):
 
 @pytest.fixture(params=[3, 16384], ids=["small chunks", "one chunk"])
 def chunk(request, monkeypatch):
-    monkeypatch.setattr(survey_module, "_CHUNK", request.param)
+    monkeypatch.setattr(triangle_chunks, "__defaults__", (request.param,))
 
 
 @pytest.mark.usefixtures("chunk")
