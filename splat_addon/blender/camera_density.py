@@ -9,7 +9,9 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ..sampling import Outline, camera_spacing
+from ..rendering import Panorama
+from ..rendering.panorama_faces import cube_views
+from ..sampling import NotSeenError, Outline, camera_spacing
 from .camera_export import final_camera
 
 
@@ -24,13 +26,23 @@ def without_camera(
     if "pixels" not in fineness:
         return fineness
     camera = final_camera(depsgraph, depsgraph.scene.camera)
-    spacing = camera_spacing(
-        surface(),
-        fineness["pixels"],
-        object_to_view=camera.world_to_view() @ np.array(matrix_world, np.float64),
-        window=camera.window,
-        size=camera.size,
-        near=camera.near,
-        is_orthographic=camera.is_orthographic,
-    )
-    return {"spacing": spacing}
+    views = cube_views(camera, 1.0) if isinstance(camera, Panorama) else [camera]
+    spacings, unseen = [], None
+    for view in views:
+        try:
+            spacings.append(
+                camera_spacing(
+                    surface(),
+                    fineness["pixels"],
+                    object_to_view=view.world_to_view() @ np.array(matrix_world, np.float64),
+                    window=view.window,
+                    size=view.size,
+                    near=view.near,
+                    is_orthographic=view.is_orthographic,
+                )
+            )
+        except NotSeenError as error:
+            unseen = error
+    if not spacings:
+        raise unseen
+    return {"spacing": min(spacings)}

@@ -9,7 +9,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
-from ..rendering import Camera, Lens
+from ..rendering import Camera, EquidistantFisheye, Equirectangular, EquisolidFisheye, Lens, Panorama
 
 
 def picture_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
@@ -30,7 +30,7 @@ def border(render: bpy.types.RenderSettings) -> tuple[int, int, int, int]:
     return left, bottom, right - left, top - bottom
 
 
-def final_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object | None) -> Camera:
+def final_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object | None) -> Camera | Panorama:
     """The camera of a final render, looking through the border if there is one.
 
     Raises ValueError where the scene has no camera, or one of a kind that cannot be rendered.
@@ -38,22 +38,71 @@ def final_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object
     scene = depsgraph.scene
     if camera_object is None:
         raise ValueError(f"The scene {scene.name!r} has no camera; add one, or make one the active camera.")
-    data = camera_object.data
-    if camera_object.type != "CAMERA" or data.type not in {"PERSP", "ORTHO"}:
-        kind = data.type if camera_object.type == "CAMERA" else camera_object.type
-        raise ValueError(f"The camera {camera_object.name!r} is {kind}; make it perspective or orthographic.")
-    width, height = picture_size(scene.render)
+    if camera_object.type != "CAMERA" or camera_object.data.type not in _KINDS:
+        kind = camera_object.data.type if camera_object.type == "CAMERA" else camera_object.type
+        raise ValueError(
+            f"The camera {camera_object.name!r} is {kind}; make it perspective, orthographic or panoramic."
+        )
+    x, y, width, height = border(scene.render)
+    if width < 1 or height < 1:
+        raise ValueError("The render border is less than a pixel; draw a larger one or switch it off.")
+    return _KINDS[camera_object.data.type](camera_object, depsgraph).cropped(x, y, width, height)
+
+
+def _flat_camera(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Camera:
+    """A perspective or orthographic camera, of the whole picture."""
+    data, render = camera_object.data, depsgraph.scene.render
+    width, height = picture_size(render)
     projection = camera_object.calc_matrix_camera(
-        depsgraph, x=width, y=height, scale_x=scene.render.pixel_aspect_x, scale_y=scene.render.pixel_aspect_y
+        depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y
     )
     whole = camera_of_matrices(camera_object.matrix_world, projection, (width, height), data.clip_start, data.clip_end)
-    x, y, border_width, border_height = border(scene.render)
-    if border_width < 1 or border_height < 1:
-        raise ValueError("The render border is less than a pixel; draw a larger one or switch it off.")
-    return replace(whole, lens=_lens(camera_object, depsgraph)).cropped(x, y, border_width, border_height)
+    return replace(whole, lens=_lens(camera_object, depsgraph))
 
 
-def view_camera(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> Camera:
+def _panorama(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Panorama:
+    """A panoramic camera, of the whole picture. Raises ValueError for one of a type that is not drawn."""
+    data, render = camera_object.data, depsgraph.scene.render
+    if data.panorama_type not in _PROJECTIONS:
+        names = data.bl_rna.properties["panorama_type"].enum_items
+        drawn = ", ".join(names[kind].name for kind in _PROJECTIONS)
+        raise ValueError(
+            f"The panorama type of the camera {camera_object.name!r} is {names[data.panorama_type].name}; "
+            f"those that are drawn are {drawn}."
+        )
+    projection = _PROJECTIONS[data.panorama_type](data, render)
+    matrix_world = np.array(camera_object.matrix_world, np.float64)
+    # as in Cycles, shares of the picture's own edges, and what lies beyond them is shown
+    window = data.shift_x, 1 + data.shift_x, data.shift_y, 1 + data.shift_y
+    return Panorama(matrix_world, projection, picture_size(render), data.clip_start, data.clip_end, window)
+
+
+def _equirectangular(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> Equirectangular:
+    return Equirectangular((data.longitude_min, data.longitude_max), (data.latitude_min, data.latitude_max))
+
+
+def _equidistant(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> EquidistantFisheye:
+    return EquidistantFisheye(data.fisheye_fov)
+
+
+def _equisolid(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> EquisolidFisheye:
+    width, height = picture_size(render)
+    edge = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
+    pixel = edge / _fitted_pixels(data, render)
+    sensor = width * pixel, height * pixel * render.pixel_aspect_y / render.pixel_aspect_x
+    return EquisolidFisheye(data.fisheye_fov, data.fisheye_lens, sensor)
+
+
+_PROJECTIONS = {
+    "EQUIRECTANGULAR": _equirectangular,
+    "FISHEYE_EQUIDISTANT": _equidistant,
+    "FISHEYE_EQUISOLID": _equisolid,
+}
+
+_KINDS = {"PERSP": _flat_camera, "ORTHO": _flat_camera, "PANO": _panorama}
+
+
+def view_camera(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> Camera | Panorama:
     """The camera of a final render's active view: each eye's of a stereo camera, in its place and with its shift.
 
     Raises as `final_camera`.
@@ -62,15 +111,17 @@ def view_camera(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) 
     camera = final_camera(depsgraph, camera_object)
     if not scene.render.use_multiview:
         return camera
+    matrix_world = np.array(engine.camera_model_matrix(camera_object), np.float64)
+    if isinstance(camera, Panorama):
+        return replace(camera, matrix_world=matrix_world)
     shift = engine.camera_shift_x(camera_object) - camera_object.data.shift_x
     left, right, bottom, top = camera.window
-    across = shift * _shift_pixels(camera_object.data, scene.render) * (right - left) / camera.size[0]
-    matrix_world = np.array(engine.camera_model_matrix(camera_object), np.float64)
+    across = shift * _fitted_pixels(camera_object.data, scene.render) * (right - left) / camera.size[0]
     return replace(camera, matrix_world=matrix_world, window=(left + across, right + across, bottom, top))
 
 
-def _shift_pixels(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> float:
-    """Pixels across the whole picture by which a shift of 1 moves it: the edge that the sensor is fitted to."""
+def _fitted_pixels(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> float:
+    """Of the whole picture's edge that the sensor is fitted to, in pixels as wide as they are: a shift is a share."""
     width, height = picture_size(render)
     aspect_x, aspect_y = render.pixel_aspect_x, render.pixel_aspect_y
     is_wide = width * aspect_x >= height * aspect_y

@@ -14,6 +14,7 @@ from .lens import Lens
 from .light import Light
 from .lines import Lines
 from .matcap import Matcap
+from .panorama import EquidistantFisheye, Equirectangular, EquisolidFisheye, Panorama
 from .plan import plan
 from .polygons import Polygons, make_polygons
 from .presets import PRESETS, Preset
@@ -27,6 +28,9 @@ __all__ = (
     "Camera",
     "Cryptomatte",
     "Environment",
+    "EquidistantFisheye",
+    "Equirectangular",
+    "EquisolidFisheye",
     "Frame",
     "FramePlan",
     "Instance",
@@ -35,6 +39,7 @@ __all__ = (
     "Lines",
     "Matcap",
     "Material",
+    "Panorama",
     "PolygonInstance",
     "Polygons",
     "Preset",

@@ -14,6 +14,8 @@ from .device import Device
 from .frame import EMPTY_DEPTH, Frame
 from .frame_plan import HELD_BY, FramePlan
 from .identity import Identified
+from .panorama import Panorama
+from .panorama_faces import panorama_frame
 from .passes import RUN
 from .passes.tile import TileContext, texture_key
 from .plan import plan
@@ -43,7 +45,11 @@ class Renderer:
         self.resources = Resources(device)
 
     def render(
-        self, scene: Scene, camera: Camera, settings: Settings | None = None, progress: Progress | None = None
+        self,
+        scene: Scene,
+        camera: Camera | Panorama,
+        settings: Settings | None = None,
+        progress: Progress | None = None,
     ) -> Frame:
         """The whole picture in numpy arrays.
 
@@ -53,7 +59,7 @@ class Renderer:
 
     def render_moments(
         self,
-        moments: Iterable[tuple[Scene, Camera]],
+        moments: Iterable[tuple[Scene, Camera | Panorama]],
         count: int,
         settings: Settings | None = None,
         progress: Progress | None = None,
@@ -67,32 +73,39 @@ class Renderer:
         self._check(settings)
         blocks = sample_blocks(settings.samples, count)
         if settings.samples == 1:
-            ((scene, camera),) = moments
-            return self._frame(scene, camera, settings, progress)
-        turns = (progress and _share(progress, turn, settings.samples) for turn in range(settings.samples))
-        return mean_frame(
+            turns = iter([progress])
+        else:
+            turns = (progress and _share(progress, turn, settings.samples) for turn in range(settings.samples))
+        frames = (
             frame
             for block, (scene, camera) in zip(blocks, moments, strict=True)
             for frame in self._samples(scene, camera, settings, block, turns)
         )
+        return mean_frame(frames) if settings.samples > 1 else next(frames)
 
     def _samples(self, scene, camera, settings, numbers: list[int], turns: Iterator) -> Iterator[Frame]:
-        """The pictures of these samples. Shadow maps are fitted to what the camera sees through its pixels' centres;
-        they are drawn again where a lens moves what a sun's map is fitted to.
+        """The pictures of these samples; those that would draw the same shadow maps share them.
+
+        Maps are fitted to what the camera sees through its pixels' centres, unless a lens moves the eye.
         """
         maps = None
-        for number in numbers:
-            moved = sample_camera(camera, number)
-            frame_plan = plan(scene, moved, settings, shadow_camera=moved if camera.lens else camera)
+
+        def draw(moved: Camera, fitted: Camera, settings: Settings, told: Progress | None) -> Frame:
+            nonlocal maps
+            frame_plan = plan(scene, moved, settings, shadow_camera=fitted)
             are_shared_done = maps is not None and same_maps(maps, frame_plan.shadow_maps)
             maps = frame_plan.shadow_maps
-            yield self._frame(scene, moved, settings, next(turns), frame_plan, are_shared_done)
+            return self._frame(scene, moved, settings, told, frame_plan, are_shared_done)
 
-    def _frame(
-        self, scene: Scene, camera: Camera, settings: Settings, progress, frame_plan=None, are_shared_done=False
-    ) -> Frame:
+        for number in numbers:
+            if isinstance(camera, Panorama):
+                yield panorama_frame(camera, number, settings, draw, next(turns))
+            else:
+                moved = sample_camera(camera, number)
+                yield draw(moved, moved if camera.lens else camera, settings, next(turns))
+
+    def _frame(self, scene, camera: Camera, settings, progress, frame_plan: FramePlan, are_shared_done: bool) -> Frame:
         """The picture of one sample. are_shared_done: what all tiles share is still there, of the sample before."""
-        frame_plan = frame_plan or plan(scene, camera, settings)
         stats = self._new_stats(frame_plan)
         started = perf_counter()
         try:

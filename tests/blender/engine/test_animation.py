@@ -135,8 +135,8 @@ def test_everything_is_let_go_after_a_still(two, picture):
 
 
 def test_everything_is_let_go_when_a_frame_fails(two, scene, frames):
-    scene.camera.data.type = "PANO"
-    with pytest.raises(RuntimeError, match="PANO"):
+    scene.camera.data.type, scene.camera.data.panorama_type = "PANO", "MIRRORBALL"
+    with pytest.raises(RuntimeError, match="Mirror Ball"):
         frames()
     assert final_render._resources is None
 

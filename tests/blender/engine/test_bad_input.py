@@ -39,9 +39,9 @@ def test_a_scene_without_a_camera_is_refused(scene, add_surfels):
         bpy.ops.render.render(write_still=True)
 
 
-def test_a_panoramic_camera_is_refused(scene, add_camera):
-    add_camera(type="PANO")
-    with pytest.raises(RuntimeError, match="The camera 'camera' is PANO; make it perspective or orthographic"):
+def test_a_panorama_of_another_type_is_refused(scene, add_camera):
+    add_camera(type="PANO", panorama_type="MIRRORBALL")
+    with pytest.raises(RuntimeError, match="camera 'camera' is Mirror Ball; those that are drawn are Equirectangular"):
         bpy.ops.render.render(write_still=True)
 
 
@@ -58,7 +58,7 @@ def test_a_camera_without_extent_is_refused(scene, add_camera):
 
 
 def test_after_a_refusal_the_next_render_works(good, scene, picture):
-    scene.camera.data.type = "PANO"
+    scene.camera.data.type, scene.camera.data.panorama_type = "PANO", "MIRRORBALL"
     with pytest.raises(RuntimeError):
         picture()
     scene.camera.data.type = "PERSP"

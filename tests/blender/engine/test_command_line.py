@@ -94,8 +94,8 @@ def test_without_a_camera_no_frame_is_written_and_the_exit_code_is_1(render_file
 
 
 def test_a_camera_that_cannot_be_rendered_is_named_and_the_exit_code_is_1(render_file, surfels, add_camera, tmp_path):
-    add_camera(type="PANO")
+    add_camera(type="PANO", panorama_type="MIRRORBALL")
     result = render_file("-f", "1")
     assert result.returncode == 1
-    assert "Surfel render failed: The camera 'camera' is PANO; make it perspective or orthographic." in result.stdout
+    assert "Surfel render failed: The panorama type of the camera 'camera' is Mirror Ball" in result.stdout
     assert not list(tmp_path.glob("frame_*"))

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A panorama from six views (Greene, "Environment mapping and other applications of world projections", 1986).
+
+Each view is a perspective picture of one face of a cube around the camera, and a little more, so that a filter finds
+its neighbours; only what the panorama shows of a face is drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .accumulation import sample_camera, sample_points
+from .camera import Camera
+from .frame import EMPTY_DEPTH, Frame
+from .panorama import Panorama
+from .settings import OUTPUTS, Settings
+
+#: (a sample's camera, the one that shadow maps are fitted to, settings, progress) -> Frame
+Draw = Callable[[Camera, Camera, Settings, object], Frame]
+
+#: Pixels of a face along the panorama's finest pixel, where the face is coarsest.
+DENSITY = 2.0
+#: Pixels of a face that a look needs around it; views begin at multiples of some, so that samples have them in common.
+_REACH, _STEP = 3, 16
+#: Pixels whose directions are held at once.
+_BLOCK = 1 << 18
+
+#: axes x, y, z of each face's view: it looks down its -z
+_FACES = np.array(
+    [
+        [(1, 0, 0), (0, 1, 0), (0, 0, 1)],
+        [(0, 0, 1), (0, 1, 0), (-1, 0, 0)],
+        [(-1, 0, 0), (0, 1, 0), (0, 0, -1)],
+        [(0, 0, -1), (0, 1, 0), (1, 0, 0)],
+        [(1, 0, 0), (0, 0, 1), (0, -1, 0)],
+        [(1, 0, 0), (0, 0, -1), (0, 1, 0)],
+    ],
+    np.float64,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class _Face:
+    """camera: its view. pixels: (n,) numbers of the panorama's that look through it. looks: (n, 2) where, in pixels of
+    the view.
+    """
+
+    camera: Camera
+    pixels: np.ndarray
+    looks: np.ndarray
+
+
+def panorama_frame(panorama: Panorama, number: int, settings: Settings, draw: Draw, progress=None) -> Frame:
+    """Sample `number` of a panorama: its faces, drawn and looked up.
+
+    The pixels of a face and the places in the panorama's pixels move by their own sequences (`sample_points`), so
+    that the mean over samples depends on neither grid. Pixels that look nowhere are an opaque black, as Cycles', and
+    as deep as nothing. Depths are distances from the camera, of the nearest pixel of the face. The rest is
+    interpolated: bilinearly where there is one sample, which smooths it to about a pixel.
+    """
+    x, y, *place = sample_points(1, number)[0]
+    faces = _faces(panorama, place)
+    interpolated = _cubic if settings.samples > 1 else _bilinear
+    pixels, stats = {}, {}
+    for turn, face in enumerate(faces):
+        camera = sample_camera(face.camera, number)
+        frame = draw(camera, face.camera, _in_pixels_of_faces(settings), _share(progress, turn, len(faces)))
+        stats = _added(stats, frame.stats)
+        looks = face.looks - (x - 0.5, y - 0.5)
+        for name in settings.outputs:
+            values = (_distance if name == "depth" else interpolated)(getattr(frame, name), camera, looks)
+            if name not in pixels:
+                pixels[name] = _nothing(name, panorama.size, values.shape[1:])
+            pixels[name][face.pixels] = values
+    width, height = panorama.size
+    arrays = {name: values.reshape(height, width, *values.shape[1:]) for name, values in pixels.items()}
+    return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats={**stats, "faces": len(faces)})
+
+
+def _in_pixels_of_faces(settings: Settings) -> Settings:
+    """The same choices where a length in pixels is one of a face's."""
+    lines = settings.lines
+    if lines is None:
+        return settings
+    wider = replace(lines, width=lines.width * DENSITY, depth_threshold=lines.depth_threshold * DENSITY)
+    return replace(settings, lines=wider)
+
+
+def _nothing(name: str, size: tuple[int, int], shape: tuple[int, ...]) -> np.ndarray:
+    """What pixels hold that look nowhere."""
+    values = np.zeros((size[0] * size[1], *shape), np.float32)
+    if name == "depth":
+        values[:] = EMPTY_DEPTH
+    elif name == "color":
+        values[:, 3] = 1
+    return values
+
+
+def _share(progress, turn: int, count: int):
+    """What the `turn`th of `count` faces tells."""
+    return progress and (lambda done, step: progress((turn + done) / count, step))
+
+
+def _faces(panorama: Panorama, place) -> list[_Face]:
+    """Those that something is seen through. place: in each of the panorama's pixels."""
+    found = [([], []) for _ in _FACES]
+    width, height = panorama.size
+    rows = max(_BLOCK // width, 1)
+    for first in range(0, height, rows):
+        directions = panorama.directions(slice(first, min(first + rows, height)), place).reshape(-1, 3)
+        along = -directions @ _FACES[:, 2].T
+        owner = np.where(directions.any(axis=1), along.argmax(axis=1), -1)
+        for number, (pixels, looks) in enumerate(found):
+            here = np.flatnonzero(owner == number)
+            pixels.append(here + first * width)
+            looks.append(directions[here] @ _FACES[number, :2].T / along[here, number, None])
+    return [
+        _face(view, np.concatenate(pixels), np.concatenate(looks))
+        for view, (pixels, looks) in zip(cube_views(panorama, DENSITY), found, strict=True)
+        if any(map(len, pixels))
+    ]
+
+
+def cube_views(panorama: Panorama, density: float) -> list[Camera]:
+    """The six whole faces. density: their pixels along the panorama's finest, where faces are coarsest."""
+    side = int(np.ceil(2 * density / panorama.pixel_angle()))
+    views = []
+    for axes in _FACES:
+        turned = np.array(panorama.matrix_world, np.float64)
+        turned[:3, :3] @= axes.T
+        views.append(Camera(turned, (-1, 1, -1, 1), (side, side), panorama.near, panorama.far))
+    return views
+
+
+def _face(whole: Camera, pixels: np.ndarray, looks: np.ndarray) -> _Face:
+    """What the pixels look at, of a face. looks: (n, 2) on the plane at distance 1, -1 to 1."""
+    looks = (looks + 1) * (whole.size[0] / 2)
+    low = np.floor((looks.min(axis=0) - _REACH) / _STEP).astype(int) * _STEP
+    high = np.ceil((looks.max(axis=0) + _REACH) / _STEP).astype(int) * _STEP
+    return _Face(whole.cropped(*low.tolist(), *(high - low).tolist()), pixels, looks - low)
+
+
+def _bilinear(values: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
+    """(n, ...) of an array of a face's frame. looks: (n, 2) in pixels of `camera`."""
+    return sum(
+        along * up * pixels for along, up, pixels in _around(values, camera, looks, lambda t: (1 - t, t), first=0)
+    )
+
+
+def _cubic(values: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
+    """As `_bilinear`, by Keys' cubic convolution (1981), which does not widen the filter of many samples; within what
+    the four nearest pixels hold, so that nothing rings.
+    """
+    inner = [pixels for _, _, pixels in _around(values, camera, looks, lambda t: (1 - t, t), first=0)]
+    mixed = sum(along * up * pixels for along, up, pixels in _around(values, camera, looks, _keys, first=-1))
+    return np.clip(mixed, np.minimum.reduce(inner), np.maximum.reduce(inner))
+
+
+def _keys(t: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Weights of the pixels before, at, after and beyond, t beyond the second."""
+    return (
+        t * (-0.5 + t * (1 - 0.5 * t)),
+        1 + t * t * (1.5 * t - 2.5),
+        t * (0.5 + t * (2 - 1.5 * t)),
+        t * t * (0.5 * t - 0.5),
+    )
+
+
+def _around(values: np.ndarray, camera: Camera, looks: np.ndarray, weights, first: int) -> Iterator:
+    """(weight across, weight up, values (n, ...)) of each of the pixels around looks, `first` the lowest."""
+    corner = np.floor(looks - 0.5).astype(int)
+    shape = (-1, *[1] * (values.ndim - 2))
+    across, up = ([w.reshape(shape) for w in weights(t)] for t in (looks - 0.5 - corner).astype(np.float32).T)
+    for j, above in enumerate(up):
+        for i, along in enumerate(across):
+            yield along, above, values[corner[:, 1] + first + j, corner[:, 0] + first + i]
+
+
+def _distance(depth: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
+    """(n,) distances from the camera, of the pixels looked at."""
+    column, row = np.floor(looks).astype(int).T
+    left, right, bottom, top = camera.window
+    across = left + (column + 0.5) / camera.size[0] * (right - left)
+    up = bottom + (row + 0.5) / camera.size[1] * (top - bottom)
+    deep = depth[row, column]
+    return np.where(deep < EMPTY_DEPTH, deep * np.sqrt(1 + across**2 + up**2), EMPTY_DEPTH).astype(np.float32)
+
+
+def _added(stats: dict, more: dict) -> dict:
+    """Times and numbers of splats added up, the largest of other counts."""
+    if not stats:
+        return dict(more)
+    sums = {name: stats[name] + more[name] for name in ("milliseconds", "splats", "instances")}
+    most = {name: max(stats[name], more[name]) for name in ("instances_degenerate", "surfels_coarse")}
+    names = stats["passes"] | more["passes"]
+    passes = {name: stats["passes"].get(name, 0.0) + more["passes"].get(name, 0.0) for name in names}
+    return {**more, **sums, **most, "passes": passes}
