@@ -56,6 +56,16 @@ class Cryptomatte:
         keys, shares = added_up(np.concatenate([self.keys, other.keys]), np.concatenate([self.shares, other.shares]))
         return Cryptomatte(self.size, keys, shares, self.names | other.names)
 
+    def looked_up(self, size: tuple[int, int], pixels: np.ndarray, sources: np.ndarray) -> Cryptomatte:
+        """A picture of another size, whose `pixels` (n,), by number, hold what `sources` (n,) do here."""
+        own = (self.keys >> np.uint64(32)).astype(np.int64)
+        first = np.searchsorted(own, sources, "left")
+        counts = np.searchsorted(own, sources, "right") - first
+        entry = np.repeat(first - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())
+        keys = np.repeat(pixels, counts).astype(np.uint64) << np.uint64(32) | self.keys[entry] & np.uint64(_MASK)
+        order = np.argsort(keys, kind="stable")
+        return Cryptomatte(size, keys[order], self.shares[entry][order], self.names)
+
     def over(self, count: int) -> Cryptomatte:
         """Each share divided by a number."""
         return Cryptomatte(self.size, self.keys, self.shares / count, self.names)

@@ -16,7 +16,7 @@ from .accumulation import sample_camera, sample_points
 from .camera import Camera
 from .frame import EMPTY_DEPTH, Frame
 from .panorama import Panorama
-from .settings import OUTPUTS, Settings
+from .settings import NEAREST, OUTPUTS, Settings
 
 #: (a sample's camera, the one that shadow maps are fitted to, settings, progress) -> Frame
 Draw = Callable[[Camera, Camera, Settings, object], Frame]
@@ -58,12 +58,14 @@ def panorama_frame(panorama: Panorama, number: int, settings: Settings, draw: Dr
 
     The pixels of a face and the places in the panorama's pixels move by their own sequences (`sample_points`), so
     that the mean over samples depends on neither grid. Pixels that look nowhere are an opaque black, as Cycles', and
-    as deep as nothing. Depths are distances from the camera, of the nearest pixel of the face. The rest is
-    interpolated: bilinearly where there is one sample, which smooths it to about a pixel.
+    as deep as nothing. Depths are distances from the camera; they and what no filter may mix (`NEAREST`, Cryptomatte)
+    are those of the nearest pixel of the face. The rest is interpolated: bilinearly where there is one sample, which
+    smooths it to about a pixel.
     """
     x, y, *place = sample_points(1, number)[0]
     faces = _faces(panorama, place)
     interpolated = _cubic if settings.samples > 1 else _bilinear
+    look_up = {**dict.fromkeys(NEAREST, _nearest), "depth": _distance}
     pixels, stats = {}, {}
     for turn, face in enumerate(faces):
         camera = sample_camera(face.camera, number)
@@ -71,12 +73,19 @@ def panorama_frame(panorama: Panorama, number: int, settings: Settings, draw: Dr
         stats = _added(stats, frame.stats)
         looks = face.looks - (x - 0.5, y - 0.5)
         for name in settings.outputs:
-            values = (_distance if name == "depth" else interpolated)(getattr(frame, name), camera, looks)
+            if name == "cryptomatte":
+                matte = frame.cryptomatte.looked_up(panorama.size, face.pixels, _pixel_numbers(camera, looks))
+                pixels[name] = pixels[name].plus(matte) if name in pixels else matte
+                continue
+            values = look_up.get(name, interpolated)(getattr(frame, name), camera, looks)
             if name not in pixels:
                 pixels[name] = _nothing(name, panorama.size, values.shape[1:])
             pixels[name][face.pixels] = values
     width, height = panorama.size
-    arrays = {name: values.reshape(height, width, *values.shape[1:]) for name, values in pixels.items()}
+    arrays = {
+        name: values if name == "cryptomatte" else values.reshape(height, width, *values.shape[1:])
+        for name, values in pixels.items()
+    }
     return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats={**stats, "faces": len(faces)})
 
 
@@ -179,9 +188,20 @@ def _around(values: np.ndarray, camera: Camera, looks: np.ndarray, weights, firs
             yield along, above, values[corner[:, 1] + first + j, corner[:, 0] + first + i]
 
 
+def _nearest(values: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
+    """As `_bilinear`, of what no filter may mix."""
+    return values.reshape(-1, *values.shape[2:])[_pixel_numbers(camera, looks)]
+
+
+def _pixel_numbers(camera: Camera, looks: np.ndarray) -> np.ndarray:
+    """(n,) of the pixels looked at, row by row."""
+    column, row = np.floor(looks).astype(int).T
+    return row * camera.size[0] + column
+
+
 def _distance(depth: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
     """(n,) distances from the camera, of the pixels looked at."""
-    column, row = np.floor(looks).astype(int).T
+    row, column = np.divmod(_pixel_numbers(camera, looks), camera.size[0])
     left, right, bottom, top = camera.window
     across = left + (column + 0.5) / camera.size[0] * (right - left)
     up = bottom + (row + 0.5) / camera.size[1] * (top - bottom)

@@ -13,13 +13,16 @@ from splat_addon.rendering import (
     EMPTY_DEPTH,
     Camera,
     Environment,
+    Equirectangular,
     Instance,
     Lens,
     Light,
     Lines,
     Matcap,
     Material,
+    Panorama,
     Settings,
+    look_at,
 )
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.shading_models import SHADING_MODELS
@@ -81,6 +84,13 @@ def blurred(scene, camera):
     return scene, replace(camera, lens=Lens(0.1, float(np.linalg.norm(camera.matrix_world[:3, 3])), 6))
 
 
+def around(scene, camera):
+    """The scene in a panorama from where the camera is, that looks past it."""
+    turned = camera.matrix_world.copy()
+    turned[:3, :3] = turned[:3, :3] @ look_at((0, 0, 0), (1, 0.4, -1))[:3, :3]
+    return scene, Panorama(turned, Equirectangular(), (128, 64))
+
+
 def in_a_picture(scene, camera):
     """The scene in a world that is a picture; its two materials reflect it."""
     rough, metal = scene.surfels
@@ -136,6 +146,9 @@ BALL = Matcap(environment().pixels)
 #: The exact picture has a pinhole: tests/rendering/test_lens.py has closed forms.
 BLURRED = {"depth_of_field": lambda: blurred(*scenes.checker_plane(size=SIZE))}
 
+#: Its faces' edges lie across the torus; tests/rendering/test_panorama.py has closed forms.
+ALL_AROUND = {"panorama": lambda: around(*scenes.torus(size=SIZE))}
+
 #: Models that show the surface and not its light.
 UNLIT = [model.name for model in SHADING_MODELS.values() if not model.is_lit]
 
@@ -157,6 +170,7 @@ CASES = [
     ("own_materials", "mip", {}),
     ("own_materials", "mip", {"storage": "16-bit"}),
     ("depth_of_field", "quad", {"samples": 3}),
+    *(("panorama", method, {}) for method in ("quad", "mip")),
 ]
 
 

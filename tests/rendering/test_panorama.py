@@ -23,6 +23,7 @@ from splat_addon.rendering import (
     look_at,
 )
 from splat_addon.rendering.passes import RUN
+from splat_addon.rendering.settings import OUTPUTS
 from splat_addon.surfels import Surfels, axes_quaternions
 
 FLAT = Settings(method="quad", shading="flat")
@@ -147,14 +148,20 @@ def test_a_hidden_thing_is_hidden(render):
     corner = MATRIX[:3, :3] @ (1, 1, -1) / math.sqrt(3)
     places[:3, 3] = MATRIX[:3, 3] + 3 * corner
     large = ball(lambda p: np.zeros_like(p))
-    scene = replace(large, surfels=(*large.surfels, replace(near, matrix_world=places)))
+    large = replace(large.surfels[0], name="large", index=1)
+    scene = Scene([large, replace(near, matrix_world=places, name="near", index=3)])
     panorama = Panorama(MATRIX, Equirectangular(), (192, 96))
-    frame = render(scene, panorama, replace(FLAT, samples=4))
+    frame = render(scene, panorama, replace(FLAT, samples=4, outputs=OUTPUTS))
     direction = panorama.directions(slice(None)) @ MATRIX[:3, :3].T
     angle = np.arccos(np.clip(direction @ corner, -1, 1))
     rim, pixel = math.asin(0.5 / 3), 2 * math.pi / 192
     inside, outside = angle < rim - 1.5 * pixel, angle > rim + 2.5 * pixel
     assert inside.sum() > 40
+    near_only = frame.cryptomatte.share_of("near")
+    assert (near_only[inside] > 0.99).all() and not near_only[outside].any()
+    assert (frame.object_index[inside] == 3).all() and (frame.object_index[outside] == 1).all()
+    off = np.linalg.norm(frame.position - MATRIX[:3, 3], axis=-1) - frame.depth
+    assert np.abs(off).max() < 0.02
     assert (frame.color[inside][:, 0] > 0.99).all() and (frame.color[outside][:, 0] < 0.01).all()
     closed = 3 * np.cos(angle) - np.sqrt(np.maximum(0.5**2 - (3 * np.sin(angle)) ** 2, 0))
     assert np.abs(frame.depth - closed)[inside].max() < 0.08
