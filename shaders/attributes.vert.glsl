@@ -2,6 +2,7 @@
 // Summary: for methods that draw quads in space: each splat's corner and its attributes.
 
 #define VERTEX_STAGE
+#define PARALLEL (splats.options.z > 0.5)
 #include "common/splat_attributes.glsl"
 #ifdef WITH_MATERIALS
 #include "common/splat_material.glsl"
@@ -20,6 +21,10 @@ void main() {
   normal = splat.normal;
 #ifdef LAYER
   opacity = splat.opacity;
+#endif
+#ifdef REST
+  int number = gl_VertexID / 3;
+  color_weight = vec4(texelFetch(lit_splats, ivec2(number % SPLATS_PER_ROW, number / SPLATS_PER_ROW), 0).rgb, 1.0);
 #endif
 #ifdef TEXTURED
   texture_place = fetch_texture_place(gl_VertexID / 3, splat.material, texture_along, texture_border);

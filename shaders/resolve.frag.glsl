@@ -27,7 +27,6 @@
 
 const float EMPTY_DEPTH = 1e10;
 const float FARTHEST = 3.4e38;
-const float FILTER_VARIANCE = 0.5;  // of the Gaussian, in samples
 // The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes.
 const float FIRST_WEIGHT = exp(-0.5 * float(FILTER_REACH * FILTER_REACH) / FILTER_VARIANCE);
 const float FIRST_RATIO = exp((float(FILTER_REACH) - 0.5) / FILTER_VARIANCE);

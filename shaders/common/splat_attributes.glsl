@@ -1,5 +1,5 @@
 // References: Botsch et al. 2005, section 4 (what a splat blends).
-// Summary: a stored splat as the attributes that every method accumulates.
+// Summary: a stored splat as the attributes that every method accumulates. The includer says what `PARALLEL` (bool) is.
 
 #include "common/sides.glsl"
 #include "common/stored_splat.glsl"
@@ -23,7 +23,7 @@ Splat fetch_splat(int index) {
   splat.axis_u = linear * stored.axis_u;
   splat.axis_v = linear * stored.axis_v;
   splat.material = stored.material;
-  float cosine = outward_cosine(splat.position, splat.axis_u, splat.axis_v, splats.sides.x, splats.options.z > 0.5);
+  float cosine = outward_cosine(splat.position, splat.axis_u, splat.axis_v, splats.sides.x, PARALLEL);
   splat.color_weight = vec4(stored.color.rgb, cosine < 0.0 ? BACK_WEIGHT : 1.0);
   splat.normal = normalize(mat3(splats.normal_matrix) * stored.normal);
   float side = cosine < -GRAZING_COSINE ? -splats.sides.x : splats.sides.x;

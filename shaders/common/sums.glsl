@@ -11,6 +11,15 @@
 const float LEAST_WEIGHT = 3.8147e-6;
 #endif
 
+#ifdef REST
+const float MOST_OPAQUE = 0.999;
+
+// Of all that is left behind transparent layers: lit colours, and logarithms of what the splats let through.
+void add_to_sums(vec3 color, float weight, float depth) {
+  rest_sum = vec4(color, 1.0) * (weight * opacity);
+  rest_weight = vec2(-log(1.0 - min(opacity, MOST_OPAQUE)), 1.0) * weight;
+}
+#else
 void add_to_sums(vec3 color, float weight, float depth) {
 #ifdef HALF_SUMS
   weight = max(weight * WEIGHT_SCALE, LEAST_WEIGHT);
@@ -40,3 +49,4 @@ void add_to_sums(vec3 color, float weight, float depth) {
   emission_sum = vec4(emission, 1.0) * weight;
 #endif
 }
+#endif

@@ -76,7 +76,12 @@ void main() {
 #endif
   float weight = weight_depth.x * color_weight.w;
   if (!(weight > 0.0 && dot(on_footprint, on_footprint) <= 1.0 && weight_depth.y >= splats.options.y)) discard;
+#ifdef REST
+  vec4 seen = vec4(texelFetch(visibility_depth, ivec2(gl_FragCoord.xy), 0).r);
+  seen.z = seen.x < 1.0 ? view_depth(seen.x) : 3e38;
+#else
   vec4 seen = texelFetch(seen_range, ivec2(gl_FragCoord.xy), 0);
+#endif
   float depth = weight_depth.y;
 #ifdef LAYER
   // Where a filter reaches over its rim, a splat is in the layers that the rim itself is in.
@@ -86,7 +91,7 @@ void main() {
 #ifdef LAYER
   if (is_in_nearer_layer(depth)) discard;
 #endif
-#ifdef FILTERS_SILHOUETTES
+#if defined(FILTERS_SILHOUETTES) && !defined(REST)
   // Where the filter reaches past a silhouette, what is seen behind it is another surface, which keeps the sample: its
   // depth, moved back by up to 2 epsilon, is more than that and a radius behind this splat's.
   if (!straddles && seen.w - depth > (1.0 + 4.0 * splats.options.x) * plane.radius) discard;

@@ -45,6 +45,10 @@ void main() {
 #ifdef LAYER
   opacity = splat.opacity;
 #endif
+#ifdef REST
+  int number = gl_VertexID / 3;
+  color_weight = vec4(texelFetch(lit_splats, ivec2(number % SPLATS_PER_ROW, number / SPLATS_PER_ROW), 0).rgb, 1.0);
+#endif
 #ifdef TEXTURED
   texture_place = fetch_texture_place(gl_VertexID / 3, splat.material, texture_along, texture_border);
   // Axes that the method replaced move in the picture as others of the true plane do.

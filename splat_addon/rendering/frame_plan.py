@@ -5,11 +5,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .packing import SPLATS_PER_ROW
 from .scene import Material
 from .shadow import ShadowMap, atlas_size
 
 #: Samples that shaders/resolve.frag.glsl reads to each side; shaders/common/silhouette_filter.glsl has the same.
 FILTER_MARGIN = 2
+
+#: And what shaders/common/layer_at.glsl and shaders/rest_shading.frag.glsl read beside that.
+LAYER_MARGIN = 1
 
 #: texture -> (format, what it holds one value for)
 TEXTURES = {
@@ -34,6 +38,9 @@ TEXTURES = {
     "left": ("R32F", "block"),
     "peeled": ("RG32F", "sample"),
     "peeled_next": ("RG32F", "sample"),
+    "lit_splats": ("RGBA32F", "splat"),
+    "rest_sum": ("RGBA32F", "sample"),
+    "rest_weight": ("RG32F", "sample"),
     "layers": ("RGBA32F", "pixel"),
     "layers_depth": ("R32F", "pixel"),
     "layers_normal": ("RGBA32F", "pixel"),
@@ -105,6 +112,7 @@ class FramePlan:
     features: (name, why), of what shaders do beside the least; each name is defined in their text.
     shadow_maps: what lights see, in the order of the lights.
     depth_range: nearest and farthest of what is in view, world units.
+    lit_rows: of the texture that holds the light of an instance's splats.
     line_margin: pixels that lines look at beside their own.
     left_out: (what, why), of what other scenes or settings would need.
     """
@@ -124,6 +132,7 @@ class FramePlan:
     features: tuple[tuple[str, str], ...]
     shadow_maps: tuple[ShadowMap, ...]
     depth_range: tuple[float, float]
+    lit_rows: int
     line_margin: int
     left_out: tuple[tuple[str, str], ...]
 
@@ -139,7 +148,8 @@ class FramePlan:
     @property
     def margin(self) -> int:
         """Pixels drawn around a tile and not kept."""
-        return (FILTER_MARGIN if self.filters_silhouettes else 0) + self.line_margin
+        filtered = FILTER_MARGIN if self.filters_silhouettes else 0
+        return filtered + (LAYER_MARGIN if self.layers else 0) + self.line_margin
 
     @property
     def filters_silhouettes(self) -> bool:
@@ -151,6 +161,8 @@ class FramePlan:
         what_for = TEXTURES[texture][1]
         if what_for == "frame":
             return atlas_size(self.shadow_maps)
+        if what_for == "splat":
+            return SPLATS_PER_ROW, self.lit_rows
         if what_for == "block":
             return BLOCKS, BLOCKS
         along = {"pixel": 1, "sample": self.samples}[what_for]

@@ -6,14 +6,18 @@ is transparent is made as an opaque picture is: by visibility, attributes and sh
 layer holds is left out. As a layer holds just what lies no deeper than its nearest splat moved back by its epsilon,
 each splat is in one layer at each sample, and the overlapping splats of a surface are in the same one.
 
+The last layer may hold all that is left: splats are lit one by one, their colours mixed by their opacity, and their
+weights, in those of a single surface, tell how many surfaces there are.
+
 Layers are put on one another where visibility is known: each adds to the pixel what the nearer ones let through at each
 of its samples, and the opaque picture what all of them do.
 """
 
 from __future__ import annotations
 
-from .frame_plan import PlannedPass
+from .frame_plan import TEXTURES, PlannedPass
 from .methods import Method
+from .packing import row_count
 from .scene import Scene
 from .settings import Settings
 from .shading_models import ShadingModel
@@ -57,8 +61,14 @@ def layer_passes(
     if not layers:
         return ()
     start = PlannedPass("start_layers", "nothing is peeled yet", (), ("peeled", *layer_outputs(settings)))
-    made = (p for number in range(1, layers + 1) for p in _layer(number, settings, method, sums, reads))
-    return start, *made
+    peeled = layers - settings.blends_rest
+    made = [p for number in range(1, peeled + 1) for p in _layer(number, settings, method, sums, reads)]
+    return start, *made, *(_rest(layers, sums, reads) if settings.blends_rest else ())
+
+
+def lit_rows(scene: Scene) -> int:
+    """Of a texture of one texel a splat, for the largest of the transparent instances."""
+    return max(row_count(i.surfels) for i in scene.surfels if i.surfels.is_transparent)
 
 
 #: Of what the shading of the opaque picture may read, what a layer has nothing of.
@@ -82,3 +92,19 @@ def _layer(number: int, settings: Settings, method: Method, sums, reads) -> tupl
         ("peel", "the next layer lies behind this one", ("peeled", "layer_depth", "shaded"), ("peeled_next",)),
     ]
     return tuple(PlannedPass(*p, layer=number) for p in passes if not (in_space and p[0] == "seen_range"))
+
+
+def _rest(number: int, sums, reads) -> tuple[PlannedPass, ...]:
+    light = tuple(name for name in reads if name not in TEXTURES or name == "shadow_depth")
+    passes = (
+        (
+            "rest",
+            "all that is left, each splat lit by itself",
+            ("visibility_depth", "peeled", *light),
+            ("lit_splats", "rest_sum", "rest_weight"),
+        ),
+        ("rest_shading", "its weights tell how much it hides", ("rest_sum", "rest_weight", "depth_sum"), ("shaded",)),
+        ("rest_layer", "nearer layers cover it", ("shaded", "peeled"), ("layers",)),
+        ("peel_rest", "it covers what is opaque", ("peeled", "shaded"), ("peeled_next",)),
+    )
+    return tuple(PlannedPass(*p, layer=number) for p in passes)

@@ -12,7 +12,7 @@ import math
 from .camera import Camera
 from .frame_plan import HELD_BY, TEXTURES, FramePlan, PlannedPass
 from .identity import NUMBERED
-from .layers import layer_outputs, layer_passes, layers_of
+from .layers import layer_outputs, layer_passes, layers_of, lit_rows
 from .methods import Method, get_method
 from .packing import shared_emission, shared_material
 from .scene import Material, Scene
@@ -99,6 +99,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera
         features,
         maps,
         depth_range,
+        lit_rows(scene) if any("lit_splats" in p.writes for p in passes) else 0,
         math.ceil(settings.lines.reach) if settings.lines else 0,
         tuple(left_out),
     )

@@ -213,7 +213,8 @@ class Renderer:
                     stats["passes"][planned.name] = stats["passes"].get(planned.name, 0.0) + elapsed
                 if "left" in planned.writes:
                     is_peeled = not target.read(0).any()
-                    stats["layers"] = max(stats["layers"], planned.layer - is_peeled)
+                if "peeled_next" in planned.writes:
+                    stats["layers"] = max(stats["layers"], planned.layer)
             yield tile, target
 
 

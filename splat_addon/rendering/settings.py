@@ -73,8 +73,8 @@ class Settings:
     epsilon: how far, in radii of each splat, the visibility pass moves it back along the view ray;
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
     shadow_resolution: texels along the side of a shadow map; 0 leaves shadows out.
-    layers: of transparent surfaces behind one another that are peeled at most, in each pixel; what is behind them is
-        lost.
+    layers: of transparent surfaces behind one another, the most that each pixel is made of. blends_rest: the last of
+        them is all that is left, unordered and as if lit at each splat; else what lies behind the last is lost.
     alpha_threshold: the least opacity of a surface that the depth and the normal are taken from.
     transparent_film: leave the background out and keep its alpha at 0.
     outputs: which arrays of the `Frame` are wanted; the others are None and cost nothing. A position and
@@ -97,7 +97,8 @@ class Settings:
     edge_threshold: float = 0.0
     epsilon: float = 0.5
     shadow_resolution: int = 1024
-    layers: int = 8
+    layers: int = 3
+    blends_rest: bool = True
     alpha_threshold: float = 0.5
     transparent_film: bool = False
     outputs: tuple[str, ...] = ("color", "depth", "normal", "coverage")
@@ -126,6 +127,8 @@ class Settings:
             raise ValueError(f"shadow_resolution must be 0 to {MAX_SHADOW_RESOLUTION}, not {self.shadow_resolution}.")
         if self.layers not in range(1, MAX_LAYERS + 1):
             raise ValueError(f"layers must be 1 to {MAX_LAYERS}, not {self.layers}.")
+        if self.blends_rest and self.layers < 2:
+            raise ValueError("layers must be 2 or more where the last one blends the rest, which needs a nearer one.")
         if not 0 <= self.alpha_threshold <= 1:
             raise ValueError(f"alpha_threshold must be 0 to 1, not {self.alpha_threshold}.")
         if not set(self.outputs) <= set(OUTPUTS):

@@ -158,6 +158,7 @@ CASES = [
     *(("torus", method, {}) for method in METHODS if method != "quad"),
     *((name, method, {}) for name in TEXTURED for method in METHODS),
     *(("transparent_spheres", method, {}) for method in ("quad", "mip")),
+    *(("transparent_spheres", method, {"layers": 8, "blends_rest": False}) for method in ("quad", "mip")),
     *(("torus", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
     *(("torus", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
     *(("torus", "mip", {"shading": shading}) for shading in UNLIT if shading != "matcap"),

@@ -127,17 +127,24 @@ TABLE = {
         "sample_shadow_overdraw", "", (),
     ),
     "transparent": (
-        TRANSPARENT, {"layers": 2}, ("visibility", "start_layers", *LAYER, *LAYER, "attributes", "shading"),
+        TRANSPARENT, {"layers": 2, "blends_rest": False},
+        ("visibility", "start_layers", *LAYER, *LAYER, "attributes", "shading"),
         LAYER_TEXTURES, "", (),
     ),
+    "transparent, the rest blended": (
+        TRANSPARENT, {"layers": 2},
+        ("visibility", "start_layers", *LAYER, "rest", "rest_shading", "rest_layer", "peel_rest", "attributes",
+         "shading"),
+        LAYER_TEXTURES + " lit_splats rest_sum rest_weight", "", (),
+    ),
     "transparent, by mip": (
-        TRANSPARENT, {"layers": 1, "method": "mip"},
+        TRANSPARENT, {"layers": 1, "blends_rest": False, "method": "mip"},
         ("visibility", "start_layers", "visibility", "left", "seen_range", "attributes", "sample_shading", "resolve",
          "peel", "seen_range", "attributes", "sample_shading", "resolve"),
         LAYER_TEXTURES + " seen_range", "", (),
     ),
     "transparent, colour alone": (
-        TRANSPARENT, {"layers": 1, "outputs": ("color",)},
+        TRANSPARENT, {"layers": 1, "blends_rest": False, "outputs": ("color",)},
         ("visibility", "start_layers", *LAYER, "attributes", "shading"),
         LAYER_TEXTURES + " -normal_coverage -layers_normal", "", (),
     ),

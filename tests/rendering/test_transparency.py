@@ -8,7 +8,7 @@ import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Scene, Settings, look_at, plan
+from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Light, Scene, Settings, look_at, plan
 from splat_addon.rendering.methods import METHODS
 from splat_addon.surfels import Surfels
 
@@ -36,7 +36,7 @@ def sheet(z: float, color, opacity: float, half: float = 3.0) -> Instance:
 
 
 def flat(**choices) -> Settings:
-    return Settings(**{"shading": "flat", **choices})
+    return Settings(**{"shading": "flat", "layers": 8, "blends_rest": False, **choices})
 
 
 @pytest.mark.parametrize("method", PEELING)
@@ -81,6 +81,64 @@ def test_colours_of_little_opacity_count_for_little(method, render):
     assert (frame.color[seen][:, 1] < 0.01 * frame.color[seen][:, 0]).all()
 
 
+@pytest.mark.parametrize("method", [m for m in PEELING if m != "homogeneous_printed"])  # which has no parallel cameras
+def test_the_rest_hides_as_many_surfaces_as_there_are(method, render):
+    """Before a parallel camera each of k even sheets weighs the same: b (1 - a)^k, whatever the number of layers."""
+    camera = Camera.orthographic(CAMERA.matrix_world, 2.0, (16, 16), 0.1, 50)
+    opacity, white = 0.3, (1.0, 1.0, 1.0)
+    for layers in (2, 3, 4):
+        scene = Scene([sheet(-z, white, opacity) for z in range(5)], world=(0.1, 0.2, 0.3))
+        frame = render(scene, camera, flat(method=method, layers=layers, blends_rest=True))
+        through = (1 - opacity) ** 5
+        assert np.abs(frame.color - (*(1 - through + through * np.array((0.1, 0.2, 0.3))), 1)).max() < 1e-4
+        assert frame.stats["layers"] == layers
+
+
+@pytest.mark.parametrize("method", SPACES)
+def test_the_rest_is_mixed_by_opacity_and_in_no_order(method, render):
+    camera = Camera.orthographic(CAMERA.matrix_world, 2.0, (16, 16), 0.1, 50)
+    sheets = [sheet(0, (1, 1, 1), 0.5), sheet(-1, (1, 0, 0), 0.6), sheet(-2, (0, 1, 0), 0.2), sheet(-3, (0, 0, 1), 1)]
+    settings = flat(method=method, layers=2, blends_rest=True)
+    frame = render(Scene(sheets), camera, settings)
+    rest = 0.5 * (1 - 0.4 * 0.8)
+    expected = 0.5 + np.array((rest * 0.75, rest * 0.25, 0.5 * 0.4 * 0.8))
+    assert np.abs(frame.color[..., :3] - expected).max() < 1e-4
+    assert np.abs(render(Scene(sheets[::-1]), camera, settings).color - frame.color).max() < 1e-6
+
+
+@pytest.mark.parametrize("method", SPACES)
+def test_three_layers_come_close_to_all(method, render):
+    """The paper's figure 6: the rest in the last layer, against the rest lost."""
+    scene, camera = spheres(96)
+    every, lost, blended = (
+        render(scene, camera, Settings(method=method, layers=layers, blends_rest=blends)).color
+        for layers, blends in ((24, False), (3, False), (3, True))
+    )
+    assert psnr(blended, every) > 40
+    assert psnr(blended, every) > psnr(lost, every) + 3
+
+
+@pytest.mark.parametrize("method", SPACES)
+def test_splats_of_the_rest_are_lit_as_the_layers_are(method, render):
+    """Own materials, emission, linked lights, shadows: a sheet in the last layer looks as it does in a peeled one."""
+    lamp = Light("point", (1, 0.9, 0.8), energy=300, position=(1, 1, 3), casts_shadow=True)
+    lights = lamp, Light("sun", energy=1.0, direction=(0.3, 0, -1), receivers=(1,))
+    nearer, *sheets = (sheet(-z, (0.8, 0.5, 0.3), 0.5) for z in range(3))
+    own = {"roughness": np.full(256, 0.4), "metallic": np.full(256, 0.3), "emission": np.tile((0.1, 0.2, 0), (256, 1))}
+    last = replace(sheets[1], surfels=replace(sheets[1].surfels, **own), light_set=1)
+    scene = Scene([nearer, last], lights, (0.1, 0.1, 0.1))
+    camera = Camera.orthographic(CAMERA.matrix_world, 2.0, (24, 24), 0.1, 50)
+    peeled, rest = (
+        render(scene, camera, Settings(method=method, layers=2, blends_rest=blends)).color for blends in (False, True)
+    )
+    assert psnr(rest, peeled) > 45
+
+
+def test_the_last_layer_needs_a_nearer_one():
+    with pytest.raises(ValueError, match="layers must be 2 or more where the last one blends the rest"):
+        Settings(layers=1)
+
+
 def spheres(size):
     return scenes.transparent_spheres(count=600, size=(size, size))
 
@@ -88,7 +146,7 @@ def spheres(size):
 @pytest.mark.parametrize("shading", ["flat", "principled"])
 def test_picture_is_the_exact_one(shading, render):
     scene, camera = spheres(64)
-    settings = Settings(method="quad", shading=shading, layers=32, supersampling=2)
+    settings = Settings(method="quad", shading=shading, layers=32, blends_rest=False, supersampling=2)
     frame, exact = render(scene, camera, settings), render_exact(scene, camera, settings, samples=2)
     differs = np.abs(frame.color - exact.color).max(axis=2) > 1e-4
     # The more layers, the more places where two depths tie in float32.
@@ -97,13 +155,15 @@ def test_picture_is_the_exact_one(shading, render):
     assert np.count_nonzero((frame.depth < EMPTY_DEPTH) != (exact.depth < EMPTY_DEPTH)) <= 4
 
 
-@pytest.mark.parametrize("method", PEELING)
-def test_a_transparent_film_composites_over_any_background(method, render):
+@pytest.mark.parametrize("blends_rest", [False, True])
+@pytest.mark.parametrize("method", SPACES)
+def test_a_transparent_film_composites_over_any_background(method, blends_rest, render):
     """Premultiplied edges have no rim: over a background, the picture is the one before that background."""
     scene, camera = spheres(96)
-    film = render(scene, camera, flat(method=method, transparent_film=True)).color
+    choices = {"method": method, "layers": 4, "blends_rest": blends_rest}
+    film = render(scene, camera, flat(**choices, transparent_film=True)).color
     for world in ((1, 1, 1), (0, 0, 0), (0.1, 0.8, 0.3)):
-        whole = render(replace(scene, world=world), camera, flat(method=method)).color
+        whole = render(replace(scene, world=world), camera, flat(**choices)).color
         over = film[..., :3] + (1 - film[..., 3:]) * np.array(world)
         assert np.abs(over - whole[..., :3]).max() < 1e-5
         assert np.abs(whole[..., 3] - 1).max() < 1e-5
@@ -160,7 +220,8 @@ def test_tiles_hide_no_seam(render, monkeypatch):
     whole = render(scene, camera, Settings()).color
     monkeypatch.setitem(plan.__globals__, "MAX_TARGET_EDGE", 60)
     assert len(plan(scene, camera, Settings()).tiles) > 1
-    assert np.abs(render(scene, camera, Settings()).color - whole).max() < 1e-4
+    differs = np.abs(render(scene, camera, Settings()).color - whole).max(axis=2)
+    assert differs.max() < 1e-3 and np.count_nonzero(differs > 1e-4) <= 2  # where depths or weights tie
 
 
 def test_multisampling_is_refused():

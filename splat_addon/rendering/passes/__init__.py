@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The passes that a plan may name: one file each, with its pipeline's description and how it runs."""
 
-from . import attributes, layers, lines, polygons, seen_range, shading, shadow_maps, visibility
+from . import attributes, layers, lines, polygons, rest, seen_range, shading, shadow_maps, visibility
 
 #: name in a `FramePlan` -> run(tile, planned) -> the target that was drawn into
 RUN = {
@@ -15,6 +15,10 @@ RUN = {
     "left": shading.run,
     "layer": shading.run,
     "peel": layers.peel,
+    "rest": rest.run,
+    "rest_shading": shading.run,
+    "rest_layer": shading.run,
+    "peel_rest": layers.peel,
     "lines": lines.run,
     "shading": shading.run,
     "sample_shading": shading.run,

@@ -23,7 +23,7 @@ from .splats import SPLATS_BLOCK, draw_splats, drawn_by
 from .tile import TileContext
 
 #: Of the sums that are not vec4.
-_OUTPUT_TYPES = {"depth_sum": "vec2", "overdraw_sum": "float", "identity": "vec2"}
+_OUTPUT_TYPES = {"depth_sum": "vec2", "overdraw_sum": "float", "identity": "vec2", "rest_weight": "vec2"}
 #: What is defined for sums that some scenes or models have.
 _DEFINES = {"light_set_sum": "LIGHT_SET_TARGET", "overdraw_sum": "OVERDRAW_TARGET"}
 #: Of texture-mapped splats: uv and slot, change of uv along the half-axes, where the map ends; and the half-axes.

@@ -4,18 +4,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
 from ..brdf_table import brdf_texels
-from ..device.interface import PipelineDescription, Target
+from ..device.interface import PipelineDescription, Target, Texture
 from ..frame_plan import BLOCKS, FramePlan, PlannedPass
 from ..light import pack_lights
 from ..lines import Lines
 from ..packing import pack_materials
 from ..shaders import load
 from ..shadow import map_ranges, pack_shadow_maps
-from .blocks import LAYER, LINEAR_DEPTH, polygon_defines, std140, sum_defines
+from .blocks import FILTERS_SILHOUETTES, LAYER, LINEAR_DEPTH, polygon_defines, std140, sum_defines
 from .tile import TileContext
 
 #: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
@@ -83,19 +84,35 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
             *sum_defines(planned.reads, frame.accumulation),
             *(LAYER if planned.layer else ()),
             *((f"{name.upper()}_OUTPUT", "1") for name in planned.writes if name not in _ALWAYS_WRITTEN),
-            *((define, "1") for texture, define in _DEFINES.items() if texture in planned.reads),
-            *((name, "1") for name, _ in frame.features),
-            *(LINEAR_DEPTH if frame.linear_depth else ()),
+            *(FILTERS_SILHOUETTES if frame.filters_silhouettes else ()),
+            *shading_defines(planned.reads, frame),
         ),
         blend="add" if "layers" in planned.writes else "none",
+    )
+
+
+def shading_defines(reads: tuple[str, ...], frame: FramePlan) -> tuple[tuple[str, str], ...]:
+    """What is defined where these textures are read, and for the frame's features."""
+    return (
+        *((define, "1") for texture, define in _DEFINES.items() if texture in reads),
+        *((name, "1") for name, _ in frame.features),
+        *(LINEAR_DEPTH if frame.linear_depth else ()),
     )
 
 
 def run(tile: TileContext, planned: PlannedPass) -> Target:
     """Fill the textures of the plan's last passes."""
     target = tile.target(planned.writes)
+    reads = tile.textures(planned.reads, shading_textures(tile))
+    pipeline = tile.resources.pipeline(describe(planned, tile.plan))
+    tile.resources.device.draw_fullscreen(pipeline, target, shading_block(tile), reads)
+    return target
+
+
+def shading_textures(tile: TileContext) -> dict[str, Callable[[], Texture]]:
+    """What shading reads beside what passes write, by name."""
     resources, environment = tile.resources, tile.scene.environment
-    made_here = {
+    return {
         "lights": lambda: _lights(tile),
         "shadow_maps": lambda: resources.data(_shadow_texels(tile)),
         "matcap": lambda: resources.kept(tile.settings.matcap, tile.settings.matcap.texels),
@@ -103,10 +120,6 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
         "environment_image": lambda: resources.kept(environment, environment.image_texels),
         "environment_levels": lambda: resources.kept(environment, environment.level_texels),
     }
-    reads = tile.textures(planned.reads, made_here)
-    pipeline = resources.pipeline(describe(planned, tile.plan))
-    resources.device.draw_fullscreen(pipeline, target, shading_block(tile), reads)
-    return target
 
 
 def _multisampling(frame: FramePlan):

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from ..device.interface import Pipeline, Target
+from ..device.interface import Pipeline, Target, Texture
 from ..frame_plan import PlannedPass
 from ..light import MAX_LIGHT_SETS
+from ..scene import Instance
 from ..storages import get_storage
 from ..view import PlacedInstance
 from .blocks import std140
@@ -45,34 +46,43 @@ def drawn_by(planned: PlannedPass, tile: TileContext) -> tuple[PlacedInstance, .
     return tuple(p for p in tile.view.placed if p.instance.surfels.is_transparent is is_layer)
 
 
+def instance_textures(tile: TileContext, instance: Instance) -> dict[str, Callable[[], Texture]]:
+    """What an instance's splats are made of, by the names of samplers."""
+    resources, storage = tile.resources, get_storage(tile.plan.storage)
+    stored = resources.surfels(instance.surfels, storage)
+    return {
+        **{name: lambda t=texture: t for name, texture in stored.textures.items()},
+        "materials": lambda: resources.materials(instance, storage, "emission_sum" in tile.plan.textures),
+        "surfel_uvs": lambda: resources.surfel_uvs(instance.surfels, storage),
+        "texture_atlas": lambda: resources.atlas(instance.textures)[0],
+        "texture_table": lambda: resources.atlas(instance.textures)[1],
+    }
+
+
+def instance_values(placed: PlacedInstance) -> tuple[np.ndarray, float, np.ndarray]:
+    """(4, 4) normal matrix, -1 for a mirrored object and 1 for others, and 1 in the channel of its light set."""
+    normal_matrix = np.eye(4)
+    normal_matrix[:3, :3] = placed.normal_matrix
+    orientation = float(np.sign(np.linalg.det(placed.normal_matrix)))
+    return normal_matrix, orientation, np.eye(MAX_LIGHT_SETS)[placed.instance.light_set]
+
+
 def draw_splats(
     tile: TileContext, pipeline: Pipeline, target: Target, placed_ones: Iterable[PlacedInstance], viewport=None
 ) -> None:
     """One draw call an instance. viewport: as `Device.draw_triangles` takes it."""
-    resources, storage = tile.resources, get_storage(tile.plan.storage)
     for placed in placed_ones:
-        instance = placed.instance
-        stored = resources.surfels(instance.surfels, storage)
-        made_here = {
-            **{name: lambda t=texture: t for name, texture in stored.textures.items()},
-            "materials": lambda i=instance: resources.materials(i, storage, "emission_sum" in tile.plan.textures),
-            "surfel_uvs": lambda i=instance: resources.surfel_uvs(i.surfels, storage),
-            "texture_atlas": lambda i=instance: resources.atlas(i.textures)[0],
-            "texture_table": lambda i=instance: resources.atlas(i.textures)[1],
-        }
-        textures = tile.textures(pipeline.description.samplers, made_here)
+        textures = tile.textures(pipeline.description.samplers, instance_textures(tile, placed.instance))
         block = splats_block(tile, placed, tile.settings.epsilon)
-        resources.device.draw_triangles(pipeline, target, len(instance.surfels), block, textures, viewport)
+        triangles = len(placed.instance.surfels)
+        tile.resources.device.draw_triangles(pipeline, target, triangles, block, textures, viewport)
 
 
 def splats_block(tile: TileContext, placed: PlacedInstance, epsilon: float) -> np.ndarray:
     """Values of `SPLATS_BLOCK`."""
     view = tile.view
     options = epsilon, view.near, tile.camera.is_orthographic, tile.depth_unit
-    orientation = np.sign(np.linalg.det(placed.normal_matrix))
+    normal_matrix, orientation, light_set = instance_values(placed)
     sides = orientation, placed.hides_backs, view.least_offset(tile.plan.linear_depth), tile.color_scale
-    normal_matrix = np.eye(4)
-    normal_matrix[:3, :3] = placed.normal_matrix
-    light_set = np.eye(MAX_LIGHT_SETS)[placed.instance.light_set]
     identity = tile.identities.firsts[placed.instance], len(placed.instance.materials) - 1, 0.0, 0.0
     return std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set, identity)
