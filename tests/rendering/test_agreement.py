@@ -177,7 +177,7 @@ CASES = [
 
 @pytest.mark.parametrize(("name", "method", "options"), CASES)
 def test_picture_is_the_same_on_every_device(name, method, options, render, pictures, request):
-    made = (SCENES | TEXTURED | BLURRED | TRANSPARENT)[name]()
+    made = (SCENES | TEXTURED | BLURRED | TRANSPARENT | ALL_AROUND)[name]()
     frame = render(*made, Settings(method=method, supersampling=1, **options))
     named = (value if isinstance(value, str) else key for key, value in options.items())
     path = pictures / f"{'-'.join((name, method, *named))}.npz"
