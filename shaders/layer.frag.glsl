@@ -11,6 +11,7 @@ void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * SAMPLES;
   vec4 color_total = vec4(0.0);
   vec3 normal_total = vec3(0.0);
+  Outputs outputs_total = NO_OUTPUTS;
   float nearest = FARTHEST;
   bool is_seen_nearer = false;
   for (int y = 0; y < SAMPLES; y++) {
@@ -21,6 +22,7 @@ void main() {
       if (texelFetch(layer_depth, texel, 0).r == 1.0) continue;
       vec4 here = layer_at(texel), s = texelFetch(surface, texel, 0);
       color_total += here * let_through(texel);
+      outputs_total = added(outputs_total, layer_outputs_at(texel), let_through(texel));
       if (s.w > 0.0 && here.w >= shading.edges.y && is_first) {
         normal_total += s.xyz;
         nearest = min(nearest, s.w * shading.material.w);
@@ -33,4 +35,5 @@ void main() {
 #ifdef LAYERS_NORMAL_OUTPUT
   layers_normal = vec4(mat3(shading.view_to_world) * normal_total, 0.0) * share;
 #endif
+  write_outputs(added(NO_OUTPUTS, outputs_total, share));
 }

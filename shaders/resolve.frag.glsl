@@ -5,6 +5,7 @@
 //          under the pixel's Gaussian. Where there are transparent layers, each counts by what the nearer ones let
 //          through there.
 
+#include "common/sample_outputs.glsl"
 #ifdef LAYER
 #define visibility_depth layer_depth
 #include "common/layer_at.glsl"
@@ -20,7 +21,6 @@
 #define PROJECTION shading.projection
 #define PARALLEL (shading.options.x > 0.5)
 #define DEPTH_UNIT shading.options.z
-#include "common/sample_outputs.glsl"
 #include "common/stored_depth.glsl"
 #include "common/silhouette_filter.glsl"
 #include "common/world.glsl"
@@ -122,6 +122,8 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out float first, out bool i
 #ifdef LAYER
         bool is_own = seen >= range.x && seen <= range.y;
         here = layer_at(at);
+        outputs = is_own ? added(outputs, sample_outputs(texel), shown * here.w / own.w)
+                         : added(outputs, layer_outputs_at(at), shown);
         if (is_own) here = own * (here.w / own.w);
         is_first = is_first && here.w >= shading.edges.y;
 #else
@@ -177,17 +179,19 @@ void main() {
 #ifdef LAYERS_NORMAL_OUTPUT
   layers_normal = vec4(mat3(shading.view_to_world) * normal_total.xyz, 0.0) * share;
 #endif
+  write_outputs(added(NO_OUTPUTS, outputs_total, share));
 #else
   vec4 color = color_total * share;
   vec4 normal = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
+  Outputs outputs = added(NO_OUTPUTS, outputs_total, share);
 #ifdef LAYERS
-  put_layers_before(color, normal, nearest);
+  put_layers_before(color, normal, nearest, outputs);
 #endif
   combined = color;
 #ifdef NORMAL_COVERAGE_OUTPUT
   normal_coverage = normal;
 #endif
-  write_outputs(added(NO_OUTPUTS, outputs_total, share));
+  write_outputs(outputs);
   depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
 #endif
 }

@@ -15,7 +15,7 @@ void main() {
     ShadedSample here = shaded_sample(mean, texel, 0);
     shaded = vec4(here.color, 1.0) * here.coverage;
     surface = vec4(here.normal, here.depth);
-    outputs = here.outputs;
+    outputs = added(NO_OUTPUTS, here.outputs, here.coverage);
   }
   write_outputs(outputs);
 }

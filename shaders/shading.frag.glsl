@@ -48,13 +48,14 @@ void main() {
   float share = 1.0 / float(SAMPLES * SAMPLES * LOOKS);
   vec4 color = color_total * share;
   vec4 normal = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
+  Outputs outputs = added(NO_OUTPUTS, outputs_total, share);
 #ifdef LAYERS
-  put_layers_before(color, normal, nearest);
+  put_layers_before(color, normal, nearest, outputs);
 #endif
   combined = color;
 #ifdef NORMAL_COVERAGE_OUTPUT
   normal_coverage = normal;
 #endif
-  write_outputs(added(NO_OUTPUTS, outputs_total, share));
+  write_outputs(outputs);
   depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
 }

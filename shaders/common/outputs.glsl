@@ -1,6 +1,6 @@
 // References: Blender manual, "Passes" (what Cycles and EEVEE hand on beside the picture).
 // Summary: what a sample hands on beside its colour, depth and normal, and the targets of those that are asked for:
-//          of samples that are still to be filtered, or of pixels.
+//          of samples that are still to be filtered, of pixels, or what transparent layers add to them.
 
 struct Outputs {
   vec3 diffuse_color;
@@ -24,6 +24,15 @@ void write_outputs(Outputs values) {
 #endif
 #ifdef SHADOW_OVERDRAW_OUTPUT
   shadow_overdraw = values.shadow_overdraw;
+#endif
+#ifdef LAYERS_DIFFUSE_COLOR_OUTPUT
+  layers_diffuse_color = vec4(values.diffuse_color, 0.0);
+#endif
+#ifdef LAYERS_EMISSION_OUTPUT
+  layers_emission = vec4(values.emission, 0.0);
+#endif
+#ifdef LAYERS_SHADOW_OVERDRAW_OUTPUT
+  layers_shadow_overdraw = values.shadow_overdraw;
 #endif
 #ifdef SAMPLE_DIFFUSE_COLOR_OUTPUT
   sample_diffuse_color = vec4(values.diffuse_color, 1.0);

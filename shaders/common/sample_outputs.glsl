@@ -5,13 +5,13 @@
 
 Outputs sample_outputs(ivec2 texel) {
   Outputs values = NO_OUTPUTS;
-#ifdef DIFFUSE_COLOR_OUTPUT
+#ifdef DIFFUSE_COLOR_SAMPLES
   values.diffuse_color = texelFetch(sample_diffuse_color, texel, 0).rgb;
 #endif
-#ifdef EMISSION_OUTPUT
+#ifdef EMISSION_SAMPLES
   values.emission = texelFetch(sample_emission, texel, 0).rgb;
 #endif
-#ifdef SHADOW_OVERDRAW_OUTPUT
+#ifdef SHADOW_OVERDRAW_SAMPLES
   values.shadow_overdraw = texelFetch(sample_shadow_overdraw, texel, 0);
 #endif
   return values;

@@ -19,6 +19,8 @@ LAYER_MARGIN = 1
 TEXTURES = {
     "visibility_depth": ("DEPTH32F", "sample"),
     "identity": ("RG32F", "sample"),
+    "identity_next": ("RG32F", "sample"),
+    "layer_identity": ("RG32F", "sample"),
     "seen_range": ("RGBA32F", "sample"),
     "seen_depth": ("DEPTH32F", "sample"),
     "color_sum": ("RGBA32F", "sample"),
@@ -44,6 +46,9 @@ TEXTURES = {
     "layers": ("RGBA32F", "pixel"),
     "layers_depth": ("R32F", "pixel"),
     "layers_normal": ("RGBA32F", "pixel"),
+    "layers_diffuse_color": ("RGBA32F", "pixel"),
+    "layers_emission": ("RGBA32F", "pixel"),
+    "layers_shadow_overdraw": ("RGBA32F", "pixel"),
     "shaded": ("RGBA32F", "sample"),
     "surface": ("RGBA32F", "sample"),
     "sample_diffuse_color": ("RGBA32F", "sample"),

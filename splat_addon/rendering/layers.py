@@ -16,6 +16,7 @@ of its samples, and the opaque picture what all of them do.
 from __future__ import annotations
 
 from .frame_plan import TEXTURES, PlannedPass
+from .identity import NUMBERED
 from .methods import Method
 from .packing import row_count
 from .scene import Scene
@@ -51,7 +52,14 @@ def layers_of(scene: Scene, settings: Settings, method: Method, model: ShadingMo
 def layer_outputs(settings: Settings) -> tuple[str, ...]:
     """What layers add up to in each pixel."""
     has_normal = bool({"normal", "coverage"} & set(settings.outputs))
-    return ("layers", "layers_depth", "layers_normal") if has_normal else ("layers", "layers_depth")
+    more = (f"layers_{texture}" for texture in _handed_on(settings))
+    return ("layers", "layers_depth", *(("layers_normal",) if has_normal else ()), *more)
+
+
+def _handed_on(settings: Settings) -> tuple[str, ...]:
+    """Textures of the last pass that layers add to, beside colour, depth and normal."""
+    names = {"diffuse_color": "diffuse_color", "emission": "emission", "shadow": "shadow_overdraw"}
+    return tuple(texture for name, texture in names.items() if name in settings.outputs)
 
 
 def layer_passes(
@@ -77,19 +85,28 @@ _OPAQUE_ONLY = {"lines", "overdraw_sum", "polygon_color", "polygon_normal", "pol
 
 def _layer(number: int, settings: Settings, method: Method, sums, reads) -> tuple[PlannedPass, ...]:
     in_space, is_filtered = method.works_in == "space", method.filters_silhouettes
-    # Of what frames hand on beside colour, depth and normal, layers have nothing.
+    # How many splats overlap is told of what is opaque alone.
     sums = tuple(dict.fromkeys(name for name in (*sums, "depth_sum") if name != "overdraw_sum"))
     tested = ("layer_depth", "visibility_depth", "peeled") if in_space else ("seen_range", "layer_depth", "peeled")
     shading = tuple(dict.fromkeys((*sums, *(name for name in reads if name not in _OPAQUE_ONLY))))
-    resolved = ("shaded", "surface", "peeled", "layer_depth", *(("seen_range",) if is_filtered else ()))
+    lit = ("shaded", "surface", *(f"sample_{texture}" for texture in _handed_on(settings)))
+    resolved = (*lit, "peeled", "layer_depth", *(("seen_range",) if is_filtered else ()))
+    seen, whose, whose_next = ("layer_depth",), (), ()
+    if set(NUMBERED) & set(settings.outputs):
+        seen, whose, whose_next = ("layer_depth", "layer_identity"), ("identity", "layer_identity"), ("identity_next",)
     passes = [
-        ("visibility", "behind nearer layers, before what is opaque", ("peeled", "visibility_depth"), ("layer_depth",)),
+        ("visibility", "behind nearer layers, before what is opaque", ("peeled", "visibility_depth"), seen),
         ("left", "layers end where nothing is left", ("layer_depth",), ("left",)),
         ("seen_range", "depths are compared in the shader", ("layer_depth", "visibility_depth"), ("seen_range",)),
         ("attributes", "splats of one layer blend", tested, sums),
-        ("sample_shading", "a layer is lit once", shading, ("shaded", "surface")),
+        ("sample_shading", "a layer is lit once", shading, lit),
         ("resolve" if is_filtered else "layer", "nearer layers cover it", resolved, layer_outputs(settings)),
-        ("peel", "the next layer lies behind this one", ("peeled", "layer_depth", "shaded"), ("peeled_next",)),
+        (
+            "peel",
+            "the next layer lies behind this one",
+            ("peeled", "layer_depth", "shaded", *whose),
+            ("peeled_next", *whose_next),
+        ),
     ]
     return tuple(PlannedPass(*p, layer=number) for p in passes if not (in_space and p[0] == "seen_range"))
 

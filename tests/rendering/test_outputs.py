@@ -97,6 +97,51 @@ def test_shadow_is_the_share_of_each_colour_that_arrives(render):
     assert not render(sunlit(), CAMERA, outputs(method="quad", shading="normals")).shadow.any()
 
 
+def veiled(alpha, glow=(4.0, 0, 0)):
+    """The wall behind two sheets of another material, the nearer one thinner."""
+    veils = [
+        Instance(
+            replace(sheet(40, 2.5, 0.0, depth), colors=np.tile((0.8, 0.1, 0.3, opacity), (1600, 1))),
+            LEFT,
+            (Material(emission=glow, index=9),),
+            name=f"veil {depth}",
+            index=number,
+        )
+        for number, (depth, opacity) in enumerate(((3.0, 0.5 * alpha), (3.5, alpha)), 2)
+    ]
+    wall_instance = Instance(WALL, LEFT, (Material(emission=(0, 2, 0)),), name="wall", index=1)
+    return Scene([wall_instance, *veils], (Light("sun", direction=(0, 0, -1)),))
+
+
+@pytest.mark.parametrize("method", ["quad", "mip", "raycast"])
+def test_transparent_layers_hand_on_their_share(method, render):
+    """Front to back: each veil what it hides of what nearer ones let through, the wall the rest."""
+    frame = render(veiled(0.4), CAMERA, outputs(method=method))
+    inside = np.s_[8:-8, 4:16]
+    front, middle, back = 0.2, 0.8 * 0.4, 0.8 * 0.6
+    veil, shape = np.array((0.8, 0.1, 0.3)), frame.emission[inside].shape
+    emission = (front + middle) * np.array((4.0, 0, 0)) + back * np.array((0, 2.0, 0))
+    diffuse = (front + middle) * veil + back * np.array(GREY)
+    np.testing.assert_allclose(frame.emission[inside], np.broadcast_to(emission, shape), atol=2e-3)
+    np.testing.assert_allclose(frame.diffuse_color[inside], np.broadcast_to(diffuse, shape), atol=2e-3)
+    np.testing.assert_allclose(frame.shadow[inside], np.ones(shape), atol=1e-4)
+    np.testing.assert_allclose(frame.coverage[inside], 1, atol=1e-4)
+
+
+@pytest.mark.parametrize("method", ["quad", "mip"])
+@pytest.mark.parametrize(("alpha", "index"), [(0.4, 1), (0.9, 3), (0.9999, 3)])
+def test_an_index_is_of_the_surface_that_depth_is_of(method, alpha, index, render):
+    """Of the first that is opaque enough."""
+    frame = render(veiled(alpha), CAMERA, outputs(method=method, outputs=(*OUTPUTS, *NUMBERED)))
+    inside = np.s_[8:-8, 4:16]
+    depths = {1: 4.0, 2: 3.0, 3: 3.5}
+    np.testing.assert_allclose(frame.depth[inside], depths[index], 1e-4)
+    assert (frame.object_index[inside] == index).all()
+    assert (frame.material_index[inside] == (9 if index > 1 else 0)).all()
+    name = {1: "wall", 2: "veil 3.0", 3: "veil 3.5"}[index]
+    np.testing.assert_allclose(frame.cryptomatte.share_of(name)[inside], 1, atol=1e-6)
+
+
 def glowing():
     scene, camera = scenes.torus(size=(64, 64))
     first, *others = scene.surfels

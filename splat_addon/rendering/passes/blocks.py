@@ -23,14 +23,19 @@ def material_defines(names: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
     return (*targets, ("WITH_MATERIALS", "1")) if targets else ()
 
 
+def says_whose(planned: PlannedPass) -> bool:
+    """Whether a pass that draws splats leaves their numbers."""
+    return bool({"identity", "layer_identity"} & set(planned.writes))
+
+
 def identity_defines(planned: PlannedPass) -> tuple[tuple[str, str], ...]:
     """What is defined where a pass says whose the splats are that it sees."""
-    return (("IDENTITY_TARGET", "1"),) if "identity" in planned.writes else ()
+    return (("IDENTITY_TARGET", "1"),) if says_whose(planned) else ()
 
 
 def identity_varyings(planned: PlannedPass) -> tuple[tuple[str, str, str], ...]:
     """What its fragments are told for that."""
-    return (("flat", "float", "number"),) if "identity" in planned.writes else ()
+    return (("flat", "float", "number"),) if says_whose(planned) else ()
 
 
 def sum_defines(names: tuple[str, ...], accumulation: str) -> tuple[tuple[str, str], ...]:

@@ -22,4 +22,6 @@ def peel(tile: TileContext, planned: PlannedPass) -> Target:
     """How deep each sample is peeled now and what lies before that hides; it is read as "peeled" then."""
     target = shading.run(tile, planned)
     tile.swap("peeled", "peeled_next")
+    if "identity_next" in planned.writes:
+        tile.swap("identity", "identity_next")
     return target

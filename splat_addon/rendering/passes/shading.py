@@ -58,6 +58,13 @@ _DEFINES = {
     "environment_image": "ENVIRONMENT",
     "environment_levels": "ENVIRONMENT_LIGHT",
     "layers": "LAYERS",
+    "layers_diffuse_color": "DIFFUSE_COLOR_LAYERS",
+    "layers_emission": "EMISSION_LAYERS",
+    "layers_shadow_overdraw": "SHADOW_OVERDRAW_LAYERS",
+    "sample_diffuse_color": "DIFFUSE_COLOR_SAMPLES",
+    "sample_emission": "EMISSION_SAMPLES",
+    "sample_shadow_overdraw": "SHADOW_OVERDRAW_SAMPLES",
+    "layer_identity": "IDENTITY",
 }
 
 
@@ -67,7 +74,7 @@ _ALWAYS_WRITTEN = ("combined", "depth", "shaded", "surface")
 
 def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
     """What the pass draws with; its fragment shader has its name."""
-    kinds = {"depth": "float", "layers_depth": "float", "left": "float", "peeled_next": "vec2"}
+    kinds = {"depth": "float", "layers_depth": "float", "left": "float", "peeled_next": "vec2", "identity_next": "vec2"}
     return PipelineDescription(
         name=planned.name,
         vertex=load("fullscreen.vert.glsl"),

@@ -11,7 +11,7 @@ from ..device.interface import PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
 from ..shaders import load
 from ..storages import get_storage
-from .blocks import LAYER, LINEAR_DEPTH, identity_defines, identity_varyings
+from .blocks import LAYER, LINEAR_DEPTH, identity_defines, identity_varyings, says_whose
 from .polygons import draw_polygons
 from .splats import SPLATS_BLOCK, draw_splats, drawn_by
 from .tile import TileContext
@@ -30,7 +30,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
             *((("smooth", "vec3", "across_offset"),) if frame.linear_depth else ()),
             *identity_varyings(planned),
         ),
-        outputs=(("vec2", "identity"),) if "identity" in planned.writes else (),
+        outputs=(("vec2", "identity"),) if says_whose(planned) else (),
         defines=(
             *(LINEAR_DEPTH if frame.linear_depth else ()),
             *(LAYER if planned.layer else ()),
