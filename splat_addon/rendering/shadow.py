@@ -110,24 +110,31 @@ def map_ranges(maps: tuple[ShadowMap, ...], lights: int) -> np.ndarray:
     return np.stack([np.concatenate([[0], np.cumsum(counts)[:-1]]), counts], axis=1)
 
 
-# Each gives the cameras of a light. corners: (n, 3) world, of what casts shadows. seen: `view.visible_corners`.
+# Each gives the cameras of a light. corners: (8 n, 3) world, of n boxes of casters. seen: `view.visible_corners`.
 
 
 def _sun(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
-    """One parallel camera over what is both in the picture and in the scene; it looks back to the farthest caster."""
+    """One parallel camera over what is both in the picture and in the scene; it looks back to the farthest caster over
+    that, and no deeper: depths are stored as shares of the length, in 24 bits.
+    """
     frame = look_at((0, 0, 0), light.direction)
     to_light = frame[:3, :3].T
     if seen is None:
         return []
     receivers, visible, casters = (places @ to_light.T for places in (*seen, corners))
-    low = np.maximum(receivers.min(axis=0), visible.min(axis=0))[:2]
-    high = np.minimum(receivers.max(axis=0), visible.max(axis=0))[:2]
+    lowest = np.maximum(receivers.min(axis=0), visible.min(axis=0))
+    low, high = lowest[:2], np.minimum(receivers.max(axis=0), visible.max(axis=0))[:2]
     if not (low < high).all():
         return []
     margin = 0.02 * (high - low).max()
     middle, half = (low + high) / 2, max((high - low).max() / 2 + margin, 1e-30)
-    nearest, farthest = casters[:, 2].max(), min(casters[:, 2].min(), receivers[:, 2].min())
-    reach = max(nearest - farthest, half) * 1.01
+    boxes = casters.reshape(-1, 8, 3)
+    least, most = boxes.min(axis=1)[:, :2], boxes.max(axis=1)[:, :2]
+    is_over = ((least <= middle + half) & (most >= middle - half)).all(axis=1)
+    if not is_over.any():
+        return []
+    nearest = boxes[is_over, :, 2].max()
+    reach = max(nearest - lowest[2], half) * 1.01
     frame[:3, 3] = frame[:3, :3] @ (*middle, nearest + 0.005 * reach)
     return [Camera(frame, (-half, half, -half, half), (resolution, resolution), 0.0, reach, is_orthographic=True)]
 

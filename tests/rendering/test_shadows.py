@@ -9,6 +9,7 @@ import pytest
 import trimesh
 
 from splat_addon.reference import render_exact
+from splat_addon.reference.extremes import discs
 from splat_addon.rendering import Camera, Instance, Light, Material, Renderer, Scene, Settings, look_at, plan
 from splat_addon.sampling import TriangleMesh, sample_mesh
 
@@ -120,6 +121,19 @@ def test_scale_does_not_matter(name, scale, still_life, shot):
     moved = replace(light, position=tuple(scale * np.array(light.position)), energy=energy)
     same, _ = shot(Scene(grown, [moved]), camera)
     assert np.count_nonzero(np.abs(same - usual) > 0.05 * usual.max()) < 10
+
+
+@pytest.mark.parametrize("where", ["behind", "beside"])
+def test_something_far_along_the_sun_s_light_costs_its_shadows_nothing(where, still_life, shot):
+    """Behind all that is seen, or beside all that is over it: a map is as deep as what matters."""
+    light = casting(LIGHTS["sun"])
+    forward = np.array(light.direction) / np.linalg.norm(light.direction)
+    across = np.cross(forward, (0, 0, 1))
+    place = 1e7 * forward if where == "behind" else 50 * across - 1e7 * forward
+    far = Instance(discs(place, across, np.cross(forward, across)), materials=CHALK)
+    usual, _ = shot(Scene(still_life, [light]))
+    deep, _ = shot(Scene((*still_life, far), [light]), replace(CAMERA, far=1e9))
+    assert np.count_nonzero(np.abs(deep - usual) > 0.05 * usual.max()) <= 2
 
 
 def test_far_from_the_origin_shadows_are_the_same(still_life, shot):
