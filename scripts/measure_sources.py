@@ -169,7 +169,7 @@ def add_stage(size, width) -> bpy.types.Scene:
     scene.render.engine = "SURFEL_SPLATTING"
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.film_transparent = True
-    scene.surfel_splatting.render_meshes = True
+    scene.surfel_splatting.render_meshes = "SURFELS"
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     camera.data.type, camera.data.ortho_scale = "ORTHO", width
     camera.location, camera.rotation_euler = (0, -20, 7), (1.24, 0, 0)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes that are rendered without a conversion: sampled when they are first seen, then followed from frame to frame.
+"""Meshes that are rendered without a conversion: as polygons, or sampled when they are first seen, and then followed
+from frame to frame.
 
 A mesh is read anew in every frame of a final render, which tells of no change, and in the viewport when it changed.
-Unchanged values give the same `Surfels`, by which the renderer knows what lies on the device already.
+Unchanged values give the same `Surfels` or `Polygons`, by which the renderer knows what lies on the device already.
 """
 
 from __future__ import annotations
@@ -10,11 +11,12 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import bpy
 import numpy as np
 
-from ..rendering import Instance, Material, SurfaceTexture
+from ..rendering import Instance, Material, PolygonInstance, Polygons, SurfaceTexture
 from ..rendering.packing import MAX_SPLATS
 from ..sampling import (
     STRETCHED_SHARE,
@@ -23,12 +25,14 @@ from ..sampling import (
     TrackedSurfels,
     TriangleMesh,
     grid_spacing,
+    have_same_values,
     outline,
     predict_count,
 )
 from ..surfels import OPTIONAL_LAYOUT, Surfels
 from .camera_density import without_camera
 from .mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
+from .mesh_polygons import left_out_of_polygons, mesh_polygons
 from .shading_export import shading_material
 from .sources import mesh_key, readable_mesh
 from .surface_textures import kept_textures
@@ -38,6 +42,14 @@ _TOO_COARSE, _TOO_FINE = 1.26, 2.5
 
 #: For an object that the camera does not see, but its light or its shadow may.
 _UNSEEN_RESOLUTION = 64
+
+
+class Place(NamedTuple):
+    """Where a mesh stands. fields: of its instance, by name. form: as what it is rendered, of `form_of`."""
+
+    matrix: np.ndarray
+    fields: dict
+    form: str
 
 
 @dataclass(eq=False)
@@ -50,13 +62,25 @@ class _LiveMesh:
     materials: tuple[Material, ...] = ()
     textures: tuple[SurfaceTexture | None, ...] = ()
     texture_mapped: bool = False
-    matrices: list[np.ndarray] = field(default_factory=list)
-    fields: list[dict] = field(default_factory=list)
+    places: list[Place] = field(default_factory=list)
     owner: str = ""
     tracked: TrackedSurfels | None = None
     fineness: dict[str, float] = field(default_factory=dict)
     spacing: float = 0.0
     surface: tuple[TriangleMesh, Outline] | None = None
+    drawn: tuple[TriangleMesh, tuple[Polygons, ...]] | None = None
+
+    def placed(self, form: str) -> list[Place]:
+        return [place for place in self.places if place.form == form]
+
+    @property
+    def matrices(self) -> list[np.ndarray]:
+        """Of the places where it is sampled."""
+        return [place.matrix for place in self.placed("SURFELS")]
+
+    def kept_textures(self) -> tuple[SurfaceTexture | None, ...]:
+        self.textures = kept_textures(self.textures, self.content.triangles.surfaces)
+        return self.textures
 
     def spacing_for(self, fineness: dict[str, float], depsgraph: bpy.types.Depsgraph) -> float:
         """In the mesh's own units: as fine as its neediest place asks, or as it is where that is near enough."""
@@ -73,7 +97,8 @@ class _LiveMesh:
 class LiveMeshes:
     """The meshes of one render or one 3D view.
 
-    counts: what the last frame did: "meshes", and their "surfels"; of the meshes, how many were "sampled", how many
+    counts: what the last frame did: "polygon_meshes" that were drawn as such, and their "triangles"; "meshes" that were
+    sampled, and their "surfels"; of the latter, how many were "sampled", how many
     "followed" an earlier sampling, and how many of the former because they had "stretched" too far.
     """
 
@@ -93,46 +118,60 @@ class LiveMeshes:
         """Read the pixels of textures again: an image or a material was edited."""
         self._images.clear()
 
-    def add(
-        self, evaluated: bpy.types.Object, owner: bpy.types.Object, matrix_world: np.ndarray, fields: dict, notes
-    ) -> None:
-        """An entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry lives.
-
-        fields: of its `Instance`, by name.
-        """
+    def add(self, evaluated: bpy.types.Object, owner: bpy.types.Object, place: Place, notes) -> None:
+        """An entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry lives."""
         key = mesh_key(evaluated)
         if key not in self._frame:
             live = self._kept.setdefault(self._lasting_key(evaluated), _LiveMesh())
-            live.matrices, live.fields, live.owner = [], [], owner.name
+            live.places, live.owner = [], owner.name
             if live.key != key or self._changed is None or evaluated.data.name_full in self._changed:
                 self._read(live, evaluated, notes)
                 live.key = key
             self._frame[key] = live
-        self._frame[key].matrices.append(matrix_world)
-        self._frame[key].fields.append(fields)
+        self._frame[key].places.append(place)
 
     def instances(
         self, depsgraph: bpy.types.Depsgraph, fineness: dict[str, float], texture_mapped: bool, notes
-    ) -> list[Instance]:
-        """All that were added to this frame, sampled; the places of one mesh share its surfels."""
-        made = []
+    ) -> tuple[list[Instance], list[PolygonInstance]]:
+        """All that were added to this frame; the places of one mesh share its surfels or polygons."""
+        sampled, drawn = [], []
         for live in self._frame.values():
             for sentence in live.content.notes:
                 notes.add(sentence)
             try:
-                surfels = self._sampled(live, depsgraph, fineness, texture_mapped)
+                if live.placed("SURFELS"):
+                    sampled += self._sampled_instances(live, depsgraph, fineness, texture_mapped)
+                if live.placed("POLYGONS"):
+                    drawn += self._polygon_instances(live, notes)
             except ValueError as error:
                 notes.add(f"{live.owner} is left out: {error}")
-                continue
-            live.textures = kept_textures(live.textures, live.content.triangles.surfaces) if surfels.has_uvs else ()
-            places = zip(live.matrices, live.fields, strict=True)
-            made += [
-                Instance(surfels, matrix, live.materials, textures=live.textures, **fields) for matrix, fields in places
-            ]
-            self.counts["meshes"] += 1
-            self.counts["surfels"] += len(surfels)
         self._kept = {name: live for name, live in self._kept.items() if name in self._names}
-        return made
+        return sampled, drawn
+
+    def _sampled_instances(self, live: _LiveMesh, depsgraph, fineness, texture_mapped: bool) -> list[Instance]:
+        surfels = self._sampled(live, depsgraph, fineness, texture_mapped)
+        textures = live.kept_textures() if surfels.has_uvs else ()
+        self.counts["meshes"] += 1
+        self.counts["surfels"] += len(surfels)
+        return [
+            Instance(surfels, place.matrix, live.materials, textures=textures, **place.fields)
+            for place in live.placed("SURFELS")
+        ]
+
+    def _polygon_instances(self, live: _LiveMesh, notes) -> list[PolygonInstance]:
+        mesh = live.content.triangles
+        if live.drawn is None or not have_same_values(live.drawn[0], mesh):
+            live.drawn = mesh, mesh_polygons(mesh)
+        self.counts["polygon_meshes"] += 1
+        self.counts["triangles"] += len(mesh)
+        for sentence in left_out_of_polygons(live.owner, mesh):
+            notes.add(sentence)
+        textures = live.kept_textures()
+        return [
+            PolygonInstance(part, place.matrix, live.materials, textures=textures, **place.fields)
+            for part in live.drawn[1]
+            for place in live.placed("POLYGONS")
+        ]
 
     def _lasting_key(self, evaluated: bpy.types.Object) -> tuple:
         """By which the same mesh is known in the next frame, when it has been evaluated anew.

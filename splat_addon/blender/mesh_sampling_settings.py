@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Render Meshes as Surfels: the scene's settings in the render properties, an object's own in its properties."""
+"""How meshes that are no surfels are rendered: the scene's settings in the render properties, and an object's own."""
 
 from __future__ import annotations
 
@@ -23,20 +23,37 @@ def _read_again(settings, context) -> None:
     settings.id_data.update_tag()
 
 
+#: The numbers are those of a .blend's earlier on and off.
+_MESH_ITEMS = (
+    (
+        "POLYGONS",
+        "Polygons",
+        "Draw their triangles among the splats, with the same depth, light and shadows. Base colours that are one "
+        "image are looked up at every pixel, what else is textured once a corner",
+        0,
+    ),
+    (
+        "SURFELS",
+        "Surfels",
+        "Sample them as they are on each frame. A mesh that keeps its triangles keeps its surfels, so deformation "
+        "flickers a third as much. A frame costs 1 to 3 microseconds a surfel where the mesh deforms, and next to "
+        "nothing where it does not",
+        1,
+    ),
+    ("HIDDEN", "Nothing", "Leave them out", 2),
+)
+
 _DENSITY_ITEMS = [(name, DENSITIES[name].label, DENSITIES[name].description) for name in _FINENESS]
 
 
 class MeshSamplingProperties:
     """A mix-in of the scene's render settings."""
 
-    render_meshes: BoolProperty(
-        name="Render Meshes as Surfels",
-        description=(
-            "Sample meshes, curves, texts and metaballs as they are on each frame, without converting them. A mesh "
-            "that keeps its triangles keeps its surfels, so deformation flickers a third as much. A frame costs 1 "
-            "to 3 microseconds a surfel where the mesh deforms, and next to nothing where it does not"
-        ),
-        default=False,
+    render_meshes: EnumProperty(
+        name="Render Meshes as",
+        description="What becomes of meshes, curves, texts and metaballs that have not been converted",
+        items=_MESH_ITEMS,
+        default="POLYGONS",
         update=_read_again,
     )
     mesh_density: EnumProperty(
@@ -96,11 +113,9 @@ def are_meshes_texture_mapped(scene: bpy.types.Scene) -> bool:
     return getattr(scene, RENDER_SETTINGS).mesh_textures
 
 
-def mesh_fineness(scene: bpy.types.Scene) -> dict[str, float] | None:
-    """How fine meshes are sampled: {"resolution" | "spacing" (world units) | "pixels": number}; None: not at all."""
+def mesh_fineness(scene: bpy.types.Scene) -> dict[str, float]:
+    """How fine meshes are sampled: {"resolution" | "spacing" (world units) | "pixels": number}."""
     properties = getattr(scene, RENDER_SETTINGS)
-    if not properties.render_meshes:
-        return None
     name, kind = _FINENESS[properties.mesh_density]
     return {kind: getattr(properties, name)}
 
@@ -108,32 +123,40 @@ def mesh_fineness(scene: bpy.types.Scene) -> dict[str, float] | None:
 class SurfelObjectSettings(bpy.types.PropertyGroup):
     """What an object has to say: `object.surfel_splatting`."""
 
-    render_as_surfels: BoolProperty(
-        name="Render as Surfels",
+    render_as: EnumProperty(
+        name="Render as",
         description=(
-            "Sample this object, with its instances, where the scene's Render Meshes as Surfels is on. The conversion "
-            "switches this off, since its surfels stand in the object's place; switch it on again if you delete them"
+            "What becomes of this object, with its instances. The conversion leaves it out, since its surfels stand in "
+            "the object's place; choose anew if you delete them"
         ),
-        default=True,
+        items=[
+            ("SCENE", "As the Scene Says", "What Render Meshes as in the render properties says"),
+            *(item[:3] for item in _MESH_ITEMS),
+        ],
+        default="SCENE",
         update=_read_again,
     )
 
 
-def renders_as_surfels(entry: bpy.types.DepsgraphObjectInstance) -> bool:
-    """Whether nobody says otherwise: of an instance its instancer, and of one from a collection the object in there
-    too, whose surfels the conversion has put beside it."""
+def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) -> str:
+    """As what a mesh is rendered, a name in the scene's choices: of an instance its instancer says it; of one from a
+    collection the object in there comes first, unless either of them is hidden.
+    """
     owner = owner_of(entry)
-    asked = [owner, entry.object.original] if owner.instance_type == "COLLECTION" else [owner]
-    return all(getattr(object_, OBJECT_SETTINGS).render_as_surfels for object_ in asked)
+    asked = [entry.object.original, owner] if owner.instance_type == "COLLECTION" else [owner]
+    chosen = [getattr(object_, OBJECT_SETTINGS).render_as for object_ in asked]
+    if "HIDDEN" in chosen:
+        return "HIDDEN"
+    return next((form for form in chosen if form != "SCENE"), getattr(scene, RENDER_SETTINGS).render_meshes)
 
 
 def leave_to_surfels(source: bpy.types.Object) -> None:
     """The object has been converted: it must not be drawn a second time."""
-    getattr(source, OBJECT_SETTINGS).render_as_surfels = False
+    getattr(source, OBJECT_SETTINGS).render_as = "HIDDEN"
 
 
 class RENDER_PT_surfel_meshes(bpy.types.Panel):
-    bl_label = "Render Meshes as Surfels"
+    bl_label = "Meshes"
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     bl_context = "render"
@@ -142,17 +165,16 @@ class RENDER_PT_surfel_meshes(bpy.types.Panel):
     def poll(cls, context):
         return context.engine == ENGINE
 
-    def draw_header(self, context):
-        self.layout.prop(getattr(context.scene, RENDER_SETTINGS), "render_meshes", text="")
-
     def draw(self, context):
         properties = getattr(context.scene, RENDER_SETTINGS)
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        self.layout.active = properties.render_meshes
-        self.layout.prop(properties, "mesh_density")
-        self.layout.prop(properties, _FINENESS[properties.mesh_density][0])
-        self.layout.prop(properties, "mesh_textures")
+        self.layout.prop(properties, "render_meshes")
+        column = self.layout.column()
+        column.active = properties.render_meshes == "SURFELS"
+        column.prop(properties, "mesh_density")
+        column.prop(properties, _FINENESS[properties.mesh_density][0])
+        column.prop(properties, "mesh_textures")
 
 
 class OBJECT_PT_surfel_splatting(bpy.types.Panel):
@@ -168,7 +190,7 @@ class OBJECT_PT_surfel_splatting(bpy.types.Panel):
     def draw(self, context):
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        self.layout.prop(getattr(context.object, OBJECT_SETTINGS), "render_as_surfels")
+        self.layout.prop(getattr(context.object, OBJECT_SETTINGS), "render_as")
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(

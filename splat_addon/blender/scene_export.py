@@ -17,8 +17,8 @@ from ..rendering.packing import MAX_SPLATS
 from ..surfels import Surfels, split
 from .attributes import has_surfels, read_surfels
 from .light_linking import LightSets
-from .live_meshes import LiveMeshes
-from .mesh_sampling_settings import are_meshes_texture_mapped, mesh_fineness, renders_as_surfels
+from .live_meshes import LiveMeshes, Place
+from .mesh_sampling_settings import are_meshes_texture_mapped, form_of, mesh_fineness
 from .shading_export import light_of, shading_material
 from .sources import owner_of
 from .surface_textures import TextureStore
@@ -87,9 +87,9 @@ class SurfelStore:
 def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes: LiveMeshes) -> tuple[Scene, Notes]:
     """Everything in the depsgraph that the renderer knows how to draw, and notes on what it does not.
 
-    live_meshes: samples the meshes that are no surfels, where the scene asks for that.
+    live_meshes: keeps the meshes that are no surfels.
     """
-    notes, fineness = Notes(), mesh_fineness(depsgraph.scene)
+    notes, bpy_scene = Notes(), depsgraph.scene
     surfels, (lights, light_sets) = [], _lights(depsgraph, notes)
     for entry in depsgraph.object_instances:
         object_, matrix = entry.object, np.array(entry.matrix_world, np.float64)
@@ -105,19 +105,20 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                 }
                 if (what := _content(object_)) == "surfels":
                     surfels += _instances(object_, matrix, fields, store, notes)
-                elif fineness is not None and what == "faces" and renders_as_surfels(entry):
-                    live_meshes.add(object_, owner_of(entry), matrix, fields, notes)
-                elif fineness is None and what != "nothing":
-                    notes.add(_NOT_SAMPLED)
+                elif what == "faces" and (form := form_of(entry, bpy_scene)) != "HIDDEN":
+                    live_meshes.add(object_, owner_of(entry), Place(matrix, fields, form), notes)
+                elif what == "points":
+                    notes.add(_BARE_POINTS)
             elif object_.type in _NOT_DRAWN:
                 notes.add(f"Objects of type {_NOT_DRAWN[object_.type]} are not drawn; convert them to meshes first")
         except ValueError as error:
             notes.add(f"{object_.name} is left out: {error}")
-    if fineness is not None:
-        surfels += live_meshes.instances(depsgraph, fineness, are_meshes_texture_mapped(depsgraph.scene), notes)
+    sampled, polygons = live_meshes.instances(
+        depsgraph, mesh_fineness(bpy_scene), are_meshes_texture_mapped(bpy_scene), notes
+    )
     world, environment = store.world.read(depsgraph.scene.world, notes)
     lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
-    return Scene(tuple(surfels), tuple(lights), world, environment), notes
+    return Scene((*surfels, *sampled), tuple(lights), world, environment, tuple(polygons)), notes
 
 
 def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], LightSets]:
@@ -140,10 +141,7 @@ def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], 
 _NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "volume", "GREASEPENCIL": "grease pencil"}
 
 
-_NOT_SAMPLED = (
-    "Meshes without surfels are not drawn; convert them with Object > Convert to Surfels, or switch on "
-    "Render Meshes as Surfels in the render properties"
-)
+_BARE_POINTS = "Meshes of points without faces are not drawn; convert them with Object > Convert Points to Surfels"
 
 
 def _content(object_: bpy.types.Object) -> str:

@@ -12,6 +12,7 @@ from ..images import Image
 from .adaptive import Tolerance
 from .cleaning import drop_unusable
 from .closest_approach import NotSeenError, Outline, camera_spacing, outline
+from .corners import corner_values
 from .fineness import grid_spacing, predict_count
 from .joining import have_same_values, joined, transformed
 from .mesh import TriangleMesh
@@ -44,6 +45,7 @@ __all__ = [
     "TriangleMesh",
     "VertexColors",
     "camera_spacing",
+    "corner_values",
     "drop_unusable",
     "grid_spacing",
     "have_same_values",

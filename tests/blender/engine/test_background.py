@@ -67,6 +67,7 @@ def test_the_background_fills_the_picture_of_a_scene_with_other_things_only(scen
     add_camera()
     add_world((0.2, 0.4, 0.8))
     bpy.ops.mesh.primitive_cube_add()
+    scene.surfel_splatting.render_meshes = "HIDDEN"
     scene.render.film_transparent = False
     assert np.allclose(picture(), (0.2, 0.4, 0.8, 1))
 

@@ -159,12 +159,12 @@ def test_no_surfels_at_all_are_no_mishap(good, add_object, assert_good_is_drawn,
     assert "Warning" not in said()
 
 
-def test_meshes_without_surfels_are_counted(good, assert_good_is_drawn, said):
-    for x in (-5, 5):
-        bpy.ops.mesh.primitive_cube_add(location=(x, 0, 1))
+def test_meshes_without_faces_are_counted(good, add_mesh, assert_good_is_drawn, said):
+    for name in ("one", "other"):
+        add_mesh(name, [(0, 0, 0), (1, 0, 0)], [])
     assert_good_is_drawn()
     text = said()
-    assert "Warning: Meshes without surfels are not drawn; convert them with Object > Convert to Surfels" in text
+    assert "Warning: Meshes of points without faces are not drawn; convert them with Object > Convert Points" in text
     assert "(2 times)" in text
 
 
@@ -190,7 +190,7 @@ def test_surfels_in_edit_mode_are_drawn(modifier, good, add_surfels, picture):
 
 
 def test_a_mesh_in_edit_mode_is_no_mishap(assert_good_is_drawn):
-    bpy.ops.mesh.primitive_cube_add(location=(0, 0, 1))
+    bpy.ops.mesh.primitive_cube_add(location=(5, 0, 1))
     bpy.ops.object.mode_set(mode="EDIT")
     assert_good_is_drawn()
 

@@ -15,7 +15,7 @@ from splat_addon.rendering import storages
 def live(scene, add_camera):
     """The scene with the option on, at a resolution of 32, seen from above."""
     add_camera(location=(0, 0, 10))
-    scene.surfel_splatting.render_meshes = True
+    scene.surfel_splatting.render_meshes = "SURFELS"
     scene.surfel_splatting.mesh_resolution = 32
     return scene.surfel_splatting
 
@@ -86,17 +86,16 @@ def test_it_looks_as_if_it_had_been_converted(add, live, picture, assert_same_pi
     add()
     unconverted = picture()
     assert unconverted[..., 3].any() and counts()["meshes"] == 1
-    live.render_meshes = False
+    live.render_meshes = "HIDDEN"
     bpy.ops.object.surfels_from_mesh(resolution=32, source="HIDE")
     assert_same_picture(unconverted, picture())
 
 
-def test_it_is_off_by_default_and_says_where_it_is(scene, add_camera, picture, said):
-    assert not scene.surfel_splatting.render_meshes
+def test_polygons_are_the_default(scene, add_camera, picture):
+    assert scene.surfel_splatting.render_meshes == "POLYGONS"
     add_camera()
     add_curve()
-    picture()
-    assert "switch on Render Meshes as Surfels" in said()
+    assert picture().any() and counts()["polygon_meshes"] == 1 and "surfels" not in counts()
 
 
 def test_what_has_been_converted_is_not_drawn_twice(live, picture):
@@ -104,7 +103,7 @@ def test_what_has_been_converted_is_not_drawn_twice(live, picture):
     bpy.ops.object.surfels_from_mesh(resolution=24, source="KEEP")
     both = picture()
     assert counts() == {}
-    live.render_meshes = False
+    live.render_meshes = "HIDDEN"
     assert np.array_equal(both, picture())
 
 
@@ -124,7 +123,7 @@ def test_neither_is_an_instance_of_its_collection(live, scene, picture):
 
 def test_an_object_can_be_left_out(live, picture):
     add_coloured_mirrored_mesh()
-    bpy.context.object.surfel_splatting.render_as_surfels = False
+    bpy.context.object.surfel_splatting.render_as = "HIDDEN"
     assert not picture().any()
 
 

@@ -113,9 +113,9 @@ def test_the_blur_is_cycles(kind, scene, add_camera, add_object, add_surfels, pi
     scene.frame_set(10)
     scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
     scene.surfel_splatting.samples = 32
-    scene.surfel_splatting.render_meshes = True
+    scene.surfel_splatting.render_meshes = "SURFELS"
     if kind == "surfels shift":
-        scene.surfel_splatting.render_meshes = False
+        scene.surfel_splatting.render_meshes = "HIDDEN"
         positions = [tuple(v.co) for v in ball.data.vertices]
         normals = [tuple(v.normal) for v in ball.data.vertices]
         animate_key(add_surfels(positions, normals, size=0.06), kind)

@@ -51,7 +51,7 @@ def test_what_changed_is_seen(persistent, add_camera, add_surfels, picture, uplo
 def test_live_meshes_are_sampled_once(persistent, add_camera, picture):
     bpy.ops.mesh.primitive_uv_sphere_add()
     add_camera()
-    persistent.surfel_splatting.render_meshes = True
+    persistent.surfel_splatting.render_meshes = "SURFELS"
     first = picture()
     assert final_render.last_frame_stats["live_meshes"]["sampled"] == 1
     np.testing.assert_array_equal(picture(), first)

@@ -199,7 +199,7 @@ def live_square(scene, add_camera, add_square, image):
     add_camera(location=(0.5, 0.5, 5), type="ORTHO", ortho_scale=1.0)
     square = add_square()
     square.data.materials.append(textured_material(image))
-    scene.surfel_splatting.render_meshes = scene.surfel_splatting.mesh_textures = True
+    scene.surfel_splatting.render_meshes, scene.surfel_splatting.mesh_textures = "SURFELS", True
     scene.surfel_splatting.mesh_resolution = 4
     return square
 

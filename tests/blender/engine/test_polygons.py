@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes that were not converted are drawn as polygons among the surfels."""
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender import final_render
+from splat_addon.rendering import polygons, resources
+
+
+@pytest.fixture
+def packed(monkeypatch):
+    """The polygons that were packed for the device, in order."""
+    made, pack = [], polygons.pack_polygons
+    monkeypatch.setattr(resources, "pack_polygons", lambda shape: made.append(shape) or pack(shape))
+    return made
+
+
+def counts():
+    return final_render.last_frame_stats["live_meshes"]
+
+
+def principled(**inputs) -> bpy.types.Material:
+    material = bpy.data.materials.new("material")
+    if bpy.app.version < (5, 0, 0):
+        material.use_nodes = True
+    shader = material.node_tree.nodes["Principled BSDF"]
+    for name, value in inputs.items():
+        shader.inputs[name.replace("_", " ")].default_value = value
+    return material
+
+
+def add_sun(scene, rotation=(0.5, 0.3, 0), energy=3.0, **properties):
+    data = bpy.data.lights.new("sun", "SUN")
+    data.energy, data.angle = energy, 0
+    for name, value in properties.items():
+        setattr(data, name, value)
+    sun = bpy.data.objects.new("sun", data)
+    sun.rotation_euler = rotation
+    scene.collection.objects.link(sun)
+    return sun
+
+
+def as_cycles_has_it(ours, truth, share):
+    """Where both are whole, the brightness is the same up to that share, in the mean and in all but a few pixels."""
+    inside = (ours[..., 3] == 1) & (truth[..., 3] > 0.999)
+    mine, other = ours[inside][:, :3], truth[inside][:, :3]
+    assert inside.sum() > 100
+    assert abs(mine.mean() - other.mean()) < share * other.mean()
+    off = np.abs(mine - other).max(axis=1) > share * other.max()
+    return np.count_nonzero(off) <= 0.05 * len(off)
+
+
+@pytest.fixture
+def look(scene, add_camera):
+    """Lit as by Cycles, from above at a slant, at 64 x 64 pixels."""
+    scene.surfel_splatting.shading, scene.surfel_splatting.supersampling = "principled", 2
+    scene.render.resolution_x = scene.render.resolution_y = 64
+    add_camera((0, -6, 5), (0.87, 0, 0), lens=60)
+    return scene
+
+
+def test_a_lit_mesh_is_as_bright_as_in_cycles(look, picture, switch_to_cycles):
+    bpy.ops.mesh.primitive_uv_sphere_add(radius=1, location=(-1, 0, 0.4))
+    bpy.ops.object.shade_smooth()
+    bpy.context.object.data.materials.append(principled(Base_Color=(0.7, 0.3, 0.2, 1), Roughness=0.6))
+    bpy.ops.mesh.primitive_cube_add(size=1.4, location=(1, 0, 0.2), rotation=(0.2, 0.1, 0.5))
+    bpy.context.object.data.materials.append(principled(Base_Color=(0.2, 0.5, 0.7, 1), Roughness=0.9))
+    bpy.ops.mesh.primitive_plane_add(size=8, location=(0, 0, -0.6))
+    add_sun(look)
+    ours = picture()
+    assert counts()["polygon_meshes"] == 3
+    switch_to_cycles(samples=16)
+    look.cycles.max_bounces = 0
+    assert as_cycles_has_it(ours, picture(), 0.1)
+
+
+def test_the_slots_of_a_mesh_and_its_colour_attribute_are_shown(look, picture):
+    look.surfel_splatting.shading = "flat"
+    bpy.ops.mesh.primitive_plane_add(size=2)
+    data = bpy.context.object.data
+    attribute = data.color_attributes.new("paint", "FLOAT_COLOR", "POINT")
+    attribute.data.foreach_set("color", np.array([(1, 0, 0, 1), (0, 1, 0, 1)] * 2, np.float32).ravel())
+    red_to_green = picture()[32, 22:42, :3]
+    assert np.allclose(red_to_green.sum(axis=1), 1, atol=1e-4)
+    assert red_to_green[0, 0] > 0.7 and red_to_green[-1, 1] > 0.7
+    data.materials.append(principled(Base_Color=(0, 0, 1, 1)))
+    assert np.allclose(picture()[32, 32, :3], (0, 0, 1), atol=1e-5)
+
+
+def test_an_image_is_looked_up_at_every_pixel(look, picture, switch_to_cycles):
+    """Through a Mapping node, repeated."""
+    look.surfel_splatting.shading = "flat"
+    look.surfel_splatting.supersampling = 4
+    image = bpy.data.images.new("checks", 16, 16, float_buffer=True)
+    pixels = np.random.default_rng(0).uniform(0.1, 0.9, (16, 16, 4)).astype(np.float32)
+    pixels[..., 3] = 1
+    image.pixels.foreach_set(pixels.ravel())
+    material = bpy.data.materials.new("textured")
+    if bpy.app.version < (5, 0, 0):
+        material.use_nodes = True
+    tree = material.node_tree
+    texture, mapping, where = (tree.nodes.new(f"ShaderNode{n}") for n in ("TexImage", "Mapping", "TexCoord"))
+    emission = tree.nodes.new("ShaderNodeBsdfDiffuse")
+    texture.image, texture.interpolation = image, "Closest"
+    mapping.inputs["Scale"].default_value = (2, 1.5, 1)
+    tree.links.new(where.outputs["UV"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs["Vector"], texture.inputs["Vector"])
+    tree.links.new(texture.outputs["Color"], emission.inputs["Color"])
+    tree.links.new(emission.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+    bpy.ops.mesh.primitive_plane_add(size=3)
+    bpy.context.object.data.materials.append(material)
+    ours = picture()
+    # what leaves a white world of even light is the colour
+    look.world = bpy.data.worlds.new("white")
+    look.world.color = (1, 1, 1)
+    if bpy.app.version < (5, 0, 0):
+        look.world.use_nodes = True
+    look.world.node_tree.nodes["Background"].inputs["Color"].default_value = (1, 1, 1, 1)
+    switch_to_cycles(samples=64, filter_width=1.0)
+    truth = picture()
+    inside = (ours[..., 3] == 1) & (truth[..., 3] > 0.999)
+    assert np.abs(ours - truth)[inside].mean() < 0.02 < ours[inside][:, :3].std()
+
+
+def test_an_unchanged_mesh_stays_on_the_device(look, packed, tmp_path):
+    bpy.ops.mesh.primitive_monkey_add()
+    look.frame_start, look.frame_end = 1, 3
+    look.render.filepath = str(tmp_path / "frame_####.exr")
+    bpy.ops.render.render(animation=True)
+    assert len(packed) == 1 and counts()["triangles"] == len(packed[0]) // 3
+
+
+def test_instances_share_one_mesh(look, scene, packed, picture):
+    bpy.ops.mesh.primitive_cube_add(size=0.5)
+    for x in (-1, 1):
+        copy = bpy.context.object.copy()
+        copy.location.x = x
+        scene.collection.objects.link(copy)
+    assert picture().any() and len(packed) == 1
+    assert final_render.last_frame_stats["instances"] == 3
+
+
+@pytest.mark.parametrize("form", ["POLYGONS", "SURFELS", "HIDDEN"])
+def test_an_object_has_the_last_word(form, look, picture):
+    look.surfel_splatting.render_meshes = "HIDDEN" if form != "HIDDEN" else "POLYGONS"
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.context.object.surfel_splatting.render_as = form
+    assert picture().any() is np.bool_(form != "HIDDEN")
+    assert set(counts()) == {"POLYGONS": {"polygon_meshes", "triangles"}, "HIDDEN": set()}.get(
+        form, {"meshes", "surfels", "sampled"}
+    )
+
+
+def test_what_polygons_do_not_show_is_said(look, picture, said):
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.context.object.data.materials.append(principled(Alpha=0.5))
+    picture()
+    assert "Cube is transparent in places, which polygons are not" in said()
+
+
+def test_broken_vertices_take_their_triangles_with_them(look, picture):
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4)
+    data = bpy.context.object.data
+    data.vertices[0].co = (np.nan, 0, 0)
+    whole = picture()
+    assert np.isfinite(whole).all() and whole.any()
+    assert counts()["triangles"] == 32
+
+
+def test_a_mesh_in_edit_mode_is_drawn(look, picture):
+    bpy.ops.mesh.primitive_cube_add()
+    before = picture()
+    bpy.ops.object.mode_set(mode="EDIT")
+    try:
+        assert np.array_equal(before, picture())
+    finally:
+        bpy.ops.object.mode_set(mode="OBJECT")
