@@ -23,7 +23,7 @@ last_frame_stats: dict = {}
 
 def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
     """Render one view layer. Raises ValueError or RuntimeError with a sentence for the user."""
-    settings = final_settings(depsgraph.scene, outputs_of(depsgraph.view_layer))
+    settings = final_settings(depsgraph.view_layer, depsgraph.scene, outputs_of(depsgraph.view_layer))
     engine.update_stats("", "Reading surfels")
     resources = _acquire_resources()
     is_cancelled = False

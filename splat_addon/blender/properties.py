@@ -20,6 +20,7 @@ from ..rendering.matcap import Matcap
 from ..rendering.methods import METHODS
 from ..rendering.settings import (
     ACCUMULATIONS,
+    MAX_LAYERS,
     MAX_SAMPLES,
     MAX_SHADOW_RESOLUTION,
     MAX_SUPERSAMPLING,
@@ -175,6 +176,27 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         max=MAX_SHADOW_RESOLUTION,
         default=Settings.shadow_resolution,
     )
+    layers: IntProperty(
+        name="Layers",
+        description=(
+            "Transparent surfaces behind one another, the most that a pixel is made of; where there are fewer, the "
+            "others cost nothing. Of 27 transparent spheres with 6 surfaces behind one another, 6 layers are 44 to "
+            "50 dB from the exact picture in 9 to 10 times the time of opaque spheres, 3 that blend the rest 40 to "
+            "42 dB in 4, 2 are 36 dB in 2.2 to 2.8. Opaque scenes have none"
+        ),
+        min=2,
+        max=MAX_LAYERS,
+        soft_max=16,
+        default=Settings.layers,
+    )
+    blends_rest: BoolProperty(
+        name="Blend the Rest",
+        description=(
+            "Let the last layer hold all surfaces that are left, mixed by their opacity, without an order. 4 to 5 dB "
+            "closer than 3 layers alone, in the same time; off, what lies behind the last layer is lost"
+        ),
+        default=Settings.blends_rest,
+    )
     storage: EnumProperty(
         name="Surfel Storage",
         description="How surfels lie on the graphics device",
@@ -194,11 +216,11 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     )
 
 
-def final_settings(scene: bpy.types.Scene, outputs: tuple[str, ...]) -> Settings:
-    """The settings of a final render that needs these arrays."""
+def final_settings(view_layer: bpy.types.ViewLayer, scene: bpy.types.Scene, outputs: tuple[str, ...]) -> Settings:
+    """The settings of a final render of a view layer that needs these arrays."""
     properties = getattr(scene, RENDER_SETTINGS)
     choices = {name: getattr(properties, name) for name in ("supersampling", "samples", "profile")}
-    return _settings(scene, outputs=outputs, **choices)
+    return _settings(scene, outputs=outputs, alpha_threshold=view_layer.pass_alpha_threshold, **choices)
 
 
 def viewport_settings(scene: bpy.types.Scene) -> Settings:
@@ -218,6 +240,8 @@ def _settings(scene, **choices) -> Settings:
         lines=_lines(properties) if properties.use_lines else None,
         epsilon=properties.epsilon,
         shadow_resolution=properties.shadow_resolution,
+        layers=properties.layers,
+        blends_rest=properties.blends_rest,
         storage=properties.storage,
         accumulation=properties.accumulation,
         transparent_film=scene.render.film_transparent,

@@ -104,6 +104,12 @@ class RENDER_PT_surfel_shadows(_RenderPanel, bpy.types.Panel):
     properties = ("shadow_resolution",)
 
 
+class RENDER_PT_surfel_transparency(_RenderPanel, bpy.types.Panel):
+    bl_label = "Transparency"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("layers", "blends_rest")
+
+
 class RENDER_PT_surfel_performance(_RenderPanel, bpy.types.Panel):
     bl_label = "Performance"
     bl_options = frozenset({"DEFAULT_CLOSED"})
@@ -143,6 +149,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         RENDER_PT_surfel_lines,
         RENDER_PT_surfel_motion_blur,
         RENDER_PT_surfel_shadows,
+        RENDER_PT_surfel_transparency,
         RENDER_PT_surfel_performance,
     )
 )
