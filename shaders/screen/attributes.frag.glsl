@@ -2,7 +2,9 @@
 // Summary: asks the method for weight and depth, and adds what is not hidden at the sample's centre. Depth is compared
 //          here with the visibility pass's, since a triangle in the picture has none.
 
+#ifndef RIMS
 #include "common/sums.glsl"
+#endif
 #include "screen/place.glsl"
 #include "methods/{method}.glsl"
 #ifdef TEXTURED
@@ -76,6 +78,11 @@ void main() {
 #endif
   float weight = weight_depth.x * color_weight.w;
   if (!(weight > 0.0 && dot(on_footprint, on_footprint) <= 1.0 && weight_depth.y >= splats.options.y)) discard;
+#ifdef RIMS
+  // Only whose the splat is, where nothing is visible.
+  if (texelFetch(visibility_depth, ivec2(gl_FragCoord.xy), 0).r < 1.0) discard;
+  identity = vec2(number, weight_depth.y);
+#else
 #ifdef REST
   vec4 seen = vec4(texelFetch(visibility_depth, ivec2(gl_FragCoord.xy), 0).r);
   seen.z = seen.x < 1.0 ? view_depth(seen.x) : 3e38;
@@ -102,4 +109,5 @@ void main() {
   vec3 color = color_weight.rgb;
 #endif
   add_to_sums(color, weight, weight_depth.y);
+#endif
 }

@@ -6,6 +6,9 @@
 #define PROJECTION splats.projection
 #define PARALLEL (splats.options.z > 0.5)
 #define DEPTH_UNIT splats.options.w
+#ifdef IDENTITY_TARGET
+#include "common/identity.glsl"
+#endif
 #include "common/splat_attributes.glsl"
 #ifdef WITH_MATERIALS
 #include "common/splat_material.glsl"
@@ -42,6 +45,9 @@ void main() {
   on_footprint = straddles ? vec2(0.0) : corner;
   color_weight = splat.color_weight;
   normal = splat.normal;
+#ifdef IDENTITY_TARGET
+  number = splat_number(splat.material);
+#endif
 #ifdef LAYER
   opacity = splat.opacity;
 #endif

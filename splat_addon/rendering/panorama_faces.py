@@ -16,7 +16,7 @@ from .accumulation import sample_camera, sample_points
 from .camera import Camera
 from .frame import EMPTY_DEPTH, Frame
 from .panorama import Panorama
-from .settings import NEAREST, OUTPUTS, Settings
+from .settings import NEAREST, OUTPUTS, Settings, held_arrays
 
 #: (a sample's camera, the one that shadow maps are fitted to, settings, progress) -> Frame
 Draw = Callable[[Camera, Camera, Settings, object], Frame]
@@ -72,7 +72,7 @@ def panorama_frame(panorama: Panorama, number: int, settings: Settings, draw: Dr
         frame = draw(camera, face.camera, _in_pixels_of_faces(settings), _share(progress, turn, len(faces)))
         stats = _added(stats, frame.stats)
         looks = face.looks - (x - 0.5, y - 0.5)
-        for name in settings.outputs:
+        for name in held_arrays(settings.outputs):
             if name == "cryptomatte":
                 matte = frame.cryptomatte.looked_up(panorama.size, face.pixels, _pixel_numbers(camera, looks))
                 pixels[name] = pixels[name].plus(matte) if name in pixels else matte

@@ -73,6 +73,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera
         passes = (
             *shadows,
             first,
+            *_rim_passes(settings, method),
             *layer_passes(layers, settings, method, model, sums, reads),
             *splats,
             *polygons,
@@ -190,6 +191,14 @@ def _identity(settings: Settings, left_out: list) -> tuple[tuple[str, ...], str]
             "multisampling to 0 and use supersampling."
         )
     return ("identity",), f"; {', '.join(asked_for)} tell whose it is"
+
+
+def _rim_passes(settings: Settings, method: Method) -> tuple[PlannedPass, ...]:
+    """What finds whose a sample is that sees only what a filter spreads; where silhouettes are filtered, none does."""
+    if method.works_in != "picture" or method.filters_silhouettes or not set(NUMBERED) & set(settings.outputs):
+        return ()
+    why = f"{method.name} spreads splats past what is visible, which is somebody's"
+    return (PlannedPass("rims", why, ("visibility_depth",), ("identity", "rim_depth")),)
 
 
 def _line_passes(settings: Settings, method: Method, sums: tuple[str, ...], left_out: list):

@@ -21,7 +21,7 @@ from .passes.tile import TileContext, texture_key
 from .plan import plan
 from .resources import Resources
 from .scene import Scene
-from .settings import NEAREST, OUTPUTS, Settings
+from .settings import OUTPUTS, Settings, held_arrays
 from .shadow import casting, same_maps
 from .storages import get_storage
 from .view import look
@@ -247,9 +247,8 @@ def _drawn(tile: Tile, frame_plan: FramePlan) -> Tile:
 
 
 def _read_arrays(outputs: tuple[str, ...]) -> tuple[str, ...]:
-    """Those that the device holds as they are; what follows the nearest sample needs its depth."""
-    wanted = {*outputs, "depth"} if set(outputs) & set(NEAREST) else set(outputs)
-    return tuple(name for name in HELD_BY if name in wanted)
+    """Those that the device holds as they are."""
+    return tuple(name for name in held_arrays(outputs) if name in HELD_BY)
 
 
 def _read(target, frame_plan: FramePlan, outputs: tuple[str, ...]) -> dict[str, np.ndarray]:

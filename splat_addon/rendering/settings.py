@@ -54,6 +54,11 @@ OUTPUTS = (
 NEAREST = ("depth", "position", "object_index", "material_index")
 
 
+def held_arrays(outputs: tuple[str, ...]) -> tuple[str, ...]:
+    """The arrays of a frame that has these outputs: what follows the nearest sample brings its depth."""
+    return tuple(name for name in OUTPUTS if name in outputs or (name == "depth" and set(outputs) & set(NEAREST)))
+
+
 @dataclass(frozen=True)
 class Settings:
     """method: how a splat is rasterised and filtered, a name in `rendering.methods`.

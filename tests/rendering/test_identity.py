@@ -19,8 +19,9 @@ from splat_addon.surfels import Surfels
 SIZE = (40, 30)
 CAMERA = Camera.perspective(np.eye(4), 0.9, SIZE)
 OUTPUTS = ("color", "coverage", *NUMBERED)
-#: Methods that see silhouettes where the visibility pass does.
-EXACT = ("quad", "mip", "affine_unfiltered")
+#: Pixels that a method may see nothing in where something is visible: what these print leaves holes (docs/methods.md);
+#: of others one splat's rim may tie.
+TIES = {"homogeneous_printed": 8, "affine": 4}
 
 
 def moved(x, y, z) -> np.ndarray:
@@ -67,15 +68,15 @@ def test_no_hash_is_a_number_that_files_lose():
     assert special.sum() > 5 and ((raw ^ hashes)[special] == 1 << 23).all() and (raw == hashes)[~special].all()
 
 
-@pytest.mark.parametrize("method", EXACT)
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("supersampling", [1, 3])
 def test_shares_add_up_to_the_coverage(method, supersampling, render):
     frame = render(three(), CAMERA, settings(method=method, supersampling=supersampling))
     matte = frame.cryptomatte
     total = sum(matte.share_of(name) for name in ("wall", "ball", "disc"))
     assert all(matte.share_of(name).max() > 0.99 for name in ("wall", "ball", "disc"))
-    assert np.count_nonzero(np.abs(total - frame.coverage) > 1e-6) <= 1  # a tie of a splat's rim
-    assert (frame.object_index > 0).sum() == (frame.depth < EMPTY_DEPTH).sum()
+    assert np.count_nonzero(np.abs(total - frame.coverage) > 1e-6) <= TIES.get(method, 1)
+    assert np.count_nonzero((frame.object_index > 0) != (frame.depth < EMPTY_DEPTH)) <= TIES.get(method, 0)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -222,7 +223,7 @@ def test_shares_of_one_key_are_added_up():
     assert len(added_up(np.zeros(0, np.uint64), np.zeros(0))[0]) == 0
 
 
-@pytest.mark.parametrize("method", EXACT)
+@pytest.mark.parametrize("method", METHODS)
 def test_they_are_the_same_on_every_device(method, render, pictures, request):
     frame = render(three(), CAMERA, settings(method=method))
     arrays = {name: getattr(frame, name) for name in ("object_index", "material_index")}

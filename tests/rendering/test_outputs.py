@@ -8,7 +8,18 @@ import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs, sheet
-from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Light, Material, Scene, Settings, look_at
+from splat_addon.rendering import (
+    EMPTY_DEPTH,
+    Camera,
+    Equirectangular,
+    Instance,
+    Light,
+    Material,
+    Panorama,
+    Scene,
+    Settings,
+    look_at,
+)
 from splat_addon.rendering.identity import NUMBERED
 from splat_addon.rendering.settings import OUTPUTS as ALL_OUTPUTS
 
@@ -186,6 +197,14 @@ def test_a_position_is_that_of_the_nearest_sample(render):
     eye = (frame.position - camera.matrix_world[:3, 3]) @ camera.matrix_world[:3, :3]
     np.testing.assert_allclose(-eye[hit][:, 2], frame.depth[hit], 1e-5)
     assert not frame.position[~hit].any()
+
+
+@pytest.mark.parametrize("camera", [CAMERA, Panorama(np.eye(4), Equirectangular(), (64, 32))])
+def test_positions_alone_bring_their_depth(camera, render):
+    frame = render(wall(), camera, Settings(outputs=("position",), samples=3))
+    hit = frame.depth < EMPTY_DEPTH
+    assert frame.color is None and hit.any() and not frame.position[~hit].any()
+    np.testing.assert_allclose(frame.position[hit][:, 2], -4, atol=1e-4)
 
 
 def test_outputs_that_are_not_asked_for_are_not_there(render):

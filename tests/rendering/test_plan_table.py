@@ -113,6 +113,11 @@ TABLE = {
         ("visibility", "seen_range", "attributes", "polygons", "sample_shading", "resolve"),
         f"{AMONG_TEXTURES} seen_range shaded surface", "-brdf_table", (),
     ),
+    "whose it is, where filters reach past what is visible": (
+        PLAIN, {"outputs": ("object_index",), "method": "ewa"},
+        ("visibility", "rims", "seen_range", "attributes", "shading"),
+        "-normal_coverage identity rim_depth seen_range", "", (),
+    ),
     "whose it is": (PLAIN, {"outputs": ("object_index",)}, PASSES, "-normal_coverage identity", "", ()),
     "lines": (PLAIN, {"lines": Lines()}, ("visibility", "attributes", "lines", "shading"), "lines", "", ()),
     "overdraw": (PLAIN, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", ()),

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The passes that a plan may name: one file each, with its pipeline's description and how it runs."""
 
-from . import attributes, layers, lines, polygons, rest, seen_range, shading, shadow_maps, visibility
+from . import attributes, layers, lines, polygons, rest, rims, seen_range, shading, shadow_maps, visibility
 
 #: name in a `FramePlan` -> run(tile, planned) -> the target that was drawn into
 RUN = {
     "background": shading.run,
     "shadow_maps": shadow_maps.run,
     "visibility": visibility.run,
+    "rims": rims.run,
     "seen_range": seen_range.run,
     "attributes": attributes.run,
     "polygons": polygons.run,

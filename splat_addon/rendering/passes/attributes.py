@@ -99,7 +99,7 @@ def _in_picture(planned, frame):
         planned,
         frame,
         folder="screen/",
-        samplers=("seen_range",),
+        samplers=("visibility_depth" if "identity" in planned.writes else "seen_range",),
         varyings=(
             *((("flat", "float", "straddling"),) if straddling else ()),
             ("flat", "vec4", "plane_ab"),
