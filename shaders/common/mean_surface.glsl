@@ -35,6 +35,7 @@ float polygon_share(MeanSurface mean, vec3 normal, float depth) {
   float weight = mean.weight / WEIGHT_SCALE;
 #else
   if (behind > shading.edges.z) return 0.0;
+  if (behind < -shading.edges.z) return 1.0;
   float weight = front_weight(mean.weight);
 #endif
   // Splats may be seen from a little behind a polygon, so that those of its own surface are; of others the nearer wins.

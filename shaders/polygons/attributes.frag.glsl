@@ -52,4 +52,7 @@ void main() {
 #ifdef EMISSION_TARGET
   polygon_emission = vec4(emission, 1.0);
 #endif
+#ifdef IDENTITY_TARGET
+  polygon_identity = vec2(number, depth_at);
+#endif
 }

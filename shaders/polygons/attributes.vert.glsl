@@ -3,6 +3,9 @@
 
 #define VERTEX_STAGE
 #include "polygons/corner.glsl"
+#ifdef IDENTITY_TARGET
+#include "common/identity.glsl"
+#endif
 #ifdef WITH_MATERIALS
 #include "common/splat_material.glsl"
 #endif
@@ -31,6 +34,9 @@ void main() {
   depth_at = -eye.z;
   corner_normal = normalize(mat3(splats.normal_matrix) * corner_texel(gl_VertexID, 1).xyz) * (is_back ? -1.0 : 1.0);
   corner_color = corner_texel(gl_VertexID, 2).rgb;
+#ifdef IDENTITY_TARGET
+  number = splat_number(place.w);
+#endif
 #ifdef WITH_MATERIALS
   fetch_material(gl_VertexID, place.w);
 #endif

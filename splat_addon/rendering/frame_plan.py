@@ -21,6 +21,7 @@ TEXTURES = {
     "identity": ("RG32F", "sample"),
     "identity_next": ("RG32F", "sample"),
     "layer_identity": ("RG32F", "sample"),
+    "polygon_identity": ("RG32F", "sample"),
     "rim_depth": ("DEPTH32F", "sample"),
     "seen_range": ("RGBA32F", "sample"),
     "seen_depth": ("DEPTH32F", "sample"),

@@ -91,6 +91,14 @@ class Identified:
             self.arrays["cryptomatte"] = matte.plus(tile_matte(seen, tile, matte.size, plan, self._identities))
 
 
+def nearer(seen: np.ndarray, *others: np.ndarray) -> np.ndarray:
+    """(rows, columns, 2) number and depth of what is nearest at each sample."""
+    for other in others:
+        is_nearer = (other[..., 0] > 0) & ((seen[..., 0] == 0) | (other[..., 1] < seen[..., 1]))
+        seen = np.where(is_nearer[..., None], other, seen)
+    return seen
+
+
 def nearest_numbers(seen: np.ndarray, plan: FramePlan) -> np.ndarray:
     """(h, w) number of the nearest sample of each pixel.
 

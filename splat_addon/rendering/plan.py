@@ -62,8 +62,9 @@ def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera
         linear_depth, why_depth = _linear_depth(camera, extent)
         sums = _sums(scene, settings, model, material, emission, left_out)
         maps = _shadow_maps(scene, shadow_camera or camera, settings, model, left_out)
-        polygons = _polygon_passes(scene, method, sums, left_out)
-        kept = (*sums, *(name for p in polygons for name in p.writes if name != "polygon_depth"))
+        polygons = _polygon_passes(scene, settings, method, sums, left_out)
+        unread = ("polygon_depth", "polygon_identity")
+        kept = (*sums, *(name for p in polygons for name in p.writes if name not in unread))
         lines = _line_passes(settings, method, kept, left_out)
         reads = _read_by_shading(scene, model, kept, maps, left_out) + (("lines",) if lines else ())
         shadows = (_shadow_pass(scene, maps),) if maps else ()
@@ -163,7 +164,9 @@ def _splat_passes(settings: Settings, method: Method, why: str, why_depth: str, 
     )
 
 
-def _polygon_passes(scene: Scene, method: Method, sums: tuple[str, ...], left_out: list) -> tuple[PlannedPass, ...]:
+def _polygon_passes(
+    scene: Scene, settings: Settings, method: Method, sums: tuple[str, ...], left_out: list
+) -> tuple[PlannedPass, ...]:
     """What of polygons is kept beside the sums over splats, which shading joins with it."""
     if not scene.polygons:
         left_out.append(("polygons", "the scene has none"))
@@ -173,6 +176,8 @@ def _polygon_passes(scene: Scene, method: Method, sums: tuple[str, ...], left_ou
         kept.append("polygon_material")
     if "emission_sum" in sums:
         kept.append("polygon_emission")
+    if method.works_in == "sprites" and set(NUMBERED) & set(settings.outputs):
+        kept.append("polygon_identity")
     touching = len(overlapping_radii(scene))
     why = f"{len(scene.polygons)} instances are polygons, of which {touching} touch surfels and may blend with them"
     seen = ("seen_range",) if method.works_in == "picture" else ()

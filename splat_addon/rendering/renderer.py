@@ -13,7 +13,7 @@ from .camera import Camera
 from .device import Device
 from .frame import EMPTY_DEPTH, Frame
 from .frame_plan import HELD_BY, FramePlan
-from .identity import Identified
+from .identity import Identified, nearer
 from .panorama import Panorama
 from .panorama_faces import panorama_frame
 from .passes import RUN
@@ -112,8 +112,12 @@ class Renderer:
             tiles, identified = [], Identified(scene, camera.size, settings.outputs)
             for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress, are_shared_done):
                 tiles.append((tile, _read(target, frame_plan, settings.outputs)))
-                if "identity" in frame_plan.textures:
-                    identified.add(tile, self._read_whole("identity", tile, frame_plan), frame_plan)
+                if seen := [
+                    self._read_whole(name, tile, frame_plan)
+                    for name in ("identity", "polygon_identity")
+                    if name in frame_plan.textures
+                ]:
+                    identified.add(tile, nearer(*seen), frame_plan)
         finally:
             self.device.restore()
         arrays = _assembled(tiles, camera.size) if tiles else _background(scene, camera.size, settings)

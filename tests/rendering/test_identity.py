@@ -9,11 +9,22 @@ import numpy as np
 import pytest
 
 from splat_addon.reference.extremes import discs, sheet
-from splat_addon.rendering import EMPTY_DEPTH, Camera, Cryptomatte, Instance, Material, Scene, Settings, plan
+from splat_addon.rendering import (
+    EMPTY_DEPTH,
+    Camera,
+    Cryptomatte,
+    Instance,
+    Material,
+    PolygonInstance,
+    Scene,
+    Settings,
+    plan,
+)
 from splat_addon.rendering.accumulation import mean_frame
 from splat_addon.rendering.cryptomatte import added_up, murmur3_32, name_hash
 from splat_addon.rendering.identity import NUMBERED, Identities, nearest_numbers, tile_matte
 from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.polygons import make_polygons
 from splat_addon.surfels import Surfels
 
 SIZE = (40, 30)
@@ -104,6 +115,22 @@ def test_a_share_is_the_part_of_the_pixel(render):
     frame = render(Scene([Instance(wall, name="wall")]), camera, settings(supersampling=10))
     row = frame.cryptomatte.share_of("wall")[4]
     np.testing.assert_allclose(row, (1, 1, 1, 1, 0.6, 0, 0, 0), atol=0.051)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_polygons_are_told_apart_from_surfels(method, render):
+    """A polygon of two materials before the wall, behind the ball."""
+    corners = np.array([(-0.8, -0.3, 0), (0.8, -0.3, 0), (0.8, 0.3, 0), (-0.8, 0.3, 0)])
+    slots = np.repeat((0, 1), 3).astype(np.int32)
+    polygons = make_polygons(corners, [(0, 1, 2), (0, 2, 3)], materials=slots)
+    board = PolygonInstance(polygons, moved(0, -0.5, -3.8), (Material(index=8), Material(index=9)), name="b", index=4)
+    frame = render(replace(three(), polygons=(board,)), CAMERA, settings(method=method, outputs=(*OUTPUTS, "depth")))
+    is_board = np.abs(frame.depth - 3.8) < 1e-3
+    assert is_board.sum() > 40 and (frame.object_index == 4)[is_board].mean() > 0.97
+    assert {8, 9} <= set(np.unique(frame.material_index[frame.object_index == 4])) <= {8, 9}
+    assert set(np.unique(frame.object_index)) == {0, 1, 3, 4, 70_001}
+    total = sum(frame.cryptomatte.share_of(name) for name in ("wall", "ball", "disc", "b"))
+    assert np.count_nonzero(np.abs(total - frame.coverage) > 1e-6) <= TIES.get(method, 2)
 
 
 def test_objects_of_one_name_are_one_and_slots_are_no_edges(render):

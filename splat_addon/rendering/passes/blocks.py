@@ -25,7 +25,7 @@ def material_defines(names: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
 
 def says_whose(planned: PlannedPass) -> bool:
     """Whether a pass that draws splats leaves their numbers."""
-    return bool({"identity", "layer_identity"} & set(planned.writes))
+    return bool({"identity", "layer_identity", "polygon_identity"} & set(planned.writes))
 
 
 def identity_defines(planned: PlannedPass) -> tuple[tuple[str, str], ...]:

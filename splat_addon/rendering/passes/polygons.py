@@ -14,7 +14,7 @@ from ..frame_plan import FramePlan, PlannedPass
 from ..methods import get_method
 from ..shaders import load
 from ..view import PlacedInstance
-from .blocks import LINEAR_DEPTH, material_defines
+from .blocks import LINEAR_DEPTH, identity_defines, identity_varyings, material_defines
 from .splats import SPLATS_BLOCK, splats_block
 from .tile import TileContext
 
@@ -44,10 +44,12 @@ def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> 
             ("smooth", "vec3", "corner_normal"),
             ("smooth", "vec3", "corner_color"),
             *(("smooth", "vec3", name[:-4]) for name in _needed_sums(frame)),
+            *identity_varyings(planned),
         ),
-        outputs=tuple(("vec4", name) for name in colors),
+        outputs=tuple(("vec2" if name == "polygon_identity" else "vec4", name) for name in colors),
         defines=(
             *materials,
+            *identity_defines(planned),
             *((("MATERIAL_OUTPUT", "1"),) if "polygon_material" in colors else ()),
             *((("SEEN_POLYGONS", "1"),) if planned.reads else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
