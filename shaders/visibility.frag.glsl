@@ -4,12 +4,18 @@
 //          one or behind what is opaque.
 
 #include "common/depth.glsl"
+#ifdef SPLIT_POLYGONS
+#include "common/split.glsl"
+#endif
 #ifdef LAYER
 #include "common/layer_sample.glsl"
 #endif
 
 void main() {
   if (!(dot(place_depth.xy, place_depth.xy) <= 1.0 && place_depth.z >= splats.options.y)) discard;
+#ifdef SPLIT_POLYGONS
+  if (splats.identity.z > 0.0 && split_distance(split_place) > splats.identity.z) discard;
+#endif
 #ifdef LAYER
   if (!is_in_layer(place_depth.z, ivec2(gl_FragCoord.xy))) discard;
 #endif

@@ -10,6 +10,9 @@
 #include "common/identity.glsl"
 #endif
 #include "common/sides.glsl"
+#ifdef SPLIT
+#include "common/split.glsl"
+#endif
 #include "common/stored_splat.glsl"
 #include "methods/quad.glsl"
 
@@ -42,6 +45,9 @@ void main() {
   moved.z = min(moved.z, moved.w * max(unmoved.z / unmoved.w, 2.0 * FARTHEST_STORED - 1.0));
 #endif
   bool is_hidden = is_back && splats.sides.y > 0.5;
+#ifdef SPLIT
+  is_hidden = is_hidden || split_distance(position) < splats.identity.z;
+#endif
 #ifdef LAYER
   is_hidden = is_hidden || stored.color.a < LEAST_OPACITY;
 #endif

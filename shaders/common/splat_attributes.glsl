@@ -2,6 +2,9 @@
 // Summary: a stored splat as the attributes that every method accumulates. The includer says what `PARALLEL` (bool) is.
 
 #include "common/sides.glsl"
+#ifdef SPLIT
+#include "common/split.glsl"
+#endif
 #include "common/stored_splat.glsl"
 
 struct Splat {
@@ -30,6 +33,9 @@ Splat fetch_splat(int index) {
   if (dot(splat.normal, cross(splat.axis_u, splat.axis_v)) * side < 0.0) splat.normal = -splat.normal;
   splat.opacity = clamp(stored.color.a, 0.0, 1.0);
   splat.is_hidden = cosine < 0.0 && splats.sides.y > 0.5;
+#ifdef SPLIT
+  splat.is_hidden = splat.is_hidden || split_distance(splat.position) < splats.identity.z;
+#endif
 #ifdef LAYER
   splat.is_hidden = splat.is_hidden || splat.opacity < LEAST_OPACITY;
 #endif

@@ -4,6 +4,9 @@
 //          hide it.
 
 #include "common/depth.glsl"
+#ifdef SPLIT_POLYGONS
+#include "common/split.glsl"
+#endif
 #ifdef TEXTURED
 #include "common/texture_lookup.glsl"
 
@@ -26,6 +29,9 @@ mat2 uv_change(float depth) {
 
 void main() {
   if (!(depth_at >= splats.options.y)) discard;
+#ifdef SPLIT_POLYGONS
+  if (splats.identity.z > 0.0 && split_distance(split_place) > splats.identity.z) discard;
+#endif
 #ifdef SEEN_POLYGONS
   if (depth_at > texelFetch(seen_range, ivec2(gl_FragCoord.xy), 0).z) discard;
 #endif

@@ -32,6 +32,9 @@ void main() {
   bool is_back = shows_back(outward, first);
   vec4 place = corner_texel(gl_VertexID, 0);
   depth_at = -eye.z;
+#ifdef SPLIT
+  split_place = eye;
+#endif
   corner_normal = normalize(mat3(splats.normal_matrix) * corner_texel(gl_VertexID, 1).xyz) * (is_back ? -1.0 : 1.0);
   corner_color = corner_texel(gl_VertexID, 2).rgb;
 #ifdef IDENTITY_TARGET

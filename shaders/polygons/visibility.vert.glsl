@@ -17,6 +17,9 @@ void main() {
 #ifdef IDENTITY_TARGET
   number = splat_number(corner_texel(gl_VertexID / 3 * 3, 0).w);
 #endif
+#ifdef SPLIT
+  split_place = eye;
+#endif
   float offset = splats.options.x;
 #ifdef LINEAR_DEPTH
   across_offset = vec3(is_orthographic ? vec2(0.0) : eye.xy, offset);

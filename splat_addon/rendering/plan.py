@@ -81,7 +81,7 @@ def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera
             *lines,
             *_shading_passes(scene, settings, method, model, reads, layers, left_out),
         )
-        features = _splat_features(extent, left_out) + _features(scene, settings, model, emission, left_out)
+        features = _splat_features(scene, extent, left_out) + _features(scene, settings, model, emission, left_out)
         if not linear_depth:
             left_out.append(("linear depth", why_depth))
         _say_what_surfels_lack(scene, camera, left_out)
@@ -261,11 +261,18 @@ def _shows_environment(scene: Scene, settings: Settings) -> bool:
     return scene.environment is not None and not settings.transparent_film
 
 
-def _splat_features(extent: DepthExtent, left_out: list) -> tuple[tuple[str, str], ...]:
+def _splat_features(scene: Scene, extent: DepthExtent, left_out: list) -> tuple[tuple[str, str], ...]:
+    features = []
+    split = sum(placed.split is not None for placed in scene.shown)
+    if split:
+        features.append(("SPLIT", f"{split} instances are polygons near the camera, or surfels beyond that"))
+    else:
+        left_out.append(("split objects", "all are drawn whole"))
     if extent.reaches_near:
-        return (("STRADDLING", "splats that may reach the near plane are drawn in space"),)
-    left_out.append(("straddling splats", "none reaches the near plane"))
-    return ()
+        features.append(("STRADDLING", "splats that may reach the near plane are drawn in space"))
+    else:
+        left_out.append(("straddling splats", "none reaches the near plane"))
+    return tuple(features)
 
 
 def _features(

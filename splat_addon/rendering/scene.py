@@ -6,6 +6,7 @@ Plain values, no Blender: `blender/scene_export.py` makes a `Scene` from a depsg
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -74,6 +75,8 @@ class Placed:
         object.__setattr__(self, "matrix_world", matrix)
         object.__setattr__(self, "materials", tuple(self.materials) or (Material(),))
         object.__setattr__(self, "textures", tuple(self.textures))
+        if self.split is not None and not 0 < self.split < math.inf:
+            raise ValueError(f"An instance's split must be a finite distance above 0, not {self.split}.")
 
     @property
     def is_textured(self) -> bool:
@@ -126,6 +129,8 @@ class Instance(Placed):
         are shown.
     name: by which the frame's `cryptomatte` tells it from others; those of one name are one. index: what its
         `object_index` shows.
+    split: distance from the camera, world units, up to which an object is drawn as polygons, and beyond it as surfels,
+        by two instances that have the same; None: each is drawn everywhere. Shadows are cast by both.
     """
 
     surfels: Surfels
@@ -136,6 +141,7 @@ class Instance(Placed):
     textures: tuple[SurfaceTexture | None, ...] = ()
     name: str = ""
     index: int = 0
+    split: float | None = None
 
     @property
     def shape(self) -> Surfels:
@@ -161,6 +167,7 @@ class PolygonInstance(Placed):
     textures: tuple[SurfaceTexture | None, ...] = ()
     name: str = ""
     index: int = 0
+    split: float | None = None
 
     @property
     def shape(self) -> Polygons:

@@ -26,6 +26,9 @@ _FLATTEST = 1e-12
 #: interpolation is one or two.
 _LEAST_STEPS = 16
 
+#: Radii of the largest splat that splats of a split object reach over its polygons: one less has full weights.
+SPLIT_OVERLAP = 1.5
+
 #: Of how many surfels an instance's median depth is taken.
 _DEPTH_SAMPLES = 256
 
@@ -35,7 +38,8 @@ class PlacedInstance:
     """model_view: (4, 4) float64, positions (without origin) to scaled view space.
     normal_matrix: (3, 3) float64, its inverse transpose up to a positive factor.
     hides_backs: splats or polygons that show their back are left out.
-    overlap: of polygons, how far behind them splats still count, view units (`overlaps`).
+    overlap: of polygons, how far behind them splats still count, view units.
+    split: of polygons the farthest distance, of splats the least of their centres, view units; 0: no limit.
     """
 
     instance: Placed
@@ -43,6 +47,7 @@ class PlacedInstance:
     normal_matrix: np.ndarray
     hides_backs: bool
     overlap: float = 0.0
+    split: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +94,8 @@ def look(scene: Scene, camera: Camera, epsilon: float) -> View:
         model_view[:3] *= scale
         overlap = epsilon * radii.get(instance, 0.0) * scale
         of_kind = placed[type(instance)]
-        of_kind.append(PlacedInstance(instance, model_view, normal_matrix, instance.hides_backs(camera), overlap))
+        hides_backs, split = instance.hides_backs(camera), _split(instance) * scale
+        of_kind.append(PlacedInstance(instance, model_view, normal_matrix, hides_backs, overlap, split))
     return View(
         scale=scale,
         near=camera.near * scale,
@@ -103,6 +109,15 @@ def look(scene: Scene, camera: Camera, epsilon: float) -> View:
         polygons=tuple(placed[PolygonInstance]),
         contact=(1 + 4 * epsilon) * max(radii.values(), default=0.0) * scale,
     )
+
+
+def _split(instance: Placed) -> float:
+    """Where the instance begins or ends, world units. Splats begin before polygons end: their weights then sum to 1 and
+    more where polygons end (Guennebaud et al. 2006, section 5.1).
+    """
+    if instance.split is None or instance.shape.is_transparent:
+        return 0.0
+    return max(instance.split - SPLIT_OVERLAP * instance.radius, 0.0)
 
 
 def overlapping_radii(scene: Scene) -> dict[PolygonInstance, float]:

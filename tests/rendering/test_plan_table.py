@@ -103,6 +103,10 @@ TABLE = {
     ),
     "position": (PLAIN, {"outputs": ("position",)}, PASSES, "-normal_coverage", "", ()),
     "polygons": (HYBRID, {}, AMONG, AMONG_TEXTURES, "", ()),
+    "split by distance": (
+        Scene([Instance(surfels(), split=2.0)], polygons=(PolygonInstance(TRIANGLE, split=2.0),)), {},
+        AMONG, AMONG_TEXTURES, "", ("SPLIT",),
+    ),
     "polygons alone": (replace(HYBRID, surfels=()), {}, AMONG, AMONG_TEXTURES, "", ()),
     "polygons of another material under a linked light": (
         OTHERS, {}, AMONG, f"{AMONG_TEXTURES} polygon_material polygon_emission emission_sum light_set_sum", "lights",

@@ -169,6 +169,39 @@ def test_a_surface_of_both_looks_like_one_of_polygons(method, render):
     assert psnr(both.color[inside][None], one.color[inside][None]) > 45
 
 
+def painted(directions):
+    """(n, 4) colours that vary smoothly over a ball."""
+    x, y, z = np.asarray(directions, np.float64).T
+    waves = np.sin(6 * x), np.sin(5 * y + 1), np.sin(4 * z)
+    return np.stack([*(0.5 + 0.4 * wave for wave in waves), np.ones_like(x)], axis=1).astype(np.float32)
+
+
+@pytest.mark.parametrize("camera", ["perspective", "parallel"])
+@pytest.mark.parametrize("method", ["quad", "mip"])
+def test_a_ball_split_by_distance_has_no_seam(method, camera, render):
+    ball = scenes.round_polygons(40)
+    ball = replace(ball, colors=painted(ball.positions))
+    mesh = TriangleMesh(ball.positions, np.arange(len(ball)).reshape(-1, 3), ball.normals.reshape(-1, 3, 3))
+    surfels = sample_mesh(mesh, resolution=90)
+    places = surfels.positions + surfels.origin
+    surfels = replace(surfels, colors=painted(places / np.linalg.norm(places, axis=1, keepdims=True)))
+    eye = look_at((0, -3, 1), (0, 0, 0))
+    made = Camera.perspective(eye, 0.8, SIZE) if camera == "perspective" else Camera.orthographic(eye, 2.3, SIZE)
+    light = Light("sun", energy=3, direction=(0.5, 1, -1))
+
+    def shot(splats, polygons):
+        return render(Scene(splats, (light,), polygons=polygons), made, Settings(method=method))
+
+    split = shot((Instance(surfels, split=2.5),), (PolygonInstance(ball, split=2.5),))
+    near = shot((), (PolygonInstance(ball, split=2.5),))
+    polygons, splats = shot((), (PolygonInstance(ball),)), shot((surfels,), ())
+    assert 0.2 < near.coverage.sum() / polygons.coverage.sum() < 0.9
+    inside = (polygons.coverage > 0.999) & (splats.coverage > 0.999)
+    assert split.coverage[inside].min() > 0.999
+    for whole in (polygons, splats):
+        assert psnr(split.color[inside][None], whole.color[inside][None]) > 45
+
+
 def test_silhouettes_are_filtered_as_those_of_splats(render):
     """The coverage of an edge that crosses pixels at a slant is its area under the pixel's Gaussian."""
     camera = Camera.orthographic(look_at((0, 0, 5), (0, 0, 0), (0, 1, 0)), 2.0, SIZE)

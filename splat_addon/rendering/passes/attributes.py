@@ -17,6 +17,7 @@ from .blocks import (
     identity_defines,
     identity_varyings,
     material_defines,
+    split_defines,
     sum_defines,
 )
 from .splats import SPLATS_BLOCK, draw_splats, drawn_by
@@ -156,6 +157,7 @@ def _description(planned, frame, folder, varyings, samplers=(), defines=(), **st
             *with_materials,
             *_own_defines(planned),
             *identity_defines(planned),
+            *split_defines(frame),
             *sum_defines(planned.writes, frame.accumulation),
             *(LAYER if planned.layer else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),

@@ -28,6 +28,18 @@ def says_whose(planned: PlannedPass) -> bool:
     return bool({"identity", "layer_identity", "polygon_identity"} & set(planned.writes))
 
 
+def split_defines(frame: FramePlan) -> tuple[tuple[str, str], ...]:
+    """What is defined where something is drawn of objects that may be split by distance."""
+    return (("SPLIT", "1"),) if frame.has("SPLIT") else ()
+
+
+def split_polygons(frame: FramePlan) -> tuple[tuple, tuple]:
+    """Varyings and defines that polygons have beside, where they may end at a distance."""
+    if not frame.has("SPLIT"):
+        return (), ()
+    return (("smooth", "vec3", "split_place"),), (("SPLIT", "1"), ("SPLIT_POLYGONS", "1"))
+
+
 def identity_defines(planned: PlannedPass) -> tuple[tuple[str, str], ...]:
     """What is defined where a pass says whose the splats are that it sees."""
     return (("IDENTITY_TARGET", "1"),) if says_whose(planned) else ()

@@ -14,7 +14,7 @@ from ..frame_plan import FramePlan, PlannedPass
 from ..methods import get_method
 from ..shaders import load
 from ..view import PlacedInstance
-from .blocks import LINEAR_DEPTH, identity_defines, identity_varyings, material_defines
+from .blocks import LINEAR_DEPTH, identity_defines, identity_varyings, material_defines, split_polygons
 from .splats import SPLATS_BLOCK, splats_block
 from .tile import TileContext
 
@@ -33,6 +33,7 @@ def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> 
     colors = tuple(name for name in planned.writes if name != "polygon_depth")
     # what `material_defines` knows by the names of sums
     materials = material_defines(_needed_sums(frame))
+    split_varyings, split_defines = split_polygons(frame)
     plain = PipelineDescription(
         name="polygons",
         vertex=load("polygons/attributes.vert.glsl"),
@@ -43,6 +44,7 @@ def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> 
             ("smooth", "float", "depth_at"),
             ("smooth", "vec3", "corner_normal"),
             ("smooth", "vec3", "corner_color"),
+            *split_varyings,
             *(("smooth", "vec3", name[:-4]) for name in _needed_sums(frame)),
             *identity_varyings(planned),
         ),
@@ -52,6 +54,7 @@ def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> 
             *identity_defines(planned),
             *((("MATERIAL_OUTPUT", "1"),) if "polygon_material" in colors else ()),
             *((("SEEN_POLYGONS", "1"),) if planned.reads else ()),
+            *split_defines,
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
         depth_test=True,

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from ..device.interface import Target
 from ..frame_plan import PlannedPass
+from ..view import View
 from . import visibility
 from .tile import TileContext
 
@@ -18,6 +19,13 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
     for made, view in zip(tile.plan.shadow_maps, tile.shadow_views, strict=True):
         linear_depth = not made.camera.is_orthographic
         seen = replace(tile.plan, linear_depth=linear_depth, samples=1, multisamples=0, sample_shading=False)
+        view = _whole(view)
         from_light = TileContext(tile.resources, seen, tile.scene, made.camera, tile.settings, view)
         visibility.draw_visible(from_light, planned, target, view.placed, (*made.place, *made.camera.size))
     return target
+
+
+def _whole(view: View) -> View:
+    """With what is split by its distance from the picture's camera, not from this one, drawn whole."""
+    kinds = {name: tuple(replace(p, split=0.0) for p in getattr(view, name)) for name in ("placed", "polygons")}
+    return replace(view, **kinds)

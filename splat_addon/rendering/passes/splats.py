@@ -21,7 +21,7 @@ from .tile import TileContext
 #:     share of the distance; of an orthographic camera a length), what colours are multiplied by.
 #: light_set: 1 in the channel of the instance's set.
 #: window: left, bottom and step of one sample on the plane at depth 1.
-#: identity: number of the instance's first material slot, and of slots after it.
+#: identity: number of the instance's first material slot, and of slots after it; its split (`PlacedInstance`).
 SPLATS_BLOCK = (
     "Splats",
     "splats",
@@ -84,5 +84,5 @@ def splats_block(tile: TileContext, placed: PlacedInstance, epsilon: float) -> n
     options = epsilon, view.near, tile.camera.is_orthographic, tile.depth_unit
     normal_matrix, orientation, light_set = instance_values(placed)
     sides = orientation, placed.hides_backs, view.least_offset(tile.plan.linear_depth), tile.color_scale
-    identity = tile.identities.firsts[placed.instance], len(placed.instance.materials) - 1, 0.0, 0.0
+    identity = tile.identities.firsts[placed.instance], len(placed.instance.materials) - 1, placed.split, 0.0
     return std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set, identity)

@@ -11,7 +11,7 @@ from ..device.interface import PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
 from ..shaders import load
 from ..storages import get_storage
-from .blocks import LAYER, LINEAR_DEPTH, identity_defines, identity_varyings, says_whose
+from .blocks import LAYER, LINEAR_DEPTH, identity_defines, identity_varyings, says_whose, split_defines, split_polygons
 from .polygons import draw_polygons
 from .splats import SPLATS_BLOCK, draw_splats, drawn_by
 from .tile import TileContext
@@ -35,6 +35,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
             *(LINEAR_DEPTH if frame.linear_depth else ()),
             *(LAYER if planned.layer else ()),
             *identity_defines(planned),
+            *split_defines(frame),
         ),
         depth_test=True,
         depth_write=True,
@@ -45,9 +46,16 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
 
 def describe_polygons(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
     """What it draws polygons with."""
-    vertex = load("polygons/visibility.vert.glsl")
     splats = describe(planned, frame)
-    return replace(splats, name="polygon_visibility", vertex=vertex, samplers=("polygon_corners",))
+    varyings, defines = split_polygons(frame)
+    return replace(
+        splats,
+        name="polygon_visibility",
+        vertex=load("polygons/visibility.vert.glsl"),
+        samplers=("polygon_corners",),
+        varyings=(*splats.varyings, *varyings),
+        defines=tuple(dict.fromkeys((*splats.defines, *defines))),
+    )
 
 
 def draw_visible(tile: TileContext, planned: PlannedPass, target: Target, splats, viewport=None) -> None:
