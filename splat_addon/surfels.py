@@ -283,14 +283,15 @@ def _row_checks(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """field -> (N,) bool: which rows are usable. Written so that NaN fails."""
     count = len(arrays["positions"])
     good = {name: np.empty(count, bool) for name in arrays}
-    for start in range(0, count, _BLOCK):
-        block = slice(start, start + _BLOCK)
-        for name, array in arrays.items():
-            good[name][block] = _CHECKS.get(name, _finite)(array[block])
+    for name, array in arrays.items():
+        check = _CHECKS.get(name, _finite)
+        for start in range(0, count, _BLOCK):
+            block = slice(start, start + _BLOCK)
+            good[name][block] = check(array[block])
     return good
 
 
-#: Rows checked at a time: they stay in the processor's cache from one look to the next.
+#: Rows of a field checked at a time: what is made of them on the way stays in the processor's cache.
 _BLOCK = 16384
 
 
@@ -303,14 +304,19 @@ def _unit(rows: np.ndarray) -> np.ndarray:
     # A product with a vector of ones: numpy's own sums are slow along an axis of three or four.
     off = (rows * rows) @ np.ones(rows.shape[1], rows.dtype)
     off -= 1
-    return np.abs(off, out=off) < 2 * UNIT_TOLERANCE
+    np.abs(off, out=off)
+    return off.max(initial=0) < 2 * UNIT_TOLERANCE or off < 2 * UNIT_TOLERANCE
+
+
+def _sizes(rows: np.ndarray) -> np.ndarray:
+    return (rows.min(initial=1) > 0 and rows.max(initial=1) < np.inf) or _finite(rows) & (rows > 0).all(axis=1)
 
 
 #: Of the fields that must be more than finite: (n, columns) rows -> (n,) bool, or one for all.
 _CHECKS = {
     "rotations": _unit,
     "normals": _unit,
-    "scales": lambda rows: _finite(rows) & (rows[:, 0] > 0) & (rows[:, 1] > 0),
+    "scales": _sizes,
     "materials": lambda rows: rows >= 0,
 }
 

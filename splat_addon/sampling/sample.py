@@ -141,7 +141,8 @@ def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[flo
     limit = min(BATCH, max(BATCH // 4, total // 16))
     done = 0
     for axis, spans in enumerate(images):
-        for part in batches(spans.counts, limit):
+        # a span costs about as much as a sample
+        for part in batches(spans.counts + 1, limit):
             count = int(spans.counts[part].sum(dtype=np.int64))
             filler.fill(spans[part], axis, slice(done, done + count))
             done += count
