@@ -161,16 +161,20 @@ def _distance_along_view(camera_object: bpy.types.Object, target: bpy.types.Obje
     return abs(float(axis @ (eye[:3, 3] - matrix[:3, 3])))
 
 
-def viewport_camera(context: bpy.types.Context) -> Camera:
-    """The camera that the 3D view in `context` looks through."""
+def viewport_camera(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> Camera:
+    """The camera that the 3D view in `context` looks through; of a panoramic one, what Blender shows of it: a part, as
+    through its lens.
+    """
     view, space, region = context.region_data, context.space_data, context.region
-    near, far = space.clip_start, space.clip_end
+    near, far, lens = space.clip_start, space.clip_end, None
     if view.view_perspective == "CAMERA" and space.camera and space.camera.type == "CAMERA":
         near, far = space.camera.data.clip_start, space.camera.data.clip_end
+        lens = _lens(space.camera.evaluated_get(depsgraph), depsgraph)
     elif not view.is_perspective:
         near = -far
     matrix_world = np.linalg.inv(np.array(view.view_matrix, np.float64))
-    return camera_of_matrices(matrix_world, view.window_matrix, (region.width, region.height), near, far)
+    camera = camera_of_matrices(matrix_world, view.window_matrix, (region.width, region.height), near, far)
+    return replace(camera, lens=lens)
 
 
 def camera_of_matrices(matrix_world, projection, size, near: float, far: float) -> Camera:

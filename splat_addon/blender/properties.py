@@ -135,7 +135,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         name="Samples",
         description=(
             "Pictures that a final render is the mean of, each seen through another place in the pixel and, with "
-            "depth of field, on the lens; the viewport draws one. Beyond one, with Quads, 4 are 2 to 9 dB truer, "
+            "depth of field, on the lens. Beyond one, with Quads, 4 are 2 to 9 dB truer, "
             "16 are 15 to 22, 64 are 23 to 30 (box-filtered pixels); with Mip, 16 are 2 to 9 (its Gaussian). "
             "Each takes a picture's time or more: 16 took 15 times as long with Mip, 34 with Quads"
         ),
@@ -143,6 +143,17 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         max=MAX_SAMPLES,
         soft_max=256,
         default=Settings.samples,
+    )
+    viewport_samples: IntProperty(
+        name="Viewport Samples",
+        description=(
+            "Pictures that the viewport is the mean of when it has been at rest: one is shown at once, the others "
+            "follow one by one, and whatever changes starts anew. The camera's depth of field needs them"
+        ),
+        min=1,
+        max=MAX_SAMPLES,
+        soft_max=256,
+        default=16,
     )
     motion_blur_steps: IntProperty(
         name="Steps",
@@ -226,7 +237,8 @@ def final_settings(view_layer: bpy.types.ViewLayer, scene: bpy.types.Scene, outp
 def viewport_settings(scene: bpy.types.Scene) -> Settings:
     """The settings of the viewport."""
     properties = getattr(scene, RENDER_SETTINGS)
-    return _settings(scene, supersampling=properties.viewport_supersampling, outputs=("color",))
+    choices = {"supersampling": properties.viewport_supersampling, "samples": properties.viewport_samples}
+    return _settings(scene, outputs=("color",), **choices)
 
 
 def _settings(scene, **choices) -> Settings:

@@ -30,7 +30,7 @@ class _RenderPanel:
 
 class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
-    properties = ("method", "supersampling", "viewport_supersampling", "samples")
+    properties = ("method", "supersampling", "viewport_supersampling", "samples", "viewport_samples")
 
     def draw(self, context):
         draw_presets(self.layout, getattr(context.scene, RENDER_SETTINGS))

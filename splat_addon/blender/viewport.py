@@ -4,10 +4,14 @@
 from __future__ import annotations
 
 import traceback
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+from time import monotonic
 
 import bpy
 
-from ..rendering import Renderer, open_device
+from ..rendering import Refinement, Renderer, Shown, open_device
 from .camera_export import viewport_camera
 from .live_meshes import LiveMeshes
 from .properties import viewport_settings
@@ -43,20 +47,52 @@ def update(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph
 
 
 def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
-    """Draw what `update` read, through the view's camera."""
-    import gpu
-    from gpu_extras.presets import draw_texture_2d
-
+    """Draw what `update` read, through the view's camera; while nothing changes, again and better."""
     state = _state(engine)
     if state.scene is None:
         update(engine, context, depsgraph)
     settings = viewport_settings(depsgraph.scene)
-    for (x, y, width, height), texture in state.renderer.draw(state.scene, viewport_camera(context), settings):
-        gpu.state.blend_set("ALPHA_PREMULT")
+    if context.screen and context.screen.is_animation_playing:
+        settings = replace(settings, samples=1)
+    for shown in state.refinement.draw(state.scene, viewport_camera(context, depsgraph), settings):
         engine.bind_display_space_shader(depsgraph.scene)
-        draw_texture_2d(texture.handle, (x, y), width, height)
+        _show(shown)
         engine.unbind_display_space_shader()
-        gpu.state.blend_set("NONE")
+    if state.refinement.wants_more:
+        if state.refinement.samples:
+            engine.tag_redraw()
+        else:
+            state.redraw_when_at_rest(engine)
+
+
+def _show(shown: Shown) -> None:
+    """Pixels onto the region, over what is there by their alpha."""
+    import gpu
+    from gpu_extras.batch import batch_for_shader
+
+    (left, bottom, width, height), (x, y, *part) = shown.place, shown.part
+    right, top = left + width, bottom + height
+    across, up = shown.texture.size
+    u, v = (x / across, (x + part[0]) / across), (y / up, (y + part[1]) / up)
+    shader = gpu.shader.from_builtin("IMAGE_COLOR")
+    batch = batch_for_shader(
+        shader,
+        "TRI_FAN",
+        {
+            "pos": ((left, bottom), (right, bottom), (right, top), (left, top)),
+            "texCoord": ((u[0], v[0]), (u[1], v[0]), (u[1], v[1]), (u[0], v[1])),
+        },
+    )
+    gpu.state.blend_set("ALPHA_PREMULT")
+    shader.bind()
+    shader.uniform_float("color", (shown.scale,) * 4)
+    shader.uniform_sampler("image", shown.texture.handle)
+    batch.draw(shader)
+    gpu.state.blend_set("NONE")
+
+
+#: Seconds without a change before a view refines: one that is turned or edited is never kept waiting for a sample.
+_REST = 0.2
 
 
 class _State:
@@ -65,8 +101,27 @@ class _State:
     def __init__(self):
         self.store = SurfelStore()
         self.live_meshes = LiveMeshes()
-        self.renderer = Renderer(open_device("blender"))
+        self.refinement = Refinement(Renderer(open_device("blender")))
         self.scene = None
+        self._changed = 0.0
+        self._is_waiting = False
+
+    def redraw_when_at_rest(self, engine: bpy.types.RenderEngine) -> None:
+        """Ask for a redraw once no change has been drawn for a while."""
+        self._changed = monotonic()
+        if not self._is_waiting:
+            self._is_waiting = True
+            bpy.app.timers.register(partial(self._redraw, engine), first_interval=_REST)
+
+    def _redraw(self, engine: bpy.types.RenderEngine) -> float | None:
+        """The timer's function: seconds until it is called again, or None."""
+        if (left := self._changed + _REST - monotonic()) > 0.01:
+            return left
+        self._is_waiting = False
+        # the view may have been closed in the meantime, and its engine freed
+        with suppress(ReferenceError):
+            engine.tag_redraw()
+        return None
 
 
 def _state(engine) -> _State:

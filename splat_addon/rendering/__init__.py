@@ -18,7 +18,8 @@ from .panorama import EquidistantFisheye, Equirectangular, EquisolidFisheye, Pan
 from .plan import plan
 from .polygons import Polygons, make_polygons
 from .presets import PRESETS, Preset
-from .renderer import RenderCancelled, Renderer
+from .refinement import Refinement
+from .renderer import RenderCancelled, Renderer, Shown
 from .scene import Instance, Material, PolygonInstance, Scene, SurfaceTexture
 from .settings import Settings
 
@@ -43,10 +44,12 @@ __all__ = (
     "PolygonInstance",
     "Polygons",
     "Preset",
+    "Refinement",
     "RenderCancelled",
     "Renderer",
     "Scene",
     "Settings",
+    "Shown",
     "SurfaceTexture",
     "look_at",
     "make_polygons",

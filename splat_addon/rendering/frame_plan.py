@@ -57,6 +57,7 @@ TEXTURES = {
     "sample_emission": ("RGBA32F", "sample"),
     "sample_shadow_overdraw": ("RGBA32F", "sample"),
     "shadow_depth": ("DEPTH32F", "frame"),
+    "sample_sum": ("RGBA32F", "picture"),
     "combined": ("RGBA32F", "pixel"),
     "depth": ("R32F", "pixel"),
     "normal_coverage": ("RGBA32F", "pixel"),
@@ -168,6 +169,8 @@ class FramePlan:
         what_for = TEXTURES[texture][1]
         if what_for == "frame":
             return atlas_size(self.shadow_maps)
+        if what_for == "picture":
+            return max(x + width for x, _, width, _ in self.tiles), max(y + height for _, y, _, height in self.tiles)
         if what_for == "splat":
             return SPLATS_PER_ROW, self.lit_rows
         if what_for == "block":

@@ -33,12 +33,14 @@ MAX_HARDWARE_DEPTH_RATIO = 128
 MAX_HARDWARE_DEPTH_RADIUS = 0.25
 
 
-def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera | None = None) -> FramePlan:
+def plan(
+    scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera | None = None, is_added_up: bool = False
+) -> FramePlan:
     """The passes that this picture needs.
 
     shadow_camera: to whose view shadow maps are fitted, if it is another, so that cameras which differ little share
-    them. Raises ValueError for an unknown method or storage, and for multisampling with a method that does not work in
-    space.
+    them. is_added_up: the picture is one of the samples of a view that refines. Raises ValueError for an unknown method
+    or storage, and for multisampling with a method that does not work in space.
     """
     method = get_method(settings.method)
     if settings.multisampling and method.works_in != "space":
@@ -85,6 +87,8 @@ def plan(scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera
         if not linear_depth:
             left_out.append(("linear depth", why_depth))
         _say_what_surfels_lack(scene, camera, left_out)
+    if is_added_up and passes:
+        passes = (*passes, PlannedPass("accumulate", "a view refines while it rests", ("combined",), ("sample_sum",)))
     return FramePlan(
         _tiles(camera.size, _tile_edge(settings, method)),
         settings.supersampling,

@@ -5,14 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from time import perf_counter
+from typing import NamedTuple
 
 import numpy as np
 
 from .accumulation import mean_frame, sample_blocks, sample_camera
 from .camera import Camera
 from .device import Device
+from .device.interface import Texture
 from .frame import EMPTY_DEPTH, Frame
-from .frame_plan import HELD_BY, FramePlan
+from .frame_plan import HELD_BY, TEXTURES, FramePlan
 from .identity import Identified, nearer
 from .panorama import Panorama
 from .panorama_faces import panorama_frame
@@ -22,7 +24,7 @@ from .plan import plan
 from .resources import Resources
 from .scene import Scene
 from .settings import OUTPUTS, Settings, held_arrays
-from .shadow import casting, same_maps
+from .shadow import ShadowMap, casting, same_maps
 from .storages import get_storage
 from .view import look
 
@@ -35,6 +37,15 @@ Progress = Callable[[float, str], bool]
 
 class RenderCancelled(Exception):
     """The progress callback returned False."""
+
+
+class Shown(NamedTuple):
+    """Pixels to show. place: where. texture, part: what, in its pixels. scale: what they are multiplied by."""
+
+    place: Tile
+    texture: Texture
+    part: Tile
+    scale: float = 1.0
 
 
 class Renderer:
@@ -132,24 +143,50 @@ class Renderer:
         key = texture_key(texture, _drawn(tile, frame_plan)[2:], frame_plan)
         return self.device.target([self.resources.texture(key)]).read(0)
 
-    def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[tuple[Tile, object]]:
-        """For a viewport, one sample: yields each tile (with its margin) and the colour texture to show there.
-
-        A texture is good until the next tile is asked for.
-        """
+    def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
+        """For a viewport, one sample: yields the tiles. A texture is good until the next tile is asked for."""
         self._check(settings)
         frame_plan = plan(scene, camera, settings)
         if not frame_plan.passes:
             pixel = np.array(background_pixel(scene, settings), np.float32).reshape(1, 1, 4)
-            yield (0, 0, *camera.size), self.device.texture((1, 1), "RGBA32F", pixel)
+            yield Shown((0, 0, *camera.size), self.device.texture((1, 1), "RGBA32F", pixel), (0, 0, 1, 1))
             return
         try:
             for tile, _ in self._tiles(scene, camera, settings, frame_plan, self._new_stats(frame_plan), None):
                 self.device.restore()
-                drawn = _drawn(tile, frame_plan)
-                yield drawn, self.resources.texture(texture_key("combined", drawn[2:], frame_plan))
+                texture = self.resources.texture(texture_key("combined", _drawn(tile, frame_plan)[2:], frame_plan))
+                yield Shown(tile, texture, (frame_plan.margin, frame_plan.margin, *tile[2:]))
         finally:
             self.device.restore()
+
+    def add_sample(
+        self, scene: Scene, moved: Camera, fitted: Camera, settings: Settings, is_first: bool, maps
+    ) -> tuple[ShadowMap, ...] | None:
+        """Add the picture of one sample to the sum of those before, whose shadow maps were `maps`; None for none.
+
+        moved: the sample's camera. fitted: whose view shadow maps are fitted to. Gives this sample's maps, or None
+        where the picture is its background and there is nothing to add.
+        """
+        frame_plan = plan(scene, moved, settings, shadow_camera=fitted, is_added_up=True)
+        if not frame_plan.passes:
+            return None
+        try:
+            if is_first:
+                self.device.target([self._sum(moved.size)]).clear(color=0.0)
+            are_shared_done = maps is not None and same_maps(maps, frame_plan.shadow_maps)
+            stats = self._new_stats(frame_plan)
+            for _ in self._tiles(scene, moved, settings, frame_plan, stats, None, are_shared_done):
+                pass
+        finally:
+            self.device.restore()
+        return frame_plan.shadow_maps
+
+    def shown_sum(self, size: tuple[int, int], samples: int) -> Shown:
+        """The mean of the samples that were added."""
+        return Shown((0, 0, *size), self._sum(size), (0, 0, *size), 1.0 / samples)
+
+    def _sum(self, size: tuple[int, int]) -> Texture:
+        return self.resources.texture(("sample_sum", *size, TEXTURES["sample_sum"][0], 0))
 
     def release(self) -> None:
         """Let go of everything on the device."""
@@ -192,7 +229,7 @@ class Renderer:
         for number, tile in enumerate(frame_plan.tiles):
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
             view = look(scene, tile_camera, settings.epsilon)
-            context = TileContext(self.resources, frame_plan, scene, tile_camera, settings, view, shadow_views)
+            context = TileContext(self.resources, frame_plan, scene, tile_camera, settings, view, shadow_views, tile)
             stats["splats"] += sum(len(p.instance.surfels) for p in view.placed)
             stats["polygons"] += sum(p.instance.polygons.triangles for p in view.polygons)
             stats["instances"] += len(view.placed) + len(view.polygons)

@@ -61,8 +61,8 @@ class BlenderDevice:
             self._triangles = size, _batch(self._gpu, size)
         self._draw(pipeline, target, block, textures, self._triangles[1], 3 * triangles, viewport)
 
-    def draw_fullscreen(self, pipeline, target, block, textures):
-        self._draw(pipeline, target, block, textures, self._triangle, None)
+    def draw_fullscreen(self, pipeline, target, block, textures, viewport=None):
+        self._draw(pipeline, target, block, textures, self._triangle, None, viewport)
 
     def finish(self, target):
         target.read_one()

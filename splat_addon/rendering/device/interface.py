@@ -104,8 +104,8 @@ class Device(Protocol):
         viewport: x, y, width, height in pixels of the part of the target to draw into; None for all of it.
         """
 
-    def draw_fullscreen(self, pipeline, target, block: np.ndarray, textures: list[Texture]) -> None:
-        """Draw one triangle of three vertices, 0 to 2, that `fullscreen.vert.glsl` stretches over the target."""
+    def draw_fullscreen(self, pipeline, target, block: np.ndarray, textures: list[Texture], viewport=None) -> None:
+        """Draw one triangle of three vertices, 0 to 2, that `fullscreen.vert.glsl` stretches over the viewport."""
 
     def finish(self, target: Target) -> None:
         """Wait until what was drawn into the target is done."""

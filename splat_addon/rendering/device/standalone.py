@@ -61,8 +61,8 @@ class StandaloneDevice:
             self._bind(pipeline, target, block, textures, viewport)
             pipeline.vertex_array.render(vertices=3 * triangles)
 
-    def draw_fullscreen(self, pipeline, target, block, textures):
-        self.draw_triangles(pipeline, target, 1, block, textures)
+    def draw_fullscreen(self, pipeline, target, block, textures, viewport=None):
+        self.draw_triangles(pipeline, target, 1, block, textures, viewport)
 
     def finish(self, target):
         self._context.finish()

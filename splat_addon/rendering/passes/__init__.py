@@ -1,7 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The passes that a plan may name: one file each, with its pipeline's description and how it runs."""
 
-from . import attributes, layers, lines, polygons, rest, rims, seen_range, shading, shadow_maps, visibility
+from . import (
+    accumulate,
+    attributes,
+    layers,
+    lines,
+    polygons,
+    rest,
+    rims,
+    seen_range,
+    shading,
+    shadow_maps,
+    visibility,
+)
 
 #: name in a `FramePlan` -> run(tile, planned) -> the target that was drawn into
 RUN = {
@@ -24,4 +36,5 @@ RUN = {
     "shading": shading.run,
     "sample_shading": shading.run,
     "resolve": shading.run,
+    "accumulate": accumulate.run,
 }

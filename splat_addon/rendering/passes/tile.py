@@ -23,6 +23,7 @@ class TileContext:
     """camera: of the tile with its margin. view: the scene as that camera sees it.
 
     shadow_views: what casts shadows as the camera of each of the plan's shadow maps sees it.
+    rectangle: x, y, width, height in pixels of the tile without its margin, in the picture.
     """
 
     resources: Resources
@@ -32,6 +33,7 @@ class TileContext:
     settings: Settings
     view: View
     shadow_views: tuple[View, ...] = ()
+    rectangle: tuple[int, int, int, int] = (0, 0, 0, 0)
 
     def texture(self, name: str) -> Texture:
         """One that the plan names."""

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A view that rests becomes the render of as many samples; one that changes is drawn as with a single one."""
+
+from dataclasses import replace
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import scenes
+from splat_addon.rendering import (
+    Environment,
+    Lens,
+    Light,
+    Refinement,
+    Renderer,
+    Scene,
+    Settings,
+    plan,
+)
+from splat_addon.rendering.passes import RUN
+
+SETTINGS = Settings(method="quad", samples=4, outputs=("color",))
+
+
+def shown_picture(renderer, parts, size):
+    """(h, w, 4) of what a viewport shows: each part, cropped and scaled; every pixel once."""
+    picture, count = np.zeros((size[1], size[0], 4), np.float32), np.zeros(size[::-1], int)
+    for part in parts:
+        (x, y, width, height), (left, bottom, *_) = part.place, part.part
+        pixels = renderer.device.target([part.texture]).read(0)
+        if part.texture.size == (1, 1):
+            pixels = np.broadcast_to(pixels, (height, width, 4))
+        picture[y : y + height, x : x + width] = pixels[bottom : bottom + height, left : left + width] * part.scale
+        count[y : y + height, x : x + width] += 1
+    assert (count == 1).all()
+    return picture
+
+
+@pytest.fixture
+def redraws(on_device):
+    """redraws([(scene, camera, settings), ...]) -> pictures, and Refinement.samples and wants_more after each."""
+
+    def run(views):
+        def job(device):
+            made = Refinement(Renderer(device))
+            seen = []
+            for scene, camera, settings in views:
+                picture = shown_picture(made.renderer, made.draw(scene, camera, settings), camera.size)
+                seen.append((picture, made.samples, made.wants_more))
+            return seen
+
+        return on_device(job)
+
+    return run
+
+
+@pytest.fixture
+def small_tiles(monkeypatch):
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", 40)
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Names of the last passes that ran."""
+    names = []
+    for name in ("shading", "resolve"):
+        monkeypatch.setitem(RUN, name, lambda *a, run=RUN[name], name=name: names.append(name) or run(*a))
+    return names
+
+
+def torus(**changes):
+    scene, camera = scenes.torus(count=4000, size=(64, 48))
+    return scene, replace(camera, **changes)
+
+
+@pytest.mark.parametrize("method", ["quad", "mip"])
+@pytest.mark.parametrize("lens", [None, Lens(0.1, 4.0)])
+def test_a_view_at_rest_becomes_the_render(method, lens, redraws, render):
+    scene, camera = torus(lens=lens)
+    settings = replace(SETTINGS, method=method)
+    seen = redraws([(scene, camera, settings)] * 6)
+    assert [(samples, more) for _, samples, more in seen] == [
+        (0, True),
+        (1, True),
+        (2, True),
+        (3, True),
+        (4, False),
+        (4, False),
+    ]
+    one = replace(camera, lens=None)
+    np.testing.assert_array_equal(seen[0][0], render(scene, one, replace(settings, samples=1)).color)
+    for number in (2, 3):
+        expected = render(scene, camera, replace(settings, samples=number)).color
+        np.testing.assert_allclose(seen[number][0], expected, atol=2e-6)
+    np.testing.assert_allclose(seen[4][0], render(scene, camera, settings).color, atol=2e-6)
+    np.testing.assert_array_equal(seen[5][0], seen[4][0])
+    assert np.abs(seen[4][0] - seen[0][0]).max() > 0.05
+
+
+@pytest.mark.parametrize("method", ["quad", "mip"])
+def test_a_view_of_several_tiles_has_no_seams(method, small_tiles, redraws, render):
+    """Margins are not shown: each pixel is shown once, by its own tile."""
+    scene, camera = torus()
+    settings = replace(SETTINGS, method=method, transparent_film=True)
+    assert len(plan(scene, camera, settings).tiles) > 3
+    seen = redraws([(scene, camera, settings)] * 5)
+    first = render(scene, camera, replace(settings, samples=1)).color
+    np.testing.assert_array_equal(seen[0][0], first)
+    np.testing.assert_allclose(seen[4][0], render(scene, camera, settings).color, atol=2e-6)
+
+
+def test_whatever_changes_starts_anew(redraws, render):
+    scene, camera = torus()
+    moved = replace(camera, window=tuple(v + 0.1 for v in camera.window))
+    flat = replace(SETTINGS, shading="flat")
+    views = [(scene, camera, SETTINGS)] * 3 + [(scene, moved, SETTINGS), (scene, moved, flat)]
+    views += [(replace(scene, world=(0.5, 0, 0)), moved, flat)] * 5
+    seen = redraws(views)
+    assert [samples for _, samples, _ in seen] == [0, 1, 2, 0, 0, 0, 1, 2, 3, 4]
+    for turn in (3, 4, 5):
+        expected = render(*views[turn][:2], replace(views[turn][2], samples=1)).color
+        np.testing.assert_array_equal(seen[turn][0], expected)
+    np.testing.assert_allclose(seen[9][0], render(*views[9]).color, atol=2e-6)
+
+
+def test_what_is_done_is_not_drawn_again(redraws, drawn):
+    scene, camera = torus()
+    redraws([(scene, camera, SETTINGS)] * 9)
+    assert len(drawn) == 5
+
+
+def test_one_sample_never_asks_for_more(redraws):
+    scene, camera = torus()
+    assert [more for *_, more in redraws([(scene, camera, replace(SETTINGS, samples=1))] * 2)] == [False, False]
+
+
+def test_an_even_background_never_asks_for_more(redraws):
+    _, camera = torus()
+    scene = Scene(world=(0.1, 0.2, 0.3))
+    seen = redraws([(scene, camera, SETTINGS)] * 3)
+    assert not seen[1][2] and not seen[2][2]
+    for picture, *_ in seen:
+        np.testing.assert_allclose(picture, np.broadcast_to(np.float32((0.1, 0.2, 0.3, 1)), picture.shape))
+
+
+def test_a_picture_as_background_refines(redraws, render):
+    _, camera = torus()
+    pixels = np.random.default_rng(0).uniform(size=(8, 16, 3))
+    scene = Scene(world=(1, 1, 1), environment=Environment(pixels))
+    seen = redraws([(scene, camera, SETTINGS)] * 5)
+    np.testing.assert_allclose(seen[4][0], render(scene, camera, SETTINGS).color, atol=2e-6)
+
+
+def test_shadow_maps_are_drawn_once_while_nothing_changes(redraws, monkeypatch):
+    count, run = [], RUN["shadow_maps"]
+    monkeypatch.setitem(RUN, "shadow_maps", lambda *a: count.append(1) or run(*a))
+    scene, camera = torus()
+    sun = Light("sun", energy=2.0, direction=(1, -0.5, -1), casts_shadow=True)
+    lit = replace(scene, lights=(sun,))
+    redraws([(lit, camera, replace(SETTINGS, shadow_resolution=64))] * 5)
+    assert len(count) == 2
+
+
+def test_only_a_view_that_refines_keeps_a_sum():
+    scene, camera = torus()
+    plain, refined = plan(scene, camera, SETTINGS), plan(scene, camera, SETTINGS, is_added_up=True)
+    assert refined.passes[:-1] == plain.passes
+    assert set(refined.textures) - set(plain.textures) == {"sample_sum"}
+    assert refined.size("sample_sum", (7, 7)) == camera.size and "refines" in str(refined)

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Run inside a Blender window: a view through a camera out of focus, in small tiles, at rest, changed, at rest.
+
+What happened is written as JSON to the file named after `--`; test_refinement.py reads it beside the screenshot.
+"""
+
+import json
+import sys
+import traceback
+from importlib import import_module
+from pathlib import Path
+
+import bpy
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+
+import splat_addon  # noqa: E402
+from splat_addon.blender import viewport  # noqa: E402
+
+REPORT = Path(sys.argv[sys.argv.index("--") + 1])
+SAMPLES = 6
+PATIENCE = 100  # polls of a tenth of a second
+
+draws = []
+
+
+def counted(draw):
+    def counting(engine, context, depsgraph):
+        draw(engine, context, depsgraph)
+        draws.append(engine.surfel_state.refinement.samples)
+
+    return counting
+
+
+def view3d():
+    return next(a for a in bpy.context.window_manager.windows[0].screen.areas if a.type == "VIEW_3D")
+
+
+def prepare():
+    """A row of balls, of which the middle one is in focus."""
+    scene = bpy.context.scene
+    cube = bpy.data.objects["Cube"]
+    bpy.data.objects.remove(cube)
+    for number in range(5):
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=0.6, location=(0, 2 * number - 4, 0))
+    camera = scene.camera
+    camera.location, camera.rotation_euler = (3, -8, 2), (1.35, 0, 0.35)
+    camera.data.dof.use_dof, camera.data.dof.aperture_fstop = True, 0.1
+    camera.data.dof.focus_object = bpy.data.objects["Sphere.002"]
+    scene.render.engine = "SURFEL_SPLATTING"
+    scene.render.film_transparent = True
+    scene.surfel_splatting.render_meshes, scene.surfel_splatting.mesh_resolution = True, 24
+    scene.surfel_splatting.viewport_samples = SAMPLES
+    area = view3d()
+    area.spaces[0].region_3d.view_perspective = "CAMERA"
+    area.spaces[0].overlay.show_overlays = False
+    area.spaces[0].shading.type = "RENDERED"
+
+
+def at_rest():
+    """Waits until the view is done, and then a second more."""
+    for _ in range(PATIENCE):
+        yield 0.1
+        if draws and draws[-1] == SAMPLES:
+            break
+    yield 1.0
+
+
+def steps():
+    """Each yields the seconds to wait before the next."""
+    report = {"samples": SAMPLES}
+    prepare()
+    yield from at_rest()
+    report["first"] = list(draws)
+    yield 1.0
+    report["idle"] = len(draws) - len(report["first"])
+    draws.clear()
+    bpy.data.objects["Sphere"].location.z += 0.5
+    yield from at_rest()
+    report["changed"] = list(draws)
+    draws.clear()
+    bpy.context.scene.camera.location.x += 0.2
+    yield from at_rest()
+    report["moved"] = list(draws)
+    REPORT.write_text(json.dumps(report), encoding="utf-8")
+
+
+def run():
+    try:
+        return next(RUNNING)
+    except StopIteration:
+        return None
+    except Exception:
+        REPORT.write_text(json.dumps({"error": traceback.format_exc()}), encoding="utf-8")
+        return None
+
+
+RUNNING = steps()
+bpy.context.preferences.view.show_splash = False
+import_module("splat_addon.rendering.plan").MAX_TARGET_EDGE = 400
+viewport.draw = counted(viewport.draw)
+splat_addon.register()
+bpy.app.timers.register(run, first_interval=1.0)
