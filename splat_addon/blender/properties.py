@@ -176,6 +176,17 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         soft_max=5.0,
         default=Settings.epsilon,
     )
+    edge_threshold: FloatProperty(
+        name="Edge Fade",
+        description=(
+            "Where the weights of Quads sum to less than this, the pixel fades to the background; 1 is one splat's "
+            "centre, 0 covers whatever a splat reaches. Costs up to a tenth of the time and gains 0.2 dB at best. "
+            "Other methods filter, and are left alone. (Multisampling, which it goes with, Blender's gpu module lacks)"
+        ),
+        min=0.0,
+        soft_max=1.0,
+        default=Settings.edge_threshold,
+    )
     shadow_resolution: IntProperty(
         name="Resolution",
         description=(
@@ -251,6 +262,7 @@ def _settings(scene, **choices) -> Settings:
         matcap=_matcap(properties),
         lines=_lines(properties) if properties.use_lines else None,
         epsilon=properties.epsilon,
+        edge_threshold=properties.edge_threshold,
         shadow_resolution=properties.shadow_resolution,
         layers=properties.layers,
         blends_rest=properties.blends_rest,

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import bpy
 
+from ..rendering.methods import get_method
 from .ids import ENGINE, RENDER_SETTINGS
 from .operators.render_preset import draw_presets
 
@@ -40,6 +41,13 @@ class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
 class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):
     bl_label = "Surface"
     properties = ("shading", "epsilon")
+
+    def draw(self, context):
+        super().draw(context)
+        properties = getattr(context.scene, RENDER_SETTINGS)
+        row = self.layout.row()
+        row.active = get_method(properties.method).works_in == "space"
+        row.prop(properties, "edge_threshold")
 
 
 class RENDER_PT_surfel_toon(_RenderPanel, bpy.types.Panel):

@@ -77,10 +77,10 @@ def _show(shown: Shown) -> None:
     shader = gpu.shader.from_builtin("IMAGE_COLOR")
     batch = batch_for_shader(
         shader,
-        "TRI_FAN",
+        "TRI_STRIP",
         {
-            "pos": ((left, bottom), (right, bottom), (right, top), (left, top)),
-            "texCoord": ((u[0], v[0]), (u[1], v[0]), (u[1], v[1]), (u[0], v[1])),
+            "pos": ((left, bottom), (right, bottom), (left, top), (right, top)),
+            "texCoord": ((u[0], v[0]), (u[1], v[0]), (u[0], v[1]), (u[1], v[1])),
         },
     )
     gpu.state.blend_set("ALPHA_PREMULT")
