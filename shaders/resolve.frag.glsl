@@ -118,7 +118,14 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out float first, out bool i
 #else
       const bool is_first = true;
 #endif
-      if (seen < 1.0) {
+#if defined(HOLDOUT) && !defined(LAYER)
+      // What is seen and not shaded cuts a hole.
+      bool is_cut = seen < 1.0 && !(texelFetch(shaded, at, 0).w > 0.0);
+      if (is_cut) here = vec4(0.0);
+#else
+      const bool is_cut = false;
+#endif
+      if (seen < 1.0 && !is_cut) {
 #ifdef LAYER
         bool is_own = seen >= range.x && seen <= range.y;
         here = layer_at(at);

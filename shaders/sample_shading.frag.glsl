@@ -4,6 +4,9 @@
 
 #include "shading/{shading}.glsl"
 #include "common/shaded_sample.glsl"
+#if defined(HOLDOUT) && !defined(LAYER)
+#include "common/holdout.glsl"
+#endif
 
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
@@ -11,6 +14,9 @@ void main() {
   surface = vec4(0.0);
   Outputs outputs = NO_OUTPUTS;
   MeanSurface mean = mean_surface(texel, 0);
+#if defined(HOLDOUT) && !defined(LAYER)
+  if (is_hole(texel, 0, mean)) mean.coverage = 0.0;
+#endif
   if (mean.coverage > 0.0) {
     ShadedSample here = shaded_sample(mean, texel, 0);
     shaded = vec4(here.color, 1.0) * here.coverage;

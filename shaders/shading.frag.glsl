@@ -5,6 +5,9 @@
 
 #include "shading/{shading}.glsl"
 #include "common/shaded_sample.glsl"
+#if defined(HOLDOUT) && !defined(LAYER)
+#include "common/holdout.glsl"
+#endif
 #include "common/world.glsl"
 #ifdef LAYERS
 #include "common/before_layers.glsl"
@@ -33,6 +36,9 @@ void main() {
       for (int look = 0; look < LOOKS; look++) {
         float coverage = 0.0;
         MeanSurface mean = mean_surface(texel, look);
+#ifdef HOLDOUT
+        if (is_hole(texel, look, mean)) continue;
+#endif
         if (mean.coverage > 0.0) {
           ShadedSample here = shaded_sample(mean, texel, look);
           coverage = here.coverage;

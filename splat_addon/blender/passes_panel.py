@@ -36,6 +36,7 @@ class VIEWLAYER_PT_surfel_passes(bpy.types.Panel):
             for flag in flags:
                 is_ours = flag in ViewLayerPasses.__annotations__
                 column.prop(getattr(view_layer, LAYER_SETTINGS) if is_ours else view_layer, flag)
+        layout.prop(view_layer, "pass_alpha_threshold")
         column = layout.column(heading="Cryptomatte")
         column.prop(view_layer, "use_pass_cryptomatte_object")
         levels = layout.column()

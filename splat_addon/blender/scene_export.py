@@ -102,6 +102,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                     "casts_shadow": object_.visible_shadow,
                     "name": object_.name,
                     "index": object_.pass_index,
+                    "is_holdout": owner_of(entry).holdout_get(view_layer=depsgraph.view_layer),
                 }
                 if (what := _content(object_)) == "surfels":
                     surfels += _instances(object_, matrix, fields, store, notes)

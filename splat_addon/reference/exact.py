@@ -113,10 +113,13 @@ def _layered_rays(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: C
     opaque, (surface, limit) = groups[0], _opaque_surface(*groups[0], grid, scene, camera, settings.epsilon)
     rays, depths = shaded_rays(surface, grid, scene, camera, settings), np.full(grid.count, np.inf)
     depths[surface.rays] = surface.depth
-    if not len(groups[1][0]):
+    if not len(groups[1][0]) and not splats.is_holdout.any():
         return rays, depths
     rays = rays.reshape(grid.count, -1)
     until = np.minimum(visible_depth(*splats_in(*opaque, grid), grid, settings.epsilon), limit)
+    # What is seen first and shows nothing cuts a hole.
+    is_hole = np.isfinite(until) & (depths > until)
+    rays[is_hole], depths[is_hole] = 0, np.inf
     total, through, is_seen = np.zeros_like(rays), np.ones(grid.count), np.zeros(grid.count, bool)
     for layer in layer_surfaces(*groups[1], grid, settings.epsilon, until):
         hit, radiance = layer.rays, SHADERS[settings.shading](layer, grid, scene, camera, settings)

@@ -158,7 +158,7 @@ def _between(hits: Hits, grid: RayGrid, after, until) -> np.ndarray:
 
 
 def _seen(splats: Splats, boxes, grid: RayGrid, visibility: np.ndarray, after=-np.inf):
-    side = np.where(splats.is_back, BACK_WEIGHT, 1.0)
+    side = np.where(splats.is_back, BACK_WEIGHT, 1.0) * ~splats.is_holdout
     for hits in _hits(splats, boxes, grid):
         seen = _between(hits, grid, after, visibility)
         splat = hits.splat[seen]

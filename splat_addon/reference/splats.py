@@ -38,6 +38,7 @@ class Splats:
     uv_along: (N, 2, 2), its change along u (row 0) and v (row 1). uv_border: (N, 2) m of the line m . q = 1 behind
     which the texture is not looked up.
     opacity: (N,), 1 where not is_transparent: (N,) bool, of instances that something shows through.
+    is_holdout: (N,) bool, of those that hide and show nothing.
     """
 
     center: np.ndarray
@@ -54,6 +55,7 @@ class Splats:
     uv_border: np.ndarray
     opacity: np.ndarray
     is_transparent: np.ndarray
+    is_holdout: np.ndarray
 
     def __len__(self) -> int:
         return len(self.center)
@@ -79,7 +81,10 @@ def eye_splats(scene: Scene, camera: Camera) -> Splats:
     """Every instance's surfels in the eye space of `camera`."""
     parts = [_instance_splats(instance, camera) for instance in scene.surfels]
     if not parts:
-        vectors, rest = np.zeros((6, 0, 3)), (np.zeros(0, bool), np.zeros(0, object), *_no_uvs(0), *_opaque(0))
+        vectors, rest = (
+            np.zeros((6, 0, 3)),
+            (np.zeros(0, bool), np.zeros(0, object), *_no_uvs(0), np.ones(0), *np.zeros((2, 0), bool)),
+        )
         return Splats(*vectors, np.zeros((0, 10)), *rest)
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
 
@@ -104,19 +109,17 @@ def _instance_splats(instance: Instance, camera: Camera) -> Splats:
         border = uvs[2] if surfels.uv_border is None else surfels.uv_border.astype(np.float64)
         uvs = surfels.uvs.astype(np.float64), np.stack([surfels.uv_along_x, surfels.uv_along_y], axis=1), border
     textures = surfel_textures(instance)
-    opacity = _opaque(len(surfels))
-    if surfels.is_transparent:
-        opacity = np.clip(surfels.colors[:, 3].astype(np.float64), 0, 1), np.ones(len(surfels), bool)
-    splats = Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0, textures, *uvs, *opacity)
+    count = len(surfels)
+    opacity, is_transparent = np.ones(count), np.full(count, instance.is_transparent)
+    if instance.is_transparent:
+        opacity = np.clip(surfels.colors[:, 3].astype(np.float64), 0, 1)
+    rest = opacity, is_transparent, np.full(count, instance.is_holdout)
+    splats = Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0, textures, *uvs, *rest)
     return splats.take(np.flatnonzero(cosine >= 0)) if instance.hides_backs(camera) else splats
 
 
 def _no_uvs(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.zeros((count, 2)), np.zeros((count, 2, 2)), np.zeros((count, 2))
-
-
-def _opaque(count: int) -> tuple[np.ndarray, np.ndarray]:
-    return np.ones(count), np.zeros(count, bool)
 
 
 def _cofactors(linear: np.ndarray) -> np.ndarray:

@@ -30,7 +30,7 @@ def layers_of(scene: Scene, settings: Settings, method: Method, model: ShadingMo
     Raises ValueError where hardware multisampling is asked for, whose samples hold one depth each but are shaded
     together.
     """
-    if not any(instance.surfels.is_transparent for instance in scene.surfels):
+    if not any(instance.is_transparent for instance in scene.surfels):
         left_out.append(("transparent layers", "every surfel is opaque"))
         return 0
     why_not = ""
@@ -76,7 +76,7 @@ def layer_passes(
 
 def lit_rows(scene: Scene) -> int:
     """Of a texture of one texel a splat, for the largest of the transparent instances."""
-    return max(row_count(i.surfels) for i in scene.surfels if i.surfels.is_transparent)
+    return max(row_count(i.surfels) for i in scene.surfels if i.is_transparent)
 
 
 #: Of what the shading of the opaque picture may read, what a layer has nothing of.

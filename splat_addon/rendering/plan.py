@@ -296,6 +296,11 @@ def _features(
         features.append(("SHADOW_SHARE", "the share of the lights that arrives is asked for"))
     if model.has_material and emission is not None and any(emission):
         features.append(("EMISSION", "all surfels send out the same light"))
+    cutting = sum(instance.is_holdout for instance in scene.shown)
+    if cutting and get_method(settings.method).works_in == "sprites":
+        left_out.append(("holdout", f"of {settings.method} objects that cut holes are drawn as others are"))
+    elif cutting:
+        features.append(("HOLDOUT", f"{cutting} of {len(scene.shown)} instances cut holes"))
     sized = model.is_lit * sum(light.is_sized for light in scene.lights)
     if sized:
         features.append(("SIZED_LIGHTS", f"{sized} of {len(scene.lights)} lights have a size"))
@@ -319,6 +324,8 @@ def _shading_passes(
     if layers:
         behind += ("peeled", *layer_outputs(settings))
     once = f"{model.name}, once a sample"
+    if method.works_in != "sprites" and any(instance.is_holdout for instance in scene.shown):
+        reads += ("visibility_depth",)
     if not method.filters_silhouettes:
         return (PlannedPass("shading", once, tuple(dict.fromkeys((*reads, *behind))), outputs),)
     kept = ("shaded", "surface", *(f"sample_{name}" for name in outputs if f"sample_{name}" in TEXTURES))

@@ -83,6 +83,11 @@ class Placed:
         """Whether some of its colours are to be looked up."""
         return self.shape.has_uvs and any(texture is not None for texture in self.textures)
 
+    @property
+    def is_transparent(self) -> bool:
+        """Whether something shows through it; never through what cuts a hole."""
+        return self.shape.is_transparent and not self.is_holdout
+
     def model_view(self, camera: Camera) -> np.ndarray:
         """(4, 4) float64, positions (without origin) to the camera's view space.
 
@@ -113,7 +118,7 @@ class Placed:
         """Whether no back can be seen: solid and opaque, and wholly beyond the near plane, so that the camera is
         outside.
         """
-        is_closed = self.shape.is_solid and not self.shape.is_transparent
+        is_closed = self.shape.is_solid and not self.is_transparent
         return is_closed and bool((-self.corners(camera)[:, 2] >= camera.near).all())
 
 
@@ -131,6 +136,7 @@ class Instance(Placed):
         `object_index` shows.
     split: distance from the camera, world units, up to which an object is drawn as polygons, and beyond it as surfels,
         by two instances that have the same; None: each is drawn everywhere. Shadows are cast by both.
+    is_holdout: it hides what is behind it and shows nothing: where it is seen, the picture has an alpha of 0.
     """
 
     surfels: Surfels
@@ -142,6 +148,7 @@ class Instance(Placed):
     name: str = ""
     index: int = 0
     split: float | None = None
+    is_holdout: bool = False
 
     @property
     def shape(self) -> Surfels:
@@ -168,6 +175,7 @@ class PolygonInstance(Placed):
     name: str = ""
     index: int = 0
     split: float | None = None
+    is_holdout: bool = False
 
     @property
     def shape(self) -> Polygons:

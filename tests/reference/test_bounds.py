@@ -24,7 +24,14 @@ def one_splat(center, u, v) -> Splats:
     return Splats(center[None], u[None], v[None], np.cross(u, v)[None], *rest, np.zeros(1, bool), *_NO_TEXTURE)
 
 
-_NO_TEXTURE = (np.full(1, None), np.zeros((1, 2)), np.zeros((1, 2, 2)), np.zeros((1, 2)), np.ones(1), np.zeros(1, bool))
+_NO_TEXTURE = (
+    np.full(1, None),
+    np.zeros((1, 2)),
+    np.zeros((1, 2, 2)),
+    np.zeros((1, 2)),
+    np.ones(1),
+    *np.zeros((2, 1), bool),
+)
 
 
 @pytest.mark.parametrize("kind", CAMERAS)

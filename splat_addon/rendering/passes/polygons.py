@@ -106,7 +106,8 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
     target = tile.target(tuple(colors), depth)
     target.clear(color=0.0, depth=1.0)
     for textured in (False, True):
-        placed = [p for p in tile.view.polygons if p.instance.is_textured is textured]
+        seen = (p for p in tile.view.polygons if not p.instance.is_holdout)
+        placed = [p for p in seen if p.instance.is_textured is textured]
         if placed:
             draw_polygons(tile, tile.resources.pipeline(describe(planned, tile.plan, textured)), target, placed)
     return target

@@ -39,11 +39,15 @@ SPLATS_BLOCK = (
 
 
 def drawn_by(planned: PlannedPass, tile: TileContext) -> tuple[PlacedInstance, ...]:
-    """What a pass draws of the tile's view: where transparent layers are planned, those or all the rest."""
-    if not tile.plan.layers:
-        return tile.view.placed
-    is_layer = planned.layer > 0
-    return tuple(p for p in tile.view.placed if p.instance.surfels.is_transparent is is_layer)
+    """What a pass draws of the tile's view: where transparent layers are planned, those or all the rest; what cuts
+    holes has depths and nothing else.
+    """
+    placed, is_layer = tile.view.placed, planned.layer > 0
+    if tile.plan.layers:
+        placed = tuple(p for p in placed if p.instance.is_transparent is is_layer)
+    if tile.plan.has("HOLDOUT") and planned.name == "attributes":
+        placed = tuple(p for p in placed if not p.instance.is_holdout)
+    return placed
 
 
 def instance_textures(tile: TileContext, instance: Instance) -> dict[str, Callable[[], Texture]]:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Transparent surfels and materials as a user renders them, beside Cycles."""
 
+import bpy
 import numpy as np
 import pytest
 
@@ -42,6 +43,35 @@ def test_depth_is_as_cycles_has_it_behind_what_is_transparent(scene, add_camera,
     scene.view_layers[0].pass_alpha_threshold = threshold
     depth = passes()["ViewLayer.Depth"]
     np.testing.assert_allclose(depth[8:24, 8:24], {0.0: 9, 0.5: 10, 0.9: 11}[threshold], atol=1e-3)
+
+
+@pytest.mark.parametrize("film", [False, True])
+def test_a_holdout_cuts_the_alpha_that_cycles_cuts(scene, add_camera, add_object, switch_to_cycles, picture, film):
+    """An object and one in a collection that the view layer holds out, before a wall and before the world."""
+    scene.render.film_transparent = film
+    add_camera(type="ORTHO", ortho_scale=4)
+    wall = mesh_square(add_object, 8, (1, 0, -1))
+    wall.scale.x = 0.25
+    own, held = mesh_square(add_object, 1, (0.75, 0.75, 0)), mesh_square(add_object, 1, (-0.75, -0.75, 0))
+    own.is_holdout = True
+    collection = bpy.data.collections.new("held")
+    scene.collection.children.link(collection)
+    collection.objects.link(held)
+    scene.collection.objects.unlink(held)
+    scene.view_layers[0].layer_collection.children["held"].holdout = True
+    ours = picture()
+    switch_to_cycles(filter_width=0.01)
+    np.testing.assert_allclose(ours[..., 3], picture()[..., 3], atol=1e-3)
+    assert (ours[20:22, 20:22] == 0).all() and (ours[8:10, 8:10] == 0).all() and (ours[4, 26, 3] == 1).all()
+
+
+def mesh_square(add_object, side, location):
+    mesh = bpy.data.meshes.new("square")
+    half = side / 2
+    mesh.from_pydata([(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)], [], [(0, 1, 2, 3)])
+    made = add_object(mesh)
+    made.location = location
+    return made
 
 
 def test_a_sprite_method_says_that_it_draws_what_is_transparent_opaque(scene, add_camera, add_sheet, picture):
