@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from splat_addon.rendering import Light, Lines, Material
+from splat_addon.rendering.settings import OUTPUTS
 from splat_addon.rendering.shading_models import SHADING_MODELS
 
 from .shots import (
@@ -144,6 +145,26 @@ def _picture() -> list[Feature]:
     ]
 
 
+def _passes() -> list[Feature]:
+    plain = settings(outputs=("color", "depth"))
+    shaded = together(under(replace(HARD["sun"], casts_shadow=True)), plain)
+    row = partial(Feature, "pass", beside="colour and depth")
+    rows = [
+        (title, settings(outputs=("color", "depth", name)), plain)
+        for title, name in (
+            ("positions", "position"),
+            ("diffuse colour", "diffuse_color"),
+            ("emission", "emission"),
+            ("number of splats", "overdraw"),
+            ("object index", "object_index"),
+            ("Cryptomatte", "cryptomatte"),
+        )
+    ]
+    shadow = together(shaded, settings(outputs=("color", "depth", "shadow")))
+    rows += [("shadow, of a hard sun", shadow, shaded), ("all passes", settings(outputs=OUTPUTS), plain)]
+    return [row(name=name, present=present, absent=absent) for name, present, absent in rows]
+
+
 def _depth() -> list[Feature]:
     row = partial(Feature, "depth")
     return [
@@ -172,4 +193,4 @@ def _formats() -> list[Feature]:
 
 
 #: In the order of the table.
-FEATURES: tuple[Feature, ...] = (*_lights(), *_shading(), *_surfaces(), *_picture(), *_depth(), *_formats())
+FEATURES: tuple[Feature, ...] = (*_lights(), *_shading(), *_surfaces(), *_picture(), *_passes(), *_depth(), *_formats())
