@@ -152,7 +152,6 @@ def _passes() -> list[Feature]:
     rows = [
         (title, settings(outputs=("color", "depth", name)), plain)
         for title, name in (
-            ("positions", "position"),
             ("diffuse colour", "diffuse_color"),
             ("emission", "emission"),
             ("number of splats", "overdraw"),
