@@ -33,8 +33,10 @@ from ..surfels import OPTIONAL_LAYOUT, Surfels
 from .camera_density import without_camera
 from .mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
 from .mesh_polygons import left_out_of_polygons, mesh_polygons
+from .mesh_sampling_settings import Form
 from .shading_export import shading_material
 from .sources import mesh_key, readable_mesh
+from .split_meshes import MeshParts, parts_by_group, with_edge_samples
 from .surface_textures import kept_textures
 
 #: A sampling is kept until it is coarser or finer than asked for by more than this.
@@ -49,7 +51,7 @@ class Place(NamedTuple):
 
     matrix: np.ndarray
     fields: dict
-    form: str
+    form: Form
 
 
 @dataclass(eq=False)
@@ -69,14 +71,29 @@ class _LiveMesh:
     spacing: float = 0.0
     surface: tuple[TriangleMesh, Outline] | None = None
     drawn: tuple[TriangleMesh, tuple[Polygons, ...]] | None = None
+    parts: MeshParts | None = None
+    edged: tuple[Surfels, Surfels] | None = None
 
-    def placed(self, form: str) -> list[Place]:
-        return [place for place in self.places if place.form == form]
+    @property
+    def sampled_at(self) -> list[Place]:
+        return [place for place in self.places if place.form.has_surfels]
+
+    @property
+    def drawn_at(self) -> list[Place]:
+        return [place for place in self.places if place.form.has_polygons]
+
+    @property
+    def sampled_part(self) -> TriangleMesh:
+        return self.parts.far if self.parts else self.content.triangles
+
+    @property
+    def drawn_part(self) -> TriangleMesh:
+        return self.parts.near if self.parts else self.content.triangles
 
     @property
     def matrices(self) -> list[np.ndarray]:
         """Of the places where it is sampled."""
-        return [place.matrix for place in self.placed("SURFELS")]
+        return [place.matrix for place in self.sampled_at]
 
     def kept_textures(self) -> tuple[SurfaceTexture | None, ...]:
         self.textures = kept_textures(self.textures, self.content.triangles.surfaces)
@@ -120,12 +137,12 @@ class LiveMeshes:
 
     def add(self, evaluated: bpy.types.Object, owner: bpy.types.Object, place: Place, notes) -> None:
         """An entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry lives."""
-        key = mesh_key(evaluated)
+        key = *mesh_key(evaluated), place.form.group
         if key not in self._frame:
-            live = self._kept.setdefault(self._lasting_key(evaluated), _LiveMesh())
+            live = self._kept.setdefault(self._lasting_key(evaluated, place.form.group), _LiveMesh())
             live.places, live.owner = [], owner.name
             if live.key != key or self._changed is None or evaluated.data.name_full in self._changed:
-                self._read(live, evaluated, notes)
+                self._read(live, evaluated, place.form.group, notes)
                 live.key = key
             self._frame[key] = live
         self._frame[key].places.append(place)
@@ -139,9 +156,9 @@ class LiveMeshes:
             for sentence in live.content.notes:
                 notes.add(sentence)
             try:
-                if live.placed("SURFELS"):
+                if live.sampled_at and len(live.sampled_part):
                     sampled += self._sampled_instances(live, depsgraph, fineness, texture_mapped)
-                if live.placed("POLYGONS"):
+                if live.drawn_at and len(live.drawn_part):
                     drawn += self._polygon_instances(live, notes)
             except ValueError as error:
                 notes.add(f"{live.owner} is left out: {error}")
@@ -150,16 +167,20 @@ class LiveMeshes:
 
     def _sampled_instances(self, live: _LiveMesh, depsgraph, fineness, texture_mapped: bool) -> list[Instance]:
         surfels = self._sampled(live, depsgraph, fineness, texture_mapped)
+        if live.parts:
+            if live.edged is None or live.edged[0] is not surfels:
+                live.edged = surfels, with_edge_samples(surfels, live.parts, live.spacing)
+            surfels = live.edged[1]
         textures = live.kept_textures() if surfels.has_uvs else ()
         self.counts["meshes"] += 1
         self.counts["surfels"] += len(surfels)
         return [
-            Instance(surfels, place.matrix, live.materials, textures=textures, **place.fields)
-            for place in live.placed("SURFELS")
+            Instance(surfels, place.matrix, live.materials, split=place.form.split, textures=textures, **place.fields)
+            for place in live.sampled_at
         ]
 
     def _polygon_instances(self, live: _LiveMesh, notes) -> list[PolygonInstance]:
-        mesh = live.content.triangles
+        mesh = live.drawn_part
         if live.drawn is None or not have_same_values(live.drawn[0], mesh):
             live.drawn = mesh, mesh_polygons(mesh)
         self.counts["polygon_meshes"] += 1
@@ -168,27 +189,30 @@ class LiveMeshes:
             notes.add(sentence)
         textures = live.kept_textures()
         return [
-            PolygonInstance(part, place.matrix, live.materials, textures=textures, **place.fields)
+            PolygonInstance(
+                part, place.matrix, live.materials, split=place.form.split, textures=textures, **place.fields
+            )
             for part in live.drawn[1]
-            for place in live.placed("POLYGONS")
+            for place in live.drawn_at
         ]
 
-    def _lasting_key(self, evaluated: bpy.types.Object) -> tuple:
+    def _lasting_key(self, evaluated: bpy.types.Object, group: str) -> tuple:
         """By which the same mesh is known in the next frame, when it has been evaluated anew.
 
         Geometry Nodes may put several meshes of one name into an object; they are told apart by their order.
         """
-        name = evaluated.original.session_uid, evaluated.data.name_full
+        name = evaluated.original.session_uid, evaluated.data.name_full, group
         number = 0
         while (*name, number) in self._names:
             number += 1
         self._names[(*name, number)] = name
         return (*name, number)
 
-    def _read(self, live: _LiveMesh, evaluated: bpy.types.Object, notes) -> None:
+    def _read(self, live: _LiveMesh, evaluated: bpy.types.Object, group: str, notes) -> None:
         with readable_mesh(evaluated) as mesh:
             live.topology = read_topology(mesh, live.topology)
             live.content = read_mesh(evaluated, mesh, live.topology, self._images)
+            live.parts = parts_by_group(evaluated, mesh, live.content.triangles, group) if group else None
             live.materials = tuple(shading_material(m, notes, OPTIONAL_LAYOUT) for m in slot_materials(evaluated, mesh))
 
     def _sampled(
@@ -197,7 +221,7 @@ class LiveMeshes:
         """Raises ValueError with a sentence where nothing can be sampled."""
         if texture_mapped != live.texture_mapped:
             live.tracked, live.texture_mapped = None, texture_mapped
-        mesh, spacing = live.content.triangles, live.spacing_for(fineness, depsgraph)
+        mesh, spacing = live.sampled_part, live.spacing_for(fineness, depsgraph)
         if live.tracked is not None and spacing == live.spacing and live.tracked.has_triangles_of(mesh):
             surfels, stretched = live.tracked.at(mesh)
             if stretched <= STRETCHED_SHARE:

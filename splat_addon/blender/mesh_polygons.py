@@ -18,12 +18,13 @@ def mesh_polygons(mesh: TriangleMesh) -> tuple[Polygons, ...]:
     """Its triangles, in parts that the renderer can hold; without those whose numbers are not finite."""
     good = np.isfinite(mesh.positions).all(axis=1)[mesh.triangles].all(axis=1)
     if not good.all():
-        mesh = _taken(mesh, np.flatnonzero(good))
+        mesh = taken(mesh, np.flatnonzero(good))
     runs = (slice(start, start + MAX_TRIANGLES) for start in range(0, len(mesh), MAX_TRIANGLES))
-    return tuple(_part(_taken(mesh, run) if len(mesh) > MAX_TRIANGLES else mesh) for run in runs)
+    return tuple(_part(taken(mesh, run) if len(mesh) > MAX_TRIANGLES else mesh) for run in runs)
 
 
-def _taken(mesh: TriangleMesh, rows) -> TriangleMesh:
+def taken(mesh: TriangleMesh, rows) -> TriangleMesh:
+    """Those of its triangles, over the same vertices."""
     return replace(mesh, **{name: values[rows] for name, values in mesh.per_triangle().items()})
 
 

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
 from .conversion_settings import DENSITIES
 from .ids import ENGINE, OBJECT_SETTINGS, RENDER_SETTINGS
@@ -132,22 +134,71 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
         items=[
             ("SCENE", "As the Scene Says", "What Render Meshes as in the render properties says"),
             *(item[:3] for item in _MESH_ITEMS),
+            (
+                "DISTANCE",
+                "Polygons Near, Surfels Far",
+                "Draw polygons up to a distance from the camera and surfels beyond, which go over into one another",
+            ),
+            (
+                "GROUP",
+                "Split by Vertex Group",
+                "Draw polygons where the weights of a vertex group are 1/2 or more and surfels elsewhere, with more of "
+                "them along the edges between",
+            ),
         ],
         default="SCENE",
         update=_read_again,
     )
+    split_distance: FloatProperty(
+        name="Distance",
+        description="From the camera, up to which the object is drawn as polygons",
+        subtype="DISTANCE",
+        default=10.0,
+        min=1e-6,
+        soft_max=1000.0,
+        update=_read_again,
+    )
+    split_group: StringProperty(
+        name="Vertex Group",
+        description="Whose weights of 1/2 or more say where the object is drawn as polygons",
+        update=_read_again,
+    )
 
 
-def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) -> str:
-    """As what a mesh is rendered, a name in the scene's choices: of an instance its instancer says it; of one from a
-    collection the object in there comes first, unless either of them is hidden.
+class Form(NamedTuple):
+    """As what a mesh is rendered. kind: one of the items of `render_as`. split: distance from the camera up to which it
+    is polygons. group: vertex group whose weights say where it is.
+    """
+
+    kind: str
+    split: float | None = None
+    group: str = ""
+
+    @property
+    def has_polygons(self) -> bool:
+        return self.kind in ("POLYGONS", "DISTANCE", "GROUP")
+
+    @property
+    def has_surfels(self) -> bool:
+        return self.kind in ("SURFELS", "DISTANCE", "GROUP")
+
+
+def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) -> Form:
+    """Of an instance its instancer says it; of one from a collection the object in there comes first, unless either of
+    them is hidden. Raises ValueError where what it says is not whole.
     """
     owner = owner_of(entry)
     asked = [entry.object.original, owner] if owner.instance_type == "COLLECTION" else [owner]
-    chosen = [getattr(object_, OBJECT_SETTINGS).render_as for object_ in asked]
-    if "HIDDEN" in chosen:
-        return "HIDDEN"
-    return next((form for form in chosen if form != "SCENE"), getattr(scene, RENDER_SETTINGS).render_meshes)
+    chosen = [settings for settings in (getattr(o, OBJECT_SETTINGS) for o in asked) if settings.render_as != "SCENE"]
+    if any(settings.render_as == "HIDDEN" for settings in chosen):
+        return Form("HIDDEN")
+    if not chosen:
+        return Form(getattr(scene, RENDER_SETTINGS).render_meshes)
+    kind, settings = chosen[0].render_as, chosen[0]
+    if kind == "GROUP" and not settings.split_group:
+        raise ValueError("It is split by a vertex group, and none is chosen; choose one in its object properties.")
+    split = settings.split_distance if kind == "DISTANCE" else None
+    return Form(kind, split, settings.split_group if kind == "GROUP" else "")
 
 
 def leave_to_surfels(source: bpy.types.Object) -> None:
@@ -190,7 +241,12 @@ class OBJECT_PT_surfel_splatting(bpy.types.Panel):
     def draw(self, context):
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        self.layout.prop(getattr(context.object, OBJECT_SETTINGS), "render_as")
+        settings = getattr(context.object, OBJECT_SETTINGS)
+        self.layout.prop(settings, "render_as")
+        if settings.render_as == "DISTANCE":
+            self.layout.prop(settings, "split_distance")
+        elif settings.render_as == "GROUP":
+            self.layout.prop_search(settings, "split_group", context.object, "vertex_groups")
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(

@@ -106,7 +106,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                 }
                 if (what := _content(object_)) == "surfels":
                     surfels += _instances(object_, matrix, fields, store, notes)
-                elif what == "faces" and (form := form_of(entry, bpy_scene)) != "HIDDEN":
+                elif what == "faces" and (form := form_of(entry, bpy_scene)).kind != "HIDDEN":
                     live_meshes.add(object_, owner_of(entry), Place(matrix, fields, form), notes)
                 elif what == "points":
                     notes.add(_BARE_POINTS)

@@ -13,6 +13,7 @@ from .adaptive import Tolerance
 from .cleaning import drop_unusable
 from .closest_approach import NotSeenError, Outline, camera_spacing, outline
 from .corners import corner_values
+from .edge_samples import edge_samples, transition_edges
 from .fineness import grid_spacing, predict_count
 from .joining import have_same_values, joined, transformed
 from .mesh import TriangleMesh
@@ -47,6 +48,7 @@ __all__ = [
     "camera_spacing",
     "corner_values",
     "drop_unusable",
+    "edge_samples",
     "grid_spacing",
     "have_same_values",
     "is_solid",
@@ -58,4 +60,5 @@ __all__ = [
     "sample_surface",
     "surfels_from_points",
     "transformed",
+    "transition_edges",
 ]
