@@ -49,6 +49,10 @@ class Identities:
                 following += len(instance.materials)
         return numbers
 
+    def slots(self, placed: Placed) -> tuple[int, int]:
+        """The number of its first slot and how many more it has; what holds out is nothing."""
+        return (0, 0) if placed.is_holdout else (self.firsts[placed], len(placed.materials) - 1)
+
     @cached_property
     def indices(self) -> dict[str, np.ndarray]:
         """(n,) float32 pass index of each number's object and of its material."""

@@ -16,11 +16,13 @@ from splat_addon.rendering import (
     Light,
     Material,
     Panorama,
+    PolygonInstance,
     Scene,
     Settings,
     look_at,
 )
 from splat_addon.rendering.identity import NUMBERED
+from splat_addon.rendering.polygons import make_polygons
 from splat_addon.rendering.settings import OUTPUTS as ALL_OUTPUTS
 
 #: tests/rendering/test_identity.py has the others.
@@ -58,6 +60,31 @@ def test_the_passes_of_a_wall_are_its_own(method, render):
     for name in OUTPUTS[4:]:
         assert not getattr(frame, name)[outside].any()
     assert (frame.depth[outside] == EMPTY_DEPTH).all() and not frame.shadow.any()
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_polygons_hand_on_theirs(method, render):
+    """A metallic square that glows, before the wall of another emission."""
+    corners = np.array([(-3.0, -3, 0), (-1, -3, 0), (-1, 3, 0), (-3, 3, 0)])
+    board = make_polygons(corners, [(0, 1, 2), (0, 2, 3)], color=(*GREY[::-1], 1.0))
+    material = Material(metallic=0.5, emission=(2, 1, 0))
+    nearer = np.eye(4)
+    nearer[2, 3] = -3
+    placed = PolygonInstance(board, nearer, (material,))
+    frame = render(replace(wall(emission=(0, 0, 5)), polygons=(placed,)), CAMERA, outputs(method=method))
+    front = frame.depth < 3.5
+    back = (frame.depth > 3.5) & (frame.depth < 5) & (frame.coverage == 1)
+    back[:, :-3] &= ~front[:, 3:]
+    back[:, 3:] &= ~front[:, :-3]
+    inner = front & np.roll(front, 3, axis=1) & np.roll(front, -3, axis=1)
+    assert inner.sum() > 200 and back.sum() > 50
+    for values, there, expected in (
+        (frame.diffuse_color, inner, 0.5 * np.array(GREY[::-1])),
+        (frame.emission, inner, (2.0, 1, 0)),
+        (frame.diffuse_color, back, GREY),
+        (frame.emission, back, (0, 0, 5.0)),
+    ):
+        np.testing.assert_allclose(values[there], np.broadcast_to(expected, (there.sum(), 3)), 1e-4, 1e-4)
 
 
 def test_half_a_pixel_has_half_of_each(render):

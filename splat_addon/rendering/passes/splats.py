@@ -88,5 +88,5 @@ def splats_block(tile: TileContext, placed: PlacedInstance, epsilon: float) -> n
     options = epsilon, view.near, tile.camera.is_orthographic, tile.depth_unit
     normal_matrix, orientation, light_set = instance_values(placed)
     sides = orientation, placed.hides_backs, view.least_offset(tile.plan.linear_depth), tile.color_scale
-    identity = tile.identities.firsts[placed.instance], len(placed.instance.materials) - 1, placed.split, 0.0
+    identity = (*tile.identities.slots(placed.instance), placed.split, 0.0)
     return std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set, identity)
