@@ -34,6 +34,7 @@ from .camera_density import without_camera
 from .gathering import gather
 from .material_surfaces import Unread
 from .mesh_extraction import read_mesh, unread_sentences
+from .object_detail import detail_of, finer
 from .surfel_objects import add_surfel_object, collections_of
 
 #: How far a surfel's surface may be above or below it, in spacings: a bend within its cell, or a move to a lattice.
@@ -127,7 +128,8 @@ def prepare(
     if not len(mesh):
         raise ValueError(f"The mesh has no usable faces, only {', '.join(skipped)}; repair it first.")
     how = {"reduction": choices.reduction, "grazing_angle": choices.grazing_angle}
-    fineness = without_camera(choices.fineness, lambda: outline(mesh), matrix_world, depsgraph)
+    asked = finer(choices.fineness, detail_of(sources[0]))
+    fineness = without_camera(asked, lambda: outline(mesh), matrix_world, depsgraph)
     spacing = grid_spacing(mesh, **fineness, **how)
     predicted = predict_count(mesh, spacing=spacing, **how)
     if predicted > MAX_SURFELS:

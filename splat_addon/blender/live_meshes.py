@@ -34,6 +34,7 @@ from .camera_density import without_camera
 from .mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
 from .mesh_polygons import left_out_of_polygons, mesh_polygons
 from .mesh_sampling_settings import Form
+from .object_detail import finer
 from .shading_export import shading_material
 from .sources import mesh_key, readable_mesh
 from .split_meshes import MeshParts, parts_by_group, with_edge_samples
@@ -47,11 +48,13 @@ _UNSEEN_RESOLUTION = 64
 
 
 class Place(NamedTuple):
-    """Where a mesh stands. fields: of its instance, by name. form: as what it is rendered, of `form_of`."""
+    """Where a mesh stands. fields: of its instance, by name. form: as what it is rendered, of `form_of`. detail: of the
+    object that it belongs to."""
 
     matrix: np.ndarray
     fields: dict
     form: Form
+    detail: float
 
 
 @dataclass(eq=False)
@@ -94,6 +97,11 @@ class _LiveMesh:
     def matrices(self) -> list[np.ndarray]:
         """Of the places where it is sampled."""
         return [place.matrix for place in self.sampled_at]
+
+    @property
+    def detail(self) -> float:
+        """As its neediest place asks."""
+        return max(place.detail for place in self.sampled_at)
 
     def kept_textures(self) -> tuple[SurfaceTexture | None, ...]:
         self.textures = kept_textures(self.textures, self.content.triangles.surfaces)
@@ -166,7 +174,7 @@ class LiveMeshes:
         return sampled, drawn
 
     def _sampled_instances(self, live: _LiveMesh, depsgraph, fineness, texture_mapped: bool) -> list[Instance]:
-        surfels = self._sampled(live, depsgraph, fineness, texture_mapped)
+        surfels = self._sampled(live, depsgraph, finer(fineness, live.detail), texture_mapped)
         if live.parts:
             if live.edged is None or live.edged[0] is not surfels:
                 live.edged = surfels, with_edge_samples(surfels, live.parts, live.spacing)

@@ -163,6 +163,20 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
         description="Whose weights of 1/2 or more say where the object is drawn as polygons",
         update=_read_again,
     )
+    detail: FloatProperty(
+        name="Object Detail",
+        description=(
+            "How many times closer together than the density says the surfels of this object lie, with its instances, "
+            "when it is converted or rendered as surfels; joined objects go by the active one. "
+            "2 shows details half the size, for four times the surfels, memory and time"
+        ),
+        default=1.0,
+        min=0.01,
+        soft_min=0.25,
+        soft_max=4.0,
+        max=100.0,
+        update=_read_again,
+    )
 
 
 class Form(NamedTuple):
@@ -247,6 +261,7 @@ class OBJECT_PT_surfel_splatting(bpy.types.Panel):
             self.layout.prop(settings, "split_distance")
         elif settings.render_as == "GROUP":
             self.layout.prop_search(settings, "split_group", context.object, "vertex_groups")
+        self.layout.prop(settings, "detail")
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(

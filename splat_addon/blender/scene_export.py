@@ -19,6 +19,7 @@ from .attributes import has_surfels, read_surfels
 from .light_linking import LightSets
 from .live_meshes import LiveMeshes, Place
 from .mesh_sampling_settings import are_meshes_texture_mapped, form_of, mesh_fineness
+from .object_detail import detail_of
 from .shading_export import light_of, shading_material
 from .sources import owner_of
 from .surface_textures import TextureStore
@@ -107,7 +108,8 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                 if (what := _content(object_)) == "surfels":
                     surfels += _instances(object_, matrix, fields, store, notes)
                 elif what == "faces" and (form := form_of(entry, bpy_scene)).kind != "HIDDEN":
-                    live_meshes.add(object_, owner_of(entry), Place(matrix, fields, form), notes)
+                    owner = owner_of(entry)
+                    live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), notes)
                 elif what == "points":
                     notes.add(_BARE_POINTS)
             elif object_.type in _NOT_DRAWN:

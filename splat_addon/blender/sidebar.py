@@ -9,7 +9,8 @@ from .camera_density import without_camera
 from .conversion import Choices
 from .conversion_settings import PROPERTY_NAMES, choices, draw_properties
 from .gathering import frame_of, groups
-from .ids import CONVERSION_SETTINGS, SIDEBAR_PANEL, SIDEBAR_TAB, SURFELS_FROM_MESH
+from .ids import CONVERSION_SETTINGS, OBJECT_SETTINGS, SIDEBAR_PANEL, SIDEBAR_TAB, SURFELS_FROM_MESH
+from .object_detail import detail_of, finer
 from .operators.surfels_from_mesh import selected_sources
 from .prediction import known_extents
 
@@ -25,6 +26,8 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         settings = getattr(context.scene, CONVERSION_SETTINGS)
         draw_properties(self.layout, settings)
         sources = selected_sources(context)
+        if context.active_object in sources:
+            self.layout.prop(getattr(context.active_object, OBJECT_SETTINGS), "detail")
         if sources and context.mode == "OBJECT":
             text = prediction(context, sources, choices(settings))
         else:
@@ -45,7 +48,10 @@ def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], aske
     try:
         finenesses = [
             without_camera(
-                asked.fineness, lambda e=extent: e.surface, frame_of(part[0], asked.in_world_units), depsgraph
+                finer(asked.fineness, detail_of(part[0])),
+                lambda e=extent: e.surface,
+                frame_of(part[0], asked.in_world_units),
+                depsgraph,
             )
             for part, extent in zip(parts, extents, strict=True)
         ]

@@ -128,6 +128,15 @@ def test_for_a_camera_the_text_has_the_count_of_the_conversion(cube, camera, con
     assert int(text.split()[1].replace(",", "")) == pytest.approx(len(made.data.vertices), rel=0.01)
 
 
+def test_the_text_knows_the_objects_own_detail(cube, known):
+    before = sidebar_text(bpy.context, [cube], PLAIN)
+    cube.surfel_splatting.detail = 2
+    assert (before, sidebar_text(bpy.context, [cube], PLAIN)) == (
+        "≈ 1,536 surfels, spacing 0.125",
+        "≈ 6,144 surfels, spacing 0.0625",
+    )
+
+
 def test_for_a_camera_that_sees_nothing_the_text_says_so(cube, camera):
     camera.rotation_euler = (3.1, 0, 0)
     bpy.context.view_layer.update()

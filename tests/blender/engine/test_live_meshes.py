@@ -311,6 +311,26 @@ def test_spacing_is_in_world_units(live, sampled, picture):
     assert len(sampled[0]) == 6 * 8**2
 
 
+def test_an_object_can_be_finer_than_the_others(live, sampled, picture):
+    bpy.ops.mesh.primitive_cube_add(size=1)
+    bpy.ops.mesh.primitive_cube_add(size=1, location=(2, 0, 0))
+    bpy.context.object.surfel_splatting.detail = 0.5
+    picture()
+    assert sorted(map(len, sampled)) == [6 * 16**2, 6 * 32**2]
+    bpy.context.object.surfel_splatting.detail = 1
+    picture()
+    assert len(sampled[-1]) == 6 * 32**2
+
+
+def test_the_neediest_of_an_objects_linked_copies_decides(live, sampled, picture):
+    bpy.ops.mesh.primitive_cube_add(size=1)
+    bpy.ops.object.duplicate(linked=True)
+    bpy.context.object.location.x = 2
+    bpy.context.object.surfel_splatting.detail = 0.5
+    picture()
+    assert [len(surfels) for surfels in sampled] == [6 * 32**2] and counts()["meshes"] == 1
+
+
 def test_for_the_camera_a_surfel_covers_as_many_pixels_as_asked(live, scene, sampled, picture):
     """The square is 10 from a camera whose picture is 1 wide at distance 1; another is behind it."""
     scene.camera.data.sensor_width = scene.camera.data.lens = 36

@@ -129,6 +129,21 @@ def test_every_selected_mesh_is_converted(convert, add_square, add_object):
     assert [made.name for made in convert(resolution=4)] == ["a surfels", "b surfels"]
 
 
+@pytest.mark.parametrize("density", [{"resolution": 8}, {"density": "SPACING", "spacing": 1 / 8}])
+def test_each_object_has_its_own_detail(convert, add_square, surfels_of, density):
+    squares = [add_square(name) for name in "ab"]
+    squares[1].surfel_splatting.detail = 2
+    for square in squares:
+        square.select_set(True)
+    made = convert(**density)
+    assert [len(surfels_of(one)) for one in made] == [8**2, 16**2]
+
+
+def test_a_count_is_that_of_an_object_without_more_detail(cube, convert, surfels_of):
+    cube.surfel_splatting.detail = 0.5
+    assert len(surfels_of(convert(density="COUNT", count=6 * 20 * 20)[0])) == 6 * 10 * 10
+
+
 def test_surfels_are_not_converted_again(cube, convert):
     convert(resolution=4)
     assert not bpy.ops.object.surfels_from_mesh.poll()
