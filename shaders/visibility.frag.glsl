@@ -10,11 +10,17 @@
 #ifdef LAYER
 #include "common/layer_sample.glsl"
 #endif
+#ifdef SCREEN_DOOR
+#include "common/screen_door.glsl"
+#endif
 
 void main() {
   if (!(dot(place_depth.xy, place_depth.xy) <= 1.0 && place_depth.z >= splats.options.y)) discard;
 #ifdef SPLIT_POLYGONS
   if (splats.identity.z > 0.0 && split_distance(split_place) > splats.identity.z) discard;
+#endif
+#ifdef SCREEN_DOOR
+  if (!is_kept(opacity_surface.x, int(opacity_surface.y + 0.5), ivec2(gl_FragCoord.xy))) discard;
 #endif
 #ifdef LAYER
   if (!is_in_layer(place_depth.z, ivec2(gl_FragCoord.xy))) discard;

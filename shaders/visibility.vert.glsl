@@ -51,5 +51,8 @@ void main() {
 #ifdef LAYER
   is_hidden = is_hidden || stored.color.a < LEAST_OPACITY;
 #endif
+#ifdef SCREEN_DOOR
+  opacity_surface = vec2(stored.color.a, 2.0 * splats.identity.x + (is_back ? 1.0 : 0.0));
+#endif
   gl_Position = is_hidden ? NOWHERE : moved;
 }

@@ -63,21 +63,43 @@ vec2 texel_place(ShadowPlace here, ivec2 texel) {
   return here.window.xy + (vec2(texel) + 0.5) / (here.window.zw * here.atlas.z);
 }
 
+#ifdef SCREEN_DOOR
+// The four texels around the place, and parts of a fifth: what is kept of every 4 x 4 sums to the same everywhere.
+const int FILTER_TEXELS = 6;
+vec2 hard_filter(vec2 distance) {
+  return clamp(2.5 - abs(distance), 0.0, 1.0);
+}
+#else
 // A tent of two texels around the place.
+const int FILTER_TEXELS = 4;
+vec2 hard_filter(vec2 distance) {
+  return max(2.0 - abs(distance), 0.0);
+}
+#endif
+
 float hard_share(ShadowPlace here, float bias) {
   vec2 at = (here.place - here.window.xy) * here.window.zw * here.atlas.z - 0.5;
-  ivec2 low = ivec2(floor(at)) - 1;
+  ivec2 low = ivec2(floor(at)) - (FILTER_TEXELS / 2 - 1);
   float lit = 0.0, total = 0.0;
-  for (int y = 0; y < 4; y++) {
-    for (int x = 0; x < 4; x++) {
+  for (int y = 0; y < FILTER_TEXELS; y++) {
+    for (int x = 0; x < FILTER_TEXELS; x++) {
       ivec2 texel = low + ivec2(x, y);
-      vec2 tent = max(2.0 - abs(vec2(texel) - at), 0.0);
+      vec2 tent = hard_filter(vec2(texel) - at);
       float weight = tent.x * tent.y;
       lit += blocker_depth(here, texel) + bias >= receiver_depth(here, texel_place(here, texel)) ? weight : 0.0;
       total += weight;
     }
   }
   return lit / total;
+}
+
+// Where surfaces are masked, samples take turns in the places of a 4 x 4: all of these are then looked at alike.
+ivec2 soft_texel(ivec2 texel, int number) {
+#ifdef SCREEN_DOOR
+  return (texel & ~3) + ivec2(number & 3, (number >> 2) & 3);
+#else
+  return texel;
+#endif
 }
 
 // size: of the lamp, half its width; of a sun the tangent of half its angle.
@@ -89,7 +111,7 @@ float soft_share(ShadowPlace here, float bias, float size) {
   for (int i = 0; i < SOFT_SAMPLES; i++) {
     float turn = (float(i) + shadow_turn) * GOLDEN_ANGLE;
     float r = sqrt((float(i) + shadow_turn) / float(SOFT_SAMPLES)) * reach;
-    ivec2 texel = shadow_texel(here, here.place + r * vec2(cos(turn), sin(turn)));
+    ivec2 texel = soft_texel(shadow_texel(here, here.place + r * vec2(cos(turn), sin(turn))), i);
     float depth = blocker_depth(here, texel);
     if (depth + bias < receiver_depth(here, texel_place(here, texel))) {
       blockers += 1.0;
@@ -105,7 +127,7 @@ float soft_share(ShadowPlace here, float bias, float size) {
   for (int i = 0; i < SOFT_SAMPLES; i++) {
     float turn = (float(i) + shadow_turn) * GOLDEN_ANGLE;
     float r = sqrt((float(i) + shadow_turn) / float(SOFT_SAMPLES)) * min(radius, reach);
-    ivec2 texel = shadow_texel(here, here.place + r * vec2(cos(turn), sin(turn)));
+    ivec2 texel = soft_texel(shadow_texel(here, here.place + r * vec2(cos(turn), sin(turn))), i);
     lit += blocker_depth(here, texel) + bias >= receiver_depth(here, texel_place(here, texel)) ? 1.0 : 0.0;
   }
   return lit / float(SOFT_SAMPLES);

@@ -84,6 +84,7 @@ def plan(
             *_shading_passes(scene, settings, method, model, reads, layers, left_out),
         )
         features = _splat_features(scene, extent, left_out) + _features(scene, settings, model, emission, left_out)
+        features += _caster_features(scene, layers if maps else 0, left_out)
         if not linear_depth:
             left_out.append(("linear depth", why_depth))
         _say_what_surfels_lack(scene, camera, left_out)
@@ -307,6 +308,15 @@ def _features(
     elif model.is_lit and scene.lights:
         left_out.append(("sized lights", "every light is a point or a direction"))
     return tuple(features)
+
+
+def _caster_features(scene: Scene, layers: int, left_out: list) -> tuple[tuple[str, str], ...]:
+    """layers: that cast and receive shadows."""
+    casting = sum(i.is_transparent and i.casts_shadow for i in scene.surfels) if layers else 0
+    if casting:
+        return (("SCREEN_DOOR", f"shadows of {casting} instances are as transparent as those"),)
+    left_out.append(("transparent shadows", "nothing transparent casts any"))
+    return ()
 
 
 def _shading_passes(

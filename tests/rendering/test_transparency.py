@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Transparent layers: closed forms, and the picture by definition (Guennebaud et al. 2006, section 6)."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Light, Scene, Settings, look_at, plan
+from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Light, Material, Scene, Settings, look_at, plan
 from splat_addon.rendering.methods import METHODS
 from splat_addon.surfels import Surfels
 
@@ -242,3 +243,44 @@ def test_nothing_of_an_opaque_scene_is_for_layers():
     scene, camera = scenes.sphere(count=100)
     made = plan(scene, camera, Settings())
     assert made.layers == 0 and not any("layer" in t or "peeled" in t for t in made.textures)
+
+
+def under_the_sun(*casters, **options) -> Scene:
+    """A white floor across the view, and what hangs between it and the sun behind the eye."""
+    chalk = (Material(roughness=1.0, ior=1.0),)
+    floor = replace(sheet(-1, (1, 1, 1), 1.0), materials=chalk)
+    return Scene([floor, *casters], [Light("sun", energy=2.0, direction=(0.4, 0, -1), casts_shadow=True, **options)])
+
+
+def half(opacity: float, z: float) -> Instance:
+    """Over the left half of the floor, lower than the eye."""
+    made = sheet(z, (0, 0, 0), opacity)
+    keep = made.surfels.positions[:, 0] < -0.2
+    fields = {name: array[keep] for name, array in made.surfels.arrays().items()}
+    return Instance(Surfels(**fields))
+
+
+@pytest.mark.parametrize("size", [0.0, 0.05])
+@pytest.mark.parametrize("opacities", [(0.25,), (0.5,), (0.8,), (0.5, 0.5), (0.25, 0.75), (0.5, 0.25, 0.5)])
+def test_shadows_are_as_transparent_as_their_casters(opacities, size, render):
+    """Of what lies out of the picture: light arrives through each sheet in its share, to a sixteenth. Masks are even in
+    pairs, so that a third sheet lets an eighth more or less of it through.
+    """
+    camera = Camera.orthographic(look_at((0.4, 0, -0.5), (0.4, 0, -1), (0, 1, 0)), 0.5, (24, 24), 0.05, 50)
+    casters = [half(opacity, 1.0 + 0.3 * number) for number, opacity in enumerate(opacities)]
+    settings = Settings(method="quad", shadow_resolution=512, blends_rest=False, layers=1)
+    free, shaded = (render(under_the_sun(*c, size=size), camera, settings).color[..., 0] for c in ((), casters))
+    through = math.prod(1 - opacity for opacity in opacities)
+    share = (shaded / free)[:, :8]
+    assert abs(share.mean() - through) < (0.035 if len(opacities) < 3 else 0.125)
+    # hard shadows are even: the filter is as wide as the mask
+    assert size or np.ptp(share) < 0.02
+
+
+def test_opaque_casters_have_shadows_as_before():
+    scene = under_the_sun(half(1.0, 1.0))
+    made = plan(scene, CAMERA, Settings())
+    assert made.shadow_maps and not made.has("SCREEN_DOOR")
+    assert plan(under_the_sun(half(0.5, 1.0)), CAMERA, Settings()).has("SCREEN_DOOR")
+    casts_none = under_the_sun(replace(half(0.5, 1.0), casts_shadow=False))
+    assert not plan(casts_none, CAMERA, Settings()).has("SCREEN_DOOR")

@@ -17,8 +17,8 @@ from .splats import SPLATS_BLOCK, draw_splats, drawn_by
 from .tile import TileContext
 
 
-def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
-    """What the pass draws splats with."""
+def describe(planned: PlannedPass, frame: FramePlan, has_door: bool = False) -> PipelineDescription:
+    """What the pass draws splats with. has_door: they leave as much out of a shadow map as shows through them."""
     return PipelineDescription(
         name="visibility",
         vertex=load("visibility.vert.glsl", storage=frame.storage),
@@ -29,6 +29,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
             ("smooth", "vec3", "place_depth"),
             *((("smooth", "vec3", "across_offset"),) if frame.linear_depth else ()),
             *identity_varyings(planned),
+            *((("flat", "vec2", "opacity_surface"),) if has_door else ()),
         ),
         outputs=(("vec2", "identity"),) if says_whose(planned) else (),
         defines=(
@@ -36,6 +37,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
             *(LAYER if planned.layer else ()),
             *identity_defines(planned),
             *split_defines(frame),
+            *((("SCREEN_DOOR", "1"),) if has_door else ()),
         ),
         depth_test=True,
         depth_write=True,
@@ -61,7 +63,9 @@ def describe_polygons(planned: PlannedPass, frame: FramePlan) -> PipelineDescrip
 def draw_visible(tile: TileContext, planned: PlannedPass, target: Target, splats, viewport=None) -> None:
     """splats: placed instances; and, where no transparent layer is made, all polygons of the tile's view."""
     if splats:
-        draw_splats(tile, tile.resources.pipeline(describe(planned, tile.plan)), target, splats, viewport)
+        has_door = planned.name == "shadow_maps" and tile.plan.has("SCREEN_DOOR")
+        pipeline = tile.resources.pipeline(describe(planned, tile.plan, has_door))
+        draw_splats(tile, pipeline, target, splats, viewport)
     if tile.view.polygons and not planned.layer:
         pipeline = tile.resources.pipeline(describe_polygons(planned, tile.plan))
         draw_polygons(tile, pipeline, target, tile.view.polygons, viewport)
