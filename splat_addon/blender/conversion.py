@@ -204,7 +204,8 @@ def bake(conversion: Conversion, depsgraph: bpy.types.Depsgraph) -> None:
 
 
 def place(conversion: Conversion, fallback: bpy.types.Collection) -> bpy.types.Object:
-    """The new object "<name> surfels" over its sources, in the collections of the first, with their materials.
+    """The new object "<name> surfels" over its sources, in the collections of the first and with its pass index, with
+    their materials.
 
     fallback: where it goes when every collection of that source belongs to a linked library.
     """
@@ -212,5 +213,6 @@ def place(conversion: Conversion, fallback: bpy.types.Collection) -> bpy.types.O
     collections = collections_of(conversion.sources[0], fallback)
     name, matrix_world = f"{conversion.name} surfels", conversion.matrix_world
     made = add_surfel_object(name, conversion.surfels, matrix_world, collections, conversion.materials)
+    made.pass_index = conversion.sources[0].pass_index
     conversion.seconds += time.perf_counter() - start
     return made

@@ -80,5 +80,6 @@ class PointsBatch(Batch):
         collections = collections_of(source, context.collection)
         name, materials = f"{source.name} surfels", conversion.points.materials
         made = add_surfel_object(name, conversion.surfels, conversion.matrix_world, collections, materials)
+        made.pass_index = source.pass_index
         conversion.seconds += time.perf_counter() - start
         return made

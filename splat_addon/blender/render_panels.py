@@ -132,9 +132,15 @@ class RENDER_PT_surfel_performance(_RenderPanel, bpy.types.Panel):
 _NOT_JOINED = frozenset(
     {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle", "RENDER_PT_simplify"}
 )
-#: EEVEE's panels that edit the nodes which this engine reads.
+#: EEVEE's panels that edit the nodes and the pass index which this engine reads; 4.5 has its settings under a name.
 _JOINED_FROM_EEVEE = frozenset(
-    {"EEVEE_MATERIAL_PT_context_material", "EEVEE_MATERIAL_PT_surface", "EEVEE_WORLD_PT_surface"}
+    {
+        "EEVEE_MATERIAL_PT_context_material",
+        "EEVEE_MATERIAL_PT_surface",
+        "EEVEE_MATERIAL_PT_settings",
+        "EEVEE_NEXT_MATERIAL_PT_settings",
+        "EEVEE_WORLD_PT_surface",
+    }
 )
 
 

@@ -22,6 +22,9 @@ from .shadow import MAX_MAPS, ShadowMap, shadow_maps
 from .storages import get_storage
 from .view import DepthExtent, depth_extent, overlapping_radii
 
+#: Colour textures that a target may have: as many as Blender's.
+MAX_COLORS = 6
+
 #: A target's edge in samples; a larger picture is rendered in tiles, so that memory stays below about 1 GB.
 MAX_TARGET_EDGE = 4096
 
@@ -83,6 +86,7 @@ def plan(
             *lines,
             *_shading_passes(scene, settings, method, model, reads, layers, left_out),
         )
+        _check_targets(passes)
         features = _splat_features(scene, extent, left_out) + _features(scene, settings, model, emission, left_out)
         features += _caster_features(scene, layers if maps else 0, left_out)
         if not linear_depth:
@@ -110,6 +114,17 @@ def plan(
         math.ceil(settings.lines.reach) if settings.lines else 0,
         tuple(left_out),
     )
+
+
+def _check_targets(passes: tuple[PlannedPass, ...]) -> None:
+    """Raises ValueError for a pass of more textures than every device can draw into at once."""
+    for planned in passes:
+        written = [name for name in planned.writes if TEXTURES[name][0] != "DEPTH32F"]
+        if len(written) > MAX_COLORS:
+            raise ValueError(
+                f"The {planned.name} pass would write {len(written)} textures at once ({', '.join(written)}), and "
+                f"devices have room for {MAX_COLORS}. Leave Overdraw, indices and mattes out, or choose float32 sums."
+            )
 
 
 def _why_attributes(scene: Scene, method: Method) -> str:

@@ -36,6 +36,13 @@ def test_the_operator_and_the_sidebar_have_the_same_settings_with_the_same_defau
         )
 
 
+def test_the_pass_index_of_a_material_can_be_set():
+    """In the panel that EEVEE has for it."""
+    names = "EEVEE_MATERIAL_PT_settings", "EEVEE_NEXT_MATERIAL_PT_settings"
+    panels = [getattr(bpy.types, name) for name in names if hasattr(bpy.types, name)]
+    assert any(ids.ENGINE in panel.COMPAT_ENGINES for panel in panels)
+
+
 def test_every_setting_has_a_tooltip():
     settings = getattr(bpy.context.scene, ids.CONVERSION_SETTINGS).bl_rna.properties
     assert all(len(settings[name].description) > 20 for name in conversion_settings.PROPERTY_NAMES)

@@ -183,6 +183,15 @@ def changed(usual: set[str], words: str) -> set[str]:
     return (usual | {word for word in words.split() if not word.startswith("-")}) - less
 
 
+def test_more_textures_than_a_target_has_are_refused_with_what_to_do():
+    """Of sums over materials, emission, light sets, overdraw and depth."""
+    full = replace(of(GLOWING, ROUGH), lights=(Light("sun", receivers=(1,)),))
+    outputs = ("color", "overdraw")
+    assert plan(full, CAMERA, Settings(outputs=outputs))
+    with pytest.raises(ValueError, match=r"7 textures at once .*Overdraw.*float32"):
+        plan(full, CAMERA, Settings(outputs=outputs, accumulation="float16"))
+
+
 def test_a_scene_of_nothing_gets_nothing():
     assert not plan(Scene(lights=(SUN,)), CAMERA, Settings()).passes
 

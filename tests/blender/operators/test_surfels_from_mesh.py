@@ -100,6 +100,12 @@ def test_the_result_is_in_the_collections_of_its_source(cube, convert):
     assert len(cube.users_collection) == 2
 
 
+def test_the_result_has_the_pass_index_of_its_source(cube, convert):
+    cube.pass_index = 7
+    (made,) = convert()
+    assert made.pass_index == 7
+
+
 def test_the_result_has_the_material_slots_of_its_source(cube, convert):
     for name in "ab":
         cube.data.materials.append(bpy.data.materials.new(name))
