@@ -5,8 +5,9 @@
 
 For each roughness and angle of view: the linear transform that turns a clamped cosine into the lobe (Heitz, Dupuy,
 Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016, by their fit: least cubed
-error, simplex search), and the lobe's directional albedo in two terms, so that Schlick's Fresnel can be applied to it
-(Karis 2013, "Real Shading in Unreal Engine 4", the split sum). Needs scipy; takes a minute and a half.
+error, simplex search), the lobe's directional albedo in two terms, so that Schlick's Fresnel can be applied to it
+(Karis 2013, "Real Shading in Unreal Engine 4", the split sum), and its mean direction. Needs scipy;
+takes a minute and a half.
 """
 
 from __future__ import annotations
@@ -140,7 +141,7 @@ def main() -> None:
                 start_of_row = start
             inverse = np.linalg.inv(matrix(frame, start))
             inverse /= inverse[1, 1]
-            table[i, j] = inverse[0, 0], inverse[0, 2], inverse[2, 0], inverse[2, 2], scale, bias, 0, 0
+            table[i, j] = inverse[0, 0], inverse[0, 2], inverse[2, 0], inverse[2, 2], scale, bias, mean[0], mean[2]
     np.save(out, table.astype(np.float32))
     print(f"{out}: {table.shape[0]} roughnesses x {table.shape[1]} angles")
 

@@ -1,12 +1,13 @@
 // References: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016;
 //             Karis, "Real Shading in Unreal Engine 4", 2013 (the albedo in two terms);
+//             Lagarde, de Rousiers, "Moving Frostbite to PBR", 2014, section 4.9.3 (the lobe's dominant direction);
 //             Turquin, "Practical multiple scattering compensation for microfacet models", 2019.
 // Summary: reads what scripts/fit_brdf_table.py tabulated of GGX. The twin of reference/brdf.py.
 
 const vec2 TABLE_STEPS = vec2(31.0, 47.0);  // angles, roughnesses
 const float TABLE_LEAST_ROUGHNESS = 0.03;
 
-// part 0: the transform's entries xx, xz, zx, zz; part 1: the albedo's terms.
+// part 0: the transform's entries xx, xz, zx, zz; part 1: the albedo's terms, x and z of the mean direction.
 vec4 table_at(float roughness, float cosine, int part) {
   vec2 at = vec2(sqrt(max(1.0 - cosine, 0.0)), (roughness - TABLE_LEAST_ROUGHNESS) / (1.0 - TABLE_LEAST_ROUGHNESS));
   at = clamp(at, 0.0, 1.0) * TABLE_STEPS;
@@ -23,6 +24,13 @@ vec4 table_at(float roughness, float cosine, int part) {
 vec3 specular_albedo(vec2 terms, vec3 f0, float f90, out vec3 scattered) {
   scattered = 1.0 + f0 * (1.0 / max(terms.x + terms.y, 1e-3) - 1.0);
   return (f0 * terms.x + f90 * terms.y) * scattered;
+}
+
+// Where the lobe reflects light from on average: off the mirrored direction, the more so the rougher the surface is and
+// the flatter it is seen. The view's frame: see rendering/brdf_table.py.
+vec3 mean_direction(vec2 mean, vec3 view, vec3 normal) {
+  vec3 across = view - normal * dot(view, normal);
+  return normalize(normal * mean.y + across * (mean.x / max(length(across), 1e-6)));
 }
 
 #ifdef SIZED_LIGHTS

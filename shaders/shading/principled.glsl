@@ -69,14 +69,15 @@ vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
   lobe.f0 = mix(vec3(material.z), base, metallic);
   float coat_f90 = min(GRAZING_GAIN * material.z, 1.0);
   lobe.f90 = mix(coat_f90, 1.0, metallic);
-  vec2 terms = table_at(lobe.roughness, lobe.nv, 1).xy;
+  vec4 terms_mean = table_at(lobe.roughness, lobe.nv, 1);
+  vec2 terms = terms_mean.xy;
   vec3 scattered;
   vec3 coat = specular_albedo(terms, vec3(material.z), coat_f90, scattered);
   lobe.diffuse_albedo = base * (1.0 - metallic) * (1.0 - coat);
   lobe.specular_albedo = specular_albedo(terms, lobe.f0, lobe.f90, lobe.scattered);
-  vec3 mirrored = reflect(-lobe.view, normal);
+  vec3 reflected = mean_direction(terms_mean.zw, lobe.view, normal);
   vec3 radiance = lobe.diffuse_albedo * world_irradiance(normal)
-      + lobe.specular_albedo * world_reflection(mirrored, lobe.roughness);
+      + lobe.specular_albedo * world_reflection(reflected, lobe.roughness);
 #ifdef LIGHTS
   int count = int(shading.options.y);
   for (int i = 0; i < count; i++) {

@@ -7,6 +7,7 @@ Sources:
   denominator 4 nl nv of the microfacet model cancelled into it: Vis.
 - Schlick 1994: the Fresnel term F.
 - Heitz, Dupuy, Hill, Neubelt 2016, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines".
+- Lagarde & de Rousiers 2014, "Moving Frostbite to PBR", section 4.9.3: the lobe's dominant direction.
 - Turquin 2019, "Practical multiple scattering compensation for microfacet models", eq. 16.
 """
 
@@ -54,6 +55,12 @@ def specular_albedo(roughness, nv, f0, f90=1.0) -> tuple[np.ndarray, np.ndarray]
     scale, bias = table_at(roughness, nv)[:, 4:6].T[:, :, None]
     scattered = 1 + f0 * (1 / np.maximum(scale + bias, 1e-3) - 1)
     return (f0 * scale + f90 * bias) * scattered, scattered
+
+
+def mean_direction(roughness, nv, view, normal) -> np.ndarray:
+    """(n, 3) unit: where the lobe reflects light from on average. roughness, nv: (n,). view, normal: (n, 3) unit."""
+    x, z = table_at(roughness, nv)[:, 6:8].T[:, :, None]
+    return unit(normal * z + unit(view - normal * dot(view, normal)[:, None]) * x)
 
 
 def quad_form_factors(corners, normal, view, roughness, nv) -> tuple[np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .brdf import dot, quad_form_factors, specular_albedo, specular_term, unit
+from .brdf import dot, mean_direction, quad_form_factors, specular_albedo, specular_term, unit
 from .lights import Incident
 from .rays import Surface
 from .world import WorldLight
@@ -40,8 +40,8 @@ def principled_radiance(surface: Surface, direction, lights: list[Incident], wor
     coat, _ = specular_albedo(roughness, nv, coat_f0, coat_f90)
     diffuse = surface.color * (1 - metallic) * (1 - coat)
     specular, scattered = specular_albedo(roughness, nv, f0, f90)
-    mirrored = 2 * dot(view, normal)[:, None] * normal - view
-    radiance = diffuse * world.irradiance(normal) + specular * world.reflection(mirrored, roughness)
+    reflected = mean_direction(roughness, nv, view, normal)
+    radiance = diffuse * world.irradiance(normal) + specular * world.reflection(reflected, roughness)
     for light in lights:
         nl = np.maximum(dot(normal, light.to_light), 0)
         lobe = specular_term(normal, view, light.to_light, nl, nv, roughness, f0, f90) * scattered

@@ -33,7 +33,7 @@ class WorldLight:
         return self._tint * _level_at(self._levels, np.full(len(normal), len(LEVELS)), self._turned(normal))
 
     def reflection(self, direction: np.ndarray, roughness: np.ndarray) -> np.ndarray:
-        """(n, 3) radiance that a lobe of that roughness (n,), mirrored into that direction, gets on average."""
+        """(n, 3) radiance that a lobe of that roughness (n,) and mean direction gets on average."""
         if self._environment is None:
             return np.broadcast_to(self._tint, direction.shape)
         toward, levels = self._turned(direction), np.array(LEVELS)

@@ -17,7 +17,7 @@ def brdf_table() -> np.ndarray:
 
     Entries xx, xz, zx and zz (yy is 1) of the transform from directions of the lobe, in the frame whose x is the
     view's direction along the surface and z the normal, to a clamped cosine (Heitz et al. 2016); then the parts of
-    the directional albedo that F0 scales and that it does not (Karis 2013); two zeros.
+    the directional albedo that F0 scales and that it does not (Karis 2013); x and z of the lobe's mean direction.
     """
     table = np.load(Path(__file__).with_name("brdf_table.npy"))
     table.flags.writeable = False

@@ -193,9 +193,9 @@ def gradient_world(scene, rotation=(0, 0, 0)):
 
 
 @pytest.mark.parametrize("rotation", [(0, 0, 0), (0.5, -0.3, 1.2)])
-@pytest.mark.parametrize(("metallic", "rtol"), [(0.0, 0.03), (1.0, 0.3)])
+@pytest.mark.parametrize(("metallic", "rtol"), [(0.0, 0.03), (1.0, 0.2)])
 def test_a_world_that_is_a_picture_lights_the_surface(metallic, rtol, rotation, scene, assert_as_cycles):
-    """A metal's lobe is taken as seen straight on, which is up to 30 % off beside a lamp twenty times the sky."""
+    """A metal's lobe has its own direction but is taken as round: up to 17 % off beside a lamp twenty times the sky."""
     gradient_world(scene, rotation)
     assert_as_cycles(rtol, **{"Metallic": metallic, "Roughness": 0.6, "Specular IOR Level": 0.5 * metallic})
 
