@@ -135,9 +135,10 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         name="Samples",
         description=(
             "Pictures that a final render is the mean of, each seen through another place in the pixel and, with "
-            "depth of field, on the lens. Beyond one, with Quads, 4 are 2 to 9 dB truer, "
-            "16 are 15 to 22, 64 are 23 to 30 (box-filtered pixels); with Mip, 16 are 2 to 9 (its Gaussian). "
-            "Each takes a picture's time or more: 16 took 15 times as long with Mip, 34 with Quads"
+            "depth of field, on the lens, with motion blur, in time. Beyond one, with Quads, 4 are 2 to 9 dB truer, "
+            "16 are 15 to 22, 64 are 23 to 30 (box-filtered pixels); with Mip, 16 are 2 to 6 (its Gaussian). "
+            "Each takes a picture's time: 16 took 13 times as long with Mip, 17 with Quads, 8.5 under shadow maps, "
+            "which are drawn once"
         ),
         min=1,
         max=MAX_SAMPLES,
@@ -148,7 +149,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         name="Viewport Samples",
         description=(
             "Pictures that the viewport is the mean of when it has been at rest: one is shown at once, the others "
-            "follow one by one, and whatever changes starts anew. The camera's depth of field needs them"
+            "follow one by one, and whatever changes starts anew at the cost of one. 16 are 15 to 22 dB truer with "
+            "Quads, 2 to 6 with Mip. The camera's depth of field needs them"
         ),
         min=1,
         max=MAX_SAMPLES,
@@ -159,7 +161,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         name="Steps",
         description=(
             "Moments of the open shutter at which the scene is evaluated and read anew, at most one a sample. Fewer "
-            "save that time; what moves then shows as so many pictures"
+            "save that time; what moves then shows as so many pictures. From as many as all samples, 4 samples are "
+            "31 to 36 dB, 16 are 38 to 45, 64 are 46 to 51"
         ),
         min=1,
         max=MAX_SAMPLES,
