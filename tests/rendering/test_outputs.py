@@ -260,4 +260,6 @@ def test_they_are_the_same_on_every_device(method, render, pictures, request):
     standalone = np.load(path)
     for name in OUTPUTS[4:]:
         values, others = (array.reshape(64 * 64, -1) for array in (getattr(frame, name), standalone[name]))
-        assert np.count_nonzero(np.abs(values - others).max(axis=1) > 1e-4) <= 1, name
+        # a tie of a splat's rim is in all pixels that a filter takes it to
+        allowed = 4 if method == "mip" else 1
+        assert np.count_nonzero(np.abs(values - others).max(axis=1) > 1e-4) <= allowed, name
