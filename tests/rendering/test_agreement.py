@@ -36,6 +36,8 @@ FLOAT16_TOLERANCE = 6e-3
 #: The share of samples in which a splat's rim, or two depths, may tie and fall either way.
 TIES = 1 / 20_000
 SIZE = (256, 256)
+#: Layers behind one another in the transparent spheres, peeled or in the last one.
+SURFACES = 8
 
 
 def solid(scene, camera):
@@ -187,12 +189,15 @@ def test_picture_is_the_same_on_every_device(name, method, options, render, pict
         return
     assert path.exists(), f"{path} is missing: run the tests with --device standalone first (scripts/test.py does)"
     standalone = np.load(path)
+    layers = SURFACES if frame.stats["layers"] else 1  # each of them may tie
     hit = (frame.depth < EMPTY_DEPTH) & (standalone["depth"] < EMPTY_DEPTH)
     brightness = np.maximum(standalone["color"], 1) if tolerance == FLOAT16_TOLERANCE else 1
-    assert_few(ties(frame.color / brightness, standalone["color"] / brightness, tolerance), samples=1)
-    assert_few(ties(frame.normal, standalone["normal"], max(tolerance, NORMAL_TOLERANCE)), samples=1)
-    assert_few(frame.coverage != standalone["coverage"], samples=1)
-    assert_few(hit & (np.abs(frame.depth - standalone["depth"]) > TOLERANCE), samples=1)
+    assert_few(ties(frame.color / brightness, standalone["color"] / brightness, tolerance), samples=layers)
+    assert_few(ties(frame.normal, standalone["normal"], max(tolerance, NORMAL_TOLERANCE)), samples=layers)
+    # what layers hide is a product of roundings
+    apart = TOLERANCE if frame.stats["layers"] else 0
+    assert_few(np.abs(frame.coverage - standalone["coverage"]) > apart, samples=layers)
+    assert_few(hit & (np.abs(frame.depth - standalone["depth"]) > TOLERANCE), samples=layers)
 
 
 @pytest.mark.parametrize("name", [name for name in SCENES if name != "shadows"])  # tests/rendering/test_shadows.py
