@@ -50,7 +50,7 @@ def prepare():
     camera.data.dof.focus_object = bpy.data.objects["Sphere.002"]
     scene.render.engine = "SURFEL_SPLATTING"
     scene.render.film_transparent = True
-    scene.surfel_splatting.render_meshes, scene.surfel_splatting.mesh_resolution = True, 24
+    scene.surfel_splatting.render_meshes, scene.surfel_splatting.mesh_resolution = "SURFELS", 24
     scene.surfel_splatting.viewport_samples = SAMPLES
     area = view3d()
     area.spaces[0].region_3d.view_perspective = "CAMERA"

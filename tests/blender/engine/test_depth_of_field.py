@@ -27,8 +27,9 @@ def camera(scene, add_camera):
 
 
 @pytest.fixture
-def discs(add_surfels, add_mesh):
+def discs(scene, add_surfels, add_mesh):
     """Two discs, behind the focus and before it: surfels, and for Cycles the same in faces."""
+    scene.surfel_splatting.render_meshes = "HIDDEN"
     places, radii = np.array([(0.2, 0.0, 0.0), (-0.2, 0.4, 7.5)]), np.array([0.8, 0.2])
     add_surfels(places, size=np.repeat(radii[:, None], 2, axis=1))
     turn = np.linspace(0, 2 * np.pi, 64, endpoint=False)

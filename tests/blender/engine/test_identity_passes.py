@@ -176,7 +176,7 @@ def test_instances_and_live_meshes_have_their_objects_names_and_indices(scene, a
     empty.instance_type, empty.instance_collection = "COLLECTION", collection
     empty.location = (1.2, 0, 0)
     scene.collection.objects.link(empty)
-    scene.surfel_splatting.render_meshes = True
+    scene.surfel_splatting.render_meshes = "SURFELS"
     scene.view_layers[0].use_pass_object_index = scene.view_layers[0].use_pass_cryptomatte_object = True
     stored = passes()
     index = stored[f"ViewLayer.{OBJECT_INDEX}"]

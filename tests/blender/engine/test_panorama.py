@@ -41,8 +41,9 @@ PLACE = (0.3, 0.2, 0.4)
 
 
 @pytest.fixture
-def discs(add_surfels, add_mesh):
+def discs(scene, add_surfels, add_mesh):
     """Discs all around: surfels, and for Cycles the same in faces. Some lie where faces of the cube meet."""
+    scene.surfel_splatting.render_meshes = "HIDDEN"
     random = np.random.default_rng(2)
     ways = random.normal(size=(40, 3))
     ways = np.concatenate([ways / np.linalg.norm(ways, axis=1, keepdims=True), [(0.577, 0.577, -0.577)]])
@@ -118,7 +119,7 @@ def test_what_is_seen_from_the_middle_is_sampled_as_finely_as_its_pixels(scene, 
     """A mesh behind the camera, by pixels."""
     bpy.ops.mesh.primitive_uv_sphere_add(location=(0, 0, 4))
     add_camera(type="PANO", panorama_type="EQUIRECTANGULAR")
-    scene.surfel_splatting.render_meshes = True
+    scene.surfel_splatting.render_meshes = "SURFELS"
     scene.surfel_splatting.mesh_density = "CAMERA"
     assert np.ptp(picture()[..., 3]) == pytest.approx(1, abs=1e-4)
 

@@ -25,8 +25,9 @@ def eyes(scene, read_picture):
 
 
 @pytest.fixture
-def discs(add_surfels, add_mesh):
+def discs(scene, add_surfels, add_mesh):
     """Three discs at several depths: surfels, and for Cycles the same in faces."""
+    scene.surfel_splatting.render_meshes = "HIDDEN"
     places, radii = np.array([(0.5, 0.0, 0.0), (-0.8, 0.7, 4.0), (-0.1, -0.5, 7.0)]), np.array([0.9, 0.5, 0.2])
     add_surfels(places, size=np.repeat(radii[:, None], 2, axis=1))
     turn = np.linspace(0, 2 * np.pi, 64, endpoint=False)
