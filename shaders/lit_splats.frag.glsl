@@ -28,6 +28,7 @@ void main() {
 #endif
 #ifdef SHADOWS
   shadow_turn = 0.125 + 0.25 * float(index & 3);
+  shadow_plane = vec3(0.0);
 #endif
 #ifdef SHADOW_SHARE
   light_arriving = light_unshadowed = vec3(0.0);

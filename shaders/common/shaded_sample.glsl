@@ -38,6 +38,10 @@ ShadedSample shaded_sample(MeanSurface mean, ivec2 texel, int look) {
 #endif
 #ifdef SHADOWS
   shadow_turn = 0.125 + 0.25 * float((texel.x & 1) + 2 * (texel.y & 1));
+  shadow_plane = vec3(0.0);
+#ifdef POLYGONS
+  if (mean.polygon > 0.5) shadow_plane = SUM_AT(polygon_plane, texel, look).xyz;
+#endif
 #endif
 #ifdef OVERDRAW_TARGET
   overdraw = SUM_AT(overdraw_sum, texel, look).r;

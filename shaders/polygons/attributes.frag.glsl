@@ -55,6 +55,9 @@ void main() {
 #endif
   polygon_material = vec4(own, dot(splats.light_set, vec4(0.0, 1.0, 2.0, 3.0)));
 #endif
+#ifdef PLANE_OUTPUT
+  polygon_plane = vec4(triangle_plane, 0.0);
+#endif
 #ifdef EMISSION_TARGET
   polygon_emission = vec4(emission, 1.0);
 #endif

@@ -22,7 +22,6 @@ void texture_gradient(int start, vec3 first, vec3 outward) {
   vec3 dual_along = cross(beside, plane) / square, dual_beside = cross(plane, along) / square;
   gradient_u = to_along.x * dual_along + to_beside.x * dual_beside;
   gradient_v = to_along.y * dual_along + to_beside.y * dual_beside;
-  triangle_plane = outward / max(length(outward), 1e-30);
 }
 #endif
 
@@ -30,6 +29,9 @@ void main() {
   vec3 eye = corner_position(gl_VertexID), first;
   vec3 outward = triangle_normal(gl_VertexID, first);
   bool is_back = shows_back(outward, first);
+#ifdef PLANE
+  triangle_plane = outward / max(length(outward), 1e-30) * (is_back ? -1.0 : 1.0);
+#endif
   vec4 place = corner_texel(gl_VertexID, 0);
   depth_at = -eye.z;
 #ifdef SPLIT

@@ -6,6 +6,8 @@
 const int SOFT_SAMPLES = 32;
 // Neighbouring samples of the picture look at different places: a pixel of 2 x 2 samples has four times as many of them.
 float shadow_turn;
+// Of the plane that is lit, where its normal is not the one that is shaded; 0 elsewhere.
+vec3 shadow_plane;
 const float GOLDEN_ANGLE = 2.39996323;
 const float GRAZING = 0.08;  // least cosine that a surface's plane is followed at
 
@@ -137,7 +139,8 @@ float soft_share(ShadowPlace here, float bias, float size) {
 float lit_share(vec4 caster, vec3 position, vec3 normal) {
   for (int i = 0; i < int(caster.y); i++) {
     ShadowPlace here;
-    if (!shadow_place(int(caster.x) + i, position, normal, here)) continue;
+    vec3 plane = dot(shadow_plane, shadow_plane) > 0.0 ? shadow_plane : normal;
+    if (!shadow_place(int(caster.x) + i, position, plane, here)) continue;
     float texel = here.depths.z * (here.atlas.w > 0.5 ? 1.0 : here.depth);
     float unit = length(texelFetch(shadow_maps, ivec2(0, int(caster.x) + i), 0).xyz);  // of the light's view
     float size = caster.z * (here.atlas.w > 0.5 ? 1.0 : unit);

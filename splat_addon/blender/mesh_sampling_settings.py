@@ -136,7 +136,7 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
             *(item[:3] for item in _MESH_ITEMS),
             (
                 "DISTANCE",
-                "Polygons Near, Surfels Far",
+                "Split by Distance",
                 "Draw polygons up to a distance from the camera and surfels beyond, which go over into one another",
             ),
             (

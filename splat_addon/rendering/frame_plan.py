@@ -36,6 +36,7 @@ TEXTURES = {
     "polygon_normal": ("RGBA32F", "sample"),
     "polygon_material": ("RGBA32F", "sample"),
     "polygon_emission": ("RGBA32F", "sample"),
+    "polygon_plane": ("RGBA32F", "sample"),
     "polygon_depth": ("DEPTH32F", "sample"),
     "lines": ("R32F", "sample"),
     "layer_depth": ("DEPTH32F", "sample"),

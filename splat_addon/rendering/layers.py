@@ -80,7 +80,9 @@ def lit_rows(scene: Scene) -> int:
 
 
 #: Of what the shading of the opaque picture may read, what a layer has nothing of.
-_OPAQUE_ONLY = {"lines", "overdraw_sum", "polygon_color", "polygon_normal", "polygon_material", "polygon_emission"}
+_OPAQUE_ONLY = {"lines", "overdraw_sum"} | {
+    f"polygon_{name}" for name in ("color", "normal", "material", "emission", "plane")
+}
 
 
 def _layer(number: int, settings: Settings, method: Method, sums, reads) -> tuple[PlannedPass, ...]:

@@ -67,7 +67,7 @@ def plan(
         linear_depth, why_depth = _linear_depth(camera, extent)
         sums = _sums(scene, settings, model, material, emission, left_out)
         maps = _shadow_maps(scene, shadow_camera or camera, settings, model, left_out)
-        polygons = _polygon_passes(scene, settings, method, sums, left_out)
+        polygons = _polygon_passes(scene, settings, method, sums, maps, left_out)
         unread = ("polygon_depth", "polygon_identity")
         kept = (*sums, *(name for p in polygons for name in p.writes if name not in unread))
         lines = _line_passes(settings, method, kept, left_out)
@@ -185,7 +185,7 @@ def _splat_passes(settings: Settings, method: Method, why: str, why_depth: str, 
 
 
 def _polygon_passes(
-    scene: Scene, settings: Settings, method: Method, sums: tuple[str, ...], left_out: list
+    scene: Scene, settings: Settings, method: Method, sums: tuple[str, ...], maps: tuple[ShadowMap, ...], left_out: list
 ) -> tuple[PlannedPass, ...]:
     """What of polygons is kept beside the sums over splats, which shading joins with it."""
     if not scene.polygons:
@@ -198,6 +198,8 @@ def _polygon_passes(
         kept.append("polygon_emission")
     if method.works_in == "sprites" and set(NUMBERED) & set(settings.outputs):
         kept.append("polygon_identity")
+    if maps:
+        kept.append("polygon_plane")
     touching = len(overlapping_radii(scene))
     why = f"{len(scene.polygons)} instances are polygons, of which {touching} touch surfels and may blend with them"
     seen = ("seen_range",) if method.works_in == "picture" else ()

@@ -39,6 +39,7 @@ class PlacedInstance:
     normal_matrix: (3, 3) float64, its inverse transpose up to a positive factor.
     hides_backs: splats or polygons that show their back are left out.
     overlap: of polygons, how far behind them splats still count, view units.
+    setback: what a visibility pass moves it back by at least, beside `View.least_offset` and in its unit.
     split: of polygons the farthest distance, of splats the least of their centres, view units; 0: no limit.
     """
 
@@ -48,6 +49,7 @@ class PlacedInstance:
     hides_backs: bool
     overlap: float = 0.0
     split: float = 0.0
+    setback: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

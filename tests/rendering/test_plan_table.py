@@ -107,6 +107,10 @@ TABLE = {
         Scene([Instance(surfels(), split=2.0)], polygons=(PolygonInstance(TRIANGLE, split=2.0),)), {},
         AMONG, AMONG_TEXTURES, "", ("SPLIT",),
     ),
+    "polygons in the shadow": (
+        replace(HYBRID, lights=(Light("sun", casts_shadow=True),)), {}, ("shadow_maps", *AMONG),
+        f"{AMONG_TEXTURES} shadow_depth polygon_plane", "lights shadow_maps", (),
+    ),
     "polygons alone": (replace(HYBRID, surfels=()), {}, AMONG, AMONG_TEXTURES, "", ()),
     "polygons of another material under a linked light": (
         OTHERS, {}, AMONG, f"{AMONG_TEXTURES} polygon_material polygon_emission emission_sum light_set_sum", "lights",

@@ -262,6 +262,20 @@ def test_a_polygon_does_not_shadow_itself(render):
         )
 
 
+@pytest.mark.parametrize("size", [0.0, 0.1])
+def test_normals_that_lean_do_not_shadow_their_own_plane(size, render):
+    """What is shaded as if it faced another way, as a warped face is, in grazing light."""
+    lean = np.array((0.2, -0.97, 0.1)) / np.linalg.norm((0.2, -0.97, 0.1))
+    wall = make_polygons([(-1, 0, 0), (1, 0, 0), (1.6, -0.5, 2), (-1, 0, 2)], HALVES, np.tile(lean, (2, 3, 1)))
+    camera = Camera.perspective(look_at((1, -6, 2), (0, 0, 1)), 0.5, SIZE)
+    light = Light("sun", energy=3, direction=(-0.9, 0.3, -0.5), size=size)
+    shaded, bare = (
+        render(Scene(polygons=(wall,), lights=(replace(light, casts_shadow=casts),)), camera, Settings()).color
+        for casts in (True, False)
+    )
+    assert np.abs(shaded - bare).max() < 0.02 * bare.max()
+
+
 @pytest.mark.parametrize("multisampling", [4])
 def test_hardware_samples_smooth_edges_of_polygons(multisampling, on_device, request):
     if request.config.getoption("--device") == "blender":

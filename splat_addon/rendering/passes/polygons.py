@@ -19,12 +19,12 @@ from .splats import SPLATS_BLOCK, splats_block
 from .tile import TileContext
 
 _SAMPLERS = ("polygon_uvs", "texture_atlas", "texture_table")
+_PLANE_VARYINGS = (("flat", "vec3", "triangle_plane"),)
 _TEXTURE_VARYINGS = (
     ("smooth", "vec2", "texture_uv"),
     ("flat", "float", "texture_slot"),
     ("flat", "vec3", "gradient_u"),
     ("flat", "vec3", "gradient_v"),
-    ("flat", "vec3", "triangle_plane"),
 )
 
 
@@ -34,6 +34,7 @@ def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> 
     # what `material_defines` knows by the names of sums
     materials = material_defines(_needed_sums(frame))
     split_varyings, split_defines = split_polygons(frame)
+    has_plane = "polygon_plane" in colors
     plain = PipelineDescription(
         name="polygons",
         vertex=load("polygons/attributes.vert.glsl"),
@@ -45,6 +46,7 @@ def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> 
             ("smooth", "vec3", "corner_normal"),
             ("smooth", "vec3", "corner_color"),
             *split_varyings,
+            *(_PLANE_VARYINGS if textured or has_plane else ()),
             *(("smooth", "vec3", name[:-4]) for name in _needed_sums(frame)),
             *identity_varyings(planned),
         ),
@@ -55,6 +57,8 @@ def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> 
             *((("MATERIAL_OUTPUT", "1"),) if "polygon_material" in colors else ()),
             *((("SEEN_POLYGONS", "1"),) if planned.reads else ()),
             *split_defines,
+            *((("PLANE", "1"),) if textured or has_plane else ()),
+            *((("PLANE_OUTPUT", "1"),) if has_plane else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
         ),
         depth_test=True,

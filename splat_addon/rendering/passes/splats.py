@@ -87,6 +87,7 @@ def splats_block(tile: TileContext, placed: PlacedInstance, epsilon: float) -> n
     view = tile.view
     options = epsilon, view.near, tile.camera.is_orthographic, tile.depth_unit
     normal_matrix, orientation, light_set = instance_values(placed)
-    sides = orientation, placed.hides_backs, view.least_offset(tile.plan.linear_depth), tile.color_scale
+    set_back = max(view.least_offset(tile.plan.linear_depth), placed.setback)
+    sides = orientation, placed.hides_backs, set_back, tile.color_scale
     identity = (*tile.identities.slots(placed.instance), placed.split, 0.0)
     return std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set, identity)
