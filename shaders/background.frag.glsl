@@ -14,5 +14,5 @@ void main() {
 #ifdef NORMAL_COVERAGE_OUTPUT
   normal_coverage = vec4(0.0);
 #endif
-  write_outputs(NO_OUTPUTS);
+  write_outputs(before_background(NO_OUTPUTS, 0.0));
 }

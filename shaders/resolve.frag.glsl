@@ -198,7 +198,7 @@ void main() {
 #ifdef NORMAL_COVERAGE_OUTPUT
   normal_coverage = normal;
 #endif
-  write_outputs(outputs);
+  write_outputs(before_background(outputs, normal.w));
   depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
 #endif
 }

@@ -15,6 +15,12 @@ Outputs added(Outputs a, Outputs b, float weight) {
                  a.shadow_overdraw + b.shadow_overdraw * weight);
 }
 
+// Of a pixel of which that share is covered: beside it nothing is in a shadow, as EEVEE has it.
+Outputs before_background(Outputs values, float coverage) {
+  values.shadow_overdraw.rgb += 1.0 - min(coverage, 1.0);
+  return values;
+}
+
 void write_outputs(Outputs values) {
 #ifdef DIFFUSE_COLOR_OUTPUT
   diffuse_color = vec4(values.diffuse_color, 1.0);

@@ -96,6 +96,8 @@ def shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, s
     if not settings.transparent_film:
         _, direction = grid.rays(np.arange(grid.count))
         rays[:, :3], rays[:, 3] = WorldLight(scene, camera).background(direction), 1
+    if "shadow" in settings.outputs:
+        rays[:, _columns(settings)["shadow"]] = 1  # beside all surfaces
     hit = surface.rays
     rays[hit, :3] = SHADERS[settings.shading](surface, grid, scene, camera, settings)
     rays[hit, 3] = rays[hit, 7] = 1

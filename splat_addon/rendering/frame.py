@@ -28,7 +28,7 @@ class Frame:
     emission: (h, w, 3) the part of `color` that surfaces send out themselves; 0 of models that do not look at
         materials.
     shadow: (h, w, 3) share of the lights' irradiance that shadows leave, of each colour; 0 where none comes from the
-        front, and of models that do not look at lights.
+        front, and of models that do not look at lights; 1 beside all surfaces.
     overdraw: (h, w) splats that a sample is the mean of.
         These four are means over the pixel's samples, as `color`, empty ones counting as 0.
     object_index, material_index: (h, w) of what is nearest in the pixel, never mixed; 0 where nothing was hit.

@@ -103,6 +103,8 @@ def _nothing(name: str, size: tuple[int, int], shape: tuple[int, ...]) -> np.nda
     values = np.zeros((size[0] * size[1], *shape), np.float32)
     if name == "depth":
         values[:] = EMPTY_DEPTH
+    elif name == "shadow":
+        values[:] = 1
     elif name == "color":
         values[:, 3] = 1
     return values

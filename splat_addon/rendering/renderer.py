@@ -272,7 +272,7 @@ def background_pixel(scene: Scene, settings: Settings) -> tuple[float, float, fl
 def _background(scene: Scene, size, settings: Settings) -> dict[str, np.ndarray]:
     """The arrays of a picture without a single splat."""
     width, height = size
-    pixels = {"color": background_pixel(scene, settings), "depth": EMPTY_DEPTH}
+    pixels = {"color": background_pixel(scene, settings), "depth": EMPTY_DEPTH, "shadow": 1.0}
     arrays = {}
     for name in _read_arrays(settings.outputs):
         where = HELD_BY[name][1]

@@ -212,3 +212,33 @@ def test_positions_are_cycles_positions(layer, add_camera, add_sheet, passes, cy
     empty = (ours["ViewLayer.Depth"] == EMPTY_DEPTH) & (theirs["ViewLayer.Depth"] == EMPTY_DEPTH)
     assert empty.any() and not ours["ViewLayer.Position"][empty].any()
     assert not theirs["ViewLayer.Position"][empty].any()
+
+
+def test_the_shadow_is_eevees_shadow(scene, layer, add_camera, add_sheet, passes):
+    """Under a sun that casts shadows, twice as strong as one that casts none: 1/3 of the light in the shadow of what is
+    beside the picture, 1 beside it and where there is nothing.
+    """
+    layer.use_pass_shadow = True
+    add_camera((0, 0, 6))
+    scene.surfel_splatting.shading = "principled"
+    sheet = add_sheet(side=4, count=80)
+    cover = add_sheet(side=1.2, count=30)
+    cover.location = 3, 0, 3  # out of view
+    for energy, is_casting in ((2.0, True), (1.0, False)):
+        sun = bpy.data.lights.new("sun", "SUN")
+        sun.energy, sun.use_shadow, sun.angle = energy, is_casting, 0
+        placed = bpy.data.objects.new("sun", sun)
+        placed.rotation_euler = 0, 0.785, 0
+        scene.collection.objects.link(placed)
+    ours = passes()["ViewLayer.Shadow"]
+    for surfels, side in ((sheet, 4), (cover, 1.2)):
+        surfels.hide_render = True
+        bpy.ops.mesh.primitive_plane_add(size=side, location=surfels.location)
+        bpy.context.object.data.materials.append(bpy.data.materials.new("grey"))
+    scene.render.engine = "BLENDER_EEVEE" if bpy.app.version >= (5, 0) else "BLENDER_EEVEE_NEXT"
+    scene.eevee.taa_render_samples = 1
+    theirs = passes()["ViewLayer.Shadow"]
+    for shadow in (ours, theirs):
+        in_shadow, beside = (np.abs(shadow - share).max(axis=2) < 0.02 for share in (1 / 3, 1))
+        assert in_shadow.sum() > 20 and beside.sum() > 200 and beside[0, 0]
+    assert np.median(np.abs(ours - theirs)) < 1e-3 and np.abs(ours - theirs).mean() < 0.03
