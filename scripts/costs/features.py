@@ -6,13 +6,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 
-from splat_addon.rendering import Light, Lines, Material
+from splat_addon.rendering import Instance, Light, Lines, Material
 from splat_addon.rendering.settings import OUTPUTS
 from splat_addon.rendering.shading_models import SHADING_MODELS
 
 from .shots import (
     Change,
+    all_around,
     ball,
+    from_within,
+    glass,
     instances,
     lens,
     materials,
@@ -26,6 +29,7 @@ from .shots import (
     together,
     under,
     with_disc,
+    with_polygons,
     world,
 )
 
@@ -127,6 +131,30 @@ def _surfaces() -> list[Feature]:
             instances(lambda number, instance: replace(instance, surfels=instance.surfels.as_solid())),
             same,
         ),
+        row("polygons of 4,000 triangles among splats", "none", partial(with_polygons, 32), same, True),
+        row("a torus that holds the other out", "none", instances(_held_out), same),
+    ]
+
+
+def _held_out(number: int, instance: Instance) -> Instance:
+    return replace(instance, is_holdout=number == 0)
+
+
+def _transparency() -> list[Feature]:
+    row = partial(Feature, "transparency")
+    both, sun = glass(0.5, 0, 1), replace(HARD["sun"], casts_shadow=True)
+    features = [
+        row(f"both tori transparent, {n} layers", "opaque", together(both, settings(layers=n)), same, n == 3)
+        for n in (2, 3, 8)
+    ]
+    exact = together(both, settings(layers=3, blends_rest=False))
+    return [
+        *features,
+        row("the rest behind 3 layers, blended", "left out", together(both, settings(layers=3)), exact),
+        row("one torus transparent, 3 layers", "opaque", glass(0.5, 0), same),
+        row(
+            "hard shadow of a sun through them", "none", together(both, under(sun)), together(both, under(HARD["sun"]))
+        ),
     ]
 
 
@@ -141,6 +169,7 @@ def _picture() -> list[Feature]:
         row("depth of field", "4 samples", together(four, lambda shot: seen(lens=lens(shot))(shot)), four),
         row("edge threshold", "none", settings(edge_threshold=0.25), same),
         row("normals and coverage", "colour and depth", same, settings(outputs=("color", "depth"))),
+        row("a panorama, from within", "90 degrees", all_around, from_within),
         row("transparent film", "the world behind", settings(transparent_film=True), same),
     ]
 
@@ -192,4 +221,13 @@ def _formats() -> list[Feature]:
 
 
 #: In the order of the table.
-FEATURES: tuple[Feature, ...] = (*_lights(), *_shading(), *_surfaces(), *_picture(), *_passes(), *_depth(), *_formats())
+FEATURES: tuple[Feature, ...] = (
+    *_lights(),
+    *_shading(),
+    *_surfaces(),
+    *_transparency(),
+    *_picture(),
+    *_passes(),
+    *_depth(),
+    *_formats(),
+)

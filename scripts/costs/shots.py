@@ -14,7 +14,21 @@ import numpy as np
 
 from splat_addon.reference import scenes
 from splat_addon.reference.extremes import discs
-from splat_addon.rendering import Camera, Environment, Instance, Lens, Light, Matcap, Material, Scene, Settings
+from splat_addon.rendering import (
+    Camera,
+    Environment,
+    Equirectangular,
+    Instance,
+    Lens,
+    Light,
+    Matcap,
+    Material,
+    Panorama,
+    PolygonInstance,
+    Scene,
+    Settings,
+    make_polygons,
+)
 
 
 class Shot(NamedTuple):
@@ -118,6 +132,43 @@ def page(is_looked_up: bool, shot: Shot) -> Shot:
     if not is_looked_up:
         scene = replace(scene, surfels=tuple(replace(instance, textures=()) for instance in scene.surfels))
     return shot._replace(scene=replace(scene, lights=(), world=shot.scene.world), camera=camera)
+
+
+def glass(alpha: float, *numbers: int) -> Change:
+    """Those instances let so much of what is behind them through."""
+
+    def changed(number: int, instance: Instance) -> Instance:
+        if number not in numbers:
+            return instance
+        colors = instance.surfels.colors.copy()
+        colors[:, 3] = alpha
+        return replace(instance, surfels=replace(instance.surfels, colors=colors))
+
+    return instances(changed)
+
+
+def with_polygons(segments: int, shot: Shot) -> Shot:
+    """A ball of 4 segments^2 triangles within the tori."""
+    longitude, latitude = (a.ravel() for a in np.meshgrid(np.arange(2 * segments + 1), np.arange(segments + 1)))
+    turn, rise = longitude * np.pi / segments, latitude * np.pi / segments
+    ring = np.sin(rise)
+    vertices = 0.5 * np.stack([ring * np.cos(turn), ring * np.sin(turn), np.cos(rise)], axis=1)
+    row = 2 * segments + 1
+    first = (np.arange(segments)[:, None] * row + np.arange(2 * segments)).ravel()
+    quads = np.stack([first, first + row, first + row + 1, first, first + row + 1, first + 1], axis=1)
+    ball = make_polygons(vertices, quads.reshape(-1, 3))
+    return shot._replace(scene=replace(shot.scene, polygons=(PolygonInstance(ball, materials=(Material(),)),)))
+
+
+def all_around(shot: Shot) -> Shot:
+    """As many pixels all around the camera, from the middle of the scene."""
+    width, height = shot.camera.size
+    return shot._replace(camera=Panorama(np.eye(4), Equirectangular(), (width, height)))
+
+
+def from_within(shot: Shot) -> Shot:
+    """A perspective from the middle of the scene, ninety degrees wide."""
+    return shot._replace(camera=Camera.perspective(np.eye(4), np.pi / 2, shot.camera.size, 0.01, 100.0))
 
 
 def with_disc(depth: float, shot: Shot) -> Shot:
