@@ -17,6 +17,9 @@ from .scan_conversion import Spans, scan_convert
 #: Rows of an array index surfels with 32 bits elsewhere; nobody means to make more.
 MAX_SAMPLES = 2**31 - 1
 
+#: Triangles at a time: more than elsewhere, as few come through to where most is done with each.
+_CHUNK = 24576
+
 #: Bits of a packed cell for each component: more than the cells along an edge, 2^19, and a sign.
 _CELL_BITS = 21
 
@@ -41,7 +44,7 @@ def depth_cube(
         cells[chunk] = _packed_cells(snapped[:, chunk], grid.subcells)
     images: tuple[list, list, list] = ([], [], [])
     total = 0
-    for chunk in triangle_chunks(len(triangles)):
+    for chunk in triangle_chunks(len(triangles), _CHUNK):
         indices = corner_indices(triangles[chunk])
         hits = _images_with_samples(*cells.take(indices))
         candidates = np.flatnonzero(hits)

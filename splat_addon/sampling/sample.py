@@ -138,7 +138,7 @@ def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[flo
     """Writes the samples of all images, one after another."""
     total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
     # What a batch needs on its way is to be small beside the result, and numpy is slow on small batches.
-    limit = min(BATCH, max(BATCH // 4, total // 16))
+    limit = min(BATCH, max(BATCH // 4, total // 8))
     done = 0
     for axis, spans in enumerate(images):
         # a span costs about as much as a sample
