@@ -32,8 +32,8 @@ class Frame:
     overdraw: (h, w) splats that a sample is the mean of.
         These four are means over the pixel's samples, as `color`, empty ones counting as 0.
     object_index, material_index: (h, w) of what is nearest in the pixel, never mixed; 0 where nothing was hit.
-    cryptomatte: which share of each pixel belongs to which name; they add up to the coverage, but where a method's
-        filter reaches past what it sees.
+    cryptomatte: which share of each pixel belongs to which name; of what is opaque they add up to the coverage.
+        What is transparent has all of its samples, or nothing, by `Settings.alpha_threshold`, as the indices.
     stats: what was drawn, and milliseconds by pass where `Settings.profile` asked for them.
     """
 
