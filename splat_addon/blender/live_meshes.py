@@ -29,8 +29,9 @@ from ..sampling import (
     outline,
     predict_count,
 )
-from ..surfels import OPTIONAL_LAYOUT, Surfels
+from ..surfels import OPTIONAL_LAYOUT, Surfels, split
 from .camera_density import without_camera
+from .conversion import MAX_SURFELS
 from .mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
 from .mesh_polygons import left_out_of_polygons, mesh_polygons
 from .mesh_sampling_settings import Form
@@ -59,7 +60,10 @@ class Place(NamedTuple):
 
 @dataclass(eq=False)
 class _LiveMesh:
-    """One evaluated mesh, wherever it stands. key: of `mesh_key`, of the evaluation that was read."""
+    """One evaluated mesh, wherever it stands.
+
+    key: of `mesh_key`, of the evaluation that was read. shown: a sampling, and the sets that it is drawn in.
+    """
 
     key: tuple = ()
     topology: Topology | None = None
@@ -75,7 +79,7 @@ class _LiveMesh:
     surface: tuple[TriangleMesh, Outline] | None = None
     drawn: tuple[TriangleMesh, tuple[Polygons, ...]] | None = None
     parts: MeshParts | None = None
-    edged: tuple[Surfels, Surfels] | None = None
+    shown: tuple[Surfels, tuple[Surfels, ...]] | None = None
 
     @property
     def sampled_at(self) -> list[Place]:
@@ -174,16 +178,16 @@ class LiveMeshes:
         return sampled, drawn
 
     def _sampled_instances(self, live: _LiveMesh, depsgraph, fineness, texture_mapped: bool) -> list[Instance]:
-        surfels = self._sampled(live, depsgraph, finer(fineness, live.detail), texture_mapped)
-        if live.parts:
-            if live.edged is None or live.edged[0] is not surfels:
-                live.edged = surfels, with_edge_samples(surfels, live.parts, live.spacing)
-            surfels = live.edged[1]
-        textures = live.kept_textures() if surfels.has_uvs else ()
+        sampled = self._sampled(live, depsgraph, finer(fineness, live.detail), texture_mapped)
+        if live.shown is None or live.shown[0] is not sampled:
+            whole = with_edge_samples(sampled, live.parts, live.spacing) if live.parts else sampled
+            live.shown = sampled, split(whole, MAX_SPLATS)
+        textures = live.kept_textures() if sampled.has_uvs else ()
         self.counts["meshes"] += 1
-        self.counts["surfels"] += len(surfels)
+        self.counts["surfels"] += sum(map(len, live.shown[1]))
         return [
-            Instance(surfels, place.matrix, live.materials, split=place.form.split, textures=textures, **place.fields)
+            Instance(part, place.matrix, live.materials, split=place.form.split, textures=textures, **place.fields)
+            for part in live.shown[1]
             for place in live.sampled_at
         ]
 
@@ -239,8 +243,8 @@ class LiveMeshes:
             live.tracked = None
             spacing = live.spacing_for(fineness, depsgraph)
         predicted = predict_count(mesh, spacing=spacing)
-        if predicted > MAX_SPLATS:
-            raise ValueError(f"It would be {predicted:,} surfels and the limit is {MAX_SPLATS:,}; sample it coarser.")
+        if predicted > MAX_SURFELS:
+            raise ValueError(f"It would be {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
         live.tracked, live.fineness, live.spacing = _tracked(mesh, spacing, texture_mapped), fineness, spacing
         self.counts["sampled"] += 1
         return live.tracked.at(mesh)[0]
