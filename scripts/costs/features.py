@@ -12,7 +12,9 @@ from splat_addon.rendering.shading_models import SHADING_MODELS
 
 from .shots import (
     Change,
+    a_floor,
     all_around,
+    among,
     ball,
     from_within,
     glass,
@@ -22,6 +24,8 @@ from .shots import (
     own,
     page,
     ring,
+    round_one,
+    round_surfels,
     same,
     seen,
     settings,
@@ -220,12 +224,24 @@ def _formats() -> list[Feature]:
     ]
 
 
+def _polygons() -> list[Feature]:
+    row = partial(Feature, "polygons")
+    surfels, split = world(surfels=(round_surfels(40_000),)), world(surfels=(round_surfels(40_000, 3.0),))
+    return [
+        row("a floor of two triangles", "none", among(a_floor()), same, True),
+        row("a ball of 40,000 triangles", "none", among(round_one(100)), same),
+        row("40,000 triangles alone", "40,000 surfels", together(world(surfels=()), among(round_one(100))), surfels),
+        row("split by distance", "40,000 surfels", together(split, among(round_one(100, 3.0))), surfels),
+    ]
+
+
 #: In the order of the table.
 FEATURES: tuple[Feature, ...] = (
     *_lights(),
     *_shading(),
     *_surfaces(),
     *_transparency(),
+    *_polygons(),
     *_picture(),
     *_passes(),
     *_depth(),

