@@ -33,7 +33,6 @@ from .shots import (
     together,
     under,
     with_disc,
-    with_polygons,
     world,
 )
 
@@ -135,7 +134,7 @@ def _surfaces() -> list[Feature]:
             instances(lambda number, instance: replace(instance, surfels=instance.surfels.as_solid())),
             same,
         ),
-        row("polygons of 4,000 triangles among splats", "none", partial(with_polygons, 32), same, True),
+        row("polygons of 4,000 triangles among splats", "none", among(round_one(32)), same, True),
         row("a torus that holds the other out", "none", instances(_held_out), same),
     ]
 

@@ -169,19 +169,6 @@ def glass(alpha: float, *numbers: int) -> Change:
     return instances(changed)
 
 
-def with_polygons(segments: int, shot: Shot) -> Shot:
-    """A ball of 4 segments^2 triangles within the tori."""
-    longitude, latitude = (a.ravel() for a in np.meshgrid(np.arange(2 * segments + 1), np.arange(segments + 1)))
-    turn, rise = longitude * np.pi / segments, latitude * np.pi / segments
-    ring = np.sin(rise)
-    vertices = 0.5 * np.stack([ring * np.cos(turn), ring * np.sin(turn), np.cos(rise)], axis=1)
-    row = 2 * segments + 1
-    first = (np.arange(segments)[:, None] * row + np.arange(2 * segments)).ravel()
-    quads = np.stack([first, first + row, first + row + 1, first, first + row + 1, first + 1], axis=1)
-    ball = make_polygons(vertices, quads.reshape(-1, 3))
-    return shot._replace(scene=replace(shot.scene, polygons=(PolygonInstance(ball, materials=(Material(),)),)))
-
-
 def all_around(shot: Shot) -> Shot:
     """As many pixels all around the camera, from the middle of the scene."""
     width, height = shot.camera.size
