@@ -112,7 +112,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         default=Lines.depth_threshold,
     )
     supersampling: IntProperty(
-        name="Render",
+        name="Supersampling",
         description=(
             "Samples along each side of a pixel in final renders, so 3 means 9 samples a pixel. Mip Filter is made for "
             "1: more narrow its filter. With Quads, 2 is 8 to 13 dB truer than 1 for 1.3 times the time, 4 is 13 to "
@@ -124,7 +124,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         default=Settings.supersampling,
     )
     viewport_supersampling: IntProperty(
-        name="Viewport",
+        name="Viewport Supersampling",
         description="Samples along each side of a pixel in the viewport",
         min=1,
         max=MAX_SUPERSAMPLING,

@@ -31,11 +31,16 @@ class _RenderPanel:
 
 class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
-    properties = ("method", "supersampling", "viewport_supersampling", "samples", "viewport_samples")
+    properties = ("method",)
 
     def draw(self, context):
-        draw_presets(self.layout, getattr(context.scene, RENDER_SETTINGS))
+        properties = getattr(context.scene, RENDER_SETTINGS)
+        draw_presets(self.layout, properties)
         super().draw(context)
+        for name, label in (("supersampling", "Supersampling Render"), ("samples", "Samples Render")):
+            column = self.layout.column(align=True)
+            column.prop(properties, name, text=label)
+            column.prop(properties, f"viewport_{name}", text="Viewport")
 
 
 class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):
