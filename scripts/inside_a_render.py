@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a job inside a render of Blender's wheel: in background mode there is a graphics context nowhere else."""
+"""Runs a job where a device can be opened: Blender's inside a render of its wheel, for in background mode there is a
+graphics context nowhere else.
+"""
 
 from __future__ import annotations
 
@@ -30,3 +32,11 @@ def inside_a_render(job: Callable[[], None]) -> None:
     bpy.ops.render.render()
     if errors:
         raise errors[0]
+
+
+def run_on(device: str, job: Callable[[], None]) -> None:
+    """The job, where `open_device(device)` works. Raises what the job raised."""
+    if device == "standalone":
+        job()
+    else:
+        inside_a_render(job)

@@ -21,6 +21,7 @@ sys.path.insert(0, str(ROOT))
 from costs.features import FEATURES, Feature
 from costs.measurement import COLUMNS, measure
 from costs.shots import plain
+from inside_a_render import run_on
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from trade.report import header, table
 
@@ -109,12 +110,7 @@ def main(arguments: list[str]) -> int:
     """Exit code 0, or 1 or 2 after one sentence."""
     options = parse(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
-    if options.device == "standalone":
-        run(options)
-    else:
-        from inside_a_render import inside_a_render
-
-        inside_a_render(lambda: run(options))
+    run_on(options.device, lambda: run(options))
     return 0
 
 

@@ -19,6 +19,7 @@ from environment import ROOT, Problem, exit_with_problems
 
 sys.path.insert(0, str(ROOT))
 
+from inside_a_render import run_on
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from trade.cases import CASES, FULL, Case, View
 from trade.choices import PICTURED, YARDSTICK, choices
@@ -122,12 +123,7 @@ def main(arguments: list[str]) -> int:
     """Exit code 0, or 1 after one sentence."""
     options = parse(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
-    if options.device == "standalone":
-        run(options)
-    else:
-        from inside_a_render import inside_a_render
-
-        inside_a_render(lambda: run(options))
+    run_on(options.device, lambda: run(options))
     return 0
 
 

@@ -7,7 +7,7 @@ from ..device.interface import PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
 from ..shaders import load
 from .blocks import polygon_defines, sum_defines
-from .shading import SHADING_BLOCK, shading_block
+from .shading import SHADING_BLOCK, fill
 from .tile import TileContext
 
 
@@ -33,7 +33,4 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
 
 def run(tile: TileContext, planned: PlannedPass) -> Target:
     """Fill the texture of lines."""
-    target = tile.target(planned.writes)
-    pipeline = tile.resources.pipeline(describe(planned, tile.plan))
-    tile.resources.device.draw_fullscreen(pipeline, target, shading_block(tile), tile.textures(planned.reads, {}))
-    return target
+    return fill(tile, planned, describe(planned, tile.plan))

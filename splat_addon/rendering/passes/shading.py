@@ -109,9 +109,13 @@ def shading_defines(reads: tuple[str, ...], frame: FramePlan) -> tuple[tuple[str
 
 def run(tile: TileContext, planned: PlannedPass) -> Target:
     """Fill the textures of the plan's last passes."""
+    return fill(tile, planned, describe(planned, tile.plan), shading_textures(tile))
+
+
+def fill(tile: TileContext, planned: PlannedPass, description: PipelineDescription, made=None) -> Target:
+    """Draw over the whole of what a pass writes, under the shading block. made: what it reads that no pass writes."""
     target = tile.target(planned.writes)
-    reads = tile.textures(planned.reads, shading_textures(tile))
-    pipeline = tile.resources.pipeline(describe(planned, tile.plan))
+    pipeline, reads = tile.resources.pipeline(description), tile.textures(planned.reads, made or {})
     tile.resources.device.draw_fullscreen(pipeline, target, shading_block(tile), reads)
     return target
 
