@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from splat_addon.images import Image
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
@@ -21,7 +22,9 @@ from splat_addon.rendering import (
     Matcap,
     Material,
     Panorama,
+    PolygonInstance,
     Settings,
+    SurfaceTexture,
     look_at,
 )
 from splat_addon.rendering.methods import METHODS
@@ -143,6 +146,23 @@ TRANSPARENT = {"transparent_spheres": lambda: scenes.transparent_spheres(count=6
 #: Looked up under footprints, which rays do not have: tests/rendering/test_textured.py compares them with the truth.
 TEXTURED = {"textured_plane": lambda: scenes.textured_plane(size=SIZE)}
 
+
+def split(scene, camera):
+    """The ball of splats, and polygons in its place up to a distance; the floor has a texture."""
+    (ball,), (floor, other) = scene.surfels, scene.polygons
+    uvs = floor.polygons.positions[:, :2] * 0.7
+    paper = SurfaceTexture(Image(scenes.checks(64, 8)))
+    floor = replace(floor, polygons=replace(floor.polygons, uvs=uvs), textures=(paper,))
+    near = PolygonInstance(scenes.round_polygons(24), materials=ball.materials, split=2.6)
+    return replace(scene, surfels=(replace(ball, split=2.6),), polygons=(floor, other, near)), camera
+
+
+#: tests/rendering/test_polygons.py compares them with the truth.
+HYBRID = {
+    "polygon_shadows": lambda: shadowed(*scenes.polygons(size=SIZE)),
+    "split": lambda: split(*scenes.polygons(size=SIZE)),
+}
+
 BALL = Matcap(environment().pixels)
 
 #: The exact picture has a pinhole: tests/rendering/test_lens.py has closed forms.
@@ -168,6 +188,7 @@ CASES = [
     *(("shadows", "quad", {"shading": shading}) for shading in ("phong", "toon")),
     *(("torus", method, {"shading": "flat", "lines": Lines(width=2.0)}) for method in ("quad", "mip")),
     *(("polygons", method, {}) for method in METHODS if method != "quad"),
+    *((name, method, {}) for name in HYBRID for method in ("quad", "mip")),
     *(("polygons", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
     ("polygons", "mip", {"shading": "flat", "lines": Lines(width=2.0)}),
     ("own_materials", "mip", {}),
@@ -179,7 +200,7 @@ CASES = [
 
 @pytest.mark.parametrize(("name", "method", "options"), CASES)
 def test_picture_is_the_same_on_every_device(name, method, options, render, pictures, request):
-    made = (SCENES | TEXTURED | BLURRED | TRANSPARENT | ALL_AROUND)[name]()
+    made = (SCENES | HYBRID | TEXTURED | BLURRED | TRANSPARENT | ALL_AROUND)[name]()
     frame = render(*made, Settings(method=method, supersampling=1, **options))
     named = (value if isinstance(value, str) else key for key, value in options.items())
     path = pictures / f"{'-'.join((name, method, *named))}.npz"
