@@ -7,16 +7,17 @@
 
 const float KERNEL_VARIANCE = 0.25;
 const float FILTER_VARIANCE = 0.5;  // square pixels
-// 0.5 - x (NORMAL.x + x^2 (NORMAL.y + ...)) is within 7e-4 of a normal distribution's share beyond x, up to NORMAL_END.
+// 0.5 - x (NORMAL.x + x^2 (NORMAL.y + ...)) is within 7e-4 of a normal distribution's share beyond x, from -NORMAL_END on.
 const vec4 NORMAL = vec4(0.396668, -0.0613809, 0.00673240, -0.000320832);
 const float NORMAL_END = 2.6;
+const float RIM_END = 1.4;  // standard deviations beyond the rim at which nothing counts: a pixel of the filter's
 
 #ifdef VERTEX_STAGE
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
-// Beyond 2 sigma of kernel and filter, and 1 pixel from the splat's rim, nothing counts.
+// Beyond the triangle around 1.8 sigma of kernel and filter, and around 0.75 pixel from the splat's rim, nothing counts.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
-  return max(sqrt(size * size + 1.5 * 1.5), size + 1.0);
+  return max(sqrt(size * size + 1.25 * 1.25), size + 0.75);
 }
 #else
 // Weight and depth.
@@ -39,9 +40,10 @@ vec2 splat_sample(Plane plane, vec2 pixel) {
   float along = clamp(variance * over_reach * over_reach * dot(across_rim, across_rim), 1e-12, 1e15);
   float both = KERNEL_VARIANCE + along;
   float x = (KERNEL_VARIANCE * reach2 * over_reach - both) * inversesqrt(both * KERNEL_VARIANCE * along);
-  x = clamp(x, -NORMAL_END, NORMAL_END);
+  bool is_within = place.k > 0.0 && x < RIM_END;
+  x = clamp(x, -NORMAL_END, RIM_END);
   float x2 = x * x, within = 0.5 - x * (NORMAL.x + x2 * (NORMAL.y + x2 * (NORMAL.z + x2 * NORMAL.w)));
   float weight = KERNEL_VARIANCE * amplitude * exp(-2.0 * rho2) * within;
-  return vec2(place.k > 0.0 ? weight : 0.0, plane_depth(plane, place));
+  return vec2(is_within ? weight : 0.0, plane_depth(plane, place));
 }
 #endif

@@ -24,6 +24,14 @@ bool is_in_nearer_layer(float depth) {
 }
 #endif
 
+// A triangle around the unit circle, all of which is drawn in any case, without its corners, where weights are as small
+// as nothing.
+bool is_on_footprint() {
+  vec2 d = gl_FragCoord.xy - plane_center_gh.xy - footprint_middle;
+  vec2 at = d.x * footprint_map.xy + d.y * footprint_map.yz;
+  return at.x >= -1.0 && at.x + 1.7320508 * abs(at.y) <= 2.0 && dot(at, at) <= 2.25;
+}
+
 #ifdef STRADDLING
 vec2 picture_point() {
   return splats.window.xy + gl_FragCoord.xy * splats.window.zw;
@@ -77,7 +85,7 @@ void main() {
   vec2 weight_depth = splat_sample(plane, gl_FragCoord.xy);
 #endif
   float weight = weight_depth.x * color_weight.w;
-  if (!(weight > 0.0 && dot(on_footprint, on_footprint) <= 1.0 && weight_depth.y >= splats.options.y)) discard;
+  if (!(weight > 0.0 && is_on_footprint() && weight_depth.y >= splats.options.y)) discard;
 #ifdef RIMS
   // Only whose the splat is, where nothing is visible.
   if (texelFetch(visibility_depth, ivec2(gl_FragCoord.xy), 0).r < 1.0) discard;

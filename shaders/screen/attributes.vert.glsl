@@ -21,6 +21,8 @@
 #endif
 
 const float STRADDLING_MARGIN = 1.02;
+// What is drawn ends where the fragment shader says, not where the hardware rounds a triangle's corners to.
+const float MARGIN = 1.01;
 
 void main() {
   Splat splat = fetch_splat(gl_VertexID / 3);
@@ -42,7 +44,8 @@ void main() {
   plane_center_gh = straddles ? vec4(splat.axis_u, 0.0) : vec4(plane.center, plane.gh);
   plane_depths = straddles ? vec4(splat.axis_v, 0.0) : vec4(plane.slope, plane.depth, plane.reach);
   plane_det_radius = straddles ? vec4(0.0) : vec4(plane.det, plane.radius);
-  on_footprint = straddles ? vec2(0.0) : corner;
+  footprint_map = vec3(0.0);
+  footprint_middle = vec2(0.0);
   color_weight = splat.color_weight;
   normal = splat.normal;
 #ifdef IDENTITY_TARGET
@@ -79,7 +82,12 @@ void main() {
     vec2 size, middle;
     mat2 axes = projected_ellipse(plane, size, middle);
     vec2 half_axes = footprint(plane, size, middle);
-    vec2 pixels = axes * (half_axes * corner);
+    mat2 across = mat2(axes[0] / half_axes.x, axes[1] / half_axes.y) * transpose(axes);
+    footprint_map = vec3(across[0], across[1].y);
+    footprint_middle = middle - plane.center;
+    // Stretched along the axes, not turned to them: what they are of a circle, or which way they point, is rounding's.
+    // The corner is beside the splat, not above: surfaces that are seen flat change fastest upwards.
+    vec2 pixels = axes * (half_axes * (MARGIN * corner.yx * axes));
     vec4 clip = splats.projection * vec4(splats.window.xy + (middle + pixels) * splats.window.zw, -1.0, 1.0);
     gl_Position = vec4(clip.xy / clip.w, clamp(2.0 * stored_depth(nearest_depth(plane)) - 1.0, -1.0, 1.0), 1.0);
   }

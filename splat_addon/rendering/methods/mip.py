@@ -9,9 +9,11 @@ from .plane import Plane, gradients, in_footprint, places, plane_depth
 
 KERNEL_VARIANCE = 0.25
 FILTER_SIGMA = 0.5**0.5
-#: 0.5 - x (a + b x^2 + ...) is within 7e-4 of a normal distribution's share beyond x, up to NORMAL_END.
+#: 0.5 - x (a + b x^2 + ...) is within 7e-4 of a normal distribution's share beyond x, from -NORMAL_END on.
 NORMAL = 0.396668, -0.0613809, 0.00673240, -0.000320832
 NORMAL_END = 2.6
+#: Standard deviations beyond the rim at which nothing counts: a pixel of the filter's.
+RIM_END = 1.4
 
 
 def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -45,10 +47,12 @@ def _within_rim(reach: np.ndarray, along: np.ndarray) -> np.ndarray:
     """
     share = KERNEL_VARIANCE / (KERNEL_VARIANCE + along**2)
     deviation = np.maximum(np.sqrt(KERNEL_VARIANCE * (1 - share)), 1e-6)
-    x = np.clip((reach * share - 1) / deviation, -NORMAL_END, NORMAL_END)
-    return 0.5 - x * sum(factor * x ** (2 * power) for power, factor in enumerate(NORMAL))
+    x = np.maximum((reach * share - 1) / deviation, -NORMAL_END)
+    with np.errstate(over="ignore", invalid="ignore"):
+        within = 0.5 - x * sum(factor * x ** (2 * power) for power, factor in enumerate(NORMAL))
+    return np.where(x < RIM_END, within, 0.0)
 
 
 def _footprint(size: np.ndarray) -> np.ndarray:
-    """Half-axes in pixels: joined with a filter of 1.5 pixels, and at least a pixel longer."""
-    return np.maximum(np.sqrt(size**2 + 1.5**2), size + 1)
+    """Half-axes in pixels: joined with a filter of 1.25 pixels, and at least 0.75 of a pixel longer."""
+    return np.maximum(np.sqrt(size**2 + 1.25**2), size + 0.75)

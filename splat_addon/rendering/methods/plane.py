@@ -43,11 +43,12 @@ def projected_ellipse(plane: Plane, pixel: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def in_footprint(plane: Plane, points: np.ndarray, pixel: np.ndarray, grown) -> np.ndarray:
-    """(M,) bool: which points lie in the projected ellipse. grown: its half-axes in pixels, (2,), as a function of
-    the exact ones.
+    """(M,) bool: which points lie in what is drawn around the projected ellipse: a triangle without its corners.
+    grown: half-axes of the ellipse that the triangle is around in pixels, (2,), as a function of the exact ones.
     """
     axes, size, middle = projected_ellipse(plane, pixel)
-    return ((((points - middle) / pixel) @ axes / grown(size)) ** 2).sum(axis=1) <= 1
+    x, y = ((((points - middle) / pixel) @ axes / grown(size)) @ axes.T).T
+    return (x >= -1) & (x + 3**0.5 * abs(y) <= 2) & (x * x + y * y <= 1.5**2)
 
 
 @dataclass(frozen=True, eq=False)

@@ -107,7 +107,8 @@ def _in_picture(planned, frame):
             ("flat", "vec4", "plane_center_gh"),
             ("flat", "vec4", "plane_depths"),
             ("flat", "vec4", "plane_det_radius"),
-            ("smooth", "vec2", "on_footprint"),
+            ("flat", "vec3", "footprint_map"),
+            ("flat", "vec2", "footprint_middle"),
         ),
         defines=(
             *(FILTERS_SILHOUETTES if frame.filters_silhouettes else ()),
