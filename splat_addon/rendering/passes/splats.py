@@ -89,6 +89,5 @@ def splats_block(tile: TileContext, placed: PlacedInstance, epsilon: float) -> n
     normal_matrix, orientation, light_set = instance_values(placed)
     set_back = max(view.least_offset(tile.plan.linear_depth), placed.setback)
     sides = orientation, placed.hides_backs, set_back, tile.color_scale
-    slots = tile.identities.slots(placed.instance) if tile.identities else (0, 0)
-    identity = (*slots, placed.split, 0.0)
+    identity = (*tile.identities.slots(placed.instance), placed.split, 0.0)
     return std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set, identity)

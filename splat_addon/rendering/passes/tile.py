@@ -52,9 +52,9 @@ class TileContext:
         return self.resources.device.target([self.texture(name) for name in colors], depth and self.texture(depth))
 
     @cached_property
-    def identities(self) -> Identities | None:
-        """What the scene's numbers mean, where the plan has any."""
-        return Identities(self.scene) if "identity" in self.plan.textures else None
+    def identities(self) -> Identities:
+        """What the scene's numbers mean; they tell instances apart in transparent shadows too."""
+        return Identities(self.scene)
 
     @property
     def depth_unit(self) -> float:

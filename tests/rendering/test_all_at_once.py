@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Everything that a scene may have and every pass, in one picture: it is the same with the passes and without."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference.extremes import discs, sheet
+from splat_addon.rendering import (
+    Camera,
+    Environment,
+    Instance,
+    Light,
+    Lines,
+    Material,
+    PolygonInstance,
+    Scene,
+    Settings,
+)
+from splat_addon.rendering.polygons import make_polygons
+from splat_addon.rendering.settings import OUTPUTS
+
+CAMERA = Camera.perspective(np.eye(4), 0.9, (40, 30))
+
+
+def everything() -> Scene:
+    """Surfels with materials of their own, glass, a hole and polygons, under linked lights with shadows and a world."""
+    wall = sheet(40, 2.0, 10.0, 4.0)
+    x, y, _ = wall.positions.T
+    own = replace(
+        wall,
+        roughness=np.clip(0.5 + 0.2 * x, 0, 1),
+        metallic=np.clip(0.5 + 0.2 * y, 0, 1),
+        emission=np.stack([x * x, y * y, 0 * x], axis=1) / 8,
+    )
+    glass = sheet(20, 0.7, -10.0, 3.0)
+    glass = replace(glass, colors=glass.colors * (1, 1, 1, 0.4))
+    corners = np.array([(-0.5, -0.9, -3.2), (0.9, -0.9, -3.4), (0.9, -0.3, -3.6), (-0.5, -0.3, -3.4)])
+    board = make_polygons(corners, [(0, 1, 2), (0, 2, 3)], color=(0.8, 0.4, 0.1, 1.0))
+    rng = np.random.default_rng(0)
+    return Scene(
+        [
+            Instance(own, name="wall", index=1),
+            Instance(glass, materials=(Material(emission=(0.2, 0, 0)),), light_set=1, name="glass", index=2),
+            Instance(discs((0.6, 0.5, -2.8), (0.15, 0, 0), (0, 0.15, 0)), name="hole", is_holdout=True),
+        ],
+        (
+            Light("sun", energy=2.0, direction=(0.4, -0.3, -1), casts_shadow=True),
+            Light("point", (1, 0.6, 0.3), energy=80.0, position=(-1, 1, 0), size=0.2, casts_shadow=True),
+            Light("sun", (0.2, 0.4, 1), direction=(-1, 0, -1), receivers=(1,)),
+        ),
+        (0.6, 0.7, 0.8),
+        Environment(rng.random((8, 16, 3)).astype(np.float32)),
+        [PolygonInstance(board, materials=(Material(roughness=0.2),), name="board", index=4)],
+    )
+
+
+@pytest.mark.parametrize("method", ["quad", "mip", "raycast"])
+def test_all_passes_of_all_that_there_may_be(method, render):
+    """A driver that has room for fewer textures than a shader reads would refuse this."""
+    settings = Settings(method=method, lines=Lines(), shadow_resolution=256)
+    plain = render(everything(), CAMERA, settings)
+    frame = render(everything(), CAMERA, replace(settings, outputs=OUTPUTS))
+    np.testing.assert_allclose(frame.color, plain.color, atol=1e-5)
+    np.testing.assert_array_equal(frame.depth, plain.depth)
+    assert all(np.isfinite(getattr(frame, name)).all() for name in OUTPUTS if name != "cryptomatte")
+    assert {0, 1, 4} <= set(np.unique(frame.object_index)) <= {0, 1, 2, 4}
+    shares = [frame.cryptomatte.share_of(name) for name in ("wall", "glass", "board", "hole")]
+    assert sum(shares).max() < 1 + 1e-6 and all(share.max() > 0.9 for share in (shares[0], shares[2]))
+    assert not shares[3].any() and frame.overdraw.max() > 1
+    assert ((frame.shadow >= 0) & (frame.shadow < 1 + 1e-5)).all() and frame.shadow.min() < 0.5
