@@ -179,3 +179,23 @@ def test_what_stands_still_is_as_without(scene, flat_camera, add_surfels, pictur
     blurred = picture()
     scene.render.use_motion_blur = False
     np.testing.assert_array_equal(picture(), blurred)
+
+
+def test_every_frame_of_an_animation_is_the_still_of_its_moment(
+    scene, flat_camera, add_surfels, picture, read_picture, tmp_path
+):
+    """Also in each of two view layers, which restore the frame for one another."""
+    move(add_surfels([(0, 0, 0)], size=3.0), step=4)
+    scene.surfel_splatting.samples = 4
+    scene.view_layers.new("Second")
+    stills = []
+    for number in (9, 10, 11):
+        scene.frame_set(number)
+        stills.append(picture())
+    scene.frame_start, scene.frame_end = 9, 11
+    scene.render.filepath = str(tmp_path / "frame_####.exr")
+    bpy.ops.render.render(animation=True)
+    for number, still in zip((9, 10, 11), stills, strict=True):
+        np.testing.assert_array_equal(read_picture(tmp_path / f"frame_{number:04d}.exr"), still)
+    assert not np.array_equal(stills[0], stills[1])
+    assert final_render._resources is None
