@@ -15,6 +15,7 @@ from ...surfels import Surfels
 from ..attributes import has_surfels, read_surfels
 from ..ids import EXPORT_PLY
 from ..mesh_extraction import evaluated_mesh
+from .menu_entry import with_menu_entry
 
 #: The operator's choice -> function of path, surfels and whether to write text.
 _WRITERS = {
@@ -100,14 +101,4 @@ def draw_menu_entry(menu, context):
     menu.layout.operator(EXPORT_PLY, text="Surfels (.ply)")
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((EXPORT_SCENE_OT_surfels_ply,))
-
-
-def register():
-    _register_classes()
-    bpy.types.TOPBAR_MT_file_export.append(draw_menu_entry)
-
-
-def unregister():
-    bpy.types.TOPBAR_MT_file_export.remove(draw_menu_entry)
-    _unregister_classes()
+register, unregister = with_menu_entry(EXPORT_SCENE_OT_surfels_ply, bpy.types.TOPBAR_MT_file_export, draw_menu_entry)

@@ -16,6 +16,7 @@ from ...surfels import Surfels
 from ..ids import IMPORT_PLY
 from ..points_settings import PointsProperties, draw_points_properties, keywords, viewpoint
 from ..surfel_objects import add_surfel_object, select_only
+from .menu_entry import with_menu_entry
 
 
 class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Operator):
@@ -104,14 +105,4 @@ def draw_menu_entry(menu, context):
     menu.layout.operator(IMPORT_PLY, text="Surfels (.ply)")
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((IMPORT_SCENE_OT_surfels_ply,))
-
-
-def register():
-    _register_classes()
-    bpy.types.TOPBAR_MT_file_import.append(draw_menu_entry)
-
-
-def unregister():
-    bpy.types.TOPBAR_MT_file_import.remove(draw_menu_entry)
-    _unregister_classes()
+register, unregister = with_menu_entry(IMPORT_SCENE_OT_surfels_ply, bpy.types.TOPBAR_MT_file_import, draw_menu_entry)

@@ -10,6 +10,7 @@ from ..conversion_settings import ConversionProperties, choices, draw_properties
 from ..ids import SURFELS_FROM_MESH
 from ..mesh_sampling_settings import leave_to_surfels
 from ..sources import has_surfaces
+from .menu_entry import with_menu_entry
 from .modal_conversion import ModalConversion
 
 
@@ -57,14 +58,4 @@ def draw_menu_entry(menu, context):
     menu.layout.operator(SURFELS_FROM_MESH)
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((OBJECT_OT_surfels_from_mesh,))
-
-
-def register():
-    _register_classes()
-    bpy.types.VIEW3D_MT_object.append(draw_menu_entry)
-
-
-def unregister():
-    bpy.types.VIEW3D_MT_object.remove(draw_menu_entry)
-    _unregister_classes()
+register, unregister = with_menu_entry(OBJECT_OT_surfels_from_mesh, bpy.types.VIEW3D_MT_object, draw_menu_entry)

@@ -10,6 +10,7 @@ from ..ids import SURFELS_FROM_POINTS
 from ..points_conversion import PointsBatch
 from ..points_extraction import has_points
 from ..points_settings import PointsProperties, draw_points_properties, keywords, viewpoint
+from .menu_entry import with_menu_entry
 from .modal_conversion import ModalConversion
 
 
@@ -63,14 +64,6 @@ def draw_points_menu_entry(menu, context):
     menu.layout.operator(SURFELS_FROM_POINTS)
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((OBJECT_OT_surfels_from_points,))
-
-
-def register():
-    _register_classes()
-    bpy.types.VIEW3D_MT_object.append(draw_points_menu_entry)
-
-
-def unregister():
-    bpy.types.VIEW3D_MT_object.remove(draw_points_menu_entry)
-    _unregister_classes()
+register, unregister = with_menu_entry(
+    OBJECT_OT_surfels_from_points, bpy.types.VIEW3D_MT_object, draw_points_menu_entry
+)

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An operator that stands in one of Blender's menus comes and goes with its entry there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import bpy
+
+
+def with_menu_entry(operator: type[bpy.types.Operator], menu: type[bpy.types.Menu], draw: Callable) -> tuple:
+    """The functions `register` and `unregister` of an operator's module. draw(menu, context): adds the entry."""
+    register_class, unregister_class = bpy.utils.register_classes_factory((operator,))
+
+    def register():
+        register_class()
+        menu.append(draw)
+
+    def unregister():
+        menu.remove(draw)
+        unregister_class()
+
+    return register, unregister
