@@ -9,7 +9,7 @@ const float FILTER_VARIANCE = 0.5;  // square pixels
 #ifdef VERTEX_STAGE
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
-// Only what is drawn around the exact ellipse: the affine one of a near splat can fill the picture.
+// Only about what the exact ellipse covers: the affine one of a near splat can fill the picture.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   return 1.1 * sqrt(size * size + 4.0 * FILTER_VARIANCE);
 }

@@ -12,6 +12,8 @@ const vec4 NORMAL = vec4(0.396668, -0.0613809, 0.00673240, -0.000320832);
 const float NORMAL_END = 2.6;
 const float RIM_END = 1.4;  // standard deviations beyond the rim at which nothing counts: a pixel of the filter's
 
+#define FOOTPRINT_END 1.5
+
 #ifdef VERTEX_STAGE
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 

@@ -24,12 +24,16 @@ bool is_in_nearer_layer(float depth) {
 }
 #endif
 
-// A triangle around the unit circle, all of which is drawn in any case, without its corners, where weights are as small
-// as nothing.
+// The ellipse that was asked for; or of the triangle around it, all of which is drawn in any case, what lies within that
+// many times the ellipse: its corners, where weights are as small as nothing, stay out.
+#ifndef FOOTPRINT_END
+#define FOOTPRINT_END 1.0
+#endif
+
 bool is_on_footprint() {
   vec2 d = gl_FragCoord.xy - plane_center_gh.xy - footprint_middle;
   vec2 at = d.x * footprint_map.xy + d.y * footprint_map.yz;
-  return at.x >= -1.0 && at.x + 1.7320508 * abs(at.y) <= 2.0 && dot(at, at) <= 2.25;
+  return at.x >= -1.0 && at.x + 1.7320508 * abs(at.y) <= 2.0 && dot(at, at) <= FOOTPRINT_END * FOOTPRINT_END;
 }
 
 #ifdef STRADDLING

@@ -14,6 +14,8 @@ NORMAL = 0.396668, -0.0613809, 0.00673240, -0.000320832
 NORMAL_END = 2.6
 #: Standard deviations beyond the rim at which nothing counts: a pixel of the filter's.
 RIM_END = 1.4
+#: In half-axes of the ellipse that the triangle is around.
+FOOTPRINT_END = 1.5
 
 
 def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -34,7 +36,7 @@ def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.nda
         rho2 = KERNEL_VARIANCE / det * squares
         reach = np.maximum(np.linalg.norm(at.uv, axis=1), 1e-30)
         along = np.linalg.norm(np.einsum("ni,nij->nj", at.uv, j), axis=1) / reach * FILTER_SIGMA
-        is_inside = (at.k > 0) & in_footprint(plane, points, pixel, _footprint)
+        is_inside = (at.k > 0) & in_footprint(plane, points, pixel, _footprint, FOOTPRINT_END)
         within = _within_rim(reach, along)
         weights = np.where(is_inside, within * KERNEL_VARIANCE / np.sqrt(det) * np.exp(-2 * rho2), 0.0)
         return weights, plane_depth(plane, at, pixel, FILTER_SIGMA)

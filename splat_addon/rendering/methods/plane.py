@@ -42,13 +42,14 @@ def projected_ellipse(plane: Plane, pixel: np.ndarray) -> tuple[np.ndarray, np.n
     return axes, sizes, plane.center + offset
 
 
-def in_footprint(plane: Plane, points: np.ndarray, pixel: np.ndarray, grown) -> np.ndarray:
-    """(M,) bool: which points lie in what is drawn around the projected ellipse: a triangle without its corners.
-    grown: half-axes of the ellipse that the triangle is around in pixels, (2,), as a function of the exact ones.
+def in_footprint(plane: Plane, points: np.ndarray, pixel: np.ndarray, grown, end: float = 1.0) -> np.ndarray:
+    """(M,) bool: which points lie in an ellipse about the projected one or, where `end` is above 1, in the triangle
+    that is drawn around it and within so many times the ellipse. grown: its half-axes in pixels, (2,), as a function
+    of the projected ones.
     """
     axes, size, middle = projected_ellipse(plane, pixel)
     x, y = ((((points - middle) / pixel) @ axes / grown(size)) @ axes.T).T
-    return (x >= -1) & (x + 3**0.5 * abs(y) <= 2) & (x * x + y * y <= 1.5**2)
+    return (x >= -1) & (x + 3**0.5 * abs(y) <= 2) & (x * x + y * y <= end**2)
 
 
 @dataclass(frozen=True, eq=False)
