@@ -15,7 +15,7 @@ void main() {
   float weight = kernel_weight(place_depth.xy) * color_weight.w;
   if (!(weight > 0.0)) discard;
 #ifdef LAYER
-  if (!is_in_layer(place_depth.z, ivec2(gl_FragCoord.xy))) discard;
+  if (!is_in_layer(place_depth.z, 0.5, ivec2(gl_FragCoord.xy))) discard;
 #endif
   write_depth(place_depth.z);
 #ifdef TEXTURED

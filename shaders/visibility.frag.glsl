@@ -23,7 +23,7 @@ void main() {
   if (!is_kept(opacity_surface.x, int(opacity_surface.y + 0.5), ivec2(gl_FragCoord.xy))) discard;
 #endif
 #ifdef LAYER
-  if (!is_in_layer(place_depth.z, ivec2(gl_FragCoord.xy))) discard;
+  if (!is_in_layer(place_depth.z, 0.0, ivec2(gl_FragCoord.xy))) discard;
 #endif
 #ifdef LINEAR_DEPTH
   float distance = length(vec3(across_offset.xy, place_depth.z));

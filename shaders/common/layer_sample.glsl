@@ -7,8 +7,11 @@
 #define DEPTH_UNIT splats.options.w
 #include "common/stored_depth.glsl"
 #include "common/peeled.glsl"
+#include "common/layer_ties.glsl"
 
-bool is_in_layer(float depth, ivec2 at) {
-  float stored = stored_depth(depth), opaque = texelFetch(visibility_depth, at, 0).r;
-  return !is_peeled(stored, at) && (opaque == 1.0 || stored <= opaque);
+// steps: by which splats that tie are counted in; of visibility 0, so that attributes have all that is visible.
+bool is_in_layer(float depth, float steps, ivec2 at) {
+  float opaque = texelFetch(visibility_depth, at, 0).r;
+  bool is_behind = !is_peeled(stored_depth(tied(depth, steps)), at);
+  return is_behind && (opaque == 1.0 || stored_depth(tied(depth, -steps)) <= opaque);
 }

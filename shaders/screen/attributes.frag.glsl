@@ -16,6 +16,7 @@
 #define PARALLEL (splats.options.z > 0.5)
 #define DEPTH_UNIT splats.options.w
 #include "common/stored_depth.glsl"
+#include "common/layer_ties.glsl"
 
 // As common/peeled.glsl has it; what is in a layer was compared as depth along the view, and is so here.
 bool is_in_nearer_layer(float depth) {
@@ -106,9 +107,13 @@ void main() {
   // Where a filter reaches over its rim, a splat is in the layers that the rim itself is in.
   if (!straddles) depth = clamp(depth, plane.depth - length(plane.slope), plane.depth + length(plane.slope));
 #endif
-  if (depth > seen.z) discard;
 #ifdef LAYER
-  if (is_in_nearer_layer(depth)) discard;
+  if (tied(depth, -0.5) > seen.z) discard;
+#else
+  if (depth > seen.z) discard;
+#endif
+#ifdef LAYER
+  if (is_in_nearer_layer(tied(depth, 0.5))) discard;
 #endif
 #if defined(FILTERS_SILHOUETTES) && !defined(REST)
   // Where the filter reaches past a silhouette, what is seen behind it is another surface, which keeps the sample: its
