@@ -76,11 +76,12 @@ def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
         engine.report({"WARNING"}, sentence)
     last_frame_stats.clear()
     last_frame_stats.update(frame.stats, notes=notes.sentences(), live_meshes=dict(resources.live_meshes.counts))
-    engine.update_stats("", f"{frame.stats['splats']:,} splats in {frame.stats['milliseconds']:.0f} ms")
+    drawn = " and ".join(f"{frame.stats[name]:,} {name}" for name in ("splats", "polygons") if frame.stats[name])
+    engine.update_stats("", f"{drawn or 'Nothing'} in {frame.stats['milliseconds']:.0f} ms")
 
 
 _COARSE = "16-bit storage moves surfels visibly where they lie far apart; choose Float 32 as their storage"
-_FLATTENED = "Surfel objects with a scale of 0 on some axis are left out; give every axis a scale"
+_FLATTENED = "Objects with a scale of 0 on some axis are left out; give every axis a scale"
 
 
 def _read(depsgraph, resources: _Resources):

@@ -121,7 +121,7 @@ def test_flattened_objects_are_counted_and_left_out(scale, add_surfels, assert_g
     for x in (0, 0.1):
         add_surfels([(x, 0, 1)], size=2).scale = scale
     assert_good_is_drawn()
-    assert "Surfel objects with a scale of 0 on some axis are left out; give every axis a scale (2 times)" in said()
+    assert "Objects with a scale of 0 on some axis are left out; give every axis a scale (2 times)" in said()
 
 
 def test_an_object_at_an_unusable_place_is_named_and_left_out(add_surfels, assert_good_is_drawn, said):

@@ -169,6 +169,16 @@ def test_broken_vertices_take_their_triangles_with_them(look, picture):
     assert counts()["triangles"] == 32
 
 
+def test_a_mesh_without_a_height_is_left_out_and_a_mirrored_giant_is_drawn(look, picture, said):
+    bpy.ops.mesh.primitive_cube_add(location=(1, 0, 0))
+    bpy.context.object.scale = (1, 1, 0)
+    bpy.ops.mesh.primitive_cube_add(size=1e-6)
+    bpy.context.object.scale = (-1e6, 1e6, 1e6)
+    seen = picture()
+    assert "Objects with a scale of 0 on some axis are left out" in said()
+    assert np.isfinite(seen).all() and 100 < np.count_nonzero(seen[..., 3]) < 2000
+
+
 def test_a_mesh_in_edit_mode_is_drawn(look, picture):
     bpy.ops.mesh.primitive_cube_add()
     before = picture()
