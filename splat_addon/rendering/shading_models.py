@@ -9,7 +9,7 @@ from dataclasses import dataclass
 @dataclass(frozen=True)
 class ShadingModel:
     """name: also of shaders/shading/<name>.glsl and of its twin in `reference.shading_models`. label: for users.
-    source: of the model. summary: what it shows. cost: time of a frame, as a multiple of flat's (docs/costs.md).
+    source: of the model. summary: what it shows. cost: time of a frame, as a multiple of flat's (docs/features.md).
 
     is_lit: it looks at lights, with their shadows and the objects they are linked to.
     has_material: it looks at roughness, metallic, reflectance and emission.
@@ -44,7 +44,7 @@ SHADING_MODELS = {
             "Principled",
             "Walter et al. 2007, Heitz et al. 2016",
             "Diffuse and GGX specular light of the scene's lights and world",
-            1.24,
+            1.11,
             is_lit=True,
             has_material=True,
             has_world=True,
@@ -55,7 +55,7 @@ SHADING_MODELS = {
             "Phong",
             "Blinn 1977, normalised",
             "Diffuse light and a highlight as sharp as the material is smooth; lights are points",
-            1.17,
+            1.06,
             is_lit=True,
             has_material=True,
             has_world=True,
@@ -65,7 +65,7 @@ SHADING_MODELS = {
             "Toon",
             "Lake et al. 2000",
             "Each light in a few even steps, with a highlight that has an edge",
-            1.12,
+            1.06,
             is_lit=True,
             has_material=True,
             has_world=True,
@@ -76,14 +76,14 @@ SHADING_MODELS = {
             "Normals",
             "none needed",
             "The direction that the surface faces in the world, -1 to 1 on each axis as 0 to 1 of red, green and blue",
-            0.99,
+            1.0,
         ),
         ShadingModel(
             "depth",
             "Depth",
             "none needed",
             "The distance along the view, from black at the nearest to white at the farthest of what is in view",
-            0.99,
+            1.0,
         ),
         ShadingModel(
             "matcap",
@@ -98,7 +98,7 @@ SHADING_MODELS = {
             "Overdraw",
             "none needed",
             "How many splats a sample is the mean of: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red",
-            1.02,
+            1.04,
             sums=("overdraw_sum",),
         ),
         ShadingModel(
@@ -106,7 +106,7 @@ SHADING_MODELS = {
             "Weight",
             "none needed",
             "The weights that a sample is the mean by: 1/16 blue, 1/4 cyan, 1 green, 4 yellow, 16 and more red",
-            0.99,
+            1.0,
             features=(("SUM_OF_WEIGHTS", "the model shows it"),),
         ),
     )
