@@ -48,7 +48,7 @@ FULL_EFFORT, QUICK_EFFORT = Effort(FULL, 5, 8), Effort(FULL // 2, 2, 5)
 def parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="measure.py", description=__doc__.split("\n")[0])
     parser.add_argument("--device", choices=("standalone", "blender"), default="standalone")
-    parser.add_argument("--quick", action="store_true", help="the promised scenes at half the size, in two minutes")
+    parser.add_argument("--quick", action="store_true", help="the promised scenes at half the size, in 1.5 minutes")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "trade")
     parser.add_argument("--models", type=Path, default=ROOT.parent / "shared" / "models", help="folder of test models")
     parser.add_argument("--scenes", nargs="+", choices=CASES, metavar="NAME", help=f"some of: {', '.join(CASES)}")

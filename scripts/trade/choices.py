@@ -44,8 +44,8 @@ LINES = (
     Line(("quad",), {"supersampling": (2, 4)}, is_quick=True),
     Line(("quad",), {"supersampling": (3,)}),
     Line(("mip",), {"supersampling": (2,)}),
-    Line(("quad", "mip"), {"supersampling": (1,), "accumulation": ("float16",)}, is_quick=True),
-    Line(("quad", "mip"), {"supersampling": (1,), "storage": ("16-bit",)}, is_quick=True),
+    Line(("quad", "mip"), {"supersampling": (1,), "accumulation": ("float16",)}),
+    Line(("quad", "mip"), {"supersampling": (1,), "storage": ("16-bit",)}),
     Line(("quad",), {"supersampling": (1,), "multisampling": (4,), "sample_shading": (False, True)}),
 )
 

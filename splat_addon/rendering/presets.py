@@ -47,7 +47,8 @@ PRESETS = {
             "final",
             "Final",
             "The sharpest, for stills and what is scaled down later: 34 to 54 dB and FLIP 0.002 to 0.007 from box "
-            "pixels, in about 2.2 times the time of Preview",
+            "pixels, in about 2.2 times the time of Preview. Set 5 x 5 for detail far below a pixel: 38 dB instead of "
+            "34 to 35",
             {"method": "quad", "supersampling": 4},
         ),
     )

@@ -63,10 +63,14 @@ def test_mip_leaves_no_hole_where_the_surface_covers_the_filter(name, render):
     assert not np.count_nonzero((exact(name).coverage > 0.999) & (frame.coverage < 0.95))
 
 
-@pytest.mark.parametrize("name", ["checker at 6 degrees", "text"])
-def test_supersampled_quads_are_above_36_db_under_a_box(name, render):
-    """Against 5 x 5 rays: of 4 x 4 the same picture would be compared with itself."""
+@pytest.mark.parametrize(
+    ("name", "samples", "rays"), [("checker at 6 degrees", 4, 5), ("text", 4, 5), ("checker of 360,000", 5, 7)]
+)
+def test_supersampled_quads_are_above_36_db_under_a_box(name, samples, rays, render):
+    """Against other rays than the samples, or the same picture would be compared with itself. Checks far below a pixel
+    need 5 x 5.
+    """
     scene, camera = SCENES[name]()
-    truth = render_exact(scene, camera, FLAT, samples=5, pixel_filter="box")
-    frame = render(scene, camera, replace(FLAT, method="quad", supersampling=4))
+    truth = render_exact(scene, camera, FLAT, samples=rays, pixel_filter="box")
+    frame = render(scene, camera, replace(FLAT, method="quad", supersampling=samples))
     assert psnr(frame.color, truth.color) > 36
