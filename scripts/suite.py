@@ -14,8 +14,12 @@ ONLY_IN_BLENDER = ("tests/blender", "tests/extension")
 ONLY_IN_A_WINDOW = ("tests/window",)
 #: Folders whose tests draw, on whichever device they are given.
 ON_ANY_DEVICE = ("tests/rendering", "tests/extremes")
-#: Those of them that leave pictures on the standalone device, which are compared with Blender's.
-LEAVES_PICTURES = ("tests/rendering",)
+#: Tests that leave pictures on the standalone device, which are compared with Blender's.
+LEAVES_PICTURES = (
+    "tests/rendering/test_agreement.py",
+    "tests/rendering/test_identity.py",
+    "tests/rendering/test_outputs.py",
+)
 
 #: pytest's options whose value is the next word and could look like a path.
 VALUE_OPTIONS = ("-k", "-m", "-p", "-c", "-o", "-n", "-W", "-r", "--deselect", "--ignore", "--rootdir", "--confcutdir",
@@ -31,13 +35,13 @@ def split_arguments(arguments: list[str]) -> tuple[list[str], list[str]]:
     return paths, others
 
 
-def paths_by_group(paths: list[str], only_rendering: bool = False) -> dict[str, list[str]]:
+def paths_by_group(paths: list[str], only_pictures: bool = False) -> dict[str, list[str]]:
     """group -> the arguments that name its tests; everything where no path is given.
 
-    only_rendering: the plain group's other tests have nothing to say to the Blender that is tested.
+    only_pictures: the plain group's other tests have nothing to say to the Blender that is tested.
     """
     if not paths:
-        plain = list(LEAVES_PICTURES) if only_rendering else ["tests", *_ignored()]
+        plain = list(LEAVES_PICTURES) if only_pictures else ["tests", *_ignored()]
         return {PLAIN: plain, BLENDER: [*ON_ANY_DEVICE, *_existing(ONLY_IN_BLENDER)]}
     groups = {PLAIN: [], BLENDER: []}
     for path in paths:

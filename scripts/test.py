@@ -69,7 +69,7 @@ def main(arguments: list) -> int:
     """Exit code: 0 where everything passed, 1 where something failed, 2 for wrong arguments, 5 for no test at all."""
     options, rest = parse(arguments)
     paths, pytest_arguments = split_arguments(rest)
-    groups = paths_by_group(paths, only_rendering=bool(options.blender))
+    groups = paths_by_group(paths, only_pictures=bool(options.blender))
     python = environment.make("test", options.bpy).python
     variables = blender_program.prepare(options.blender, python) if options.blender else {}
     codes = {}
