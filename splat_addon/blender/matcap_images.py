@@ -30,7 +30,9 @@ def matcap_of(image: bpy.types.Image) -> Matcap:
             pixels = _first_layer(image) if image.type == "MULTILAYER" else linear_pixels(image, keep_alpha=False)
         except UnreadableError as reason:
             raise ValueError(f"Matcap shading cannot read its picture: it comes from {reason}.") from None
-        _kept = key, Matcap(pixels[..., :3])
+        # A painted image stays dirty until it is saved: the same pixels are the same matcap, with which a view refines.
+        if _kept is None or _kept[0] != key or not np.array_equal(_kept[1].pixels, pixels[..., :3]):
+            _kept = key, Matcap(pixels[..., :3])
     return _kept[1]
 
 

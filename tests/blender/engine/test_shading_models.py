@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.matcap_images import matcap_of
 from splat_addon.rendering.shading_models import SHADING_MODELS
 
 
@@ -48,6 +49,17 @@ def test_a_matcap_is_an_image(sheet, picture):
     image.pixels.foreach_set(np.tile(np.float32((0.5, 1.0, 2.0, 1.0)), 64))
     sheet.shading, sheet.matcap = "matcap", image
     assert center(picture()) == pytest.approx((0.5, 0.5, 0.5), abs=1e-3)
+
+
+def test_a_painted_matcap_is_another_one_only_where_its_pixels_are():
+    """It stays dirty until it is saved; a view refines while nothing changes."""
+    image = bpy.data.images.new("ball", 8, 8, float_buffer=True)
+    image.pixels.foreach_set(np.full(256, 0.5, np.float32))
+    assert image.is_dirty
+    first = matcap_of(image)
+    assert matcap_of(image) is first
+    image.pixels[0] = 0.25
+    assert matcap_of(image) is not first
 
 
 def workbench(scene, light):
