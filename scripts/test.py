@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs every test, in two processes, because moderngl and Blender take each other's graphics context away.
+"""Runs every test, in two processes or more, because moderngl and Blender take each other's graphics context away.
 
     python3 scripts/test.py [--bpy VERSION] [--blender PATH [--gpu-backend opengl|vulkan]] [PYTEST ARGUMENTS]
 
 Group "plain" draws on the standalone device; group "blender" draws inside Blender: in its wheel, or with
---blender inside a program, which then needs the plain group's pictures to compare with and nothing else of it.
+--blender inside a program, a process for each folder, which then needs the plain group's pictures to compare with and
+nothing else of it.
 """
 
 import argparse
@@ -16,7 +17,7 @@ from pathlib import Path
 import blender_program
 import environment
 from environment import ROOT, Problem
-from suite import BLENDER, PLAIN, paths_by_group, split_arguments
+from suite import BLENDER, PLAIN, by_folder, paths_by_group, split_arguments
 
 #: pytest's exit codes.
 PASSED, NO_TESTS = 0, 5
@@ -77,9 +78,9 @@ def main(arguments: list) -> int:
         codes[PLAIN] = run(PLAIN, plain_command(python, [*groups[PLAIN], *pytest_arguments]))
         print(f"== group {PLAIN}: pytest ended with exit code {codes[PLAIN]}", flush=True)
     if groups.get(BLENDER):
-        codes[BLENDER] = run(
-            BLENDER, blender_command(options, python, [*groups[BLENDER], *pytest_arguments]), **variables
-        )
+        for part in by_folder(groups[BLENDER]) if options.blender else [groups[BLENDER]]:
+            command = blender_command(options, python, [*part, *pytest_arguments])
+            codes[(BLENDER, *part)] = run(BLENDER, command, **variables)
     return verdict(codes)
 
 
