@@ -33,7 +33,7 @@ from ..surfels import OPTIONAL_LAYOUT, Surfels, split
 from .camera_density import without_camera
 from .conversion import MAX_SURFELS
 from .mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
-from .mesh_polygons import left_out_of_polygons, mesh_polygons
+from .mesh_polygons import is_transparent, left_out_of_polygons, mesh_polygons
 from .mesh_sampling_settings import Form
 from .object_detail import finer
 from .shading_export import shading_material
@@ -167,6 +167,8 @@ class LiveMeshes:
         for live in self._frame.values():
             for sentence in live.content.notes:
                 notes.add(sentence)
+            if is_transparent(live.content.triangles):
+                live.places = [place._replace(form=place.form.of_transparent) for place in live.places]
             try:
                 if live.sampled_at and len(live.sampled_part):
                     sampled += self._sampled_instances(live, depsgraph, fineness, texture_mapped)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..rendering import Polygons
 from ..rendering.polygons import MAX_TRIANGLES
-from ..sampling import TriangleMesh, corner_values
+from ..sampling import Surface, TriangleMesh, corner_values
 from ..surfels import OPAQUE
 
 
@@ -43,15 +43,19 @@ def _part(mesh: TriangleMesh) -> Polygons:
 
 def left_out_of_polygons(owner: str, mesh: TriangleMesh) -> Iterator[str]:
     """A sentence for each thing of its materials that polygons do not have."""
-    surfaces = [mesh.surfaces[k] for k in _used(mesh)]
-    if any(surface.normal_map is not None for surface in surfaces):
+    if any(surface.normal_map is not None for surface in _used(mesh)):
         yield f"{owner} has a normal map, which polygons do not show; render it as surfels to see it"
-    if any(surface.opacity is not None or surface.color.value[3] < OPAQUE for surface in surfaces):
+    if is_transparent(mesh):
         yield f"{owner} is transparent in places, which polygons are not; render it as surfels to see through it"
 
 
-def _used(mesh: TriangleMesh) -> np.ndarray:
-    """Numbers of the surfaces that some triangle has."""
+def is_transparent(mesh: TriangleMesh) -> bool:
+    """Whether some of its triangles may be seen through."""
+    return any(surface.opacity is not None or surface.color.value[3] < OPAQUE for surface in _used(mesh))
+
+
+def _used(mesh: TriangleMesh) -> list[Surface]:
+    """The surfaces that some triangle has."""
     if mesh.materials is None:
-        return np.array([0])
-    return np.unique(np.minimum(mesh.materials, len(mesh.surfaces) - 1))
+        return [mesh.surfaces[0]]
+    return [mesh.surfaces[k] for k in np.unique(np.minimum(mesh.materials, len(mesh.surfaces) - 1))]

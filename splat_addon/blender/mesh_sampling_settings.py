@@ -32,7 +32,8 @@ _MESH_ITEMS = (
         "Polygons",
         "Draw their triangles among the splats, with the same depth, light and shadows. Base colours that are one "
         "image are looked up at every pixel, what else is textured once a corner. As many triangles as surfels take "
-        "0.4 of their time, without a graphics card",
+        "0.4 of their time, without a graphics card. Meshes that are transparent in places become surfels all the "
+        "same, unless their object says otherwise",
         0,
     ),
     (
@@ -183,12 +184,13 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
 
 class Form(NamedTuple):
     """As what a mesh is rendered. kind: one of the items of `render_as`. split: distance from the camera up to which it
-    is polygons. group: vertex group whose weights say where it is.
+    is polygons. group: vertex group whose weights say where it is. is_default: its object leaves that to the scene.
     """
 
     kind: str
     split: float | None = None
     group: str = ""
+    is_default: bool = False
 
     @property
     def has_polygons(self) -> bool:
@@ -197,6 +199,11 @@ class Form(NamedTuple):
     @property
     def has_surfels(self) -> bool:
         return self.kind in ("SURFELS", "DISTANCE", "GROUP")
+
+    @property
+    def of_transparent(self) -> Form:
+        """Of a mesh that is transparent in places: polygons are opaque, so it is drawn as such only if it must."""
+        return self._replace(kind="SURFELS") if self.is_default and self.kind == "POLYGONS" else self
 
 
 def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) -> Form:
@@ -209,7 +216,7 @@ def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) ->
     if any(settings.render_as == "HIDDEN" for settings in chosen):
         return Form("HIDDEN")
     if not chosen:
-        return Form(getattr(scene, RENDER_SETTINGS).render_meshes)
+        return Form(getattr(scene, RENDER_SETTINGS).render_meshes, is_default=True)
     kind, settings = chosen[0].render_as, chosen[0]
     if kind == "GROUP" and not settings.split_group:
         raise ValueError("It is split by a vertex group, and none is chosen; choose one in its object properties.")

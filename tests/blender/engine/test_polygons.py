@@ -156,8 +156,21 @@ def test_an_object_has_the_last_word(form, look, picture):
 def test_what_polygons_do_not_show_is_said(look, picture, said):
     bpy.ops.mesh.primitive_cube_add()
     bpy.context.object.data.materials.append(principled(Alpha=0.5))
+    bpy.context.object.surfel_splatting.render_as = "POLYGONS"
     picture()
     assert "Cube is transparent in places, which polygons are not" in said()
+
+
+def test_what_is_transparent_becomes_surfels_unless_its_object_says_otherwise(look, picture, said):
+    """One material of two is enough, where some face has it."""
+    bpy.ops.mesh.primitive_plane_add()
+    mesh = bpy.context.object.data
+    mesh.materials.append(principled(Alpha=1.0))
+    mesh.materials.append(principled(Alpha=0.5))
+    assert picture()[..., 3].max() == 1 and set(counts()) == {"polygon_meshes", "triangles"}
+    mesh.polygons[0].material_index = 1
+    assert picture()[..., 3].max() == pytest.approx(0.5, abs=0.01) and "triangles" not in counts()
+    assert "which polygons are not" not in said()
 
 
 def test_broken_vertices_take_their_triangles_with_them(look, picture):
