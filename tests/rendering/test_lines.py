@@ -10,6 +10,7 @@ import pytest
 
 from splat_addon.rendering import Camera, Instance, Lines, Renderer, Scene, Settings, look_at, plan
 from splat_addon.rendering.frame_plan import FILTER_MARGIN
+from splat_addon.rendering.methods import get_method
 from splat_addon.sampling import TriangleMesh, sample_mesh
 
 SIZE = (96, 64)
@@ -118,8 +119,10 @@ def test_no_seam_shows_between_tiles(settings, cube, darkness, monkeypatch):
     camera = Camera.perspective(look_at((1, -5, 2), (0, 0, 0)), 0.7, SIZE, near=0.1, far=30)
     whole = darkness([cube], camera, settings, Lines(width=4.0))
     monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", 40)
-    tiled = darkness([cube], camera, settings, Lines(width=4.0))
-    assert np.count_nonzero(np.abs(whole - tiled) > 1e-3) <= 2
+    difference = np.abs(whole - darkness([cube], camera, settings, Lines(width=4.0)))
+    # Two samples may tie, each of which the mip filter spreads over 5 x 5 pixels, where it counts 1 in all.
+    reached = 25 if get_method(settings.method).filters_silhouettes else 1
+    assert np.count_nonzero(difference > 1e-3) <= 2 * reached and difference.sum() <= 2
 
 
 @pytest.mark.parametrize(
