@@ -32,7 +32,7 @@ _MESH_ITEMS = (
         "Polygons",
         "Draw their triangles among the splats, with the same depth, light and shadows. Base colours that are one "
         "image are looked up at every pixel, what else is textured once a corner. As many triangles as surfels take "
-        "0.4 of their time, without a graphics card. Meshes that are transparent in places become surfels all the "
+        "0.7 of their time, without a graphics card. Meshes that are transparent in places become surfels all the "
         "same, unless their object says otherwise",
         0,
     ),
