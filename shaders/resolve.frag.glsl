@@ -24,9 +24,12 @@
 #include "common/stored_depth.glsl"
 #include "common/silhouette_filter.glsl"
 #include "common/world.glsl"
-
-const float EMPTY_DEPTH = 1e10;
+#ifdef LAYER
 const float FARTHEST = 3.4e38;
+#else
+#include "common/pixel.glsl"
+#endif
+
 // The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes.
 const float FIRST_WEIGHT = exp(-0.5 * float(FILTER_REACH * FILTER_REACH) / FILTER_VARIANCE);
 const float FIRST_RATIO = exp((float(FILTER_REACH) - 0.5) / FILTER_VARIANCE);
@@ -188,17 +191,6 @@ void main() {
 #endif
   write_outputs(added(NO_OUTPUTS, outputs_total, share));
 #else
-  vec4 color = color_total * share;
-  vec4 normal = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
-  Outputs outputs = added(NO_OUTPUTS, outputs_total, share);
-#ifdef LAYERS
-  put_layers_before(color, normal, nearest, outputs);
-#endif
-  combined = color;
-#ifdef NORMAL_COVERAGE_OUTPUT
-  normal_coverage = normal;
-#endif
-  write_outputs(before_background(outputs, normal.w));
-  depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
+  write_pixel(color_total * share, normal_total * share, nearest, added(NO_OUTPUTS, outputs_total, share));
 #endif
 }

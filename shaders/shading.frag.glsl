@@ -13,9 +13,7 @@
 #include "common/before_layers.glsl"
 #include "common/peeled.glsl"
 #endif
-
-const float EMPTY_DEPTH = 1e10;
-const float FARTHEST = 3.4e38;
+#include "common/pixel.glsl"
 
 void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * SAMPLES;
@@ -52,16 +50,5 @@ void main() {
     }
   }
   float share = 1.0 / float(SAMPLES * SAMPLES * LOOKS);
-  vec4 color = color_total * share;
-  vec4 normal = vec4(mat3(shading.view_to_world) * normal_total.xyz, normal_total.w) * share;
-  Outputs outputs = added(NO_OUTPUTS, outputs_total, share);
-#ifdef LAYERS
-  put_layers_before(color, normal, nearest, outputs);
-#endif
-  combined = color;
-#ifdef NORMAL_COVERAGE_OUTPUT
-  normal_coverage = normal;
-#endif
-  write_outputs(before_background(outputs, normal.w));
-  depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
+  write_pixel(color_total * share, normal_total * share, nearest, added(NO_OUTPUTS, outputs_total, share));
 }

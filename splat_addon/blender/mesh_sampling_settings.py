@@ -9,7 +9,8 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
 from .conversion_settings import DENSITIES
-from .ids import ENGINE, OBJECT_SETTINGS, RENDER_SETTINGS
+from .engine_panel import EnginePanel
+from .ids import OBJECT_SETTINGS, RENDER_SETTINGS
 from .sources import has_surfaces, owner_of
 
 #: density -> the property of `MeshSamplingProperties` that holds the number, and the kind of fineness that it is.
@@ -229,41 +230,30 @@ def leave_to_surfels(source: bpy.types.Object) -> None:
     getattr(source, OBJECT_SETTINGS).render_as = "HIDDEN"
 
 
-class RENDER_PT_surfel_meshes(bpy.types.Panel):
+class RENDER_PT_surfel_meshes(EnginePanel, bpy.types.Panel):
     bl_label = "Meshes"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
     bl_context = "render"
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine == ENGINE
 
     def draw(self, context):
         properties = getattr(context.scene, RENDER_SETTINGS)
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
+        super().draw(context)
         self.layout.prop(properties, "render_meshes")
-        column = self.layout.column()
-        column.active = properties.render_meshes == "SURFELS"
-        column.prop(properties, "mesh_density")
-        column.prop(properties, _FINENESS[properties.mesh_density][0])
-        column.prop(properties, "mesh_textures")
+        # Also of objects that are surfels by their own choice, or because they are transparent.
+        self.layout.prop(properties, "mesh_density")
+        self.layout.prop(properties, _FINENESS[properties.mesh_density][0])
+        self.layout.prop(properties, "mesh_textures")
 
 
-class OBJECT_PT_surfel_splatting(bpy.types.Panel):
+class OBJECT_PT_surfel_splatting(EnginePanel, bpy.types.Panel):
     bl_label = "Surfel Splatting"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
     bl_context = "object"
 
     @classmethod
     def poll(cls, context):
-        return context.engine == ENGINE and context.object is not None and has_surfaces(context.object)
+        return super().poll(context) and context.object is not None and has_surfaces(context.object)
 
     def draw(self, context):
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
+        super().draw(context)
         settings = getattr(context.object, OBJECT_SETTINGS)
         self.layout.prop(settings, "render_as")
         if settings.render_as == "DISTANCE":

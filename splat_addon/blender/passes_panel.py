@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import bpy
 
-from .ids import ENGINE, LAYER_SETTINGS
+from .engine_panel import EnginePanel
+from .ids import LAYER_SETTINGS
 from .render_passes import ViewLayerPasses
 
 #: heading -> the properties under it
@@ -17,20 +18,13 @@ _SWITCHES = {
 }
 
 
-class VIEWLAYER_PT_surfel_passes(bpy.types.Panel):
+class VIEWLAYER_PT_surfel_passes(EnginePanel, bpy.types.Panel):
     bl_label = "Passes"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
     bl_context = "view_layer"
 
-    @classmethod
-    def poll(cls, context):
-        return context.engine == ENGINE
-
     def draw(self, context):
+        super().draw(context)
         layout, view_layer = self.layout, context.view_layer
-        layout.use_property_split = True
-        layout.use_property_decorate = False
         for heading, flags in _SWITCHES.items():
             column = layout.column(heading=heading)
             for flag in flags:

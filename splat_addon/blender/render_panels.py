@@ -8,23 +8,16 @@ from collections.abc import Iterator
 import bpy
 
 from ..rendering.methods import get_method
+from .engine_panel import EnginePanel
 from .ids import ENGINE, RENDER_SETTINGS
 from .operators.render_preset import draw_presets
 
 
-class _RenderPanel:
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
+class _RenderPanel(EnginePanel):
     bl_context = "render"
-    COMPAT_ENGINES = frozenset({ENGINE})
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
 
     def draw(self, context):
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
+        super().draw(context)
         for name in self.properties:
             self.layout.prop(getattr(context.scene, RENDER_SETTINGS), name)
 
