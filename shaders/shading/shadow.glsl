@@ -51,33 +51,41 @@ float receiver_depth(ShadowPlace here, vec2 place) {
   return abs(facing) > least ? clamp(own / facing, 0.5 * here.depth, 2.0 * here.depth) : here.depth;
 }
 
-float blocker_depth(ShadowPlace here, ivec2 texel) {
-  ivec2 inside = clamp(texel, ivec2(0), ivec2(here.atlas.z) - 1);
-  float stored = texelFetch(shadow_depth, inside + ivec2(here.atlas.xy), 0).r;
-  return stored < 1.0 ? here.depths.x * stored + here.depths.y : 3.4e38;
-}
-
-ivec2 shadow_texel(ShadowPlace here, vec2 place) {
-  return ivec2(floor((place - here.window.xy) * here.window.zw * here.atlas.z));
-}
-
-vec2 texel_place(ShadowPlace here, ivec2 texel) {
-  return here.window.xy + (vec2(texel) + 0.5) / (here.window.zw * here.atlas.z);
-}
-
 #ifdef SCREEN_DOOR
-// The four texels around the place, and parts of a fifth: what is kept of every 4 x 4 sums to the same everywhere.
-const int FILTER_TEXELS = 6;
-vec2 hard_filter(vec2 distance) {
-  return clamp(2.5 - abs(distance), 0.0, 1.0);
-}
+#include "common/masked_looks.glsl"
 #else
 // A tent of two texels around the place.
 const int FILTER_TEXELS = 4;
 vec2 hard_filter(vec2 distance) {
   return max(2.0 - abs(distance), 0.0);
 }
+
+const int FILTER_LOOKS = SOFT_SAMPLES;
+
+// Radius and angle in the unit disc.
+vec2 soft_look(int number, int count) {
+  float at = float(number) + shadow_turn;
+  return vec2(sqrt(at / float(count)), at * GOLDEN_ANGLE);
+}
+
+ivec2 soft_texel(vec2 at, int number) {
+  return ivec2(floor(at));
+}
+
+// The nearest of the map's texels, size by size.
+ivec2 inside_map(ivec2 texel, int size) {
+  return clamp(texel, ivec2(0), ivec2(size - 1));
+}
 #endif
+
+float blocker_depth(ShadowPlace here, ivec2 texel) {
+  float stored = texelFetch(shadow_depth, inside_map(texel, int(here.atlas.z)) + ivec2(here.atlas.xy), 0).r;
+  return stored < 1.0 ? here.depths.x * stored + here.depths.y : 3.4e38;
+}
+
+vec2 texel_place(ShadowPlace here, ivec2 texel) {
+  return here.window.xy + (vec2(texel) + 0.5) / (here.window.zw * here.atlas.z);
+}
 
 float hard_share(ShadowPlace here, float bias) {
   vec2 at = (here.place - here.window.xy) * here.window.zw * here.atlas.z - 0.5;
@@ -95,13 +103,11 @@ float hard_share(ShadowPlace here, float bias) {
   return lit / total;
 }
 
-// Where surfaces are masked, samples take turns in the places of a 4 x 4: all of these are then looked at alike.
-ivec2 soft_texel(ivec2 texel, int number) {
-#ifdef SCREEN_DOOR
-  return (texel & ~3) + ivec2(number & 3, (number >> 2) & 3);
-#else
-  return texel;
-#endif
+// Of a look into the map, by its number of so many around the place.
+ivec2 texel_of_look(ShadowPlace here, int number, int count, float reach) {
+  vec2 look = soft_look(number, count);
+  vec2 place = here.place + look.x * reach * vec2(cos(look.y), sin(look.y));
+  return soft_texel((place - here.window.xy) * here.window.zw * here.atlas.z, number);
 }
 
 // size: of the lamp, half its width; of a sun the tangent of half its angle.
@@ -111,9 +117,7 @@ float soft_share(ShadowPlace here, float bias, float size) {
   reach = min(reach, 0.25 / max(here.window.z, here.window.w));
   float blockers = 0.0, sum = 0.0;
   for (int i = 0; i < SOFT_SAMPLES; i++) {
-    float turn = (float(i) + shadow_turn) * GOLDEN_ANGLE;
-    float r = sqrt((float(i) + shadow_turn) / float(SOFT_SAMPLES)) * reach;
-    ivec2 texel = soft_texel(shadow_texel(here, here.place + r * vec2(cos(turn), sin(turn))), i);
+    ivec2 texel = texel_of_look(here, i, SOFT_SAMPLES, reach);
     float depth = blocker_depth(here, texel);
     if (depth + bias < receiver_depth(here, texel_place(here, texel))) {
       blockers += 1.0;
@@ -126,13 +130,11 @@ float soft_share(ShadowPlace here, float bias, float size) {
   float texel_size = here.depths.z;
   if (radius < 2.0 * texel_size) return hard_share(here, bias);
   float lit = 0.0;
-  for (int i = 0; i < SOFT_SAMPLES; i++) {
-    float turn = (float(i) + shadow_turn) * GOLDEN_ANGLE;
-    float r = sqrt((float(i) + shadow_turn) / float(SOFT_SAMPLES)) * min(radius, reach);
-    ivec2 texel = soft_texel(shadow_texel(here, here.place + r * vec2(cos(turn), sin(turn))), i);
+  for (int i = 0; i < FILTER_LOOKS; i++) {
+    ivec2 texel = texel_of_look(here, i, FILTER_LOOKS, min(radius, reach));
     lit += blocker_depth(here, texel) + bias >= receiver_depth(here, texel_place(here, texel)) ? 1.0 : 0.0;
   }
-  return lit / float(SOFT_SAMPLES);
+  return lit / float(FILTER_LOOKS);
 }
 
 // caster: number of the light's first map, of its maps, and its size in units of the shaded view (of a sun as it is).

@@ -141,7 +141,10 @@ SCENES = {
 }
 
 #: Compared with the truth, with as many layers as there are, in tests/rendering/test_transparency.py.
-TRANSPARENT = {"transparent_spheres": lambda: scenes.transparent_spheres(count=600, size=SIZE)}
+TRANSPARENT = {
+    "transparent_spheres": lambda: scenes.transparent_spheres(count=600, size=SIZE),
+    "transparent_shadows": lambda: shadowed(*scenes.transparent_spheres(count=600, size=SIZE)),
+}
 
 #: Looked up under footprints, which rays do not have: tests/rendering/test_textured.py compares them with the truth.
 TEXTURED = {"textured_plane": lambda: scenes.textured_plane(size=SIZE)}
@@ -181,6 +184,7 @@ CASES = [
     *((name, method, {}) for name in TEXTURED for method in METHODS),
     *(("transparent_spheres", method, {}) for method in ("quad", "mip")),
     *(("transparent_spheres", method, {"layers": 8, "blends_rest": False}) for method in ("quad", "mip")),
+    ("transparent_shadows", "quad", {}),
     *(("torus", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
     *(("torus", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
     *(("torus", "mip", {"shading": shading}) for shading in UNLIT if shading != "matcap"),

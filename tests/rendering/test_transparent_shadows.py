@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Penumbrae of transparent surfaces, in closed form: what a straight edge hides of a round lamp."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at
+from splat_addon.surfels import Surfels
+
+SETTINGS = Settings(method="quad", supersampling=1, shadow_resolution=512, blends_rest=False, layers=1)
+SIZE, WIDTH = 64, 0.7
+CAMERA = Camera.orthographic(look_at((0, 0, -0.5), (0, 0, -1), (0, 1, 0)), WIDTH, (SIZE, SIZE), 0.05, 50)
+CHALK = (Material(roughness=1.0, ior=1.0),)
+RADIUS, HEIGHT, TURN = 0.15, 1.5, 0.3  # of the discs, over the floor, and of the edge
+#: Each has masks of its own, by its number in the scene.
+MASKS = range(5)
+
+
+def discs(places, z: float, color, turn=0.0, **options) -> Instance:
+    """Upright discs at (n, 2) places."""
+    count = len(places)
+    c, s = math.cos(turn), math.sin(turn)
+    positions = np.column_stack([places @ np.array([[c, s], [-s, c]]), np.full(count, z)])
+    turns, up = np.tile((1.0, 0, 0, 0), (count, 1)), np.tile((0.0, 0, 1), (count, 1))
+    colors = np.tile(color, (count, 1))
+    return Instance(
+        Surfels(positions, turns, np.full((count, 2), RADIUS), up, colors, np.zeros(count, int)), **options
+    )
+
+
+def grid(x, y) -> np.ndarray:
+    return np.stack(np.meshgrid(x, y), axis=2).reshape(-1, 2)
+
+
+FLOOR = discs(grid(np.arange(-1, 1, 0.15), np.arange(-1, 1, 0.15)), -1, (1, 1, 1, 1), materials=CHALK)
+
+
+def casters(opacity: float, mask: int, edge: float) -> list[Instance]:
+    """A sheet that ends at x = edge, in coordinates turned by TURN: discs, dense along it. It is the mask-th."""
+    along = np.arange(-3, 3, 0.03)
+    rows = grid([edge - RADIUS], along), grid(np.arange(edge - 3, edge - RADIUS, 0.15), along[::5])
+    sheet = discs(np.concatenate(rows), HEIGHT - 1, (0, 0, 0, opacity), TURN)
+    under_the_floor = discs(np.zeros((1, 2)), -2, (1, 1, 1, 1))
+    return [*(mask * [under_the_floor]), sheet]
+
+
+@pytest.fixture
+def darkness(render):
+    """darkness(casters, size) -> (h, w): which share of the sun does not arrive on the floor under them."""
+
+    def measure(hanging, size):
+        sun = Light("sun", energy=2.0, direction=(0, 0, -1), casts_shadow=True, size=size)
+        shaded, free = (
+            render(Scene([*some, FLOOR], [replace(sun, casts_shadow=bool(some))]), CAMERA, SETTINGS).color[..., 0]
+            for some in (hanging, [])
+        )
+        return 1 - shaded / free
+
+    return measure
+
+
+def hidden_share(edge: float, size: float) -> np.ndarray:
+    """(h, w) of the sun's disc behind the sheet's edge, from the floor; the map has splats half a radius lower."""
+    at = ((np.arange(SIZE) + 0.5) / SIZE - 0.5) * WIDTH
+    across = at * math.cos(TURN) + at[:, None] * math.sin(TURN) - edge
+    t = np.clip(across / (math.tan(size / 2) * (HEIGHT - RADIUS / 2)), -1, 1)
+    return (np.arccos(t) - t * np.sqrt(1 - t * t)) / math.pi
+
+
+@pytest.mark.parametrize("mask", MASKS)
+@pytest.mark.parametrize("opacity", [0.25, 0.5, 0.75])
+@pytest.mark.parametrize("size", [0.04, 0.16])
+def test_a_penumbra_has_no_comb(size, opacity, mask, darkness):
+    """As even as that of an opaque sheet, which has 0.022 and 0.09: looks that follow their masks have 0.022 to 0.06
+    and 0.1 to 0.3."""
+    expected = hidden_share(0.0, size)
+    difference = np.abs(darkness(casters(opacity, mask, 0.0), size) - opacity * expected)
+    inside = (expected > 0) & (expected < 1)
+    assert np.sqrt((difference[inside] ** 2).mean()) < 0.018
+    assert difference.max() < 0.07
+
+
+@pytest.mark.parametrize("mask", MASKS)
+def test_masks_are_whole_beyond_the_maps_border(mask, darkness):
+    """The map ends with the picture, and looks of a wide lamp do not."""
+    assert np.abs(darkness(casters(0.25, mask, 1.0), 0.3) - 0.25).max() < 1e-5
