@@ -74,7 +74,7 @@ class SampleFiller:
         ends = weights.interpolate((first[axis] + 0.5) * spacing, *(edges[axis] * spacing))
         out["positions"][:, axis] = line.samples(*ends)
 
-        normals /= np.sqrt(_squares(normals))
+        normals *= 1 / np.sqrt(_squares(normals))
         _write_rows(ellipse_rotations(normals, axis), triangle, out["rotations"])
         _write_rows(ellipse_scales(normals[axis], self._half_size), triangle, out["scales"])
         if self._mesh.corner_normals is None:
@@ -143,12 +143,8 @@ class SampleFiller:
     def _poor(self, corners: np.ndarray, edges: np.ndarray, areas: np.ndarray, axis: int) -> np.ndarray:
         """The triangles whose (t,) area in the image is lost beside what snapping does to it, or turned over by it."""
         # No component of an edge changes by more than 1 / subcells, so most are seen to be sound from afar.
-        (u1, u2), (v1, v2) = (np.abs(edges[(axis + k) % 3]) for k in (1, 2))
-        reach = u1 + u2
-        reach += v1
-        reach += v2
-        reach += 1
-        poor = np.flatnonzero(~(np.abs(areas) * (self._grid.subcells / 2) > reach))
+        longest = max(np.abs(edges[(axis + k) % 3]).max(initial=0) for k in (1, 2))
+        poor = np.flatnonzero(~(np.abs(areas) * (self._grid.subcells / 2) > 4 * longest + 1))
         if not len(poor):
             return poor
         snapped = self._grid.snapped(corners.take(poor, axis=2))

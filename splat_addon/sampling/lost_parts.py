@@ -10,22 +10,47 @@ from __future__ import annotations
 import numpy as np
 
 from .connectivity import among, part_labels
-from .mesh import TriangleMesh, corner_indices, triangle_chunks
+from .mesh import TriangleMesh
 
 #: The sampled surface stops growing when a step takes less than this share of what is left, and this many triangles
 #: cost a step next to nothing; labels do the rest.
 _WORTHWHILE_SHARE, _FEW = 0.1, 4096
 
 
-def lost_parts(mesh: TriangleMesh, is_sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+class SampledSurface:
+    """Grows from the triangles that have samples over those that share a vertex, while the mesh is gone through once.
+
+    reached: (V,) bool, the vertices.
+    """
+
+    def __init__(self, vertices: int):
+        self.reached = np.zeros(vertices, bool)
+        self._rest: list[np.ndarray] = []
+
+    def add(self, indices: np.ndarray, sampled: np.ndarray):
+        """Of the triangles with vertices `indices`, (3, t), these have samples."""
+        self.reached[indices.take(sampled, axis=1).ravel()] = True
+
+    def grow(self, indices: np.ndarray, start: int):
+        """Takes a step over the triangles with vertices `indices`, (3, t), which are numbered from `start`."""
+        a, b, c = self.reached.take(indices)
+        touched = a | b | c
+        grown = np.flatnonzero(touched & ~(a & b & c))
+        self.reached[indices.take(grown, axis=1).ravel()] = True
+        self._rest.append(np.flatnonzero(~touched) + start)
+
+    def rest(self) -> np.ndarray:
+        """(m,) the triangles that it has not grown over; those beside others that came after them are among them."""
+        return np.concatenate(self._rest)
+
+
+def lost_parts(mesh: TriangleMesh, surface: SampledSurface) -> tuple[np.ndarray, np.ndarray]:
     """The triangles of all parts without a sample, and the part of each: two (m,) intp arrays. Parts are numbered from
     0 in the order of their first triangles.
 
-    is_sampled: (T,) bool. Triangles that share the position of a corner are one part.
+    surface: what is sampled of the mesh. Triangles that share the position of a corner are one part.
     """
-    reached = np.zeros(len(mesh.positions), bool)
-    reached[mesh.triangles.take(np.flatnonzero(is_sampled), axis=0).ravel()] = True
-    rest = _untouched(mesh.triangles, reached)
+    rest, reached = surface.rest(), surface.reached
     corners, rest = _unreached(mesh.triangles.take(rest, axis=0), rest, reached)
     if len(rest):
         corners, reached = _welded(mesh.places, corners, reached)
@@ -40,19 +65,6 @@ def lost_parts(mesh: TriangleMesh, is_sampled: np.ndarray) -> tuple[np.ndarray, 
     _, first, number = np.unique(part[lost], return_index=True, return_inverse=True)
     # by their first triangles: the labels are hashes' order
     return rest[lost], np.argsort(np.argsort(first))[number.reshape(-1)]
-
-
-def _untouched(triangles: np.ndarray, reached: np.ndarray) -> np.ndarray:
-    """Which of the (T, 3) triangles have no vertex among the (V,) reached ones, which grow by a step on the way."""
-    found = []
-    for chunk in triangle_chunks(len(triangles)):
-        indices = corner_indices(triangles[chunk])
-        a, b, c = reached.take(indices)
-        touched = a | b | c
-        grown = np.flatnonzero(touched & ~(a & b & c))
-        reached[indices.take(grown, axis=1).ravel()] = True
-        found.append(np.flatnonzero(~touched) + chunk.start)
-    return np.concatenate(found)
 
 
 def _welded(hashes: np.ndarray, corners: np.ndarray, reached: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -20,7 +20,7 @@ from .cleaning import drop_unusable
 from .depth_cube import depth_cube
 from .fineness import check_fineness, grid_spacing
 from .grid import make_grid
-from .lost_parts import lost_parts
+from .lost_parts import SampledSurface, lost_parts
 from .mesh import TriangleMesh
 from .palette import Palette
 from .part_surfels import part_surfels
@@ -99,8 +99,9 @@ def sample_surface(
     grid = make_grid(mesh, grid_spacing(mesh, spacing=spacing, resolution=resolution, count=count, **how))
     keeps = partial(chosen.keeps, grazing_angle=grazing_angle)
     coordinates = grid.coordinates(mesh.positions)
-    images = depth_cube(coordinates, mesh.triangles, grid, keeps, stage(progress, 0.0, 0.5))
-    lost = lost_parts(mesh, _is_sampled(images, len(mesh)))
+    surface = SampledSurface(len(mesh.positions))
+    images = depth_cube(coordinates, mesh.triangles, grid, keeps, surface, stage(progress, 0.0, 0.5))
+    lost = lost_parts(mesh, surface)
 
     total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
     palette = Palette(mesh.surfaces)
@@ -124,14 +125,6 @@ def sample_surface(
         arrays = {name: np.concatenate([array, extra[name]]) for name, array in arrays.items()}
     surfels = Surfels(origin=grid.origin, **arrays)
     return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error)
-
-
-def _is_sampled(images: tuple[Spans, ...], count: int) -> np.ndarray:
-    """(count,) bool: which triangles have a span in any image."""
-    is_sampled = np.zeros(count, bool)
-    for spans in images:
-        is_sampled[spans.triangles] = True
-    return is_sampled
 
 
 def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[float], None]):

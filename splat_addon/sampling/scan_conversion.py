@@ -44,11 +44,10 @@ class Spans:
         return Spans(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Spans)))
 
 
-def scan_convert(u: np.ndarray, v: np.ndarray, triangles: np.ndarray, subcells: int) -> Iterator[Spans]:
-    """The samples of t triangles, as spans.
+def scan_convert(u: np.ndarray, v: np.ndarray, subcells: int) -> Iterator[Spans]:
+    """The samples of t triangles, numbered from 0, as spans.
 
     u, v: (3, t) float64, the corners' image coordinates in whole sub-cells.
-    triangles: (t,) the number that stands for each triangle in the result.
     The edge A-B meets row j, the line v = y = j S, at column ceil((uA (vB - vA) + (y - vA)(uB - uA)) / ((vB - vA) S)).
     """
     u, v = _sorted_by_row(u, v)
@@ -60,9 +59,9 @@ def scan_convert(u: np.ndarray, v: np.ndarray, triangles: np.ndarray, subcells: 
         # Each row meets the long edge, and below the middle corner's row the lower short one, from there the upper.
         edge = np.empty((2, len(owner)), np.intp)
         edge[0] = owner
-        np.multiply(row >= turn.take(owner), len(triangles), out=edge[1])
+        np.multiply(row >= turn.take(owner), len(first), out=edge[1])
         edge[1] += owner
-        edge[1] += len(triangles)
+        edge[1] += len(first)
         ends = slope.take(edge)
         ends *= row
         ends += base.take(edge)
@@ -71,7 +70,7 @@ def scan_convert(u: np.ndarray, v: np.ndarray, triangles: np.ndarray, subcells: 
         some = np.flatnonzero(start != stop)
         start, stop = start.take(some), stop.take(some)
         yield Spans(
-            triangles.take(owner.take(some)).astype(np.int32),
+            owner.take(some).astype(np.int32),
             row.take(some).astype(np.int32),
             np.minimum(start, stop).astype(np.int32),
             np.abs(stop - start).astype(np.int32),

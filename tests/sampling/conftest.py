@@ -9,6 +9,7 @@ import pytest
 from splat_addon.sampling import TriangleMesh, drop_unusable, grid_spacing
 from splat_addon.sampling.depth_cube import depth_cube
 from splat_addon.sampling.grid import make_grid
+from splat_addon.sampling.lost_parts import SampledSurface
 from splat_addon.sampling.scan_conversion import expand
 
 
@@ -78,7 +79,8 @@ def rays():
         mesh, _ = drop_unusable(mesh)
         grid = make_grid(mesh, grid_spacing(mesh, resolution=resolution))
         coordinates = grid.coordinates(mesh.positions)
-        images = depth_cube(coordinates, mesh.triangles, grid, lambda normals: normals > 0, lambda share: None)
+        surface = SampledSurface(len(mesh.positions))
+        images = depth_cube(coordinates, mesh.triangles, grid, lambda normals: normals > 0, surface, lambda share: None)
         hits = []
         for spans in images:
             owner, step = expand(spans.counts)

@@ -10,6 +10,7 @@ import pytest
 from splat_addon.sampling import TriangleMesh, predict_count, projected_area, sample_mesh
 from splat_addon.sampling.depth_cube import depth_cube
 from splat_addon.sampling.grid import Grid
+from splat_addon.sampling.lost_parts import SampledSurface
 from splat_addon.sampling.reductions import keep_dominant
 
 
@@ -19,7 +20,8 @@ def test_each_face_of_a_cube_gets_one_sample_a_cell_wherever_the_grid_starts(cub
     mesh = cube()
     grid = Grid(np.full(3, -shift / 32), 1 / 32, subcells=1024, size=33)
     keeps = partial(keep_dominant, grazing_angle=0)
-    images = depth_cube(grid.coordinates(mesh.positions), mesh.triangles, grid, keeps, lambda share: None)
+    surface = SampledSurface(len(mesh.positions))
+    images = depth_cube(grid.coordinates(mesh.positions), mesh.triangles, grid, keeps, surface, lambda share: None)
     assert [spans.counts.sum() for spans in images] == [2 * 32**2] * 3
 
 

@@ -15,7 +15,7 @@ LARGEST = 2**25
 
 def samples(u, v, subcells):
     """Set of (triangle, column, row) of (3, t) corners."""
-    spans = Spans.joined(list(scan_convert(np.array(u, float), np.array(v, float), np.arange(len(u[0])), subcells)))
+    spans = Spans.joined(list(scan_convert(np.array(u, float), np.array(v, float), subcells)))
     owner, step = expand(spans.counts)
     return list(zip(spans.triangles[owner], spans.columns[owner] + step, spans.rows[owner], strict=True))
 
@@ -40,7 +40,7 @@ def test_an_edge_that_misses_a_cell_centre_by_the_least_fraction_is_on_the_right
         numerator, denominator = ua * dv + rise * du, dv * subcells
         assert numerator % denominator == remainder % denominator
         u, v = np.array([[ua], [ua + du], [LARGEST]], float), np.array([[va], [va + dv], [va + dv]], float)
-        spans = Spans.joined(list(scan_convert(u, v, np.zeros(1), subcells)))
+        spans = Spans.joined(list(scan_convert(u, v, subcells)))
         assert spans.columns[spans.rows == row] == -(-numerator // denominator)
         checked += 1
 
@@ -51,7 +51,7 @@ def test_an_edge_through_cell_centres_passes_them_exactly(columns, rows, repeats
     """From (2000, 0) by (columns, rows) cells, `repeats` times: each end of a step is a cell centre on the edge."""
     u = np.array([[2000], [2000 + columns * repeats], [4000]], float) * subcells
     v = np.array([[0], [rows * repeats], [0]], float) * subcells
-    spans = Spans.joined(list(scan_convert(u, v, np.zeros(1), subcells)))
+    spans = Spans.joined(list(scan_convert(u, v, subcells)))
     assert (spans.columns[spans.rows % rows == 0] == 2000 + columns * np.arange(repeats)).all()
 
 
