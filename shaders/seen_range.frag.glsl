@@ -2,6 +2,7 @@
 // Summary: how far each sample sees, as depth along the view: in z what hides nothing where there is nothing, in w what
 //          nothing is before. Of a transparent layer that is never behind what is opaque there. Where silhouettes are
 //          filtered, x and y are the nearest and the farthest stored depth of the row of samples that the filter reaches.
+//          Where a hole is seen, w says so: it is farther than all depths.
 
 #define PROJECTION shading.projection
 #define PARALLEL (shading.options.x > 0.5)
@@ -33,4 +34,7 @@ void main() {
 #endif
   float depth = view_depth(own);
   seen_range = vec4(row, own < 1.0 ? vec2(depth) : vec2(FARTHEST, -FARTHEST));
+#ifdef HOLDOUT
+  if (own < 1.0 && texelFetch(holdout_depth, texel, 0).r <= own) seen_range.w = FARTHEST;
+#endif
 }

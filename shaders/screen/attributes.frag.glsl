@@ -115,6 +115,13 @@ void main() {
 #ifdef LAYER
   if (is_in_nearer_layer(tied(depth, 0.5))) discard;
 #endif
+#if defined(HOLDOUT) && !defined(LAYER)
+  // Before a hole is what lies before it itself; where a filter reaches over a rim, a plane seen flat runs far ahead.
+  if (seen.w > 1e38) {
+    if (!straddles && plane.depth - length(plane.slope) > seen.z) discard;
+    seen.w = seen.z;
+  }
+#endif
 #if defined(FILTERS_SILHOUETTES) && !defined(REST)
   // Where the filter reaches past a silhouette, what is seen behind it is another surface, which keeps the sample: its
   // depth, moved back by up to 2 epsilon, is more than that and a radius behind this splat's.

@@ -23,6 +23,7 @@ TEXTURES = {
     "layer_identity": ("RG32F", "sample"),
     "polygon_identity": ("RG32F", "sample"),
     "rim_depth": ("DEPTH32F", "sample"),
+    "holdout_depth": ("DEPTH32F", "sample"),
     "seen_range": ("RGBA32F", "sample"),
     "seen_depth": ("DEPTH32F", "sample"),
     "color_sum": ("RGBA32F", "sample"),

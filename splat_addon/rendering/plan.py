@@ -75,7 +75,8 @@ def plan(
         shadows = (_shadow_pass(scene, maps),) if maps else ()
         layers = layers_of(scene, settings, method, model, left_out)
         why_attributes = _why_attributes(scene, method)
-        first, *splats = _splat_passes(settings, method, why_attributes, why_depth, sums, left_out)
+        holds_out = any(instance.is_holdout for instance in scene.shown)
+        first, *splats = _splat_passes(settings, method, why_attributes, why_depth, sums, holds_out, left_out)
         passes = (
             *shadows,
             first,
@@ -164,7 +165,15 @@ def _sums(
     return tuple(sums)
 
 
-def _splat_passes(settings: Settings, method: Method, why: str, why_depth: str, sums: tuple[str, ...], left_out: list):
+def _splat_passes(
+    settings: Settings,
+    method: Method,
+    why: str,
+    why_depth: str,
+    sums: tuple[str, ...],
+    holds_out: bool,
+    left_out: list,
+):
     """Visibility and sums, and between them what a method that works in the picture tests its depths with."""
     identity, why_identity = _identity(settings, left_out)
     if method.works_in == "sprites":
@@ -177,9 +186,14 @@ def _splat_passes(settings: Settings, method: Method, why: str, why_depth: str, 
         left_out.append(("seen_range", f"{method.name} is tested by the hardware, with the depth of visibility"))
         return visibility, PlannedPass("attributes", why, ("visibility_depth",), sums)
     compared = f"{method.name} computes its depths, which are compared in the shader"
+    seen, holes = ("visibility_depth",), ()
+    if holds_out:
+        why_holes = "a filter brings what lies behind a hole before it"
+        seen, holes = (*seen, "holdout_depth"), (PlannedPass("holdouts", why_holes, (), ("holdout_depth",)),)
     return (
         visibility,
-        PlannedPass("seen_range", compared, ("visibility_depth",), ("seen_range",)),
+        *holes,
+        PlannedPass("seen_range", compared, seen, ("seen_range",)),
         PlannedPass("attributes", why, ("seen_range", "visibility_depth"), sums),
     )
 

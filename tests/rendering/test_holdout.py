@@ -7,7 +7,17 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import render_exact, scenes
-from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Scene, Settings, look_at, plan
+from splat_addon.rendering import (
+    EMPTY_DEPTH,
+    Camera,
+    Instance,
+    PolygonInstance,
+    Scene,
+    Settings,
+    look_at,
+    make_polygons,
+    plan,
+)
 from splat_addon.surfels import Surfels
 
 CAMERA = Camera.perspective(look_at((0, 0, 4), (0, 0, 0), (0, 1, 0)), 0.5, (32, 32), 0.1, 50)
@@ -64,6 +74,31 @@ def test_the_picture_is_the_exact_one(render):
         exact = render_exact(replace(scene, surfels=cut), camera, settings, samples=2)
         assert np.count_nonzero(np.abs(frame.color - exact.color).max(axis=2) > 1e-4) <= 4
         assert (exact.color[..., 3] < 1).any() and (exact.color[..., 3] == 1).any()
+
+
+BOARD = make_polygons([(-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)], [(0, 1, 2), (0, 2, 3)])
+
+
+@pytest.mark.parametrize("kind", ["surfels", "polygons", "surfels, linear depth"])
+@pytest.mark.parametrize("method", ["mip", "ewa", "raycast"])
+def test_no_silhouette_of_what_is_behind_a_hole_shows_through_it(method, kind, render):
+    """A ball's rim is seen flat, and there a filter's plane runs as far ahead as the hole."""
+    (ball,) = scenes.sphere(count=4000)[0].surfels
+    for ahead in (0.15, 0.3):
+        camera = Camera.perspective(look_at((2.2, 0.3, 3.2), (0, 0, 0.3), (0, 1, 0)), 0.7, (128, 128), 0.1, 50)
+        placed = np.diag((0.6, 0.6, 0.6, 1.0))  # its splats are moved back by 0.12
+        placed[2, 3] = 1.0 + ahead
+        hole = replace(sheet(0, is_holdout=True), matrix_world=placed)
+        scene = Scene([ball, hole], world=WORLD)
+        if kind == "polygons":
+            scene = Scene([ball], polygons=[PolygonInstance(BOARD, placed, is_holdout=True)], world=WORLD)
+        if "linear" in kind:
+            away = np.diag((1e5, 1e5, 1e5, 1.0))
+            away[2, 3] = -1e5
+            camera = replace(camera, far=1e6)
+            scene = replace(scene, surfels=(*scene.surfels, replace(sheet(0), matrix_world=away)))
+        assert plan(scene, camera, flat(method=method)).linear_depth is ("linear" in kind)
+        assert (render(scene, camera, flat(method=method)).color == 0).all()
 
 
 def test_the_plan_names_what_cuts_and_what_cannot():

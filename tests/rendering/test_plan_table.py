@@ -59,6 +59,9 @@ LAYER_TEXTURES = "layer_depth left depth_sum shaded surface peeled peeled_next l
 TRANSPARENT = Scene([Instance(replace(surfels(), colors=np.full((2, 4), 0.5)))])
 
 
+HOLED = Scene([Instance(surfels()), Instance(surfels(), is_holdout=True)])
+
+
 def lit(**options) -> Scene:
     return replace(PLAIN, lights=(Light("sun", **options),))
 
@@ -163,6 +166,12 @@ TABLE = {
     ),
     "transparent, overdraw": (
         TRANSPARENT, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", (),
+    ),
+    "holdout": (HOLED, {}, PASSES, "", "", ("HOLDOUT",)),
+    "holdout, by mip": (
+        HOLED, {"method": "mip"},
+        ("visibility", "holdouts", "seen_range", "attributes", "sample_shading", "resolve"),
+        "holdout_depth seen_range shaded surface", "", ("HOLDOUT",),
     ),
     "one pass": (
         PLAIN, {"method": "affine_unfiltered"}, ("attributes", "shading"), "-visibility_depth seen_depth", "", (),

@@ -4,6 +4,7 @@
 from . import (
     accumulate,
     attributes,
+    holdouts,
     layers,
     lines,
     polygons,
@@ -21,6 +22,7 @@ RUN = {
     "shadow_maps": shadow_maps.run,
     "visibility": visibility.run,
     "rims": rims.run,
+    "holdouts": holdouts.run,
     "seen_range": seen_range.run,
     "attributes": attributes.run,
     "polygons": polygons.run,

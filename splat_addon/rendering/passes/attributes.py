@@ -12,6 +12,7 @@ from ..shaders import load
 from ..storages import get_storage
 from .blocks import (
     FILTERS_SILHOUETTES,
+    HOLDOUT,
     LAYER,
     LINEAR_DEPTH,
     identity_defines,
@@ -113,6 +114,7 @@ def _in_picture(planned, frame):
         defines=(
             *(FILTERS_SILHOUETTES if frame.filters_silhouettes else ()),
             *((("STRADDLING", "1"),) if straddling else ()),
+            *(HOLDOUT if frame.has("HOLDOUT") else ()),
         ),
         blend="add",
         depth_test=not frame.linear_depth,

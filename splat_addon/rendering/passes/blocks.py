@@ -68,3 +68,6 @@ FILTERS_SILHOUETTES = (("FILTERS_SILHOUETTES", "1"),)
 
 #: Defined where a transparent layer is made.
 LAYER = (("LAYER", "1"),)
+
+#: Defined where it is known which samples see a hole.
+HOLDOUT = (("HOLDOUT", "1"),)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from ..device.interface import PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
 from ..shaders import load
-from .blocks import FILTERS_SILHOUETTES, LAYER, LINEAR_DEPTH
+from .blocks import FILTERS_SILHOUETTES, HOLDOUT, LAYER, LINEAR_DEPTH
 from .shading import SHADING_BLOCK, fill
 from .tile import TileContext
 
@@ -24,6 +24,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
             *(LAYER if planned.layer else ()),
             *(LINEAR_DEPTH if frame.linear_depth else ()),
             *(FILTERS_SILHOUETTES if frame.filters_silhouettes else ()),
+            *(HOLDOUT if "holdout_depth" in planned.reads else ()),
         ),
     )
 
