@@ -40,14 +40,22 @@ float depth_at(ivec2 texel, ivec2 size, float otherwise) {
   return s.w > 0.0 ? s.w : otherwise;
 }
 
+// What depth changes by from this sample to the next, across and up, on a plane of this normal.
+vec2 plane_slope(ivec2 texel, vec3 normal, float depth) {
+  vec2 place = shading.window.xy + (vec2(texel) + 0.5) * shading.window.zw;
+  float facing = PARALLEL ? normal.z : (normal.z - dot(normal.xy, place)) / depth;
+  return abs(normal.xy * shading.window.zw) / max(abs(facing), 1e-30);
+}
+
 // How far depths of one surface may lie apart within the filter: twice its slope, and twice what the visibility pass
-// moved it back here. The slope is the lesser one of both sides, which a silhouette on one side does not spoil.
-float same_surface(ivec2 texel, ivec2 size, float depth) {
+// moved it back here. The slope is the lesser one of both sides, which a silhouette on one side does not spoil; between
+// two silhouettes, in a gap or on a wire, both are, and it is no more than twice what the normal says.
+float same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth) {
   float moved = abs(view_depth(texelFetch(visibility_depth, texel, 0).r) - depth);
   vec2 before = vec2(depth_at(texel - ivec2(1, 0), size, 1e30), depth_at(texel - ivec2(0, 1), size, 1e30));
   vec2 after = vec2(depth_at(texel + ivec2(1, 0), size, 1e30), depth_at(texel + ivec2(0, 1), size, 1e30));
   vec2 slope = min(abs(before - depth), abs(after - depth));
-  slope = mix(slope, vec2(0.0), greaterThan(slope, vec2(1e29)));
+  slope = min(mix(slope, vec2(0.0), greaterThan(slope, vec2(1e29))), 2.0 * plane_slope(texel, normal, depth));
   return 2.0 * (moved + slope.x + slope.y);
 }
 
@@ -67,11 +75,12 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out float first, out bool i
                     out Outputs outputs) {
   ivec2 size = textureSize(shaded, 0);
   vec4 own = texelFetch(shaded, texel, 0);
-  float depth = texelFetch(surface, texel, 0).w;
+  vec4 seen_surface = texelFetch(surface, texel, 0);
+  float depth = seen_surface.w;
   // The range of stored depths that see the same surface; none where there is none.
   vec2 range = vec2(2.0, -1.0);
   if (own.w > 0.0) {
-    float tolerance = same_surface(texel, size, depth);
+    float tolerance = same_surface(texel, size, seen_surface.xyz, depth);
     range = vec2(stored_depth(max(depth - tolerance, 0.5 * depth)), stored_depth(depth + tolerance));
   }
 #ifdef LAYER

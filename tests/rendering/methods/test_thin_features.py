@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is a pixel wide, before or between other surfaces: silhouettes on both of its sides, filtered by mip as any."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import render_exact
+from splat_addon.reference.extremes import discs
+from splat_addon.rendering import Camera, Scene, Settings, look_at
+
+SIDE = 24  # pixels; one is as wide as 1 at a depth of 100
+BLACK, WHITE = (0.02, 0.02, 0.02), (0.9, 0.9, 0.9)
+CAMERAS = {
+    "perspective": Camera.perspective(
+        look_at((0, 0, 0), (0, 0, -1), (0, 1, 0)), 2 * math.atan(SIDE / 200), (SIDE, SIDE), 1, 1000
+    ),
+    "parallel": Camera.orthographic(look_at((0, 0, 0), (0, 0, -1), (0, 1, 0)), SIDE, (SIDE, SIDE), 1, 1000),
+}
+
+
+def strip(low: float, high: float, depth: float, turn: float, tilt: float, color, opacity: float):
+    """From x = low to high and endless along y, turned in the picture and then tilted away from it: ellipses of 0.6 to
+    each side, overlapping until the edges are straight."""
+    x, y = (a.reshape(-1, 1) for a in np.meshgrid(np.arange(low + 0.6, high - 0.59, 0.4), np.arange(-40, 40.5, 0.7)))
+    turned = np.array(((math.cos(turn), math.sin(turn), 0), (-math.sin(turn), math.cos(turn), 0)))
+    across, up = turned * (1, math.cos(tilt), 0) + turned[:, 1:2] * (0, 0, math.sin(tilt))
+    made = discs(x * across + y * up + (0, 0, -depth), 0.6 * across, 2 * up, color)
+    return replace(made, colors=made.colors * (1, 1, 1, opacity))
+
+
+def scene_of(kind: str, turn: float, tilt: float, opacity: float) -> Scene:
+    if kind == "wire":
+        near = [strip(-0.1, 1.11, 100, turn, tilt, WHITE, opacity)]
+        behind = BLACK
+    else:
+        near = [strip(*ends, 100, turn, tilt, BLACK, opacity) for ends in ((-24, 0), (1, 25))]
+        behind = WHITE
+    # Of transparent surfaces, the farther one is in the nearer one's layer where that is not.
+    return Scene((*near, strip(-40, 40, 130, 0, 0.3, behind, 1 if opacity == 1 else 0.95)))
+
+
+@pytest.mark.parametrize("opacity", [1, 0.6], ids=["opaque", "transparent"])
+@pytest.mark.parametrize(("turn", "tilt"), [(0, 0), (0.3, 0), (1.2, 0.7)])
+@pytest.mark.parametrize("name", CAMERAS)
+@pytest.mark.parametrize("kind", ["wire", "gap"])
+def test_both_silhouettes_are_filtered(kind, name, turn, tilt, opacity, render):
+    """Unfiltered, a pixel in the gap or on the wire is all white: 0.25 to 0.55 off."""
+    scene, settings = scene_of(kind, turn, tilt, opacity), Settings(shading="flat")
+    frame = render(scene, CAMERAS[name], settings)
+    truth = render_exact(scene, CAMERAS[name], settings, samples=4, pixel_filter="gaussian")
+    off = np.abs(frame.color - truth.color)[2:-2, 2:-2, 0]
+    assert off.max() < 0.25, off.max()
