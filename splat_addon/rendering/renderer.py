@@ -226,9 +226,10 @@ class Renderer:
         self.resources.forget_atlases_but({placed.textures for placed in scene.shown})
         casters = casting(scene)
         shadow_views = tuple(look(casters, made.camera, settings.epsilon) for made in frame_plan.shadow_maps)
+        whole = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan)) if len(frame_plan.tiles) > 1 else None
         for number, tile in enumerate(frame_plan.tiles):
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
-            view = look(scene, tile_camera, settings.epsilon)
+            view = look(scene, tile_camera, settings.epsilon, whole)
             context = TileContext(self.resources, frame_plan, scene, tile_camera, settings, view, shadow_views, tile)
             stats["splats"] += sum(len(p.instance.surfels) for p in view.placed)
             stats["polygons"] += sum(p.instance.polygons.triangles for p in view.polygons)

@@ -82,11 +82,16 @@ class View:
         return _LEAST_STEPS / 2**24 * (1.0 if linear_depth else self.depth_span)
 
 
-def look(scene: Scene, camera: Camera, epsilon: float) -> View:
-    """The scene's instances as this camera sees them. epsilon: how far visibility moves splats back, in radii."""
+def look(scene: Scene, camera: Camera, epsilon: float, whole: Camera | None = None) -> View:
+    """The scene's instances as this camera sees them. epsilon: how far visibility moves splats back, in radii.
+
+    whole: the camera that this one is cropped from, if it is; depths are stored for all that it sees, so that they, and
+    what is compared with them, are rounded alike in all its parts.
+    """
     seen, outside, degenerate = _seen(scene, camera)
-    near, far = _clip_range(camera, seen, epsilon)
-    scale = _power_of_two_scale(camera, seen, near)
+    whole, in_whole = (whole, _seen(scene, whole)[0]) if whole else (camera, seen)
+    near, far = _clip_range(whole, in_whole, epsilon)
+    scale = _power_of_two_scale(whole, in_whole, near)
     radii = overlapping_radii(scene)
     placed = {Instance: [], PolygonInstance: []}
     for instance, _, _ in seen:

@@ -11,6 +11,7 @@ from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Light, Material, Scene, Settings, look_at, plan
 from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.view import look
 from splat_addon.surfels import Surfels
 
 PEELING = [name for name, method in METHODS.items() if method.works_in != "sprites"]
@@ -223,6 +224,29 @@ def test_tiles_hide_no_seam(render, monkeypatch):
     assert len(plan(scene, camera, Settings()).tiles) > 1
     differs = np.abs(render(scene, camera, Settings()).color - whole).max(axis=2)
     assert differs.max() < 1e-3 and np.count_nonzero(differs > 1e-4) <= 2  # where depths or weights tie
+
+
+@pytest.mark.parametrize("edge", [40, 60])
+@pytest.mark.parametrize("method", SPACES)
+def test_tiles_store_the_depths_of_the_whole(method, edge, render, monkeypatch):
+    """What ties with a layer's end is then in the same layer; the rasteriser's own rounding is left."""
+    scene, camera = scenes.transparent_spheres(count=600, size=(160, 160))
+    settings = Settings(method=method, layers=8, blends_rest=False, supersampling=1)
+    whole = render(scene, camera, settings).color
+    monkeypatch.setitem(plan.__globals__, "MAX_TARGET_EDGE", edge)
+    differs = np.abs(render(scene, camera, settings).color - whole).max(axis=2)
+    assert differs.max() < 2e-3 and np.count_nonzero(differs > 1e-4) <= 5
+
+
+def test_parts_of_a_picture_are_as_deep_as_the_whole():
+    scene, camera = spheres(64)
+    whole = look(scene, camera, 0.5)
+    for part in (camera.cropped(0, 0, 9, 9), camera.cropped(50, 40, 8, 9)):
+        own, common = look(scene, part, 0.5), look(scene, part, 0.5, camera)
+        assert (own.first, own.far) != (whole.first, whole.far)
+        assert (common.first, common.far, common.scale) == (whole.first, whole.far, whole.scale)
+        assert common.least_offset(False) == whole.least_offset(False)
+        np.testing.assert_array_equal(common.projection[2:], whole.projection[2:])
 
 
 def test_multisampling_is_refused():

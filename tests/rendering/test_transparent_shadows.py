@@ -26,9 +26,7 @@ def discs(places, z: float, color, turn=0.0, **options) -> Instance:
     positions = np.column_stack([places @ np.array([[c, s], [-s, c]]), np.full(count, z)])
     turns, up = np.tile((1.0, 0, 0, 0), (count, 1)), np.tile((0.0, 0, 1), (count, 1))
     colors = np.tile(color, (count, 1))
-    return Instance(
-        Surfels(positions, turns, np.full((count, 2), RADIUS), up, colors, np.zeros(count, int)), **options
-    )
+    return Instance(Surfels(positions, turns, np.full((count, 2), RADIUS), up, colors, np.zeros(count, int)), **options)
 
 
 def grid(x, y) -> np.ndarray:
