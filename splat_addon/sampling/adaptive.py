@@ -16,17 +16,20 @@ import numpy as np
 
 from ..surfels import LAYOUT, quaternion_axes
 from .ellipses import ellipse_rotations, ellipse_scales
+from .grid import BLOCK
 from .texture_mapping import BORDER, UV_FIELDS, from_uv_planes, is_mapped, slips, uv_planes
 
 #: Doublings of the spacing. The renderer tells surfaces apart at half a splat's radius, so larger discs would show
 #: what lies several spacings behind them.
-LEVELS = 3
+LEVELS = int(math.log2(BLOCK))
 
 #: Half-axis of a merged disc in edges of its block, whose corners lie at 0.707.
 MERGED_SIZE = 0.75
 
-#: Bits of a block's coordinate in a key; a grid has at most 2^19 cells along an edge, and 2 are added to stay above 0.
+#: Bits of a block's coordinate in a key; a grid has at most 2^19 cells along an edge, and half of what fits is added to
+#: stay above 0.
 _BITS = 21
+_FIRST = 1 << (_BITS - 1)
 
 #: Four blocks of one layer meet over their middle within this many tolerances: one to each side, and sqrt(3) for tilt.
 _SPREAD = 2 * math.sqrt(3)
@@ -88,7 +91,7 @@ def merge_flat(
 ) -> tuple[dict[str, np.ndarray], float]:
     """The surfels that are left, those that were not merged first, and the largest error in object units.
 
-    arrays: by field of `Surfels`, positions relative to the grid's origin. axes: (N,) the image of each sample.
+    arrays: by field of `Surfels`, positions relative to a corner of a cell. axes: (N,) the image of each sample.
     """
     base, order = _samples(arrays, axes, spacing)
     levels = [base]
@@ -135,13 +138,13 @@ def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
 
 
 def _key(side: np.ndarray, column: np.ndarray, row: np.ndarray) -> np.ndarray:
-    return (side.astype(np.int64) << 2 * _BITS) | (column + 2 << _BITS) | (row + 2)
+    return (side.astype(np.int64) << 2 * _BITS) | (column + _FIRST << _BITS) | (row + _FIRST)
 
 
 def _block(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """What `_key` was made of."""
     mask = (1 << _BITS) - 1
-    return keys >> 2 * _BITS, (keys >> _BITS & mask) - 2, (keys & mask) - 2
+    return keys >> 2 * _BITS, (keys >> _BITS & mask) - _FIRST, (keys & mask) - _FIRST
 
 
 def _parents(nodes: _Nodes, edge: int, spacing: float, tolerance: Tolerance) -> _Nodes:

@@ -54,7 +54,7 @@ class SampleFiller:
         self._mesh, self._coordinates, self._grid = mesh, coordinates, grid
         self._half_size, self._palette, self._tangents, self._arrays = half_size, palette, tangents, arrays
         self._seams = seams
-        self._centres = grid.centres()
+        self._centres = [grid.centres(axis) for axis in range(3)]
 
     def fill(self, spans: Spans, axis: int, rows: slice):
         """Writes the samples of these spans of the image along `axis` to `rows` of the arrays."""
@@ -68,10 +68,11 @@ class SampleFiller:
 
         column = spans.columns.take(span)
         column += step
-        out["positions"][:, (axis + 1) % 3] = self._centres.take(column)
-        out["positions"][:, (axis + 2) % 3] = self._centres.take(spans.rows).take(span)
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        out["positions"][:, u] = self._centres[u].take(column)
+        out["positions"][:, v] = self._centres[v].take(spans.rows).take(span)
         spacing = self._grid.spacing
-        ends = weights.interpolate((first[axis] + 0.5) * spacing, *(edges[axis] * spacing))
+        ends = weights.interpolate(self._grid.places(first[axis], axis), *(edges[axis] * spacing))
         out["positions"][:, axis] = line.samples(*ends)
 
         normals *= 1 / np.sqrt(_squares(normals))

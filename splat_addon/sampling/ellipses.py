@@ -53,11 +53,8 @@ def ellipse_rotations(normals: np.ndarray, axis: int) -> np.ndarray:
 
 
 def _half_angle(cosine: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cosine and sine of half the angle, 0 to a quarter of a turn; a cosine may be beyond 1 by its rounding.
-
-    From float64 to float32: what cancels is done before.
-    """
-    halves, half = np.empty((2, len(cosine)), np.float32), 0.5 * cosine
+    """Cosine and sine of half the angle, 0 to a quarter of a turn; a cosine may be beyond 1 by its rounding."""
+    halves, half = np.empty((2, len(cosine))), 0.5 * cosine
     np.add(0.5, half, out=halves[0])
     np.subtract(0.5, half, out=halves[1])
     np.maximum(halves, 0, out=halves)

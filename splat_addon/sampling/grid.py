@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -21,6 +21,10 @@ MIN_SUBCELLS = 64
 MIN_SPACING = 1e-35
 
 
+#: Cells along an edge of the largest blocks that adaptive sampling merges.
+BLOCK = 8
+
+
 @dataclass(frozen=True, eq=False)
 class Grid:
     """Cells of edge `spacing` from `origin`; samples lie at the cell centres.
@@ -28,12 +32,19 @@ class Grid:
     In *grid coordinates* the sample points are the integers: world = origin + spacing * (grid + 1/2).
     subcells: parts of a cell, a power of two, to which corners are snapped.
     size: cells along the longest edge, rounded up.
+    middle: (3,) whole cells from `origin` to where surfels are measured from: half as far, float32 rounds half as much.
     """
 
     origin: np.ndarray
     spacing: float
     subcells: int
     size: int
+    middle: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+    @property
+    def surfel_origin(self) -> np.ndarray:
+        """(3,) float64, object units: what positions of surfels are relative to."""
+        return self.origin + self.middle * self.spacing
 
     def coordinates(self, positions: np.ndarray) -> np.ndarray:
         """(3, V) float64 grid coordinates of (V, 3) positions, each component contiguous."""
@@ -50,9 +61,13 @@ class Grid:
         snapped = np.multiply(coordinates, self.subcells, out=out)
         return np.rint(snapped, out=snapped)
 
-    def centres(self) -> np.ndarray:
-        """(size + 1,) float32: distance of each column's or row's samples from the origin, object units."""
-        return ((np.arange(self.size + 1) + 0.5) * self.spacing).astype(np.float32)
+    def places(self, coordinates: np.ndarray, axis: int) -> np.ndarray:
+        """Positions of surfels along an axis, object units, of grid coordinates."""
+        return (coordinates + (0.5 - self.middle[axis])) * self.spacing
+
+    def centres(self, axis: int) -> np.ndarray:
+        """(size + 1,) float32: those of the columns or rows along the axis."""
+        return self.places(np.arange(self.size + 1), axis).astype(np.float32)
 
 
 def make_grid(mesh: TriangleMesh, spacing: float) -> Grid:
@@ -71,7 +86,10 @@ def make_grid(mesh: TriangleMesh, spacing: float) -> Grid:
         )
     # as many sub-cells as stay exact: what snapping moves is then below what float32 leaves of a position
     subcells = 2 ** math.floor(math.log2(EXACT_BOUND / max(cells, 1.0)))
-    return Grid(mesh.bounds()[0], float(spacing), subcells, math.ceil(cells))
+    low, high = mesh.bounds()
+    # The half cell: whole resolutions are met within rounding, which must not choose the block.
+    middle = np.floor(((high - low) / spacing + 0.5) / (2 * BLOCK)) * BLOCK
+    return Grid(low, float(spacing), subcells, math.ceil(cells), middle)
 
 
 def longest_edge(mesh: TriangleMesh) -> float:

@@ -17,7 +17,7 @@ from .texture_mapping import moved
 def nearest_to_lattice(arrays: dict[str, np.ndarray], spacing: float) -> dict[str, np.ndarray]:
     """Of the surfels around each lattice node the nearest, standing on the node; in the order that they had.
 
-    arrays: by field of `Surfels`, positions relative to the grid's origin. spacing: of the grid, object units.
+    arrays: by field of `Surfels`, positions relative to a corner of a cell. spacing: of the grid, object units.
     """
     cells = np.floor(arrays["positions"].T / np.float32(spacing)).astype(np.int64)
     centres = (cells + 0.5) * spacing

@@ -31,7 +31,7 @@ def part_surfels(
     tangents: np.ndarray | None,
     texture_mapped: bool,
 ) -> dict[str, np.ndarray]:
-    """The arrays of `Surfels` of p parts, positions relative to the grid's origin.
+    """The arrays of `Surfels` of p parts, positions relative to the grid's middle.
 
     coordinates: (3, V) float64, of the mesh's vertices on the grid. lost: what `lost_parts` found.
     largest_radius: of a disc, in spacings. palette, tangents: as a `SampleFiller` has them.
@@ -56,7 +56,7 @@ def part_surfels(
     materials = np.zeros(len(total), np.int32) if mesh.materials is None else mesh.materials[triangles[largest]]
     count = len(total)
     arrays = {
-        "positions": ((centroids.T + 0.5) * grid.spacing).astype(np.float32),
+        "positions": ((centroids.T + 0.5 - grid.middle) * grid.spacing).astype(np.float32),
         "rotations": ellipse_rotations(normals, 2),
         "scales": np.stack([radius, radius], axis=1).astype(np.float32),
         "normals": _shading_normals(mesh, triangles, part, np.where(facing > 0, areas, 0), normals),

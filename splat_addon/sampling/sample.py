@@ -80,7 +80,7 @@ def sample_surface(
     tolerance: how far from flat the surface may be where larger surfels take the place of several; None: all alike.
     texture_mapped: surfels whose colour is one image also keep where they lie in it, to look it up when rendered.
     progress: called between chunks with the finished share, 0 to 1; where it returns False, `SamplingCancelled` rises.
-    Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the grid's origin.
+    Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the middle.
     A connected part that lies between the rays gets one surfel. A mesh without usable triangles gives none.
 
     Raises ValueError with one sentence for an unusable option.
@@ -123,7 +123,7 @@ def sample_surface(
     if small_parts:
         extra = part_surfels(mesh, coordinates, grid, lost, splat_size, palette, tangents, bool(uv_fields))
         arrays = {name: np.concatenate([array, extra[name]]) for name, array in arrays.items()}
-    surfels = Surfels(origin=grid.origin, **arrays)
+    surfels = Surfels(origin=grid.surfel_origin, **arrays)
     return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error)
 
 

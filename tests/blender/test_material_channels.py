@@ -57,16 +57,16 @@ def nodes():
 
 
 @pytest.fixture
-def made(add_square, convert, surfels_of):
+def made(add_square, convert, surfels_of, world_positions):
     """made(nodes) -> (surfels, texel of each) of the unit square with this material, 4 x 4 surfels a texel."""
 
     def make(nodes, prepare=lambda square: None):
         square = add_square()
         square.data.materials.append(nodes.material)
         prepare(square)
-        surfels = surfels_of(convert(resolution=4 * TEXELS)[0])
-        column, row = np.floor(surfels.positions[:, :2] * TEXELS).astype(int).T
-        return surfels, (row, column)
+        made = convert(resolution=4 * TEXELS)[0]
+        column, row = np.floor(world_positions(made)[:, :2] * TEXELS).astype(int).T
+        return surfels_of(made), (row, column)
 
     return make
 

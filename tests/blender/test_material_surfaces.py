@@ -53,7 +53,7 @@ class Nodes:
 
 
 @pytest.fixture
-def painted(add_square, convert, surfels_of):
+def painted(add_square, convert, surfels_of, world_positions):
     """painted(material, ...) -> (surfels, texel of each) of the square with these materials, 4 x 4 surfels a texel."""
 
     def make(*materials, prepare=lambda square: None):
@@ -61,9 +61,9 @@ def painted(add_square, convert, surfels_of):
         for material in materials:
             square.data.materials.append(material)
         prepare(square)
-        surfels = surfels_of(convert(resolution=4 * TEXELS)[0])
-        column, row = np.floor(surfels.positions[:, :2] * TEXELS).astype(int).T
-        return surfels, (row, column)
+        made = convert(resolution=4 * TEXELS)[0]
+        column, row = np.floor(world_positions(made)[:, :2] * TEXELS).astype(int).T
+        return surfels_of(made), (row, column)
 
     return make
 
@@ -175,7 +175,7 @@ def test_a_material_without_attribute_nodes_ignores_the_colour_attribute(painted
     assert np.allclose(surfels.colors[:, :3], 0.5)
 
 
-def test_two_materials_each_use_their_own_layer(add_mesh, convert, surfels_of):
+def test_two_materials_each_use_their_own_layer(add_mesh, convert, surfels_of, world_positions):
     pair = add_mesh("pair", [(x, y, 0) for y in (0, 1) for x in (0, 1, 2)], [(0, 1, 4, 3), (1, 2, 5, 4)])
     for index, (name, color) in enumerate((("red", (1, 0, 0)), ("green", (0, 1, 0)))):
         pair.data.color_attributes.new(name, "FLOAT_COLOR", "CORNER").data.foreach_set("color", [*color, 1] * 8)
@@ -183,8 +183,8 @@ def test_two_materials_each_use_their_own_layer(add_mesh, convert, surfels_of):
         nodes.link(nodes.add("ShaderNodeVertexColor", layer_name=name), "Color", nodes.principled, "Base Color")
         pair.data.materials.append(nodes.material)
         pair.data.polygons[index].material_index = index
-    surfels = surfels_of(convert(resolution=8)[0])
-    right = surfels.positions[:, 0] > 1
+    made = convert(resolution=8)[0]
+    surfels, right = surfels_of(made), world_positions(made)[:, 0] > 1
     assert np.array_equal(surfels.materials, right)
     assert np.array_equal(surfels.colors[:, :2], np.stack([~right, right], axis=1))
 

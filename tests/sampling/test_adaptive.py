@@ -27,14 +27,14 @@ def test_a_flat_square_keeps_small_surfels_along_its_border_alone(square):
     """64 x 64 cells: 8 x 8 blocks of 8 inside, one block of the ring less at each side, then 4, 2 and 1."""
     sampling = adaptive(square(), 64)
     surfels = sampling.surfels
-    middle = np.abs(surfels.positions[:, :2] - 0.5).max(axis=1) < 0.3
+    middle = np.abs((surfels.origin + surfels.positions)[:, :2] - 0.5).max(axis=1) < 0.3
     assert np.allclose(surfels.scales[middle], 0.75 * 8 / 64)
     assert len(surfels) + sampling.saved == 64**2 and len(surfels) < 64**2 / 4
 
 
 def test_no_disc_sticks_out_farther_than_a_single_splat(square):
     surfels = adaptive(square(), 64).surfels
-    reach = surfels.positions[:, :2] + surfels.scales[:, :1]
+    reach = (surfels.origin + surfels.positions)[:, :2] + surfels.scales[:, :1]
     assert reach.max() <= 1 + 0.7501 / 64 + 1e-6
 
 
@@ -90,7 +90,7 @@ def test_colours_that_differ_are_not_merged(square):
 def test_materials_are_not_merged(square):
     two = square(materials=np.array([0, 1]), surfaces=(Surface(), Surface()))
     surfels = adaptive(two, 64).surfels
-    x, y = surfels.positions[:, :2].T
+    x, y = (surfels.origin + surfels.positions)[:, :2].T
     assert set(surfels.materials) == {0, 1}
     assert (surfels.materials[x > y + 0.02] == 0).all() and (surfels.materials[x < y - 0.02] == 1).all()
 

@@ -17,7 +17,7 @@ def noise(size, seed=0):
 
 
 def texel(surfels, size):
-    column, row = np.floor(surfels.positions[:, :2] * size).astype(int).T
+    column, row = np.floor((surfels.origin + surfels.positions)[:, :2] * size).astype(int).T
     return row, column
 
 
@@ -96,7 +96,7 @@ def test_a_placement_moves_turns_and_scales_the_image(square):
     ramp[..., 0], ramp[..., 1] = np.meshgrid((np.arange(32) + 0.5) / 32, (np.arange(32) + 0.5) / 32)
     texture = Texture(Image(ramp, "EXTEND"), placement=((0, -1, 1), (0.5, 0, 0.25)))
     surfels = sampled(square, Surface(Channel((1, 1, 1, 1), texture)), 32)
-    x, y = surfels.positions[:, 0], surfels.positions[:, 1]
+    x, y, _ = (surfels.origin + surfels.positions).T
     inner = (np.minimum(x, y) > 0.1) & (np.maximum(x, y) < 0.9)
     assert np.abs(surfels.colors[:, 0] - (1 - y))[inner].max() < 1e-5
     assert np.abs(surfels.colors[:, 1] - (0.25 + x / 2))[inner].max() < 1e-5
@@ -151,8 +151,8 @@ def test_adaptive_sampling_keeps_what_a_texture_changes_and_averages_what_it_doe
     sampling = sample_surface(mesh, resolution=64, tolerance=Tolerance(0.001))
     surfels = sampling.surfels
     assert sampling.saved > 1000
-    assert np.allclose(surfels.roughness, np.where(surfels.positions[:, 0] < 0.5, 0.5, 1))
-    reach = surfels.positions[:, 0] - 0.5, surfels.scales[:, 0]
+    assert np.allclose(surfels.roughness, np.where((surfels.origin + surfels.positions)[:, 0] < 0.5, 0.5, 1))
+    reach = (surfels.origin + surfels.positions)[:, 0] - 0.5, surfels.scales[:, 0]
     assert (np.abs(reach[0]) > 0.6 * reach[1])[surfels.scales[:, 0] > 2 / 64].all()
 
 

@@ -25,7 +25,7 @@ def test_vertex_colours_are_linear_between_corners(square):
     surfels = sample_mesh(
         surfaced(square, Surface(Channel((1, 1, 1, 1), VertexColors())), corner_colors=corners), resolution=32
     )
-    assert np.abs(surfels.colors[:, :2] - surfels.positions[:, :2]).max() < 1e-6
+    assert np.abs(surfels.colors[:, :2] - (surfels.origin + surfels.positions)[:, :2]).max() < 1e-6
 
 
 def test_the_factors_multiply(square):
@@ -48,9 +48,9 @@ def test_a_ramp_in_a_texture_comes_back_unshifted(square):
     ramp = np.ones((16, 16, 4))
     ramp[..., 0], ramp[..., 1] = np.meshgrid((np.arange(16) + 0.5) / 16, (np.arange(16) + 0.5) / 16)
     surfels = sample_mesh(surfaced(square, Surface(Channel((1, 1, 1, 1), Texture(Image(ramp))))), resolution=64)
-    x, y = surfels.positions[:, 0], surfels.positions[:, 1]
+    x, y = places = (surfels.origin + surfels.positions)[:, :2].T
     inner = (np.minimum(x, y) > 1 / 32) & (np.maximum(x, y) < 31 / 32)
-    assert inner.sum() > 3000 and np.abs(surfels.colors[:, :2] - surfels.positions[:, :2])[inner].max() < 1e-6
+    assert inner.sum() > 3000 and np.abs(surfels.colors[:, :2].T - places)[:, inner].max() < 1e-6
 
 
 #: extension -> the red of pixels (0, 1) at u = -0.25 and 1.25, 1.75, pixel centres all.
@@ -88,7 +88,7 @@ def test_a_texture_at_its_own_size_is_not_blurred(square):
     pixels = np.random.default_rng(0).random((16, 16, 4))
     pixels[..., 3] = 1
     surfels = sample_mesh(surfaced(square, Surface(Channel((1, 1, 1, 1), Texture(Image(pixels))))), resolution=16)
-    column, row = np.floor(surfels.positions[:, :2] * 16).astype(int).T
+    column, row = np.floor((surfels.origin + surfels.positions)[:, :2] * 16).astype(int).T
     assert np.abs(surfels.colors - pixels[row, column]).max() < 1e-5
 
 
@@ -102,7 +102,7 @@ def test_a_transparent_pixel_does_not_bleed_its_colour(square):
 def test_each_triangle_has_its_own_material(square):
     surfaces = Surface(Channel((1, 0, 0, 1))), Surface(Channel((0, 1, 0, 1)))
     surfels = sample_mesh(surfaced(square, *surfaces, materials=np.array([0, 1])), resolution=16)
-    above = surfels.positions[:, 1] > surfels.positions[:, 0] + 1e-6
+    above = (surfels.origin + surfels.positions)[:, 1] > (surfels.origin + surfels.positions)[:, 0] + 1e-6
     assert (surfels.materials[above] == 1).all() and (surfels.colors[above] == (0, 1, 0, 1)).all()
     assert (surfels.colors[surfels.materials == 0] == (1, 0, 0, 1)).all()
 
