@@ -145,7 +145,7 @@ def _held_out(number: int, instance: Instance) -> Instance:
 
 def _transparency() -> list[Feature]:
     row = partial(Feature, "transparency")
-    both, sun = glass(0.5, 0, 1), replace(HARD["sun"], casts_shadow=True)
+    both = glass(0.5, 0, 1)
     features = [
         row(f"both tori transparent, {n} layers", "opaque", together(both, settings(layers=n)), same, n == 3)
         for n in (2, 3, 8)
@@ -155,8 +155,14 @@ def _transparency() -> list[Feature]:
         *features,
         row("the rest behind 3 layers, blended", "left out", together(both, settings(layers=3)), exact),
         row("one torus transparent, 3 layers", "opaque", glass(0.5, 0), same),
-        row(
-            "hard shadow of a sun through them", "none", together(both, under(sun)), together(both, under(HARD["sun"]))
+        *(
+            row(
+                f"{kind} shadow of a sun through them",
+                "none",
+                together(both, under(replace(lamps["sun"], casts_shadow=True))),
+                together(both, under(lamps["sun"])),
+            )
+            for kind, lamps in (("hard", HARD), ("soft", LAMPS))
         ),
     ]
 

@@ -13,7 +13,8 @@ vec2 hard_filter(vec2 distance) {
   return clamp(2.5 - abs(distance), 0.0, 1.0);
 }
 
-const int FILTER_LOOKS = 4 * SOFT_SAMPLES;  // of which a mask hides some: as even as half as many that all count
+// Of which a mask hides some; and where surfaces behind one another block, their mean depth is of those it keeps.
+const int SEARCH_LOOKS = 2 * SOFT_SAMPLES, FILTER_LOOKS = 4 * SOFT_SAMPLES;
 
 // Radius and angle in the unit disc. count: a multiple of 16.
 vec2 soft_look(int number, int count) {

@@ -60,7 +60,7 @@ vec2 hard_filter(vec2 distance) {
   return max(2.0 - abs(distance), 0.0);
 }
 
-const int FILTER_LOOKS = SOFT_SAMPLES;
+const int SEARCH_LOOKS = SOFT_SAMPLES, FILTER_LOOKS = SOFT_SAMPLES;
 
 // Radius and angle in the unit disc.
 vec2 soft_look(int number, int count) {
@@ -116,8 +116,8 @@ float soft_share(ShadowPlace here, float bias, float size) {
   float reach = is_parallel ? size * max(here.depth - here.depths.y, 0.0) : 3.0 * size / here.depth;
   reach = min(reach, 0.25 / max(here.window.z, here.window.w));
   float blockers = 0.0, sum = 0.0;
-  for (int i = 0; i < SOFT_SAMPLES; i++) {
-    ivec2 texel = texel_of_look(here, i, SOFT_SAMPLES, reach);
+  for (int i = 0; i < SEARCH_LOOKS; i++) {
+    ivec2 texel = texel_of_look(here, i, SEARCH_LOOKS, reach);
     float depth = blocker_depth(here, texel);
     if (depth + bias < receiver_depth(here, texel_place(here, texel))) {
       blockers += 1.0;

@@ -81,6 +81,18 @@ def test_a_penumbra_has_no_comb(size, opacity, mask, darkness):
     assert difference.max() < 0.07
 
 
+@pytest.mark.parametrize("opacities", [(0.5, 0.5), (0.25, 0.75), (1.0, 1.0)])
+def test_sheets_behind_one_another_are_as_even_as_one(opacities, darkness):
+    """Curvature from pixel to pixel: 0.017 before opaque sheets, 0.010 here; where looks follow their masks, 0.046."""
+    sheets = [casters(opacity, 0, 0.0)[0] for opacity in opacities]
+    lower, turned = np.eye(4), np.eye(4)
+    lower[2, 3] = -0.9
+    turned[:2, :2] = (math.cos(1.4), -math.sin(1.4)), (math.sin(1.4), math.cos(1.4))
+    shown = darkness([replace(sheets[0], matrix_world=lower), replace(sheets[1], matrix_world=turned)], 0.4)
+    bends = (np.diff(shown, 2, axis=axis) / math.sqrt(6) for axis in (0, 1))
+    assert max(np.sqrt((bend**2).mean()) for bend in bends) < 0.019
+
+
 @pytest.mark.parametrize("mask", MASKS)
 def test_masks_are_whole_beyond_the_maps_border(mask, darkness):
     """The map ends with the picture, and looks of a wide lamp do not."""
