@@ -76,6 +76,12 @@ def shadowed(scene, camera):
     return replace(scene, lights=lights), camera
 
 
+def holed(scene, camera):
+    """The scene with its second instance cutting a hole."""
+    first, second = scene.surfels
+    return replace(scene, surfels=(first, replace(second, is_holdout=True))), camera
+
+
 def environment():
     """A sky, a floor and a red lamp in a picture of 32 x 64 pixels."""
     pixels = np.empty((32, 64, 3), np.float32)
@@ -135,6 +141,7 @@ SCENES = {
     "shadows": lambda: shadowed(*scenes.torus(size=SIZE)),
     "environment": lambda: in_a_picture(*scenes.torus(size=SIZE)),
     "own_materials": lambda: own_materials(*scenes.torus(size=SIZE)),
+    "holdout": lambda: holed(*scenes.torus(size=SIZE)),
     "deep": lambda: deep(*scenes.torus(size=SIZE)),
     "polygons": lambda: scenes.polygons(size=SIZE),
     "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),
@@ -196,6 +203,7 @@ CASES = [
     *(("polygons", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
     ("polygons", "mip", {"shading": "flat", "lines": Lines(width=2.0)}),
     ("own_materials", "mip", {}),
+    ("holdout", "mip", {}),
     ("own_materials", "mip", {"storage": "16-bit"}),
     ("depth_of_field", "quad", {"samples": 3}),
     *(("panorama", method, {}) for method in ("quad", "mip")),
