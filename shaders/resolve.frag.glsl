@@ -47,16 +47,17 @@ vec2 plane_slope(ivec2 texel, vec3 normal, float depth) {
   return abs(normal.xy * shading.window.zw) / max(abs(facing), 1e-30);
 }
 
-// How far depths of one surface may lie apart within the filter: twice its slope, and twice what the visibility pass
-// moved it back here. The slope is the lesser one of both sides, which a silhouette on one side does not spoil; between
-// two silhouettes, in a gap or on a wire, both are, and it is no more than twice what the normal says.
-float same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth) {
+// What visibility sees of the surface that is seen here, within the filter: nearest and farthest. On either side of its
+// depth twice its slope, which is the lesser one of both sides and no more than its normal says: a silhouette on one
+// side does not spoil it, nor do two, of a gap or a wire. Visibility moved all of it back, by up to twice as much as here;
+// what is nearer lies before it, but for a part of that: surfels of one surface do not lie in one plane.
+vec2 same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth) {
   float moved = abs(view_depth(texelFetch(visibility_depth, texel, 0).r) - depth);
   vec2 before = vec2(depth_at(texel - ivec2(1, 0), size, 1e30), depth_at(texel - ivec2(0, 1), size, 1e30));
   vec2 after = vec2(depth_at(texel + ivec2(1, 0), size, 1e30), depth_at(texel + ivec2(0, 1), size, 1e30));
-  vec2 slope = min(abs(before - depth), abs(after - depth));
-  slope = min(mix(slope, vec2(0.0), greaterThan(slope, vec2(1e29))), 2.0 * plane_slope(texel, normal, depth));
-  return 2.0 * (moved + slope.x + slope.y);
+  vec2 slope = min(min(abs(before - depth), abs(after - depth)), plane_slope(texel, normal, depth));
+  float sloped = 2.0 * (slope.x + slope.y);
+  return vec2(max(depth - sloped - 0.25 * moved, 0.5 * depth), depth + sloped + 2.0 * moved);
 }
 
 // Nearest and farthest of all stored depths that the filter reaches from here.
@@ -80,8 +81,8 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out float first, out bool i
   // The range of stored depths that see the same surface; none where there is none.
   vec2 range = vec2(2.0, -1.0);
   if (own.w > 0.0) {
-    float tolerance = same_surface(texel, size, seen_surface.xyz, depth);
-    range = vec2(stored_depth(max(depth - tolerance, 0.5 * depth)), stored_depth(depth + tolerance));
+    vec2 same = same_surface(texel, size, seen_surface.xyz, depth);
+    range = vec2(stored_depth(same.x), stored_depth(same.y));
   }
 #ifdef LAYER
   const vec4 background = vec4(0.0);
