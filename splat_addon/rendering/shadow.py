@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .camera import Camera, look_at
-from .light import Light
+from .light import MAX_SUN_HALF_ANGLE, Light
 from .scene import Scene
 from .view import View, sees_any, visible_corners
 
@@ -114,8 +114,9 @@ def map_ranges(maps: tuple[ShadowMap, ...], lights: int) -> np.ndarray:
 
 
 def _sun(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
-    """One parallel camera over what is both in the picture and in the scene; it looks back to the farthest caster over
-    that, and no deeper: depths are stored as shares of the length, in 24 bits.
+    """One parallel camera over what is both in the picture and in the scene, and over what softens its shadows from
+    beside, up to as much again; it looks back to the farthest caster over that, and no deeper: depths are stored as
+    shares of the length, in 24 bits.
     """
     frame = look_at((0, 0, 0), light.direction)
     to_light = frame[:3, :3].T
@@ -129,14 +130,23 @@ def _sun(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camer
     margin = 0.02 * (high - low).max()
     middle, half = (low + high) / 2, max((high - low).max() / 2 + margin, 1e-30)
     boxes = casters.reshape(-1, 8, 3)
-    least, most = boxes.min(axis=1)[:, :2], boxes.max(axis=1)[:, :2]
-    is_over = ((least <= middle + half) & (most >= middle - half)).all(axis=1)
-    if not is_over.any():
+    nearest = _nearest_over(boxes, middle, half)
+    if light.is_sized and nearest is not None:
+        softens = math.tan(min(light.size / 2, MAX_SUN_HALF_ANGLE)) * max(nearest - lowest[2], 0.0)
+        half += min(softens, half)
+        nearest = _nearest_over(boxes, middle, half)
+    if nearest is None:
         return []
-    nearest = boxes[is_over, :, 2].max()
     reach = max(nearest - lowest[2], half) * 1.01
     frame[:3, 3] = frame[:3, :3] @ (*middle, nearest + 0.005 * reach)
     return [Camera(frame, (-half, half, -half, half), (resolution, resolution), 0.0, reach, is_orthographic=True)]
+
+
+def _nearest_over(boxes: np.ndarray, middle: np.ndarray, half: float) -> float | None:
+    """The highest place of the boxes (n, 8, 3) of which a part is over a square; None where none is."""
+    least, most = boxes.min(axis=1)[:, :2], boxes.max(axis=1)[:, :2]
+    is_over = ((least <= middle + half) & (most >= middle - half)).all(axis=1)
+    return boxes[is_over, :, 2].max() if is_over.any() else None
 
 
 def _spot(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
