@@ -53,7 +53,7 @@ def hitting_rays(mesh, resolution) -> np.ndarray:
     spacing = grid_spacing(mesh, resolution=resolution)
     low = mesh.bounds()[0]
     surfels = sample_mesh(mesh, spacing=spacing, reduction="none")
-    cells = surfels.positions / np.float32(spacing)
+    cells = (surfels.origin - low + surfels.positions) / spacing
     rays = []
     for axis in range(3):
         plane = [(axis + 1) % 3, (axis + 2) % 3]

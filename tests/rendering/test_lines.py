@@ -120,10 +120,11 @@ def test_no_seam_shows_between_tiles(settings, cube, darkness, monkeypatch):
     whole = darkness([cube], camera, settings, Lines(width=4.0))
     monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", 40)
     difference = np.abs(whole - darkness([cube], camera, settings, Lines(width=4.0)))
-    # Two samples may tie, each of which the mip filter spreads over 5 x 5 pixels, where it counts 1 in all.
+    # Single samples tie, anywhere along the lines: the mip filter spreads one over 5 x 5 pixels, where it counts 1 in all.
+    # A seam would run along a border, through all lines.
     assert difference.sum() <= 2
     reach = FILTER_MARGIN if get_method(settings.method).filters_silhouettes else 0
-    for _ in range(2):
+    for _ in range(4):
         y, x = np.unravel_index(difference.argmax(), difference.shape)
         difference[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1] = 0.0
     assert difference.max() < 1e-3
