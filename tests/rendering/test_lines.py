@@ -120,8 +120,8 @@ def test_no_seam_shows_between_tiles(settings, cube, darkness, monkeypatch):
     whole = darkness([cube], camera, settings, Lines(width=4.0))
     monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", 40)
     difference = np.abs(whole - darkness([cube], camera, settings, Lines(width=4.0)))
-    # Single samples tie, anywhere along the lines: the mip filter spreads one over 5 x 5 pixels, where it counts 1 in all.
-    # A seam would run along a border, through all lines.
+    # Single samples tie, anywhere along the lines: the mip filter spreads one over 5 x 5 pixels, where it counts 1 in
+    # all. A seam would run along a border, through all lines.
     assert difference.sum() <= 2
     reach = FILTER_MARGIN if get_method(settings.method).filters_silhouettes else 0
     for _ in range(4):
