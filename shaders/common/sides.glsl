@@ -5,7 +5,6 @@
 
 const float BACK_WEIGHT = 1e-3;     // of a back against a front
 const float BACK_EPSILON = 2.0;     // a back is moved away that much further
-const float GRAZING_COSINE = 0.3;   // a back seen this flat is the rim of a front: its normal is left as it is
 
 // Where backs are hidden, every corner of such a splat goes here, beyond the near plane.
 const vec4 NOWHERE = vec4(0.0, 0.0, -2.0, 1.0);

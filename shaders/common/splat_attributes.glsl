@@ -29,7 +29,7 @@ Splat fetch_splat(int index) {
   float cosine = outward_cosine(splat.position, splat.axis_u, splat.axis_v, splats.sides.x, PARALLEL);
   splat.color_weight = vec4(stored.color.rgb, cosine < 0.0 ? BACK_WEIGHT : 1.0);
   splat.normal = normalize(mat3(splats.normal_matrix) * stored.normal);
-  float side = cosine < -GRAZING_COSINE ? -splats.sides.x : splats.sides.x;
+  float side = cosine < 0.0 ? -splats.sides.x : splats.sides.x;
   if (dot(splat.normal, cross(splat.axis_u, splat.axis_v)) * side < 0.0) splat.normal = -splat.normal;
   splat.opacity = clamp(stored.color.a, 0.0, 1.0);
   splat.is_hidden = cosine < 0.0 && splats.sides.y > 0.5;

@@ -15,11 +15,9 @@ from ..rendering.light import MAX_LIGHT_SETS
 from ..rendering.scene import Instance, Scene
 from .textures import surfel_textures
 
-#: What the back of a splat weighs against a front, how much further it is moved away, and how flat (cosine) a
-#: back must be seen to pass for the rim of a front, whose normal is left as it is: shaders/common/sides.glsl.
+#: What the back of a splat weighs against a front, and how much further it is moved away: shaders/common/sides.glsl.
 BACK_WEIGHT = 1e-3
 BACK_EPSILON = 2.0
-GRAZING_COSINE = 0.3
 
 #: A splat that shows less of itself is not there at all: shaders/common/sides.glsl.
 LEAST_OPACITY = 1e-3
@@ -101,7 +99,7 @@ def _instance_splats(instance: Instance, camera: Camera) -> Splats:
     plane = np.cross(u, v)
     # Mirrored objects turn u x v inside out.
     cosine = _outward_cosine(-plane if np.linalg.det(linear) < 0 else plane, center, camera)
-    seen = np.where((cosine < -GRAZING_COSINE) == (np.linalg.det(linear) < 0), 1, -1)[:, None] * plane
+    seen = np.where((cosine < 0) == (np.linalg.det(linear) < 0), 1, -1)[:, None] * plane
     normal = _turned(surfels.normals.astype(np.float64) @ _cofactors(linear).T, seen)
     color = surfels.colors[:, :3].astype(np.float64)
     uvs = _no_uvs(len(surfels))
