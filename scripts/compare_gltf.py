@@ -10,11 +10,9 @@ the difference.
 
 import argparse
 import math
-import os
 import sys
 import tempfile
 import time
-import traceback
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -22,6 +20,7 @@ sys.path.insert(0, str(ROOT))
 
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402
+from leaving import run_and_leave  # noqa: E402
 from mathutils import Vector  # noqa: E402
 from PIL import Image  # noqa: E402
 
@@ -152,12 +151,4 @@ def over_background(premultiplied: np.ndarray) -> np.ndarray:
 
 
 if __name__ == "__main__":
-    exit_code = 1
-    try:
-        exit_code = main()
-    except Exception:
-        traceback.print_exc()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    # Some wheels of Blender hang or crash while the interpreter ends.
-    os._exit(exit_code)
+    run_and_leave(main)

@@ -4,16 +4,15 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import tempfile
-import traceback
 from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter
 
 import bpy
 from environment import ROOT, Problem, exit_with_problems
+from leaving import run_and_leave
 from rich.console import Console
 from rich.table import Table
 
@@ -142,12 +141,4 @@ def summary(options, triangles: int, surfels: list, seconds: float, stats: dict)
 
 
 if __name__ == "__main__":
-    exit_code = 1
-    try:
-        exit_code = main(sys.argv[1:])
-    except Exception:
-        traceback.print_exc()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    # Some wheels of Blender hang or crash while the interpreter ends.
-    os._exit(exit_code)
+    run_and_leave(lambda: main(sys.argv[1:]))

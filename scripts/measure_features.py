@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import os
 import sys
 from pathlib import Path
 
@@ -22,6 +21,7 @@ from costs.features import FEATURES, Feature
 from costs.measurement import COLUMNS, measure
 from costs.shots import plain
 from inside_a_render import run_on
+from leaving import run_and_leave
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from trade.report import header, table
 
@@ -115,8 +115,4 @@ def main(arguments: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    code = main(sys.argv[1:])
-    sys.stdout.flush()
-    sys.stderr.flush()
-    # Some wheels of Blender hang or crash while the interpreter ends.
-    os._exit(code)
+    run_and_leave(lambda: main(sys.argv[1:]))

@@ -23,6 +23,7 @@ sys.path.insert(0, str(ROOT))
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402
 from inside_a_render import inside_a_render  # noqa: E402
+from leaving import run_and_leave  # noqa: E402
 
 from splat_addon.rendering import Camera, Instance, Light, Material, Renderer, Scene, Settings, open_device  # noqa: E402
 from splat_addon.surfels import Surfels, axes_quaternions  # noqa: E402
@@ -114,9 +115,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=9)
     arguments = parser.parse_args()
     inside_a_render(lambda: report(arguments))
-    sys.stdout.flush()
-    os._exit(0)
 
 
 if __name__ == "__main__":
-    main()
+    run_and_leave(main)

@@ -24,6 +24,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "scripts")]
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402
 from coverage import uncovered_points  # noqa: E402
+from leaving import run_and_leave  # noqa: E402
 from measure_conversion import load  # noqa: E402
 from PIL import Image  # noqa: E402
 
@@ -294,10 +295,7 @@ def main() -> None:
         report_coverage(options.models)
         report_cost()
         report_flicker(Path(folder))
-    sys.stdout.flush()
-    # Blender 4.5 may hang while the interpreter ends
-    os._exit(0)
 
 
 if __name__ == "__main__":
-    main()
+    run_and_leave(main)

@@ -10,7 +10,6 @@ promised scenes at half the size with a quarter of the splats, fewer turns and a
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,6 +19,7 @@ from environment import ROOT, Problem, exit_with_problems
 sys.path.insert(0, str(ROOT))
 
 from inside_a_render import run_on
+from leaving import run_and_leave
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from trade.cases import CASES, FULL, Case, View
 from trade.choices import PICTURED, YARDSTICK, choices
@@ -128,8 +128,4 @@ def main(arguments: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    code = main(sys.argv[1:])
-    sys.stdout.flush()
-    sys.stderr.flush()
-    # Some wheels of Blender hang or crash while the interpreter ends.
-    os._exit(code)
+    run_and_leave(lambda: main(sys.argv[1:]))
