@@ -1,13 +1,12 @@
 // References: this project; the idea of taking the colour of a sub-sample from the nearest pixel that sees its surface
 //             is Chajdas, McGuire, Luebke, "Subpixel Reconstruction Antialiasing", I3D 2011.
 // Summary: colours inside a surface were filtered with their splats; here its silhouettes are. Of the samples around one,
-//          those that see its own surface take its colour, others keep their own, empty ones have the background's, all
-//          under the pixel's Gaussian. Where there are transparent layers, each counts by what the nearer ones let
-//          through there.
+//          and of what visibility sees halfway to the next rows, those that see its own surface take its colour, others
+//          keep their own, empty ones have the background's, all under the pixel's Gaussian. Where there are transparent
+//          layers, each counts by what the nearer ones let through there.
 
 #include "common/sample_outputs.glsl"
 #ifdef LAYER
-#define visibility_depth layer_depth
 #include "common/layer_at.glsl"
 #endif
 #ifdef LAYERS
@@ -30,10 +29,13 @@ const float FARTHEST = 3.4e38;
 #include "common/pixel.glsl"
 #endif
 
-// The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes.
+// The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes; of columns
+// and of rows, which lie closer.
 const float FIRST_WEIGHT = exp(-0.5 * float(FILTER_REACH * FILTER_REACH) / FILTER_VARIANCE);
-const float FIRST_RATIO = exp((float(FILTER_REACH) - 0.5) / FILTER_VARIANCE);
-const float RATIO_RATIO = exp(-1.0 / FILTER_VARIANCE);
+const float STEP = 1.0 / float(ROWS);
+const vec2 FIRST_RATIO = vec2(exp((float(FILTER_REACH) - 0.5) / FILTER_VARIANCE),
+                              exp((float(FILTER_REACH) - 0.5 * STEP) * STEP / FILTER_VARIANCE));
+const vec2 RATIO_RATIO = vec2(exp(-1.0 / FILTER_VARIANCE), exp(-STEP * STEP / FILTER_VARIANCE));
 
 float depth_at(ivec2 texel, ivec2 size, float otherwise) {
   vec4 s = texelFetch(surface, clamp(texel, ivec2(0), size - 1), 0);
@@ -52,7 +54,7 @@ vec2 plane_slope(ivec2 texel, vec3 normal, float depth) {
 // side does not spoil it, nor do two, of a gap or a wire. Visibility moved all of it back, by up to twice as much as here;
 // what is nearer lies before it, but for a part of that: surfels of one surface do not lie in one plane.
 vec2 same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth) {
-  float moved = abs(view_depth(texelFetch(visibility_depth, texel, 0).r) - depth);
+  float moved = abs(view_depth(texelFetch(SEEN, ivec2(texel.x, ROWS * texel.y), 0).r) - depth);
   vec2 before = vec2(depth_at(texel - ivec2(1, 0), size, 1e30), depth_at(texel - ivec2(0, 1), size, 1e30));
   vec2 after = vec2(depth_at(texel + ivec2(1, 0), size, 1e30), depth_at(texel + ivec2(0, 1), size, 1e30));
   vec2 slope = min(min(abs(before - depth), abs(after - depth)), plane_slope(texel, normal, depth));
@@ -70,35 +72,88 @@ vec2 reached_range(ivec2 texel, ivec2 size) {
   return reached;
 }
 
-// coverage: what is covered and not by nearer layers. first: the share of which this is the surface that depth and
-// normal are of. is_hit: whether the texel sees such; is_behind: whether it is in a nearer layer.
-vec4 resolve_sample(ivec2 texel, out float coverage, out float first, out bool is_hit, out bool is_behind,
-                    out Outputs outputs) {
+// What a sample's surroundings add up to. coverage: what is covered and not by nearer layers. first: the share of which
+// this is the surface that depth and normal are of. is_hit: whether the texel sees such; is_behind: whether it is in a
+// nearer layer.
+struct Resolved {
+  vec4 color;
+  float coverage;
+  float first;
+  bool is_hit;
+  bool is_behind;
+  Outputs outputs;
+};
+
+// The surface of the sample that is resolved: its colour, and the range of stored depths that see it, none where there is
+// none.
+struct Own {
+  ivec2 texel;
+  vec4 color;
+  vec2 range;
+};
+
+// seen: a stored depth, that of `at` or of a place beside it which sees the same. there: what is shaded at `at`.
+void add_seen(inout Resolved sum, Own own, float seen, ivec2 at, vec4 there, bool is_between, float weight,
+              vec4 background) {
+  vec4 here = background;
+  float shown = weight;
+  bool is_self = at == own.texel && !is_between;
+#ifdef BEHIND_LAYERS
+  shown *= let_through(at);
+  bool is_first = is_first_surface(at);
+  sum.is_behind = sum.is_behind || (is_self && !is_first);
+#else
+  const bool is_first = true;
+#endif
+#if defined(HOLDOUT) && !defined(LAYER)
+  // What is seen and not shaded cuts a hole.
+  bool is_cut = seen < 1.0 && !(there.w > 0.0);
+  if (is_cut) here = vec4(0.0);
+#else
+  const bool is_cut = false;
+#endif
+  if (seen < 1.0 && !is_cut) {
+#ifdef LAYER
+    bool is_own = seen >= own.range.x && seen <= own.range.y;
+    here = layer_at(at);
+    sum.outputs = is_own ? added(sum.outputs, sample_outputs(own.texel), shown * here.w / own.color.w)
+                         : added(sum.outputs, layer_outputs_at(at), shown);
+    if (is_own) here = own.color * (here.w / own.color.w);
+    is_first = is_first && here.w >= shading.edges.y;
+#else
+    bool is_own = (seen >= own.range.x && seen <= own.range.y) || !(there.w > 0.0);
+    here = is_own ? own.color : there;
+    here = here.w > 0.0 ? here : background;
+    sum.outputs = added(sum.outputs, sample_outputs(is_own ? own.texel : at), shown);
+#endif
+    sum.coverage += shown;
+    sum.first += is_first ? weight : 0.0;
+    sum.is_hit = sum.is_hit || (is_self && is_first);
+  }
+  sum.color += shown * here;
+}
+
+Resolved resolve_sample(ivec2 texel) {
   ivec2 size = textureSize(shaded, 0);
-  vec4 own = texelFetch(shaded, texel, 0);
-  vec4 seen_surface = texelFetch(surface, texel, 0);
-  float depth = seen_surface.w;
-  // The range of stored depths that see the same surface; none where there is none.
-  vec2 range = vec2(2.0, -1.0);
-  if (own.w > 0.0) {
-    vec2 same = same_surface(texel, size, seen_surface.xyz, depth);
-    range = vec2(stored_depth(same.x), stored_depth(same.y));
+  vec2 reached = reached_range(texel, size);
+  // Loops that have no turn to make cost nothing; what is not chosen may.
+  int turns = reached.x < 1.0 ? 1 : 0;
+  Own own = Own(texel, vec4(0.0), vec2(2.0, -1.0));
+  for (int turn = 0; turn < turns; turn++) {
+    own.color = texelFetch(shaded, texel, 0);
+    vec4 seen_surface = texelFetch(surface, texel, 0);
+    vec2 same = same_surface(texel, size, seen_surface.xyz, seen_surface.w);
+    vec2 range = vec2(stored_depth(same.x), stored_depth(same.y));
+    if (own.color.w > 0.0) own.range = range;
   }
 #ifdef LAYER
   const vec4 background = vec4(0.0);
 #else
   vec4 background = world_background(texel);
 #endif
-  vec4 color = vec4(0.0);
-  float total = 0.0;
-  outputs = NO_OUTPUTS;
-  coverage = 0.0;
-  first = 0.0;
-  is_hit = false;
-  is_behind = false;
-  // Inside a surface and beside all surfaces there is nothing to filter, and the loops have no turn to make.
-  vec2 reached = reached_range(texel, size);
-  bool is_inside = reached.x >= range.x && reached.y <= range.y && reached.y < 1.0;
+  Resolved sum = Resolved(vec4(0.0), 0.0, 0.0, false, false, NO_OUTPUTS);
+  // Inside a surface and beside all surfaces there is nothing to filter.
+  bool is_inside = reached.x >= own.range.x && reached.y <= own.range.y && reached.y < 1.0;
 #ifdef BEHIND_LAYERS
   is_inside = false;
 #endif
@@ -107,68 +162,49 @@ vec4 resolve_sample(ivec2 texel, out float coverage, out float first, out bool i
 #else
   bool is_even = is_inside || reached.x == 1.0;
 #endif
+  float total = is_even ? 1.0 : 0.0;
   if (is_even) {
-    color = is_inside ? own : background;
-    coverage = is_inside ? 1.0 : 0.0;
-    first = coverage;
-    total = 1.0;
-    is_hit = is_inside;
-    if (is_inside) outputs = sample_outputs(texel);
+    sum = Resolved(is_inside ? own.color : background, 0.0, 0.0, is_inside, false, NO_OUTPUTS);
+    if (is_inside) {
+      sum.coverage = sum.first = 1.0;
+      sum.outputs = sample_outputs(texel);
+    }
   }
   int across = is_even ? 0 : 2 * FILTER_REACH + 1;
-  float row = FIRST_WEIGHT, row_ratio = FIRST_RATIO;
-  for (int y = 0; y < across; y++) {
-    float weight = row * FIRST_WEIGHT, ratio = FIRST_RATIO;
-    for (int x = 0; x < across; x++) {
+  float column = FIRST_WEIGHT, column_ratio = FIRST_RATIO.x;
+  for (int x = 0; x < across; x++) {
+    float weight = column * FIRST_WEIGHT, ratio = FIRST_RATIO.y, below = 1.0;
+    ivec2 before = texel;
+    vec4 shaded_before = vec4(0.0);
+    for (int y = 0; y < across; y++) {
       ivec2 at = clamp(texel + ivec2(x, y) - FILTER_REACH, ivec2(0), size - 1);
-      float seen = texelFetch(visibility_depth, at, 0).r;
-      vec4 here = background;
-      float shown = weight;
-#ifdef BEHIND_LAYERS
-      shown *= let_through(at);
-      bool is_first = is_first_surface(at);
-      is_behind = is_behind || (at == texel && !is_first);
-#else
-      const bool is_first = true;
-#endif
-#if defined(HOLDOUT) && !defined(LAYER)
-      // What is seen and not shaded cuts a hole.
-      bool is_cut = seen < 1.0 && !(texelFetch(shaded, at, 0).w > 0.0);
-      if (is_cut) here = vec4(0.0);
-#else
-      const bool is_cut = false;
-#endif
-      if (seen < 1.0 && !is_cut) {
-#ifdef LAYER
-        bool is_own = seen >= range.x && seen <= range.y;
-        here = layer_at(at);
-        outputs = is_own ? added(outputs, sample_outputs(texel), shown * here.w / own.w)
-                         : added(outputs, layer_outputs_at(at), shown);
-        if (is_own) here = own * (here.w / own.w);
-        is_first = is_first && here.w >= shading.edges.y;
-#else
-        vec4 there = texelFetch(shaded, at, 0);
-        bool is_own = (seen >= range.x && seen <= range.y) || !(there.w > 0.0);
-        here = is_own ? own : there;
-        here = here.w > 0.0 ? here : background;
-        outputs = added(outputs, sample_outputs(is_own ? texel : at), shown);
-#endif
-        coverage += shown;
-        first += is_first ? weight : 0.0;
-        is_hit = is_hit || (at == texel && is_first);
+      float seen = texelFetch(SEEN, ivec2(at.x, ROWS * at.y), 0).r;
+      vec4 there = texelFetch(shaded, at, 0);
+      if (ROWS > 1 && y > 0) {
+        // Between two samples the surface of the one is seen, or of the other.
+        float between = texelFetch(SEEN, ivec2(at.x, max(ROWS * at.y - 1, 0)), 0).r;
+        bool is_before = abs(between - below) < abs(between - seen);
+        add_seen(sum, own, between, is_before ? before : at, is_before ? shaded_before : there, true, weight, background);
+        total += weight;
+        weight *= ratio;
+        ratio *= RATIO_RATIO.y;
       }
-      color += shown * here;
+      add_seen(sum, own, seen, at, there, false, weight, background);
       total += weight;
       weight *= ratio;
-      ratio *= RATIO_RATIO;
+      ratio *= RATIO_RATIO.y;
+      below = seen;
+      before = at;
+      shaded_before = there;
     }
-    row *= row_ratio;
-    row_ratio *= RATIO_RATIO;
+    column *= column_ratio;
+    column_ratio *= RATIO_RATIO.x;
   }
-  coverage /= total;
-  outputs = added(NO_OUTPUTS, outputs, 1.0 / total);
-  first /= total;
-  return color / total;
+  sum.color /= total;
+  sum.coverage /= total;
+  sum.first /= total;
+  sum.outputs = added(NO_OUTPUTS, sum.outputs, 1.0 / total);
+  return sum;
 }
 
 void main() {
@@ -181,15 +217,13 @@ void main() {
   for (int y = 0; y < SAMPLES; y++) {
     for (int x = 0; x < SAMPLES; x++) {
       ivec2 texel = origin + ivec2(x, y);
-      float coverage, first;
-      bool is_hit, is_behind;
-      Outputs outputs;
-      color_total += resolve_sample(texel, coverage, first, is_hit, is_behind, outputs);
-      outputs_total = added(outputs_total, outputs, 1.0);
-      is_seen_nearer = is_seen_nearer || is_behind;
+      Resolved here = resolve_sample(texel);
+      color_total += here.color;
+      outputs_total = added(outputs_total, here.outputs, 1.0);
+      is_seen_nearer = is_seen_nearer || here.is_behind;
       vec4 s = texelFetch(surface, texel, 0);
-      normal_total += vec4(s.xyz * first, coverage);
-      if (is_hit && s.w > 0.0) nearest = min(nearest, s.w * shading.material.w);
+      normal_total += vec4(s.xyz * here.first, here.coverage);
+      if (here.is_hit && s.w > 0.0) nearest = min(nearest, s.w * shading.material.w);
     }
   }
   float share = 1.0 / float(SAMPLES * SAMPLES);

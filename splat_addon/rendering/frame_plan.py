@@ -15,8 +15,14 @@ FILTER_MARGIN = 2
 #: And what shaders/common/layer_at.glsl and shaders/rest_shading.frag.glsl read beside that.
 LAYER_MARGIN = 1
 
+#: Rows of visibility to each row of samples, where silhouettes are filtered; the first of them goes through the centres
+#: of the samples. shaders/common/silhouette_filter.glsl has the same.
+VISIBILITY_ROWS = 2
+
 #: texture -> (format, what it holds one value for)
 TEXTURES = {
+    "row_depth": ("DEPTH32F", "row"),
+    "row_identity": ("RG32F", "row"),
     "visibility_depth": ("DEPTH32F", "sample"),
     "identity": ("RG32F", "sample"),
     "identity_next": ("RG32F", "sample"),
@@ -24,6 +30,7 @@ TEXTURES = {
     "polygon_identity": ("RG32F", "sample"),
     "rim_depth": ("DEPTH32F", "sample"),
     "holdout_depth": ("DEPTH32F", "sample"),
+    "row_holdout_depth": ("DEPTH32F", "row"),
     "seen_range": ("RGBA32F", "sample"),
     "seen_depth": ("DEPTH32F", "sample"),
     "color_sum": ("RGBA32F", "sample"),
@@ -166,6 +173,11 @@ class FramePlan:
         """Whether a resolve pass does."""
         return any(p.name == "resolve" for p in self.passes)
 
+    @property
+    def numbers(self) -> tuple[str, int]:
+        """The texture of whose the samples are that mattes are made of, and its rows to a row of samples."""
+        return ("row_identity", VISIBILITY_ROWS) if "row_identity" in self.textures else ("identity", 1)
+
     def size(self, texture: str, pixels: tuple[int, int]) -> tuple[int, int]:
         """Width and height of a texture, for a tile of so many pixels; the frame's are common to all tiles."""
         what_for = TEXTURES[texture][1]
@@ -177,8 +189,8 @@ class FramePlan:
             return SPLATS_PER_ROW, self.lit_rows
         if what_for == "block":
             return BLOCKS, BLOCKS
-        along = {"pixel": 1, "sample": self.samples}[what_for]
-        return pixels[0] * along, pixels[1] * along
+        along = 1 if what_for == "pixel" else self.samples
+        return pixels[0] * along, pixels[1] * along * (VISIBILITY_ROWS if what_for == "row" else 1)
 
     def format(self, texture: str) -> str:
         """A name in `device.interface.FORMATS`."""

@@ -83,12 +83,12 @@ class Identified:
             self.arrays["cryptomatte"] = Cryptomatte(size, *nothing, self._identities.names)
 
     def add(self, tile: tuple[int, int, int, int], seen: np.ndarray, plan: FramePlan) -> None:
-        """A tile's x, y, width, height in pixels; and number and depth of its samples, (rows, columns, 2) float32, with
-        its margin.
+        """A tile's x, y, width, height in pixels; and number and depth as the plan's texture of numbers has them,
+        (rows, columns, 2) float32, with its margin.
         """
         x, y, width, height = tile
         indices = [name for name in INDICES if name in self.arrays]
-        numbers = nearest_numbers(seen, plan) if indices else None
+        numbers = nearest_numbers(seen[:: plan.numbers[1]], plan) if indices else None
         for name in indices:
             self.arrays[name][y : y + height, x : x + width] = self._identities.indices[name][numbers]
         if matte := self.arrays.get("cryptomatte"):
@@ -118,17 +118,14 @@ def nearest_numbers(seen: np.ndarray, plan: FramePlan) -> np.ndarray:
 
 
 def tile_matte(seen: np.ndarray, tile, size: tuple[int, int], plan: FramePlan, identities: Identities) -> Cryptomatte:
-    """What a tile, x, y, width and height in a picture of that size, holds of whom."""
+    """What a tile, x, y, width and height in a picture of that size, holds of whom. seen: as in `Identified.add`."""
     x, y, width, height = tile
-    step, (kernel, lead) = plan.samples, _kernel(plan)
-    edge = plan.margin * step - lead
-    reach = len(kernel)
-    hashes = identities.hashes[seen[..., 0].astype(np.int64)]
-    hashes = hashes[edge : edge + (height - 1) * step + reach, edge : edge + (width - 1) * step + reach]
-    low, high = (_window_extreme(hashes, step, reach, extreme) for extreme in (np.minimum, np.maximum))
+    axes = [_Axis.of(plan, pixels, rows) for pixels, rows in ((height, plan.numbers[1]), (width, 1))]
+    hashes = identities.hashes[seen[..., 0].astype(np.int64)][axes[0].reached, axes[1].reached]
+    low, high = (_window_extreme(hashes, axes, extreme) for extreme in (np.minimum, np.maximum))
     rows, columns = np.nonzero((low == high) & (low > 0))
     whole = low[rows, columns].astype(np.uint64), np.ones(len(rows)), rows, columns
-    parts = [whole, *_mixed(hashes, np.argwhere(low != high), kernel, step)]
+    parts = [whole, *_mixed(hashes, np.argwhere(low != high), axes)]
     keys = np.concatenate([_key(x + columns, y + rows, size, names) for names, _, rows, columns in parts])
     keys, shares = added_up(keys, np.concatenate([shares for _, shares, *_ in parts]))
     return Cryptomatte(size, keys, shares, identities.names)
@@ -138,30 +135,46 @@ def _key(x: np.ndarray, y: np.ndarray, size: tuple[int, int], hashes: np.ndarray
     return (y * size[0] + x).astype(np.uint64) << np.uint64(32) | hashes
 
 
-def _kernel(plan: FramePlan) -> tuple[np.ndarray, int]:
-    """Weights of a row of samples under a pixel, and how many of them lie before it."""
-    even = np.full(plan.samples, 1 / plan.samples)
-    if not plan.filters_silhouettes:
-        return even, 0
-    gaussian = np.exp(-0.5 * np.arange(-FILTER_MARGIN, FILTER_MARGIN + 1) ** 2 / _FILTER_VARIANCE)
-    return np.convolve(even, gaussian / gaussian.sum()), FILTER_MARGIN
+@dataclass(frozen=True, eq=False)
+class _Axis:
+    """kernel: weights under a pixel of what numbers are known of along it. step: from a pixel to the next.
+    reached: of a tile with its margin, what its pixels' kernels reach."""
+
+    kernel: np.ndarray
+    step: int
+    reached: slice
+
+    @classmethod
+    def of(cls, plan: FramePlan, pixels: int, between: int) -> _Axis:
+        """pixels: of the tile. between: how many numbers there are to a sample."""
+        step = plan.samples * between
+        kernel = np.zeros(step - between + 1)
+        kernel[::between] = 1 / plan.samples
+        lead = FILTER_MARGIN * between if plan.filters_silhouettes else 0
+        if plan.filters_silhouettes:
+            gaussian = np.exp(-0.5 * (np.arange(-lead, lead + 1) / between) ** 2 / _FILTER_VARIANCE)
+            kernel = np.convolve(kernel, gaussian / gaussian.sum())
+        first = plan.margin * step - lead
+        return cls(kernel, step, slice(first, first + (pixels - 1) * step + len(kernel)))
 
 
-def _window_extreme(values: np.ndarray, step: int, reach: int, extreme) -> np.ndarray:
-    """Least or greatest value of the window of `reach` x `reach` samples of every pixel."""
-    for _ in range(2):
-        values = values.swapaxes(0, 1)
+def _window_extreme(values: np.ndarray, axes: list[_Axis], extreme) -> np.ndarray:
+    """Least or greatest value of what every pixel's kernels reach."""
+    for axis in axes:
+        reach = len(axis.kernel)
         last = len(values) - reach + 1
-        values = extreme.reduce([values[first : first + last : step] for first in range(reach)])
+        values = extreme.reduce([values[first : first + last : axis.step] for first in range(reach)]).swapaxes(0, 1)
     return values
 
 
-def _mixed(hashes: np.ndarray, places: np.ndarray, kernel: np.ndarray, step: int):
+def _mixed(hashes: np.ndarray, places: np.ndarray, axes: list[_Axis]):
     """Hashes, shares, rows and columns of what pixels with more than one thing in their window hold, pixel by pixel."""
-    weights, along = np.outer(kernel, kernel).ravel(), np.arange(len(kernel))
+    weights = np.outer(axes[0].kernel, axes[1].kernel).ravel()
+    up, along = (np.arange(len(axis.kernel)) for axis in axes)
+    steps = [axis.step for axis in axes]
     for chunk in np.array_split(places, math.ceil(len(places) / _CHUNK)) if len(places) else ():
-        rows, columns = (chunk * step)[:, 0, None, None], (chunk * step)[:, 1, None, None]
-        found = hashes[rows + along[:, None], columns + along].reshape(len(chunk), -1)
+        rows, columns = (chunk * steps)[:, 0, None, None], (chunk * steps)[:, 1, None, None]
+        found = hashes[rows + up[:, None], columns + along].reshape(len(chunk), -1)
         order = np.argsort(found, axis=1, kind="stable")
         found, shares = np.take_along_axis(found, order, axis=1), weights[order]
         is_first = np.concatenate([np.ones((len(chunk), 1), bool), found[:, 1:] != found[:, :-1]], axis=1)

@@ -76,7 +76,8 @@ def plan(
         layers = layers_of(scene, settings, method, model, left_out)
         why_attributes = _why_attributes(scene, method)
         holds_out = any(instance.is_holdout for instance in scene.shown)
-        first, *splats = _splat_passes(settings, method, why_attributes, why_depth, sums, holds_out, left_out)
+        has_rows = method.filters_silhouettes and not layers
+        first, *splats = _splat_passes(settings, method, has_rows, why_attributes, why_depth, sums, holds_out, left_out)
         passes = (
             *shadows,
             first,
@@ -168,32 +169,43 @@ def _sums(
 def _splat_passes(
     settings: Settings,
     method: Method,
+    has_rows: bool,
     why: str,
     why_depth: str,
     sums: tuple[str, ...],
     holds_out: bool,
     left_out: list,
 ):
-    """Visibility and sums, and between them what a method that works in the picture tests its depths with."""
+    """Visibility and sums, and between them what a method that works in the picture tests its depths with.
+
+    has_rows: visibility has more rows than there are of samples; what transparent layers hide is known at these alone.
+    """
     identity, why_identity = _identity(settings, left_out)
     if method.works_in == "sprites":
         left_out.append(("visibility", f"of {method.name} the nearest splat wins, and nothing blends"))
         writes = *sums, *identity, "seen_depth"
         return (PlannedPass("attributes", f"the nearest splat wins{why_identity}", (), writes),)
     why_visibility = f"splats may hide one another; {why_depth}{why_identity}"
-    visibility = PlannedPass("visibility", why_visibility, (), ("visibility_depth", *identity))
+    seen, kept, holes = ("visibility_depth", *identity), ("seen_range",), ()
+    if has_rows:
+        seen, kept = ("row_depth", *(f"row_{name}" for name in identity)), ("seen_range", *identity, "visibility_depth")
+    visibility = PlannedPass("visibility", why_visibility, (), seen)
     if method.works_in == "space":
         left_out.append(("seen_range", f"{method.name} is tested by the hardware, with the depth of visibility"))
         return visibility, PlannedPass("attributes", why, ("visibility_depth",), sums)
     compared = f"{method.name} computes its depths, which are compared in the shader"
-    seen, holes = ("visibility_depth",), ()
+    if has_rows:
+        compared += "; between samples, silhouettes are looked for alone"
+    else:
+        seen = seen[:1]
     if holds_out:
-        why_holes = "a filter brings what lies behind a hole before it"
-        seen, holes = (*seen, "holdout_depth"), (PlannedPass("holdouts", why_holes, (), ("holdout_depth",)),)
+        hole = "row_holdout_depth" if has_rows else "holdout_depth"
+        holes = (PlannedPass("holdouts", "a filter brings what lies behind a hole before it", (), (hole,)),)
+        seen = (*seen, hole)
     return (
         visibility,
         *holes,
-        PlannedPass("seen_range", compared, seen, ("seen_range",)),
+        PlannedPass("seen_range", compared, seen, kept),
         PlannedPass("attributes", why, ("seen_range", "visibility_depth"), sums),
     )
 
@@ -370,9 +382,10 @@ def _shading_passes(
     if not method.filters_silhouettes:
         return (PlannedPass("shading", once, tuple(dict.fromkeys((*reads, *behind))), outputs),)
     kept = ("shaded", "surface", *(f"sample_{name}" for name in outputs if f"sample_{name}" in TEXTURES))
+    seen = "visibility_depth" if layers else "row_depth"
     return (
         PlannedPass("sample_shading", once, reads, kept),
-        PlannedPass("resolve", "silhouettes are filtered", (*kept, "visibility_depth", "seen_range", *behind), outputs),
+        PlannedPass("resolve", "silhouettes are filtered", (*kept, seen, "seen_range", *behind), outputs),
     )
 
 

@@ -125,7 +125,7 @@ class Renderer:
                 tiles.append((tile, _read(target, frame_plan, settings.outputs)))
                 if seen := [
                     self._read_whole(name, tile, frame_plan)
-                    for name in ("identity", "polygon_identity")
+                    for name in (frame_plan.numbers[0], "polygon_identity")
                     if name in frame_plan.textures
                 ]:
                     identified.add(tile, nearer(*seen), frame_plan)

@@ -172,8 +172,9 @@ def test_shares_are_those_of_plain_sums(method, supersampling):
     """Of random numbers, every pixel's window added up one by one."""
     random = np.random.default_rng(0)
     made = plan(three(), CAMERA, settings(method=method, supersampling=supersampling))
-    step, (width, height) = made.samples, (6, 5)
-    shape = (height + 2 * made.margin) * step, (width + 2 * made.margin) * step
+    step, (width, height), (_, between) = made.samples, (6, 5), made.numbers
+    assert between == (2 if method == "mip" else 1)
+    shape = (height + 2 * made.margin) * step * between, (width + 2 * made.margin) * step
     blotches = random.integers(0, 5, [-(-n // 3) for n in shape]).repeat(3, 0).repeat(3, 1)[: shape[0], : shape[1]]
     seen = np.stack([blotches, random.random(shape)], axis=2).astype(np.float32)
     matte = tile_matte(seen, (2, 1, width, height), (20, 10), made, Identities(three()))
@@ -181,24 +182,26 @@ def test_shares_are_those_of_plain_sums(method, supersampling):
     for y, x in np.ndindex(height, width):
         sums = dict.fromkeys(names, 0.0)
         for row, column in np.ndindex(shape):
-            sums[names[blotches[row, column]]] += weight_of(made, y, row) * weight_of(made, x, column)
+            sums[names[blotches[row, column]]] += weight_of(made, y, row, between) * weight_of(made, x, column)
         for name in names[1:]:
             assert matte.share_of(name)[1 + y, 2 + x] == pytest.approx(sums[name], abs=1e-9)
     first = made.margin * step
-    pixel = seen[first : first + step, first : first + step].reshape(-1, 2).tolist()
+    samples = seen[::between]
+    pixel = samples[first : first + step, first : first + step].reshape(-1, 2).tolist()
     number, _ = min(pixel, key=lambda sample: sample[1] if sample[0] else np.inf)
-    assert nearest_numbers(seen, made)[0, 0] == number
+    assert nearest_numbers(samples, made)[0, 0] == number
 
 
-def weight_of(made, pixel, row):
-    """Of a row of samples in a row of pixels: of mip, the mean of Gaussians of variance 1/2 about the pixel's samples,
-    cut 2 samples away; of others an even share.
+def weight_of(made, pixel, row, between=1):
+    """Of a row of numbers, so many to a row of samples, in a row of pixels: of mip, the mean of Gaussians of variance
+    1/2 about the pixel's samples, cut 2 samples away; of others an even share.
     """
     own = (made.margin + pixel) * made.samples + np.arange(made.samples)
     if made.method != "mip":
         return np.mean(own == row)
-    gauss = np.where(np.abs(own - row) <= 2, np.exp(-1.0 * (own - row) ** 2), 0)
-    return gauss.mean() / np.exp(-1.0 * np.arange(-2, 3) ** 2).sum()
+    away = own - row / between
+    gauss = np.where(np.abs(away) <= 2, np.exp(-1.0 * away**2), 0)
+    return gauss.mean() / np.exp(-1.0 * np.arange(-2, 2 + 0.5 / between, 1 / between) ** 2).sum()
 
 
 def test_a_picture_in_tiles_is_the_picture(render, monkeypatch):

@@ -122,7 +122,7 @@ TABLE = {
     "polygons, flat, by mip": (
         OTHERS, {"shading": "flat", "method": "mip"},
         ("visibility", "seen_range", "attributes", "polygons", "sample_shading", "resolve"),
-        f"{AMONG_TEXTURES} seen_range shaded surface", "-brdf_table", (),
+        f"{AMONG_TEXTURES} row_depth seen_range shaded surface", "-brdf_table", (),
     ),
     "whose it is, where filters reach past what is visible": (
         PLAIN, {"outputs": ("object_index",), "method": "ewa"},
@@ -134,12 +134,12 @@ TABLE = {
     "overdraw": (PLAIN, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", ()),
     "mip": (
         PLAIN, {"method": "mip"}, ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
-        "seen_range shaded surface", "", (),
+        "row_depth seen_range shaded surface", "", (),
     ),
     "mip, more outputs": (
         PLAIN, {"method": "mip", "outputs": ("emission", "overdraw")},
         ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
-        "-normal_coverage seen_range shaded surface emission sample_emission overdraw_sum shadow_overdraw "
+        "-normal_coverage row_depth seen_range shaded surface emission sample_emission overdraw_sum shadow_overdraw "
         "sample_shadow_overdraw", "", (),
     ),
     "transparent": (

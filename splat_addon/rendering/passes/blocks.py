@@ -25,7 +25,7 @@ def material_defines(names: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
 
 def says_whose(planned: PlannedPass) -> bool:
     """Whether a pass that draws splats leaves their numbers."""
-    return bool({"identity", "layer_identity", "polygon_identity"} & set(planned.writes))
+    return bool({"identity", "row_identity", "layer_identity", "polygon_identity"} & set(planned.writes))
 
 
 def split_defines(frame: FramePlan) -> tuple[tuple[str, str], ...]:
@@ -65,6 +65,9 @@ def polygon_defines(planned: PlannedPass, frame: FramePlan) -> tuple[tuple[str, 
 
 #: Defined where a resolve pass filters silhouettes.
 FILTERS_SILHOUETTES = (("FILTERS_SILHOUETTES", "1"),)
+
+#: Defined where silhouettes are looked for in more rows of visibility than there are of samples.
+HAS_ROWS = (("HAS_ROWS", "1"),)
 
 #: Defined where a transparent layer is made.
 LAYER = (("LAYER", "1"),)

@@ -10,13 +10,13 @@ import numpy as np
 
 from ..brdf_table import brdf_texels
 from ..device.interface import PipelineDescription, Target, Texture
-from ..frame_plan import BLOCKS, FramePlan, PlannedPass
+from ..frame_plan import BLOCKS, TEXTURES, FramePlan, PlannedPass
 from ..light import pack_lights
 from ..lines import Lines
 from ..packing import pack_materials
 from ..shaders import load
 from ..shadow import map_ranges, pack_shadow_maps
-from .blocks import FILTERS_SILHOUETTES, LAYER, LINEAR_DEPTH, polygon_defines, std140, sum_defines
+from .blocks import FILTERS_SILHOUETTES, HAS_ROWS, LAYER, LINEAR_DEPTH, polygon_defines, std140, sum_defines
 from .tile import TileContext
 
 #: window: left, bottom and step of one sample on the plane at depth 1. world: radiance, alpha of the background.
@@ -92,6 +92,7 @@ def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
             *(LAYER if planned.layer else ()),
             *((f"{name.upper()}_OUTPUT", "1") for name in planned.writes if name not in _ALWAYS_WRITTEN),
             *(FILTERS_SILHOUETTES if frame.filters_silhouettes else ()),
+            *(HAS_ROWS if "row_depth" in planned.reads else ()),
             *shading_defines(planned.reads, frame),
         ),
         blend="add" if "layers" in planned.writes else "none",
@@ -114,7 +115,11 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
 
 def fill(tile: TileContext, planned: PlannedPass, description: PipelineDescription, made=None) -> Target:
     """Draw over the whole of what a pass writes, under the shading block. made: what it reads that no pass writes."""
-    target = tile.target(planned.writes)
+    colors = tuple(name for name in planned.writes if TEXTURES[name][0] != "DEPTH32F")
+    depth = next((name for name in planned.writes if name not in colors), None)
+    target = tile.target(colors, depth)
+    if depth:
+        target.clear(depth=1.0)
     pipeline, reads = tile.resources.pipeline(description), tile.textures(planned.reads, made or {})
     tile.resources.device.draw_fullscreen(pipeline, target, shading_block(tile), reads)
     return target

@@ -8,9 +8,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..device.interface import PipelineDescription, Target
-from ..frame_plan import FramePlan, PlannedPass
+from ..frame_plan import TEXTURES, VISIBILITY_ROWS, FramePlan, PlannedPass
 from ..shaders import load
 from ..storages import get_storage
+from ..view import View
 from .blocks import LAYER, LINEAR_DEPTH, identity_defines, identity_varyings, says_whose, split_defines, split_polygons
 from .polygons import draw_polygons
 from .splats import SPLATS_BLOCK, draw_splats, drawn_by
@@ -76,5 +77,14 @@ def run(tile: TileContext, planned: PlannedPass) -> Target:
     depth, *colors = planned.writes
     target = tile.target(tuple(colors), depth)
     target.clear(color=0.0 if colors else None, depth=1.0)
+    if TEXTURES[depth][1] == "row":
+        tile = replace(tile, view=_seen_by_rows(tile.view, target.size[1]))
     draw_visible(tile, planned, target, drawn_by(planned, tile))
     return target
+
+
+def _seen_by_rows(view: View, rows: int) -> View:
+    """A view moved in the picture, so that the first of a sample's rows goes through its centre as the sample does."""
+    projection = view.projection.copy()
+    projection[1] -= projection[3] * (VISIBILITY_ROWS - 1) / rows
+    return replace(view, projection=projection)
