@@ -171,7 +171,7 @@ TABLE = {
     "holdout, by mip": (
         HOLED, {"method": "mip"},
         ("visibility", "holdouts", "seen_range", "attributes", "sample_shading", "resolve"),
-        "holdout_depth seen_range shaded surface", "", ("HOLDOUT",),
+        "row_depth row_holdout_depth seen_range shaded surface", "", ("HOLDOUT",),
     ),
     "one pass": (
         PLAIN, {"method": "affine_unfiltered"}, ("attributes", "shading"), "-visibility_depth seen_depth", "", (),
