@@ -53,13 +53,15 @@ vec2 plane_slope(ivec2 texel, vec3 normal, float depth) {
 // depth twice its slope, which is the lesser one of both sides and no more than its normal says: a silhouette on one
 // side does not spoil it, nor do two, of a gap or a wire. Visibility moved all of it back, by up to twice as much as here;
 // what is nearer lies before it, but for a part of that: surfels of one surface do not lie in one plane.
-vec2 same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth) {
+// In zw with half as much again of its slope, which it may have where it is bent: if all lies within, nothing is filtered.
+vec4 same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth) {
   float moved = abs(view_depth(texelFetch(SEEN, ivec2(texel.x, ROWS * texel.y), 0).r) - depth);
   vec2 before = vec2(depth_at(texel - ivec2(1, 0), size, 1e30), depth_at(texel - ivec2(0, 1), size, 1e30));
   vec2 after = vec2(depth_at(texel + ivec2(1, 0), size, 1e30), depth_at(texel + ivec2(0, 1), size, 1e30));
   vec2 slope = min(min(abs(before - depth), abs(after - depth)), plane_slope(texel, normal, depth));
   float sloped = 2.0 * (slope.x + slope.y);
-  return vec2(max(depth - sloped - 0.25 * moved, 0.5 * depth), depth + sloped + 2.0 * moved);
+  vec2 room = vec2(0.25, 2.0) * moved + sloped, bent = room + 0.5 * sloped;
+  return vec4(max(depth - room.x, 0.5 * depth), depth + room.y, max(depth - bent.x, 0.5 * depth), depth + bent.y);
 }
 
 // Nearest and farthest of all stored depths that the filter reaches from here.
@@ -139,12 +141,14 @@ Resolved resolve_sample(ivec2 texel) {
   // Loops that have no turn to make cost nothing; what is not chosen may.
   int turns = reached.x < 1.0 ? 1 : 0;
   Own own = Own(texel, vec4(0.0), vec2(2.0, -1.0));
+  bool is_inside = false;
   for (int turn = 0; turn < turns; turn++) {
     own.color = texelFetch(shaded, texel, 0);
     vec4 seen_surface = texelFetch(surface, texel, 0);
-    vec2 same = same_surface(texel, size, seen_surface.xyz, seen_surface.w);
-    vec2 range = vec2(stored_depth(same.x), stored_depth(same.y));
-    if (own.color.w > 0.0) own.range = range;
+    vec4 same = same_surface(texel, size, seen_surface.xyz, seen_surface.w);
+    bool is_there = own.color.w > 0.0;
+    if (is_there) own.range = vec2(stored_depth(same.x), stored_depth(same.y));
+    is_inside = is_there && reached.x >= stored_depth(same.z) && reached.y <= stored_depth(same.w) && reached.y < 1.0;
   }
 #ifdef LAYER
   const vec4 background = vec4(0.0);
@@ -153,7 +157,6 @@ Resolved resolve_sample(ivec2 texel) {
 #endif
   Resolved sum = Resolved(vec4(0.0), 0.0, 0.0, false, false, NO_OUTPUTS);
   // Inside a surface and beside all surfaces there is nothing to filter.
-  bool is_inside = reached.x >= own.range.x && reached.y <= own.range.y && reached.y < 1.0;
 #ifdef BEHIND_LAYERS
   is_inside = false;
 #endif
