@@ -29,13 +29,11 @@ const float FARTHEST = 3.4e38;
 #include "common/pixel.glsl"
 #endif
 
-// The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes; of columns
-// and of rows, which lie closer.
+// The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes.
 const float FIRST_WEIGHT = exp(-0.5 * float(FILTER_REACH * FILTER_REACH) / FILTER_VARIANCE);
 const float STEP = 1.0 / float(ROWS);
-const vec2 FIRST_RATIO = vec2(exp((float(FILTER_REACH) - 0.5) / FILTER_VARIANCE),
-                              exp((float(FILTER_REACH) - 0.5 * STEP) * STEP / FILTER_VARIANCE));
-const vec2 RATIO_RATIO = vec2(exp(-1.0 / FILTER_VARIANCE), exp(-STEP * STEP / FILTER_VARIANCE));
+const float FIRST_RATIO = exp((float(FILTER_REACH) - 0.5 * STEP) * STEP / FILTER_VARIANCE);
+const float RATIO_RATIO = exp(-STEP * STEP / FILTER_VARIANCE);
 
 float depth_at(ivec2 texel, ivec2 size, float otherwise) {
   vec4 s = texelFetch(surface, clamp(texel, ivec2(0), size - 1), 0);
@@ -173,14 +171,13 @@ Resolved resolve_sample(ivec2 texel) {
       sum.outputs = sample_outputs(texel);
     }
   }
-  int across = is_even ? 0 : 2 * FILTER_REACH + 1;
-  float column = FIRST_WEIGHT, column_ratio = FIRST_RATIO.x;
-  for (int x = 0; x < across; x++) {
-    float weight = column * FIRST_WEIGHT, ratio = FIRST_RATIO.y, below = 1.0;
+  int columns = is_even ? 0 : 2 * COLUMN_REACH + 1;
+  for (int x = 0; x < columns; x++) {
+    float weight = FIRST_WEIGHT * (x == COLUMN_REACH ? 1.0 : COLUMN_RATIO), ratio = FIRST_RATIO, below = 1.0;
     ivec2 before = texel;
     vec4 shaded_before = vec4(0.0);
-    for (int y = 0; y < across; y++) {
-      ivec2 at = clamp(texel + ivec2(x, y) - FILTER_REACH, ivec2(0), size - 1);
+    for (int y = 0; y < 2 * FILTER_REACH + 1; y++) {
+      ivec2 at = clamp(texel + ivec2(x - COLUMN_REACH, y - FILTER_REACH), ivec2(0), size - 1);
       float seen = texelFetch(SEEN, ivec2(at.x, ROWS * at.y), 0).r;
       vec4 there = texelFetch(shaded, at, 0);
       if (ROWS > 1 && y > 0) {
@@ -190,18 +187,16 @@ Resolved resolve_sample(ivec2 texel) {
         add_seen(sum, own, between, is_before ? before : at, is_before ? shaded_before : there, true, weight, background);
         total += weight;
         weight *= ratio;
-        ratio *= RATIO_RATIO.y;
+        ratio *= RATIO_RATIO;
       }
       add_seen(sum, own, seen, at, there, false, weight, background);
       total += weight;
       weight *= ratio;
-      ratio *= RATIO_RATIO.y;
+      ratio *= RATIO_RATIO;
       below = seen;
       before = at;
       shaded_before = there;
     }
-    column *= column_ratio;
-    column_ratio *= RATIO_RATIO.x;
   }
   sum.color /= total;
   sum.coverage /= total;

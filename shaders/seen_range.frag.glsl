@@ -25,7 +25,7 @@ void main() {
   vec2 row = vec2(own);
 #ifdef FILTERS_SILHOUETTES
   int last = textureSize(SEEN, 0).x - 1;
-  for (int x = -FILTER_REACH; x <= FILTER_REACH; x++) {
+  for (int x = -COLUMN_REACH; x <= COLUMN_REACH; x++) {
     for (int y = 0; y < ROWS; y++) {
       float other = texelFetch(SEEN, ivec2(clamp(texel.x + x, 0, last), ROWS * texel.y + y), 0).r;
       row = vec2(min(row.x, other), max(row.y, other));

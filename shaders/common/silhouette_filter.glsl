@@ -4,7 +4,10 @@
 //          has the same numbers.
 
 const float FILTER_VARIANCE = 0.5;  // of its Gaussian, in samples
-const int FILTER_REACH = 2;  // in samples, to each side
+const int FILTER_REACH = 2;  // rows of samples, up and down
+// Across, 1 2 1: the same variance from fewer columns.
+const int COLUMN_REACH = 1;
+const float COLUMN_RATIO = 0.5;
 #ifdef HAS_ROWS
 #define SEEN row_depth
 const int ROWS = 2;

@@ -22,8 +22,9 @@ INDICES = ("object_index", "material_index")
 #: The arrays of a frame that need numbers.
 NUMBERED = (*INDICES, "cryptomatte")
 
-#: Of the Gaussian of shaders/resolve.frag.glsl, in samples.
+#: Of the Gaussian of shaders/resolve.frag.glsl, in samples; and what columns weigh there.
 _FILTER_VARIANCE = 0.5
+_COLUMN_WEIGHTS = np.array([1.0, 2.0, 1.0])
 
 #: Pixels at a rim that are looked at in one go.
 _CHUNK = 50_000
@@ -120,7 +121,10 @@ def nearest_numbers(seen: np.ndarray, plan: FramePlan) -> np.ndarray:
 def tile_matte(seen: np.ndarray, tile, size: tuple[int, int], plan: FramePlan, identities: Identities) -> Cryptomatte:
     """What a tile, x, y, width and height in a picture of that size, holds of whom. seen: as in `Identified.add`."""
     x, y, width, height = tile
-    axes = [_Axis.of(plan, pixels, rows) for pixels, rows in ((height, plan.numbers[1]), (width, 1))]
+    between = plan.numbers[1]
+    away = np.arange(-FILTER_MARGIN * between, FILTER_MARGIN * between + 1) / between
+    up = _Axis.of(plan, height, between, np.exp(-0.5 * away**2 / _FILTER_VARIANCE))
+    axes = [up, _Axis.of(plan, width, 1, _COLUMN_WEIGHTS)]
     hashes = identities.hashes[seen[..., 0].astype(np.int64)][axes[0].reached, axes[1].reached]
     low, high = (_window_extreme(hashes, axes, extreme) for extreme in (np.minimum, np.maximum))
     rows, columns = np.nonzero((low == high) & (low > 0))
@@ -145,15 +149,16 @@ class _Axis:
     reached: slice
 
     @classmethod
-    def of(cls, plan: FramePlan, pixels: int, between: int) -> _Axis:
-        """pixels: of the tile. between: how many numbers there are to a sample."""
+    def of(cls, plan: FramePlan, pixels: int, between: int, weights: np.ndarray) -> _Axis:
+        """pixels: of the tile. between: how many numbers there are to a sample. weights: of what is around a sample,
+        where silhouettes are filtered.
+        """
         step = plan.samples * between
         kernel = np.zeros(step - between + 1)
         kernel[::between] = 1 / plan.samples
-        lead = FILTER_MARGIN * between if plan.filters_silhouettes else 0
+        lead = 0
         if plan.filters_silhouettes:
-            gaussian = np.exp(-0.5 * (np.arange(-lead, lead + 1) / between) ** 2 / _FILTER_VARIANCE)
-            kernel = np.convolve(kernel, gaussian / gaussian.sum())
+            kernel, lead = np.convolve(kernel, weights / weights.sum()), len(weights) // 2
         first = plan.margin * step - lead
         return cls(kernel, step, slice(first, first + (pixels - 1) * step + len(kernel)))
 

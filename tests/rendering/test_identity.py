@@ -182,7 +182,7 @@ def test_shares_are_those_of_plain_sums(method, supersampling):
     for y, x in np.ndindex(height, width):
         sums = dict.fromkeys(names, 0.0)
         for row, column in np.ndindex(shape):
-            sums[names[blotches[row, column]]] += weight_of(made, y, row, between) * weight_of(made, x, column)
+            sums[names[blotches[row, column]]] += row_weight(made, y, row, between) * column_weight(made, x, column)
         for name in names[1:]:
             assert matte.share_of(name)[1 + y, 2 + x] == pytest.approx(sums[name], abs=1e-9)
     first = made.margin * step
@@ -192,7 +192,7 @@ def test_shares_are_those_of_plain_sums(method, supersampling):
     assert nearest_numbers(samples, made)[0, 0] == number
 
 
-def weight_of(made, pixel, row, between=1):
+def row_weight(made, pixel, row, between):
     """Of a row of numbers, so many to a row of samples, in a row of pixels: of mip, the mean of Gaussians of variance
     1/2 about the pixel's samples, cut 2 samples away; of others an even share.
     """
@@ -202,6 +202,14 @@ def weight_of(made, pixel, row, between=1):
     away = own - row / between
     gauss = np.where(np.abs(away) <= 2, np.exp(-1.0 * away**2), 0)
     return gauss.mean() / np.exp(-1.0 * np.arange(-2, 2 + 0.5 / between, 1 / between) ** 2).sum()
+
+
+def column_weight(made, pixel, column):
+    """Of mip, 1 2 1 about the pixel's samples."""
+    if made.method != "mip":
+        return row_weight(made, pixel, column, 1)
+    own = (made.margin + pixel) * made.samples + np.arange(made.samples)
+    return np.mean(np.maximum(2 - abs(own - column), 0)) / 4
 
 
 def test_a_picture_in_tiles_is_the_picture(render, monkeypatch):
