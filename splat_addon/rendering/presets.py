@@ -39,7 +39,7 @@ PRESETS = {
         Preset(
             "balanced",
             "Balanced",
-            "Filtered, so smooth and still in animations and fine textures: 40 to 45 dB and FLIP 0.008 to 0.017 from "
+            "Filtered, so smooth and still in animations and fine textures: 40 to 47 dB and FLIP 0.006 to 0.016 from "
             "filtered pixels, in about 1.7 times the time of Preview",
             {"method": "mip", "supersampling": 1},
         ),
