@@ -29,7 +29,18 @@ struct Incident {
   vec3 radiance;    // of the square
 };
 
+const float ROUND = 1.12837917;  // axes of an ellipse over half-sides of a rectangle of its area: sqrt(4 / pi)
 const float LEAST_SIZE = 2e-3;  // half-side over distance, below which a light is a point
+
+// Unit, across the way to a light.
+vec3 facing_axis(vec3 to_light) {
+  return normalize(cross(abs(to_light.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0), to_light));
+}
+
+// What is seen of an axis of a flat light.
+vec3 turned_to(vec3 to_light, vec3 axis) {
+  return axis - dot(axis, to_light) * to_light;
+}
 
 // normal: of the surface that is lit.
 Incident incident(int light, vec3 position, vec3 normal) {
@@ -60,8 +71,7 @@ Incident incident(int light, vec3 position, vec3 normal) {
     here.radiance = along > 0.0 ? spread : vec3(0.0);
   }
   else {
-    vec3 side = abs(here.to_light.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
-    here.half_u = normalize(cross(side, here.to_light)) * strength.w;
+    here.half_u = facing_axis(here.to_light) * strength.w;
     here.half_v = cross(here.to_light, here.half_u);
     float rim = strength.w * inversesqrt(1.0 + strength.w * strength.w);
     // What a sun sends is given as irradiance.
@@ -75,7 +85,14 @@ Incident incident(int light, vec3 position, vec3 normal) {
 #ifdef SHADOWS
   vec4 caster = texelFetch(lights, ivec2(6, light), 0);
   if (caster.y > 0.0 && dot(here.irradiance, vec3(1.0)) > 0.0) {
-    float lit = lit_share(caster, position, normal);
+    vec3 half_u = vec3(0.0), half_v = vec3(0.0);
+    if (caster.z > 0.0) {
+      vec4 side = texelFetch(lights, ivec2(4, light), 0);
+      bool is_flat = side.w > 0.5;
+      half_u = is_flat ? ROUND * turned_to(here.to_light, u.xyz) : facing_axis(here.to_light) * caster.z;
+      half_v = is_flat ? ROUND * turned_to(here.to_light, side.xyz) : cross(here.to_light, half_u);
+    }
+    float lit = lit_share(caster, half_u, half_v, position, normal);
     here.irradiance *= lit;
 #ifdef SIZED_LIGHTS
     here.radiance *= lit;

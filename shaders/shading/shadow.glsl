@@ -2,6 +2,8 @@
 //             Shadows with Depth Maps", 1987 (compare, then filter); Fernando, "Percentage-Closer Soft Shadows", 2005.
 // Summary: which share of a light reaches a place. Depths are compared with the plane of the surface that is lit, so
 //          that a wide filter does not shadow it by itself; splats lie in the map one epsilon farther than they are.
+//          Looks of a lamp are measured along the way to it and over the disc that it turns to the place, not along a
+//          face of its cube of maps, and go on in the next face: where faces meet, shadows do not change.
 
 const int SOFT_SAMPLES = 32;
 // Neighbouring samples of the picture look at different places: a pixel of 2 x 2 samples has four times as many of them.
@@ -12,6 +14,7 @@ const float GOLDEN_ANGLE = 2.39996323;
 const float GRAZING = 0.08;  // least cosine that a surface's plane is followed at
 
 struct ShadowPlace {
+  mat3 turn;     // to the light's view, and to its scale
   vec4 window;
   vec4 atlas;    // x, y, resolution, 1 for a parallel camera
   vec4 depths;   // stored to depth: factor, summand; size of a texel (at depth 1 of a perspective)
@@ -21,16 +24,20 @@ struct ShadowPlace {
   vec2 place;    // on the light's window
 };
 
+mat3 map_turn(int map) {
+  return transpose(mat3(texelFetch(shadow_maps, ivec2(0, map), 0).xyz, texelFetch(shadow_maps, ivec2(1, map), 0).xyz,
+                        texelFetch(shadow_maps, ivec2(2, map), 0).xyz));
+}
+
 bool shadow_place(int map, vec3 position, vec3 normal, out ShadowPlace here) {
-  mat3 turn = transpose(mat3(texelFetch(shadow_maps, ivec2(0, map), 0).xyz, texelFetch(shadow_maps, ivec2(1, map), 0).xyz,
-                             texelFetch(shadow_maps, ivec2(2, map), 0).xyz));
+  here.turn = map_turn(map);
   vec3 shift = vec3(texelFetch(shadow_maps, ivec2(0, map), 0).w, texelFetch(shadow_maps, ivec2(1, map), 0).w,
                     texelFetch(shadow_maps, ivec2(2, map), 0).w);
   here.window = texelFetch(shadow_maps, ivec2(3, map), 0);
   here.atlas = texelFetch(shadow_maps, ivec2(4, map), 0);
   here.depths = texelFetch(shadow_maps, ivec2(5, map), 0);
-  here.position = turn * position + shift;
-  here.normal = normalize(turn * normal);
+  here.position = here.turn * position + shift;
+  here.normal = normalize(here.turn * normal);
   bool is_parallel = here.atlas.w > 0.5;
   here.depth = -here.position.z;
   if (!is_parallel && here.depth <= 0.0) return false;
@@ -39,16 +46,28 @@ bool shadow_place(int map, vec3 position, vec3 normal, out ShadowPlace here) {
   return all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0)));
 }
 
-// Depth of the lit surface's plane beside the place; near its horizon it is not followed.
-float receiver_depth(ShadowPlace here, vec2 place) {
+// The same place, as another face of its lamp's cube has it.
+ShadowPlace place_beside(ShadowPlace here, int map) {
+  ShadowPlace there = here;
+  there.turn = map_turn(map);
+  there.atlas = texelFetch(shadow_maps, ivec2(4, map), 0);
+  there.depths = texelFetch(shadow_maps, ivec2(5, map), 0);
+  mat3 turn = there.turn * transpose(here.turn) / dot(here.turn[0], here.turn[0]);
+  there.position = turn * here.position;
+  there.normal = normalize(turn * here.normal);
+  return there;
+}
+
+// Depth of the lit surface's plane beside the place. A lamp's is no deeper than `own`, that of the place if it faced the
+// lamp: what lies farther is behind what is lit. Near its horizon, and over it, the plane is not followed.
+float receiver_depth(ShadowPlace here, vec2 place, float own) {
   if (here.atlas.w > 0.5) {
     float slope = max(abs(here.normal.z), GRAZING) * (here.normal.z < 0.0 ? -1.0 : 1.0);
     return here.depth + dot(here.normal.xy, place - here.place) / slope;
   }
   vec3 toward = vec3(place, -1.0);
-  float facing = dot(here.normal, toward), own = dot(here.normal, here.position);
-  float least = GRAZING * length(toward);
-  return abs(facing) > least ? clamp(own / facing, 0.5 * here.depth, 2.0 * here.depth) : here.depth;
+  float facing = dot(here.normal, toward), away = dot(here.normal, here.position);
+  return abs(facing) > GRAZING * length(toward) && facing * away > 0.0 ? min(away / facing, own) : own;
 }
 
 #ifdef SCREEN_DOOR
@@ -96,58 +115,101 @@ float hard_share(ShadowPlace here, float bias) {
       ivec2 texel = low + ivec2(x, y);
       vec2 tent = hard_filter(vec2(texel) - at);
       float weight = tent.x * tent.y;
-      lit += blocker_depth(here, texel) + bias >= receiver_depth(here, texel_place(here, texel)) ? weight : 0.0;
+      lit += blocker_depth(here, texel) + bias >= receiver_depth(here, texel_place(here, texel), here.depth) ? weight : 0.0;
       total += weight;
     }
   }
   return lit / total;
 }
 
-// Of a look into the map, by its number of so many around the place.
-ivec2 texel_of_look(ShadowPlace here, int number, int count, float reach) {
-  vec2 look = soft_look(number, count);
-  vec2 place = here.place + look.x * reach * vec2(cos(look.y), sin(look.y));
-  return soft_texel((place - here.window.xy) * here.window.zw * here.atlas.z, number);
+// What a look meets.
+struct Met {
+  float depth;  // of what is in the map
+  float lit;    // of the surface that is lit
+  float share;  // of the way from the lamp to what is lit, along it; of a sun the depth
+};
+
+Met met_in(ShadowPlace here, vec3 toward, int number) {
+  bool is_parallel = here.atlas.w > 0.5;
+  float depth = is_parallel ? here.depth : max(-toward.z, 0.1 * length(here.position));
+  vec2 place = is_parallel ? toward.xy : toward.xy / depth;
+  ivec2 texel = soft_texel((place - here.window.xy) * here.window.zw * here.atlas.z, number);
+  place = texel_place(here, texel);
+  Met met;
+  met.depth = blocker_depth(here, texel);
+  met.lit = receiver_depth(here, place, depth);
+  float along = dot(vec3(place, -1.0), here.position) / dot(here.position, here.position);
+  met.share = is_parallel ? met.depth : met.depth * along;
+  return met;
 }
 
-// size: of the lamp, half its width; of a sun the tangent of half its angle.
-float soft_share(ShadowPlace here, float bias, float size) {
+// toward: a place in the light's view. Where it leaves a face of a lamp's cube, its neighbour has it.
+// beside: the maps to the left, right, below and above, -1 for none; -2 where there is no cube.
+Met look_toward(ShadowPlace here, vec4 beside, vec3 toward, int number) {
+  vec2 aside = abs(toward.xy);
+  if (beside.x < -1.5 || max(aside.x, aside.y) <= here.window.x * toward.z) return met_in(here, toward, number);
+  vec2 next = aside.x > aside.y ? vec2(toward.x, 0.0) : vec2(toward.y, 2.0);
+  int map = int(beside[int(next.y) + (next.x < 0.0 ? 0 : 1)]);
+  if (map >= 0) {
+    ShadowPlace there = place_beside(here, map);
+    return met_in(there, there.turn * (toward * here.turn) / dot(here.turn[0], here.turn[0]), number);
+  }
+  Met nothing;
+  nothing.depth = 3.4e38;
+  nothing.lit = 0.0;
+  nothing.share = 1.0;
+  return nothing;
+}
+
+// Of its way behind a lamp, where looks for what is in the way begin.
+const float NEAREST_SHARE = 0.25;
+
+// Looks go past the place by parts of the lamp, whose half-axes lamp_u and lamp_v are in the light's view (a sun's are
+// tangents): at the share t of the way from the lamp, rays to it are as wide as (1 - t) / t of it beside the place.
+float soft_share(ShadowPlace here, vec4 beside, float bias, float size, vec3 lamp_u, vec3 lamp_v) {
   bool is_parallel = here.atlas.w > 0.5;
-  float reach = is_parallel ? size * max(here.depth - here.depths.y, 0.0) : 3.0 * size / here.depth;
-  reach = min(reach, 0.25 / max(here.window.z, here.window.w));
+  float reach = is_parallel ? min(here.depth - here.depths.y, 0.25 / (size * max(here.window.z, here.window.w)))
+                            : min(1.0 / NEAREST_SHARE, length(here.position) / size) - 1.0;
+  reach = max(reach, 0.0);
   float blockers = 0.0, sum = 0.0;
   for (int i = 0; i < SEARCH_LOOKS; i++) {
-    ivec2 texel = texel_of_look(here, i, SEARCH_LOOKS, reach);
-    float depth = blocker_depth(here, texel);
-    if (depth + bias < receiver_depth(here, texel_place(here, texel))) {
+    vec2 look = soft_look(i, SEARCH_LOOKS);
+    float past = look.x * look.x * reach;  // closer to one another in the middle, where what is near hides the lamp
+    Met met = look_toward(here, beside, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
+    if (met.depth + bias < met.lit) {
       blockers += 1.0;
-      sum += depth;
+      sum += met.share;
     }
   }
   if (blockers == 0.0) return 1.0;
-  float blocker = sum / blockers, gap = max(here.depth - blocker, 0.0);
-  float radius = is_parallel ? size * gap : size * gap / (here.depth * blocker);
-  float texel_size = here.depths.z;
-  if (radius < 2.0 * texel_size) return hard_share(here, bias);
+  float blocker = sum / blockers;
+  float gap = max(is_parallel ? here.depth - blocker : 1.0 / blocker - 1.0, 0.0);
+  if (size * gap < 4.0 * bias) return hard_share(here, bias);
   float lit = 0.0;
   for (int i = 0; i < FILTER_LOOKS; i++) {
-    ivec2 texel = texel_of_look(here, i, FILTER_LOOKS, min(radius, reach));
-    lit += blocker_depth(here, texel) + bias >= receiver_depth(here, texel_place(here, texel)) ? 1.0 : 0.0;
+    vec2 look = soft_look(i, FILTER_LOOKS);
+    float past = look.x * min(gap, reach);
+    Met met = look_toward(here, beside, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
+    lit += met.depth + bias >= met.lit ? 1.0 : 0.0;
   }
   return lit / float(FILTER_LOOKS);
 }
 
 // caster: number of the light's first map, of its maps, and its size in units of the shaded view (of a sun as it is).
-float lit_share(vec4 caster, vec3 position, vec3 normal) {
+// half_u, half_v: half-axes of a lamp with a size, in the shaded view.
+float lit_share(vec4 caster, vec3 half_u, vec3 half_v, vec3 position, vec3 normal) {
   for (int i = 0; i < int(caster.y); i++) {
     ShadowPlace here;
     vec3 plane = dot(shadow_plane, shadow_plane) > 0.0 ? shadow_plane : normal;
-    if (!shadow_place(int(caster.x) + i, position, plane, here)) continue;
-    float texel = here.depths.z * (here.atlas.w > 0.5 ? 1.0 : here.depth);
-    float unit = length(texelFetch(shadow_maps, ivec2(0, int(caster.x) + i), 0).xyz);  // of the light's view
-    float size = caster.z * (here.atlas.w > 0.5 ? 1.0 : unit);
-    float bias = 0.5 * texel;
-    return size > 0.0 ? soft_share(here, bias, size) : hard_share(here, bias);
+    int map = int(caster.x) + i;
+    if (!shadow_place(map, position, plane, here)) continue;
+    bool is_parallel = here.atlas.w > 0.5;
+    float bias = 0.5 * here.depths.z * (is_parallel ? 1.0 : here.depth);
+    if (caster.z == 0.0) return hard_share(here, bias);
+    float size = caster.z * (is_parallel ? 1.0 : length(here.turn[0]));
+    vec3 lamp_u = is_parallel ? vec3(size, 0.0, 0.0) : here.turn * half_u;
+    vec3 lamp_v = is_parallel ? vec3(0.0, size, 0.0) : here.turn * half_v;
+    return soft_share(here, texelFetch(shadow_maps, ivec2(6, map), 0), bias, size, lamp_u, lamp_v);
   }
   return 1.0;
 }

@@ -32,11 +32,15 @@ NEAREST = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class ShadowMap:
-    """light: number in the scene. camera: what the light sees. place: (x, y) of the picture in the atlas, in texels."""
+    """light: number in the scene. camera: what the light sees. place: (x, y) of the picture in the atlas, in texels.
+
+    is_face: whether it is one of a cube's around a lamp; what it sees goes on in those beside it.
+    """
 
     light: int
     camera: Camera
     place: tuple[int, int]
+    is_face: bool = False
 
 
 def shadow_maps(scene: Scene, camera: Camera, resolution: int) -> tuple[tuple[ShadowMap, ...], int]:
@@ -49,14 +53,16 @@ def shadow_maps(scene: Scene, camera: Camera, resolution: int) -> tuple[tuple[Sh
     cameras, without = [], 0
     for number, light in enumerate(scene.lights):
         if light.casts_shadow:
-            own = [c for c in _CAMERAS[light.kind](light, corners, seen, resolution) if sees_any(casters, c)]
+            whole = _CAMERAS[light.kind](light, corners, seen, resolution)
+            own = [c for c in whole if sees_any(casters, c)]
             if len(cameras) + len(own) > MAX_MAPS:
                 without += 1
             else:
-                cameras += [(number, c) for c in own]
+                cameras += [(number, c, len(whole) > 1) for c in own]
     columns = atlas_columns(len(cameras))
     places = ((k % columns * resolution, k // columns * resolution) for k in range(len(cameras)))
-    return tuple(ShadowMap(light, c, place) for (light, c), place in zip(cameras, places, strict=True)), without
+    maps = (ShadowMap(light, c, place, is_face) for (light, c, is_face), place in zip(cameras, places, strict=True))
+    return tuple(maps), without
 
 
 def same_maps(some: tuple[ShadowMap, ...], others: tuple[ShadowMap, ...]) -> bool:
@@ -84,13 +90,13 @@ def casting(scene: Scene) -> Scene:
 
 
 def pack_shadow_maps(maps, views: tuple[View, ...], camera: Camera, scale: float) -> np.ndarray:
-    """(M, 6, 4) float32. views: of `view.look`, for each map. camera, scale: of the picture that is shaded.
+    """(M, 7, 4) float32. views: of `view.look`, for each map. camera, scale: of the picture that is shaded.
 
     Rows of the map from its view space to the light's (3 texels) | window's left, bottom, 1 / width, 1 / height |
     place in the atlas, resolution, 1 for a parallel camera | depth = x stored + y, texel's size (at depth 1 of a
-    perspective), 0.
+    perspective), 0 | of a cube's face the maps to the left, right, below and above, -1 for none; of others -2.
     """
-    texels = np.zeros((len(maps), 6, 4))
+    texels = np.zeros((len(maps), 7, 4))
     for row, made, view in zip(texels, maps, views, strict=True):
         light, rotation = made.camera, made.camera.matrix_world[:3, :3].T
         row[:3, :3] = rotation @ camera.matrix_world[:3, :3] * (view.scale / scale)
@@ -100,7 +106,18 @@ def pack_shadow_maps(maps, views: tuple[View, ...], camera: Camera, scale: float
         row[4] = *made.place, light.size[0], light.is_orthographic
         near, far = (view.first, view.far) if light.is_orthographic else (0.0, view.far)
         row[5] = far - near, near, max(right - left, top - bottom) / light.size[0], 0
+        row[6] = _beside(made, maps)
     return texels.astype(np.float32)
+
+
+def _beside(made: ShadowMap, maps) -> list[int]:
+    """Numbers of the maps to its left, right, below and above: -1 where nothing casts a shadow, -2 without a cube."""
+    if not made.is_face:
+        return [-2] * 4
+    fronts = np.array([-m.camera.matrix_world[:3, 2] * (m.light == made.light) for m in maps])
+    x, y, _ = made.camera.matrix_world[:3, :3].T
+    cosines = fronts @ np.stack([-x, x, -y, y], axis=1)
+    return np.where(cosines.max(axis=0) > 0.5, cosines.argmax(axis=0), -1).tolist()
 
 
 def map_ranges(maps: tuple[ShadowMap, ...], lights: int) -> np.ndarray:
@@ -178,7 +195,7 @@ def _faces(light: Light, corners: np.ndarray, resolution: int, axes: np.ndarray)
 def _perspectives(light: Light, corners: np.ndarray, resolution: int, directions, half: float) -> list[Camera]:
     position = np.asarray(light.position, np.float64)
     far = float(np.linalg.norm(corners - position, axis=1).max()) * 1.01
-    near = max(NEAREST * far, min(light.size, 0.5 * far))
+    near = max(NEAREST * far, min(light.size / math.sqrt(3), 0.5 * far))
     window, size = (-half, half, -half, half), (resolution, resolution)
     return [Camera(_looking(position, d), window, size, near, far) for d in directions] if far > near else []
 
