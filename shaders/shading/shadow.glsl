@@ -14,23 +14,21 @@ const float GOLDEN_ANGLE = 2.39996323;
 const float GRAZING = 0.08;  // least cosine that a surface's plane is followed at
 
 struct ShadowPlace {
+  int map;
   mat3 turn;     // to the light's view, and to its scale
   vec4 window;
   vec4 atlas;    // x, y, resolution, 1 for a parallel camera
-  vec4 depths;   // stored to depth: factor, summand; size of a texel (at depth 1 of a perspective)
+  vec4 depths;   // stored to depth: factor, summand; size of a texel (at depth 1 of a perspective); 1 for a cube's face
   vec3 position; // in the light's view
   vec3 normal;
   float depth;
   vec2 place;    // on the light's window
 };
 
-mat3 map_turn(int map) {
-  return transpose(mat3(texelFetch(shadow_maps, ivec2(0, map), 0).xyz, texelFetch(shadow_maps, ivec2(1, map), 0).xyz,
-                        texelFetch(shadow_maps, ivec2(2, map), 0).xyz));
-}
-
 bool shadow_place(int map, vec3 position, vec3 normal, out ShadowPlace here) {
-  here.turn = map_turn(map);
+  here.map = map;
+  here.turn = transpose(mat3(texelFetch(shadow_maps, ivec2(0, map), 0).xyz, texelFetch(shadow_maps, ivec2(1, map), 0).xyz,
+                             texelFetch(shadow_maps, ivec2(2, map), 0).xyz));
   vec3 shift = vec3(texelFetch(shadow_maps, ivec2(0, map), 0).w, texelFetch(shadow_maps, ivec2(1, map), 0).w,
                     texelFetch(shadow_maps, ivec2(2, map), 0).w);
   here.window = texelFetch(shadow_maps, ivec2(3, map), 0);
@@ -46,26 +44,14 @@ bool shadow_place(int map, vec3 position, vec3 normal, out ShadowPlace here) {
   return all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0)));
 }
 
-// The same place, as another face of its lamp's cube has it.
-ShadowPlace place_beside(ShadowPlace here, int map) {
-  ShadowPlace there = here;
-  there.turn = map_turn(map);
-  there.atlas = texelFetch(shadow_maps, ivec2(4, map), 0);
-  there.depths = texelFetch(shadow_maps, ivec2(5, map), 0);
-  mat3 turn = there.turn * transpose(here.turn) / dot(here.turn[0], here.turn[0]);
-  there.position = turn * here.position;
-  there.normal = normalize(turn * here.normal);
-  return there;
-}
-
-// Depth of the lit surface's plane beside the place. A lamp's is no deeper than `own`, that of the place if it faced the
-// lamp: what lies farther is behind what is lit. Near its horizon, and over it, the plane is not followed.
-float receiver_depth(ShadowPlace here, vec2 place, float own) {
+// Depth of the lit surface's plane toward another place; toward.z is -1, seen from the place's own map. A lamp's is no
+// deeper than `own`, that of the place if it faced the lamp: what lies farther is behind what is lit. Near its horizon, and
+// over it, the plane is not followed.
+float receiver_depth(ShadowPlace here, vec3 toward, float own) {
   if (here.atlas.w > 0.5) {
     float slope = max(abs(here.normal.z), GRAZING) * (here.normal.z < 0.0 ? -1.0 : 1.0);
-    return here.depth + dot(here.normal.xy, place - here.place) / slope;
+    return here.depth + dot(here.normal.xy, toward.xy - here.place) / slope;
   }
-  vec3 toward = vec3(place, -1.0);
   float facing = dot(here.normal, toward), away = dot(here.normal, here.position);
   return abs(facing) > GRAZING * length(toward) && facing * away > 0.0 ? min(away / facing, own) : own;
 }
@@ -97,8 +83,12 @@ ivec2 inside_map(ivec2 texel, int size) {
 }
 #endif
 
+float stored_depth(ShadowPlace here, vec2 atlas, ivec2 texel) {
+  return texelFetch(shadow_depth, inside_map(texel, int(here.atlas.z)) + ivec2(atlas), 0).r;
+}
+
 float blocker_depth(ShadowPlace here, ivec2 texel) {
-  float stored = texelFetch(shadow_depth, inside_map(texel, int(here.atlas.z)) + ivec2(here.atlas.xy), 0).r;
+  float stored = stored_depth(here, here.atlas.xy, texel);
   return stored < 1.0 ? here.depths.x * stored + here.depths.y : 3.4e38;
 }
 
@@ -115,7 +105,7 @@ float hard_share(ShadowPlace here, float bias) {
       ivec2 texel = low + ivec2(x, y);
       vec2 tent = hard_filter(vec2(texel) - at);
       float weight = tent.x * tent.y;
-      lit += blocker_depth(here, texel) + bias >= receiver_depth(here, texel_place(here, texel), here.depth) ? weight : 0.0;
+      lit += blocker_depth(here, texel) + bias >= receiver_depth(here, vec3(texel_place(here, texel), -1.0), here.depth) ? weight : 0.0;
       total += weight;
     }
   }
@@ -126,39 +116,37 @@ float hard_share(ShadowPlace here, float bias) {
 struct Met {
   float depth;  // of what is in the map
   float lit;    // of the surface that is lit
-  float share;  // of the way from the lamp to what is lit, along it; of a sun the depth
+  float way;    // along the way from the lamp to what is lit, times its length; of a sun the depth
 };
 
-Met met_in(ShadowPlace here, vec3 toward, int number) {
+// toward: a place in the light's view. Where it leaves a face of a lamp's cube, the next face has it.
+Met look_toward(ShadowPlace here, vec3 toward, int number) {
   bool is_parallel = here.atlas.w > 0.5;
-  float depth = is_parallel ? here.depth : max(-toward.z, 0.1 * length(here.position));
+  vec3 row_x = vec3(1.0, 0.0, 0.0), row_y = vec3(0.0, 1.0, 0.0), row_z = vec3(0.0, 0.0, 1.0);
+  vec3 next = vec3(here.atlas.xy, here.depths.x);
+  vec2 aside = abs(toward.xy);
+  if (here.depths.w > 0.5 && max(aside.x, aside.y) > here.window.x * toward.z) {
+    vec2 side = aside.x > aside.y ? vec2(toward.x, 0.0) : vec2(toward.y, 6.0);
+    int first = 6 + int(side.y) + (side.x < 0.0 ? 0 : 3);
+    vec4 x = texelFetch(shadow_maps, ivec2(first, here.map), 0), y = texelFetch(shadow_maps, ivec2(first + 1, here.map), 0),
+         z = texelFetch(shadow_maps, ivec2(first + 2, here.map), 0);
+    row_x = x.xyz;
+    row_y = y.xyz;
+    row_z = z.xyz;
+    next = vec3(x.w, y.w, z.w);
+    toward = vec3(dot(row_x, toward), dot(row_y, toward), dot(row_z, toward));
+  }
+  float depth = is_parallel ? here.depth : max(-toward.z, 0.1 * here.depth);
   vec2 place = is_parallel ? toward.xy : toward.xy / depth;
   ivec2 texel = soft_texel((place - here.window.xy) * here.window.zw * here.atlas.z, number);
   place = texel_place(here, texel);
+  vec3 seen = place.x * row_x + place.y * row_y - row_z;
+  float stored = stored_depth(here, next.xy, texel);
   Met met;
-  met.depth = blocker_depth(here, texel);
-  met.lit = receiver_depth(here, place, depth);
-  float along = dot(vec3(place, -1.0), here.position) / dot(here.position, here.position);
-  met.share = is_parallel ? met.depth : met.depth * along;
+  met.depth = stored < 1.0 && next.z > 0.0 ? next.z * stored + here.depths.y : 3.4e38;
+  met.lit = receiver_depth(here, seen, depth);
+  met.way = is_parallel ? met.depth : met.depth * dot(seen, here.position);
   return met;
-}
-
-// toward: a place in the light's view. Where it leaves a face of a lamp's cube, its neighbour has it.
-// beside: the maps to the left, right, below and above, -1 for none; -2 where there is no cube.
-Met look_toward(ShadowPlace here, vec4 beside, vec3 toward, int number) {
-  vec2 aside = abs(toward.xy);
-  if (beside.x < -1.5 || max(aside.x, aside.y) <= here.window.x * toward.z) return met_in(here, toward, number);
-  vec2 next = aside.x > aside.y ? vec2(toward.x, 0.0) : vec2(toward.y, 2.0);
-  int map = int(beside[int(next.y) + (next.x < 0.0 ? 0 : 1)]);
-  if (map >= 0) {
-    ShadowPlace there = place_beside(here, map);
-    return met_in(there, there.turn * (toward * here.turn) / dot(here.turn[0], here.turn[0]), number);
-  }
-  Met nothing;
-  nothing.depth = 3.4e38;
-  nothing.lit = 0.0;
-  nothing.share = 1.0;
-  return nothing;
 }
 
 // Of its way behind a lamp, where looks for what is in the way begin.
@@ -166,7 +154,7 @@ const float NEAREST_SHARE = 0.25;
 
 // Looks go past the place by parts of the lamp, whose half-axes lamp_u and lamp_v are in the light's view (a sun's are
 // tangents): at the share t of the way from the lamp, rays to it are as wide as (1 - t) / t of it beside the place.
-float soft_share(ShadowPlace here, vec4 beside, float bias, float size, vec3 lamp_u, vec3 lamp_v) {
+float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lamp_v) {
   bool is_parallel = here.atlas.w > 0.5;
   float reach = is_parallel ? min(here.depth - here.depths.y, 0.25 / (size * max(here.window.z, here.window.w)))
                             : min(1.0 / NEAREST_SHARE, length(here.position) / size) - 1.0;
@@ -175,21 +163,21 @@ float soft_share(ShadowPlace here, vec4 beside, float bias, float size, vec3 lam
   for (int i = 0; i < SEARCH_LOOKS; i++) {
     vec2 look = soft_look(i, SEARCH_LOOKS);
     float past = look.x * look.x * reach;  // closer to one another in the middle, where what is near hides the lamp
-    Met met = look_toward(here, beside, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
+    Met met = look_toward(here, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
     if (met.depth + bias < met.lit) {
       blockers += 1.0;
-      sum += met.share;
+      sum += met.way;
     }
   }
   if (blockers == 0.0) return 1.0;
-  float blocker = sum / blockers;
+  float blocker = sum / (blockers * (is_parallel ? 1.0 : dot(here.position, here.position)));
   float gap = max(is_parallel ? here.depth - blocker : 1.0 / blocker - 1.0, 0.0);
   if (size * gap < 4.0 * bias) return hard_share(here, bias);
   float lit = 0.0;
   for (int i = 0; i < FILTER_LOOKS; i++) {
     vec2 look = soft_look(i, FILTER_LOOKS);
     float past = look.x * min(gap, reach);
-    Met met = look_toward(here, beside, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
+    Met met = look_toward(here, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
     lit += met.depth + bias >= met.lit ? 1.0 : 0.0;
   }
   return lit / float(FILTER_LOOKS);
@@ -201,15 +189,14 @@ float lit_share(vec4 caster, vec3 half_u, vec3 half_v, vec3 position, vec3 norma
   for (int i = 0; i < int(caster.y); i++) {
     ShadowPlace here;
     vec3 plane = dot(shadow_plane, shadow_plane) > 0.0 ? shadow_plane : normal;
-    int map = int(caster.x) + i;
-    if (!shadow_place(map, position, plane, here)) continue;
+    if (!shadow_place(int(caster.x) + i, position, plane, here)) continue;
     bool is_parallel = here.atlas.w > 0.5;
     float bias = 0.5 * here.depths.z * (is_parallel ? 1.0 : here.depth);
     if (caster.z == 0.0) return hard_share(here, bias);
     float size = caster.z * (is_parallel ? 1.0 : length(here.turn[0]));
     vec3 lamp_u = is_parallel ? vec3(size, 0.0, 0.0) : here.turn * half_u;
     vec3 lamp_v = is_parallel ? vec3(0.0, size, 0.0) : here.turn * half_v;
-    return soft_share(here, texelFetch(shadow_maps, ivec2(6, map), 0), bias, size, lamp_u, lamp_v);
+    return soft_share(here, bias, size, lamp_u, lamp_v);
   }
   return 1.0;
 }

@@ -90,13 +90,14 @@ def casting(scene: Scene) -> Scene:
 
 
 def pack_shadow_maps(maps, views: tuple[View, ...], camera: Camera, scale: float) -> np.ndarray:
-    """(M, 7, 4) float32. views: of `view.look`, for each map. camera, scale: of the picture that is shaded.
+    """(M, 18, 4) float32. views: of `view.look`, for each map. camera, scale: of the picture that is shaded.
 
     Rows of the map from its view space to the light's (3 texels) | window's left, bottom, 1 / width, 1 / height |
     place in the atlas, resolution, 1 for a parallel camera | depth = x stored + y, texel's size (at depth 1 of a
-    perspective), 0 | of a cube's face the maps to the left, right, below and above, -1 for none; of others -2.
+    perspective), 1 for a face of a cube | of such a one the faces to the left, right, below and above, each as rows
+    from its view to theirs, with place in the atlas and the factor of depths (3 texels; a factor of 0 for none).
     """
-    texels = np.zeros((len(maps), 7, 4))
+    texels = np.zeros((len(maps), 18, 4))
     for row, made, view in zip(texels, maps, views, strict=True):
         light, rotation = made.camera, made.camera.matrix_world[:3, :3].T
         row[:3, :3] = rotation @ camera.matrix_world[:3, :3] * (view.scale / scale)
@@ -105,19 +106,23 @@ def pack_shadow_maps(maps, views: tuple[View, ...], camera: Camera, scale: float
         row[3] = left, bottom, 1 / (right - left), 1 / (top - bottom)
         row[4] = *made.place, light.size[0], light.is_orthographic
         near, far = (view.first, view.far) if light.is_orthographic else (0.0, view.far)
-        row[5] = far - near, near, max(right - left, top - bottom) / light.size[0], 0
-        row[6] = _beside(made, maps)
+        row[5] = far - near, near, max(right - left, top - bottom) / light.size[0], made.is_face
+        if made.is_face:
+            row[6:] = _beside(made, maps, [v.far * view.scale / v.scale for v in views])
     return texels.astype(np.float32)
 
 
-def _beside(made: ShadowMap, maps) -> list[int]:
-    """Numbers of the maps to its left, right, below and above: -1 where nothing casts a shadow, -2 without a cube."""
-    if not made.is_face:
-        return [-2] * 4
-    fronts = np.array([-m.camera.matrix_world[:3, 2] * (m.light == made.light) for m in maps])
-    x, y, _ = made.camera.matrix_world[:3, :3].T
-    cosines = fronts @ np.stack([-x, x, -y, y], axis=1)
-    return np.where(cosines.max(axis=0) > 0.5, cosines.argmax(axis=0), -1).tolist()
+def _beside(made: ShadowMap, maps, depths) -> np.ndarray:
+    """(12, 4) of a cube's face: see `pack_shadow_maps`. depths: the factor of each map, in the scale of this one."""
+    texels = np.zeros((4, 3, 4))
+    own = made.camera.matrix_world[:3, :3]
+    for other, depth in zip(maps, depths, strict=True):
+        turn = other.camera.matrix_world[:3, :3].T @ own
+        sides = turn[2] @ np.array([(1, -1, 0, 0), (0, 0, 1, -1), (0, 0, 0, 0)])
+        if other.light == made.light and sides.max() > 0.5:
+            texels[sides.argmax(), :, :3] = turn
+            texels[sides.argmax(), :, 3] = *other.place, depth
+    return texels.reshape(12, 4)
 
 
 def map_ranges(maps: tuple[ShadowMap, ...], lights: int) -> np.ndarray:
