@@ -76,6 +76,15 @@ def shadowed(scene, camera):
     return replace(scene, lights=lights), camera
 
 
+def under_large_lamps(scene, camera):
+    """The scene under lamps so large and close that looks for what is in their way go over several faces of a cube."""
+    lights = (
+        Light("point", energy=30, position=(-1.2, -0.6, 1.2), size=0.5, casts_shadow=True),
+        Light("area", energy=40, position=(1, -1, 1.5), direction=(-0.4, 0.5, -1), casts_shadow=True),
+    )
+    return replace(scene, lights=lights), camera
+
+
 def holed(scene, camera):
     """The scene with its second instance cutting a hole."""
     first, second = scene.surfels
@@ -170,6 +179,7 @@ def split(scene, camera):
 #: tests/rendering/test_polygons.py compares them with the truth.
 HYBRID = {
     "polygon_shadows": lambda: shadowed(*scenes.polygons(size=SIZE)),
+    "large_lamp_shadows": lambda: under_large_lamps(*scenes.polygons(size=SIZE)),
     "split": lambda: split(*scenes.polygons(size=SIZE)),
 }
 
