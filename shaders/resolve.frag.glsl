@@ -37,7 +37,7 @@ const float RATIO_RATIO = exp(-STEP * STEP / FILTER_VARIANCE);
 
 float depth_at(ivec2 texel, ivec2 size, float otherwise) {
   vec4 s = texelFetch(surface, clamp(texel, ivec2(0), size - 1), 0);
-  return s.w > 0.0 ? s.w : otherwise;
+  return s.w != 0.0 ? abs(s.w) : otherwise;
 }
 
 // What depth changes by from this sample to the next, across and up, on a plane of this normal.
@@ -72,15 +72,33 @@ vec2 reached_range(ivec2 texel, ivec2 size) {
   return reached;
 }
 
+// Where a sample sees nothing and is faint, the nearest one that sees something: over an edge surfels of the far side
+// stick out, whose backs alone reach there, and what is filtered there is the near side.
+ivec2 shaded_at(ivec2 texel, ivec2 size) {
+  ivec2 found = texel;
+  bool is_faint = texelFetch(surface, texel, 0).w < 0.0 && texelFetch(SEEN, ivec2(texel.x, ROWS * texel.y), 0).r == 1.0;
+  int looks = is_faint ? 9 : 0, nearest = 9;
+  for (int i = 0; i < looks; i++) {
+    ivec2 step = ivec2(i % 3, i / 3) - 1, at = clamp(texel + step, ivec2(0), size - 1);
+    int away = step.x * step.x + step.y * step.y;
+    if (away < nearest && texelFetch(SEEN, ivec2(at.x, ROWS * at.y), 0).r < 1.0 && texelFetch(shaded, at, 0).w > 0.0) {
+      nearest = away;
+      found = at;
+    }
+  }
+  return found;
+}
+
 // What a sample's surroundings add up to. coverage: what is covered and not by nearer layers. first: the share of which
 // this is the surface that depth and normal are of. is_hit: whether the texel sees such; is_behind: whether it is in a
-// nearer layer.
+// nearer layer. surface: normal and depth of the first.
 struct Resolved {
   vec4 color;
   float coverage;
   float first;
   bool is_hit;
   bool is_behind;
+  vec4 surface;
   Outputs outputs;
 };
 
@@ -88,6 +106,7 @@ struct Resolved {
 // none.
 struct Own {
   ivec2 texel;
+  ivec2 shaded_at;
   vec4 color;
   vec2 range;
 };
@@ -116,7 +135,7 @@ void add_seen(inout Resolved sum, Own own, float seen, ivec2 at, vec4 there, boo
 #ifdef LAYER
     bool is_own = seen >= own.range.x && seen <= own.range.y;
     here = layer_at(at);
-    sum.outputs = is_own ? added(sum.outputs, sample_outputs(own.texel), shown * here.w / own.color.w)
+    sum.outputs = is_own ? added(sum.outputs, sample_outputs(own.shaded_at), shown * here.w / own.color.w)
                          : added(sum.outputs, layer_outputs_at(at), shown);
     if (is_own) here = own.color * (here.w / own.color.w);
     is_first = is_first && here.w >= shading.edges.y;
@@ -124,7 +143,7 @@ void add_seen(inout Resolved sum, Own own, float seen, ivec2 at, vec4 there, boo
     bool is_own = (seen >= own.range.x && seen <= own.range.y) || !(there.w > 0.0);
     here = is_own ? own.color : there;
     here = here.w > 0.0 ? here : background;
-    sum.outputs = added(sum.outputs, sample_outputs(is_own ? own.texel : at), shown);
+    sum.outputs = added(sum.outputs, sample_outputs(is_own ? own.shaded_at : at), shown);
 #endif
     sum.coverage += shown;
     sum.first += is_first ? weight : 0.0;
@@ -138,12 +157,15 @@ Resolved resolve_sample(ivec2 texel) {
   vec2 reached = reached_range(texel, size);
   // Loops that have no turn to make cost nothing; what is not chosen may.
   int turns = reached.x < 1.0 ? 1 : 0;
-  Own own = Own(texel, vec4(0.0), vec2(2.0, -1.0));
+  Own own = Own(texel, texel, vec4(0.0), vec2(2.0, -1.0));
+  vec4 seen_surface = vec4(0.0);
   bool is_inside = false;
   for (int turn = 0; turn < turns; turn++) {
-    own.color = texelFetch(shaded, texel, 0);
-    vec4 seen_surface = texelFetch(surface, texel, 0);
-    vec4 same = same_surface(texel, size, seen_surface.xyz, seen_surface.w);
+    own.shaded_at = shaded_at(texel, size);
+    own.color = texelFetch(shaded, own.shaded_at, 0);
+    seen_surface = texelFetch(surface, own.shaded_at, 0);
+    seen_surface.w = abs(seen_surface.w);
+    vec4 same = same_surface(own.shaded_at, size, seen_surface.xyz, seen_surface.w);
     bool is_there = own.color.w > 0.0;
     if (is_there) own.range = vec2(stored_depth(same.x), stored_depth(same.y));
     is_inside = is_there && reached.x >= stored_depth(same.z) && reached.y <= stored_depth(same.w) && reached.y < 1.0;
@@ -153,7 +175,7 @@ Resolved resolve_sample(ivec2 texel) {
 #else
   vec4 background = world_background(texel);
 #endif
-  Resolved sum = Resolved(vec4(0.0), 0.0, 0.0, false, false, NO_OUTPUTS);
+  Resolved sum = Resolved(vec4(0.0), 0.0, 0.0, false, false, seen_surface, NO_OUTPUTS);
   // Inside a surface and beside all surfaces there is nothing to filter.
 #ifdef BEHIND_LAYERS
   is_inside = false;
@@ -165,7 +187,7 @@ Resolved resolve_sample(ivec2 texel) {
 #endif
   float total = is_even ? 1.0 : 0.0;
   if (is_even) {
-    sum = Resolved(is_inside ? own.color : background, 0.0, 0.0, is_inside, false, NO_OUTPUTS);
+    sum = Resolved(is_inside ? own.color : background, 0.0, 0.0, is_inside, false, seen_surface, NO_OUTPUTS);
     if (is_inside) {
       sum.coverage = sum.first = 1.0;
       sum.outputs = sample_outputs(texel);
@@ -181,9 +203,9 @@ Resolved resolve_sample(ivec2 texel) {
       float seen = texelFetch(SEEN, ivec2(at.x, ROWS * at.y), 0).r;
       vec4 there = texelFetch(shaded, at, 0);
       if (ROWS > 1 && y > 0) {
-        // Between two samples the surface of the one is seen, or of the other.
+        // Between two samples the surface of the one is seen, or of the other; if of both, no rounding may choose.
         float between = texelFetch(SEEN, ivec2(at.x, max(ROWS * at.y - 1, 0)), 0).r;
-        bool is_before = abs(between - below) < abs(between - seen);
+        bool is_before = abs(between - below) < 0.5 * abs(between - seen);
         add_seen(sum, own, between, is_before ? before : at, is_before ? shaded_before : there, true, weight, background);
         total += weight;
         weight *= ratio;
@@ -219,9 +241,8 @@ void main() {
       color_total += here.color;
       outputs_total = added(outputs_total, here.outputs, 1.0);
       is_seen_nearer = is_seen_nearer || here.is_behind;
-      vec4 s = texelFetch(surface, texel, 0);
-      normal_total += vec4(s.xyz * here.first, here.coverage);
-      if (here.is_hit && s.w > 0.0) nearest = min(nearest, s.w * shading.material.w);
+      normal_total += vec4(here.surface.xyz * here.first, here.coverage);
+      if (here.is_hit && here.surface.w > 0.0) nearest = min(nearest, here.surface.w * shading.material.w);
     }
   }
   float share = 1.0 / float(SAMPLES * SAMPLES);

@@ -8,6 +8,9 @@
 #include "common/holdout.glsl"
 #endif
 
+// Sums of weights below this are of backs, and of the ends of filters. Their depth is kept with a sign.
+const float FAINT = 0.004;
+
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   shaded = vec4(0.0);
@@ -21,6 +24,9 @@ void main() {
     ShadedSample here = shaded_sample(mean, texel, 0);
     shaded = vec4(here.color, 1.0) * here.coverage;
     surface = vec4(here.normal, here.depth);
+#ifndef LAYER
+    if (mean.polygon == 0.0 && mean.weight < FAINT * WEIGHT_SCALE) surface.w = -here.depth;
+#endif
     outputs = added(NO_OUTPUTS, here.outputs, here.coverage);
   }
   write_outputs(outputs);

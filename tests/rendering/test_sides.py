@@ -9,6 +9,7 @@ import pytest
 from splat_addon.reference import render_exact
 from splat_addon.reference.extremes import sheet
 from splat_addon.rendering import Camera, Light, Scene, Settings, look_at
+from splat_addon.sampling import TriangleMesh, sample_mesh
 
 CAMERA = Camera.perspective(look_at((0, 0, 0), (0, 0, -1), (0, 1, 0)), 0.6, (40, 40), 0.1, 100)
 FROM_BELOW = Light("sun", energy=3, direction=(0.2, 1, -0.3))
@@ -34,3 +35,16 @@ def test_a_lone_back_is_lit_as_a_front(tilt, render):
         inside = np.minimum(picture[..., 3], front[..., 3]) > 0.999
         assert inside.sum() > 50 and picture[inside][:, :3].min() > 0.15
         assert np.abs(picture - front)[inside].max() < 1e-3
+
+
+def test_the_far_side_of_an_open_box_colours_none_of_its_edges(render):
+    """Surfels of the white side, which faces away, stick out over the edge by less than a pixel, edge-on."""
+    corners = np.array([(x, y, z) for x in (-1, 1) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    sides = np.array(((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (1, 5, 7, 3)))
+    surfels = sample_mesh(
+        TriangleMesh(corners, np.concatenate([sides[:, (0, 1, 2)], sides[:, (0, 2, 3)]])), resolution=300
+    )
+    colors = np.where(surfels.normals[:, :1] < -0.5, (1.0, 1, 1, 1), (0.1, 0.1, 0.1, 1))
+    camera = Camera.perspective(look_at((1.1, -3.2, 1.0), (0, 0, 0)), 0.75, (320, 240), 0.1, 30)
+    scene = Scene((replace(surfels, colors=colors),), world=(0.1, 0.1, 0.1))
+    assert render(scene, camera, Settings(shading="flat")).color[70:145, :100, :3].max() < 0.11
