@@ -35,9 +35,13 @@ const float STEP = 1.0 / float(ROWS);
 const float FIRST_RATIO = exp((float(FILTER_REACH) - 0.5 * STEP) * STEP / FILTER_VARIANCE);
 const float RATIO_RATIO = exp(-STEP * STEP / FILTER_VARIANCE);
 
-float depth_at(ivec2 texel, ivec2 size, float otherwise) {
+// Least cosine between normals of one surface: across a sharper crease surfels of either flank stick out of the other.
+const float SMOOTH = 0.5;
+
+// Normal and depth of what is shaded there; where nothing is, this normal, and a depth beyond all.
+vec4 surface_at(ivec2 texel, ivec2 size, vec3 normal) {
   vec4 s = texelFetch(surface, clamp(texel, ivec2(0), size - 1), 0);
-  return s.w != 0.0 ? abs(s.w) : otherwise;
+  return s.w != 0.0 ? vec4(s.xyz, abs(s.w)) : vec4(normal, 1e30);
 }
 
 // What depth changes by from this sample to the next, across and up, on a plane of this normal.
@@ -52,10 +56,14 @@ vec2 plane_slope(ivec2 texel, vec3 normal, float depth) {
 // side does not spoil it, nor do two, of a gap or a wire. Visibility moved all of it back, by up to twice as much as here;
 // what is nearer lies before it, but for a part of that: surfels of one surface do not lie in one plane.
 // In zw with half as much again of its slope, which it may have where it is bent: if all lies within, nothing is filtered.
-vec4 same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth) {
+// is_folded: a sample beside this one is of another flank of a crease.
+vec4 same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth, out bool is_folded) {
   float moved = abs(view_depth(texelFetch(SEEN, ivec2(texel.x, ROWS * texel.y), 0).r) - depth);
-  vec2 before = vec2(depth_at(texel - ivec2(1, 0), size, 1e30), depth_at(texel - ivec2(0, 1), size, 1e30));
-  vec2 after = vec2(depth_at(texel + ivec2(1, 0), size, 1e30), depth_at(texel + ivec2(0, 1), size, 1e30));
+  vec4 left = surface_at(texel - ivec2(1, 0), size, normal), below = surface_at(texel - ivec2(0, 1), size, normal);
+  vec4 right = surface_at(texel + ivec2(1, 0), size, normal), above = surface_at(texel + ivec2(0, 1), size, normal);
+  vec2 before = vec2(left.w, below.w), after = vec2(right.w, above.w);
+  vec4 smooth_to = vec4(dot(left.xyz, normal), dot(right.xyz, normal), dot(below.xyz, normal), dot(above.xyz, normal));
+  is_folded = any(lessThan(smooth_to, vec4(SMOOTH)));
   vec2 slope = min(min(abs(before - depth), abs(after - depth)), plane_slope(texel, normal, depth));
   float sloped = 2.0 * (slope.x + slope.y);
   vec2 room = vec2(0.25, 2.0) * moved + sloped, bent = room + 0.5 * sloped;
@@ -108,6 +116,7 @@ struct Own {
   ivec2 texel;
   ivec2 shaded_at;
   vec4 color;
+  vec3 normal;
   vec2 range;
 };
 
@@ -140,7 +149,9 @@ void add_seen(inout Resolved sum, Own own, float seen, ivec2 at, vec4 there, boo
     if (is_own) here = own.color * (here.w / own.color.w);
     is_first = is_first && here.w >= shading.edges.y;
 #else
-    bool is_own = (seen >= own.range.x && seen <= own.range.y) || !(there.w > 0.0);
+    bool is_own = seen >= own.range.x && seen <= own.range.y;
+    is_own = is_own && dot(texelFetch(surface, at, 0).xyz, own.normal) >= SMOOTH;
+    is_own = is_own || !(there.w > 0.0);
     here = is_own ? own.color : there;
     here = here.w > 0.0 ? here : background;
     sum.outputs = added(sum.outputs, sample_outputs(is_own ? own.shaded_at : at), shown);
@@ -157,7 +168,7 @@ Resolved resolve_sample(ivec2 texel) {
   vec2 reached = reached_range(texel, size);
   // Loops that have no turn to make cost nothing; what is not chosen may.
   int turns = reached.x < 1.0 ? 1 : 0;
-  Own own = Own(texel, texel, vec4(0.0), vec2(2.0, -1.0));
+  Own own = Own(texel, texel, vec4(0.0), vec3(0.0), vec2(2.0, -1.0));
   vec4 seen_surface = vec4(0.0);
   bool is_inside = false;
   for (int turn = 0; turn < turns; turn++) {
@@ -165,10 +176,13 @@ Resolved resolve_sample(ivec2 texel) {
     own.color = texelFetch(shaded, own.shaded_at, 0);
     seen_surface = texelFetch(surface, own.shaded_at, 0);
     seen_surface.w = abs(seen_surface.w);
-    vec4 same = same_surface(own.shaded_at, size, seen_surface.xyz, seen_surface.w);
+    own.normal = seen_surface.xyz;
+    bool is_folded;
+    vec4 same = same_surface(own.shaded_at, size, own.normal, seen_surface.w, is_folded);
     bool is_there = own.color.w > 0.0;
     if (is_there) own.range = vec2(stored_depth(same.x), stored_depth(same.y));
-    is_inside = is_there && reached.x >= stored_depth(same.z) && reached.y <= stored_depth(same.w) && reached.y < 1.0;
+    is_inside = is_there && !is_folded && reached.y < 1.0;
+    is_inside = is_inside && reached.x >= stored_depth(same.z) && reached.y <= stored_depth(same.w);
   }
 #ifdef LAYER
   const vec4 background = vec4(0.0);

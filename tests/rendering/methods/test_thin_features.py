@@ -64,3 +64,20 @@ def test_so_they_are_before_a_close_surface(kind, turn, tilt, render):
     truth = render_exact(scene, camera, settings, samples=4, pixel_filter="gaussian")
     off = np.abs(render(scene, camera, settings).color - truth.color)[2:-2, 2:-2, 0]
     assert off.max() < 0.2, off.max()
+
+
+@pytest.mark.parametrize("turn", [0.1, 0.3, 1.2])
+def test_the_scallops_of_a_crease_are_filtered(turn, render):
+    """Two planes meet in a ridge, in one depth: discs of either stick out of the other, and only their normals tell
+    them apart. Unfiltered, pixels there are all white or all black."""
+    along, up = (a.reshape(-1, 1) for a in np.meshgrid(np.arange(0, 30, 1.1), np.arange(-30, 30, 1.1)))
+    roll = np.array(((math.cos(turn), math.sin(turn), 0), (-math.sin(turn), math.cos(turn), 0), (0, 0, 1)))
+    flanks = []
+    for across, color in (((0.6, 0, -0.8), WHITE), ((-0.6, 0, -0.8), BLACK)):
+        u, v = across @ roll, (0, 1, 0) @ roll
+        center = along * u + up * v + (0.3, 0, -100)
+        flanks.append(discs(center, 1.1 * u, 1.1 * v * math.copysign(1, across[0]), color))
+    scene, camera, settings = Scene(tuple(flanks)), CAMERAS["perspective"], Settings(shading="flat")
+    truth = render_exact(scene, camera, settings, samples=4, pixel_filter="gaussian")
+    off = np.abs(render(scene, camera, settings).color - truth.color)[2:-2, 2:-2, 0]
+    assert off.max() < 0.3, off.max()
