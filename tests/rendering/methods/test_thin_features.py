@@ -81,3 +81,15 @@ def test_the_scallops_of_a_crease_are_filtered(turn, render):
     truth = render_exact(scene, camera, settings, samples=4, pixel_filter="gaussian")
     off = np.abs(render(scene, camera, settings).color - truth.color)[2:-2, 2:-2, 0]
     assert off.max() < 0.3, off.max()
+
+
+@pytest.mark.parametrize("lean", [0.02, 0.05])
+def test_what_is_edge_on_behind_the_back_of_a_wall_does_not_shine_through_it(lean, render):
+    """Beyond its rim its plane runs ahead of the wall, as far as the filter reaches; and a front weighs more there."""
+    across, up = (a.reshape(-1, 1) for a in np.meshgrid(np.arange(-30, 30, 0.7), np.arange(-30, 30, 0.7)))
+    wall = discs(across * (1, 0, 0) + up * (0, 1, 0) + (0, 0, -100), (0.6, 0, 0), (0, -0.6, 0), WHITE)
+    into, along = (a.reshape(-1, 1) for a in np.meshgrid(np.arange(4.5, 20, 0.7), np.arange(-30, 30, 0.7)))
+    axis = np.array((lean, 0, -1))
+    behind = discs(into * axis + along * (0, 1, 0) + (0.3, 0, -100), 0.6 * axis, (0, 0.6, 0), BLACK)
+    picture = render(Scene((wall, behind)), CAMERAS["perspective"], Settings(shading="flat")).color
+    assert picture[2:-2, 2:-2, :3].min() > 0.89
