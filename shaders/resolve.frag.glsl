@@ -35,8 +35,9 @@ const float STEP = 1.0 / float(ROWS);
 const float FIRST_RATIO = exp((float(FILTER_REACH) - 0.5 * STEP) * STEP / FILTER_VARIANCE);
 const float RATIO_RATIO = exp(-STEP * STEP / FILTER_VARIANCE);
 
-// Least cosine between normals of one surface: across a sharper crease surfels of either flank stick out of the other.
-const float SMOOTH = 0.5;
+// Least cosine between normals of one surface: across a sharper crease surfels of either flank stick out of the other. No
+// angle of common solids: at 60 degrees, or 63, rounding would choose.
+const float SMOOTH = 0.55;
 
 // Normal and depth of what is shaded there; where nothing is, this normal, and a depth beyond all.
 vec4 surface_at(ivec2 texel, ivec2 size, vec3 normal) {
