@@ -111,13 +111,14 @@ struct Resolved {
   Outputs outputs;
 };
 
-// The surface of the sample that is resolved: its colour, and the range of stored depths that see it, none where there is
-// none.
+// The surface of the sample that is resolved: where it is shaded, its colour and normal, 1 fold if a crease is beside it,
+// and the range of stored depths that see it, none where there is none.
 struct Own {
   ivec2 texel;
   ivec2 shaded_at;
   vec4 color;
   vec3 normal;
+  int folds;
   vec2 range;
 };
 
@@ -151,7 +152,9 @@ void add_seen(inout Resolved sum, Own own, float seen, ivec2 at, vec4 there, boo
     is_first = is_first && here.w >= shading.edges.y;
 #else
     bool is_own = seen >= own.range.x && seen <= own.range.y;
-    is_own = is_own && dot(texelFetch(surface, at, 0).xyz, own.normal) >= SMOOTH;
+    for (int turn = 0; turn < own.folds; turn++) {
+      is_own = is_own && dot(texelFetch(surface, at, 0).xyz, own.normal) >= SMOOTH;
+    }
     is_own = is_own || !(there.w > 0.0);
     here = is_own ? own.color : there;
     here = here.w > 0.0 ? here : background;
@@ -169,7 +172,7 @@ Resolved resolve_sample(ivec2 texel) {
   vec2 reached = reached_range(texel, size);
   // Loops that have no turn to make cost nothing; what is not chosen may.
   int turns = reached.x < 1.0 ? 1 : 0;
-  Own own = Own(texel, texel, vec4(0.0), vec3(0.0), vec2(2.0, -1.0));
+  Own own = Own(texel, texel, vec4(0.0), vec3(0.0), 0, vec2(2.0, -1.0));
   vec4 seen_surface = vec4(0.0);
   bool is_inside = false;
   for (int turn = 0; turn < turns; turn++) {
@@ -180,6 +183,7 @@ Resolved resolve_sample(ivec2 texel) {
     own.normal = seen_surface.xyz;
     bool is_folded;
     vec4 same = same_surface(own.shaded_at, size, own.normal, seen_surface.w, is_folded);
+    own.folds = is_folded ? 1 : 0;
     bool is_there = own.color.w > 0.0;
     if (is_there) own.range = vec2(stored_depth(same.x), stored_depth(same.y));
     is_inside = is_there && !is_folded && reached.y < 1.0;
