@@ -39,8 +39,8 @@ PRESETS = {
         Preset(
             "balanced",
             "Balanced",
-            "Filtered, so smooth and still in animations and fine textures: 40 to 47 dB and FLIP 0.006 to 0.016 from "
-            "filtered pixels, in about 1.7 times the time of Preview",
+            "Filtered, so smooth and still in animations and fine textures: 40 to 47 dB and FLIP 0.007 to 0.016 from "
+            "filtered pixels, in about 1.8 times the time of Preview",
             {"method": "mip", "supersampling": 1},
         ),
         Preset(
