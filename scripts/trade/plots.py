@@ -44,7 +44,8 @@ def plot_overview(rows: list[dict], path: Path) -> None:
         _panel(axis, mine, "flip_gaussian", "ratio")
         axis.set_title(scene, fontsize=9)
         axis.tick_params(labelsize=7, which="both")
-    axes.flat[0].legend(fontsize=6)
+    # Beside the panels: within one it would hide points.
+    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside upper center", ncols=8, fontsize=6)
     figure.supxlabel("time in that of quads with one sample", fontsize=9)
     figure.supylabel("mean FLIP, Gaussian filter", fontsize=9)
     _save(figure, path)

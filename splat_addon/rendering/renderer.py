@@ -26,7 +26,7 @@ from .scene import Scene
 from .settings import OUTPUTS, Settings, held_arrays
 from .shadow import ShadowMap, casting, same_maps
 from .storages import get_storage
-from .view import look
+from .view import clip_range, look
 
 #: x, y, width, height in pixels.
 Tile = tuple[int, int, int, int]
@@ -226,7 +226,10 @@ class Renderer:
         self.resources.forget_atlases_but({placed.textures for placed in scene.shown})
         casters = casting(scene)
         shadow_views = tuple(look(casters, made.camera, settings.epsilon) for made in frame_plan.shadow_maps)
-        whole = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan)) if len(frame_plan.tiles) > 1 else None
+        whole = None
+        if len(frame_plan.tiles) > 1:
+            drawn = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan))
+            whole = clip_range(scene, drawn, settings.epsilon)
         for number, tile in enumerate(frame_plan.tiles):
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
             view = look(scene, tile_camera, settings.epsilon, whole)

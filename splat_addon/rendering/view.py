@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -82,16 +83,32 @@ class View:
         return _LEAST_STEPS / 2**24 * (1.0 if linear_depth else self.depth_span)
 
 
-def look(scene: Scene, camera: Camera, epsilon: float, whole: Camera | None = None) -> View:
+class ClipRange(NamedTuple):
+    """near, far: depths that are stored, world units. scale: what these are multiplied by first."""
+
+    near: float
+    far: float
+    scale: float
+
+
+def clip_range(scene: Scene, camera: Camera, epsilon: float) -> ClipRange:
+    """That of all that the camera sees."""
+    return _clipped(camera, _seen(scene, camera)[0], epsilon)
+
+
+def _clipped(camera: Camera, seen, epsilon: float) -> ClipRange:
+    near, far = _clip_range(camera, seen, epsilon)
+    return ClipRange(near, far, _power_of_two_scale(camera, seen, near))
+
+
+def look(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | None = None) -> View:
     """The scene's instances as this camera sees them. epsilon: how far visibility moves splats back, in radii.
 
-    whole: the camera that this one is cropped from, if it is; depths are stored for all that it sees, so that they, and
-    what is compared with them, are rounded alike in all its parts.
+    whole: of the camera that this one is cropped from, if it is; depths are stored for all that it sees, so that they,
+    and what is compared with them, are rounded alike in all its parts.
     """
     seen, outside, degenerate = _seen(scene, camera)
-    whole, in_whole = (whole, _seen(scene, whole)[0]) if whole else (camera, seen)
-    near, far = _clip_range(whole, in_whole, epsilon)
-    scale = _power_of_two_scale(whole, in_whole, near)
+    near, far, scale = whole or _clipped(camera, seen, epsilon)
     radii = overlapping_radii(scene)
     placed = {Instance: [], PolygonInstance: []}
     for instance, _, _ in seen:

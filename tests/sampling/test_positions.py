@@ -29,6 +29,14 @@ def test_a_tilted_plane_holds_its_surfels(triangle):
     assert np.abs(z - (x / 3 - y * 4 / 9)).max() < 1e-6
 
 
+def test_surfels_are_measured_from_the_middle_of_the_mesh(armadillo):
+    """To 8 cells: float32 rounds numbers half as large by half as much."""
+    low, high = armadillo.bounds()
+    spacing = (high - low).max() / 256
+    surfels = sample_mesh(armadillo, resolution=256)
+    assert (np.abs(surfels.positions).max(axis=0) <= (high - low) / 2 + 9 * spacing).all()
+
+
 @pytest.mark.parametrize("offset", [1e7, -1e7])
 def test_a_mesh_far_from_the_origin_keeps_every_bit(armadillo, offset):
     """Vertices on multiples of 2^-20 survive the move exactly, so nothing may change but the origin."""
