@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scripts.coverage import uncovered_points
+from scripts.distances import distances
 from splat_addon.sampling import (
     REDUCTIONS,
     Channel,
@@ -130,21 +131,6 @@ def test_surfels_lie_on_their_triangles_within_float32(mesh, resolution):
     assert resolution > 97 or bound < 1e-5
     # the origin, in float64, is rounded too
     assert away.max(initial=0) / spacing <= bound + 1e-9
-
-
-def distances(points, a, b, c):
-    """(n,) from (n, 3) points to one triangle, in float64."""
-    normal = np.cross(b - a, c - a)
-    square = max(normal @ normal, np.finfo(float).tiny)
-    w1 = np.cross(points - a, c - a) @ normal / square
-    w2 = np.cross(b - a, points - a) @ normal / square
-    to_edges = np.min([to_segment(points, *ends) for ends in ((a, b), (b, c), (c, a))], axis=0)
-    return np.where((w1 >= 0) & (w2 >= 0) & (w1 + w2 <= 1), np.abs((points - a) @ normal) / np.sqrt(square), to_edges)
-
-
-def to_segment(points, a, b):
-    along = np.clip((points - a) @ (b - a) / max((b - a) @ (b - a), np.finfo(float).tiny), 0, 1)
-    return np.linalg.norm(a + along[:, None] * (b - a) - points, axis=1)
 
 
 @fast
