@@ -3,6 +3,7 @@
 
 #define VERTEX_STAGE
 #define PARALLEL (splats.options.z > 0.5)
+#include "common/nowhere.glsl"
 #include "common/splat_attributes.glsl"
 #ifdef WITH_MATERIALS
 #include "common/splat_material.glsl"

@@ -9,6 +9,7 @@
 #ifdef IDENTITY_TARGET
 #include "common/identity.glsl"
 #endif
+#include "common/nowhere.glsl"
 #include "common/sides.glsl"
 #ifdef SPLIT
 #include "common/split.glsl"

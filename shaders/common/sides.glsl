@@ -6,9 +6,6 @@
 const float BACK_WEIGHT = 1e-3;     // of a back against a front
 const float BACK_EPSILON = 2.0;     // a back is moved away that much further
 
-// Where backs are hidden, every corner of such a splat goes here, beyond the near plane.
-const vec4 NOWHERE = vec4(0.0, 0.0, -2.0, 1.0);
-
 // A splat that shows less of itself is not there at all, and holds no layer.
 const float LEAST_OPACITY = 1e-3;
 

@@ -2,6 +2,7 @@
 // Summary: corners of polygons and their attributes, the normal on the side that is seen.
 
 #define VERTEX_STAGE
+#include "common/nowhere.glsl"
 #include "polygons/corner.glsl"
 #ifdef IDENTITY_TARGET
 #include "common/identity.glsl"

@@ -3,7 +3,6 @@
 
 const int SPLATS_PER_ROW = 512;  // here: corners
 const int TEXELS_PER_CORNER = 3;
-const vec4 NOWHERE = vec4(0.0, 0.0, -2.0, 1.0);  // beyond the near plane
 
 vec4 corner_texel(int corner, int number) {
   return texelFetch(polygon_corners, ivec2((corner % SPLATS_PER_ROW) * TEXELS_PER_CORNER + number, corner / SPLATS_PER_ROW), 0);

@@ -7,6 +7,7 @@
 #ifdef IDENTITY_TARGET
 #include "common/identity.glsl"
 #endif
+#include "common/nowhere.glsl"
 #include "polygons/corner.glsl"
 
 void main() {

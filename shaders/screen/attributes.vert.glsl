@@ -9,6 +9,7 @@
 #ifdef IDENTITY_TARGET
 #include "common/identity.glsl"
 #endif
+#include "common/nowhere.glsl"
 #include "common/splat_attributes.glsl"
 #ifdef WITH_MATERIALS
 #include "common/splat_material.glsl"

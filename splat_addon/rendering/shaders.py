@@ -12,6 +12,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "shaders"
 _INCLUDE = re.compile(r'^#include "([^"]+)"$', re.MULTILINE)
 
 
+@cache
 def load(path: str, **names: str) -> str:
     """The text of shaders/`path` with its includes. Raises FileNotFoundError for a path that is not there."""
     return _expand(path, tuple(sorted(names.items())), set())

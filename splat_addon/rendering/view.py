@@ -30,8 +30,8 @@ _LEAST_STEPS = 16
 #: Radii of the largest splat that splats of a split object reach over its polygons: one less has full weights.
 SPLIT_OVERLAP = 1.5
 
-#: Of how many surfels an instance's median depth is taken.
-_DEPTH_SAMPLES = 256
+#: Of how many surfels an instance's median depth is taken, and whether all of it is in view.
+_SOME = 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +39,7 @@ class PlacedInstance:
     """model_view: (4, 4) float64, positions (without origin) to scaled view space.
     normal_matrix: (3, 3) float64, its inverse transpose up to a positive factor.
     hides_backs: splats or polygons that show their back are left out.
+    is_whole: as far as some of its places tell, the camera sees all of it.
     overlap: of polygons, how far behind them splats still count, view units.
     setback: what a visibility pass moves it back by at least, beside `View.least_offset` and in its unit.
     split: of polygons the farthest distance, of splats the least of their centres, view units; 0: no limit.
@@ -48,6 +49,7 @@ class PlacedInstance:
     model_view: np.ndarray
     normal_matrix: np.ndarray
     hides_backs: bool
+    is_whole: bool
     overlap: float = 0.0
     split: float = 0.0
     setback: float = 0.0
@@ -119,7 +121,8 @@ def look(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | None =
         overlap = epsilon * radii.get(instance, 0.0) * scale
         of_kind = placed[type(instance)]
         hides_backs, split = instance.hides_backs(camera), _split(instance) * scale
-        of_kind.append(PlacedInstance(instance, model_view, normal_matrix, hides_backs, overlap, split))
+        is_whole = not _beyond(_some_places(instance, camera), camera).any()
+        of_kind.append(PlacedInstance(instance, model_view, normal_matrix, hides_backs, is_whole, overlap, split))
     return View(
         scale=scale,
         near=camera.near * scale,
@@ -237,7 +240,7 @@ def _seen(scene: Scene, camera: Camera) -> tuple[list, int, int]:
             degenerate += 1
             continue
         corners = instance.corners(camera)
-        if _outside(corners, camera):
+        if _beyond(corners, camera).all(axis=1).any():
             outside += 1
             continue
         seen.append((instance, -corners[:, 2], instance.radius))
@@ -249,20 +252,21 @@ def _invertible(linear: np.ndarray) -> bool:
     return bool(lengths[2] > _FLATTEST * lengths[0])
 
 
-def _outside(corners: np.ndarray, camera: Camera) -> bool:
-    """Whether a box lies wholly beyond one of the six planes of the camera's view volume."""
+def _beyond(corners: np.ndarray, camera: Camera) -> np.ndarray:
+    """(6, n) of each plane of the camera's view volume, which of n places in view space lie beyond it."""
     x, y, depth = corners[:, 0], corners[:, 1], -corners[:, 2]
     left, right, bottom, top = camera.window
     spread = 1.0 if camera.is_orthographic else depth
-    beyond = (
-        depth < camera.near,
-        depth > camera.far,
-        x < left * spread,
-        x > right * spread,
-        y < bottom * spread,
-        y > top * spread,
+    return np.array(
+        [
+            depth < camera.near,
+            depth > camera.far,
+            x < left * spread,
+            x > right * spread,
+            y < bottom * spread,
+            y > top * spread,
+        ]
     )
-    return any(bool(b.all()) for b in beyond)
 
 
 def _clip_range(camera: Camera, seen, epsilon: float) -> tuple[float, float]:
@@ -293,10 +297,14 @@ def _power_of_two_scale(camera: Camera, seen, near: float) -> float:
     return math.ldexp(1.0, -round(math.log2(depths[order][min(half, len(order) - 1)])))
 
 
+def _some_places(instance: Placed, camera: Camera) -> np.ndarray:
+    """(n, 3) of its surfels or corners, in the camera's view space."""
+    model_view = instance.model_view(camera)
+    return instance.shape.positions[:: -(-len(instance.shape) // _SOME)] @ model_view[:3, :3].T + model_view[:3, 3]
+
+
 def _median_depth(instance: Placed, camera: Camera, near: float) -> float:
     """Of some places between the clip planes: stray ones far away do not count for more."""
-    positions = instance.shape.positions[:: -(-len(instance.shape) // _DEPTH_SAMPLES)]
-    axis = -instance.model_view(camera)[2]
-    depths = positions @ axis[:3] + axis[3]
+    depths = -_some_places(instance, camera)[:, 2]
     depths = depths[(depths > near) & (depths < camera.far)]
     return float(np.median(depths)) if len(depths) else near

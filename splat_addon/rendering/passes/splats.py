@@ -21,7 +21,8 @@ from .tile import TileContext
 #:     share of the distance; of an orthographic camera a length), what colours are multiplied by.
 #: light_set: 1 in the channel of the instance's set.
 #: window: left, bottom and step of one sample on the plane at depth 1.
-#: identity: number of the instance's first material slot, and of slots after it; its split (`PlacedInstance`).
+#: identity: number of the instance's first material slot, and of slots after it; its split (`PlacedInstance`); the
+#:     depth, between -1 and 1 in the view, at which what is not drawn collapses.
 SPLATS_BLOCK = (
     "Splats",
     "splats",
@@ -89,5 +90,5 @@ def splats_block(tile: TileContext, placed: PlacedInstance, epsilon: float) -> n
     normal_matrix, orientation, light_set = instance_values(placed)
     set_back = max(view.least_offset(tile.plan.linear_depth), placed.setback)
     sides = orientation, placed.hides_backs, set_back, tile.color_scale
-    identity = (*tile.identities.slots(placed.instance), placed.split, 0.0)
+    identity = (*tile.identities.slots(placed.instance), placed.split, 0.0 if placed.is_whole else -2.0)
     return std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set, identity)
