@@ -170,32 +170,25 @@ void add_seen(inout Resolved sum, Own own, float seen, ivec2 at, vec4 there, boo
 Resolved resolve_sample(ivec2 texel) {
   ivec2 size = textureSize(shaded, 0);
   vec2 reached = reached_range(texel, size);
-  // Loops that have no turn to make cost nothing; what is not chosen may.
-  int turns = reached.x < 1.0 ? 1 : 0;
-  Own own = Own(texel, texel, vec4(0.0), vec3(0.0), 0, vec2(2.0, -1.0));
-  vec4 seen_surface = vec4(0.0);
-  bool is_inside = false;
-  for (int turn = 0; turn < turns; turn++) {
-    own.shaded_at = shaded_at(texel, size);
-    own.color = texelFetch(shaded, own.shaded_at, 0);
-    seen_surface = texelFetch(surface, own.shaded_at, 0);
-    seen_surface.w = abs(seen_surface.w);
-    own.normal = seen_surface.xyz;
-    bool is_folded;
-    vec4 same = same_surface(own.shaded_at, size, own.normal, seen_surface.w, is_folded);
-    own.folds = is_folded ? 1 : 0;
-    bool is_there = own.color.w > 0.0;
-    if (is_there) own.range = vec2(stored_depth(same.x), stored_depth(same.y));
-    is_inside = is_there && !is_folded && reached.y < 1.0;
-    is_inside = is_inside && reached.x >= stored_depth(same.z) && reached.y <= stored_depth(same.w);
-  }
+  Own own = Own(texel, shaded_at(texel, size), vec4(0.0), vec3(0.0), 0, vec2(2.0, -1.0));
+  own.color = texelFetch(shaded, own.shaded_at, 0);
+  vec4 seen_surface = texelFetch(surface, own.shaded_at, 0);
+  seen_surface.w = abs(seen_surface.w);
+  own.normal = seen_surface.xyz;
+  bool is_folded;
+  vec4 same = same_surface(own.shaded_at, size, own.normal, seen_surface.w, is_folded);
+  own.folds = is_folded ? 1 : 0;
+  bool is_there = own.color.w > 0.0;
+  if (is_there) own.range = vec2(stored_depth(same.x), stored_depth(same.y));
+  bool is_inside = is_there && !is_folded && reached.y < 1.0;
+  is_inside = is_inside && reached.x >= stored_depth(same.z) && reached.y <= stored_depth(same.w);
 #ifdef LAYER
   const vec4 background = vec4(0.0);
 #else
   vec4 background = world_background(texel);
 #endif
   Resolved sum = Resolved(vec4(0.0), 0.0, 0.0, false, false, seen_surface, NO_OUTPUTS);
-  // Inside a surface and beside all surfaces there is nothing to filter.
+  // Inside a surface and beside all surfaces there is nothing to filter: loops that have no turn to make cost nothing.
 #ifdef BEHIND_LAYERS
   is_inside = false;
 #endif

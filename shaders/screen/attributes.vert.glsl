@@ -16,6 +16,9 @@
 #endif
 #include "common/stored_depth.glsl"
 #include "screen/plane.glsl"
+#ifdef CULLS_HIDDEN
+#include "screen/culling.glsl"
+#endif
 #include "methods/{method}.glsl"
 #ifdef TEXTURED
 #include "common/splat_texture.glsl"
@@ -91,5 +94,9 @@ void main() {
     vec2 pixels = axes * (half_axes * (MARGIN * corner.yx * axes));
     vec4 clip = splats.projection * vec4(splats.window.xy + (middle + pixels) * splats.window.zw, -1.0, 1.0);
     gl_Position = vec4(clip.xy / clip.w, clamp(2.0 * stored_depth(nearest_depth(plane)) - 1.0, -1.0, 1.0), 1.0);
+#ifdef CULLS_HIDDEN
+    float reach = FOOTPRINT_END * max(half_axes.x, half_axes.y);
+    if (is_behind_all(middle, reach, plane.depth - plane.reach)) gl_Position = NOWHERE;
+#endif
   }
 }

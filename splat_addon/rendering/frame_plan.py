@@ -19,6 +19,9 @@ LAYER_MARGIN = 1
 #: of the samples. shaders/common/silhouette_filter.glsl has the same.
 VISIBILITY_ROWS = 2
 
+#: Samples along each side of what "coarse_depth" holds one value for; shaders/common/cells.glsl has the same.
+CELL = 4
+
 #: texture -> (format, what it holds one value for)
 TEXTURES = {
     "row_depth": ("DEPTH32F", "row"),
@@ -32,6 +35,7 @@ TEXTURES = {
     "holdout_depth": ("DEPTH32F", "sample"),
     "row_holdout_depth": ("DEPTH32F", "row"),
     "seen_range": ("RGBA32F", "sample"),
+    "coarse_depth": ("R32F", "cell"),
     "seen_depth": ("DEPTH32F", "sample"),
     "color_sum": ("RGBA32F", "sample"),
     "normal_sum": ("RGBA32F", "sample"),
@@ -190,6 +194,9 @@ class FramePlan:
         if what_for == "block":
             return BLOCKS, BLOCKS
         along = 1 if what_for == "pixel" else self.samples
+        if what_for == "cell":
+            width, height = (-(-edge * along // CELL) for edge in pixels)
+            return width, height
         return pixels[0] * along, pixels[1] * along * (VISIBILITY_ROWS if what_for == "row" else 1)
 
     def format(self, texture: str) -> str:

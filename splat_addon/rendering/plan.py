@@ -74,10 +74,8 @@ def plan(
         reads = _read_by_shading(scene, model, kept, maps, left_out) + (("lines",) if lines else ())
         shadows = (_shadow_pass(scene, maps),) if maps else ()
         layers = layers_of(scene, settings, method, model, left_out)
-        why_attributes = _why_attributes(scene, method)
-        holds_out = any(instance.is_holdout for instance in scene.shown)
         has_rows = method.filters_silhouettes and not layers
-        first, *splats = _splat_passes(settings, method, has_rows, why_attributes, why_depth, sums, holds_out, left_out)
+        first, *splats = _splat_passes(scene, camera, settings, method, has_rows, why_depth, sums, left_out)
         passes = (
             *shadows,
             first,
@@ -167,19 +165,20 @@ def _sums(
 
 
 def _splat_passes(
+    scene: Scene,
+    camera: Camera,
     settings: Settings,
     method: Method,
     has_rows: bool,
-    why: str,
     why_depth: str,
     sums: tuple[str, ...],
-    holds_out: bool,
     left_out: list,
 ):
     """Visibility and sums, and between them what a method that works in the picture tests its depths with.
 
     has_rows: visibility has more rows than there are of samples; what transparent layers hide is known at these alone.
     """
+    why = _why_attributes(scene, method)
     identity, why_identity = _identity(settings, left_out)
     if method.works_in == "sprites":
         left_out.append(("visibility", f"of {method.name} the nearest splat wins, and nothing blends"))
@@ -198,16 +197,32 @@ def _splat_passes(
         compared += "; between samples, silhouettes are looked for alone"
     else:
         seen = seen[:1]
-    if holds_out:
+    if any(instance.is_holdout for instance in scene.shown):
         hole = "row_holdout_depth" if has_rows else "holdout_depth"
         holes = (PlannedPass("holdouts", "a filter brings what lies behind a hole before it", (), (hole,)),)
         seen = (*seen, hole)
+    culling = _culling_passes(scene, camera, method, left_out)
     return (
         visibility,
         *holes,
         PlannedPass("seen_range", compared, seen, kept),
-        PlannedPass("attributes", why, ("seen_range", "visibility_depth"), sums),
+        *culling,
+        PlannedPass("attributes", why, ("seen_range", *(p.writes[0] for p in culling), "visibility_depth"), sums),
     )
+
+
+def _culling_passes(scene: Scene, camera: Camera, method: Method, left_out: list) -> tuple[PlannedPass, ...]:
+    """What tells of splats that they are hidden, where it pays."""
+    if not method.culls_hidden:
+        left_out.append(("coarse_depth", f"{method.name} draws hidden splats too, as its paper does"))
+        return ()
+    opaque = [instance for instance in scene.surfels if len(instance.surfels) and not instance.is_transparent]
+    showing = sum(not instance.hides_backs(camera) for instance in opaque)
+    if not showing:
+        left_out.append(("coarse_depth", "nothing opaque shows its backs, which most of what is hidden would be"))
+        return ()
+    why = f"backs of {showing} of {len(opaque)} instances may lie behind all that is seen, and are not drawn"
+    return (PlannedPass("coarse_depth", why, ("seen_range",), ("coarse_depth",)),)
 
 
 def _polygon_passes(

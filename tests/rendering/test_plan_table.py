@@ -121,8 +121,8 @@ TABLE = {
     ),
     "polygons, flat, by mip": (
         OTHERS, {"shading": "flat", "method": "mip"},
-        ("visibility", "seen_range", "attributes", "polygons", "sample_shading", "resolve"),
-        f"{AMONG_TEXTURES} row_depth seen_range shaded surface", "-brdf_table", (),
+        ("visibility", "seen_range", "coarse_depth", "attributes", "polygons", "sample_shading", "resolve"),
+        f"{AMONG_TEXTURES} row_depth seen_range coarse_depth shaded surface", "-brdf_table", (),
     ),
     "whose it is, where filters reach past what is visible": (
         PLAIN, {"outputs": ("object_index",), "method": "ewa"},
@@ -133,14 +133,20 @@ TABLE = {
     "lines": (PLAIN, {"lines": Lines()}, ("visibility", "attributes", "lines", "shading"), "lines", "", ()),
     "overdraw": (PLAIN, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", ()),
     "mip": (
-        PLAIN, {"method": "mip"}, ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
+        PLAIN, {"method": "mip"},
+        ("visibility", "seen_range", "coarse_depth", "attributes", "sample_shading", "resolve"),
+        "row_depth seen_range coarse_depth shaded surface", "", (),
+    ),
+    "mip, a solid": (
+        Scene([surfels().as_solid()]), {"method": "mip"},
+        ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
         "row_depth seen_range shaded surface", "", (),
     ),
     "mip, more outputs": (
         PLAIN, {"method": "mip", "outputs": ("emission", "overdraw")},
-        ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
-        "-normal_coverage row_depth seen_range shaded surface emission sample_emission overdraw_sum shadow_overdraw "
-        "sample_shadow_overdraw", "", (),
+        ("visibility", "seen_range", "coarse_depth", "attributes", "sample_shading", "resolve"),
+        "-normal_coverage row_depth seen_range coarse_depth shaded surface emission sample_emission overdraw_sum "
+        "shadow_overdraw sample_shadow_overdraw", "", (),
     ),
     "transparent": (
         TRANSPARENT, {"layers": 2, "blends_rest": False},
@@ -170,8 +176,8 @@ TABLE = {
     "holdout": (HOLED, {}, PASSES, "", "", ("HOLDOUT",)),
     "holdout, by mip": (
         HOLED, {"method": "mip"},
-        ("visibility", "holdouts", "seen_range", "attributes", "sample_shading", "resolve"),
-        "row_depth row_holdout_depth seen_range shaded surface", "", ("HOLDOUT",),
+        ("visibility", "holdouts", "seen_range", "coarse_depth", "attributes", "sample_shading", "resolve"),
+        "row_depth row_holdout_depth seen_range coarse_depth shaded surface", "", ("HOLDOUT",),
     ),
     "one pass": (
         PLAIN, {"method": "affine_unfiltered"}, ("attributes", "shading"), "-visibility_depth seen_depth", "", (),

@@ -17,6 +17,8 @@ class Method:
     works_in: "space" (what the hardware clips, interpolates and hides), "picture" (a triangle around each footprint,
         every pixel computed) or "sprites" (parallel to the picture; the nearest wins, in one pass, and nothing blends).
     filters_silhouettes: a resolve pass filters them as the colours are.
+    culls_hidden: splats that lie behind all that is seen are found before they are drawn. The papers draw them, so do
+        their methods here.
     pixel_variance: of its pixel filter, samples squared; 1/12 is that of a box. Textures are looked up under it.
     twin: the same functions in numpy.
     """
@@ -28,6 +30,7 @@ class Method:
     twin: ModuleType
     works_in: str = "picture"
     filters_silhouettes: bool = False
+    culls_hidden: bool = False
     pixel_variance: float = 0.5
 
 
@@ -41,6 +44,7 @@ METHODS = {
             "Smooth and still at one sample a pixel: 40 to 47 dB in 1.5 to 2.2 times the time of Quads",
             mip,
             filters_silhouettes=True,
+            culls_hidden=True,
         ),
         Method(
             "quad",

@@ -4,6 +4,7 @@
 from . import (
     accumulate,
     attributes,
+    coarse_depth,
     holdouts,
     layers,
     lines,
@@ -24,6 +25,7 @@ RUN = {
     "rims": rims.run,
     "holdouts": holdouts.run,
     "seen_range": seen_range.run,
+    "coarse_depth": coarse_depth.run,
     "attributes": attributes.run,
     "polygons": polygons.run,
     "start_layers": layers.start,

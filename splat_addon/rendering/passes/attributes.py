@@ -96,12 +96,15 @@ def _in_space(planned, frame):
 
 
 def _in_picture(planned, frame):
-    straddling = frame.has("STRADDLING")
+    straddling, culls = frame.has("STRADDLING"), "coarse_depth" in planned.reads
     return _description(
         planned,
         frame,
         folder="screen/",
-        samplers=("visibility_depth" if "identity" in planned.writes else "seen_range",),
+        samplers=(
+            "visibility_depth" if "identity" in planned.writes else "seen_range",
+            *(("coarse_depth",) if culls else ()),
+        ),
         varyings=(
             *((("flat", "float", "straddling"),) if straddling else ()),
             ("flat", "vec4", "plane_ab"),
@@ -114,6 +117,7 @@ def _in_picture(planned, frame):
         defines=(
             *(FILTERS_SILHOUETTES if frame.filters_silhouettes else ()),
             *((("STRADDLING", "1"),) if straddling else ()),
+            *((("CULLS_HIDDEN", "1"),) if culls else ()),
             *(HOLDOUT if frame.has("HOLDOUT") else ()),
         ),
         blend="add",

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far is seen in each cell of samples, which tells what splats are hidden before they are drawn."""
+
+from __future__ import annotations
+
+from ..device.interface import PipelineDescription, Target
+from ..frame_plan import FramePlan, PlannedPass
+from ..shaders import load
+from .shading import SHADING_BLOCK, fill
+from .tile import TileContext
+
+
+def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
+    """What the pass draws with."""
+    return PipelineDescription(
+        name="coarse_depth",
+        vertex=load("fullscreen.vert.glsl"),
+        fragment=load("coarse_depth.frag.glsl"),
+        block=SHADING_BLOCK,
+        samplers=planned.reads,
+        outputs=(("float", "coarse_depth"),),
+    )
+
+
+def run(tile: TileContext, planned: PlannedPass) -> Target:
+    """Fill the texture."""
+    return fill(tile, planned, describe(planned, tile.plan))

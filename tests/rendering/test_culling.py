@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Splats that are hidden are not drawn, and nothing but time tells: the pictures are the same, bit by bit."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import scenes
+from splat_addon.reference.extremes import sheet
+from splat_addon.rendering import Camera, Instance, Renderer, Scene, Settings, look_at
+from splat_addon.rendering.frame_plan import CELL
+from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.passes import RUN
+
+SIZE = (64, 48)
+MIP = Settings(method="mip", outputs=("color", "depth", "normal", "coverage", "overdraw"))
+
+
+def near_torus():
+    """Splats of many pixels, some across the border and some across the near plane."""
+    scene, _ = scenes.torus(count=4_000, size=SIZE)
+    pose = look_at((1.45, 0.1, 0.35), (0.6, 0.2, 0.0))
+    return scene, Camera.perspective(pose, 1.4, SIZE, near=0.05)
+
+
+def deep_torus():
+    """So deep that fragments write their depths, with a torus that cuts holes."""
+    (scene, camera), far = scenes.torus(count=6_000, size=SIZE), np.eye(4)
+    far[:3, 3] = 300 * (camera.matrix_world[:3, :3] @ (0.1, 0.1, -1))
+    far[:3, :3] *= 40
+    inner, outer = scene.surfels
+    return replace(scene, surfels=(inner, replace(outer, is_holdout=True), Instance(inner.surfels, far))), camera
+
+
+def transparent_torus():
+    scene, camera = scenes.torus(count=6_000, size=SIZE)
+    inner, outer = scene.surfels
+    glass = replace(outer.surfels, colors=outer.surfels.colors * (1, 1, 1, 0.4))
+    return replace(scene, surfels=(inner, replace(outer, surfels=glass))), camera
+
+
+def parallel():
+    """The eye's plane is amid what is seen: half of its depths are negative."""
+    scene, _ = scenes.torus(count=6_000, size=SIZE)
+    return scene, Camera.orthographic(look_at((0, 0, 0.2), (0, 1, 0)), 2.4, SIZE, -10, 10)
+
+
+SCENES = {
+    "torus": lambda: scenes.torus(count=6_000, size=SIZE),
+    "sub-pixel": lambda: scenes.torus(count=60_000, size=SIZE),
+    "near": near_torus,
+    "deep, holes": deep_torus,
+    "parallel": parallel,
+    "among polygons": lambda: scenes.polygons(size=SIZE),
+    "behind a transparent one": transparent_torus,
+    "two sheets in one place": lambda: (
+        Scene(tuple(sheet(24, 1.5, 75, 5, c) for c in ((0.9, 0.2, 0.1), (0.1, 0.2, 0.9)))),
+        Camera.perspective(look_at((0, 0, 0), (0, 0, -1), (0, 1, 0)), 0.6, SIZE, 0.1, 100),
+    ),
+}
+
+
+@pytest.mark.parametrize("supersampling", [1, 3])
+@pytest.mark.parametrize("name", SCENES)
+def test_the_picture_is_the_same_without(name, supersampling, render, monkeypatch):
+    scene, camera = SCENES[name]()
+    settings = replace(MIP, supersampling=supersampling)
+    culled = render(scene, camera, settings)
+    assert "coarse_depth" in culled.stats["plan"].textures
+    monkeypatch.setitem(METHODS, "mip", replace(METHODS["mip"], culls_hidden=False))
+    whole = render(scene, camera, settings)
+    assert "coarse_depth" not in whole.stats["plan"].textures and whole.color[..., 3].max() > 0
+    for output in settings.outputs:
+        np.testing.assert_array_equal(getattr(culled, output), getattr(whole, output), err_msg=output)
+
+
+def test_a_cell_holds_the_farthest_that_is_seen_around_it(on_device):
+    """And what lies behind that alone is left out: told that nothing is seen, the pass draws nothing."""
+    scene, camera = scenes.torus(count=6_000, size=SIZE)
+    found = {}
+
+    def keep(tile, planned):
+        target = run_pass(tile, planned)
+        found["cells"] = target.read(0)[..., 0]
+        found["seen"] = tile.target(("seen_range",)).read(0)[..., 2]
+        return target
+
+    def forget(tile, planned):
+        target = keep(tile, planned)
+        target.clear(color=-1.0)
+        return target
+
+    run_pass, pictures = RUN["coarse_depth"], []
+    try:
+        for run in (keep, forget):
+            RUN["coarse_depth"] = run
+            pictures.append(on_device(lambda device: Renderer(device).render(scene, camera, MIP)))
+    finally:
+        RUN["coarse_depth"] = run_pass
+    seen, cells = found["seen"], found["cells"]
+    for y, x in np.ndindex(cells.shape):
+        rows, columns = (slice(max(CELL * at - 2, 0), CELL * at + CELL + 2) for at in (y, x))
+        assert cells[y, x] == seen[rows, columns].max()
+    assert pictures[0].color[..., :3].max() > 0.1 and pictures[0].overdraw.max() > 1
+    assert pictures[1].overdraw.max() == 0
