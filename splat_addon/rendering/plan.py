@@ -217,11 +217,11 @@ def _culling_passes(scene: Scene, camera: Camera, method: Method, left_out: list
         left_out.append(("coarse_depth", f"{method.name} draws hidden splats too, as its paper does"))
         return ()
     opaque = [instance for instance in scene.surfels if len(instance.surfels) and not instance.is_transparent]
-    showing = sum(not instance.hides_backs(camera) for instance in opaque)
+    showing = sum(instance.shows_backs(camera) for instance in opaque)
     if not showing:
         left_out.append(("coarse_depth", "nothing opaque shows its backs, which most of what is hidden would be"))
         return ()
-    why = f"backs of {showing} of {len(opaque)} instances may lie behind all that is seen, and are not drawn"
+    why = f"{showing} of {len(opaque)} instances show backs: those behind all that is seen are not drawn"
     return (PlannedPass("coarse_depth", why, ("seen_range",), ("coarse_depth",)),)
 
 

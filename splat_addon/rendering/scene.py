@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from ..images import Image
-from ..surfels import Surfels
+from ..surfels import Surfels, quaternion_axes
 from .camera import Camera
 from .environment import Environment
 from .light import MAX_LIGHT_SETS, Light
@@ -60,6 +60,10 @@ class SurfaceTexture:
     def brightest(self) -> float:
         """The largest component of any texel times the factor."""
         return float(np.max(self.image.pixels[..., :3].max(axis=(0, 1)) * self.factor))
+
+
+#: Of how many of an object's surfels or corners decisions are made that cost time alone if they are wrong.
+_SOME = 256
 
 
 class Placed:
@@ -114,6 +118,15 @@ class Placed:
         pick = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
         return np.where(pick, high, low)
 
+    def some_places(self, camera: Camera) -> np.ndarray:
+        """(n, 3) of some of its surfels or corners, in the camera's view space."""
+        model_view = self.model_view(camera)
+        return self.shape.positions[self._some] @ model_view[:3, :3].T + model_view[:3, 3]
+
+    @property
+    def _some(self) -> slice:
+        return slice(None, None, max(-(-len(self.shape) // _SOME), 1))
+
     def hides_backs(self, camera: Camera) -> bool:
         """Whether no back can be seen: solid and opaque, and wholly beyond the near plane, so that the camera is
         outside.
@@ -160,6 +173,16 @@ class Instance(Placed):
         if not len(self.surfels):
             return 0.0
         return float(self.surfels.scales.max()) * float(np.linalg.norm(self.matrix_world[:3, :3], 2))
+
+    def shows_backs(self, camera: Camera) -> bool:
+        """Whether some surfels turn their backs to the camera and are drawn; as far as some of them tell."""
+        if self.hides_backs(camera):
+            return False
+        linear = self.model_view(camera)[:3, :3]
+        x, y, _ = (axes @ linear.T for axes in quaternion_axes(self.surfels.rotations[self._some]))
+        outward = np.cross(x, y) * np.sign(np.linalg.det(linear))
+        to_eye = (0.0, 0.0, 1.0) if camera.is_orthographic else -self.some_places(camera)
+        return bool((np.sum(outward * to_eye, axis=1) < 0).any())
 
 
 @dataclass(frozen=True, eq=False)

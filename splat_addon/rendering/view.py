@@ -30,9 +30,6 @@ _LEAST_STEPS = 16
 #: Radii of the largest splat that splats of a split object reach over its polygons: one less has full weights.
 SPLIT_OVERLAP = 1.5
 
-#: Of how many surfels an instance's median depth is taken, and whether all of it is in view.
-_SOME = 256
-
 
 @dataclass(frozen=True, eq=False)
 class PlacedInstance:
@@ -121,7 +118,7 @@ def look(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | None =
         overlap = epsilon * radii.get(instance, 0.0) * scale
         of_kind = placed[type(instance)]
         hides_backs, split = instance.hides_backs(camera), _split(instance) * scale
-        is_whole = not _beyond(_some_places(instance, camera), camera).any()
+        is_whole = not _beyond(instance.some_places(camera), camera).any()
         of_kind.append(PlacedInstance(instance, model_view, normal_matrix, hides_backs, is_whole, overlap, split))
     return View(
         scale=scale,
@@ -297,14 +294,8 @@ def _power_of_two_scale(camera: Camera, seen, near: float) -> float:
     return math.ldexp(1.0, -round(math.log2(depths[order][min(half, len(order) - 1)])))
 
 
-def _some_places(instance: Placed, camera: Camera) -> np.ndarray:
-    """(n, 3) of its surfels or corners, in the camera's view space."""
-    model_view = instance.model_view(camera)
-    return instance.shape.positions[:: -(-len(instance.shape) // _SOME)] @ model_view[:3, :3].T + model_view[:3, 3]
-
-
 def _median_depth(instance: Placed, camera: Camera, near: float) -> float:
     """Of some places between the clip planes: stray ones far away do not count for more."""
-    depths = -_some_places(instance, camera)[:, 2]
+    depths = -instance.some_places(camera)[:, 2]
     depths = depths[(depths > near) & (depths < camera.far)]
     return float(np.median(depths)) if len(depths) else near

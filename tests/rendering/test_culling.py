@@ -54,8 +54,8 @@ SCENES = {
     "parallel": parallel,
     "among polygons": lambda: scenes.polygons(size=SIZE),
     "behind a transparent one": transparent_torus,
-    "two sheets in one place": lambda: (
-        Scene(tuple(sheet(24, 1.5, 75, 5, c) for c in ((0.9, 0.2, 0.1), (0.1, 0.2, 0.9)))),
+    "backs of two sheets in one place": lambda: (
+        Scene(tuple(sheet(24, 1.5, 105, 5, c) for c in ((0.9, 0.2, 0.1), (0.1, 0.2, 0.9)))),
         Camera.perspective(look_at((0, 0, 0), (0, 0, -1), (0, 1, 0)), 0.6, SIZE, 0.1, 100),
     ),
 }

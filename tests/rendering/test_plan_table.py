@@ -37,6 +37,7 @@ def surfels(**fields) -> Surfels:
 
 
 PLAIN = Scene([Instance(surfels())])
+TURNED_OVER = Scene([Instance(surfels(), np.diag((1.0, -1, -1, 1)))])
 IN_PICTURE = replace(PLAIN, environment=PICTURE)
 ROUGH, SHINY, GLOWING = Material(roughness=0.9), Material(roughness=0.1), Material(emission=(1, 2, 3))
 
@@ -121,8 +122,8 @@ TABLE = {
     ),
     "polygons, flat, by mip": (
         OTHERS, {"shading": "flat", "method": "mip"},
-        ("visibility", "seen_range", "coarse_depth", "attributes", "polygons", "sample_shading", "resolve"),
-        f"{AMONG_TEXTURES} row_depth seen_range coarse_depth shaded surface", "-brdf_table", (),
+        ("visibility", "seen_range", "attributes", "polygons", "sample_shading", "resolve"),
+        f"{AMONG_TEXTURES} row_depth seen_range shaded surface", "-brdf_table", (),
     ),
     "whose it is, where filters reach past what is visible": (
         PLAIN, {"outputs": ("object_index",), "method": "ewa"},
@@ -133,19 +134,26 @@ TABLE = {
     "lines": (PLAIN, {"lines": Lines()}, ("visibility", "attributes", "lines", "shading"), "lines", "", ()),
     "overdraw": (PLAIN, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", ()),
     "mip": (
-        PLAIN, {"method": "mip"},
+        PLAIN, {"method": "mip"}, ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
+        "row_depth seen_range shaded surface", "", (),
+    ),
+    "mip, backs": (
+        TURNED_OVER, {"method": "mip"},
         ("visibility", "seen_range", "coarse_depth", "attributes", "sample_shading", "resolve"),
         "row_depth seen_range coarse_depth shaded surface", "", (),
     ),
-    "mip, a solid": (
-        Scene([surfels().as_solid()]), {"method": "mip"},
+    "mip, the backs of a solid": (
+        Scene([replace(TURNED_OVER.surfels[0], surfels=surfels().as_solid())]), {"method": "mip"},
         ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
         "row_depth seen_range shaded surface", "", (),
     ),
+    "backs, by a method of the papers": (
+        TURNED_OVER, {"method": "raycast"}, ("visibility", "seen_range", "attributes", "shading"), "seen_range", "", (),
+    ),
     "mip, more outputs": (
         PLAIN, {"method": "mip", "outputs": ("emission", "overdraw")},
-        ("visibility", "seen_range", "coarse_depth", "attributes", "sample_shading", "resolve"),
-        "-normal_coverage row_depth seen_range coarse_depth shaded surface emission sample_emission overdraw_sum "
+        ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
+        "-normal_coverage row_depth seen_range shaded surface emission sample_emission overdraw_sum "
         "shadow_overdraw sample_shadow_overdraw", "", (),
     ),
     "transparent": (
@@ -176,8 +184,8 @@ TABLE = {
     "holdout": (HOLED, {}, PASSES, "", "", ("HOLDOUT",)),
     "holdout, by mip": (
         HOLED, {"method": "mip"},
-        ("visibility", "holdouts", "seen_range", "coarse_depth", "attributes", "sample_shading", "resolve"),
-        "row_depth row_holdout_depth seen_range coarse_depth shaded surface", "", ("HOLDOUT",),
+        ("visibility", "holdouts", "seen_range", "attributes", "sample_shading", "resolve"),
+        "row_depth row_holdout_depth seen_range shaded surface", "", ("HOLDOUT",),
     ),
     "one pass": (
         PLAIN, {"method": "affine_unfiltered"}, ("attributes", "shading"), "-visibility_depth seen_depth", "", (),
