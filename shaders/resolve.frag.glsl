@@ -123,8 +123,9 @@ struct Own {
 };
 
 // seen: a stored depth, that of `at` or of a place beside it which sees the same. there: what is shaded at `at`.
-void add_seen(inout Resolved sum, Own own, float seen, ivec2 at, vec4 there, bool is_between, float weight,
-              vec4 background) {
+// is_smooth: there is no crease between this and `at`.
+void add_seen(inout Resolved sum, Own own, float seen, ivec2 at, vec4 there, bool is_smooth, bool is_between,
+              float weight, vec4 background) {
   vec4 here = background;
   float shown = weight;
   bool is_self = at == own.texel && !is_between;
@@ -151,11 +152,7 @@ void add_seen(inout Resolved sum, Own own, float seen, ivec2 at, vec4 there, boo
     if (is_own) here = own.color * (here.w / own.color.w);
     is_first = is_first && here.w >= shading.edges.y;
 #else
-    bool is_own = seen >= own.range.x && seen <= own.range.y;
-    for (int turn = 0; turn < own.folds; turn++) {
-      is_own = is_own && dot(texelFetch(surface, at, 0).xyz, own.normal) >= SMOOTH;
-    }
-    is_own = is_own || !(there.w > 0.0);
+    bool is_own = (seen >= own.range.x && seen <= own.range.y && is_smooth) || !(there.w > 0.0);
     here = is_own ? own.color : there;
     here = here.w > 0.0 ? here : background;
     sum.outputs = added(sum.outputs, sample_outputs(is_own ? own.shaded_at : at), shown);
@@ -210,26 +207,31 @@ Resolved resolve_sample(ivec2 texel) {
     float weight = FIRST_WEIGHT * (x == COLUMN_REACH ? 1.0 : COLUMN_RATIO), ratio = FIRST_RATIO, below = 1.0;
     ivec2 before = texel;
     vec4 shaded_before = vec4(0.0);
+    bool is_smooth_before = true;
     for (int y = 0; y < 2 * FILTER_REACH + 1; y++) {
       ivec2 at = clamp(texel + ivec2(x - COLUMN_REACH, y - FILTER_REACH), ivec2(0), size - 1);
       float seen = texelFetch(SEEN, ivec2(at.x, ROWS * at.y), 0).r;
       vec4 there = texelFetch(shaded, at, 0);
+      bool is_smooth = true;
+      for (int turn = 0; turn < own.folds; turn++) is_smooth = dot(texelFetch(surface, at, 0).xyz, own.normal) >= SMOOTH;
       if (ROWS > 1 && y > 0) {
         // Between two samples the surface of the one is seen, or of the other; if of both, no rounding may choose.
         float between = texelFetch(SEEN, ivec2(at.x, max(ROWS * at.y - 1, 0)), 0).r;
         bool is_before = abs(between - below) < 0.5 * abs(between - seen);
-        add_seen(sum, own, between, is_before ? before : at, is_before ? shaded_before : there, true, weight, background);
+        add_seen(sum, own, between, is_before ? before : at, is_before ? shaded_before : there,
+                 is_before ? is_smooth_before : is_smooth, true, weight, background);
         total += weight;
         weight *= ratio;
         ratio *= RATIO_RATIO;
       }
-      add_seen(sum, own, seen, at, there, false, weight, background);
+      add_seen(sum, own, seen, at, there, is_smooth, false, weight, background);
       total += weight;
       weight *= ratio;
       ratio *= RATIO_RATIO;
       below = seen;
       before = at;
       shaded_before = there;
+      is_smooth_before = is_smooth;
     }
   }
   sum.color /= total;

@@ -95,7 +95,8 @@ void main() {
     vec4 clip = splats.projection * vec4(splats.window.xy + (middle + pixels) * splats.window.zw, -1.0, 1.0);
     gl_Position = vec4(clip.xy / clip.w, clamp(2.0 * stored_depth(nearest_depth(plane)) - 1.0, -1.0, 1.0), 1.0);
 #ifdef CULLS_HIDDEN
-    float reach = FOOTPRINT_END * max(half_axes.x, half_axes.y);
+    mat2 along = mat2(axes[0] * half_axes.x, axes[1] * half_axes.y);
+    vec2 reach = FOOTPRINT_END * vec2(length(vec2(along[0].x, along[1].x)), length(vec2(along[0].y, along[1].y)));
     if (is_behind_all(middle, reach, plane.depth - plane.reach)) gl_Position = NOWHERE;
 #endif
   }

@@ -6,10 +6,10 @@
 
 const float MOST_REACH = 8.0;  // samples; larger splats are drawn: fetches would cost more than they save
 
-// middle, reach: a disc around what is drawn of it, in samples. nearest: of its depths.
-bool is_behind_all(vec2 middle, float reach, float nearest) {
-  bool is_looked_up = reach <= MOST_REACH;
-  float beyond = max(reach - float(CELL_REACH), 0.0);
+// middle, reach: a box around what is drawn of it, in samples. nearest: of its depths.
+bool is_behind_all(vec2 middle, vec2 reach, float nearest) {
+  bool is_looked_up = max(reach.x, reach.y) <= MOST_REACH;
+  vec2 beyond = max(reach - float(CELL_REACH), 0.0);
   vec2 last = vec2(textureSize(coarse_depth, 0) - 1);
   ivec2 first = ivec2(clamp((middle - beyond) / float(CELL), vec2(0.0), last));
   ivec2 end = ivec2(clamp((middle + beyond) / float(CELL), vec2(0.0), last));
