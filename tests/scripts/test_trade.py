@@ -160,3 +160,23 @@ def flip_of_colours(a, b):
     most = distance((0, 1, 0), (0, 0, 1))
     least, knee, height = distance(a, b), 0.4 * most, 0.95
     return height * least / knee if least < knee else height + (least - knee) / (most - knee) * (1 - height)
+
+
+def test_no_time_holds_the_packing_of_surfels():
+    """Whose textures another storage takes the place of: the frame after a change of storage is not the one counted."""
+    from types import SimpleNamespace
+
+    from trade.measurement import draw_turns
+
+    from splat_addon.rendering import Settings
+
+    packed = []
+
+    def draw(settings):
+        is_packing = packed[-1:] != [settings.storage]
+        packed.append(settings.storage)
+        return SimpleNamespace(stats={"milliseconds": 100.0 if is_packing else 1.0})
+
+    chosen = [Settings(storage=storage, method=m) for storage in ("float32", "16-bit") for m in ("quad", "mip")]
+    _, times = draw_turns(draw, chosen, 2, lambda: None)
+    assert times == {settings: [1.0, 1.0] for settings in chosen}
