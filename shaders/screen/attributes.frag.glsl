@@ -123,10 +123,11 @@ void main() {
   }
 #endif
 #if defined(FILTERS_SILHOUETTES) && !defined(REST)
-  // Where the filter reaches past a silhouette, what is seen behind it is another surface, which keeps the sample. Nor is
-  // a splat of the surface that is seen if it lies so far behind it, though its plane, seen flat, runs before it beyond
-  // the rim.
-  if (!straddles && (seen.w - depth > apart_front.x || apart_front.y > seen.z)) discard;
+  // Where the filter reaches past a silhouette, what is seen behind it is another surface, which keeps the sample: its
+  // depth, moved back by up to 2 epsilon, is more than that and a radius behind this splat's. Nor is a splat of the
+  // surface that is seen if it lies that far behind it, though its plane, seen flat, runs before it beyond the rim.
+  float apart = (1.0 + 4.0 * splats.options.x) * plane.radius;
+  if (!straddles && (seen.w - depth > apart || plane.depth - length(plane.slope) - apart > seen.z)) discard;
 #endif
 #ifdef TEXTURED
   vec3 color = textured_color(plane);

@@ -48,12 +48,6 @@ void main() {
   plane_center_gh = straddles ? vec4(splat.axis_u, 0.0) : vec4(plane.center, plane.gh);
   plane_depths = straddles ? vec4(splat.axis_v, 0.0) : vec4(plane.slope, plane.depth, plane.reach);
   plane_det_radius = straddles ? vec4(0.0) : vec4(plane.det, plane.radius);
-#ifdef FILTERS_SILHOUETTES
-  // How far behind it another surface begins, a radius and the 2 epsilon by which either may be moved back; and how near
-  // its ellipse comes, less that.
-  float apart = (1.0 + 4.0 * splats.options.x) * plane.radius;
-  apart_front = vec2(apart, plane.depth - length(plane.slope) - apart);
-#endif
   footprint_map = vec3(0.0);
   footprint_middle = vec2(0.0);
   color_weight = splat.color_weight;

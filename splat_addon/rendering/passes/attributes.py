@@ -113,7 +113,6 @@ def _in_picture(planned, frame):
             ("flat", "vec4", "plane_det_radius"),
             ("flat", "vec3", "footprint_map"),
             ("flat", "vec2", "footprint_middle"),
-            *((("flat", "vec2", "apart_front"),) if frame.filters_silhouettes else ()),
         ),
         defines=(
             *(FILTERS_SILHOUETTES if frame.filters_silhouettes else ()),
