@@ -116,7 +116,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         description=(
             "Samples along each side of a pixel in final renders, so 3 means 9 samples a pixel. Mip Filter is made for "
             "1: more narrow its filter. With Quads, 2 is 8 to 13 dB truer than 1 for 1.3 times the time, 4 is 13 to "
-            "23 dB truer for 2.2 times (box-filtered pixels)"
+            "23 dB truer for 2.1 times (box-filtered pixels)"
         ),
         min=1,
         max=MAX_SUPERSAMPLING,

@@ -40,14 +40,14 @@ PRESETS = {
             "balanced",
             "Balanced",
             "Filtered, so smooth and still in animations and fine textures: 40 to 47 dB and FLIP 0.007 to 0.016 from "
-            "filtered pixels, in about 1.8 times the time of Preview",
+            "filtered pixels, in about 1.6 times the time of Preview",
             {"method": "mip", "supersampling": 1},
         ),
         Preset(
             "final",
             "Final",
             "The sharpest, for stills and what is scaled down later: 34 to 54 dB and FLIP 0.002 to 0.007 from box "
-            "pixels, in about 2.2 times the time of Preview. Set 5 x 5 for detail far below a pixel: 38 dB instead of "
+            "pixels, in about 2.1 times the time of Preview. Set 5 x 5 for detail far below a pixel: 38 dB instead of "
             "34 to 35",
             {"method": "quad", "supersampling": 4},
         ),
