@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splats that are hidden are not drawn, and nothing but time tells: the pictures are the same, bit by bit."""
+"""Splats that are hidden, and backs of solids, are not drawn, and nothing but time tells where they collapse to."""
 
 from dataclasses import replace
 
@@ -8,10 +8,11 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.reference.extremes import sheet
-from splat_addon.rendering import Camera, Instance, Renderer, Scene, Settings, look_at
+from splat_addon.rendering import Camera, Instance, PolygonInstance, Renderer, Scene, Settings, look_at, renderer
 from splat_addon.rendering.frame_plan import CELL
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.passes import RUN
+from splat_addon.rendering.view import look
 
 SIZE = (64, 48)
 MIP = Settings(method="mip", outputs=("color", "depth", "normal", "coverage", "overdraw"))
@@ -104,3 +105,45 @@ def test_a_cell_holds_the_farthest_that_is_seen_around_it(on_device):
         assert cells[y, x] == seen[rows, columns].max()
     assert pictures[0].color[..., :3].max() > 0.1 and pictures[0].overdraw.max() > 1
     assert pictures[1].overdraw.max() == 0
+
+
+def solids():
+    """Surfels and polygons."""
+    scene, camera = scenes.polygons(size=SIZE)
+    surfels = (replace(i, surfels=i.surfels.as_solid()) for i in scene.surfels)
+    ball = PolygonInstance(replace(scenes.round_polygons(12), is_solid=True), _moved((0.9, -0.5, 0.3)))
+    return replace(scene, surfels=tuple(surfels), polygons=(*scene.polygons, ball)), camera
+
+
+def _moved(place):
+    matrix = np.diag((0.4, 0.4, 0.4, 1.0))
+    matrix[:3, 3] = place
+    return matrix
+
+
+@pytest.mark.parametrize("method", ["quad", "mip", "raycast", "affine_unfiltered"])
+def test_backs_of_solids_may_collapse_in_the_view_or_before_it(method, render, monkeypatch):
+    """In it where the camera sees the whole object; either way the picture is the same."""
+    scene, camera = solids()
+    places = []
+
+    def elsewhere(*arguments):
+        view = look(*arguments)
+        places.extend(p.is_whole for p in (*view.placed, *view.polygons) if p.hides_backs)
+        turned = (tuple(replace(p, is_whole=not p.is_whole) for p in ps) for ps in (view.placed, view.polygons))
+        return replace(view, placed=next(turned), polygons=next(turned))
+
+    settings = replace(MIP, method=method)
+    frames = [render(scene, camera, settings)]
+    monkeypatch.setattr(renderer, "look", elsewhere)
+    frames.append(render(scene, camera, settings))
+    assert places == [True, True]
+    for output in settings.outputs:
+        np.testing.assert_array_equal(getattr(frames[0], output), getattr(frames[1], output), err_msg=output)
+
+
+def test_what_reaches_out_of_the_picture_is_not_seen_whole():
+    scene, camera = scenes.torus(count=4_000, size=SIZE)
+    assert all(placed.is_whole for placed in look(scene, camera, 1.0).placed)
+    near, eye = near_torus()
+    assert not any(placed.is_whole for placed in look(near, eye, 1.0).placed)
