@@ -18,6 +18,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -28,6 +29,7 @@ from PIL import Image  # noqa: E402
 
 from scripts.costs.planned import BYTES  # noqa: E402
 from scripts.measure_models import load, median_seconds, scene_of  # noqa: E402
+from scripts.trade.measurement import draw_turns  # noqa: E402
 from splat_addon.reference import render_exact, scenes  # noqa: E402
 from splat_addon.reference.extremes import discs  # noqa: E402
 from splat_addon.reference.metrics import psnr, srgb  # noqa: E402
@@ -56,15 +58,11 @@ PICTURED = ("1 sample", "4 hardware samples, shaded once", "4 hardware samples, 
 
 def in_turn(renderer: Renderer, scene, camera, choices: dict, turns: int) -> tuple[dict[str, Frame], dict[str, float]]:
     """The last frame of each choice, and the median of its time over the first one's of the same turn."""
-    frames, times = {}, {name: [] for name in choices}
-    for turn in range(turns + 1):
-        for name, settings in choices.items():
-            frames[name] = renderer.render(scene, camera, settings)
-            if turn:
-                times[name].append(frames[name].stats["milliseconds"])
-    first = next(iter(times.values()))
-    ratios = {name: statistics.median(t / f for t, f in zip(own, first, strict=True)) for name, own in times.items()}
-    return frames, ratios
+    draw = partial(renderer.render, scene, camera)
+    frames, times = draw_turns(draw, list(choices.values()), turns, lambda: None)
+    first, *_ = times.values()
+    ratios = {s: statistics.median(t / f for t, f in zip(own, first, strict=True)) for s, own in times.items()}
+    return {name: frames[s] for name, s in choices.items()}, {name: ratios[s] for name, s in choices.items()}
 
 
 def pictures(models: Path, size: int) -> Iterator[tuple[str, Scene, Camera]]:
