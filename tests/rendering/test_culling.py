@@ -8,7 +8,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.reference.extremes import sheet
-from splat_addon.rendering import Camera, Instance, PolygonInstance, Renderer, Scene, Settings, look_at, renderer
+from splat_addon.rendering import Camera, Instance, Renderer, Scene, Settings, look_at, renderer
 from splat_addon.rendering.frame_plan import CELL
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.passes import RUN
@@ -110,15 +110,11 @@ def test_a_cell_holds_the_farthest_that_is_seen_around_it(on_device):
 def solids():
     """Surfels and polygons."""
     scene, camera = scenes.polygons(size=SIZE)
-    surfels = (replace(i, surfels=i.surfels.as_solid()) for i in scene.surfels)
-    ball = PolygonInstance(replace(scenes.round_polygons(12), is_solid=True), _moved((0.9, -0.5, 0.3)))
-    return replace(scene, surfels=tuple(surfels), polygons=(*scene.polygons, ball)), camera
-
-
-def _moved(place):
-    matrix = np.diag((0.4, 0.4, 0.4, 1.0))
-    matrix[:3, 3] = place
-    return matrix
+    surfels = tuple(replace(i, surfels=i.surfels.as_solid()) for i in scene.surfels)
+    floor, ball = scene.polygons
+    return replace(
+        scene, surfels=surfels, polygons=(floor, replace(ball, polygons=replace(ball.polygons, is_solid=True)))
+    ), camera
 
 
 @pytest.mark.parametrize("method", ["quad", "mip", "raycast", "affine_unfiltered"])
