@@ -5,20 +5,22 @@
 
 const float LEAST_COSINE = 0.1;  // a disc seen flatter is drawn as one seen at this angle
 
-#ifdef VERTEX_STAGE
+const float FOOTPRINT_END = 1.0;
+
+#part vertex
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
-  float scale = splats.options.z > 0.5 ? 1.0 : 1.0 / plane.depth;
+  float scale = view.is_parallel > 0.5 ? 1.0 : 1.0 / plane.depth;
   middle = plane.center;
-  return vec2(1.01 * plane.radius * scale / min(splats.window.z, splats.window.w));
+  return vec2(1.01 * plane.radius * scale / min(view.window.z, view.window.w));
 }
-#else
+#part fragment
 // Weight and depth.
 vec2 splat_sample(Plane plane, vec2 pixel) {
-  float scale = splats.options.z > 0.5 ? 1.0 : 1.0 / plane.depth;
+  float scale = view.is_parallel > 0.5 ? 1.0 : 1.0 / plane.depth;
   float radius = plane.radius;
-  vec2 unit = splats.window.zw, center = splats.window.xy + plane.center * unit;
+  vec2 unit = view.window.zw, center = view.window.xy + plane.center * unit;
   vec3 axis_u = vec3((plane.a * unit + center * plane.gh.x) / scale, -plane.slope.x);
   vec3 axis_v = vec3((plane.b * unit + center * plane.gh.y) / scale, -plane.slope.y);
   vec3 disc = normalize(cross(axis_u, axis_v));
@@ -28,4 +30,3 @@ vec2 splat_sample(Plane plane, vec2 pixel) {
   float rho2 = dot(q, q) + offset * offset;
   return vec2(rho2 <= 1.0 ? exp(-2.0 * rho2) : 0.0, plane.depth - radius * offset);
 }
-#endif

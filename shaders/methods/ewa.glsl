@@ -6,14 +6,16 @@
 const float KERNEL_VARIANCE = 0.25;
 const float FILTER_VARIANCE = 0.5;  // square pixels
 
-#ifdef VERTEX_STAGE
+const float FOOTPRINT_END = 1.0;
+
+#part vertex
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
 // Only about what the exact ellipse covers: the affine one of a near splat can fill the picture.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   return 1.1 * sqrt(size * size + 4.0 * FILTER_VARIANCE);
 }
-#else
+#part fragment
 // Weight and depth.
 vec2 splat_sample(Plane plane, vec2 pixel) {
   Place place = place_at(plane, pixel);
@@ -27,4 +29,3 @@ vec2 splat_sample(Plane plane, vec2 pixel) {
   float weight = rho2 <= 1.0 ? abs(area) * inversesqrt(det) * exp(-2.0 * rho2) : 0.0;
   return vec2(weight, plane_depth(plane, place));
 }
-#endif

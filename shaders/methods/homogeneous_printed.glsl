@@ -2,5 +2,5 @@
 // Summary: kept for comparison with `homogeneous.glsl`, which is repaired: a disc that faces the ray vanishes, and small
 //          splats lose the depth of their planes. The twin of rendering/methods/homogeneous_printed.py.
 
-#define AS_PRINTED
-#include "methods/homogeneous.glsl"
+const bool AS_PRINTED = true;
+#include "lib/homogeneous.glsl"

@@ -12,16 +12,18 @@ const vec4 NORMAL = vec4(0.396668, -0.0613809, 0.00673240, -0.000320832);
 const float NORMAL_END = 2.6;
 const float RIM_END = 1.4;  // standard deviations beyond the rim at which nothing counts: a pixel of the filter's
 
-#define FOOTPRINT_END 1.5
+// Of the triangle around the footprint, all of which is drawn in any case, what lies within that many times the ellipse:
+// its corners, where weights are as small as nothing, stay out.
+const float FOOTPRINT_END = 1.5;
 
-#ifdef VERTEX_STAGE
+#part vertex
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
 // Beyond the triangle around 1.8 sigma of kernel and filter, and around 0.75 pixel from the splat's rim, nothing counts.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   return max(sqrt(size * size + 1.25 * 1.25), size + 0.75);
 }
-#else
+#part fragment
 // Weight and depth.
 vec2 splat_sample(Plane plane, vec2 pixel) {
   Place place = place_at(plane, pixel);
@@ -48,4 +50,3 @@ vec2 splat_sample(Plane plane, vec2 pixel) {
   float weight = KERNEL_VARIANCE * amplitude * exp(-2.0 * rho2) * within;
   return vec2(is_within ? weight : 0.0, plane_depth(plane, place));
 }
-#endif

@@ -3,14 +3,16 @@
 // Summary: the exact place in the ellipse, or the distance from the centre in pixels if that is less.
 //          The twin of rendering/methods/raycast.py.
 
-#ifdef VERTEX_STAGE
+const float FOOTPRINT_END = 1.0;
+
+#part vertex
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
 // The ellipse, and the low-pass's disc of sqrt(2) pixels, which lies around the splat's centre: beside the ellipse's.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   return 1.05 * max(size, vec2(2.0 * FILTER_SIGMA)) + length(plane.center - middle);
 }
-#else
+#part fragment
 // Weight and depth: the plane's inside the ellipse, the centre's where only the low-pass reaches.
 vec2 splat_sample(Plane plane, vec2 pixel) {
   Place place = place_at(plane, pixel);
@@ -20,4 +22,3 @@ vec2 splat_sample(Plane plane, vec2 pixel) {
   float depth = plane.depth + (is_inside ? dot(plane.slope, place.uv) : 0.0);
   return vec2(rho2 <= 1.0 ? exp(-2.0 * rho2) : 0.0, depth);
 }
-#endif

@@ -3,7 +3,7 @@
 // Summary: four texels of 16-bit numbers a splat, 512 splats a row; each row is a block with its own box, longest
 //          half-axis and brightest colour, in float32.
 
-#include "common/octahedron.glsl"
+#include "lib/octahedron.glsl"
 
 // 0 to 1 to -1 to 1, with 0 met exactly.
 vec4 signed_16_bit(vec4 stored) {

@@ -1,7 +1,7 @@
 // References: rendering/packing.py, which writes this layout.
 // Summary: four texels of float32 a splat, 512 splats a row.
 
-#include "common/octahedron.glsl"
+#include "lib/octahedron.glsl"
 
 StoredSplat stored_splat(int index) {
   ivec2 texel = ivec2((index % SPLATS_PER_ROW) * TEXELS_PER_SPLAT, index / SPLATS_PER_ROW);

@@ -38,6 +38,7 @@ class BlenderDevice:
             ) from error
         self._gpu = gpu
         self._in_flight = []
+        self._uniforms = {}
         self._triangles = (0, None)
         self._triangle = _batch(gpu, 1)
 
@@ -52,17 +53,17 @@ class BlenderDevice:
     def pipeline(self, description):
         return _Pipeline(self._gpu, description)
 
-    def draw_triangles(self, pipeline, target, triangles, block, textures, viewport=None):
+    def draw_triangles(self, pipeline, target, triangles, blocks, textures, viewport=None):
         if not triangles:
             return
         if self._triangles[0] < triangles:
             # The next power of two: it then grows only a few times.
             size = 1 << max(triangles - 1, 1023).bit_length()
             self._triangles = size, _batch(self._gpu, size)
-        self._draw(pipeline, target, block, textures, self._triangles[1], 3 * triangles, viewport)
+        self._draw(pipeline, target, blocks, textures, self._triangles[1], 3 * triangles, viewport)
 
-    def draw_fullscreen(self, pipeline, target, block, textures, viewport=None):
-        self._draw(pipeline, target, block, textures, self._triangle, None, viewport)
+    def draw_fullscreen(self, pipeline, target, blocks, textures, viewport=None):
+        self._draw(pipeline, target, blocks, textures, self._triangle, None, viewport)
 
     def finish(self, target):
         target.read_one()
@@ -73,10 +74,11 @@ class BlenderDevice:
         state.depth_test_set("NONE")
         state.depth_mask_set(False)
         self._in_flight.clear()
+        self._uniforms.clear()
 
-    def _draw(self, pipeline, target, block, textures, batch, vertices, viewport=None):
+    def _draw(self, pipeline, target, blocks, textures, batch, vertices, viewport=None):
         gpu, description, shader = self._gpu, pipeline.description, pipeline.shader
-        uniforms = gpu.types.GPUUniformBuf(np.ascontiguousarray(block, np.float32))
+        uniforms = [self._uniform(block) for block in blocks]
         self._in_flight.append((uniforms, textures, pipeline, target, batch))
         with target.framebuffer.bind():
             # the frame buffer's own method takes no arguments in Blender 4.5
@@ -85,13 +87,21 @@ class BlenderDevice:
             gpu.state.depth_test_set("LESS_EQUAL" if description.depth_test else "NONE")
             gpu.state.depth_mask_set(description.depth_write)
             shader.bind()
-            shader.uniform_block(description.block[1], uniforms)
+            for (_, instance, _), values in zip(description.blocks, uniforms, strict=True):
+                shader.uniform_block(instance, values)
             for name, texture in zip(description.samplers, textures, strict=True):
                 shader.uniform_sampler(name, texture.handle)
             if vertices is None:
                 batch.draw(shader)
             else:
                 batch.draw_range(shader, elem_start=0, elem_count=vertices)
+
+
+    def _uniform(self, block):
+        """The uniform buffer of an array, which stays alive with it."""
+        if id(block) not in self._uniforms:
+            self._uniforms[id(block)] = block, self._gpu.types.GPUUniformBuf(np.ascontiguousarray(block, np.float32))
+        return self._uniforms[id(block)][1]
 
 
 class _Texture:
@@ -151,10 +161,12 @@ class _Pipeline:
         self.description = description
         types = gpu.types
         info = types.GPUShaderCreateInfo()
-        struct, instance, fields = description.block
-        members = " ".join(f"{kind} {name};" for kind, name in fields)
-        info.typedef_source(f"struct {struct} {{ {members} }};\n")
-        info.uniform_buf(0, struct, instance)
+        structs = []
+        for slot, (struct, instance, fields) in enumerate(description.blocks):
+            members = " ".join(f"{kind} {name};" for kind, name in fields)
+            structs.append(f"struct {struct} {{ {members} }};\n")
+            info.uniform_buf(slot, struct, instance)
+        info.typedef_source("".join(structs))
         for name, value in description.defines:
             info.define(name, value)
         if description.varyings:

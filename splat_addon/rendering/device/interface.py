@@ -24,11 +24,11 @@ BLENDS = ("none", "add")
 @dataclass(frozen=True)
 class PipelineDescription:
     """name: for error messages. vertex, fragment: GLSL without declarations of the inputs and outputs below.
-    block: (struct name, instance name, ((type, field), ...)) of the one uniform block, std140; of mat4 and vec4 only.
+    blocks: (struct name, instance name, ((type, field), ...)) of each uniform block, std140; of mat4, vec4, vec2, float.
     samplers: names of 2D float textures, in slot order. multisampled: those with several samples a texel.
     varyings: (interpolation "smooth" | "flat", type, name) from vertex to fragment.
     outputs: (type, name) in slot order; empty for depth only.
-    defines: (name, value) that the text tests with #ifdef or uses as constants, which drivers fold.
+    defines: (name, value) that the text uses as constants, which drivers fold.
     blend: "none" or "add" (all channels summed). depth_test: less or equal. fragment_depth: the fragment
         shader says what the depth is (gl_FragDepth). sample_shading: of a multisampled target, the fragment shader
         runs at each sample and not once a pixel.
@@ -37,7 +37,7 @@ class PipelineDescription:
     name: str
     vertex: str
     fragment: str
-    block: tuple[str, str, tuple[tuple[str, str], ...]]
+    blocks: tuple[tuple[str, str, tuple[tuple[str, str], ...]], ...] = ()
     samplers: tuple[str, ...] = ()
     varyings: tuple[tuple[str, str, str], ...] = ()
     outputs: tuple[tuple[str, str], ...] = ()
@@ -96,15 +96,16 @@ class Device(Protocol):
         """Compile and link. Raises RuntimeError with the pipeline's name where the driver refuses."""
 
     def draw_triangles(
-        self, pipeline, target, triangles: int, block: np.ndarray, textures: list[Texture], viewport=None
+        self, pipeline, target, triangles: int, blocks: list[np.ndarray], textures: list[Texture], viewport=None
     ) -> None:
         """Draw triangles 0 to `triangles`, in order: vertex 3 t + c is corner c of triangle t.
 
-        block: the uniform block's float32 values in std140 order (matrices column by column).
+        blocks: each uniform block's float32 values as std140 has them. An array that is given again is not copied again
+            before `restore`.
         viewport: x, y, width, height in pixels of the part of the target to draw into; None for all of it.
         """
 
-    def draw_fullscreen(self, pipeline, target, block: np.ndarray, textures: list[Texture], viewport=None) -> None:
+    def draw_fullscreen(self, pipeline, target, blocks: list[np.ndarray], textures: list[Texture], viewport=None) -> None:
         """Draw one triangle of three vertices, 0 to 2, that `fullscreen.vert.glsl` stretches over the viewport."""
 
     def finish(self, target: Target) -> None:

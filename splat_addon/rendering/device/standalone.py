@@ -56,13 +56,13 @@ class StandaloneDevice:
     def pipeline(self, description):
         return _Pipeline(self._context, description)
 
-    def draw_triangles(self, pipeline, target, triangles, block, textures, viewport=None):
+    def draw_triangles(self, pipeline, target, triangles, blocks, textures, viewport=None):
         if triangles:
-            self._bind(pipeline, target, block, textures, viewport)
+            self._bind(pipeline, target, blocks, textures, viewport)
             pipeline.vertex_array.render(vertices=3 * triangles)
 
-    def draw_fullscreen(self, pipeline, target, block, textures, viewport=None):
-        self.draw_triangles(pipeline, target, 1, block, textures, viewport)
+    def draw_fullscreen(self, pipeline, target, blocks, textures, viewport=None):
+        self.draw_triangles(pipeline, target, 1, blocks, textures, viewport)
 
     def finish(self, target):
         self._context.finish()
@@ -70,7 +70,7 @@ class StandaloneDevice:
     def restore(self):
         self._context.gc()
 
-    def _bind(self, pipeline, target, block, textures, viewport=None):
+    def _bind(self, pipeline, target, blocks, textures, viewport=None):
         context, description = self._context, pipeline.description
         target.framebuffer.use()
         context.viewport = viewport or (0, 0, *target.size)
@@ -83,12 +83,19 @@ class StandaloneDevice:
         self._set_sample_shading(description.sample_shading)
         for slot, texture in enumerate(textures):
             texture.handle.use(slot)
+        for slot, block in enumerate(blocks):
+            self._uniform(slot, block).bind_to_uniform_block(slot)
+
+    def _uniform(self, slot, block):
+        """A buffer with the block's values: what was in it was drawn with, or is the same."""
         data = np.ascontiguousarray(block, np.float32).tobytes()
-        if len(data) not in self._uniforms:
-            self._uniforms[len(data)] = context.buffer(reserve=len(data), dynamic=True)
-        self._uniforms[len(data)].orphan()
-        self._uniforms[len(data)].write(data)
-        self._uniforms[len(data)].bind_to_uniform_block(0)
+        buffer, held = self._uniforms.get((slot, len(data)), (None, None))
+        if held != data:
+            buffer = buffer or self._context.buffer(reserve=len(data), dynamic=True)
+            buffer.orphan()
+            buffer.write(data)
+            self._uniforms[slot, len(data)] = buffer, data
+        return buffer
 
 
 class _Texture:
@@ -147,18 +154,18 @@ class _Pipeline:
         for slot, name in enumerate(description.samplers):
             if name in self.program:
                 self.program[name].value = slot
-        struct = description.block[0]
-        if struct + "Block" in self.program:
-            self.program[struct + "Block"].binding = 0
+        for slot, (struct, _, _) in enumerate(description.blocks):
+            if struct + "Block" in self.program:
+                self.program[struct + "Block"].binding = slot
         self.vertex_array = context.vertex_array(self.program, [])
 
 
 def _declared(description: PipelineDescription, source: str, varying: str) -> str:
-    struct, instance, fields = description.block
     lines = ["#version 330"]
     lines += [f"#define {name} {value}" for name, value in description.defines]
-    members = " ".join(f"{kind} {name};" for kind, name in fields)
-    lines += [f"struct {struct} {{ {members} }};", f"layout(std140) uniform {struct}Block {{ {struct} {instance}; }};"]
+    for struct, instance, fields in description.blocks:
+        members = " ".join(f"{kind} {name};" for kind, name in fields)
+        lines += [f"struct {struct} {{ {members} }};", f"layout(std140) uniform {struct}Block {{ {struct} {instance}; }};"]
     kinds = {name: "sampler2DMS" for name in description.multisampled}
     lines += [f"uniform {kinds.get(name, 'sampler2D')} {name};" for name in description.samplers]
     lines += [f"{interpolation} {varying} {kind} {name};" for interpolation, kind, name in description.varyings]

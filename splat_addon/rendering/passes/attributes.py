@@ -3,31 +3,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-from ..device.interface import PipelineDescription, Target
+from ..device.interface import Target
 from ..frame_plan import TEXTURES, FramePlan, PlannedPass
 from ..methods import get_method
-from ..shaders import load
 from ..storages import get_storage
-from .blocks import (
-    FILTERS_SILHOUETTES,
-    HOLDOUT,
-    LAYER,
-    LINEAR_DEPTH,
-    identity_defines,
-    identity_varyings,
-    material_defines,
-    split_defines,
-    sum_defines,
-)
-from .splats import SPLATS_BLOCK, draw_splats, drawn_by
+from .splats import draw_splats, drawn_by
 from .tile import TileContext
+from .words import filters, identity_varyings, kind, pipeline, pixel_variance, says_whose, split, sum_words
 
 #: Of the sums that are not vec4.
 _OUTPUT_TYPES = {"depth_sum": "vec2", "overdraw_sum": "float", "identity": "vec2", "rest_weight": "vec2"}
-#: What is defined for sums that some scenes or models have.
-_DEFINES = {"light_set_sum": "LIGHT_SET_TARGET", "overdraw_sum": "OVERDRAW_TARGET"}
 #: Of texture-mapped splats: uv and slot, change of uv along the half-axes, where the map ends; and the half-axes.
 _TEXTURE_VARYINGS = (
     ("flat", "vec3", "texture_place"),
@@ -52,128 +37,91 @@ def _outputs(planned: PlannedPass) -> tuple[tuple[str, str], ...]:
     return tuple((_OUTPUT_TYPES.get(name, "vec4"), name) for name in _sums(planned))
 
 
-def _own_defines(planned: PlannedPass) -> tuple[tuple[str, str], ...]:
-    return tuple((define, "1") for name, define in _DEFINES.items() if name in planned.writes)
-
-
 def _material_varyings(planned: PlannedPass) -> tuple[tuple[str, str, str], ...]:
     return tuple(("flat", "vec3", name) for name in ("material", "emission") if f"{name}_sum" in planned.writes)
 
 
-def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> PipelineDescription:
+#: where a method works -> its host
+_HOSTS = {"space": "object_space", "picture": "screen_space", "sprites": "point_sprite"}
+_PLANE_VARYINGS = (
+    ("flat", "vec4", "plane_ab"),
+    ("flat", "vec4", "plane_center_gh"),
+    ("flat", "vec4", "plane_depths"),
+    ("flat", "vec4", "plane_det_radius"),
+    ("flat", "vec3", "footprint_map"),
+    ("flat", "vec2", "footprint_middle"),
+)
+_PLACE_VARYINGS = {
+    "space": (("smooth", "vec3", "place_depth"),),
+    "picture": _PLANE_VARYINGS,
+    "sprites": (("smooth", "vec2", "place"), ("flat", "vec3", "tilt_depth")),
+}
+
+
+def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False, what: str = "attributes"):
     """What the pass draws with, by the space that the method works in.
 
     textured: for instances whose colours are looked up in textures; the others do not pay for them. A sprite has one
-    colour.
+    colour. what: "attributes", "rest" or "rims".
     """
-    method = get_method(frame.method)
-    plain = _MAKERS[method.works_in](planned, frame)
-    if not textured or method.works_in == "sprites":
-        return plain
-    axes = _AXES_VARYINGS if method.works_in == "space" else ()
-    # of what is evaluated once: a sample, or each of its hardware samples, which is a smaller piece of the pixel
-    variance = method.pixel_variance / (frame.multisamples if frame.sample_shading else 1)
-    return replace(
-        plain,
-        name="textured_attributes",
-        samplers=(*plain.samplers, *_TEXTURE_SAMPLERS),
-        varyings=(*plain.varyings, *_TEXTURE_VARYINGS, *axes),
-        defines=(*plain.defines, ("TEXTURED", "1"), ("PIXEL_VARIANCE", repr(variance))),
-    )
-
-
-def _in_space(planned, frame):
-    return _description(
-        planned,
+    works_in, sums = get_method(frame.method).works_in, _sums(planned)
+    textured = textured and works_in != "sprites"
+    in_picture, is_rims, is_rest = works_in == "picture", what == "rims", what == "rest"
+    straddles = in_picture and frame.has("STRADDLING")
+    culls = "coarse_depth" in planned.reads
+    own_materials = any(name in sums for name in ("material_sum", "emission_sum"))
+    words = {*says_whose(planned), *split(frame), kind(planned)}
+    words |= {"gbuffer", *sum_words(sums, planned)} if not (is_rims or is_rest) else set()
+    words |= {"oit", "rest"} if is_rest else set()
+    words |= {"rims"} if is_rims else set()
+    words |= {"transparency"} if planned.layer else set()
+    words |= {"straddling"} if straddles else set()
+    words |= {"hiz"} if culls else set()
+    words |= {"textures"} if textured else set()
+    if in_picture and not is_rims:
+        words |= {"visibility"} | ({"depth_bounds"} if not is_rest else set())
+        words |= {"holdout"} if frame.has("HOLDOUT") and not planned.layer else set()
+        words |= set(filters(frame)) if not is_rest else set()
+    seen = ()
+    if in_picture and not is_rest:
+        seen = ("visibility_depth",) if is_rims else ("seen_range",)
+    return pipeline(
+        what if not textured else f"textured_{what}",
+        f"{_HOSTS[works_in]}.vert",
+        f"{_HOSTS[works_in]}.frag",
+        words,
         frame,
-        folder="",
-        varyings=(("smooth", "vec3", "place_depth"),),
-        blend="add",
-        depth_test=True,
-        fragment_depth=frame.linear_depth,
-        sample_shading=frame.sample_shading,
-    )
-
-
-def _in_picture(planned, frame):
-    straddling, culls = frame.has("STRADDLING"), "coarse_depth" in planned.reads
-    return _description(
-        planned,
-        frame,
-        folder="screen/",
-        samplers=(
-            "visibility_depth" if "identity" in planned.writes else "seen_range",
-            *(("coarse_depth",) if culls else ()),
-        ),
-        varyings=(
-            *((("flat", "float", "straddling"),) if straddling else ()),
-            ("flat", "vec4", "plane_ab"),
-            ("flat", "vec4", "plane_center_gh"),
-            ("flat", "vec4", "plane_depths"),
-            ("flat", "vec4", "plane_det_radius"),
-            ("flat", "vec3", "footprint_map"),
-            ("flat", "vec2", "footprint_middle"),
-        ),
-        defines=(
-            *(FILTERS_SILHOUETTES if frame.filters_silhouettes else ()),
-            *((("STRADDLING", "1"),) if straddling else ()),
-            *((("CULLS_HIDDEN", "1"),) if culls else ()),
-            *(HOLDOUT if frame.has("HOLDOUT") else ()),
-        ),
-        blend="add",
-        depth_test=not frame.linear_depth,
-    )
-
-
-def _in_sprites(planned, frame):
-    return _description(
-        planned,
-        frame,
-        folder="sprites/",
-        varyings=(("smooth", "vec2", "place"), ("flat", "vec3", "tilt_depth")),
-        depth_test=True,
-        depth_write=True,
-    )
-
-
-def _description(planned, frame, folder, varyings, samplers=(), defines=(), **state) -> PipelineDescription:
-    """What every space has in common, and what one has beside it. folder: of its two shaders."""
-    with_materials = material_defines(planned.writes)
-    return PipelineDescription(
-        name="attributes",
-        vertex=load(f"{folder}attributes.vert.glsl", method=frame.method, storage=frame.storage),
-        fragment=load(f"{folder}attributes.frag.glsl", method=frame.method),
-        block=SPLATS_BLOCK,
         samplers=(
             *get_storage(frame.storage).samplers,
-            *(("materials",) if with_materials else ()),
-            *samplers,
+            *(("materials",) if own_materials else ()),
+            *seen,
+            *(("coarse_depth",) if culls else ()),
             *(name for name in planned.reads if name in _LAYER_SAMPLERS and planned.layer),
+            *(_TEXTURE_SAMPLERS if textured else ()),
+            *(("lit_splats",) if is_rest else ()),
         ),
         varyings=(
-            *varyings,
+            *((("flat", "float", "straddling"),) if straddles else ()),
+            *_PLACE_VARYINGS[works_in],
             ("flat", "vec4", "color_weight"),
             ("flat", "vec3", "normal"),
             *((("flat", "float", "opacity"),) if planned.layer else ()),
             *_material_varyings(planned),
             *identity_varyings(planned),
+            *(_TEXTURE_VARYINGS if textured else ()),
+            *(_AXES_VARYINGS if textured and works_in == "space" else ()),
         ),
         outputs=_outputs(planned),
-        defines=(
-            *defines,
-            *with_materials,
-            *_own_defines(planned),
-            *identity_defines(planned),
-            *split_defines(frame),
-            *sum_defines(planned.writes, frame.accumulation),
-            *(LAYER if planned.layer else ()),
-            *(LINEAR_DEPTH if frame.linear_depth else ()),
+        constants=(
+            *((("PIXEL_VARIANCE", pixel_variance(frame)),) if textured else ()),
+            *((("TEXELS_PER_MATERIAL", "2" if "emission_sum" in sums else "1"),) if own_materials else ()),
         ),
-        **state,
+        blend="add" if works_in != "sprites" and not is_rims else "none",
+        depth_test=not is_rest and (works_in != "picture" or is_rims or not frame.linear_depth),
+        depth_write=works_in == "sprites" or is_rims,
+        fragment_depth=works_in == "space" and frame.linear_depth,
+        sample_shading=works_in == "space" and frame.sample_shading,
     )
-
-
-_MAKERS = {"space": _in_space, "picture": _in_picture, "sprites": _in_sprites}
 
 
 def run(tile: TileContext, planned: PlannedPass) -> Target:

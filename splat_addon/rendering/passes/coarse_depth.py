@@ -5,18 +5,19 @@ from __future__ import annotations
 
 from ..device.interface import PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
-from ..shaders import load
-from .shading import SHADING_BLOCK, fill
+from .shading import fill
 from .tile import TileContext
+from .words import pipeline
 
 
 def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
     """What the pass draws with."""
-    return PipelineDescription(
-        name="coarse_depth",
-        vertex=load("fullscreen.vert.glsl"),
-        fragment=load("coarse_depth.frag.glsl"),
-        block=SHADING_BLOCK,
+    return pipeline(
+        "coarse_depth",
+        "fullscreen.vert",
+        "coarse_depth.frag",
+        (),
+        frame,
         samplers=planned.reads,
         outputs=(("float", "coarse_depth"),),
     )

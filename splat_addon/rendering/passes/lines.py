@@ -5,29 +5,27 @@ from __future__ import annotations
 
 from ..device.interface import PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
-from ..shaders import load
-from .blocks import polygon_defines, sum_defines
-from .shading import SHADING_BLOCK, fill
+from .shading import fill
 from .tile import TileContext
+from .words import pipeline, sum_words
 
 
 def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
     """What the pass draws with; of hardware samples it takes the mean."""
-    return PipelineDescription(
-        name="lines",
-        vertex=load("fullscreen.vert.glsl"),
-        fragment=load("lines.frag.glsl"),
-        block=SHADING_BLOCK,
+    words = {"lines", *sum_words(planned.reads, planned)}
+    words |= {"polygons"} if "polygon_color" in planned.reads else set()
+    words |= {"depth_bounds"} if "seen_range" in planned.reads else set()
+    return pipeline(
+        "lines",
+        "fullscreen.vert",
+        "lines.frag",
+        words,
+        frame,
+        {"samples": "mean" if frame.multisamples else "each"},
+        (("SAMPLES", str(frame.samples)), ("MEAN_OF", str(frame.multisamples))),
         samplers=planned.reads,
         multisampled=tuple(name for name in planned.reads if frame.multisamples_of(name)),
         outputs=(("float", "lines"),),
-        defines=(
-            ("SAMPLES", str(frame.samples)),
-            *((("MEAN_OF", str(frame.multisamples)),) if frame.multisamples else ()),
-            *polygon_defines(planned, frame),
-            *sum_defines(planned.reads, frame.accumulation),
-            *((("SEEN_RANGE", "1"),) if "seen_range" in planned.reads else ()),
-        ),
     )
 
 

@@ -7,16 +7,13 @@ Shading joins them with the splats' means (shaders/common/mean_surface.glsl).
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
 from ..device.interface import Pipeline, PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
-from ..methods import get_method
-from ..shaders import load
 from ..view import PlacedInstance
-from .blocks import LINEAR_DEPTH, identity_defines, identity_varyings, material_defines, split_polygons
-from .splats import SPLATS_BLOCK, splats_block
+from .splats import draw_block
 from .tile import TileContext
+from .words import identity_varyings, pipeline, pixel_variance, says_whose, split
 
 _SAMPLERS = ("polygon_uvs", "texture_atlas", "texture_table")
 _PLANE_VARYINGS = (("flat", "vec3", "triangle_plane"),)
@@ -31,50 +28,47 @@ _TEXTURE_VARYINGS = (
 def describe(planned: PlannedPass, frame: FramePlan, textured: bool = False) -> PipelineDescription:
     """What the pass draws with. textured: for instances whose colours are looked up in textures."""
     colors = tuple(name for name in planned.writes if name != "polygon_depth")
-    # what `material_defines` knows by the names of sums
-    materials = material_defines(_needed_sums(frame))
-    split_varyings, split_defines = split_polygons(frame)
-    has_plane = "polygon_plane" in colors
-    plain = PipelineDescription(
-        name="polygons",
-        vertex=load("polygons/attributes.vert.glsl"),
-        fragment=load("polygons/attributes.frag.glsl"),
-        block=SPLATS_BLOCK,
-        samplers=("polygon_corners", *(("materials",) if materials else ()), *planned.reads),
+    needed = _needed_sums(frame)
+    has_plane = textured or "polygon_plane" in colors
+    words = {*says_whose(planned), *split(frame)}
+    words |= {"materials"} if "material_sum" in needed else set()
+    words |= {"emission", "gbuffer_emission"} if "emission_sum" in needed else set()
+    words |= {"polygon_material"} if "polygon_material" in colors else set()
+    words |= {"polygon_plane"} if has_plane else set()
+    words |= {"writes_polygon_plane"} if "polygon_plane" in colors else set()
+    words |= {"polygons", "depth_bounds"} if planned.reads else set()
+    words |= {"textures"} if textured else set()
+    return pipeline(
+        "textured_polygons" if textured else "polygons",
+        "polygons.vert",
+        "polygons.frag",
+        words,
+        frame,
+        constants=(
+            *((("PIXEL_VARIANCE", pixel_variance(frame)),) if textured else ()),
+            *((("TEXELS_PER_MATERIAL", "2" if "emission_sum" in needed else "1"),) if needed else ()),
+        ),
+        samplers=(
+            "polygon_corners",
+            *(("materials",) if needed else ()),
+            *planned.reads,
+            *(_SAMPLERS if textured else ()),
+        ),
         varyings=(
             ("smooth", "float", "depth_at"),
             ("smooth", "vec3", "corner_normal"),
             ("smooth", "vec3", "corner_color"),
-            *split_varyings,
-            *(_PLANE_VARYINGS if textured or has_plane else ()),
-            *(("smooth", "vec3", name[:-4]) for name in _needed_sums(frame)),
+            *((("smooth", "vec3", "split_place"),) if split(frame) else ()),
+            *(_PLANE_VARYINGS if has_plane else ()),
+            *(("smooth", "vec3", name[:-4]) for name in needed),
             *identity_varyings(planned),
+            *(_TEXTURE_VARYINGS if textured else ()),
         ),
         outputs=tuple(("vec2" if name == "polygon_identity" else "vec4", name) for name in colors),
-        defines=(
-            *materials,
-            *identity_defines(planned),
-            *((("MATERIAL_OUTPUT", "1"),) if "polygon_material" in colors else ()),
-            *((("SEEN_POLYGONS", "1"),) if planned.reads else ()),
-            *split_defines,
-            *((("PLANE", "1"),) if textured or has_plane else ()),
-            *((("PLANE_OUTPUT", "1"),) if has_plane else ()),
-            *(LINEAR_DEPTH if frame.linear_depth else ()),
-        ),
         depth_test=True,
         depth_write=True,
         fragment_depth=frame.linear_depth,
         sample_shading=frame.sample_shading,
-    )
-    if not textured:
-        return plain
-    variance = get_method(frame.method).pixel_variance / (frame.multisamples if frame.sample_shading else 1)
-    return replace(
-        plain,
-        name="textured_polygons",
-        samplers=(*plain.samplers, *_SAMPLERS),
-        varyings=(*plain.varyings, *_TEXTURE_VARYINGS),
-        defines=(*plain.defines, ("TEXTURED", "1"), ("PIXEL_VARIANCE", repr(variance))),
     )
 
 
@@ -86,7 +80,7 @@ def _needed_sums(frame: FramePlan) -> tuple[str, ...]:
 
 
 def draw_polygons(
-    tile: TileContext, pipeline: Pipeline, target: Target, placed_ones: Iterable[PlacedInstance], viewport=None
+    tile: TileContext, program: Pipeline, target: Target, placed_ones: Iterable[PlacedInstance], viewport=None
 ) -> None:
     """One draw call an instance; the first of the block's options is how far behind it splats may lie."""
     resources = tile.resources
@@ -99,9 +93,9 @@ def draw_polygons(
             "texture_atlas": lambda i=instance: resources.atlas(i.textures)[0],
             "texture_table": lambda i=instance: resources.atlas(i.textures)[1],
         }
-        textures = tile.textures(pipeline.description.samplers, made_here)
-        block = splats_block(tile, placed, placed.overlap)
-        resources.device.draw_triangles(pipeline, target, instance.polygons.triangles, block, textures, viewport)
+        textures = tile.textures(program.description.samplers, made_here)
+        blocks = tile.blocks(program.description.blocks, draw_block(tile, placed, placed.overlap))
+        resources.device.draw_triangles(program, target, instance.polygons.triangles, blocks, textures, viewport)
 
 
 def run(tile: TileContext, planned: PlannedPass) -> Target:

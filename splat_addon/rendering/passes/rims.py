@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from ..device.interface import PipelineDescription, Target
 from ..frame_plan import FramePlan, PlannedPass
 from . import attributes
@@ -14,9 +12,7 @@ from .tile import TileContext
 
 def describe(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
     """What the pass draws with: the footprints of the attribute pass, of which the nearest wins."""
-    footprints = attributes.describe(planned, frame)
-    defines = (*footprints.defines, ("RIMS", "1"))
-    return replace(footprints, name="rims", defines=defines, blend="none", depth_test=True, depth_write=True)
+    return attributes.describe(planned, frame, what="rims")
 
 
 def run(tile: TileContext, planned: PlannedPass) -> Target:

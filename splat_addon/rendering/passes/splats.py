@@ -12,32 +12,9 @@ from ..frame_plan import PlannedPass
 from ..light import MAX_LIGHT_SETS
 from ..scene import Instance
 from ..storages import get_storage
+from ..uniforms import DRAW, std140
 from ..view import PlacedInstance
-from .blocks import std140
 from .tile import TileContext
-
-#: options: epsilon, near, 1 for orthographic, 1 / far.
-#: sides: -1 for a mirrored object and 1 for others, 1 where backs are hidden, the least offset of visibility (as a
-#:     share of the distance; of an orthographic camera a length), what colours are multiplied by.
-#: light_set: 1 in the channel of the instance's set.
-#: window: left, bottom and step of one sample on the plane at depth 1.
-#: identity: number of the instance's first material slot, and of slots after it; its split (`PlacedInstance`); the
-#:     depth, between -1 and 1 in the view, at which what is not drawn collapses.
-SPLATS_BLOCK = (
-    "Splats",
-    "splats",
-    (
-        ("mat4", "model_view"),
-        ("mat4", "projection"),
-        ("mat4", "normal_matrix"),
-        ("vec4", "options"),
-        ("vec4", "sides"),
-        ("vec4", "window"),
-        ("vec4", "light_set"),
-        ("vec4", "identity"),
-    ),
-)
-
 
 def drawn_by(planned: PlannedPass, tile: TileContext) -> tuple[PlacedInstance, ...]:
     """What a pass draws of the tile's view: where transparent layers are planned, those or all the rest; what cuts
@@ -78,17 +55,29 @@ def draw_splats(
     """One draw call an instance. viewport: as `Device.draw_triangles` takes it."""
     for placed in placed_ones:
         textures = tile.textures(pipeline.description.samplers, instance_textures(tile, placed.instance))
-        block = splats_block(tile, placed, tile.settings.epsilon)
+        blocks = tile.blocks(pipeline.description.blocks, draw_block(tile, placed, tile.settings.epsilon))
         triangles = len(placed.instance.surfels)
-        tile.resources.device.draw_triangles(pipeline, target, triangles, block, textures, viewport)
+        tile.resources.device.draw_triangles(pipeline, target, triangles, blocks, textures, viewport)
 
 
-def splats_block(tile: TileContext, placed: PlacedInstance, epsilon: float) -> np.ndarray:
-    """Values of `SPLATS_BLOCK`."""
-    view = tile.view
-    options = epsilon, view.near, tile.camera.is_orthographic, tile.depth_unit
+def draw_block(tile: TileContext, placed: PlacedInstance, epsilon: float) -> np.ndarray:
+    """Values of `uniforms.DRAW`."""
     normal_matrix, orientation, light_set = instance_values(placed)
-    set_back = max(view.least_offset(tile.plan.linear_depth), placed.setback)
-    sides = orientation, placed.hides_backs, set_back, tile.color_scale
-    identity = (*tile.identities.slots(placed.instance), placed.split, 0.0 if placed.is_whole else -2.0)
-    return std140(placed.model_view, view.projection, normal_matrix, options, sides, tile.window, light_set, identity)
+    set_back = max(tile.view.least_offset(tile.plan.linear_depth), placed.setback)
+    slots = tile.identities.slots(placed.instance)
+    nowhere = 0.0 if placed.is_whole else -2.0
+    return std140(
+        DRAW,
+        (
+            placed.model_view,
+            normal_matrix,
+            light_set,
+            orientation,
+            placed.hides_backs,
+            epsilon,
+            set_back,
+            *slots,
+            placed.split,
+            nowhere,
+        ),
+    )

@@ -8,6 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from ..camera import Camera
 from ..device.interface import Texture
 from ..frame_plan import FramePlan
@@ -15,6 +17,7 @@ from ..identity import Identities
 from ..resources import Resources, TextureKey
 from ..scene import Scene
 from ..settings import Settings
+from ..uniforms import DRAW, FRAME_VALUES, VIEW, Block, std140
 from ..view import View
 
 
@@ -42,6 +45,29 @@ class TileContext:
     def swap(self, name: str, other: str) -> None:
         """Let two textures of one size and format change their names."""
         self.resources.swap(*(texture_key(n, self.camera.size, self.plan) for n in (name, other)))
+
+    @cached_property
+    def _blocks(self) -> dict:
+        return {}
+
+    def blocks(self, blocks: tuple[Block, ...], draw: np.ndarray | None = None) -> list[np.ndarray]:
+        """The values of a pipeline's blocks. draw: of what is drawn."""
+        return [draw if block is DRAW else self._block(block) for block in blocks]
+
+    def _block(self, block: Block) -> np.ndarray:
+        if block not in self._blocks:
+            if block is VIEW:
+                values = self._view_values()
+            else:
+                values = [FRAME_VALUES[name][1](self) for _, name in block[2]]
+            self._blocks[block] = std140(block, values)
+        return self._blocks[block]
+
+    def _view_values(self):
+        to_world = np.eye(4)
+        to_world[:3, :3] = self.camera.matrix_world[:3, :3]
+        view, is_parallel = self.view, self.camera.is_orthographic
+        return view.projection, to_world, self.window, view.near, is_parallel, self.depth_unit, 1.0 / view.scale
 
     def textures(self, names: tuple[str, ...], made_here: dict[str, Callable[[], Texture]]) -> list[Texture]:
         """Those that the plan names and those that `made_here` makes, in the order of `names`."""

@@ -9,55 +9,57 @@ from dataclasses import replace
 
 from ..device.interface import PipelineDescription, Target
 from ..frame_plan import TEXTURES, VISIBILITY_ROWS, FramePlan, PlannedPass
-from ..shaders import load
 from ..storages import get_storage
 from ..view import View
-from .blocks import LAYER, LINEAR_DEPTH, identity_defines, identity_varyings, says_whose, split_defines, split_polygons
 from .polygons import draw_polygons
-from .splats import SPLATS_BLOCK, draw_splats, drawn_by
+from .splats import draw_splats, drawn_by
 from .tile import TileContext
+from .words import identity_varyings, kind, pipeline, says_whose, split
 
 
 def describe(planned: PlannedPass, frame: FramePlan, has_door: bool = False) -> PipelineDescription:
     """What the pass draws splats with. has_door: they leave as much out of a shadow map as shows through them."""
-    return PipelineDescription(
-        name="visibility",
-        vertex=load("visibility.vert.glsl", storage=frame.storage),
-        fragment=load("visibility.frag.glsl"),
-        block=SPLATS_BLOCK,
-        samplers=(*get_storage(frame.storage).samplers, *planned.reads),
-        varyings=(
-            ("smooth", "vec3", "place_depth"),
-            *((("smooth", "vec3", "across_offset"),) if frame.linear_depth else ()),
-            *identity_varyings(planned),
-            *((("flat", "vec2", "opacity_surface"),) if has_door else ()),
-        ),
-        outputs=(("vec2", "identity"),) if says_whose(planned) else (),
-        defines=(
-            *(LINEAR_DEPTH if frame.linear_depth else ()),
-            *(LAYER if planned.layer else ()),
-            *identity_defines(planned),
-            *split_defines(frame),
-            *((("SCREEN_DOOR", "1"),) if has_door else ()),
-        ),
-        depth_test=True,
-        depth_write=True,
-        fragment_depth=frame.linear_depth,
-        sample_shading=frame.sample_shading,
+    door = ("transparent_shadows",) if has_door else ()
+    return _described(
+        planned,
+        frame,
+        "visibility",
+        "visibility.vert",
+        (*split(frame), *door),
+        (*get_storage(frame.storage).samplers, *planned.reads),
+        (("flat", "vec2", "opacity_surface"),) if has_door else (),
     )
 
 
 def describe_polygons(planned: PlannedPass, frame: FramePlan) -> PipelineDescription:
     """What it draws polygons with."""
-    splats = describe(planned, frame)
-    varyings, defines = split_polygons(frame)
-    return replace(
-        splats,
-        name="polygon_visibility",
-        vertex=load("polygons/visibility.vert.glsl"),
-        samplers=("polygon_corners",),
-        varyings=(*splats.varyings, *varyings),
-        defines=tuple(dict.fromkeys((*splats.defines, *defines))),
+    varyings = (("smooth", "vec3", "split_place"),) if split(frame) else ()
+    words = (*split(frame), "of_polygons")
+    return _described(
+        planned, frame, "polygon_visibility", "polygon_visibility.vert", words, ("polygon_corners",), varyings
+    )
+
+
+def _described(planned, frame, name, vertex, words, samplers, varyings) -> PipelineDescription:
+    layer = ("transparency",) if planned.layer else ()
+    return pipeline(
+        name,
+        vertex,
+        "visibility.frag",
+        (*words, *says_whose(planned), *layer, kind(planned), "moved_back"),
+        frame,
+        samplers=samplers,
+        varyings=(
+            ("smooth", "vec3", "place_depth"),
+            *((("smooth", "vec3", "across_offset"),) if frame.linear_depth else ()),
+            *identity_varyings(planned),
+            *varyings,
+        ),
+        outputs=(("vec2", "identity"),) if says_whose(planned) else (),
+        depth_test=True,
+        depth_write=True,
+        fragment_depth=frame.linear_depth,
+        sample_shading=frame.sample_shading,
     )
 
 

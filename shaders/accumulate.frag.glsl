@@ -1,6 +1,0 @@
-// References: Haeberli & Akeley 1990, "The accumulation buffer".
-// Summary: a sample's picture, without the margin of its tile, added to those before.
-
-void main() {
-  sample_sum = texelFetch(combined, ivec2(gl_FragCoord.xy) - ivec2(accumulation.corner.xy), 0);
-}

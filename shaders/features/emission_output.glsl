@@ -1,0 +1,17 @@
+// References: Blender manual, "Passes".
+// Summary: the light that a surface sends out, as an output.
+
+#part outputs
+void emission_output_write(Outputs values) {
+  out_emission = vec4(values.emission, 1.0);
+}
+
+#part sample_outputs
+void emission_output_read(inout Outputs values, ivec2 texel) {
+  values.emission = texelFetch(sample_emission, texel, 0).rgb;
+}
+
+#part before_layers, layers_emission
+void emission_output_hand(ivec2 pixel, inout Outputs outputs) {
+  outputs.emission += texelFetch(layers_emission, pixel, 0).rgb;
+}

@@ -1,0 +1,11 @@
+// References: Greene, Kass, Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993.
+// Summary: what lies behind all that is seen is not drawn.
+
+#part screen_space.vert
+#include "lib/culling.glsl"
+
+void hiz_cull(Plane plane, vec2 middle, mat2 axes, vec2 half_axes) {
+  mat2 along = mat2(axes[0] * half_axes.x, axes[1] * half_axes.y);
+  vec2 reach = FOOTPRINT_END * vec2(length(vec2(along[0].x, along[1].x)), length(vec2(along[0].y, along[1].y)));
+  if (is_behind_all(middle, reach, plane.depth - plane.reach)) gl_Position = NOWHERE;
+}

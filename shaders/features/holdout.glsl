@@ -1,0 +1,35 @@
+// References: Blender manual, "Holdout".
+// Summary: objects that cut holes. Where one is seen first, there is a depth and nothing to shade, or nothing but what lies
+//          deeper.
+
+#part screen_space.frag
+// Before a hole is what lies before it itself; where a filter reaches over a rim, a plane seen flat runs far ahead.
+void holdout_keep(inout Candidate c) {
+  if (!(c.seen.w > 1e38)) return;
+  if (!c.in_space && c.plane.depth - length(c.plane.slope) > c.seen.z) discard;
+  c.seen.w = c.seen.z;
+}
+
+#part seen_range.frag
+void holdout_bound(ivec2 texel, float own) {
+  if (own < 1.0 && texelFetch(holes, ivec2(texel.x, ROWS * texel.y), 0).r <= own) seen_range.w = FARTHEST;
+}
+
+#part shading.frag
+#include "lib/hole.glsl"
+void holdout_cut(MeanSurface mean, ivec2 texel, int tap, inout bool is_cut) {
+  is_cut = is_hole(texel, tap, mean);
+}
+
+#part sample_shading.frag
+#include "lib/hole.glsl"
+void holdout_cut(inout MeanSurface mean, ivec2 texel) {
+  if (is_hole(texel, 0, mean)) mean.coverage = 0.0;
+}
+
+#part resolve.frag
+// What is seen and not shaded cuts a hole.
+void holdout_cut(inout Seen s) {
+  s.is_cut = s.stored < 1.0 && !(s.there.w > 0.0);
+  if (s.is_cut) s.here = vec4(0.0);
+}

@@ -1,0 +1,31 @@
+// References: Blender manual, "Light Linking".
+// Summary: lights that light some objects only: a sample is of each set of objects by a share.
+
+#part gbuffer
+void light_links_add(inout Fragment f) {
+  light_set_sum = draw.light_set * f.weight;
+}
+
+#part lights
+vec4 light_set;  // of the sample that is shaded: its share of each set of objects
+
+void light_links_receive(inout LightTexels of) {
+  of.strength.rgb *= dot(texelFetch(lights, ivec2(5, of.number), 0), light_set);
+}
+
+#part shaded_sample
+void light_links_attributes(inout Shaded s) {
+  light_set = texelFetch(light_set_sum, s.texel, 0);
+  light_set /= max(dot(light_set, vec4(1.0)), 1e-30);
+}
+
+#part shaded_sample, polygons
+void light_links_polygons_attributes(inout Shaded s) {
+  int set = int(texelFetch(polygon_material, s.texel, 0).w);
+  light_set = mix(light_set, vec4(equal(ivec4(0, 1, 2, 3), ivec4(set))), s.mean.polygon);
+}
+
+#part lit_splats.frag
+void light_links_attributes(Splat splat, int index) {
+  light_set = draw.light_set;
+}

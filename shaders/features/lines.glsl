@@ -1,0 +1,13 @@
+// References: hosts/lines.frag.glsl.
+// Summary: lines are drawn over what is shaded.
+
+#part lines.frag, depth_bounds
+// A filter reaches past silhouettes.
+void lines_see(ivec2 texel, inout bool is_seen) {
+  is_seen = is_seen && texelFetch(seen_range, texel, 0).z < 1e38;
+}
+
+#part shaded_sample
+void lines_finish(inout Shaded s) {
+  s.color = mix(s.color, frame.line_color.rgb, texelFetch(lines, s.texel, 0).r);
+}

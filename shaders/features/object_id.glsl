@@ -1,0 +1,57 @@
+// References: none needed.
+// Summary: whose the samples are: the number of a splat's material slot among those of all instances,
+//          rendering/identity.py's; 0 is nothing.
+
+#part vertex
+float slot_number(float slot) {
+  return draw.first_slot + min(slot, draw.more_slots);
+}
+
+#part splat_varyings
+void object_id_attributes(Splat splat, int index) {
+  number = slot_number(splat.material);
+}
+
+#part corner
+void object_id_attributes(int corner, float slot, vec3 eye) {
+  number = slot_number(slot);
+}
+
+#part visibility.frag
+void object_id_add() {
+  identity = vec2(number, place_depth.z);
+}
+
+#part point_sprite.frag
+void object_id_add() {
+  identity = vec2(number, tilt_depth.z);
+}
+
+#part polygons.frag
+void object_id_add() {
+  polygon_identity = vec2(number, depth_at);
+}
+
+#part seen_range.frag
+void object_id_write(ivec2 texel, inout float own) {
+  identity = texelFetch(row_identity, ivec2(texel.x, ROWS * texel.y), 0).xy;
+}
+
+#part screen_space.frag, rims
+// Only whose the splat is, where nothing is visible.
+void object_id_keep(inout Candidate c) {
+  if (texelFetch(visibility_depth, ivec2(gl_FragCoord.xy), 0).r < 1.0) discard;
+}
+
+void object_id_add(Candidate c) {
+  identity = vec2(number, c.depth);
+}
+
+#part peel.frag
+void object_id_start(ivec2 at) {
+  identity_next = texelFetch(identity, at, 0).xy;
+}
+
+void object_id_peel(ivec2 at, bool is_surface, float before) {
+  if (is_surface && before >= 0.0) identity_next = texelFetch(layer_identity, at, 0).xy;
+}

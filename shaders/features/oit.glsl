@@ -1,0 +1,27 @@
+// References: Guennebaud, Barthe, Paulin 2006, section 6 (lighting for each splat in the last layer); McGuire, Bavoil,
+//             "Weighted Blended Order-Independent Transparency", JCGT 2013.
+// Summary: of all that is left behind transparent layers: lit colours, and logarithms of what the splats let through.
+
+#part splat_varyings
+void oit_attributes(Splat splat, int index) {
+  color_weight = vec4(texelFetch(lit_splats, ivec2(index % SPLATS_PER_ROW, index / SPLATS_PER_ROW), 0).rgb, 1.0);
+  opacity = splat.opacity;
+}
+
+#part gbuffer
+const float MOST_OPAQUE = 0.999;
+
+void oit_add(inout Fragment f) {
+  rest_sum = vec4(f.color, 1.0) * (f.weight * opacity);
+  rest_weight = vec2(-log(1.0 - min(opacity, MOST_OPAQUE)), 1.0) * f.weight;
+}
+
+#part screen_space.frag
+void oit_look(inout Candidate c) {
+  c.seen = vec4(texelFetch(visibility_depth, ivec2(gl_FragCoord.xy), 0).r);
+  c.seen.z = c.seen.x < 1.0 ? view_depth(c.seen.x) : 3e38;
+}
+
+void oit_add(Candidate c) {
+  add_to_sums(c.color, c.weight, c.depth);
+}

@@ -1,0 +1,18 @@
+// References: none needed.
+// Summary: of the polygon that is seen, its material, if polygons differ in it, and its light set.
+
+#part polygons.frag, materials
+void materials_own(inout vec3 own) {
+  own = material;
+}
+
+#part polygons.frag
+vec3 polygon_own() {
+  vec3 own = vec3(0.0);
+  #hook own(own)
+  return own;
+}
+
+void polygon_material_add() {
+  polygon_material = vec4(polygon_own(), dot(draw.light_set, vec4(0.0, 1.0, 2.0, 3.0)));
+}

@@ -1,0 +1,45 @@
+// References: lib/shadow.glsl.
+// Summary: what of each light something else keeps away.
+
+#part lights
+#include "lib/shadow.glsl"
+
+const float ROUND = 1.12837917;  // axes of an ellipse over half-sides of a rectangle of its area: sqrt(4 / pi)
+
+// What is seen of an axis of a flat light.
+vec3 turned_to(vec3 to_light, vec3 axis) {
+  return axis - dot(axis, to_light) * to_light;
+}
+
+void shadows_hide(inout Incident here, LightTexels of, vec3 position, vec3 normal) {
+  vec4 caster = texelFetch(lights, ivec2(6, of.number), 0);
+  if (caster.y > 0.0 && dot(here.irradiance, vec3(1.0)) > 0.0) {
+    vec3 half_u = vec3(0.0), half_v = vec3(0.0);
+    if (caster.z > 0.0) {
+      vec4 side = texelFetch(lights, ivec2(4, of.number), 0);
+      bool is_flat = side.w > 0.5;
+      half_u = is_flat ? ROUND * turned_to(here.to_light, of.u.xyz) : facing_axis(here.to_light) * caster.z;
+      half_v = is_flat ? ROUND * turned_to(here.to_light, side.xyz) : cross(here.to_light, half_u);
+    }
+    float lit = lit_share(caster, half_u, half_v, position, normal);
+    here.irradiance *= lit;
+    here.radiance *= lit;
+  }
+}
+
+#part shaded_sample
+void shadows_attributes(inout Shaded s) {
+  shadow_turn = 0.125 + 0.25 * float((s.texel.x & 1) + 2 * (s.texel.y & 1));
+  shadow_plane = vec3(0.0);
+}
+
+#part shaded_sample, polygons
+void shadows_polygons_attributes(inout Shaded s) {
+  if (s.mean.polygon > 0.5) shadow_plane = SUM_AT(polygon_plane, s.texel, s.tap).xyz;
+}
+
+#part lit_splats.frag
+void shadows_attributes(Splat splat, int index) {
+  shadow_turn = 0.125 + 0.25 * float(index & 3);
+  shadow_plane = vec3(0.0);
+}

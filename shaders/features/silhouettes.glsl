@@ -1,0 +1,47 @@
+// References: hosts/resolve.frag.glsl.
+// Summary: where the filter reaches past a silhouette, what is seen behind it is another surface, which keeps the sample.
+
+#part screen_space.frag
+// Its depth, moved back by up to 2 epsilon, is more than that and a radius behind this splat's. Nor is a splat of the
+// surface that is seen if it lies that far behind it, though its plane, seen flat, runs before it beyond the rim.
+void silhouettes_keep(inout Candidate c) {
+  float apart = (1.0 + 4.0 * draw.epsilon) * c.plane.radius;
+  if (!c.in_space && (c.seen.w - c.compared > apart || c.plane.depth - length(c.plane.slope) - apart > c.seen.z)) discard;
+}
+
+#part seen_range.frag
+// Nearest and farthest of what the filter reaches in the sample's rows.
+void silhouettes_reach(ivec2 texel, inout vec2 row) {
+  int last = textureSize(seen_depth, 0).x - 1;
+  for (int x = -COLUMN_REACH; x <= COLUMN_REACH; x++) {
+    for (int y = 0; y < ROWS; y++) {
+      float other = texelFetch(seen_depth, ivec2(clamp(texel.x + x, 0, last), ROWS * texel.y + y), 0).r;
+      row = vec2(min(row.x, other), max(row.y, other));
+    }
+  }
+}
+
+#part seen_range.frag, writes_depth
+void silhouettes_write(ivec2 texel, inout float own) {
+  gl_FragDepth = own;
+}
+
+#part rest_layer.frag
+#include "lib/silhouette_filter.glsl"
+
+void silhouettes_filter(ivec2 texel, vec4 own, inout vec4 seen) {
+  ivec2 last = textureSize(shaded, 0) - 1;
+  vec4 color = vec4(0.0);
+  float total = 0.0;
+  for (int y = -FILTER_REACH; y <= FILTER_REACH; y++) {
+    for (int x = -COLUMN_REACH; x <= COLUMN_REACH; x++) {
+      ivec2 at = clamp(texel + ivec2(x, y), ivec2(0), last);
+      float weight = exp(-0.5 * float(y * y) / FILTER_VARIANCE) * (x == 0 ? 1.0 : COLUMN_RATIO);
+      vec4 here = texelFetch(shaded, at, 0);
+      if (own.w > 0.0) here = own * (here.w / own.w);
+      color += weight * let_through(at) * here;
+      total += weight;
+    }
+  }
+  seen = color / total;
+}

@@ -1,0 +1,27 @@
+// References: Guennebaud et al. 2006, section 5 (polygons where they are large in the picture, splats elsewhere).
+// Summary: of an object that is split by its distance from the camera: splats whose centres are nearer than their limit
+//          are not drawn, nor polygons beyond theirs. 0 is no limit.
+
+float split_distance(vec3 position) {
+  return view.is_parallel > 0.5 ? -position.z : length(position);
+}
+
+#part splat
+void split_hide(inout Splat splat) {
+  splat.is_hidden = splat.is_hidden || split_distance(splat.position) < draw.split;
+}
+
+#part corner
+void split_attributes(int corner, float slot, vec3 eye) {
+  split_place = eye;
+}
+
+#part visibility.frag, of_polygons
+void split_keep() {
+  if (draw.split > 0.0 && split_distance(split_place) > draw.split) discard;
+}
+
+#part polygons.frag
+void split_keep() {
+  if (draw.split > 0.0 && split_distance(split_place) > draw.split) discard;
+}

@@ -1,0 +1,12 @@
+// References: Botsch et al. 2005, section 3 (visibility splatting).
+// Summary: what methods that work in the picture compare depths with.
+
+#part screen_space.frag, depth_bounds
+void visibility_look(inout Candidate c) {
+  c.seen = texelFetch(seen_range, ivec2(gl_FragCoord.xy), 0);
+}
+
+#part screen_space.frag, depth_bounds, opaque
+void visibility_keep(inout Candidate c) {
+  if (c.compared > c.seen.z) discard;
+}

@@ -1,0 +1,6 @@
+// References: Haeberli & Akeley 1990, "The accumulation buffer".
+// Summary: a sample's picture, without the margin of its tile, added to those before.
+
+void main() {
+  sample_sum = texelFetch(combined, ivec2(gl_FragCoord.xy) - ivec2(frame.corner.xy), 0);
+}

@@ -1,0 +1,18 @@
+// References: Botsch et al. 2005, sections 3 and 4 (accumulation, normalised by the sum of weights in a later pass).
+// Summary: what a splat adds to a sample's sums. Hooks: `weigh`, `add`.
+
+#include "sum_formats/{sum_format}.glsl"
+
+struct Fragment {
+  vec3 color;
+  float weight;
+  float depth;
+  float opacity;  // colours count by it
+};
+
+#parts
+void add_to_sums(vec3 color, float weight, float depth) {
+  Fragment f = Fragment(color, weight, depth, 1.0);
+  #hook weigh(f)
+  #hook add(f)
+}

@@ -1,0 +1,54 @@
+// References: Blender manual, "Light Objects" (units); Cycles' spot falloff (a smooth step between cosines).
+// Summary: what each light sends to a place: the texels of rendering/light.py as a direction, an irradiance and, of a
+//          light with a size, four corners. A round light is a square of its area that faces the place, as Cycles takes a disc there.
+//          Hooks: `receive` what of its strength is meant for the surface, `spread` the square of a light with a size,
+//          `reach` before anything is in the way, `hide` what is, `arrive` after that.
+
+struct Incident {
+  vec3 to_light;    // unit
+  vec3 irradiance;  // of a surface that faces it
+  bool is_sized;
+  vec3 middle;      // from the place to the light, and the half-axes of its square
+  vec3 half_u;
+  vec3 half_v;
+  vec3 radiance;    // of the square
+};
+
+const float LEAST_SIZE = 2e-3;  // half-side over distance, below which a light is a point
+
+struct LightTexels {
+  int number;
+  vec4 place;
+  vec4 strength;
+  vec4 axis;
+  vec4 u;
+};
+
+// Unit, across the way to a light.
+vec3 facing_axis(vec3 to_light) {
+  return normalize(cross(abs(to_light.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0), to_light));
+}
+
+#parts
+// normal: of the surface that is lit.
+Incident incident(int light, vec3 position, vec3 normal) {
+  LightTexels of = LightTexels(light, texelFetch(lights, ivec2(0, light), 0), texelFetch(lights, ivec2(1, light), 0),
+                               texelFetch(lights, ivec2(2, light), 0), texelFetch(lights, ivec2(3, light), 0));
+  #hook receive(of)
+  Incident here;
+  here.half_u = here.half_v = here.radiance = vec3(0.0);
+  here.middle = of.place.xyz - position * of.place.w;
+  float distance2 = max(dot(here.middle, here.middle), 1e-30);
+  here.to_light = here.middle * inversesqrt(distance2);
+  here.irradiance = of.strength.rgb / (of.place.w > 0.5 ? distance2 : 1.0);
+  float along = -dot(here.to_light, of.axis.xyz);
+  float open = clamp((along - of.axis.w) * of.u.w, 0.0, 1.0);
+  here.irradiance *= open * open * (3.0 - 2.0 * open);
+  float size2 = of.strength.w * of.strength.w / distance2;
+  here.is_sized = size2 > LEAST_SIZE * LEAST_SIZE;
+  #hook spread(here, of, along, open)
+  #hook reach(here, normal)
+  #hook hide(here, of, position, normal)
+  #hook arrive(here, normal)
+  return here;
+}

@@ -1,0 +1,19 @@
+// References: Guennebaud, Barthe, Paulin 2006, section 6 (lighting for each splat in the last layer).
+// Summary: lights each splat of an instance where it stands, at the texel of its number. Hook: `attributes` before it is
+//          lit.
+
+vec3 material;
+vec3 emission;
+#include "hosts/splat.glsl"
+#include "shading_models/{shading}.glsl"
+
+#parts
+void main() {
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  int index = texel.y * SPLATS_PER_ROW + texel.x;
+  Splat splat = fetch_splat(index);
+  material = frame.material.xyz;
+  emission = vec3(0.0);
+  #hook attributes(splat, index)
+  lit_splats = vec4(shade(splat.position, splat.normal, splat.color_weight.rgb, material) + emission, 1.0);
+}

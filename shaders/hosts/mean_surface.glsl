@@ -1,0 +1,40 @@
+// References: Botsch et al. 2005, section 4 (sums over their weights).
+// Summary: what a sample sees. Hooks: `mean` of normals and depths, `join` what else is seen.
+
+#include "lib/samples/{samples}.glsl"
+#include "sum_formats/{sum_format}.glsl"
+#include "lib/sides.glsl"
+
+struct MeanSurface {
+  float weight;    // sum of the splats', 0 without splats
+  float polygon;   // its share, 0 to 1
+  float coverage;  // 0 where there is neither, of a transparent layer its opacity
+  float sees;      // what polygons' texels are divided by
+  vec3 color;
+  vec3 normal;     // as the mean left it
+  float depth;
+};
+
+// Weights of backs sum to less; the rim of a front weighs 0.135, or a quarter of it in the mean of four samples.
+const float LEAST_FRONT = 0.02;
+
+float front_weight(float sum) {
+  float weight = sum / WEIGHT_SCALE;
+  return weight < LEAST_FRONT ? weight / BACK_WEIGHT : weight;
+}
+
+#parts
+// tap: which of the texel's hardware samples, 0 where it has one.
+MeanSurface mean_surface(ivec2 texel, int tap) {
+  MeanSurface mean = MeanSurface(0.0, 0.0, 0.0, 1.0, vec3(0.0), vec3(0.0), 0.0);
+  vec4 c = SUM_AT(color_sum, texel, tap);
+  if (c.w > 0.0) {
+    float weights = c.w;
+    vec4 n = SUM_AT(normal_sum, texel, tap);
+    #hook mean(weights, n, texel, tap)
+    c.rgb = summed_color(c.rgb);
+    mean = MeanSurface(weights, 0.0, min(c.w / weights, 1.0), 1.0, c.rgb / c.w, n.xyz, n.w);
+  }
+  #hook join(mean, texel, tap)
+  return mean;
+}

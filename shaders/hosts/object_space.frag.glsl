@@ -1,0 +1,18 @@
+// References: Botsch et al. 2005, sections 3 and 4 (accumulation, normalised by the sum of weights in the next pass).
+// Summary: adds weighted attributes to their sums; the depth test keeps what is visible. Hooks: `keep` discards, `color`
+//          changes.
+
+#include "depth_formats/{depth_format}.glsl"
+#include "hosts/gbuffer.glsl"
+#include "methods/{method}.glsl"
+
+#parts
+void main() {
+  float weight = kernel_weight(place_depth.xy) * color_weight.w;
+  if (!(weight > 0.0)) discard;
+  #hook keep()
+  write_depth(place_depth.z);
+  vec3 color = color_weight.rgb;
+  #hook color(color)
+  add_to_sums(color, weight, place_depth.z);
+}

@@ -1,0 +1,20 @@
+// References: Botsch et al. 2005, section 4 (deferred shading: attributes are blended, not colours).
+// Summary: for methods that draw quads in space: each splat's corner and its attributes.
+
+#include "lib/nowhere.glsl"
+#include "hosts/splat.glsl"
+#include "hosts/splat_varyings.glsl"
+#include "methods/{method}.glsl"
+
+#parts
+void main() {
+  Splat splat = fetch_splat(gl_VertexID / 3);
+  vec2 corner = triangle_corner(gl_VertexID);
+  vec3 eye = footprint_corner(splat.position, splat.axis_u, splat.axis_v, corner);
+  place_depth = vec3(corner, -eye.z);
+  color_weight = splat.color_weight;
+  normal = splat.normal;
+  hand_on(splat, gl_VertexID / 3);
+  #hook axes(splat)
+  gl_Position = splat.is_hidden ? NOWHERE : view.projection * vec4(eye, 1.0);
+}

@@ -1,0 +1,19 @@
+// References: hosts/before_layers.glsl, hosts/outputs.glsl.
+// Summary: writes a pixel of the opaque picture from the means over its samples. Hooks: `before` what is seen before it,
+//          `pixel` what else is written.
+
+#include "hosts/outputs.glsl"
+
+const float EMPTY_DEPTH = 1e10;
+const float FARTHEST = 3.4e38;
+
+#parts
+// normal: in the camera's view, and coverage. nearest: FARTHEST where nothing was hit.
+void write_pixel(vec4 color, vec4 normal, float nearest, Outputs outputs) {
+  normal.xyz = mat3(view.to_world) * normal.xyz;
+  #hook before(color, normal, nearest, outputs)
+  combined = color;
+  #hook pixel(normal)
+  write_outputs(before_background(outputs, normal.w));
+  depth = nearest < FARTHEST ? nearest : EMPTY_DEPTH;
+}

@@ -1,0 +1,12 @@
+// References: Botsch, Kobbelt 2003, section 5 (the level without filtering).
+// Summary: the attributes of the one splat that is nearest; shading divides by its weight. Hook: `add` fills targets beside.
+
+#include "hosts/gbuffer.glsl"
+#include "methods/{method}.glsl"
+
+#parts
+void main() {
+  if (!is_in_disc(place, tilt_depth.xy)) discard;
+  add_to_sums(color_weight.rgb, color_weight.w, tilt_depth.z);
+  #hook add()
+}

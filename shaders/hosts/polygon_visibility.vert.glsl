@@ -1,0 +1,17 @@
+// References: Guennebaud et al. 2006, section 5.1 (polygons share the depth of the splats, with a tolerance).
+// Summary: depth only, of polygons; moved back along the view ray by what splats of the same surface may lie behind them,
+//          and by no less than the depth can resolve. Its fragment shader is that of splats.
+
+#include "depth_formats/{depth_format}.glsl"
+#include "lib/nowhere.glsl"
+#include "hosts/corner.glsl"
+
+void main() {
+  vec3 eye = corner_position(gl_VertexID), first;
+  vec3 outward = triangle_normal(gl_VertexID, first);
+  bool is_hidden = draw.hides_backs > 0.5 && shows_back(outward, first);
+  place_depth = vec3(0.0, 0.0, -eye.z);
+  hand_on(gl_VertexID, corner_texel(gl_VertexID / 3 * 3, 0).w, eye);
+  vec4 moved = polygon_corner(eye, draw.epsilon);
+  gl_Position = is_hidden ? NOWHERE : moved;
+}

@@ -1,0 +1,16 @@
+// References: Guennebaud et al. 2006, section 5.1.
+// Summary: the attributes of the nearest polygon. Hooks: `keep` discards, `color` changes, `add` fills targets.
+
+#include "depth_formats/{depth_format}.glsl"
+
+#parts
+void main() {
+  if (!(depth_at >= view.near)) discard;
+  #hook keep()
+  write_depth(depth_at);
+  vec3 color = corner_color;
+  #hook color(color)
+  polygon_color = vec4(color, 1.0);
+  polygon_normal = vec4(normalize(corner_normal), depth_at);
+  #hook add()
+}

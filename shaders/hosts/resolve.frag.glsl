@@ -1,0 +1,225 @@
+// References: this project; the idea of taking the colour of a sub-sample from the nearest pixel that sees its surface
+//             is Chajdas, McGuire, Luebke, "Subpixel Reconstruction Antialiasing", I3D 2011.
+// Summary: colours inside a surface were filtered with their splats; here its silhouettes are. Of the samples around one,
+//          and of what visibility sees halfway to the next rows, those that see its own surface take its colour, all
+//          under the pixel's Gaussian. Hooks: `background` behind them, `everywhere` where nothing may be left unfiltered,
+//          `count` by what lies before a place, `cut` what is seen and not shown, `show` the colour of what is, `pixel`.
+
+#include "hosts/sample_outputs.glsl"
+#include "depth_formats/{depth_format}.glsl"
+#include "lib/silhouette_filter.glsl"
+
+const float NEVER = 3.4e38;
+
+// The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes.
+const float FIRST_WEIGHT = exp(-0.5 * float(FILTER_REACH * FILTER_REACH) / FILTER_VARIANCE);
+const float STEP = 1.0 / float(ROWS);
+const float FIRST_RATIO = exp((float(FILTER_REACH) - 0.5 * STEP) * STEP / FILTER_VARIANCE);
+const float RATIO_RATIO = exp(-STEP * STEP / FILTER_VARIANCE);
+
+// Least cosine between normals of one surface: across a sharper crease surfels of either flank stick out of the other. No
+// angle of common solids: at 60 degrees, or 63, rounding would choose.
+const float SMOOTH = 0.55;
+
+// Normal and depth of what is shaded there; where nothing is, this normal, and a depth beyond all.
+vec4 surface_at(ivec2 texel, ivec2 size, vec3 normal) {
+  vec4 s = texelFetch(surface, clamp(texel, ivec2(0), size - 1), 0);
+  return s.w != 0.0 ? vec4(s.xyz, abs(s.w)) : vec4(normal, 1e30);
+}
+
+// What depth changes by from this sample to the next, across and up, on a plane of this normal.
+vec2 plane_slope(ivec2 texel, vec3 normal, float depth) {
+  vec2 place = view.window.xy + (vec2(texel) + 0.5) * view.window.zw;
+  float facing = view.is_parallel > 0.5 ? normal.z : (normal.z - dot(normal.xy, place)) / depth;
+  return abs(normal.xy * view.window.zw) / max(abs(facing), 1e-30);
+}
+
+// What visibility sees of the surface that is seen here, within the filter: nearest and farthest. On either side of its
+// depth twice its slope, which is the lesser one of both sides and no more than its normal says: a silhouette on one
+// side does not spoil it, nor do two, of a gap or a wire. Visibility moved all of it back, by up to twice as much as here;
+// what is nearer lies before it, but for a part of that: surfels of one surface do not lie in one plane.
+// In zw with half as much again of its slope, which it may have where it is bent: if all lies within, nothing is filtered.
+// is_folded: a sample beside this one is of another flank of a crease.
+vec4 same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth, out bool is_folded) {
+  float moved = abs(view_depth(texelFetch(seen_depth, ivec2(texel.x, ROWS * texel.y), 0).r) - depth);
+  vec4 left = surface_at(texel - ivec2(1, 0), size, normal), below = surface_at(texel - ivec2(0, 1), size, normal);
+  vec4 right = surface_at(texel + ivec2(1, 0), size, normal), above = surface_at(texel + ivec2(0, 1), size, normal);
+  vec2 before = vec2(left.w, below.w), after = vec2(right.w, above.w);
+  vec4 smooth_to = vec4(dot(left.xyz, normal), dot(right.xyz, normal), dot(below.xyz, normal), dot(above.xyz, normal));
+  is_folded = any(lessThan(smooth_to, vec4(SMOOTH)));
+  vec2 slope = min(min(abs(before - depth), abs(after - depth)), plane_slope(texel, normal, depth));
+  float sloped = 2.0 * (slope.x + slope.y);
+  vec2 room = vec2(0.25, 2.0) * moved + sloped, bent = room + 0.5 * sloped;
+  return vec4(max(depth - room.x, 0.5 * depth), depth + room.y, max(depth - bent.x, 0.5 * depth), depth + bent.y);
+}
+
+// Nearest and farthest of all stored depths that the filter reaches from here.
+vec2 reached_range(ivec2 texel, ivec2 size) {
+  vec2 reached = vec2(1.0, 0.0);
+  for (int y = -FILTER_REACH; y <= FILTER_REACH; y++) {
+    vec2 row = texelFetch(seen_range, ivec2(texel.x, clamp(texel.y + y, 0, size.y - 1)), 0).xy;
+    reached = vec2(min(reached.x, row.x), max(reached.y, row.y));
+  }
+  return reached;
+}
+
+// Where a sample sees nothing and is faint, the nearest one that sees something: over an edge surfels of the far side
+// stick out, whose backs alone reach there, and what is filtered there is the near side.
+ivec2 shaded_at(ivec2 texel, ivec2 size) {
+  ivec2 found = texel;
+  bool is_faint = texelFetch(surface, texel, 0).w < 0.0 && texelFetch(seen_depth, ivec2(texel.x, ROWS * texel.y), 0).r == 1.0;
+  int looks = is_faint ? 9 : 0, nearest = 9;
+  for (int i = 0; i < looks; i++) {
+    ivec2 step = ivec2(i % 3, i / 3) - 1, at = clamp(texel + step, ivec2(0), size - 1);
+    int away = step.x * step.x + step.y * step.y;
+    if (away < nearest && texelFetch(seen_depth, ivec2(at.x, ROWS * at.y), 0).r < 1.0 && texelFetch(shaded, at, 0).w > 0.0) {
+      nearest = away;
+      found = at;
+    }
+  }
+  return found;
+}
+
+// What a sample's surroundings add up to. coverage: what is covered and not by nearer layers. first: the share of which
+// this is the surface that depth and normal are of. is_hit: whether the texel sees such; is_behind: whether it is in a
+// nearer layer. surface: normal and depth of the first.
+struct Resolved {
+  vec4 color;
+  float coverage;
+  float first;
+  bool is_hit;
+  bool is_behind;
+  vec4 surface;
+  Outputs outputs;
+};
+
+// The surface of the sample that is resolved: where it is shaded, its colour and normal, 1 fold if a crease is beside it,
+// and the range of stored depths that see it, none where there is none.
+struct Own {
+  ivec2 texel;
+  ivec2 shaded_at;
+  vec4 color;
+  vec3 normal;
+  int folds;
+  vec2 range;
+};
+
+// What is seen at one place that the filter reaches.
+struct Seen {
+  float stored;    // depth, that of `at` or of a place beside it which sees the same
+  ivec2 at;
+  vec4 there;      // what is shaded at `at`
+  bool is_smooth;  // there is no crease between this and `at`
+  bool is_self;
+  float shown;     // its weight, by what the nearer layers let through
+  bool is_first;   // it is the surface that depth and normal are of
+  bool is_cut;
+  vec4 here;       // its colour
+  vec4 background;
+};
+
+#parts
+void add_seen(inout Resolved sum, Own own, float seen, ivec2 at, vec4 there, bool is_smooth, bool is_between,
+              float weight, vec4 background) {
+  Seen s = Seen(seen, at, there, is_smooth, at == own.texel && !is_between, weight, true, false, background, background);
+  #hook count(sum, s)
+  #hook cut(s)
+  if (seen < 1.0 && !s.is_cut) {
+    #hook show(sum, s, own)
+    sum.coverage += s.shown;
+    sum.first += s.is_first ? weight : 0.0;
+    sum.is_hit = sum.is_hit || (s.is_self && s.is_first);
+  }
+  sum.color += s.shown * s.here;
+}
+
+Resolved resolve_sample(ivec2 texel) {
+  ivec2 size = textureSize(shaded, 0);
+  vec2 reached = reached_range(texel, size);
+  Own own = Own(texel, shaded_at(texel, size), vec4(0.0), vec3(0.0), 0, vec2(2.0, -1.0));
+  own.color = texelFetch(shaded, own.shaded_at, 0);
+  vec4 seen_surface = texelFetch(surface, own.shaded_at, 0);
+  seen_surface.w = abs(seen_surface.w);
+  own.normal = seen_surface.xyz;
+  bool is_folded;
+  vec4 same = same_surface(own.shaded_at, size, own.normal, seen_surface.w, is_folded);
+  own.folds = is_folded ? 1 : 0;
+  bool is_there = own.color.w > 0.0;
+  if (is_there) own.range = vec2(stored_depth(same.x), stored_depth(same.y));
+  bool is_inside = is_there && !is_folded && reached.y < 1.0;
+  is_inside = is_inside && reached.x >= stored_depth(same.z) && reached.y <= stored_depth(same.w);
+  vec4 background = vec4(0.0);
+  #hook background(background, texel)
+  Resolved sum = Resolved(vec4(0.0), 0.0, 0.0, false, false, seen_surface, NO_OUTPUTS);
+  // Inside a surface and beside all surfaces there is nothing to filter: loops that have no turn to make cost nothing.
+  bool is_beside = reached.x == 1.0;
+  #hook everywhere(is_inside, is_beside)
+  bool is_even = is_inside || is_beside;
+  float total = is_even ? 1.0 : 0.0;
+  if (is_even) {
+    sum = Resolved(is_inside ? own.color : background, 0.0, 0.0, is_inside, false, seen_surface, NO_OUTPUTS);
+    if (is_inside) {
+      sum.coverage = sum.first = 1.0;
+      sum.outputs = sample_outputs(texel);
+    }
+  }
+  int columns = is_even ? 0 : 2 * COLUMN_REACH + 1;
+  for (int x = 0; x < columns; x++) {
+    float weight = FIRST_WEIGHT * (x == COLUMN_REACH ? 1.0 : COLUMN_RATIO), ratio = FIRST_RATIO, below = 1.0;
+    ivec2 before = texel;
+    vec4 shaded_before = vec4(0.0);
+    bool is_smooth_before = true;
+    for (int y = 0; y < 2 * FILTER_REACH + 1; y++) {
+      ivec2 at = clamp(texel + ivec2(x - COLUMN_REACH, y - FILTER_REACH), ivec2(0), size - 1);
+      float seen = texelFetch(seen_depth, ivec2(at.x, ROWS * at.y), 0).r;
+      vec4 there = texelFetch(shaded, at, 0);
+      bool is_smooth = true;
+      for (int turn = 0; turn < own.folds; turn++) is_smooth = dot(texelFetch(surface, at, 0).xyz, own.normal) >= SMOOTH;
+      if (ROWS > 1 && y > 0) {
+        // Between two samples the surface of the one is seen, or of the other; if of both, no rounding may choose.
+        float between = texelFetch(seen_depth, ivec2(at.x, max(ROWS * at.y - 1, 0)), 0).r;
+        bool is_before = abs(between - below) < 0.5 * abs(between - seen);
+        add_seen(sum, own, between, is_before ? before : at, is_before ? shaded_before : there,
+                 is_before ? is_smooth_before : is_smooth, true, weight, background);
+        total += weight;
+        weight *= ratio;
+        ratio *= RATIO_RATIO;
+      }
+      add_seen(sum, own, seen, at, there, is_smooth, false, weight, background);
+      total += weight;
+      weight *= ratio;
+      ratio *= RATIO_RATIO;
+      below = seen;
+      before = at;
+      shaded_before = there;
+      is_smooth_before = is_smooth;
+    }
+  }
+  sum.color /= total;
+  sum.coverage /= total;
+  sum.first /= total;
+  sum.outputs = added(NO_OUTPUTS, sum.outputs, 1.0 / total);
+  return sum;
+}
+
+void main() {
+  ivec2 origin = ivec2(gl_FragCoord.xy) * SAMPLES;
+  vec4 color_total = vec4(0.0);
+  vec4 normal_total = vec4(0.0);
+  Outputs outputs_total = NO_OUTPUTS;
+  float nearest = NEVER;
+  bool is_seen_nearer = false;
+  for (int y = 0; y < SAMPLES; y++) {
+    for (int x = 0; x < SAMPLES; x++) {
+      ivec2 texel = origin + ivec2(x, y);
+      Resolved here = resolve_sample(texel);
+      color_total += here.color;
+      outputs_total = added(outputs_total, here.outputs, 1.0);
+      is_seen_nearer = is_seen_nearer || here.is_behind;
+      normal_total += vec4(here.surface.xyz * here.first, here.coverage);
+      if (here.is_hit && here.surface.w > 0.0) nearest = min(nearest, here.surface.w * view.world_length);
+    }
+  }
+  float share = 1.0 / float(SAMPLES * SAMPLES);
+  #hook pixel(color_total, normal_total, nearest, is_seen_nearer, outputs_total, share)
+}

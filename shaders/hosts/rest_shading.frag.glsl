@@ -1,0 +1,38 @@
+// References: Guennebaud, Barthe, Paulin 2006, section 6 (colours of what is left, weighted by opacity); McGuire, Bavoil,
+//             "Weighted Blended Order-Independent Transparency", JCGT 2013 (how much is hidden needs no order).
+// Summary: what is left behind the layers as one layer, premultiplied. Each surface lets the share 1 - opacity through, so
+//          that the logarithms add up. A surface is as many splats as weigh what those of the nearer layer do.
+
+#include "lib/sides.glsl"
+#include "sum_formats/{sum_format}.glsl"
+
+const float LEAST_FRONT = 0.02;  // backs alone weigh less: BACK_WEIGHT of what fronts do
+
+float front_weight(ivec2 texel) {
+  float weight = texelFetch(depth_sum, texel, 0).y / WEIGHT_SCALE;
+  return weight < LEAST_FRONT ? weight / BACK_WEIGHT : weight;
+}
+
+// Of the splats of the layer before; at its rim, where it falls off, of what is beside that.
+float surface_weight(ivec2 texel) {
+  ivec2 last = textureSize(depth_sum, 0) - 1;
+  float own = front_weight(texel), most = own;
+  for (int y = -1; y <= 1; y++) {
+    for (int x = -1; x <= 1; x++) {
+      most = max(most, front_weight(clamp(texel + ivec2(x, y), ivec2(0), last)));
+    }
+  }
+  return own > 0.5 * most ? own : most;
+}
+
+void main() {
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  vec4 sum = texelFetch(rest_sum, texel, 0);
+  vec2 weights = texelFetch(rest_weight, texel, 0).xy;
+  shaded = vec4(0.0);
+  if (sum.w > 0.0) {
+    float one = surface_weight(texel);
+    float hidden = 1.0 - exp(-weights.x / (one > 0.0 ? one : weights.y));
+    shaded = vec4(sum.rgb / sum.w, 1.0) * hidden;
+  }
+}

@@ -1,0 +1,51 @@
+// References: Botsch et al. 2005, section 4; Guennebaud et al. 2006, section 3.3 (the exact bounds of a splat).
+// Summary: for methods that work in the picture: a triangle around the splat's footprint, and its attributes.
+//          Hooks: `clip` before the method adjusts the splat, `clipped` after that, `place` for what is not drawn in the
+//          picture; `replaced` where the method has replaced axes, `cull` what need not be drawn.
+
+#include "lib/nowhere.glsl"
+#include "hosts/splat.glsl"
+#include "hosts/splat_varyings.glsl"
+#include "depth_formats/{depth_format}.glsl"
+#include "lib/plane.glsl"
+#include "methods/{method}.glsl"
+
+// What is drawn ends where the fragment shader says, not where the hardware rounds a triangle's corners to.
+const float MARGIN = 1.01;
+
+#parts
+void main() {
+  Splat splat = fetch_splat(gl_VertexID / 3);
+  vec2 corner = triangle_corner(gl_VertexID);
+  bool is_orthographic = view.is_parallel > 0.5, in_space = false;
+  #hook clip(splat, in_space)
+  Plane true_plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic), plane = true_plane;
+  if (!in_space) adjust(splat, plane, is_orthographic);
+  plane_ab = vec4(plane.a, plane.b);
+  plane_center_gh = vec4(plane.center, plane.gh);
+  plane_depths = vec4(plane.slope, plane.depth, plane.reach);
+  plane_det_radius = vec4(plane.det, plane.radius);
+  footprint_map = vec3(0.0);
+  footprint_middle = vec2(0.0);
+  #hook clipped(splat, in_space)
+  color_weight = splat.color_weight;
+  normal = splat.normal;
+  hand_on(splat, gl_VertexID / 3);
+  #hook replaced(true_plane, plane)
+  gl_Position = NOWHERE;
+  #hook place(splat, corner, in_space)
+  if (!splat.is_hidden && !in_space) {
+    vec2 size, middle;
+    mat2 axes = projected_ellipse(plane, size, middle);
+    vec2 half_axes = footprint(plane, size, middle);
+    mat2 across = mat2(axes[0] / half_axes.x, axes[1] / half_axes.y) * transpose(axes);
+    footprint_map = vec3(across[0], across[1].y);
+    footprint_middle = middle - plane.center;
+    // Stretched along the axes, not turned to them: what they are of a circle, or which way they point, is rounding's.
+    // The corner is beside the splat, not above: surfaces that are seen flat change fastest upwards.
+    vec2 pixels = axes * (half_axes * (MARGIN * corner.yx * axes));
+    vec4 clip = view.projection * vec4(view.window.xy + (middle + pixels) * view.window.zw, -1.0, 1.0);
+    gl_Position = vec4(clip.xy / clip.w, clamp(2.0 * stored_depth(nearest_depth(plane)) - 1.0, -1.0, 1.0), 1.0);
+    #hook cull(plane, middle, axes, half_axes)
+  }
+}

@@ -1,0 +1,34 @@
+// References: Botsch et al. 2005, section 4 (normalise, then light once).
+// Summary: a sample's sums as a lit surface; the includer has included a shading model. Hooks: `attributes` before it is
+//          lit, `outputs` what it hands on, `finish`.
+
+#include "hosts/outputs.glsl"
+#include "hosts/mean_surface.glsl"
+
+struct Shaded {
+  MeanSurface mean;
+  ivec2 texel;
+  int tap;         // which of the texel's hardware samples, 0 where it has one
+  vec3 normal;
+  vec3 material;
+  vec3 color;      // what leaves it
+  float coverage;  // below 1 only where an edge threshold is planned, or what is transparent
+  Outputs outputs;
+};
+
+#parts
+// mean: where its coverage is above 0.
+Shaded shaded_sample(MeanSurface mean, ivec2 texel, int tap) {
+  vec2 place = view.window.xy + (vec2(texel) + 0.5) * view.window.zw;
+  vec3 position = vec3(view.is_parallel > 0.5 ? place : place * mean.depth, -mean.depth);
+  float size = length(mean.normal);
+  vec3 normal = size > CANCELLED ? mean.normal / size : vec3(0.0, 0.0, 1.0);
+  Shaded s = Shaded(mean, texel, tap, normal, frame.material.xyz, vec3(0.0), mean.coverage, NO_OUTPUTS);
+  #hook attributes(s)
+  s.color = shade(position, normal, mean.color, s.material);
+  s.outputs.diffuse_color = mean.color;
+  #hook outputs(s)
+  s.color += s.outputs.emission;
+  #hook finish(s)
+  return s;
+}

@@ -1,0 +1,38 @@
+// References: Botsch et al. 2005, section 4 (what a splat blends).
+// Summary: a stored splat as the attributes that every method accumulates. Hook: `hide` what is not drawn.
+
+#include "lib/sides.glsl"
+#include "lib/stored_splat.glsl"
+
+struct Splat {
+  vec3 position;  // view space
+  vec3 axis_u;    // half-axes, view space
+  vec3 axis_v;
+  vec4 color_weight;  // colour, and what the side that is seen weighs
+  vec3 normal;        // shading normal on the side that is seen, view space
+  float material;     // index
+  float opacity;
+  bool is_back;
+  bool is_hidden;     // it is not drawn: the back of a solid, or of no opacity
+};
+
+#parts
+Splat fetch_splat(int index) {
+  StoredSplat stored = stored_splat(index);
+  mat3 linear = mat3(draw.model_view);
+  Splat splat;
+  splat.position = (draw.model_view * vec4(stored.position, 1.0)).xyz;
+  splat.axis_u = linear * stored.axis_u;
+  splat.axis_v = linear * stored.axis_v;
+  splat.material = stored.material;
+  float cosine = outward_cosine(splat.position, splat.axis_u, splat.axis_v, draw.orientation, view.is_parallel > 0.5);
+  splat.color_weight = vec4(stored.color.rgb, cosine < 0.0 ? BACK_WEIGHT : 1.0);
+  splat.normal = normalize(mat3(draw.normal_matrix) * stored.normal);
+  float side = cosine < 0.0 ? -draw.orientation : draw.orientation;
+  if (dot(splat.normal, cross(splat.axis_u, splat.axis_v)) * side < 0.0) splat.normal = -splat.normal;
+  splat.opacity = clamp(stored.color.a, 0.0, 1.0);
+  splat.is_back = cosine < 0.0;
+  splat.is_hidden = cosine < 0.0 && draw.hides_backs > 0.5;
+  #hook hide(splat)
+  return splat;
+}

@@ -1,0 +1,22 @@
+// References: Botsch, Hornung, Zwicker, Kobbelt, "High-Quality Surface Splatting on Today's GPUs", 2005, section 3
+//             (visibility splatting); the view-independent paper, section 5 (the offset along the view ray).
+// Summary: every splat moved away from the eye by its own epsilon, so that what lies within epsilon blends; by no less
+//          than the depth can resolve, or rounding would let a splat hide itself.
+
+#include "depth_formats/{depth_format}.glsl"
+#include "lib/nowhere.glsl"
+#include "hosts/splat.glsl"
+#include "hosts/splat_varyings.glsl"
+#include "methods/quad.glsl"
+
+void main() {
+  Splat splat = fetch_splat(gl_VertexID / 3);
+  vec2 corner = triangle_corner(gl_VertexID);
+  vec3 eye = footprint_corner(splat.position, splat.axis_u, splat.axis_v, corner);
+  place_depth = vec3(corner, -eye.z);
+  hand_on(splat, gl_VertexID / 3);
+  float offset = draw.epsilon * sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
+  if (splat.is_back) offset *= BACK_EPSILON;
+  vec4 moved = splat_corner(eye, offset);
+  gl_Position = splat.is_hidden ? NOWHERE : moved;
+}

@@ -1,0 +1,73 @@
+// References: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016;
+//             Karis, "Real Shading in Unreal Engine 4", 2013 (the albedo in two terms);
+//             Lagarde, de Rousiers, "Moving Frostbite to PBR", 2014, section 4.9.3 (the lobe's dominant direction);
+//             Turquin, "Practical multiple scattering compensation for microfacet models", 2019.
+// Summary: reads what scripts/fit_brdf_table.py tabulated of GGX. The twin of reference/brdf.py.
+
+const vec2 TABLE_STEPS = vec2(31.0, 47.0);  // angles, roughnesses
+const float TABLE_LEAST_ROUGHNESS = 0.03;
+
+// part 0: the transform's entries xx, xz, zx, zz; part 1: the albedo's terms, x and z of the mean direction.
+vec4 table_at(float roughness, float cosine, int part) {
+  vec2 at = vec2(sqrt(max(1.0 - cosine, 0.0)), (roughness - TABLE_LEAST_ROUGHNESS) / (1.0 - TABLE_LEAST_ROUGHNESS));
+  at = clamp(at, 0.0, 1.0) * TABLE_STEPS;
+  ivec2 low = ivec2(min(at, TABLE_STEPS - 1.0)), first = ivec2(int(TABLE_STEPS.x + 1.0) * part, 0);
+  vec2 share = at - vec2(low);
+  vec4 below = mix(texelFetch(brdf_table, first + low, 0), texelFetch(brdf_table, first + low + ivec2(1, 0), 0), share.x);
+  vec4 above = mix(texelFetch(brdf_table, first + low + ivec2(0, 1), 0),
+                   texelFetch(brdf_table, first + low + ivec2(1, 1), 0), share.x);
+  return mix(below, above, share.y);
+}
+
+// What the lobe reflects of an even world, and by what factor light that it scatters more than once adds to it.
+// f90: reflectance at grazing incidence.
+vec3 specular_albedo(vec2 terms, vec3 f0, float f90, out vec3 scattered) {
+  scattered = 1.0 + f0 * (1.0 / max(terms.x + terms.y, 1e-3) - 1.0);
+  return (f0 * terms.x + f90 * terms.y) * scattered;
+}
+
+// Where the lobe reflects light from on average: off the mirrored direction, the more so the rougher the surface is and
+// the flatter it is seen. The view's frame: see rendering/brdf_table.py.
+vec3 mean_direction(vec2 mean, vec3 to_eye, vec3 normal) {
+  vec3 across = to_eye - normal * dot(to_eye, normal);
+  return normalize(normal * mean.y + across * (mean.x / max(length(across), 1e-6)));
+}
+
+#part sized_lights
+// Of the great circle between two directions, its angle times the z of its normal.
+float edge(vec3 from, vec3 to) {
+  vec3 a = normalize(from), b = normalize(to);
+  vec3 normal = cross(a, b);
+  float sine = length(normal);
+  return sine > 0.0 ? normal.z * atan(sine, dot(a, b)) / sine : 0.0;
+}
+
+// Half-axes over distance below which a quad counts as a point with its area: the sum over its edges, in which opposite
+// ones nearly cancel, loses its digits there.
+const float SMALL_QUAD = 0.02;
+
+// Share of the half-space's cosine-weighted light that comes through the quad middle +- u +- v, without what lies below
+// the horizon. Each edge counts by its part above, and so does the horizon from where the quad leaves it to where it
+// comes back.
+float form_factor(vec3 middle, vec3 u, vec3 v) {
+  float distance2 = dot(middle, middle);
+  if (max(dot(u, u), dot(v, v)) < SMALL_QUAD * SMALL_QUAD * distance2) {
+    return max(middle.z, 0.0) * 4.0 * abs(dot(middle, cross(u, v))) / (3.14159265358979 * distance2 * distance2);
+  }
+  vec3 corners[4] = vec3[4](middle - u - v, middle + u - v, middle + u + v, middle - u + v);
+  float sum = 0.0;
+  vec3 leaves = vec3(0.0), returns = vec3(0.0);
+  bool is_cut = false;
+  for (int i = 0; i < 4; i++) {
+    vec3 a = corners[i], b = corners[(i + 1) & 3];
+    bool above_a = a.z >= 0.0, above_b = b.z >= 0.0;
+    if (!above_a && !above_b) continue;
+    vec3 crossing = vec3(mix(a.xy, b.xy, a.z / (a.z - b.z)), 0.0);
+    if (above_a && !above_b) leaves = crossing;
+    if (!above_a && above_b) returns = crossing;
+    is_cut = is_cut || above_a != above_b;
+    sum += edge(above_a ? a : crossing, above_b ? b : crossing);
+  }
+  if (is_cut) sum += edge(leaves, returns);
+  return abs(sum) / (2.0 * 3.14159265358979);
+}

@@ -1,0 +1,23 @@
+// References: Blinn, "Models of Light Reflection for Computer Synthesized Pictures", 1977; Walter, Marschner, Li,
+//             Torrance, "Microfacet Models for Refraction", 2007, section 5.2 (the exponent of a roughness).
+// Summary: Blinn's lobe around the half vector. A light with a size is taken for a point in its middle.
+
+const float MIN_ROUGHNESS = 0.03;
+
+vec3 to_viewer(vec3 position) {
+  return view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
+}
+
+float blinn_exponent(float roughness) {
+  float width = clamp(roughness, MIN_ROUGHNESS, 1.0);
+  width *= width;
+  return 2.0 / (width * width) - 2.0;
+}
+
+// cos^exponent of the angle between the normal and the half vector, by its sine: near 1 a cosine has no digits left.
+float blinn_lobe(vec3 normal, vec3 halfway, float exponent) {
+  float cosine = dot(normal, halfway);
+  if (!(cosine > 0.0)) return 0.0;
+  vec3 sine = cross(normal, halfway);
+  return exp(-0.5 * exponent * log(1.0 + dot(sine, sine) / (cosine * cosine)));
+}

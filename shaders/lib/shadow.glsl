@@ -1,0 +1,177 @@
+// References: Williams, "Casting Curved Shadows on Curved Surfaces", 1978; Reeves, Salesin, Cook, "Rendering Antialiased
+//             Shadows with Depth Maps", 1987 (compare, then filter); Fernando, "Percentage-Closer Soft Shadows", 2005.
+// Summary: which share of a light reaches a place. Depths are compared with the plane of the surface that is lit, so
+//          that a wide filter does not shadow it by itself; splats lie in the map one epsilon farther than they are.
+//          Looks of a lamp are measured along the way to it and over the disc that it turns to the place, not along a
+//          face of its cube of maps, and go on in the next face: where faces meet, shadows do not change.
+
+const int SOFT_SAMPLES = 32;
+// Neighbouring samples of the picture look at different places: a pixel of 2 x 2 samples has four times as many of them.
+float shadow_turn;
+// Of the plane that is lit, where its normal is not the one that is shaded; 0 elsewhere.
+vec3 shadow_plane;
+const float GOLDEN_ANGLE = 2.39996323;
+const float GRAZING = 0.08;  // least cosine that a surface's plane is followed at
+
+struct ShadowPlace {
+  int map;
+  mat3 turn;     // to the light's view, and to its scale
+  vec4 window;
+  vec4 atlas;    // x, y, resolution, 1 for a parallel camera
+  vec4 depths;   // stored to depth: factor, summand; size of a texel (at depth 1 of a perspective); 1 for a cube's face
+  vec3 position; // in the light's view
+  vec3 normal;
+  float depth;
+  vec2 place;    // on the light's window
+};
+
+bool shadow_place(int map, vec3 position, vec3 normal, out ShadowPlace here) {
+  here.map = map;
+  here.turn = transpose(mat3(texelFetch(shadow_maps, ivec2(0, map), 0).xyz, texelFetch(shadow_maps, ivec2(1, map), 0).xyz,
+                             texelFetch(shadow_maps, ivec2(2, map), 0).xyz));
+  vec3 shift = vec3(texelFetch(shadow_maps, ivec2(0, map), 0).w, texelFetch(shadow_maps, ivec2(1, map), 0).w,
+                    texelFetch(shadow_maps, ivec2(2, map), 0).w);
+  here.window = texelFetch(shadow_maps, ivec2(3, map), 0);
+  here.atlas = texelFetch(shadow_maps, ivec2(4, map), 0);
+  here.depths = texelFetch(shadow_maps, ivec2(5, map), 0);
+  here.position = here.turn * position + shift;
+  here.normal = normalize(here.turn * normal);
+  bool is_parallel = here.atlas.w > 0.5;
+  here.depth = -here.position.z;
+  if (!is_parallel && here.depth <= 0.0) return false;
+  here.place = is_parallel ? here.position.xy : here.position.xy / here.depth;
+  vec2 at = (here.place - here.window.xy) * here.window.zw;
+  return all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0)));
+}
+
+// Depth of the lit surface's plane toward another place; toward.z is -1, seen from the place's own map. A lamp's is no
+// deeper than `own`, that of the place if it faced the lamp: what lies farther is behind what is lit. Near its horizon, and
+// over it, the plane is not followed.
+float receiver_depth(ShadowPlace here, vec3 toward, float own) {
+  if (here.atlas.w > 0.5) {
+    float slope = max(abs(here.normal.z), GRAZING) * (here.normal.z < 0.0 ? -1.0 : 1.0);
+    return here.depth + dot(here.normal.xy, toward.xy - here.place) / slope;
+  }
+  float facing = dot(here.normal, toward), away = dot(here.normal, here.position);
+  return abs(facing) > GRAZING * length(toward) && facing * away > 0.0 ? min(away / facing, own) : own;
+}
+
+#include "lib/shadow_taps/{shadow_taps}.glsl"
+
+float map_depth(ShadowPlace here, vec2 atlas, ivec2 texel) {
+  return texelFetch(shadow_depth, inside_map(texel, int(here.atlas.z)) + ivec2(atlas), 0).r;
+}
+
+float blocker_depth(ShadowPlace here, ivec2 texel) {
+  float stored = map_depth(here, here.atlas.xy, texel);
+  return stored < 1.0 ? here.depths.x * stored + here.depths.y : 3.4e38;
+}
+
+vec2 texel_place(ShadowPlace here, ivec2 texel) {
+  return here.window.xy + (vec2(texel) + 0.5) / (here.window.zw * here.atlas.z);
+}
+
+float hard_share(ShadowPlace here, float bias) {
+  vec2 at = (here.place - here.window.xy) * here.window.zw * here.atlas.z - 0.5;
+  ivec2 low = ivec2(floor(at)) - (FILTER_TEXELS / 2 - 1);
+  float lit = 0.0, total = 0.0;
+  for (int y = 0; y < FILTER_TEXELS; y++) {
+    for (int x = 0; x < FILTER_TEXELS; x++) {
+      ivec2 texel = low + ivec2(x, y);
+      vec2 tent = hard_filter(vec2(texel) - at);
+      float weight = tent.x * tent.y;
+      lit += blocker_depth(here, texel) + bias >= receiver_depth(here, vec3(texel_place(here, texel), -1.0), here.depth) ? weight : 0.0;
+      total += weight;
+    }
+  }
+  return lit / total;
+}
+
+// What a look meets.
+struct Met {
+  float depth;  // of what is in the map
+  float lit;    // of the surface that is lit
+  float way;    // along the way from the lamp to what is lit, times its length; of a sun the depth
+};
+
+// toward: a place in the light's view. Where it leaves a face of a lamp's cube, the next face has it.
+Met look_toward(ShadowPlace here, vec3 toward, int number) {
+  bool is_parallel = here.atlas.w > 0.5;
+  vec3 row_x = vec3(1.0, 0.0, 0.0), row_y = vec3(0.0, 1.0, 0.0), row_z = vec3(0.0, 0.0, 1.0);
+  vec3 next = vec3(here.atlas.xy, here.depths.x);
+  vec2 aside = abs(toward.xy);
+  if (here.depths.w > 0.5 && max(aside.x, aside.y) > here.window.x * toward.z) {
+    vec2 side = aside.x > aside.y ? vec2(toward.x, 0.0) : vec2(toward.y, 6.0);
+    int first = 6 + int(side.y) + (side.x < 0.0 ? 0 : 3);
+    vec4 x = texelFetch(shadow_maps, ivec2(first, here.map), 0), y = texelFetch(shadow_maps, ivec2(first + 1, here.map), 0),
+         z = texelFetch(shadow_maps, ivec2(first + 2, here.map), 0);
+    row_x = x.xyz;
+    row_y = y.xyz;
+    row_z = z.xyz;
+    next = vec3(x.w, y.w, z.w);
+    toward = vec3(dot(row_x, toward), dot(row_y, toward), dot(row_z, toward));
+  }
+  float depth = is_parallel ? here.depth : max(-toward.z, 0.1 * here.depth);
+  vec2 place = is_parallel ? toward.xy : toward.xy / depth;
+  ivec2 texel = soft_texel((place - here.window.xy) * here.window.zw * here.atlas.z, number);
+  place = texel_place(here, texel);
+  vec3 seen = place.x * row_x + place.y * row_y - row_z;
+  float stored = map_depth(here, next.xy, texel);
+  Met met;
+  met.depth = stored < 1.0 && next.z > 0.0 ? next.z * stored + here.depths.y : 3.4e38;
+  met.lit = receiver_depth(here, seen, depth);
+  met.way = is_parallel ? met.depth : met.depth * dot(seen, here.position);
+  return met;
+}
+
+// Of its way behind a lamp, where looks for what is in the way begin.
+const float NEAREST_SHARE = 0.25;
+
+// Looks go past the place by parts of the lamp, whose half-axes lamp_u and lamp_v are in the light's view (a sun's are
+// tangents): at the share t of the way from the lamp, rays to it are as wide as (1 - t) / t of it beside the place.
+float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lamp_v) {
+  bool is_parallel = here.atlas.w > 0.5;
+  float reach = is_parallel ? min(here.depth - here.depths.y, 0.25 / (size * max(here.window.z, here.window.w)))
+                            : min(1.0 / NEAREST_SHARE, length(here.position) / size) - 1.0;
+  reach = max(reach, 0.0);
+  float blockers = 0.0, sum = 0.0;
+  for (int i = 0; i < SEARCH_LOOKS; i++) {
+    vec2 look = soft_look(i, SEARCH_LOOKS);
+    float past = look.x * look.x * reach;  // closer to one another in the middle, where what is near hides the lamp
+    Met met = look_toward(here, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
+    if (met.depth + bias < met.lit) {
+      blockers += 1.0;
+      sum += met.way;
+    }
+  }
+  if (blockers == 0.0) return 1.0;
+  float blocker = sum / (blockers * (is_parallel ? 1.0 : dot(here.position, here.position)));
+  float gap = max(is_parallel ? here.depth - blocker : 1.0 / blocker - 1.0, 0.0);
+  if (size * gap < 4.0 * bias) return hard_share(here, bias);
+  float lit = 0.0;
+  for (int i = 0; i < FILTER_LOOKS; i++) {
+    vec2 look = soft_look(i, FILTER_LOOKS);
+    float past = look.x * min(gap, reach);
+    Met met = look_toward(here, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
+    lit += met.depth + bias >= met.lit ? 1.0 : 0.0;
+  }
+  return lit / float(FILTER_LOOKS);
+}
+
+// caster: number of the light's first map, of its maps, and its size in units of the shaded view (of a sun as it is).
+// half_u, half_v: half-axes of a lamp with a size, in the shaded view.
+float lit_share(vec4 caster, vec3 half_u, vec3 half_v, vec3 position, vec3 normal) {
+  for (int i = 0; i < int(caster.y); i++) {
+    ShadowPlace here;
+    vec3 plane = dot(shadow_plane, shadow_plane) > 0.0 ? shadow_plane : normal;
+    if (!shadow_place(int(caster.x) + i, position, plane, here)) continue;
+    bool is_parallel = here.atlas.w > 0.5;
+    float bias = 0.5 * here.depths.z * (is_parallel ? 1.0 : here.depth);
+    if (caster.z == 0.0) return hard_share(here, bias);
+    float size = caster.z * (is_parallel ? 1.0 : length(here.turn[0]));
+    vec3 lamp_u = is_parallel ? vec3(size, 0.0, 0.0) : here.turn * half_u;
+    vec3 lamp_v = is_parallel ? vec3(0.0, size, 0.0) : here.turn * half_v;
+    return soft_share(here, bias, size, lamp_u, lamp_v);
+  }
+  return 1.0;
+}

@@ -1,0 +1,43 @@
+// References: common/screen_door.glsl, whose masks these looks meet; Vogel, "A Better Way to Construct the Sunflower
+//             Head", 1979.
+// Summary: looks into a shadow map of masked surfaces, spread over a disc. Which looks a surface hides is its mask's
+//          choice: so those of every place of a mask are a spiral of their own over the disc, and those of places that
+//          masks keep together are turned and widened unlike one another. Any mask then sees the disc evenly; looks that
+//          take their turns in the places along one spiral would have a half of them lie in some directions.
+
+#include "lib/screen_door.glsl"
+
+// The four texels around the place, and parts of a fifth: what is kept of every 4 x 4 sums to the same everywhere.
+const int FILTER_TEXELS = 6;
+vec2 hard_filter(vec2 distance) {
+  return clamp(2.5 - abs(distance), 0.0, 1.0);
+}
+
+// Of which a mask hides some; and where surfaces behind one another block, their mean depth is of those it keeps.
+const int SEARCH_LOOKS = 2 * SOFT_SAMPLES, FILTER_LOOKS = 4 * SOFT_SAMPLES;
+
+// Radius and angle in the unit disc. count: a multiple of 16.
+vec2 soft_look(int number, int count) {
+  ivec2 place = ivec2(number & 3, (number >> 2) & 3);
+  int turned = 4 * mask_level(2, place) + mask_level(4, place), widened = 4 * mask_level(3, place) + mask_level(1, place);
+  float turn = float(number >> 4);
+  float share = (turn + (float(widened) + shadow_turn) / 16.0) * 16.0 / float(count);
+  return vec2(sqrt(share), (turn + shadow_turn) * GOLDEN_ANGLE + float(turned) * (6.28318531 / 16.0));
+}
+
+// The texel nearest to that place of the map which lies in the look's place of a mask.
+ivec2 soft_texel(vec2 at, int number) {
+  ivec2 place = ivec2(number & 3, (number >> 2) & 3);
+  return place + 4 * ivec2(floor((at - vec2(place) - 0.5) / 4.0 + 0.5));
+}
+
+int inside_row(int texel, int size) {
+  int last = size - 4;
+  int inside = texel < 0 ? texel & 3 : (texel < size ? texel : last + ((texel - last) & 3));
+  return clamp(inside, 0, size - 1);
+}
+
+// The nearest texel of the map, size by size, in the same place of a mask: beyond its border, too, masks are whole.
+ivec2 inside_map(ivec2 texel, int size) {
+  return ivec2(inside_row(texel.x, size), inside_row(texel.y, size));
+}

@@ -1,0 +1,61 @@
+// References: "View-independent object-space surface splatting", section 4.4 (texture-mapped splats: every fragment looks
+//             the texture up under its own footprint); Zwicker et al. 2001 (kernel and pixel filter are Gaussians).
+// Summary: the colour of a texture-mapped splat at a pixel. What the pixel shows of the splat is kernel times pixel
+//          filter: a Gaussian narrower than both, and never far outside of the ellipse, under which the texture is
+//          looked up. Held to reference/textures.py by tests/rendering/test_textured.py.
+//
+// A surfel has two texels in `surfel_uvs`: uv and what half-axis x moves it; what half-axis y moves it and m of the line
+// m . q = 1 where the map ends. Where neither axis moves it, or the material has no texture, the slot is negative and
+// the surfel's own colour is meant.
+
+#part vertex
+// uv, slot.
+vec3 fetch_texture_place(int index, float material, out vec4 along, out vec2 border) {
+  ivec2 texel = ivec2((index % SPLATS_PER_ROW) * 2, index / SPLATS_PER_ROW);
+  vec4 first = texelFetch(surfel_uvs, texel, 0), second = texelFetch(surfel_uvs, texel + ivec2(1, 0), 0);
+  along = vec4(first.zw, second.xy);
+  border = second.zw;
+  int slot = min(int(material), textureSize(texture_table, 0).y - 1);
+  bool is_textured = dot(along, along) > 0.0 && texelFetch(texture_table, ivec2(0, slot), 0).w > 0.0;
+  return vec3(first.xy, is_textured ? float(slot) : -1.0);
+}
+#part fragment
+#include "lib/texture_lookup.glsl"
+
+const float SPLAT_VARIANCE = 0.25;   // of the kernel, half-axes squared
+const float LARGEST_PIXEL = 1e8;     // variance, half-axes squared
+
+// What a pixel along x and y moves the place in an ellipse with these half-axes in view space, at a point of the picture
+// whose depth is given.
+mat2 space_place_change(vec3 axis_u, vec3 axis_v, vec2 point, float depth) {
+  mat2 moved = view.is_parallel > 0.5 ? mat2(axis_u.xy, axis_v.xy)
+      : mat2(axis_u.xy + point * axis_u.z, axis_v.xy + point * axis_v.z) / depth;
+  return inverse(moved) * mat2(view.window.z, 0.0, 0.0, view.window.w);
+}
+
+// q: the pixel's place in the ellipse; change: columns are what a pixel along x and y moves it.
+vec3 splat_texture_color(vec3 own, vec3 place, vec4 along, vec2 border, vec2 q, mat2 change) {
+  if (place.z < 0.0) return own;
+  mat2 pixel = PIXEL_VARIANCE * change * transpose(change);
+  float size = pixel[0].x + pixel[1].y, area = PIXEL_VARIANCE * determinant(change);
+  vec2 middle = vec2(0.0);
+  mat2 seen = mat2(SPLAT_VARIANCE);
+  if (size < LARGEST_PIXEL && dot(q, q) < LARGEST_PIXEL) {
+    float det = SPLAT_VARIANCE * (SPLAT_VARIANCE + size) + area * area;
+    mat2 turned = mat2(pixel[1].y, -pixel[0].y, -pixel[1].x, pixel[0].x);
+    middle = SPLAT_VARIANCE / det * (SPLAT_VARIANCE * q + turned * q);
+    seen = SPLAT_VARIANCE / det * (SPLAT_VARIANCE * pixel + mat2(area * area));
+  }
+  mat2 gradient = mat2(along.xy, along.zw);
+  SurfaceTexture t = surface_texture(int(place.z));
+  float beyond = dot(border, middle) - 1.0;
+  if (beyond > 0.0) {
+    // There lies another chart of the map, and nothing of it is to be in the footprint.
+    float texel = length(border * inverse(gradient) / t.size);
+    float back = beyond + 2.0 * sqrt(dot(border, seen * border)) + 0.75 * texel;
+    if (back < LARGEST_PIXEL) middle -= border * (back / dot(border, border));
+  }
+  mat2 variance = gradient * seen * transpose(gradient);
+  return texture_color(t, place.xy + gradient * middle,
+                       vec3(variance[0].x, variance[1].y, variance[0].y));
+}

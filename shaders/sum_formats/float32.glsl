@@ -1,0 +1,18 @@
+// References: docs/numerics.md, Formats.
+// Summary: sums of float32 hold weights and colours as they are.
+
+const float WEIGHT_SCALE = 1.0;
+// A mean normal shorter than this is what rounding left of normals that cancel; the surface then faces the viewer.
+const float CANCELLED = 1e-6;
+
+float stored_weight(float weight) {
+  return weight;
+}
+
+vec3 stored_color(vec3 color) {
+  return color;
+}
+
+vec3 summed_color(vec3 stored) {
+  return stored;
+}
