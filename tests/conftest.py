@@ -4,10 +4,12 @@
 They cannot share a process, so scripts/test.py runs pytest once for each.
 """
 
+import io
 import os
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -15,7 +17,7 @@ if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
 
 from splat_addon import reference  # noqa: E402
-from tests.remembered import remembered  # noqa: E402
+from tests.remembered import folder, remembered, write  # noqa: E402
 
 # The truth does not depend on the device, so the group of tests that comes first finds it for both. Tests import these
 # two by name, and all of them after this file.
@@ -36,11 +38,24 @@ def models():
 
 
 @pytest.fixture(scope="session")
-def pictures():
-    """Where the devices leave their pictures for one another: build/pictures, or SPLAT_PICTURES."""
-    folder = Path(os.environ.get("SPLAT_PICTURES") or ROOT / "build" / "pictures")
-    folder.mkdir(parents=True, exist_ok=True)
-    return folder
+def on_both_devices(request):
+    """on_both_devices(name, draw, hold): calls hold(here, standalone) with the arrays by name that draw() gives here
+    and those that it gave on the standalone device, which draws them once and keeps them for the others.
+    """
+    kept = folder("pictures", "splat_addon/**/*.py", "shaders/**/*.glsl", "tests/**/*.py")
+
+    def compare(name, draw, hold):
+        file = kept / f"{name}.npz"
+        if request.config.getoption("--device") == "blender":
+            assert file.exists(), f"{file} is missing: run the tests with --device standalone first (scripts/test.py does)"
+            with np.load(file) as standalone:
+                hold(draw(), dict(standalone))
+        elif not file.exists():
+            contents = io.BytesIO()
+            np.savez(contents, **draw())
+            write(file, contents.getvalue())
+
+    return compare
 
 
 @pytest.fixture(scope="session")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Results of slow pure functions, kept in files so that the second process of a test run need not find them again."""
+"""What one process of a test run found and another need not find again: files that fall with the sources they rest on."""
 
 from __future__ import annotations
 
@@ -17,33 +17,38 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 @cache
-def folder() -> Path:
-    """build/truths/KEY, empty when any Python of the product, or numpy, is another one than the last time."""
+def folder(name: str, *sources: str) -> Path:
+    """build/`name`/KEY, empty when a file that these patterns match, or numpy, is another one than the last time."""
     digest = hashlib.sha256(np.__version__.encode())
-    for file in sorted((ROOT / "splat_addon").rglob("*.py")):
+    for file in sorted(file for pattern in sources for file in ROOT.glob(pattern)):
         digest.update(file.read_bytes())
-    truths = ROOT / "build" / "truths"
-    made = truths / digest.hexdigest()[:16]
-    made.mkdir(parents=True, exist_ok=True)
-    for other in truths.iterdir():
-        if other != made:
+    every = ROOT / "build" / name
+    kept = every / digest.hexdigest()[:16]
+    kept.mkdir(parents=True, exist_ok=True)
+    for other in every.iterdir():
+        if other != kept:
             shutil.rmtree(other, ignore_errors=True)
-    return made
+    return kept
+
+
+def write(file: Path, contents: bytes) -> None:
+    """Whole or not at all: another process may read it at any time."""
+    written = file.with_name(f"{file.name}.{os.getpid()}")
+    written.write_bytes(contents)
+    os.replace(written, file)
 
 
 def remembered(function: Callable) -> Callable:
-    """`function`, whose result for arguments of equal contents is read from a file where there is one."""
+    """`function`, of the product and pure, whose result for arguments of equal contents is read from a file."""
 
     @wraps(function)
     def result(*arguments, **options):
         key = hashlib.sha256(pickle.dumps((function.__name__, arguments, options), protocol=5)).hexdigest()
-        file = folder() / key[:32]
+        file = folder("truths", "splat_addon/**/*.py") / key[:32]
         if file.exists():
             return pickle.loads(file.read_bytes())
         found = function(*arguments, **options)
-        written = file.with_suffix(f".{os.getpid()}")
-        written.write_bytes(pickle.dumps(found, protocol=5))
-        os.replace(written, file)
+        write(file, pickle.dumps(found, protocol=5))
         return found
 
     return result

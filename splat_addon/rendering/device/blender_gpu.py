@@ -39,6 +39,7 @@ class BlenderDevice:
                 "Blender has no graphics context here: in background mode it has one only inside a render."
             ) from error
         self._gpu = gpu
+        self.pipeline = _shared_pipeline
         self._in_flight = []
         self._triangles = (0, None)
         self._triangle = _batch(gpu, 1)
@@ -50,9 +51,6 @@ class BlenderDevice:
 
     def target(self, colors, depth=None):
         return _Target(self._gpu, colors, depth)
-
-    def pipeline(self, description):
-        return _shared_pipeline(description)
 
     def draw_triangles(self, pipeline, target, triangles, block, textures, viewport=None):
         if not triangles:
