@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs every test, in two processes or more, because moderngl and Blender take each other's graphics context away.
 
-    python3 scripts/test.py [--bpy VERSION] [--blender PATH [--gpu-backend opengl|vulkan]] [PYTEST ARGUMENTS]
+    python3 scripts/test.py [--quick] [--bpy VERSION] [--blender PATH [--gpu-backend NAME]] [PYTEST ARGUMENTS]
 
-Group "plain" draws on the standalone device; group "blender" draws inside Blender: in its wheel, or with
---blender inside a program, a process for each folder, which then needs the plain group's pictures to compare with and
-nothing else of it.
+Group "plain" draws on the standalone device; group "blender" draws inside Blender: in its wheel, or with --blender
+inside a program, which needs the plain group's pictures to compare with and nothing else of it. Outside of a program
+pytest-xdist runs as many processes as there are cores; -n 0 runs one.
 """
 
 import argparse
@@ -14,13 +14,19 @@ import subprocess
 import sys
 from pathlib import Path
 
-import blender_program
 import environment
 from environment import ROOT, Problem
-from suite import BLENDER, PLAIN, by_folder, paths_by_group, split_arguments
+from testing import program
+from testing.groups import BLENDER, PLAIN, QUICK, paths_by_group, split_arguments
 
 #: pytest's exit codes.
 PASSED, NO_TESTS = 0, 5
+
+#: A process for each core, of which each takes a gigabyte; an idle one takes tests from a busy one.
+PARALLEL = ("-n", "auto", "--maxprocesses", "8", "--dist", "worksteal")
+
+#: Cores that run tests have none left for a library's own threads.
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "LP_NUM_THREADS": "1"}
 
 
 def parse(arguments: list) -> tuple:
@@ -30,8 +36,9 @@ def parse(arguments: list) -> tuple:
         description="Runs the tests; what is not listed here goes to pytest.",
         allow_abbrev=False,
     )
+    parser.add_argument("--quick", action="store_true", help="a choice of tests that takes less than a minute")
     parser.add_argument("--bpy", choices=sorted(environment.PYTHON_FOR_BPY), help="the wheel of Blender to test with")
-    parser.add_argument("--blender", type=blender_program.program_file, help="a program to run the Blender tests in")
+    parser.add_argument("--blender", type=program.program_file, help="a program to run the Blender tests in")
     parser.add_argument("--gpu-backend", choices=("opengl", "vulkan", "metal"), help="of the program")
     options, rest = parser.parse_known_args(arguments)
     if options.gpu_backend and not options.blender:
@@ -39,16 +46,16 @@ def parse(arguments: list) -> tuple:
     return options, rest
 
 
-def plain_command(python: Path, arguments: list) -> list:
-    """pytest in the environment, without Blender."""
-    return [str(python), "-m", "pytest", "--device", "standalone", *arguments]
+def wheel_command(python: Path, device: str, arguments: list) -> list:
+    """pytest in the environment; with the device "blender" inside Blender's wheel."""
+    return [str(python), "-m", "pytest", "--device", device, *PARALLEL, *arguments]
 
 
 def blender_command(options: argparse.Namespace, python: Path, arguments: list) -> list:
     """pytest inside Blender: its wheel, or the program."""
     if not options.blender:
-        return [str(python), "-m", "pytest", "--device", "blender", *arguments]
-    return blender_program.test_command(options.blender, options.gpu_backend, ["--device", "blender", *arguments])
+        return wheel_command(python, "blender", arguments)
+    return program.test_command(options.blender, options.gpu_backend, ["--device", "blender", *arguments])
 
 
 def run(name: str, command: list, **variables) -> int:
@@ -69,18 +76,18 @@ def verdict(codes: dict) -> int:
 def main(arguments: list) -> int:
     """Exit code: 0 where everything passed, 1 where something failed, 2 for wrong arguments, 5 for no test at all."""
     options, rest = parse(arguments)
-    paths, pytest_arguments = split_arguments(rest)
+    paths, pytest_arguments = split_arguments([*(QUICK if options.quick else ()), *rest])
     groups = paths_by_group(paths, only_pictures=bool(options.blender))
     python = environment.make("test", options.bpy).python
-    variables = blender_program.prepare(options.blender, python) if options.blender else {}
+    variables = program.prepare(options.blender, python) if options.blender else {}
     codes = {}
     if groups.get(PLAIN):
-        codes[PLAIN] = run(PLAIN, plain_command(python, [*groups[PLAIN], *pytest_arguments]))
+        command = wheel_command(python, "standalone", [*groups[PLAIN], *pytest_arguments])
+        codes[PLAIN] = run(PLAIN, command, **ONE_THREAD)
         print(f"== group {PLAIN}: pytest ended with exit code {codes[PLAIN]}", flush=True)
     if groups.get(BLENDER):
-        for part in by_folder(groups[BLENDER]) if options.blender else [groups[BLENDER]]:
-            command = blender_command(options, python, [*part, *pytest_arguments])
-            codes[(BLENDER, *part)] = run(BLENDER, command, **variables)
+        command = blender_command(options, python, [*groups[BLENDER], *pytest_arguments])
+        codes[BLENDER] = run(BLENDER, command, **(variables or ONE_THREAD))
     return verdict(codes)
 
 

@@ -4,15 +4,24 @@
 They cannot share a process, so scripts/test.py runs pytest once for each.
 """
 
+import io
 import os
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
+
+from splat_addon import reference  # noqa: E402
+from tests.remembered import folder, remembered, write  # noqa: E402
+
+# The truth does not depend on the device, so the group of tests that comes first finds it for both. Tests import these
+# two by name, and all of them after this file.
+reference.render_exact, reference.render_ewa = map(remembered, (reference.render_exact, reference.render_ewa))
 
 
 def pytest_addoption(parser):
@@ -29,18 +38,31 @@ def models():
 
 
 @pytest.fixture(scope="session")
-def pictures():
-    """Where the devices leave their pictures for one another: build/pictures, or SPLAT_PICTURES."""
-    folder = Path(os.environ.get("SPLAT_PICTURES") or ROOT / "build" / "pictures")
-    folder.mkdir(parents=True, exist_ok=True)
-    return folder
+def on_both_devices(request):
+    """on_both_devices(name, draw, hold): calls hold(here, standalone) with the arrays by name that draw() gives here
+    and those that it gave on the standalone device, which draws them once and keeps them for the others.
+    """
+    kept = folder("pictures", "splat_addon/**/*.py", "shaders/**/*.glsl", "tests/**/*.py")
+
+    def compare(name, draw, hold):
+        file = kept / f"{name}.npz"
+        if request.config.getoption("--device") == "blender":
+            assert file.exists(), f"{file} is missing: run the tests with --device standalone first (scripts/test.py does)"
+            with np.load(file) as standalone:
+                hold(draw(), dict(standalone))
+        elif not file.exists():
+            contents = io.BytesIO()
+            np.savez(contents, **draw())
+            write(file, contents.getvalue())
+
+    return compare
 
 
 @pytest.fixture(scope="session")
 def on_device(request):
     """on_device(job) calls job(device) where that device can draw, and hands on what it returns or raises."""
     if request.config.getoption("--device") == "blender":
-        yield _inside_a_blender_render
+        yield _on_blenders_device()
     else:
         from splat_addon.rendering import open_device
 
@@ -56,8 +78,21 @@ def render(on_device):
     return lambda *arguments, **options: on_device(lambda device: Renderer(device).render(*arguments, **options))
 
 
+def _on_blenders_device():
+    """From Blender 5.2 on there is a graphics context for the asking; before, only inside an engine's render()."""
+    import bpy  # noqa: F401  in a wheel, `gpu` is there after it
+    import gpu
+
+    from splat_addon.rendering import open_device
+
+    if not hasattr(gpu, "init"):
+        return _inside_a_blender_render
+    gpu.init()
+    device = open_device("blender")
+    return lambda job: job(device)
+
+
 def _inside_a_blender_render(job):
-    """Blender has a graphics context in background mode only inside an engine's render()."""
     import bpy
 
     from splat_addon.rendering import open_device

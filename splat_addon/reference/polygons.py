@@ -19,8 +19,8 @@ from .textures import point_colors
 LEAST_FRONT = 0.02
 SAME_SURFACE = 0.7
 
-#: Pairs of a ray and a triangle that are met at once.
-CHUNK_PAIRS = 2_000_000
+#: Pairs of a ray and a triangle that are looked at at once: what they need then stays in a processor's cache.
+CHUNK_PAIRS = 50_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,27 +63,43 @@ def eye_corners(instance: PolygonInstance, camera: Camera) -> np.ndarray:
 def nearest_hits(corners: np.ndarray, origin: np.ndarray, direction: np.ndarray, near: float, far: float):
     """(n,) parameters along the rays, infinite for a miss, (n,) triangles, (n, 3) shares of their corners.
 
-    Moeller, Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
+    Moeller, Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997, for the pairs that may meet.
     """
     n = len(direction)
     depth, triangle, shares = np.full(n, np.inf), np.zeros(n, int), np.zeros((n, 3))
     a, along, beside = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     for part in np.array_split(np.arange(n), max(n * len(corners) // CHUNK_PAIRS, 1)):
-        ray, start = direction[part][:, None], origin[part][:, None] - a
+        rows, met = _may_meet(a, along, beside, origin[part], direction[part])
+        rays = part[rows]
+        ray, start = direction[rays], origin[rays] - a[met]
         with np.errstate(divide="ignore", invalid="ignore"):
-            p, q = np.cross(ray, beside), np.cross(start, along)
-            scale = 1 / np.einsum("rtk,tk->rt", p, along)
-            u, v = (
-                np.einsum("rtk,rtk->rt", start, p) * scale,
-                np.einsum("rtk,rtk->rt", np.broadcast_to(ray, q.shape), q) * scale,
-            )
-            t = np.einsum("rtk,tk->rt", q, beside) * scale
-            t = np.where((u >= 0) & (v >= 0) & (u + v <= 1) & (t >= near) & (t <= far), t, np.inf)
-        first = t.argmin(axis=1)
-        rows = np.arange(len(part))
-        depth[part], triangle[part] = t[rows, first], first
-        shares[part] = np.stack([1 - u - v, u, v], axis=2)[rows, first]
+            p, q = np.cross(ray, beside[met]), np.cross(start, along[met])
+            scale = 1 / np.einsum("mk,mk->m", p, along[met])
+            u, v = np.einsum("mk,mk->m", start, p) * scale, np.einsum("mk,mk->m", ray, q) * scale
+            t = np.einsum("mk,mk->m", q, beside[met]) * scale
+            hit = np.flatnonzero((u >= 0) & (v >= 0) & (u + v <= 1) & (t >= near) & (t <= far))
+        np.minimum.at(depth, rays[hit], t[hit])
+        # Of triangles at one depth the first is taken: it is written last.
+        nearest = hit[t[hit] == depth[rays[hit]]][::-1]
+        triangle[rays[nearest]] = met[nearest]
+        shares[rays[nearest]] = np.stack([1 - u - v, u, v], axis=1)[nearest]
     return depth, triangle, shares
+
+
+def _may_meet(a, along, beside, origin, direction) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of rays and of triangles whose lines and planes meet inside the triangle, or within rounding of its rim.
+
+    Each side of the triangle is linear in the ray's direction and moment (its Pluecker coordinates), so all pairs are
+    three products of matrices.
+    """
+    line = np.concatenate([direction, np.cross(origin, direction)], axis=1)
+    facing = -direction @ np.cross(along, beside).T
+    side = np.sign(facing)
+    u = line @ np.concatenate([np.cross(a, beside), beside], axis=1).T * side
+    v = line @ np.concatenate([np.cross(along, a), -along], axis=1).T * side
+    reach = max(np.abs(corners).max(initial=0.0) for corners in (along, beside))
+    slack = 1e-9 * np.abs(line).max(initial=0.0) * max(np.abs(a).max(initial=0.0), 1.0) * reach
+    return np.nonzero((u >= -slack) & (v >= -slack) & (u + v <= side * facing + slack))
 
 
 def _take(instance, camera, corners, rays, triangle, shares, direction, found: Hits):

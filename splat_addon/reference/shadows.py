@@ -16,7 +16,7 @@ from .polygons import are_lit
 from .splats import Splats, eye_splats
 
 #: Pairs of a ray and a splat that are met at once.
-CHUNK_PAIRS = 2_000_000
+CHUNK_PAIRS = 50_000
 
 #: Places on a lamp that soft shadows are averaged over.
 LAMP_POINTS = 25

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stays on a device between frames: surfels, pipelines and the textures that passes write."""
+"""What a renderer keeps on its device between frames: surfels and the textures that passes write."""
 
 from __future__ import annotations
 
@@ -45,7 +45,6 @@ class Resources:
         self._constants = {}
         self._surfel_uvs = WeakKeyDictionary()
         self._atlases = {}
-        self._pipelines = {}
         self.textures = {}
 
     def surfels(self, surfels: Surfels, storage: Storage) -> StoredSurfels:
@@ -138,13 +137,11 @@ class Resources:
         self.textures = {key: texture for key, texture in self.textures.items() if key in wanted}
 
     def pipeline(self, description: PipelineDescription) -> Pipeline:
-        """Compiled when it is first asked for."""
-        if description not in self._pipelines:
-            self._pipelines[description] = self.device.pipeline(description)
-        return self._pipelines[description]
+        """The device's own, which every renderer shares."""
+        return self.device.pipeline(description)
 
     def release(self) -> None:
-        """Let go of everything on the device."""
+        """Let go of everything on the device but its programs."""
         self._surfels.clear()
         self._polygons.clear()
         self._polygon_uvs.clear()
@@ -153,7 +150,6 @@ class Resources:
         self._constants.clear()
         self._surfel_uvs.clear()
         self._atlases.clear()
-        self._pipelines.clear()
         self.textures.clear()
 
 

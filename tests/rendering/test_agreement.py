@@ -224,28 +224,32 @@ CASES = [
 
 
 @pytest.mark.parametrize(("name", "method", "options"), CASES)
-def test_picture_is_the_same_on_every_device(name, method, options, render, pictures, request):
-    made = (SCENES | HYBRID | TEXTURED | BLURRED | TRANSPARENT | ALL_AROUND)[name]()
-    frame = render(*made, Settings(method=method, supersampling=1, **options))
+def test_picture_is_the_same_on_every_device(name, method, options, render, on_both_devices):
+    def draw():
+        made = (SCENES | HYBRID | TEXTURED | BLURRED | TRANSPARENT | ALL_AROUND)[name]()
+        frame = render(*made, Settings(method=method, supersampling=1, **options))
+        return {
+            **{array: getattr(frame, array) for array in ("color", "depth", "normal", "coverage")},
+            "layers": np.array(frame.stats["layers"]),
+        }
+
+    def hold(here, standalone):
+        is_rough, has_layers = options.get("accumulation") == "float16", here["layers"] > 0
+        tolerance = FLOAT16_TOLERANCE if is_rough else TOLERANCE
+        samples = SURFACES if has_layers else 1  # each of them may tie
+        filters = get_method(method).filters_silhouettes
+        hit = (here["depth"] < EMPTY_DEPTH) & (standalone["depth"] < EMPTY_DEPTH)
+        brightness = np.maximum(standalone["color"], 1) if is_rough else 1
+        apart = ties(here["color"] / brightness, standalone["color"] / brightness, tolerance)
+        assert_few(spots(apart) if filters else apart, samples)
+        assert_few(ties(here["normal"], standalone["normal"], max(tolerance, NORMAL_TOLERANCE)), samples)
+        # what layers hide is a product of roundings, and a filter's share a sum of them
+        apart = TOLERANCE if has_layers else ROUNDING if filters else 0
+        assert_few(np.abs(here["coverage"] - standalone["coverage"]) > apart, samples)
+        assert_few(hit & (np.abs(here["depth"] - standalone["depth"]) > TOLERANCE), samples)
+
     named = (value if isinstance(value, str) else key for key, value in options.items())
-    path = pictures / f"{'-'.join((name, method, *named))}.npz"
-    tolerance = FLOAT16_TOLERANCE if options.get("accumulation") == "float16" else TOLERANCE
-    if request.config.getoption("--device") == "standalone":
-        np.savez(path, color=frame.color, depth=frame.depth, normal=frame.normal, coverage=frame.coverage)
-        return
-    assert path.exists(), f"{path} is missing: run the tests with --device standalone first (scripts/test.py does)"
-    standalone = np.load(path)
-    layers = SURFACES if frame.stats["layers"] else 1  # each of them may tie
-    filters = get_method(method).filters_silhouettes
-    hit = (frame.depth < EMPTY_DEPTH) & (standalone["depth"] < EMPTY_DEPTH)
-    brightness = np.maximum(standalone["color"], 1) if tolerance == FLOAT16_TOLERANCE else 1
-    apart = ties(frame.color / brightness, standalone["color"] / brightness, tolerance)
-    assert_few(spots(apart) if filters else apart, samples=layers)
-    assert_few(ties(frame.normal, standalone["normal"], max(tolerance, NORMAL_TOLERANCE)), samples=layers)
-    # what layers hide is a product of roundings, and a filter's share a sum of them
-    apart = TOLERANCE if frame.stats["layers"] else ROUNDING if filters else 0
-    assert_few(np.abs(frame.coverage - standalone["coverage"]) > apart, samples=layers)
-    assert_few(hit & (np.abs(frame.depth - standalone["depth"]) > TOLERANCE), samples=layers)
+    on_both_devices("-".join((name, method, *named)), draw, hold)
 
 
 @pytest.mark.parametrize("name", [name for name in SCENES if name != "shadows"])  # tests/rendering/test_shadows.py

@@ -278,16 +278,15 @@ def test_shares_of_one_key_are_added_up():
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_they_are_the_same_on_every_device(method, render, pictures, request):
-    frame = render(three(), CAMERA, settings(method=method))
-    arrays = {name: getattr(frame, name) for name in ("object_index", "material_index")}
-    arrays["ranks"] = frame.cryptomatte.ranks(4)[..., 1]
-    path = pictures / f"identity-{method}.npz"
-    if request.config.getoption("--device") == "standalone":
-        np.savez(path, **arrays)
-        return
-    assert path.exists(), f"{path} is missing: run the tests with --device standalone first (scripts/test.py does)"
-    standalone = np.load(path)
-    for name, values in arrays.items():
-        different = np.abs(values - standalone[name]).reshape(SIZE[0] * SIZE[1], -1).max(axis=1) > 1e-4
-        assert np.count_nonzero(different) <= (9 if name == "ranks" else 1), name
+def test_they_are_the_same_on_every_device(method, render, on_both_devices):
+    def draw():
+        frame = render(three(), CAMERA, settings(method=method))
+        indices = {name: getattr(frame, name) for name in ("object_index", "material_index")}
+        return {**indices, "ranks": frame.cryptomatte.ranks(4)[..., 1]}
+
+    def hold(here, standalone):
+        for name, values in here.items():
+            different = np.abs(values - standalone[name]).reshape(SIZE[0] * SIZE[1], -1).max(axis=1) > 1e-4
+            assert np.count_nonzero(different) <= (9 if name == "ranks" else 1), name
+
+    on_both_devices(f"identity-{method}", draw, hold)

@@ -251,17 +251,16 @@ def test_of_nothing_all_is_empty(method, render):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_they_are_the_same_on_every_device(method, render, pictures, request):
-    scene, camera = glowing()
-    frame = render(scene, camera, outputs(method=method))
-    path = pictures / f"outputs-{method}.npz"
-    if request.config.getoption("--device") == "standalone":
-        np.savez(path, **{name: getattr(frame, name) for name in OUTPUTS})
-        return
-    assert path.exists(), f"{path} is missing: run the tests with --device standalone first (scripts/test.py does)"
-    standalone = np.load(path)
-    for name in OUTPUTS[4:]:
-        values, others = (array.reshape(64 * 64, -1) for array in (getattr(frame, name), standalone[name]))
-        # a tie of a splat's rim is in all pixels that a filter takes it to
-        allowed = 4 if method == "mip" else 1
-        assert np.count_nonzero(np.abs(values - others).max(axis=1) > 1e-4) <= allowed, name
+def test_they_are_the_same_on_every_device(method, render, on_both_devices):
+    def draw():
+        frame = render(*glowing(), outputs(method=method))
+        return {name: getattr(frame, name) for name in OUTPUTS}
+
+    def hold(here, standalone):
+        for name in OUTPUTS[4:]:
+            values, others = (arrays[name].reshape(64 * 64, -1) for arrays in (here, standalone))
+            # a tie of a splat's rim is in all pixels that a filter takes it to
+            allowed = 4 if method == "mip" else 1
+            assert np.count_nonzero(np.abs(values - others).max(axis=1) > 1e-4) <= allowed, name
+
+    on_both_devices(f"outputs-{method}", draw, hold)

@@ -149,18 +149,19 @@ def test_a_mirrored_sheared_object_keeps_its_texture(method, render):
     assert psnr(render(scene, camera, settings).color, exact.color) > 35
 
 
-def test_a_scene_without_textures_has_nothing_of_them(on_device):
+def test_a_scene_without_textures_has_nothing_of_them(on_device, monkeypatch):
     def textures_and_pipelines(device):
-        renderer = Renderer(device)
+        renderer, names = Renderer(device), []
+        ask = renderer.resources.pipeline
+        monkeypatch.setattr(renderer.resources, "pipeline", lambda d: names.append(d.name) or ask(d))
         scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
         (instance,) = scene.surfels
         plain = replace(instance, textures=())
         stats = renderer.render(Scene((plain,)), camera, Settings(method="quad", supersampling=2)).stats
-        names = [description.name for description in renderer.resources._pipelines]
         return names, len(renderer.resources._atlases), len(renderer.resources._surfel_uvs), str(stats["plan"])
 
     names, atlases, uvs, plan = on_device(textures_and_pipelines)
-    assert "textured_attributes" not in names and not atlases and not uvs and "textures" not in plan
+    assert "attributes" in names and "textured_attributes" not in names and not atlases and not uvs and "textures" not in plan
 
 
 def test_an_atlas_leaves_with_the_last_frame_that_uses_it(on_device):

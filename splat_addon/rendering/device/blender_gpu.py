@@ -7,9 +7,11 @@ drawn (Vulkan then crashes), and its state leaks into Blender's own drawing.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
-from .interface import FORMATS, PipelineDescription
+from .interface import FORMATS, PROGRAMS, PipelineDescription
 
 _FORMAT_NAMES = {"DEPTH32F": "DEPTH_COMPONENT32F"}
 _BLEND_NAMES = {"none": "NONE", "add": "ADDITIVE_PREMULT"}
@@ -37,6 +39,7 @@ class BlenderDevice:
                 "Blender has no graphics context here: in background mode it has one only inside a render."
             ) from error
         self._gpu = gpu
+        self.pipeline = _shared_pipeline
         self._in_flight = []
         self._uniforms = {}
         self._triangles = (0, None)
@@ -49,9 +52,6 @@ class BlenderDevice:
 
     def target(self, colors, depth=None):
         return _Target(self._gpu, colors, depth)
-
-    def pipeline(self, description):
-        return _Pipeline(self._gpu, description)
 
     def draw_triangles(self, pipeline, target, triangles, blocks, textures, viewport=None):
         if not triangles:
@@ -188,6 +188,14 @@ class _Pipeline:
             raise RuntimeError(
                 f"The shader of pipeline {description.name} does not compile ({error}); the driver's log is on stderr."
             ) from error
+
+
+@lru_cache(PROGRAMS)
+def _shared_pipeline(description: PipelineDescription) -> _Pipeline:
+    """Blender's contexts share programs, so every device of the process does, and every render."""
+    import gpu
+
+    return _Pipeline(gpu, description)
 
 
 def _batch(gpu, triangles):

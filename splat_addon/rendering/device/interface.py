@@ -17,6 +17,9 @@ import numpy as np
 #: format -> channels; RGBA16 holds 0 to 1 in multiples of 1 / 65535
 FORMATS = {"RGBA32F": 4, "RGBA16F": 4, "RGBA16": 4, "RG32F": 2, "R32F": 1, "DEPTH32F": 1}
 
+#: Programs that a device keeps: some twenty make a picture, and a setting that is animated may make new ones each frame.
+PROGRAMS = 512
+
 #: blend mode -> what happens to a fragment
 BLENDS = ("none", "add")
 
@@ -93,7 +96,11 @@ class Device(Protocol):
         """Colour slots in order, and a depth texture. Make one per frame: framebuffers belong to one context."""
 
     def pipeline(self, description: PipelineDescription) -> Pipeline:
-        """Compile and link. Raises RuntimeError with the pipeline's name where the driver refuses."""
+        """Compiled and linked when it is first asked for, and shared by all who ask for an equal description.
+
+        The last `PROGRAMS` that were asked for are kept. Raises RuntimeError with the pipeline's name where the driver
+        refuses.
+        """
 
     def draw_triangles(
         self, pipeline, target, triangles: int, blocks: list[np.ndarray], textures: list[Texture], viewport=None

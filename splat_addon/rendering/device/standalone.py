@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import ctypes
 import sys
+from functools import lru_cache, partial
 
 import numpy as np
 
-from .interface import FORMATS, PipelineDescription
+from .interface import FORMATS, PROGRAMS, PipelineDescription
 
 _GL_TEXTURE_2D_MULTISAMPLE, _GL_TEXTURE_SAMPLES, _GL_SAMPLE_SHADING = 0x9100, 0x9106, 0x8C36
 _GL_TEXTURE_2D, _GL_DEPTH_COMPONENT, _GL_FLOAT, _GL_DEPTH_COMPONENT32F = 0x0DE1, 0x1902, 0x1406, 0x8CAC
@@ -44,6 +45,7 @@ class StandaloneDevice:
         self.renderer = self._context.info["GL_RENDERER"]
         self.version = self._context.info["GL_VERSION"]
         self._uniforms = {}
+        self.pipeline = lru_cache(PROGRAMS)(partial(_Pipeline, self._context))
         self._set_sample_shading = _sample_shading(self._context)
         self.multisample_counts = tuple(n for n in (2, 4, 8) if _has_multisampling(self._context, n))
 
@@ -52,9 +54,6 @@ class StandaloneDevice:
 
     def target(self, colors, depth=None):
         return _Target(self._context, colors, depth)
-
-    def pipeline(self, description):
-        return _Pipeline(self._context, description)
 
     def draw_triangles(self, pipeline, target, triangles, blocks, textures, viewport=None):
         if triangles:

@@ -21,9 +21,31 @@ LEAVES_PICTURES = (
     "tests/rendering/test_outputs.py",
 )
 
+#: What tells a developer within a minute whether a change broke something: the data, a picture of each kind on both
+#: devices, and Blender's operators.
+QUICK = (
+    "tests/test_architecture.py",
+    "tests/test_optional_fields.py",
+    "tests/scripts/test_form.py",
+    "tests/interchange",
+    "tests/reference",
+    "tests/sampling/test_scan_conversion.py",
+    "tests/sampling/test_positions.py",
+    "tests/sampling/test_counts.py",
+    "tests/sampling/test_channels.py",
+    "tests/sampling/test_adaptive.py",
+    "tests/sampling/points",
+    "tests/rendering/test_agreement.py",
+    "tests/rendering/test_outputs.py",
+    "tests/rendering/test_plan_table.py",
+    "tests/blender/operators",
+    "tests/blender/engine/test_background.py",
+    "tests/blender/engine/test_materials.py",
+)
+
 #: pytest's options whose value is the next word and could look like a path.
 VALUE_OPTIONS = ("-k", "-m", "-p", "-c", "-o", "-n", "-W", "-r", "--deselect", "--ignore", "--rootdir", "--confcutdir",
-                 "--basetemp", "--junitxml", "--maxfail", "--durations", "--tb", "--timeout")  # fmt: skip
+                 "--basetemp", "--junitxml", "--maxfail", "--durations", "--tb", "--timeout", "--dist")  # fmt: skip
 
 
 def split_arguments(arguments: list[str]) -> tuple[list[str], list[str]]:
@@ -54,16 +76,6 @@ def paths_by_group(paths: list[str], only_pictures: bool = False) -> dict[str, l
     if groups[PLAIN] and not any(_is_within(path, ONLY_IN_A_WINDOW) for path in paths):
         groups[PLAIN] += _ignored()
     return groups
-
-
-def by_folder(paths: list[str]) -> list[list[str]]:
-    """The paths of each folder of tests: one process for all of them would compile more shaders than some drivers of
-    programs have room for.
-    """
-    folders = {}
-    for path in paths:
-        folders.setdefault(_file(path).relative_to(ROOT).parts[:2], []).append(path)
-    return list(folders.values())
 
 
 def _ignored() -> list[str]:

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What one process of a test run found and another need not find again: files that fall with the sources they rest on."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import shutil
+from collections.abc import Callable
+from functools import cache, wraps
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@cache
+def folder(name: str, *sources: str) -> Path:
+    """build/`name`/KEY, empty when a file that these patterns match, or numpy, is another one than the last time."""
+    digest = hashlib.sha256(np.__version__.encode())
+    for file in sorted(file for pattern in sources for file in ROOT.glob(pattern)):
+        digest.update(file.read_bytes())
+    every = ROOT / "build" / name
+    kept = every / digest.hexdigest()[:16]
+    kept.mkdir(parents=True, exist_ok=True)
+    for other in every.iterdir():
+        if other != kept:
+            shutil.rmtree(other, ignore_errors=True)
+    return kept
+
+
+def write(file: Path, contents: bytes) -> None:
+    """Whole or not at all: another process may read it at any time."""
+    written = file.with_name(f"{file.name}.{os.getpid()}")
+    written.write_bytes(contents)
+    os.replace(written, file)
+
+
+def remembered(function: Callable) -> Callable:
+    """`function`, of the product and pure, whose result for arguments of equal contents is read from a file."""
+
+    @wraps(function)
+    def result(*arguments, **options):
+        key = hashlib.sha256(pickle.dumps((function.__name__, arguments, options), protocol=5)).hexdigest()
+        file = folder("truths", "splat_addon/**/*.py") / key[:32]
+        if file.exists():
+            return pickle.loads(file.read_bytes())
+        found = function(*arguments, **options)
+        write(file, pickle.dumps(found, protocol=5))
+        return found
+
+    return result
