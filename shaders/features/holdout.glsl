@@ -12,7 +12,7 @@ void holdout_keep(inout Candidate c) {
 
 #part seen_range.frag
 void holdout_bound(ivec2 texel, float own) {
-  if (own < 1.0 && texelFetch(holes, ivec2(texel.x, ROWS * texel.y), 0).r <= own) seen_range.w = FARTHEST;
+  if (own < 1.0 && texelFetch(holes, ivec2(texel.x, ROWS * texel.y), 0).r <= own) seen_range.w = NOTHING_SEEN;
 }
 
 #part shading.frag

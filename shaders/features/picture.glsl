@@ -3,7 +3,7 @@
 //          the background's.
 
 #part resolve.frag
-#include "lib/world/background_{background}.glsl"
+#include "lib/background/{background}.glsl"
 
 void picture_show(inout Resolved sum, inout Seen s, Own own) {
   bool is_own = (s.stored >= own.range.x && s.stored <= own.range.y && s.is_smooth) || !(s.there.w > 0.0);

@@ -71,7 +71,7 @@ void textures_plane(int corner, float slot, vec3 first, vec3 outward, bool is_ba
 #part polygons.frag
 #include "lib/texture_lookup.glsl"
 
-const float LEAST_FACING = 1e-4;
+const float LEAST_PLANE_FACING = 1e-4;
 
 // What a sample along x and y moves the texture coordinates.
 mat2 uv_change(float depth) {
@@ -79,7 +79,7 @@ mat2 uv_change(float depth) {
   bool is_orthographic = view.is_parallel > 0.5;
   vec3 ray = is_orthographic ? vec3(0.0, 0.0, -1.0) : vec3(point, -1.0);
   float facing = dot(triangle_plane, ray);
-  facing = abs(facing) > LEAST_FACING ? facing : (facing < 0.0 ? -LEAST_FACING : LEAST_FACING);
+  facing = abs(facing) > LEAST_PLANE_FACING ? facing : (facing < 0.0 ? -LEAST_PLANE_FACING : LEAST_PLANE_FACING);
   float unit = is_orthographic ? 1.0 : depth;
   vec3 along_x = vec3(1.0, 0.0, 0.0) - ray * (triangle_plane.x / facing);
   vec3 along_y = vec3(0.0, 1.0, 0.0) - ray * (triangle_plane.y / facing);

@@ -2,7 +2,7 @@
 // Summary: the picture of a world without anything in it. Hook: `pixel` what else is written.
 
 #include "hosts/outputs.glsl"
-#include "lib/world/background_{background}.glsl"
+#include "lib/background/{background}.glsl"
 
 #parts
 void main() {

@@ -24,6 +24,6 @@ bool shows_back(vec3 normal, vec3 first) {
 
 #parts
 // What fragments are told of a corner beside its place. slot: of its material.
-void hand_on(int corner, float slot, vec3 eye) {
+void hand_on_corner(int corner, float slot, vec3 eye) {
   #hook attributes(corner, slot, eye)
 }

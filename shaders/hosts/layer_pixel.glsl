@@ -3,7 +3,7 @@
 
 #include "hosts/outputs.glsl"
 
-const float FARTHEST = 3.4e38;
+#include "lib/farthest.glsl"
 
 #parts
 void write_layer(vec4 color, vec3 normal, float nearest, bool is_seen_nearer, Outputs outputs, float share) {

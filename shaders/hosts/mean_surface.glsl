@@ -3,7 +3,7 @@
 
 #include "lib/samples/{samples}.glsl"
 #include "sum_formats/{sum_format}.glsl"
-#include "lib/sides.glsl"
+#include "lib/front_weight.glsl"
 
 struct MeanSurface {
   float weight;    // sum of the splats', 0 without splats
@@ -14,14 +14,6 @@ struct MeanSurface {
   vec3 normal;     // as the mean left it
   float depth;
 };
-
-// Weights of backs sum to less; the rim of a front weighs 0.135, or a quarter of it in the mean of four samples.
-const float LEAST_FRONT = 0.02;
-
-float front_weight(float sum) {
-  float weight = sum / WEIGHT_SCALE;
-  return weight < LEAST_FRONT ? weight / BACK_WEIGHT : weight;
-}
 
 #parts
 // tap: which of the texel's hardware samples, 0 where it has one.

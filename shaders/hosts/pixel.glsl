@@ -5,7 +5,7 @@
 #include "hosts/outputs.glsl"
 
 const float EMPTY_DEPTH = 1e10;
-const float FARTHEST = 3.4e38;
+#include "lib/farthest.glsl"
 
 #parts
 // normal: in the camera's view, and coverage. nearest: FARTHEST where nothing was hit.

@@ -11,7 +11,7 @@ void main() {
   vec3 outward = triangle_normal(gl_VertexID, first);
   bool is_hidden = draw.hides_backs > 0.5 && shows_back(outward, first);
   place_depth = vec3(0.0, 0.0, -eye.z);
-  hand_on(gl_VertexID, corner_texel(gl_VertexID / 3 * 3, 0).w, eye);
+  hand_on_corner(gl_VertexID, corner_texel(gl_VertexID / 3 * 3, 0).w, eye);
   vec4 moved = polygon_corner(eye, draw.epsilon);
   gl_Position = is_hidden ? NOWHERE : moved;
 }

@@ -13,7 +13,7 @@ void main() {
   depth_at = -eye.z;
   corner_normal = normalize(mat3(draw.normal_matrix) * corner_texel(gl_VertexID, 1).xyz) * (is_back ? -1.0 : 1.0);
   corner_color = corner_texel(gl_VertexID, 2).rgb;
-  hand_on(gl_VertexID, place.w, eye);
+  hand_on_corner(gl_VertexID, place.w, eye);
   #hook plane(gl_VertexID, place.w, first, outward, is_back)
   gl_Position = is_back && draw.hides_backs > 0.5 ? NOWHERE : view.projection * vec4(eye, 1.0);
 }

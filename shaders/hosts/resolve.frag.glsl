@@ -9,13 +9,13 @@
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/silhouette_filter.glsl"
 
-const float NEVER = 3.4e38;
+#include "lib/farthest.glsl"
 
 // The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes.
-const float FIRST_WEIGHT = exp(-0.5 * float(FILTER_REACH * FILTER_REACH) / FILTER_VARIANCE);
+const float FIRST_WEIGHT = exp(-0.5 * float(FILTER_REACH * FILTER_REACH) / SILHOUETTE_VARIANCE);
 const float STEP = 1.0 / float(ROWS);
-const float FIRST_RATIO = exp((float(FILTER_REACH) - 0.5 * STEP) * STEP / FILTER_VARIANCE);
-const float RATIO_RATIO = exp(-STEP * STEP / FILTER_VARIANCE);
+const float FIRST_RATIO = exp((float(FILTER_REACH) - 0.5 * STEP) * STEP / SILHOUETTE_VARIANCE);
+const float RATIO_RATIO = exp(-STEP * STEP / SILHOUETTE_VARIANCE);
 
 // Least cosine between normals of one surface: across a sharper crease surfels of either flank stick out of the other. No
 // angle of common solids: at 60 degrees, or 63, rounding would choose.
@@ -207,7 +207,7 @@ void main() {
   vec4 color_total = vec4(0.0);
   vec4 normal_total = vec4(0.0);
   Outputs outputs_total = NO_OUTPUTS;
-  float nearest = NEVER;
+  float nearest = FARTHEST;
   bool is_seen_nearer = false;
   for (int y = 0; y < SAMPLES; y++) {
     for (int x = 0; x < SAMPLES; x++) {

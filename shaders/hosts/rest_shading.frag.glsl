@@ -3,23 +3,20 @@
 // Summary: what is left behind the layers as one layer, premultiplied. Each surface lets the share 1 - opacity through, so
 //          that the logarithms add up. A surface is as many splats as weigh what those of the nearer layer do.
 
-#include "lib/sides.glsl"
 #include "sum_formats/{sum_format}.glsl"
+#include "lib/front_weight.glsl"
 
-const float LEAST_FRONT = 0.02;  // backs alone weigh less: BACK_WEIGHT of what fronts do
-
-float front_weight(ivec2 texel) {
-  float weight = texelFetch(depth_sum, texel, 0).y / WEIGHT_SCALE;
-  return weight < LEAST_FRONT ? weight / BACK_WEIGHT : weight;
+float front_weight_at(ivec2 texel) {
+  return front_weight(texelFetch(depth_sum, texel, 0).y);
 }
 
 // Of the splats of the layer before; at its rim, where it falls off, of what is beside that.
 float surface_weight(ivec2 texel) {
   ivec2 last = textureSize(depth_sum, 0) - 1;
-  float own = front_weight(texel), most = own;
+  float own = front_weight_at(texel), most = own;
   for (int y = -1; y <= 1; y++) {
     for (int x = -1; x <= 1; x++) {
-      most = max(most, front_weight(clamp(texel + ivec2(x, y), ivec2(0), last)));
+      most = max(most, front_weight_at(clamp(texel + ivec2(x, y), ivec2(0), last)));
     }
   }
   return own > 0.5 * most ? own : most;

@@ -7,7 +7,7 @@
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/silhouette_filter.glsl"
 
-const float FARTHEST = 3e38;
+const float NOTHING_SEEN = 3e38;
 
 #parts
 void main() {
@@ -17,6 +17,6 @@ void main() {
   #hook reach(texel, row)
   #hook write(texel, own)
   float depth = view_depth(own);
-  seen_range = vec4(row, own < 1.0 ? vec2(depth) : vec2(FARTHEST, -FARTHEST));
+  seen_range = vec4(row, own < 1.0 ? vec2(depth) : vec2(NOTHING_SEEN, -NOTHING_SEEN));
   #hook bound(texel, own)
 }

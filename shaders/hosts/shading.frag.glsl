@@ -5,7 +5,7 @@
 
 #include "shading_models/{shading}.glsl"
 #include "hosts/shaded_sample.glsl"
-#include "lib/world/background_{background}.glsl"
+#include "lib/background/{background}.glsl"
 #include "hosts/pixel.glsl"
 
 #parts

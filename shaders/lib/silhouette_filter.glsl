@@ -1,7 +1,7 @@
 // References: resolve.frag.glsl.
 // Summary: how wide the filter of silhouettes is.
 
-const float FILTER_VARIANCE = 0.5;  // of its Gaussian, in samples
+const float SILHOUETTE_VARIANCE = 0.5;  // of its Gaussian, in samples
 // Across, 1 2 1: the same variance from fewer columns.
 const int COLUMN_REACH = 1;
 const float COLUMN_RATIO = 0.5;

@@ -5,10 +5,10 @@
 //          reflects, under lights and the world. The twin of reference/shading.py.
 
 #include "lib/brdf.glsl"
-#include "lib/world/light_{world_light}.glsl"
+#include "lib/world_light/{world_light}.glsl"
 
 const float PI = 3.14159265358979;
-const float MIN_ROUGHNESS = 0.03;
+const float LEAST_ROUGHNESS = 0.03;
 const float MIN_COSINE = 1e-4;
 // A coat that hardly reflects at normal incidence is hardly there, and does not shine at grazing incidence as Schlick's
 // formula has it (Lagarde & de Rousiers, "Moving Frostbite to PBR", 2014, section 3.1.1).
@@ -32,7 +32,7 @@ vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
   Lobe lobe;
   lobe.normal = normal;
   lobe.view = view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
-  lobe.roughness = clamp(material.x, MIN_ROUGHNESS, 1.0);
+  lobe.roughness = clamp(material.x, LEAST_ROUGHNESS, 1.0);
   lobe.nv = max(dot(normal, lobe.view), MIN_COSINE);
   float metallic = clamp(material.y, 0.0, 1.0);
   lobe.f0 = mix(vec3(material.z), base, metallic);

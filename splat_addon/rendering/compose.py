@@ -33,6 +33,21 @@ _STAGES = {"vert": "vertex", "frag": "fragment"}
 _FUNCTION = re.compile(r"^\w+ (\w+)\(", re.MULTILINE)
 
 
+#: What is filled in for names in paths, where a frame chooses nothing else.
+DEFAULTS = {
+    "method": "mip",
+    "storage": "float32",
+    "shading": "principled",
+    "depth_format": "hardware",
+    "sum_format": "float32",
+    "samples": "each",
+    "background": "even",
+    "world_light": "even",
+    "shadow_taps": "even",
+    "polygon_share": "compared",
+}
+
+
 class _Section(NamedTuple):
     words: tuple[str, ...]
     text: str
@@ -144,3 +159,20 @@ def _read(path: str) -> _File:
 @cache
 def _exists(path: str) -> bool:
     return (FOLDER / path).exists()
+
+
+def main() -> None:
+    """Print a text with the origin of its parts."""
+    import argparse
+
+    parser = argparse.ArgumentParser(prog="python3 -m splat_addon.rendering.compose", description=main.__doc__)
+    parser.add_argument("host", choices=sorted(p.name[:-5] for p in (FOLDER / "hosts").glob("*.*.glsl")))
+    parser.add_argument("words", nargs="*", help="features that are present, and what else a pass says of itself")
+    parser.add_argument("--choose", action="append", default=[], metavar="NAME=FILE", help="what {NAME} in paths is")
+    options = parser.parse_args()
+    names = DEFAULTS | dict(choice.split("=", 1) for choice in options.choose)
+    print(compose(options.host, tuple(options.words), tuple(names.items()), origins=True))
+
+
+if __name__ == "__main__":
+    main()

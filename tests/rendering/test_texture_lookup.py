@@ -8,7 +8,7 @@ from splat_addon.images import EXTENSIONS, Image
 from splat_addon.rendering.atlas import make_atlas
 from splat_addon.rendering.device.interface import PipelineDescription
 from splat_addon.rendering.scene import SurfaceTexture
-from splat_addon.rendering.shaders import load
+from splat_addon.rendering.compose import FOLDER, compose
 from splat_addon.rendering.texture_lookup import texture_colors
 
 #: Of a pixel filtered with a Gaussian of sigma 0.7071, pixels squared.
@@ -58,15 +58,14 @@ def gpu_colors(device, atlas, slots, uvs, variances):
     data = np.stack([np.column_stack([uvs, slots, slots]), columns], axis=1).reshape(1, -1, 4).astype(np.float32)
     description = PipelineDescription(
         name="lookup",
-        vertex=load("fullscreen.vert.glsl"),
-        fragment=load("common/texture_lookup.glsl") + FRAGMENT,
-        block=("Unused", "unused", (("vec4", "nothing"),)),
+        vertex=compose("fullscreen.vert"),
+        fragment=(FOLDER / "lib/texture_lookup.glsl").read_text(encoding="utf-8") + FRAGMENT,
         samplers=("queries", "texture_atlas", "texture_table"),
         outputs=(("vec4", "color"),),
     )
     textures = [device.texture(d.shape[1::-1], "RGBA32F", d) for d in (data, atlas.texels, atlas.table)]
     target = device.target([device.texture((len(slots), 1), "RGBA32F")])
-    device.draw_fullscreen(device.pipeline(description), target, np.zeros(4), textures)
+    device.draw_fullscreen(device.pipeline(description), target, [], textures)
     colors = target.read(0)[0, :, :3]
     device.restore()
     return colors

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..compose import compose
+from ..compose import DEFAULTS, compose
 from ..device.interface import PipelineDescription
 from ..frame_plan import FramePlan, PlannedPass
 from ..methods import get_method
@@ -53,14 +53,13 @@ def pipeline(name, vertex: str, fragment: str, words: Iterable[str], frame: Fram
     chosen = set(words)
     ordered = (*(word for word in ORDER if word in chosen), *sorted(chosen - set(ORDER)))
     names = {
+        **DEFAULTS,
         "method": frame.method,
         "storage": frame.storage,
         "shading": frame.shading,
         "depth_format": "linear" if frame.linear_depth else "hardware",
         "sum_format": frame.accumulation,
         "samples": "mean" if frame.multisamples and not frame.sample_shading else "each",
-        "background": "even",
-        "world_light": "even",
         "shadow_taps": "masked" if frame.has("SCREEN_DOOR") else "even",
         "polygon_share": "known" if "seen_range" in frame.textures else "compared",
     }

@@ -2,7 +2,7 @@
 //             which makes the textures; Blender's Environment Texture (the equirectangular map).
 // Summary: the radiance that reaches a surface from all around, of a picture of the world.
 
-#include "lib/world/environment_image.glsl"
+#include "lib/environment_image.glsl"
 
 const int LEVEL_SIDE = 32;
 const int BLURRED_LEVELS = 5;

@@ -1,7 +1,7 @@
 // References: as environment_image.glsl.
 // Summary: what is seen where nothing is drawn: the picture of the world.
 
-#include "lib/world/environment_image.glsl"
+#include "lib/environment_image.glsl"
 
 // Premultiplied, of the sample at that texel.
 vec4 world_background(ivec2 texel) {

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shaders are hosts and features: composed, never switched, and no two parts can stand in one another's way."""
+
+import re
+from collections import defaultdict
+
+import pytest
+
+from splat_addon.rendering import compose as composing
+from splat_addon.rendering.compose import FOLDER, compose
+
+FILES = sorted(FOLDER.rglob("*.glsl"))
+#: Folders of which a text has one file.
+CHOICES = {"methods", "shading_models", "storage", "depth_formats", "sum_formats", "samples", "background", "world_light"}
+CHOICES |= {"shadow_taps", "polygon_share"}
+GLOBAL = re.compile(r"^(?:const )?(?:struct (\w+)|\w+ (\w+)(?:\[\d*\])?(?:\(| =|;))", re.MULTILINE)
+
+
+def global_names(text: str) -> set[str]:
+    """What a text defines outside of functions."""
+    plain = re.sub(r"//.*", "", text)
+    return {a or b for a, b in GLOBAL.findall(plain) if (a or b) != "main"}
+
+
+def home(file) -> str:
+    """The folder of a file of which a text has one; else the file."""
+    if file.stem == "homogeneous":  # two methods have this in common
+        return "methods"
+    return file.parent.name if file.parent.name in CHOICES else file.relative_to(FOLDER).as_posix()
+
+
+def test_no_text_is_switched_by_a_conditional():
+    for file in FILES:
+        switched = re.findall(r"^#(?:if|el|endif).*", file.read_text(encoding="utf-8"), re.MULTILINE)
+        assert not switched, f"{file}: {switched}"
+
+
+def test_global_names_are_unique():
+    """Of two files that a text may have together; those of which it has one may answer to the same names."""
+    homes = defaultdict(set)
+    for file in FILES:
+        for name in global_names(file.read_text(encoding="utf-8")):
+            homes[name].add(home(file))
+    shared = {name: sorted(places) for name, places in homes.items() if len(places) > 1}
+    assert not shared
+
+
+def test_a_function_for_a_hook_that_is_not_there_is_refused(tmp_path, monkeypatch):
+    write(tmp_path, "hosts/small.frag", "#parts\nvoid main() {\n  #hook color(c)\n}\n")
+    write(tmp_path, "features/tint", "#part small.frag\nvoid tint_colour(inout vec3 c) {}\n")
+    use(tmp_path, monkeypatch)
+    with pytest.raises(ValueError, match=r"tint_colour for the host small.frag, whose hooks are color"):
+        compose("small.frag", ("tint",))
+
+
+def test_features_act_at_hooks_in_their_order_and_where_all_words_hold(tmp_path, monkeypatch):
+    write(tmp_path, "hosts/small.frag", '#include "lib/{kind}.glsl"\n#parts\nvoid main() {\n  #hook add(c)\n}\n')
+    write(tmp_path, "lib/plain", "float plain;\n")
+    write(tmp_path, "features/a", "float shared;\n#part small.frag, b\nvoid a_add(vec3 c) {}\n")
+    write(tmp_path, "features/b", "#part small.frag\nvoid b_add(vec3 c) {}\nfloat helper(float x) {}\n")
+    use(tmp_path, monkeypatch)
+    kind = (("kind", "plain"),)
+    both = compose("small.frag", ("a", "b"), kind)
+    assert both.index("float plain") < both.index("float shared") < both.index("void a_add") < both.index("void b_add")
+    assert "  a_add(c);\n  b_add(c);\n}" in both
+    assert "  b_add(c);\n  a_add(c);\n}" in compose("small.frag", ("b", "a"), kind)
+    assert "shared" not in compose("small.frag", ("a",), kind)
+    assert "#" not in compose("small.frag", (), kind)
+
+
+def test_a_composed_text_says_where_its_parts_are_from():
+    text = compose("visibility.frag", ("object_id", "moved_back"), (("depth_format", "linear"),), origins=True)
+    opened, closed = (re.findall(rf"^// {mark} (.*)$", text, re.MULTILINE) for mark in (">>>", "<<<"))
+    assert sorted(opened) == sorted(closed) == [
+        "depth_formats/linear.glsl", "features/object_id.glsl", "hosts/visibility.frag.glsl",
+    ]  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_remembered():
+    yield
+    forget()
+
+
+def forget():
+    for remembered in (composing._read, composing._exists, compose):
+        remembered.cache_clear()
+
+
+def write(folder, name, text):
+    path = folder / f"{name}.glsl"
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+
+
+def use(folder, monkeypatch):
+    """Compose from that folder, remembering nothing of it."""
+    monkeypatch.setattr(composing, "FOLDER", folder)
+    forget()
