@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from splat_addon.rendering import FramePlan
-from splat_addon.rendering.frame_plan import TEXTURES
+from splat_addon.rendering.plan.frame_plan import TEXTURES
 
 #: format -> bytes a texel
 BYTES = {"RGBA32F": 16, "RGBA16F": 8, "RGBA16": 8, "RG32F": 8, "R32F": 4, "DEPTH32F": 4}

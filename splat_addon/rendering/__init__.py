@@ -9,13 +9,13 @@ from .cryptomatte import Cryptomatte
 from .device import open_device
 from .environment import Environment
 from .frame import EMPTY_DEPTH, Frame
-from .frame_plan import FramePlan
 from .lens import Lens
 from .light import Light
 from .lines import Lines
 from .matcap import Matcap
 from .panorama import EquidistantFisheye, Equirectangular, EquisolidFisheye, Panorama
 from .plan import plan
+from .plan.frame_plan import FramePlan
 from .polygons import Polygons, make_polygons
 from .presets import PRESETS, Preset
 from .refinement import Refinement

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from .cryptomatte import Cryptomatte, added_up, name_hash
-from .frame_plan import FILTER_MARGIN, FramePlan
+from .plan.frame_plan import FILTER_MARGIN, FramePlan
 from .scene import Placed, Scene
 
 INDICES = ("object_index", "material_index")

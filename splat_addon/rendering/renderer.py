@@ -12,15 +12,18 @@ import numpy as np
 from .accumulation import mean_frame, sample_blocks, sample_camera
 from .camera import Camera
 from .device import Device
-from .device.interface import Texture
+from .device.interface import Texture as DeviceTexture
+from .features import INPUTS
+from .features.accumulation import SUM
+from .features.outputs import HELD_BY, PIXELS, check_samplers
 from .frame import EMPTY_DEPTH, Frame
-from .frame_plan import HELD_BY, TEXTURES, FramePlan
 from .identity import Identified, nearer
 from .panorama import Panorama
 from .panorama_faces import panorama_frame
-from .passes import RUN
-from .passes.tile import TileContext, texture_key
 from .plan import plan
+from .plan.executor import Execution, TileContext, texture_key
+from .plan.frame_plan import FramePlan
+from .plan.graph import Texture
 from .resources import Resources
 from .scene import Scene
 from .settings import OUTPUTS, Settings, held_arrays
@@ -43,7 +46,7 @@ class Shown(NamedTuple):
     """Pixels to show. place: where. texture, part: what, in its pixels. scale: what they are multiplied by."""
 
     place: Tile
-    texture: Texture
+    texture: DeviceTexture
     part: Tile
     scale: float = 1.0
 
@@ -104,8 +107,8 @@ class Renderer:
         def draw(moved: Camera, fitted: Camera, settings: Settings, told: Progress | None) -> Frame:
             nonlocal maps
             frame_plan = plan(scene, moved, settings, shadow_camera=fitted)
-            are_shared_done = maps is not None and same_maps(maps, frame_plan.shadow_maps)
-            maps = frame_plan.shadow_maps
+            are_shared_done = maps is not None and same_maps(maps, frame_plan.facts["shadow_maps"])
+            maps = frame_plan.facts["shadow_maps"]
             return self._frame(scene, moved, settings, told, frame_plan, are_shared_done)
 
         for number in numbers:
@@ -123,11 +126,7 @@ class Renderer:
             tiles, identified = [], Identified(scene, camera.size, settings.outputs)
             for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress, are_shared_done):
                 tiles.append((tile, _read(target, frame_plan, settings.outputs)))
-                if seen := [
-                    self._read_whole(name, tile, frame_plan)
-                    for name in (frame_plan.numbers[0], "polygon_identity")
-                    if name in frame_plan.textures
-                ]:
+                if seen := [self._read_whole(t, tile, frame_plan) for t in frame_plan.facts.get("identity", ())]:
                     identified.add(tile, nearer(*seen), frame_plan)
         finally:
             self.device.restore()
@@ -138,7 +137,7 @@ class Renderer:
             arrays["position"] = _positions(camera, arrays["depth"])
         return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)
 
-    def _read_whole(self, texture: str, tile: Tile, frame_plan: FramePlan) -> np.ndarray:
+    def _read_whole(self, texture: Texture, tile: Tile, frame_plan: FramePlan) -> np.ndarray:
         """A texture of the plan, with the tile's margin."""
         key = texture_key(texture, _drawn(tile, frame_plan)[2:], frame_plan)
         return self.device.target([self.resources.texture(key)]).read(0)
@@ -154,7 +153,7 @@ class Renderer:
         try:
             for tile, _ in self._tiles(scene, camera, settings, frame_plan, self._new_stats(frame_plan), None):
                 self.device.restore()
-                texture = self.resources.texture(texture_key("combined", _drawn(tile, frame_plan)[2:], frame_plan))
+                texture = self.resources.texture(texture_key(PIXELS["combined"], _drawn(tile, frame_plan)[2:], frame_plan))
                 yield Shown(tile, texture, (frame_plan.margin, frame_plan.margin, *tile[2:]))
         finally:
             self.device.restore()
@@ -173,20 +172,20 @@ class Renderer:
         try:
             if is_first:
                 self.device.target([self._sum(moved.size)]).clear(color=0.0)
-            are_shared_done = maps is not None and same_maps(maps, frame_plan.shadow_maps)
+            are_shared_done = maps is not None and same_maps(maps, frame_plan.facts["shadow_maps"])
             stats = self._new_stats(frame_plan)
             for _ in self._tiles(scene, moved, settings, frame_plan, stats, None, are_shared_done):
                 pass
         finally:
             self.device.restore()
-        return frame_plan.shadow_maps
+        return frame_plan.facts["shadow_maps"]
 
     def shown_sum(self, size: tuple[int, int], samples: int) -> Shown:
         """The mean of the samples that were added."""
         return Shown((0, 0, *size), self._sum(size), (0, 0, *size), 1.0 / samples)
 
-    def _sum(self, size: tuple[int, int]) -> Texture:
-        return self.resources.texture(("sample_sum", *size, TEXTURES["sample_sum"][0], 0))
+    def _sum(self, size: tuple[int, int]) -> DeviceTexture:
+        return self.resources.texture((SUM.name, *size, SUM.format, 0))
 
     def release(self) -> None:
         """Let go of everything on the device."""
@@ -219,21 +218,30 @@ class Renderer:
     def _tiles(self, scene, camera, settings, frame_plan, stats, progress, are_shared_done=False):
         if not frame_plan.passes:
             return
+        check_samplers(frame_plan, self.device.max_samplers)
         sizes = {_drawn(tile, frame_plan)[2:] for tile in frame_plan.tiles}
         self.resources.forget_textures_but(
-            {texture_key(name, size, frame_plan) for name in frame_plan.textures for size in sizes}
+            {
+                texture_key(texture, size, frame_plan, name != texture.name)
+                for name, texture in frame_plan.filled.items()
+                for size in sizes
+            }
         )
         self.resources.forget_atlases_but({placed.textures for placed in scene.shown})
         casters = casting(scene)
-        shadow_views = tuple(look(casters, made.camera, settings.epsilon) for made in frame_plan.shadow_maps)
+        shadow_views = tuple(look(casters, made.camera, settings.epsilon) for made in frame_plan.facts["shadow_maps"])
         whole = None
         if len(frame_plan.tiles) > 1:
             drawn = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan))
             whole = clip_range(scene, drawn, settings.epsilon)
+        execution = Execution(are_shared_done, *self._watching(settings, frame_plan, stats, progress))
         for number, tile in enumerate(frame_plan.tiles):
+            stats["tile"] = number
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
             view = look(scene, tile_camera, settings.epsilon, whole)
-            context = TileContext(self.resources, frame_plan, scene, tile_camera, settings, view, shadow_views, tile)
+            context = TileContext(
+                self.resources, frame_plan, scene, tile_camera, settings, view, shadow_views, tile, INPUTS
+            )
             stats["splats"] += sum(len(p.instance.surfels) for p in view.placed)
             stats["polygons"] += sum(p.instance.polygons.triangles for p in view.polygons)
             stats["instances"] += len(view.placed) + len(view.polygons)
@@ -241,26 +249,29 @@ class Renderer:
             stats["instances_degenerate"] = view.degenerate
             stored = [self.resources.surfels(p.instance.surfels, get_storage(frame_plan.storage)) for p in view.placed]
             stats["surfels_coarse"] = max(stats["surfels_coarse"], sum(s.coarse for s in stored))
-            target, is_peeled = None, False
-            for step, planned in enumerate(frame_plan.passes):
-                if planned.is_shared and (number or are_shared_done):
-                    continue
-                if planned.layer and is_peeled:
-                    continue
-                done = (number + step / len(frame_plan.passes)) / len(frame_plan.tiles)
-                if progress and progress(done, planned.name) is False:
-                    raise RenderCancelled
-                started = perf_counter()
-                target = RUN[planned.name](context, planned)
-                if settings.profile:
-                    self.device.finish(target)
-                    elapsed = 1e3 * (perf_counter() - started)
-                    stats["passes"][planned.name] = stats["passes"].get(planned.name, 0.0) + elapsed
-                if "left" in planned.writes:
-                    is_peeled = not target.read(0).any()
-                if "peeled_next" in planned.writes:
-                    stats["layers"] = max(stats["layers"], planned.layer)
+            target = execution.run(frame_plan.steps, context)
+            stats["layers"] = execution.turns
             yield tile, target
+        del stats["tile"]
+
+    def _watching(self, settings, frame_plan, stats, progress):
+        """What is called before each pass and after it."""
+        started = 0.0
+
+        def told(p, step):
+            nonlocal started
+            done = (stats["tile"] + step / frame_plan.count) / len(frame_plan.tiles)
+            if progress and progress(done, p.name) is False:
+                raise RenderCancelled
+            started = perf_counter()
+
+        def done(p, target):
+            if settings.profile:
+                self.device.finish(target)
+                elapsed = 1e3 * (perf_counter() - started)
+                stats["passes"][p.name] = stats["passes"].get(p.name, 0.0) + elapsed
+
+        return told, done
 
 
 def _share(progress: Progress, turn: int, count: int) -> Progress:
@@ -299,7 +310,7 @@ def _read_arrays(outputs: tuple[str, ...]) -> tuple[str, ...]:
 def _read(target, frame_plan: FramePlan, outputs: tuple[str, ...]) -> dict[str, np.ndarray]:
     """The wanted arrays of one tile, without its margin."""
     kept = slice(frame_plan.margin, -frame_plan.margin or None)
-    names, held = _read_arrays(outputs), frame_plan.passes[-1].writes
+    names, held = _read_arrays(outputs), [texture.name for texture in frame_plan.passes[-1].colors]
     textures = {HELD_BY[name][0] for name in names}
     texels = {name: target.read(slot) for slot, name in enumerate(held) if name in textures}
     arrays = {}

@@ -99,8 +99,8 @@ def draw(file: Path, only: str) -> None:
         try:
             for array, values in pictures(renderer, *make()).items():
                 arrays[f"{name}/{array}"] = values
-        except (ValueError, RuntimeError) as error:
-            arrays[f"{name}/error"] = np.array(type(error).__name__ + ": " + str(error)[:160])
+        except Exception as error:
+            arrays[f"{name}/error"] = np.array(f"{type(error).__name__}: {str(error)[:160]}")
     np.savez_compressed(file, **arrays)
 
 

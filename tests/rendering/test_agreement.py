@@ -28,7 +28,7 @@ from splat_addon.rendering import (
     SurfaceTexture,
     look_at,
 )
-from splat_addon.rendering.frame_plan import FILTER_MARGIN
+from splat_addon.rendering.plan.frame_plan import FILTER_MARGIN
 from splat_addon.rendering.methods import METHODS, get_method
 from splat_addon.rendering.shading_models import SHADING_MODELS
 

@@ -9,7 +9,7 @@ import pytest
 from splat_addon.reference import scenes
 from splat_addon.reference.extremes import sheet
 from splat_addon.rendering import Camera, Instance, Renderer, Scene, Settings, look_at, renderer
-from splat_addon.rendering.frame_plan import CELL
+from splat_addon.rendering.plan.frame_plan import CELL
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.passes import RUN
 from splat_addon.rendering.view import look

@@ -34,6 +34,7 @@ class BlenderDevice:
             )
             self.renderer = gpu.platform.renderer_get()
             self.version = gpu.platform.version_get()
+            self.max_samplers = gpu.capabilities.max_textures_frag_get()
         except SystemError as error:
             raise RuntimeError(
                 "Blender has no graphics context here: in background mode it has one only inside a render."

@@ -78,7 +78,8 @@ class Pipeline(Protocol):
 
 class Device(Protocol):
     """kind: its name in `DEVICES`. backend: "OpenGL", "Vulkan" ... renderer, version: what the driver calls itself.
-    multisample_counts: the samples a texel that its textures can have beside one.
+    multisample_counts: the samples a texel that its textures can have beside one. max_samplers: textures that a shader
+        may read.
     """
 
     kind: str
@@ -86,6 +87,7 @@ class Device(Protocol):
     renderer: str
     version: str
     multisample_counts: tuple[int, ...]
+    max_samplers: int
 
     def texture(self, size: tuple[int, int], format: str, data: np.ndarray | None = None, samples: int = 0) -> Texture:
         """data: (h, w, channels) float32, row 0 first; without it the contents are undefined.

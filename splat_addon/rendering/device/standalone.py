@@ -44,6 +44,7 @@ class StandaloneDevice:
         self._context.gc_mode = "auto"
         self.renderer = self._context.info["GL_RENDERER"]
         self.version = self._context.info["GL_VERSION"]
+        self.max_samplers = self._context.info["GL_MAX_TEXTURE_IMAGE_UNITS"]
         self._uniforms = {}
         self.pipeline = lru_cache(PROGRAMS)(partial(_Pipeline, self._context))
         self._set_sample_shading = _sample_shading(self._context)

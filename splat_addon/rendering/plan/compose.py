@@ -12,7 +12,7 @@ called whose name begins with the feature's, or with one of the section's words,
 features' order. Other functions help them. Any file may have sections of its own in the same way. `#include "path"`
 takes a file once a text; {names} in a path are filled in.
 
-`python3 -m splat_addon.rendering.compose --help` prints the text of a pass with the origin of every part.
+`python3 -m splat_addon.rendering.plan.compose --help` prints the text of a pass with the origin of every part.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-FOLDER = Path(__file__).resolve().parents[2] / "shaders"
+FOLDER = Path(__file__).resolve().parents[3] / "shaders"
 
 _PART = re.compile(r"^#part (.+)\n", re.MULTILINE)
 _HOOK = re.compile(r"^( *)#hook (\w+)\((.*)\)\n", re.MULTILINE)
@@ -165,7 +165,7 @@ def main() -> None:
     """Print a text with the origin of its parts."""
     import argparse
 
-    parser = argparse.ArgumentParser(prog="python3 -m splat_addon.rendering.compose", description=main.__doc__)
+    parser = argparse.ArgumentParser(prog="python3 -m splat_addon.rendering.plan.compose", description=main.__doc__)
     parser.add_argument("host", choices=sorted(p.name[:-5] for p in (FOLDER / "hosts").glob("*.*.glsl")))
     parser.add_argument("words", nargs="*", help="features that are present, and what else a pass says of itself")
     parser.add_argument("--choose", action="append", default=[], metavar="NAME=FILE", help="what {NAME} in paths is")

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a frame may need, in order: of passes, and of what acts at one hook.
+
+Each module decides from a `Planning` whether the frame needs it, and says why not. It may have
+
+    passes(planning)       its passes, where the frame needs them
+    parts(planning, p)     its parts in the passes of others, and in its own
+    VALUES                 name -> (type, value for a tile) of what shaders are told in the frame's block
+    INPUTS                 sampler -> the texture for a tile that no pass writes
+    CONSTANTS              what Python and shaders both know by a name
+    NAMES                  its files in shaders/features, where they are not one of its own name
+"""
+
+from ..packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT
+from ..polygons import CORNERS_PER_ROW, TEXELS_PER_CORNER
+from . import (
+    accumulation,
+    depth_bounds,
+    depth_format,
+    edge_threshold,
+    gbuffer,
+    hiz,
+    holdout,
+    lighting,
+    lights,
+    lines,
+    materials,
+    object_id,
+    oit,
+    outputs,
+    polygons,
+    shadows,
+    silhouettes,
+    split,
+    straddling,
+    textures,
+    transparency,
+    transparent_shadows,
+    visibility,
+    world,
+)
+
+FEATURES = (
+    world,
+    depth_format,
+    straddling,
+    split,
+    shadows,
+    visibility,
+    object_id,
+    transparency,
+    transparent_shadows,
+    holdout,
+    silhouettes,
+    depth_bounds,
+    hiz,
+    materials,
+    lights,
+    textures,
+    gbuffer,
+    oit,
+    polygons,
+    outputs,
+    lines,
+    edge_threshold,
+    lighting,
+    accumulation,
+)
+
+
+def name_of(feature) -> str:
+    return feature.__name__.rpartition(".")[2]
+
+
+#: word -> its place among those that act at one hook
+ORDER = {name: number for number, name in enumerate(n for f in FEATURES for n in getattr(f, "NAMES", (name_of(f),)))}
+
+
+def _joined(attribute: str) -> dict:
+    """What the features have in a table, together."""
+    return {name: value for feature in FEATURES for name, value in getattr(feature, attribute, {}).items()}
+
+
+VALUES = _joined("VALUES")
+INPUTS = _joined("INPUTS")
+CONSTANTS = _joined("CONSTANTS") | {
+    "SPLATS_PER_ROW": SPLATS_PER_ROW,
+    "TEXELS_PER_SPLAT": TEXELS_PER_SPLAT,
+    "CORNERS_PER_ROW": CORNERS_PER_ROW,
+    "TEXELS_PER_CORNER": TEXELS_PER_CORNER,
+}

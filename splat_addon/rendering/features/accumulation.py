@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Adds a sample's picture to the sum of those before (Haeberli & Akeley 1990): each tile to its part of the whole."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part, Pass, Texture
+from . import outputs
+
+
+def _corner(tile):
+    """Where the pixel 0, 0 of a tile with its margin lies in the whole picture."""
+    return tile.rectangle[0] - tile.plan.margin, tile.rectangle[1] - tile.plan.margin
+
+
+VALUES = {"corner": ("vec2", _corner)}
+SUM = Texture("sample_sum", per="picture")
+
+
+def passes(planning):
+    if planning.is_added_up:
+        own = Part("accumulation", reads=(outputs.PIXELS["combined"],), writes=(SUM,))
+        yield Pass("accumulate", "a view refines while it rests", "accumulate.frag", run, (own,),
+                   state={"blend": "add"}, adds=True)  # fmt: skip
+
+
+def run(tile, p: Pass):
+    """Add the tile, without its margin."""
+    return tile.fill(p, tile.rectangle)

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far each sample sees, for methods that work in the picture and compare depths themselves."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part, Pass, Texture
+from . import silhouettes, visibility
+
+BOUNDS = Texture("seen_range")
+
+
+def bounds(planning, reason: str, seen: Texture, kind: str = "opaque") -> Pass:
+    """The pass, of the depths that are seen; and the depths of samples, where visibility has more rows than they."""
+    rows = silhouettes.VISIBILITY_ROWS if seen.per == "row" else 1
+    own = Part(
+        "depth_bounds",
+        reads=(seen,),
+        writes=(BOUNDS, *((visibility.DEPTH,) if rows > 1 else ())),
+        called=((seen, "seen_depth"),),
+        constants=(("ROWS", rows),),
+        words=("writes_depth",) if rows > 1 else (),
+    )
+    state = dict.fromkeys(("depth_test", "depth_write", "fragment_depth"), rows > 1)
+    return Pass("seen_range", reason, "seen_range.frag", lambda tile, p: tile.fill(p), (own,), kind, state)
+
+
+def passes(planning):
+    method = planning.method
+    if not planning.shown or method.works_in == "sprites":
+        return
+    if method.works_in == "space":
+        planning.skip(BOUNDS.name, f"{method.name} is tested by the hardware, with the depth of visibility")
+        return
+    compared = f"{method.name} computes its depths, which are compared in the shader"
+    if planning.find(silhouettes.have_rows):
+        compared += "; between samples, silhouettes are looked for alone"
+    yield bounds(planning, compared, visibility.nearest_depth(planning))
+
+
+def parts(planning, p):
+    if planning.method.works_in != "picture":
+        return
+    if p.host == "screen_space.frag" and p.kind in ("opaque", "layer"):
+        yield Part("depth_bounds", reads=(BOUNDS,))
+    if p.host in ("polygons.frag", "lines.frag"):
+        yield Part("depth_bounds", reads=(BOUNDS,))

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where splats' weights sum to less than a threshold, the sample fades (the view-independent paper, section 4.5)."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part
+from .drawing import LIT_HOSTS
+
+VALUES = {"edge_threshold": ("float", lambda tile: tile.settings.edge_threshold)}
+
+
+def passes(planning):
+    """None; it says whether there is one."""
+    if planning.shown:
+        threshold = planning.settings.edge_threshold
+        if threshold == 0:
+            planning.skip("edge threshold", "it is 0: whatever a splat reaches is covered")
+        elif planning.method.works_in != "space":
+            planning.skip("edge threshold", f"the weights of {planning.method.name} are smaller where it filters")
+        else:
+            planning.has("EDGE_THRESHOLD", f"pixels whose weights sum to less than {threshold:g} fade")
+    return ()
+
+
+def parts(planning, p):
+    if p.host in LIT_HOSTS and planning.settings.edge_threshold and planning.method.works_in == "space":
+        yield Part("edge_threshold")

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The attribute pass: what is visible adds its weighted attributes to their sums (Botsch et al. 2005, section 4)."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part, Pass, Texture
+from . import depth_format, visibility
+from .drawing import LIT_HOSTS, RASTERIZERS, draw_splats, drawn_by
+from .rasterizers import rasterized
+
+NAMES = ("gbuffer", "depth_in_normals", "depth_sum")
+VALUES = {
+    "color_scale": ("float", lambda tile: tile.color_scale),
+    "color_unit": ("float", lambda tile: 1 / tile.color_scale),
+}
+
+COLOR = Texture("color_sum", is_multisampled=True, is_sum=True)
+NORMAL = Texture("normal_sum", is_multisampled=True, is_sum=True)
+DEPTH_SUM = Texture("depth_sum", "RG32F", is_multisampled=True)
+SPRITE_DEPTH = Texture("seen_depth", "DEPTH32F")
+
+
+def depth_parts(planning, kind: str, **fields) -> Part:
+    """Depths are beside normals, or apart. fields: what is done with them."""
+    is_apart = kind == "layer" or planning.settings.accumulation == "float16"
+    name = "depth_sum" if is_apart else "depth_in_normals"
+    return Part(name, **{field: (*textures, DEPTH_SUM) if is_apart else textures for field, textures in fields.items()})
+
+
+def state(planning) -> dict:
+    """Of programs that add splats up."""
+    works_in, is_linear = planning.method.works_in, planning.find(depth_format.linear)[0]
+    settings, in_space = planning.settings, works_in == "space"
+    return {
+        "blend": "none" if works_in == "sprites" else "add",
+        "depth_test": works_in != "picture" or not is_linear,
+        "depth_write": works_in == "sprites",
+        "fragment_depth": in_space and is_linear,
+        "sample_shading": bool(in_space and settings.multisampling and settings.sample_shading),
+    }
+
+
+def attributes(planning, reason: str, tests: Texture | None, kind: str = "opaque") -> Pass:
+    """The pass, tested by the hardware with a depth."""
+    own = Part("gbuffer", writes=(COLOR,), tests=(tests,) if tests else ())
+    own_parts = own, *rasterized(planning), depth_parts(planning, kind, writes=(NORMAL,))
+    if planning.method.works_in == "sprites":
+        own_parts += (Part("gbuffer", writes=(SPRITE_DEPTH,)),)
+    host = f"{RASTERIZERS[planning.method.works_in]}.frag"
+    return Pass("attributes", reason, host, run, own_parts, kind, state(planning))
+
+
+def passes(planning):
+    if not planning.shown:
+        return
+    if planning.settings.accumulation != "float16":
+        planning.skip(DEPTH_SUM.name, "float32 sums of normals have room for depths")
+    if planning.method.works_in == "sprites":
+        yield attributes(planning, "the nearest splat wins", None)
+    else:
+        yield attributes(planning, _why(planning), visibility.DEPTH)
+
+
+def parts(planning, p):
+    if p.host in (*LIT_HOSTS, "lines.frag"):
+        yield depth_parts(planning, p.kind, reads=(COLOR, NORMAL))
+
+
+def _why(planning) -> str:
+    surfels = planning.scene.surfels
+    if not any(len(instance.surfels) for instance in surfels):
+        return "there are no splats: their sums stay empty"
+    textured = sum(instance.is_textured for instance in surfels)
+    looked_up = f"; {textured} of {len(surfels)} instances look textures up" if textured else ""
+    return f"overlapping splats blend by {planning.method.name}{looked_up}"
+
+
+def run(tile, p: Pass):
+    """Fill the sums; textured instances with programs that look colours up."""
+    target, vertex = tile.target(p), p.host.replace(".frag", ".vert")
+    target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
+    drawn = drawn_by(p, tile)
+    draw_splats(tile, p, target, [d for d in drawn if not d.instance.is_textured], vertex)
+    draw_splats(tile, p, target, [d for d in drawn if d.instance.is_textured], vertex, "textured")
+    return target

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far is seen in each cell of samples, which tells what splats are hidden before they are drawn.
+
+One level of a hierarchical z-buffer (Greene, Kass, Miller 1993).
+"""
+
+from __future__ import annotations
+
+from ..plan.graph import Part, Pass, Texture
+from . import depth_bounds
+
+#: Samples along each side of what it holds one value for.
+CELL = 4
+CONSTANTS = {"CELL": CELL}
+
+FARTHEST = Texture("coarse_depth", "R32F", "cell")
+
+
+def pays(planning) -> str:
+    """Why hidden splats are looked for, or nothing."""
+    if planning.method.works_in != "picture":
+        return ""
+    if not planning.method.culls_hidden:
+        planning.skip(FARTHEST.name, f"{planning.method.name} draws hidden splats too, as its paper does")
+        return ""
+    opaque = [i for i in planning.scene.surfels if len(i.surfels) and not i.is_transparent]
+    showing = sum(instance.shows_backs(planning.camera) for instance in opaque)
+    if not showing:
+        planning.skip(FARTHEST.name, "nothing opaque shows its backs, which most of what is hidden would be")
+        return ""
+    return f"{showing} of {len(opaque)} instances show backs: those behind all that is seen are not drawn"
+
+
+def passes(planning):
+    if planning.shown and (why := planning.find(pays)):
+        own = Part("hiz", reads=(depth_bounds.BOUNDS,), writes=(FARTHEST,))
+        yield Pass("coarse_depth", why, "coarse_depth.frag", run, (own,))
+
+
+def parts(planning, p):
+    if p.host == "screen_space.frag" and p.kind == "opaque" and planning.find(pays):
+        yield Part("hiz", reads=(FARTHEST,))
+
+
+def run(tile, p):
+    """Fill the texture."""
+    return tile.fill(p)

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects that cut holes: they have depths and nothing else."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..plan.graph import Part, Texture
+from . import silhouettes, visibility
+from .drawing import LIT_HOSTS
+
+DEPTH = Texture("holdout_depth", "DEPTH32F")
+ROW_DEPTH = Texture("row_holdout_depth", "DEPTH32F", "row")
+
+
+def _count(planning) -> int:
+    """0 where the nearest splat wins: there is no depth but its own."""
+    if planning.method.works_in == "sprites":
+        return 0
+    return sum(instance.is_holdout for instance in planning.shown)
+
+
+def _depth(planning) -> Texture:
+    return ROW_DEPTH if planning.find(silhouettes.have_rows) else DEPTH
+
+
+def passes(planning):
+    cutting = sum(instance.is_holdout for instance in planning.shown)
+    if cutting and not _count(planning):
+        planning.skip("holdout", f"of {planning.method.name} objects that cut holes are drawn as others are")
+    elif cutting:
+        planning.has("HOLDOUT", f"{cutting} of {len(planning.shown)} instances cut holes")
+    if cutting and planning.method.works_in == "picture":
+        own = visibility.own_parts(planning, _depth(planning))
+        why = "a filter brings what lies behind a hole before it"
+        yield replace(visibility.drawn("holdouts", why, own, planning, "holes"), run=run)
+
+
+def parts(planning, p):
+    if p.kind != "opaque" or not _count(planning):
+        return
+    if p.host == "seen_range.frag":
+        yield Part("holdout", reads=(_depth(planning),), called=((_depth(planning), "holes"),))
+    if p.host in LIT_HOSTS:
+        yield Part("holdout", reads=(visibility.DEPTH,))
+    if p.host in ("screen_space.frag", "resolve.frag"):
+        yield Part("holdout")
+
+
+def run(tile, p):
+    """Fill the depth texture: the visibility pass's where a hole is seen, to the last digit."""
+    kinds = {name: getattr(tile.view, name) for name in ("placed", "polygons")}
+    cutting = {name: tuple(d for d in placed if d.instance.is_holdout) for name, placed in kinds.items()}
+    return visibility.run(replace(tile, view=replace(tile.view, **cutting)), p)

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From sums to pixels: each sample is lit once, in one pass with the mean of the pixel's, or kept to be filtered."""
+
+from __future__ import annotations
+
+from ..brdf_table import brdf_texels
+from ..plan.graph import Part, Pass, Texture
+from . import depth_bounds, outputs, silhouettes, visibility
+from .drawing import LIT_HOSTS
+
+NAMES = ("lighting", "picture")
+VALUES = {
+    "toon_steps": ("float", lambda tile: tile.settings.toon_steps),
+    "toon_softness": ("float", lambda tile: tile.settings.toon_softness),
+}
+INPUTS = {
+    "matcap": lambda tile: tile.resources.kept(tile.settings.matcap, tile.settings.matcap.texels),
+    "brdf_table": lambda tile: tile.resources.constant(brdf_texels),
+}
+
+SHADED = Texture("shaded")
+SURFACE = Texture("surface")
+
+
+def _fill(tile, p: Pass):
+    return tile.fill(p)
+
+
+def _samples(planning) -> tuple[tuple[str, int], ...]:
+    settings = planning.settings
+    is_mean = settings.multisampling and not settings.sample_shading
+    taps = 1 if is_mean else settings.multisampling or 1
+    return ("SAMPLES", settings.supersampling), ("TAPS", taps), ("MEAN_OF", settings.multisampling)
+
+
+def deferred(planning, reason: str, kind: str = "opaque") -> Pass:
+    """Shades every sample and keeps it."""
+    own = Part("lighting", writes=(SHADED, SURFACE), constants=_samples(planning))
+    return Pass("sample_shading", reason, "sample_shading.frag", _fill, (own,), kind)
+
+
+def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque", state=None) -> Pass:
+    """Filters silhouettes."""
+    rows = silhouettes.VISIBILITY_ROWS if seen.per == "row" else 1
+    own = Part(
+        "lighting",
+        reads=(SHADED, SURFACE, seen, depth_bounds.BOUNDS),
+        writes=writes,
+        called=((seen, "seen_depth"),),
+        constants=(("SAMPLES", planning.settings.supersampling), ("ROWS", rows)),
+    )
+    return Pass("resolve", reason, "resolve.frag", _fill, (own,), kind, state or {}, adds=bool(state))
+
+
+def layer_pixels(planning) -> Pass:
+    """What a transparent layer adds to pixels."""
+    from . import transparency
+
+    writes, add = (transparency.COLOR, transparency.COLOR_DEPTH), {"blend": "add"}
+    if planning.method.filters_silhouettes:
+        return _filtered(planning, "nearer layers cover it", transparency.DEPTH, writes, "layer", add)
+    own = Part(
+        "lighting",
+        reads=(SHADED, SURFACE, transparency.DEPTH),
+        writes=writes,
+        constants=(("SAMPLES", planning.settings.supersampling),),
+    )
+    return Pass("layer", "nearer layers cover it", "layer.frag", _fill, (own,), "layer", add, adds=True)
+
+
+def passes(planning):
+    if not planning.shown:
+        return
+    once, pixels = f"{planning.model.name}, once a sample", outputs.pixel_textures(planning)
+    if planning.method.filters_silhouettes:
+        yield deferred(planning, once)
+        yield _filtered(planning, "silhouettes are filtered", visibility.nearest_depth(planning), pixels)
+    else:
+        own = Part("lighting", writes=pixels, constants=_samples(planning))
+        yield Pass("shading", once, "shading.frag", _fill, (own,))
+
+
+def parts(planning, p):
+    if p.host in (*LIT_HOSTS, "lit_splats.frag") and planning.model.tables:
+        yield Part("lighting", inputs=planning.model.tables)
+    if p.kind == "opaque" and p.host in ("sample_shading.frag", "resolve.frag"):
+        yield Part("picture")

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scene's lights: points and directions, or with a size; for all objects, or for some."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part, Texture
+from . import shadows
+from .drawing import LIT_HOSTS, SPLAT_HOSTS
+
+NAMES = ("lights", "light_links", "sized_lights")
+VALUES = {"light_count": ("float", lambda tile: len(tile.scene.lights))}
+INPUTS = {"lights": shadows.lights_texture}
+
+SETS = Texture("light_set_sum", is_multisampled=True, is_sum=True)
+
+
+def _are_linked(planning) -> bool:
+    return planning.model.is_lit and any(light.receivers is not None for light in planning.scene.lights)
+
+
+def passes(planning):
+    """None; it says what the frame has of lights."""
+    if not planning.shown:
+        return ()
+    if not planning.model.is_lit:
+        planning.skip("lights", f"{planning.model.name} shading does not look at lights")
+    elif not planning.scene.lights:
+        planning.skip("lights", "the scene has none")
+    if not _are_linked(planning):
+        planning.skip(SETS.name, "every light lights everything, or nothing is lit")
+    sized = sum(light.is_sized for light in planning.scene.lights)
+    if planning.model.is_lit and sized:
+        planning.has("SIZED_LIGHTS", f"{sized} of {len(planning.scene.lights)} lights have a size")
+    elif planning.model.is_lit and planning.scene.lights:
+        planning.skip("sized lights", "every light is a point or a direction")
+    return ()
+
+
+def parts(planning, p):
+    is_lit = planning.model.is_lit and planning.scene.lights
+    if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer") and _are_linked(planning):
+        yield Part("light_links", writes=(SETS,))
+    if p.host in LIT_HOSTS and is_lit:
+        yield Part("lights", inputs=("lights",))
+        if _are_linked(planning):
+            yield Part("light_links", reads=(SETS,))
+    if p.host == "lit_splats.frag" and is_lit:
+        yield Part("lights", inputs=("lights",))
+        if _are_linked(planning):
+            yield Part("light_links")
+    if p.host in (*LIT_HOSTS, "lit_splats.frag") and is_lit and any(one.is_sized for one in planning.scene.lights):
+        yield Part("sized_lights")

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lines: how much of each sample lies on a silhouette or a crease, before it is shaded."""
+
+from __future__ import annotations
+
+import math
+
+from ..lines import CREASE_REACH
+from ..plan.graph import Part, Pass, Texture
+from .drawing import LIT_HOSTS
+
+CONSTANTS = {"CREASE_REACH": CREASE_REACH}
+VALUES = {
+    "line_width": ("float", lambda tile: tile.settings.lines.width * tile.plan.samples),
+    "line_crease": ("float", lambda tile: math.cos(tile.settings.lines.crease_angle)),
+    "line_drop": ("float", lambda tile: tile.settings.lines.depth_threshold),
+    "line_color": ("vec4", lambda tile: (*tile.settings.lines.color, 0.0)),
+}
+COVERED = Texture("lines", "R32F")
+
+
+def passes(planning):
+    if not planning.shown:
+        return
+    settings = planning.settings
+    if settings.lines is None:
+        planning.skip("lines", "none are asked for")
+        return
+    own = Part(
+        "lines",
+        writes=(COVERED,),
+        constants=(("SAMPLES", settings.supersampling), ("MEAN_OF", settings.multisampling)),
+        choices=(("samples", "mean" if settings.multisampling else "each"),),
+    )
+    why = "silhouettes and creases are drawn before their samples are mixed"
+    yield Pass("lines", why, "lines.frag", lambda tile, p: tile.fill(p), (own,))
+
+
+def parts(planning, p):
+    if planning.settings.lines and p.host in LIT_HOSTS and p.kind == "opaque":
+        yield Part("lines", reads=(COVERED,))
+
+
+def margin(planning) -> int:
+    """Pixels that lines look at beside their own."""
+    return math.ceil(planning.settings.lines.reach) if planning.settings.lines else 0

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Roughness, metallic, reflectance and emission: one of all surfels, or sums over what differs."""
+
+from __future__ import annotations
+
+from ..packing import pack_materials, shared_emission, shared_material
+from ..plan.graph import Part, Texture
+from .drawing import LIT_HOSTS, SPLAT_HOSTS
+
+NAMES = ("materials", "emission")
+
+MATERIAL = Texture("material_sum", is_multisampled=True, is_sum=True)
+EMISSION = Texture("emission_sum", is_multisampled=True)
+
+
+def shared(planning):
+    """The material and the emission that all surfels share, or None of each."""
+    return shared_material(planning.shown), shared_emission(planning.shown)
+
+
+def _material(tile):
+    material = tile.plan.facts["material"]
+    return (*((0.0,) * 3 if material is None else pack_materials((material,))[0, 0, :3]), 0.0)
+
+
+VALUES = {
+    "material": ("vec4", _material),
+    "emission": ("vec4", lambda tile: (*(tile.plan.facts["emission"] or (0.0,) * 3), 0.0)),
+}
+
+
+def differ(planning) -> tuple[bool, bool]:
+    """Whether there are sums of materials, and of emissions."""
+    material, emission = planning.find(shared)
+    has = planning.model.has_material
+    return has and material is None, has and emission is None
+
+
+def passes(planning):
+    """None; it says what the frame has."""
+    material, emission = planning.facts["material"], planning.facts["emission"] = planning.find(shared)
+    if not planning.shown:
+        return ()
+    planning.facts["emissions_differ"] = differ(planning)[1]
+    has_material, glows = planning.model.has_material, emission is not None and any(emission)
+    blind = "" if has_material else f"{planning.model.name} shading does not look at materials"
+    if blind or material is not None:
+        planning.skip(MATERIAL.name, blind or "all surfels have one material")
+    if blind or emission is not None:
+        planning.skip(EMISSION.name, blind or "all surfels send out the same light" + ("" if glows else ", none"))
+    if has_material and glows:
+        planning.has("EMISSION", "all surfels send out the same light")
+    return ()
+
+
+def texels(planning):
+    """The constant that says how many texels a material has."""
+    return (("TEXELS_PER_MATERIAL", 2 if differ(planning)[1] else 1),)
+
+
+def parts(planning, p):
+    (has_materials, has_emissions), (_, emission) = differ(planning), planning.find(shared)
+    drawn = {"inputs": ("materials",), "constants": texels(planning)}
+    if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer"):
+        if has_materials:
+            yield Part("materials", writes=(MATERIAL,), varyings=(("flat", "vec3", "material"),), **drawn)
+        if has_emissions:
+            varyings = (("flat", "vec3", "emission"),)
+            yield Part("emission", ("gbuffer_emission",), writes=(EMISSION,), varyings=varyings, **drawn)
+    if p.host in LIT_HOSTS:
+        if has_materials:
+            yield Part("materials", reads=(MATERIAL,))
+        if has_emissions:
+            yield Part("emission", ("gbuffer_emission",), reads=(EMISSION,))
+    if p.host == "lit_splats.frag":
+        if has_materials:
+            yield Part("materials", **drawn)
+        if has_emissions:
+            yield Part("emission", ("gbuffer_emission",), **drawn)
+    if p.host in (*LIT_HOSTS, "lit_splats.frag") and planning.model.has_material and emission and any(emission):
+        yield Part("emission", ("shared_emission",))

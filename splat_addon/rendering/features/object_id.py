@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whose the samples are: a number that passes which find what is nearest leave beside its depth, and filters beyond it."""
+
+from __future__ import annotations
+
+from ..identity import NUMBERED
+from ..plan.graph import Part, Pass, Texture
+from . import silhouettes, visibility
+from .drawing import draw_splats, drawn_by
+from .rasterizers import rasterized
+
+IDENTITY = Texture("identity", "RG32F")
+ROW_IDENTITY = Texture("row_identity", "RG32F", "row")
+LAYER_IDENTITY = Texture("layer_identity", "RG32F")
+POLYGON_IDENTITY = Texture("polygon_identity", "RG32F")
+EDGE_DEPTH = Texture("rim_depth", "DEPTH32F")
+_VARYINGS = (("flat", "float", "number"),)
+
+
+def asked_for(planning) -> tuple[str, ...]:
+    """The outputs that need numbers."""
+    return tuple(name for name in NUMBERED if name in planning.settings.outputs)
+
+
+def read_back(planning) -> tuple[Texture, ...]:
+    """What outputs are made of: that of samples, and of polygons where they are apart."""
+    if not asked_for(planning) or not planning.shown:
+        return ()
+    first = ROW_IDENTITY if planning.find(silhouettes.have_rows) else IDENTITY
+    return (first, POLYGON_IDENTITY) if _polygons_apart(planning) else (first,)
+
+
+def _polygons_apart(planning) -> bool:
+    return bool(planning.scene.polygons) and planning.method.works_in == "sprites"
+
+
+def passes(planning):
+    """What finds whose a sample is that sees only what a filter spreads; where silhouettes are filtered, none does."""
+    if not planning.shown:
+        return
+    names, method = asked_for(planning), planning.method
+    planning.facts["identity"] = read_back(planning)
+    if not names:
+        planning.skip("identity", "no index or matte tells objects or materials apart")
+        return
+    if planning.settings.multisampling:
+        raise ValueError(
+            f"Hardware samples are not told apart by object: leave {', '.join(names)} out of the outputs, or set "
+            "multisampling to 0 and use supersampling."
+        )
+    if method.works_in == "picture" and not method.filters_silhouettes:
+        why = f"{method.name} spreads splats past what is visible, which is somebody's"
+        own = Part("object_id", ("rims",), (visibility.DEPTH,), writes=(IDENTITY, EDGE_DEPTH), varyings=_VARYINGS)
+        state = {"depth_test": True, "depth_write": True}
+        parts = own, *rasterized(planning)
+        yield Pass("rims", why, "screen_space.frag", run_edges, parts, "rims", state, adds=True)
+
+
+def parts(planning, p):
+    if not asked_for(planning):
+        return
+    if p.host == "visibility.frag" and p.kind in ("opaque", "layer"):
+        texture = LAYER_IDENTITY if p.kind == "layer" else IDENTITY
+        if p.kind == "opaque" and planning.find(silhouettes.have_rows):
+            texture = ROW_IDENTITY
+        reason = f"{', '.join(asked_for(planning))} tell whose it is" if p.kind == "opaque" else ""
+        called = ((texture, "identity"),)
+        yield Part("object_id", writes=(texture,), called=called, varyings=_VARYINGS, reason=reason)
+    if p.host == "point_sprite.frag":
+        yield Part("object_id", writes=(IDENTITY,), varyings=_VARYINGS)
+    if p.host == "polygons.frag" and _polygons_apart(planning):
+        yield Part("object_id", writes=(POLYGON_IDENTITY,), varyings=_VARYINGS)
+    if p.host == "seen_range.frag" and p.kind == "opaque" and planning.find(silhouettes.have_rows):
+        yield Part("object_id", reads=(ROW_IDENTITY,), writes=(IDENTITY,))
+    if p.host == "peel.frag":
+        yield Part("object_id", reads=(LAYER_IDENTITY,), updates=(IDENTITY,))
+
+
+def run_edges(tile, p: Pass):
+    """Fill what the visibility pass left empty of the numbers: of the footprints of splats the nearest wins."""
+    target = tile.target(p)
+    target.clear(depth=1.0)
+    draw_splats(tile, p, target, drawn_by(p, tile), "screen_space.vert")
+    return target

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The last transparent layer: all that is left, without an order, each splat lit by itself (Guennebaud et al. 2006)."""
+
+from __future__ import annotations
+
+from ..packing import SPLATS_PER_ROW, row_count
+from ..plan.graph import Part, Pass, Texture
+from . import gbuffer, lighting
+from .drawing import RASTERIZERS, draw_block, draw_splats, drawn_by, splat_textures, storage_samplers
+from .rasterizers import rasterized
+
+LIT = Texture("lit_splats", per="splat")
+ACCUM = Texture("rest_sum")
+WEIGHT = Texture("rest_weight", "RG32F")
+
+
+def lit_rows(scene) -> int:
+    """Of a texture of one texel a splat, for the largest of the transparent instances."""
+    return max(row_count(i.surfels) for i in scene.surfels if i.is_transparent)
+
+
+def passes_of_rest(planning) -> tuple[Pass, ...]:
+    """What is done where no layer was empty."""
+    from . import transparency
+
+    planning.facts["lit_rows"] = lit_rows(planning.scene)
+    samples = (("SAMPLES", planning.settings.supersampling),)
+    fill = lambda tile, p: tile.fill(p)  # noqa: E731
+    add = {"blend": "add"}
+    light = Part("oit", inputs=storage_samplers(planning.settings.storage), writes=(LIT,))
+    rest = Part("oit", ("rest",), (LIT,), writes=(ACCUM, WEIGHT)), *rasterized(planning)
+    state = gbuffer.state(planning) | {"depth_test": False}
+    host = f"{RASTERIZERS[planning.method.works_in]}.frag"
+    shade = Part("oit", reads=(ACCUM, WEIGHT, gbuffer.DEPTH_SUM), writes=(lighting.SHADED,))
+    put = Part("oit", reads=(lighting.SHADED, transparency.PEELED), writes=(transparency.COLOR,), constants=samples)
+    peel = Part("oit", reads=(lighting.SHADED,), updates=(transparency.PEELED,))
+    each = Pass("light_splats", "", "lit_splats.frag", run, (light,), "rest")
+    return (
+        Pass("rest", "all that is left, each splat lit by itself", host, run, rest, "rest", state, each=each),
+        Pass("rest_shading", "its weights tell how much it hides", "rest_shading.frag", fill, (shade,), "rest"),
+        Pass("rest_layer", "nearer layers cover it", "rest_layer.frag", fill, (put,), "rest", add, adds=True),
+        Pass("peel_rest", "it covers what is opaque", "peel_rest.frag", fill, (peel,), "rest"),
+    )
+
+
+def run(tile, p: Pass):
+    """Fill the sums, one instance after the other, whose splats are lit first: one fragment each, at the texel of its
+    number.
+    """
+    target, lit, light = tile.target(p), tile.target(p.each), None
+    target.clear(color=0.0)
+    for placed in drawn_by(p, tile):
+        light = light or tile.program(p.each)
+        textures = tile.textures(p.each, light, splat_textures(tile, placed.instance))
+        blocks = tile.blocks(light, draw_block(tile, placed, tile.settings.epsilon))
+        viewport = 0, 0, SPLATS_PER_ROW, row_count(placed.instance.surfels)
+        tile.resources.device.draw_triangles(light, lit, 1, blocks, textures, viewport)
+        draw_splats(tile, p, target, [placed], p.host.replace(".frag", ".vert"))
+    return target

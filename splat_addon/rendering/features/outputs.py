@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a frame's arrays are held by: their packing into textures of pixels, and the limits of attachments and samplers.
+
+Outputs beside colour, depth and normal go from lit samples to pixels in textures of one packing: of samples where
+silhouettes are filtered afterwards, of layers where something is transparent, of pixels at the end.
+"""
+
+from __future__ import annotations
+
+from ..plan.frame_plan import FramePlan
+from ..plan.graph import Part, Texture
+from .drawing import LIT_HOSTS
+
+NAMES = (
+    "overdraw", "weight_output", "shadow_output", "normal_coverage", "diffuse_color", "emission_output",
+    "shadow_overdraw",
+)  # fmt: skip
+
+#: Colour textures that a target may have: as many as Blender's.
+MAX_COLORS = 6
+#: array of a `Frame` -> the texture of pixels that holds it, and where in its last axis
+HELD_BY = {
+    "color": ("combined", slice(0, 4)),
+    "depth": ("depth", 0),
+    "normal": ("normal_coverage", slice(0, 3)),
+    "coverage": ("normal_coverage", 3),
+    "diffuse_color": ("diffuse_color", slice(0, 3)),
+    "emission": ("emission", slice(0, 3)),
+    "shadow": ("shadow_overdraw", slice(0, 3)),
+    "overdraw": ("shadow_overdraw", 3),
+}
+#: Textures that hand on what a sample is lit to -> the feature that fills them.
+_HANDED_ON = {"diffuse_color": "diffuse_color", "emission": "emission_output", "shadow_overdraw": "shadow_overdraw"}
+
+PIXELS = {
+    name: Texture(name, "R32F" if name == "depth" else "RGBA32F", "pixel")
+    for name in dict.fromkeys(texture for texture, _ in HELD_BY.values())
+}
+SAMPLES = {name: Texture(f"sample_{name}") for name in _HANDED_ON}
+LAYERS = {name: Texture(f"layers_{name}", per="pixel") for name in _HANDED_ON}
+LAYERS_NORMAL = Texture("layers_normal", per="pixel")
+OVERDRAW = Texture("overdraw_sum", "R32F", is_multisampled=True)
+
+#: Whoever an output is written for, functions know it by one name.
+CALLED = tuple((kind[name], f"out_{name}") for kind in (PIXELS, SAMPLES, LAYERS) for name in _HANDED_ON)
+
+
+def pixel_textures(planning) -> tuple[Texture, ...]:
+    """What the last pass writes, whatever else is asked for."""
+    return PIXELS["combined"], PIXELS["depth"]
+
+
+def wanted(planning) -> tuple[str, ...]:
+    """Names of all textures of pixels."""
+    asked_for = {HELD_BY[name][0] for name in planning.settings.outputs if name in HELD_BY}
+    return tuple(name for name in PIXELS if name in {"combined", "depth"} | asked_for)
+
+
+def _handed_on(planning, by_layers: bool = False) -> tuple[str, ...]:
+    """Of those, what samples hand on. Layers tell nothing of overdraw, which is of what is opaque."""
+    names = [name for name in wanted(planning) if name in _HANDED_ON]
+    if by_layers and "shadow" not in planning.settings.outputs:
+        names = [name for name in names if name != "shadow_overdraw"]
+    return tuple(names)
+
+
+def live(planning) -> tuple[Texture, ...]:
+    """What is read of a frame."""
+    return tuple(PIXELS[name] for name in wanted(planning))
+
+
+def counts_splats(planning) -> bool:
+    """Whether somebody asks how many splats a sample is the mean of."""
+    return "overdraw" in planning.settings.outputs or bool(planning.model.sums)
+
+
+def passes(planning):
+    """None; it says what is not asked for."""
+    if planning.shown or planning.scene.environment:
+        for name in PIXELS:
+            if name not in wanted(planning):
+                planning.skip(name, "nothing that it holds is asked for")
+    if not planning.shown:
+        return ()
+    model, names = planning.model, planning.settings.outputs
+    if not counts_splats(planning):
+        planning.skip(OVERDRAW.name, "nobody asks how many splats a sample is the mean of")
+    if model.has_material and "diffuse_color" in names:
+        planning.has("METALS", "of its diffuse colour a surface shows what is not metal")
+    if model.is_lit and planning.scene.lights and "shadow" in names:
+        planning.has("SHADOW_SHARE", "the share of the lights that arrives is asked for")
+    for feature, why in model.features:
+        planning.has(feature, why)
+    return ()
+
+
+def parts(planning, p):
+    model, in_layer = planning.model, p.kind == "layer"
+    is_counted = counts_splats(planning) and p.kind == "opaque"
+    if is_counted and p.host in ("object_space.frag", "screen_space.frag", "point_sprite.frag"):
+        yield Part("overdraw", writes=(OVERDRAW,))
+    if is_counted and p.host in LIT_HOSTS:
+        yield Part("overdraw", ("overdraw_model",) if model.sums else (), reads=(OVERDRAW,))
+    if p.host in LIT_HOSTS and model.features:
+        yield Part("weight_output")
+    if p.host in (*LIT_HOSTS, "lit_splats.frag"):
+        if model.is_lit and planning.scene.lights and "shadow" in planning.settings.outputs:
+            yield Part("shadow_output")
+    has_layers = p.host in ("shading.frag", "resolve.frag") and bool(planning.facts.get("layers")) and not in_layer
+    if p.host in ("shading.frag", "resolve.frag", "layer.frag", "background.frag"):
+        if "normal_coverage" in wanted(planning):
+            texture = LAYERS_NORMAL if in_layer else PIXELS["normal_coverage"]
+            before = {"reads": (LAYERS_NORMAL,), "words": ("layers_normal",)} if has_layers else {}
+            yield Part("normal_coverage", writes=(texture,), **before)
+    yield from _handing(planning, p, in_layer, has_layers)
+
+
+def _handing(planning, p, in_layer: bool, has_layers: bool):
+    """What is handed on from samples to pixels."""
+    has_material = ("has_material",) if planning.model.has_material and "diffuse_color" in planning.settings.outputs else ()
+    names, of_layers = _handed_on(planning, in_layer), _handed_on(planning, True)
+    for name in names:
+        words = [*(has_material if p.host in LIT_HOSTS else ())]
+        reads = []
+        if p.host in ("resolve.frag", "layer.frag"):
+            reads.append(SAMPLES[name])
+        if has_layers and name in of_layers:
+            reads.append(LAYERS[name])
+            words.append(f"layers_{name}")
+        kinds = {"sample_shading.frag": SAMPLES, "shading.frag": PIXELS, "background.frag": PIXELS}
+        kinds |= {"resolve.frag": LAYERS if in_layer else PIXELS, "layer.frag": LAYERS}
+        if p.host in kinds:
+            texture = kinds[p.host][name]
+            called = ((texture, f"out_{name}"),)
+            yield Part(_HANDED_ON[name], tuple(words), tuple(reads), writes=(texture,), called=called)
+
+
+def check(plan: FramePlan) -> None:
+    """Raises ValueError for a pass of more attachments than every device has."""
+    for p in plan.passes:
+        names = [texture.name for texture in p.colors]
+        if len(names) > MAX_COLORS and p.host:
+            raise ValueError(
+                f"The {p.name} pass would write {len(names)} textures at once ({', '.join(names)}), and "
+                f"devices have room for {MAX_COLORS}. Leave Overdraw, indices and mattes out, or choose float32 sums."
+            )
+
+
+def check_samplers(plan: FramePlan, room: int) -> None:
+    """Raises ValueError for a pass whose shader would read more textures than a device has room for."""
+    for p in plan.passes:
+        for variant in {part.only for part in p.parts}:
+            parts = [part for part in p.parts if part.only in ("", variant)]
+            read = dict.fromkeys(name for part in parts for name in part.inputs)
+            read |= dict.fromkeys(texture.name for part in parts for texture in (*part.reads, *part.updates))
+            if len(read) > room:
+                raise ValueError(
+                    f"The {p.name} pass would read {len(read)} textures at once ({', '.join(read)}), and this device has "
+                    f"room for {room}. Leave outputs out, or give all objects one material and no transparency."
+                )

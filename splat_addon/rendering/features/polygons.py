@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The polygon pass: the attributes of the nearest polygon of each sample (Guennebaud et al. 2006, section 5.1).
+
+Shading joins them with the splats' means.
+"""
+
+from __future__ import annotations
+
+from ..plan.graph import Part, Pass, Texture
+from ..view import overlapping_radii
+from . import depth_format, lights, materials, shadows
+from .drawing import LIT_HOSTS, draw_polygons
+
+NAMES = ("polygons", "polygon_plane", "polygon_material")
+VALUES = {"contact": ("float", lambda tile: tile.view.contact)}
+
+COLOR = Texture("polygon_color", is_multisampled=True)
+NORMAL = Texture("polygon_normal", is_multisampled=True)
+MATERIAL = Texture("polygon_material", is_multisampled=True)
+EMISSION = Texture("polygon_emission", is_multisampled=True)
+PLANE = Texture("polygon_plane", is_multisampled=True)
+DEPTH = Texture("polygon_depth", "DEPTH32F", is_multisampled=True)
+
+
+def passes(planning):
+    if not planning.shown:
+        return
+    among = planning.scene.polygons
+    if not among:
+        planning.skip("polygons", "the scene has none")
+        return
+    touching = len(overlapping_radii(planning.scene))
+    why = f"{len(among)} instances are polygons, of which {touching} touch surfels and may blend with them"
+    settings = planning.settings
+    state = {
+        "depth_test": True,
+        "depth_write": True,
+        "fragment_depth": planning.find(depth_format.linear)[0],
+        "sample_shading": bool(settings.multisampling and settings.sample_shading),
+    }
+    varyings = ("float", "depth_at"), ("vec3", "corner_normal"), ("vec3", "corner_color")
+    own = Part(
+        "polygons",
+        inputs=("polygon_corners",),
+        writes=(COLOR, NORMAL, DEPTH),
+        varyings=tuple(("smooth", *varying) for varying in varyings),
+    )
+    yield Pass("polygons", why, "polygons.frag", run, (own,), state=state)
+
+
+def parts(planning, p):
+    if not planning.scene.polygons:
+        return
+    if p.host == "polygons.frag":
+        yield from _drawn(planning)
+    if p.kind == "opaque" and p.host in (*LIT_HOSTS, "lines.frag"):
+        share = "known" if planning.method.works_in == "picture" else "compared"
+        yield Part("polygons", reads=(COLOR, NORMAL), choices=(("polygon_share", share),))
+    if p.kind == "opaque" and p.host in LIT_HOSTS:
+        differ, glow = materials.differ(planning)
+        if differ or lights._are_linked(planning):
+            yield Part("polygon_material", reads=(MATERIAL,))
+        if glow:
+            yield Part("emission", reads=(EMISSION,))
+        if planning.find(shadows.maps):
+            yield Part("polygon_plane", reads=(PLANE,))
+
+
+def _drawn(planning):
+    """What the pass keeps beside colours and normals."""
+    differ, glow = materials.differ(planning)
+    drawn = {"inputs": ("materials",), "constants": materials.texels(planning)}
+    if differ:
+        yield Part("materials", varyings=(("smooth", "vec3", "material"),), **drawn)
+    if differ or lights._are_linked(planning):
+        yield Part("polygon_material", writes=(MATERIAL,))
+    if glow:
+        varyings = (("smooth", "vec3", "emission"),)
+        yield Part("emission", ("gbuffer_emission",), writes=(EMISSION,), varyings=varyings, **drawn)
+    if planning.find(shadows.maps):
+        varyings = (("flat", "vec3", "triangle_plane"),)
+        yield Part("polygon_plane", ("writes_polygon_plane",), writes=(PLANE,), varyings=varyings)
+
+
+def run(tile, p: Pass):
+    """Fill the polygons' textures."""
+    target = tile.target(p)
+    target.clear(color=0.0, depth=1.0)
+    drawn = [d for d in tile.view.polygons if not d.instance.is_holdout]
+    draw_polygons(tile, p, target, [d for d in drawn if not d.instance.is_textured], "polygons.vert")
+    draw_polygons(tile, p, target, [d for d in drawn if d.instance.is_textured], "polygons.vert", "textured")
+    return target

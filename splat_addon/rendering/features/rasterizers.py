@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the programs have in common that draw splats with a method: in space, in the picture, or as sprites."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part
+from .drawing import storage_samplers
+
+#: where a method works -> what fragments are told of a splat's place
+_PLACE = {
+    "space": (("smooth", "vec3", "place_depth"),),
+    "picture": (
+        ("flat", "vec4", "plane_ab"),
+        ("flat", "vec4", "plane_center_gh"),
+        ("flat", "vec4", "plane_depths"),
+        ("flat", "vec4", "plane_det_radius"),
+        ("flat", "vec3", "footprint_map"),
+        ("flat", "vec2", "footprint_middle"),
+    ),
+    "sprites": (("smooth", "vec2", "place"), ("flat", "vec3", "tilt_depth")),
+}
+_ATTRIBUTES = (("flat", "vec4", "color_weight"), ("flat", "vec3", "normal"))
+
+
+def rasterized(planning) -> tuple[Part, ...]:
+    """Parts of every pass that draws splats with the method."""
+    varyings = (*_PLACE[planning.method.works_in], *_ATTRIBUTES)
+    return (Part("rasterizers", inputs=storage_samplers(planning.settings.storage), varyings=varyings),)

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shadow maps: what each light sees first, one map beside the other in an atlas (Botsch et al. 2005, section 5)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..camera import Camera
+from ..light import pack_lights
+from ..plan.executor import TileContext
+from ..plan.graph import Part, Pass, Texture
+from ..shadow import MAX_MAPS, map_ranges, pack_shadow_maps, same_maps, shadow_maps
+from ..view import View
+from . import visibility
+from .drawing import LIT_HOSTS
+
+#: Of polygons, in texels of a map: a filter reaches two, over which planes may differ by that much at 45 degrees.
+SETBACK = 2.0
+
+DEPTH = Texture("shadow_depth", "DEPTH32F", "frame")
+
+
+def maps(planning):
+    """What lights see, in the order of the lights."""
+    if not planning.model.is_lit or not planning.settings.shadow_resolution:
+        planning.skip("shadows", "they are switched off, or nothing is lit")
+        return ()
+    made, without = shadow_maps(planning.scene, planning.shadow_camera, planning.settings.shadow_resolution)
+    if without:
+        planning.skip(f"shadows of {without} lights", f"there is room for {MAX_MAPS} maps")
+    if not made:
+        planning.skip("shadows", "no light casts any that the picture shows")
+    return made
+
+
+INPUTS = {
+    "shadow_maps": lambda t: t.resources.data(
+        pack_shadow_maps(t.plan.facts["shadow_maps"], t.shadow_views, t.camera, t.view.scale)
+    ),
+}
+
+
+def passes(planning):
+    made = planning.facts["shadow_maps"] = planning.find(maps) if planning.shown else ()
+    if made:
+        casting = len({one.light for one in made})
+        why = f"{casting} of {len(planning.scene.lights)} lights cast shadows, through {len(made)} maps"
+        own = visibility.own_parts(planning, DEPTH)
+        yield replace(
+            visibility.drawn("shadow_maps", why, own, planning, "shadow"), run=run, once=made, is_same=same_maps
+        )
+
+
+def parts(planning, p):
+    if p.host in (*LIT_HOSTS, "lit_splats.frag") and planning.find(maps):
+        yield Part("shadows", reads=(DEPTH,), inputs=("shadow_maps",))
+
+
+def run(tile: TileContext, p: Pass):
+    """Fill the atlas, a visibility pass a map. Parallel cameras store the hardware's depth, others depth / far."""
+    target = tile.target(p)
+    target.clear(depth=1.0)
+    for made, view in zip(tile.plan.facts["shadow_maps"], tile.shadow_views, strict=True):
+        is_linear = not made.camera.is_orthographic
+        seen = replace(
+            tile.plan, linear_depth=is_linear, variants=frozenset(["linear"] if is_linear else []), samples=1,
+            multisamples=0, sample_shading=False,
+        )  # fmt: skip
+        view = _as_cast(view, made.camera)
+        from_light = TileContext(tile.resources, seen, tile.scene, made.camera, tile.settings, view)
+        drawn = replace(p, state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
+        visibility.draw(from_light, drawn, target, view.placed, view.polygons, (*made.place, *made.camera.size))
+    return target
+
+
+def _as_cast(view: View, camera: Camera) -> View:
+    """What casts shadows into a map: what is split by its distance from another camera is whole, and polygons lie some
+    texels farther, so that they do not shadow themselves where their shading normals are not their own.
+    """
+    left, right, _, _ = camera.window
+    texel = (right - left) / camera.size[0] * (view.scale if camera.is_orthographic else 1.0)
+    polygons = tuple(replace(p, split=0.0, setback=SETBACK * texel) for p in view.polygons)
+    return replace(view, placed=tuple(replace(p, split=0.0) for p in view.placed), polygons=polygons)
+
+
+def lights_texture(tile: TileContext):
+    """The scene's lights, with the maps of each."""
+    lights, made = tile.scene.lights, tile.plan.facts.get("shadow_maps")
+    ranges = map_ranges(made, len(lights)) if made else None
+    return tile.resources.data(pack_lights(lights, tile.camera.world_to_view(), tile.view.scale, ranges))

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Silhouettes, filtered as colours are: what the other passes do for it. The filter itself is the resolve pass's."""
+
+from __future__ import annotations
+
+from ..plan.frame_plan import FILTER_MARGIN, VISIBILITY_ROWS
+from ..plan.graph import Part
+
+CONSTANTS = {"FILTER_REACH": FILTER_MARGIN}
+
+
+def have_rows(planning) -> bool:
+    """Whether visibility has more rows than there are of samples: what transparent layers hide is known at these alone."""
+    from . import transparency
+
+    return planning.method.filters_silhouettes and not planning.find(transparency.layers)
+
+
+def parts(planning, p):
+    if planning.method.filters_silhouettes:
+        if p.host == "screen_space.frag" and p.kind in ("opaque", "layer"):
+            yield Part("silhouettes")
+        if p.host in ("seen_range.frag", "rest_layer.frag"):
+            yield Part("silhouettes")

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects that are polygons near the camera, and surfels beyond that (Guennebaud et al. 2006, section 5)."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part
+from .drawing import SPLAT_HOSTS
+
+
+def _count(planning) -> int:
+    return sum(placed.split is not None for placed in planning.shown)
+
+
+def passes(planning):
+    """None; it says whether there are any."""
+    if planning.shown:
+        if split := _count(planning):
+            planning.has("SPLIT", f"{split} instances are polygons near the camera, or surfels beyond that")
+        else:
+            planning.skip("split objects", "all are drawn whole")
+    return ()
+
+
+def parts(planning, p):
+    if not _count(planning):
+        return
+    varyings = (("smooth", "vec3", "split_place"),)
+    if p.host in SPLAT_HOSTS:
+        yield Part("split")
+    if p.host == "visibility.frag":
+        yield Part("split")
+        yield Part("split", varyings=varyings, only="polygons")
+    if p.host == "polygons.frag":
+        yield Part("split", varyings=varyings)

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Colours that are looked up in textures: instances without do not pay for them, and a sprite has one colour."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part
+
+#: uv and slot, change of uv along the half-axes, where the map ends; and the half-axes.
+_VARYINGS = (("flat", "vec3", "texture_place"), ("flat", "vec4", "texture_along"), ("flat", "vec2", "texture_border"))
+_AXES = (("flat", "vec3", "texture_axis_u"), ("flat", "vec3", "texture_axis_v"))
+_OF_POLYGONS = (
+    ("smooth", "vec2", "texture_uv"),
+    ("flat", "float", "texture_slot"),
+    ("flat", "vec3", "gradient_u"),
+    ("flat", "vec3", "gradient_v"),
+)
+_ATLAS = ("texture_atlas", "texture_table")
+
+
+def parts(planning, p):
+    settings, each = planning.settings, planning.settings.multisampling and planning.settings.sample_shading
+    # of what is evaluated once: a sample, or each of its hardware samples, which is a smaller piece of the pixel
+    variance = planning.method.pixel_variance / (settings.multisampling if each else 1)
+    shared = {"constants": (("PIXEL_VARIANCE", repr(variance)),), "only": "textured"}
+    scene = planning.scene
+    hosts = "object_space.frag", "screen_space.frag"
+    if p.host in hosts and p.kind in ("opaque", "layer") and any(i.is_textured for i in scene.surfels):
+        varyings = (*_VARYINGS, *_AXES) if p.host == "object_space.frag" else _VARYINGS
+        yield Part("textures", inputs=("surfel_uvs", *_ATLAS), varyings=varyings, **shared)
+    if p.host == "polygons.frag" and any(i.is_textured for i in scene.polygons):
+        plane = (("flat", "vec3", "triangle_plane"),)
+        yield Part("polygon_plane", varyings=plane, only="textured")
+        yield Part("textures", inputs=("polygon_uvs", *_ATLAS), varyings=_OF_POLYGONS, **shared)

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shadows of what is transparent: its splats leave as much out of a shadow map as shows through them."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part
+from . import shadows, transparency
+from .drawing import LIT_HOSTS
+
+
+def _casting(planning) -> int:
+    if not planning.find(shadows.maps) or not planning.find(transparency.layers):
+        return 0
+    return sum(i.is_transparent and i.casts_shadow for i in planning.scene.surfels)
+
+
+def passes(planning):
+    """None; it says whether anything casts such."""
+    if planning.shown:
+        if casting := _casting(planning):
+            planning.has("SCREEN_DOOR", f"shadows of {casting} instances are as transparent as those")
+        else:
+            planning.skip("transparent shadows", "nothing transparent casts any")
+    return ()
+
+
+def parts(planning, p):
+    if not _casting(planning):
+        return
+    if p.host == "visibility.frag" and p.kind == "shadow":
+        yield Part("transparent_shadows", varyings=(("flat", "vec2", "opacity_surface"),), only="splats")
+    if p.host in (*LIT_HOSTS, "lit_splats.frag"):
+        yield Part("transparent_shadows", choices=(("shadow_taps", "masked"),))

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The visibility pass: depth, every splat moved back by its epsilon (Botsch et al. 2005, section 3)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..plan.executor import TileContext
+from ..plan.graph import Part, Pass, Texture
+from ..view import View
+from . import depth_format, silhouettes
+from .drawing import draw_polygons, draw_splats, drawn_by, storage_samplers
+
+DEPTH = Texture("visibility_depth", "DEPTH32F", is_multisampled=True)
+ROW_DEPTH = Texture("row_depth", "DEPTH32F", "row")
+_OF_POLYGONS = Part("visibility", ("of_polygons",), inputs=("polygon_corners",), only="polygons")
+
+
+def nearest_depth(planning) -> Texture:
+    """What visibility writes: it may have more rows than there are of samples."""
+    return ROW_DEPTH if planning.find(silhouettes.have_rows) else DEPTH
+
+
+def own_parts(planning, depth: Texture, reads=(), words=()) -> tuple[Part, ...]:
+    """Of a pass that finds what is nearest."""
+    return (
+        Part(
+            "visibility",
+            ("moved_back", *words),
+            writes=(depth,),
+            varyings=(("smooth", "vec3", "place_depth"),),
+        ),
+        Part("visibility", reads=reads, inputs=storage_samplers(planning.settings.storage), only="splats"),
+        Part("visibility", varyings=(("smooth", "vec3", "across_offset"),), only="linear"),
+        *((_OF_POLYGONS,) if planning.scene.polygons else ()),
+    )
+
+
+def drawn(name: str, reason: str, own: tuple[Part, ...], planning, kind: str = "opaque") -> Pass:
+    """A pass that finds what is nearest."""
+    settings = planning.settings
+    state = {
+        "depth_test": True,
+        "depth_write": True,
+        "fragment_depth": planning.find(depth_format.linear)[0],
+        "sample_shading": bool(settings.multisampling and settings.sample_shading),
+    }
+    return Pass(name, reason, "visibility.frag", run, own, kind, state)
+
+
+def passes(planning):
+    if not planning.shown:
+        return
+    if planning.method.works_in == "sprites":
+        planning.skip("visibility", f"of {planning.method.name} the nearest splat wins, and nothing blends")
+        return
+    why = f"splats may hide one another; {planning.find(depth_format.linear)[1]}"
+    yield drawn("visibility", why, own_parts(planning, nearest_depth(planning)), planning)
+
+
+def parts(planning, p):
+    if p.host == "screen_space.frag" and p.kind in ("opaque", "layer"):
+        yield Part("visibility")
+
+
+def run(tile: TileContext, p: Pass):
+    """Fill the depth texture, and what else is kept of what is nearest."""
+    target = tile.target(p)
+    target.clear(color=0.0 if p.colors else None, depth=1.0)
+    if p.depth.per == "row":
+        tile = replace(tile, view=_seen_by_rows(tile.view, target.size[1]))
+    polygons = tile.view.polygons if p.kind != "layer" else ()
+    draw(tile, p, target, drawn_by(p, tile), polygons)
+    return target
+
+
+def draw(tile: TileContext, p: Pass, target, splats, polygons, viewport=None) -> None:
+    """Both kinds, with the pass's programs."""
+    draw_splats(tile, p, target, splats, "visibility.vert", "splats", viewport=viewport)
+    draw_polygons(tile, p, target, polygons, "polygon_visibility.vert", "polygons", viewport=viewport)
+
+
+def _seen_by_rows(view: View, rows: int) -> View:
+    """A view moved in the picture, so that the first of a sample's rows goes through its centre as the sample does."""
+    projection = view.projection.copy()
+    projection[1] -= projection[3] * (silhouettes.VISIBILITY_ROWS - 1) / rows
+    return replace(view, projection=projection)

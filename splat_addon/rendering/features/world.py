@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The world around: the light that it sends, and what is seen of it where nothing is drawn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..plan.graph import Part, Pass
+from . import outputs
+from .drawing import LIT_HOSTS
+
+
+def _to_environment(tile) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[:3, :3] = tile.scene.environment.rotation @ tile.camera.matrix_world[:3, :3]
+    return matrix
+
+
+VALUES = {
+    "world": ("vec4", lambda tile: (*tile.scene.world, 0.0 if tile.settings.transparent_film else 1.0)),
+    "to_environment": ("mat4", _to_environment),
+}
+INPUTS = {
+    "environment_image": lambda t: t.resources.kept(t.scene.environment, t.scene.environment.image_texels),
+    "environment_levels": lambda t: t.resources.kept(t.scene.environment, t.scene.environment.level_texels),
+}
+_SHOWN = Part("world", inputs=("environment_image",), choices=(("background", "picture"),))
+_LIGHTS = Part("world", inputs=("environment_image", "environment_levels"), choices=(("world_light", "picture"),))
+
+
+def passes(planning):
+    """A world without anything in it is a pass of its own."""
+    if not planning.shown:
+        planning.skip(
+            "all other passes", "the scene has neither surfels nor polygons: the picture is its background"
+        )
+        if _is_shown(planning):
+            samples = ("SAMPLES", planning.settings.supersampling)
+            own = Part("world", writes=outputs.pixel_textures(planning), constants=(samples,), called=outputs.CALLED)
+            run = lambda tile, p: tile.fill(p)  # noqa: E731
+            yield Pass("background", "the world is a picture", "background.frag", run, (own,))
+    elif not planning.scene.environment:
+        planning.skip("environment", "the world is even")
+
+
+def parts(planning, p):
+    if p.kind == "opaque" and p.host in ("shading.frag", "resolve.frag", "background.frag") and _is_shown(planning):
+        yield _SHOWN
+    if p.host in (*LIT_HOSTS, "lit_splats.frag") and planning.model.has_world and planning.scene.environment:
+        yield _LIGHTS
+
+
+def _is_shown(planning) -> bool:
+    return planning.scene.environment is not None and not planning.settings.transparent_film

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs the steps of a plan for one tile of the picture, knowing no pass and no texture by name."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from ..camera import Camera
+from ..device.interface import Pipeline, PipelineDescription, Target
+from ..device.interface import Texture as DeviceTexture
+from ..identity import Identities
+from ..resources import Resources, TextureKey
+from ..scene import Scene
+from ..settings import Settings
+from ..view import View
+from .compose import DEFAULTS, compose
+from .frame_plan import FramePlan
+from .graph import Loop, Pass, Step, Texture
+from .uniforms import DRAW, VIEW, Block, blocks_in, constants_in, frame_value, std140
+
+
+@dataclass(frozen=True, eq=False)
+class TileContext:
+    """camera: of the tile with its margin. view: the scene as that camera sees it.
+
+    shadow_views: what casts shadows as the camera of each of the plan's shadow maps sees it.
+    rectangle: x, y, width, height in pixels of the tile without its margin, in the picture.
+    """
+
+    resources: Resources
+    plan: FramePlan
+    scene: Scene
+    camera: Camera
+    settings: Settings
+    view: View
+    shadow_views: tuple[View, ...] = ()
+    rectangle: tuple[int, int, int, int] = (0, 0, 0, 0)
+    inputs: dict[str, Callable[[TileContext], DeviceTexture]] = field(default_factory=dict)
+
+    def texture(self, texture: Texture, is_next: bool = False) -> DeviceTexture:
+        """One that the plan names; is_next: the second one of what is updated."""
+        return self.resources.texture(texture_key(texture, self.camera.size, self.plan, is_next))
+
+    def swap(self, texture: Texture) -> None:
+        """Let what was updated take the place of what was there."""
+        keys = (texture_key(texture, self.camera.size, self.plan, is_next) for is_next in (False, True))
+        self.resources.swap(*keys)
+
+    def target(self, p: Pass) -> Target:
+        """What a pass draws into."""
+        depth, updated = p.depth if p.state.get("depth_test") else None, p.all("updates")
+        colors = [self.texture(texture, texture in updated) for texture in p.colors]
+        return self.resources.device.target(colors, depth and self.texture(depth))
+
+    def textures(self, p: Pass, program: Pipeline, made: dict[str, Callable[[], DeviceTexture]]) -> list[DeviceTexture]:
+        """What a program samples. made: of what is drawn, by the names of samplers."""
+        called = dict(p.all("called"))
+        read = {called.get(texture, texture.name): texture for texture in p.all("reads", "updates")}
+        return [
+            made[name]()
+            if name in made
+            else self.texture(read[name])
+            if name in read
+            else self.inputs[name](self)
+            for name in program.description.samplers
+        ]
+
+    def blocks(self, program: Pipeline, draw: np.ndarray | None = None) -> list[np.ndarray]:
+        """The values of a program's blocks. draw: of what is drawn."""
+        return [draw if block is DRAW else self._block(block) for block in program.description.blocks]
+
+    @cached_property
+    def _blocks(self) -> dict[Block, np.ndarray]:
+        return {}
+
+    def _block(self, block: Block) -> np.ndarray:
+        if block not in self._blocks:
+            values = self._view_values if block is VIEW else [frame_value(name)(self) for _, name in block[2]]
+            self._blocks[block] = std140(block, values)
+        return self._blocks[block]
+
+    @property
+    def _view_values(self):
+        to_world = np.eye(4)
+        to_world[:3, :3] = self.camera.matrix_world[:3, :3]
+        view, is_parallel = self.view, self.camera.is_orthographic
+        return view.projection, to_world, self.window, view.near, is_parallel, self.depth_unit, 1.0 / view.scale
+
+    @cached_property
+    def identities(self) -> Identities:
+        """What the scene's numbers mean; they tell instances apart in transparent shadows too."""
+        return Identities(self.scene)
+
+    @property
+    def depth_unit(self) -> float:
+        """What turns a depth of the view into a stored linear one; 0 where the hardware's depth is stored."""
+        return 1.0 / self.view.far if self.plan.linear_depth else 0.0
+
+    @cached_property
+    def color_scale(self) -> float:
+        """What float16 sums multiply colours by, a power of two: the scene's brightest is then at most 1."""
+        if self.plan.accumulation == "float32":
+            return 1.0
+        surfels = [instance.surfels for instance in self.scene.surfels]  # polygons are not summed
+        textures = [t for instance in self.scene.surfels if instance.is_textured for t in instance.textures if t]
+        brightest = max((source.brightest for source in (*surfels, *textures)), default=0.0)
+        return math.ldexp(1.0, -math.ceil(math.log2(brightest))) if brightest > 0 else 1.0
+
+    @property
+    def window(self) -> tuple[float, float, float, float]:
+        """Left, bottom and step of one sample, on the plane at depth 1 or (parallel cameras) in scaled units."""
+        left, right, bottom, top = self.camera.window
+        units = self.view.scale if self.camera.is_orthographic else 1.0
+        across, up = (n * self.plan.samples for n in self.camera.size)
+        return left * units, bottom * units, (right - left) / across * units, (top - bottom) / up * units
+
+    def program(self, p: Pass, vertex: str = "fullscreen.vert", *variants: str) -> Pipeline:
+        """What a pass draws with. variants: of its parts, beside those that are for all."""
+        return self.resources.pipeline(describe(self.plan, p, vertex, *variants))
+
+    def fill(self, p: Pass, viewport=None) -> Target:
+        """Draw over the whole of what a pass writes."""
+        target, program = self.target(p), self.program(p)
+        if p.depth and p.state.get("depth_write"):
+            target.clear(depth=1.0)
+        device = self.resources.device
+        device.draw_fullscreen(program, target, self.blocks(program), self.textures(p, program, {}), viewport=viewport)
+        return target
+
+
+def texture_key(texture: Texture, size: tuple[int, int], plan: FramePlan, is_next: bool = False) -> TextureKey:
+    """Of a texture of the plan, for a tile of `size` pixels."""
+    name = f"{texture.name}_next" if is_next else texture.name
+    return name, *plan.size(texture, size), plan.format(texture), plan.multisamples_of(texture)
+
+
+def describe(plan: FramePlan, p: Pass, vertex: str = "fullscreen.vert", *variants: str) -> PipelineDescription:
+    """The pipeline of a pass with the parts of these variants."""
+    taken = {"", *plan.variants, *variants}
+    parts = [part for part in p.parts if part.only in taken]
+    words = dict.fromkeys([part.feature for part in parts] + [word for part in parts for word in part.words])
+    depth_format = {"depth_format": "linear" if plan.linear_depth else "hardware"}
+    names = DEFAULTS | dict(plan.choices) | depth_format | {name: file for part in parts for name, file in part.choices}
+    ordered, chosen = _ordered((*words, p.kind)), tuple(names.items())
+    texts = compose(vertex, ordered, chosen), compose(p.host, ordered, chosen)
+    called = {texture: name for part in parts for texture, name in part.called}
+    updated = {texture for part in parts for texture in part.updates}
+    drawn = [texture for part in parts for texture in part.fills if not texture.is_depth]
+    sampled = [(called.get(t, t.name), t) for part in parts for t in (*part.reads, *part.updates)]
+    return PipelineDescription(
+        name=p.name if not variants else f"{p.name} ({', '.join(variants)})",
+        vertex=texts[0],
+        fragment=texts[1],
+        blocks=blocks_in(*texts),
+        samplers=tuple(dict.fromkeys([name for part in parts for name in part.inputs] + [name for name, _ in sampled])),
+        multisampled=tuple(dict.fromkeys(name for name, t in sampled if plan.multisamples_of(t))),
+        varyings=tuple(dict.fromkeys(varying for part in parts for varying in part.varyings)),
+        outputs=tuple((t.type, f"{t.name}_next" if t in updated else called.get(t, t.name)) for t in drawn),
+        defines=tuple({**constants_in(*texts), **{n: str(v) for part in parts for n, v in part.constants}}.items()),
+        **p.state,
+    )
+
+
+def _ordered(words: Iterable[str]) -> tuple[str, ...]:
+    """Features in the order in which they act, then the other words."""
+    from ..features import ORDER
+
+    return tuple(sorted(words, key=lambda word: (ORDER.get(word, len(ORDER)), word)))
+
+
+class Execution:
+    """One frame's steps, tile by tile. told: called before each pass with its name. done: after it, with its target."""
+
+    def __init__(self, is_shared_done: bool, told: Callable[[Pass, int], None], done: Callable[[Pass, Target], None]):
+        self._is_shared_done, self._told, self._done = is_shared_done, told, done
+        self.turns = 0
+
+    def run(self, steps: tuple[Step, ...], tile: TileContext) -> Target | None:
+        """The target of the last pass. turns: how often its loops were run through, at most in any tile."""
+        self._number, target = 0, None
+        for step in steps:
+            target = self._repeat(step, tile) if isinstance(step, Loop) else self._pass(step, tile)
+        self._is_shared_done = True
+        return target
+
+    def _pass(self, p: Pass, tile: TileContext) -> Target | None:
+        self._number += 1
+        if p.once is not None and self._is_shared_done:
+            return None
+        self._told(p, self._number - 1)
+        target = p.run(tile, p)
+        self._done(p, target)
+        for texture in p.all("updates"):
+            tile.swap(texture)
+        return target
+
+    def _repeat(self, loop: Loop, tile: TileContext) -> None:
+        first = self._number
+        for turn in range(loop.times):
+            for p in loop.body:
+                target = self._pass(p, tile)
+                if loop.stop in p.fills and not target.read(p.colors.index(loop.stop)).any():
+                    self._number = first + len(loop.body) * loop.times + len(loop.last)
+                    return
+            self.turns = max(self.turns, turn + 1)
+        for p in loop.last:
+            self._pass(p, tile)
+        self.turns = max(self.turns, loop.times + bool(loop.last))
+
+
+def drawn_tiles(plan: FramePlan) -> Iterator[tuple[int, int, int, int]]:
+    """The tiles with their margins."""
+    for x, y, width, height in plan.tiles:
+        yield x - plan.margin, y - plan.margin, width + 2 * plan.margin, height + 2 * plan.margin

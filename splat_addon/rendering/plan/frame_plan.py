@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a plan is: the passes of a frame with their reasons, and the textures that they write."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+from .graph import Loop, Pass, Step, Texture, each_pass
+
+
+#: Samples that the filter of silhouettes reads up and down.
+FILTER_MARGIN = 2
+
+#: Rows of visibility to each row of samples, where silhouettes are filtered; the first of them goes through the centres
+#: of the samples.
+VISIBILITY_ROWS = 2
+
+
+@dataclass(frozen=True)
+class FramePlan:
+    """tiles: (x, y, width, height) in pixels, each rendered with all passes, with a margin that filters and lines read.
+    samples: N of the N x N samples a pixel. multisamples: M hardware samples of each of them, or 0.
+    sample_shading: they are evaluated and lit one by one. method, storage, accumulation: as in the settings.
+    linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
+    steps: passes and loops, in order. variants: those of their parts that are in every program.
+    choices: (name in paths of shaders, file). margin: pixels drawn around a tile and not kept.
+    sizes: what a texture holds one value for -> its width and height, for a tile of so many pixels.
+    facts: what features have found out for when passes run, by name.
+    features: (name, why), of what is present beside passes. skipped: (what, why), of what others would need.
+    """
+
+    tiles: tuple[tuple[int, int, int, int], ...]
+    samples: int
+    multisamples: int
+    sample_shading: bool
+    method: str
+    storage: str
+    accumulation: str
+    linear_depth: bool
+    steps: tuple[Step, ...]
+    variants: frozenset[str]
+    choices: tuple[tuple[str, str], ...]
+    margin: int
+    sizes: dict[str, Callable[[FramePlan, tuple[int, int]], tuple[int, int]]]
+    facts: dict[str, object]
+    features: tuple[tuple[str, str], ...]
+    skipped: tuple[tuple[str, str], ...]
+
+    def has(self, feature: str) -> bool:
+        """Whether it is present beside passes."""
+        return feature in (name for name, _ in self.features)
+
+    @property
+    def filters_silhouettes(self) -> bool:
+        """Whether a pass does."""
+        return self.facts["filters_silhouettes"]
+
+    @property
+    def numbers(self) -> tuple[Texture, int]:
+        """The texture of whose the samples are that mattes are made of, and its rows to a row of samples."""
+        texture = self.facts["identity"][0]
+        return texture, VISIBILITY_ROWS if texture.per == "row" else 1
+
+    @cached_property
+    def passes(self) -> tuple[Pass, ...]:
+        """In order; those of a loop once."""
+        return tuple(each_pass(self.steps))
+
+    @cached_property
+    def count(self) -> int:
+        """Of passes, those of a loop as often as they repeat at most."""
+        return sum(len(s.body) * s.times + len(s.last) if isinstance(s, Loop) else 1 for s in self.steps)
+
+    @cached_property
+    def filled(self) -> dict[str, Texture]:
+        """Every texture that some pass writes, by name; of what is updated the second one too."""
+        found = {}
+        for p in self.passes:
+            found |= {texture.name: texture for texture in p.fills}
+            found |= {f"{texture.name}_next": texture for texture in p.all("updates")}
+        return found
+
+    @property
+    def textures(self) -> tuple[str, ...]:
+        """Names of all textures."""
+        return tuple(self.filled)
+
+    def size(self, texture: Texture, pixels: tuple[int, int]) -> tuple[int, int]:
+        """Width and height of a texture, for a tile of so many pixels with its margin."""
+        return self.sizes[texture.per](self, pixels)
+
+    def format(self, texture: Texture) -> str:
+        """A name in `device.interface.FORMATS`."""
+        return "RGBA16F" if texture.is_sum and self.accumulation == "float16" else texture.format
+
+    def multisamples_of(self, texture: Texture) -> int:
+        """Samples a texel, 0 for one."""
+        return self.multisamples if texture.is_multisampled else 0
+
+    def __str__(self) -> str:
+        depth = "linear" if self.linear_depth else "hardware"
+        lines = [
+            f"{len(self.tiles)} tile(s), {self.samples} x {self.samples} samples, method {self.method}, {depth} depth, "
+            f"{self.storage} splats, {self.accumulation} sums"
+        ]
+        if self.multisamples:
+            each = "evaluated and lit one by one" if self.sample_shading else "evaluated once, lit once for their mean"
+            lines.append(f"  with {self.multisamples} hardware samples in each: {each}")
+        for step in self.steps:
+            if isinstance(step, Loop):
+                lines.append(f"  {step.name}, up to {step.times} times while any of {step.stop.name}; {step.reason}")
+                lines += [_shown(p, "    ") for p in step.body]
+                lines += ["  and if none was empty:", *(_shown(p, "    ") for p in step.last)] if step.last else []
+            else:
+                lines.append(_shown(step, "  "))
+        lines += [f"  with {name}: {why}" for name, why in self.features]
+        lines += [f"  without {what}: {why}" for what, why in self.skipped]
+        return "\n".join(lines)
+
+
+def _shown(p: Pass, indent: str) -> str:
+    parts = " + ".join(dict.fromkeys(part.feature for part in p.parts))
+    once = ", once" if p.once is not None else ""
+    reads = ", ".join(p.reads) or "what is placed"
+    return f"{indent}{p.name}{once} [{parts}]: {', '.join(p.writes)} <- {reads}; {p.reason}"

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What features decide from, while a plan is made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+from ..camera import Camera
+from ..methods import get_method
+from ..scene import Scene
+from ..settings import Settings
+from ..shading_models import get_shading_model
+
+Found = TypeVar("Found")
+
+
+class Planning:
+    """shadow_camera: to whose view shadow maps are fitted. is_added_up: the picture is a sample of a view that refines.
+
+    choices, facts: as a `FramePlan` has them; features add to both.
+    """
+
+    def __init__(self, scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera, is_added_up: bool):
+        self.scene, self.camera, self.settings = scene, camera, settings
+        self.shadow_camera, self.is_added_up = shadow_camera, is_added_up
+        self.method, self.model = get_method(settings.method), get_shading_model(settings.shading)
+        self.shown = scene.shown
+        self.features: list[tuple[str, str]] = []
+        self.skipped: list[tuple[str, str]] = []
+        self.choices: dict[str, str] = {}
+        self.facts: dict[str, object] = {}
+        self._found: dict[Callable, object] = {}
+
+    def find(self, fact: Callable[[Planning], Found]) -> Found:
+        """fact(self), found out once: what several features need to know, and one decides."""
+        if fact not in self._found:
+            self._found[fact] = fact(self)
+        return self._found[fact]
+
+    def has(self, feature: str, why: str) -> None:
+        """Say that a feature is present, and why."""
+        self.features.append((feature, why))
+
+    def skip(self, what: str, why: str) -> None:
+        """Say what is not needed, and why."""
+        self.skipped.append((what, why))

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Uniform blocks: what shaders are told by name of the view, of what is drawn, and of the frame's features.
+
+A shader has the blocks that its text uses; that of the frame holds just the values that the text names.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .executor import TileContext
+
+#: (struct name, instance name, ((type, field), ...))
+Block = tuple[str, str, tuple[tuple[str, str], ...]]
+
+#: window: left, bottom and step of one sample, on the plane at depth 1 or (parallel cameras) in scaled units. near: the
+#: camera's, in view units. depth_unit: 1 / far where depths are stored linearly. world_length: of one view unit.
+VIEW: Block = (
+    "View",
+    "view",
+    (
+        ("mat4", "projection"),
+        ("mat4", "to_world"),
+        ("vec4", "window"),
+        ("float", "near"),
+        ("float", "is_parallel"),
+        ("float", "depth_unit"),
+        ("float", "world_length"),
+    ),
+)
+
+#: light_set: 1 in the channel of the instance's set. orientation: -1 for a mirrored object. epsilon: how far visibility
+#: moves splats back, in radii, or polygons, in view units. least_offset: of both, as a share of the distance; of an
+#: orthographic camera a length. first_slot, more_slots: number of its first material slot, and of slots after it. split:
+#: as of `PlacedInstance`. nowhere: the depth, between -1 and 1 in the view, at which what is not drawn collapses.
+DRAW: Block = (
+    "Draw",
+    "draw",
+    (
+        ("mat4", "model_view"),
+        ("mat4", "normal_matrix"),
+        ("vec4", "light_set"),
+        ("float", "orientation"),
+        ("float", "hides_backs"),
+        ("float", "epsilon"),
+        ("float", "least_offset"),
+        ("float", "first_slot"),
+        ("float", "more_slots"),
+        ("float", "split"),
+        ("float", "nowhere"),
+    ),
+)
+
+
+@cache
+def _registry() -> tuple[dict[str, tuple[str, Callable]], dict[str, object]]:
+    """The frame's values and the constants of all features."""
+    from ..features import CONSTANTS, VALUES
+
+    return VALUES, CONSTANTS
+
+
+def frame_value(name: str) -> Callable[[TileContext], object]:
+    """What gives a value of the frame's block for a tile."""
+    return _registry()[0][name][1]
+
+
+@cache
+def blocks_in(*texts: str) -> tuple[Block, ...]:
+    """The blocks that a program's texts use. Raises ValueError for a value that no feature gives."""
+    values, text = _registry()[0], "".join(texts)
+    names = set(re.findall(r"\bframe\.(\w+)", text))
+    if missing := names - set(values):
+        raise ValueError(f"A shader uses frame.{min(missing)}, which no feature gives.")
+    used = [block for block in (VIEW, DRAW) if re.search(rf"\b{block[1]}\.", text)]
+    fields = tuple((kind, name) for name, (kind, _) in values.items() if name in names)
+    return (*used, *((("Frame", "frame", fields),) if fields else ()))
+
+
+@cache
+def constants_in(*texts: str) -> dict[str, str]:
+    """The constants that a program's texts use."""
+    words = set(re.findall(r"\b[A-Z][A-Z0-9_]+\b", "".join(texts)))
+    return {name: str(value) for name, value in _registry()[1].items() if name in words}
+
+
+_SIZES = {"float": (1, 1), "vec2": (2, 2), "vec4": (4, 4), "mat4": (16, 4)}
+
+
+def std140(block: Block, values) -> np.ndarray:
+    """float32 values of a block's fields as they lie in it: matrices column by column, padded to whole vectors."""
+    packed, at = np.zeros(_length(block[2]), np.float32), 0
+    for (kind, _), value in zip(block[2], values, strict=True):
+        size, alignment = _SIZES[kind]
+        at = -(-at // alignment) * alignment
+        packed[at : at + size] = np.asarray(value, np.float64).T.ravel()
+        at += size
+    return packed
+
+
+@cache
+def _length(fields) -> int:
+    at = 0
+    for kind, _ in fields:
+        size, alignment = _SIZES[kind]
+        at = -(-at // alignment) * alignment + size
+    return -(-at // 4) * 4
