@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
 from environment import ROOT, Problem
@@ -20,6 +21,9 @@ REQUIREMENTS = ROOT / "requirements" / "program.txt"
 
 #: The variable by which tests/run_in_blender.py learns of the folder.
 PACKAGES_VARIABLE = "SURFEL_TEST_PACKAGES"
+
+#: Written last, with what was installed.
+STAMP = "installed.txt"
 
 MARK = "surfel-python"
 ASK_VERSION = f"import sys; print('{MARK}', '%d.%d' % sys.version_info[:2], flush=True)"
@@ -40,16 +44,23 @@ def prepare(program: str, python: Path) -> dict[str, str]:
     """
     version = _python_version(program)
     folder = ROOT / "build" / f"packages-{version}"
-    stamp = folder / "installed.txt"
-    if not stamp.is_file() or stamp.read_text() != requirements_hash(REQUIREMENTS):
-        shutil.rmtree(folder, ignore_errors=True)
+    if not _is_whole(folder):
         print(f"Fetching the tests' packages for the program's Python {version}; this is done once.", flush=True)
         options = ["--python-version", version, "--only-binary=:all:", "--progress-bar", "off", "--no-input"]
-        command = [str(python), "-m", "pip", "install", "--target", str(folder), *options, "-r", str(REQUIREMENTS)]
+        # Two runs at once may both fetch them: each into a folder of its own, of which the first stays.
+        folder.parent.mkdir(exist_ok=True)
+        fresh = Path(tempfile.mkdtemp(prefix=folder.name, dir=folder.parent))
+        command = [str(python), "-m", "pip", "install", "--target", str(fresh), *options, "-r", str(REQUIREMENTS)]
         code, output = run_showing(command, pip_line)
         if code:
+            shutil.rmtree(fresh, ignore_errors=True)
             raise Problem(install_problem(output) or f"pip could not fetch the packages: {last_line(output)}.")
-        stamp.write_text(requirements_hash(REQUIREMENTS))
+        (fresh / STAMP).write_text(requirements_hash(REQUIREMENTS))
+        if _is_whole(folder):
+            shutil.rmtree(fresh)
+        else:
+            shutil.rmtree(folder, ignore_errors=True)
+            fresh.rename(folder)
     return {PACKAGES_VARIABLE: str(folder)}
 
 
@@ -58,6 +69,11 @@ def test_command(program: str, gpu_backend: str | None, pytest_arguments: list[s
     backend = ["--gpu-backend", gpu_backend] if gpu_backend else []
     script = ["--python-exit-code", "1", "--python", str(ROOT / "tests" / "run_in_blender.py")]
     return [program, "--background", "--factory-startup", *backend, *script, "--", *pytest_arguments]
+
+
+def _is_whole(folder: Path) -> bool:
+    stamp = folder / STAMP
+    return stamp.is_file() and stamp.read_text() == requirements_hash(REQUIREMENTS)
 
 
 def _python_version(program: str) -> str:
