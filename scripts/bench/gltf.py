@@ -64,7 +64,7 @@ def run(options, report) -> None:
     count, off = sum(len(made.data.vertices) for made in surfels), 255 * apart[both]
     inside = psnr(a[both][None], b[both][None])
     times = f"{our_seconds:.1f} s, {options.engine} in {their_seconds:.1f} s"
-    report.say(f"{model.name}: {count:,} surfels in {seconds:.1f} s, rendered in {times} (shaders compiled).")
+    report.say(f"{model.name}: {count:,} surfels in {seconds:.1f} s, rendered in {times}, shaders compiled.")
     report.say(f"PSNR of sRGB {psnr(a, b):.1f} dB over the picture, {inside:.1f} dB inside both.")
     report.say(f"Mean difference inside {off.mean():.2f} of 255, 95 % below {np.percentile(off, 95):.1f}.")
     shown = [srgb(a), srgb(b), MAGNIFIED * apart]

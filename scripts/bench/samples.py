@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from measuring.drawing import scene_in_turn
+from measuring.drawing import draw_in_turn
 from splat_addon import rendering
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
@@ -105,5 +106,5 @@ def times(renderer: Renderer, options):
     for name, shadows in (("two lights", 0), ("with shadows", 512)):
         for method in METHODS:
             counted = {n: replace(chosen(method, n, lit=True), shadow_resolution=shadows) for n in COUNTS[:3]}
-            drawn = scene_in_turn(renderer, scene, camera, counted, options.turns)
+            drawn = draw_in_turn(partial(renderer.render, scene, camera), counted, options.turns)
             yield name, method, *(f"{drawn.ratio(n, 1).median:.1f}" for n in counted)

@@ -9,10 +9,11 @@ one on the axis exactly, by Homogeneous and as printed. The table: PSNR of sRGB,
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from measuring.drawing import holes, scene_in_turn
+from measuring.drawing import draw_in_turn, holes
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
@@ -44,8 +45,8 @@ def run(options, report) -> None:
     for name, (build, corner) in SCENES.items():
         shot = build()
         exact = render_exact(*shot, FLAT, samples=options.samples, pixel_filter="gaussian")
-        steps = lambda turns, name=name: report.steps(turns, name)  # noqa: E731
-        drawn = scene_in_turn(renderer, *shot, choices, options.turns, steps=steps)
+        steps = partial(report.steps, doing=name)
+        drawn = draw_in_turn(partial(renderer.render, *shot), choices, options.turns, steps=steps)
         for method, frame in {"exact": exact, **drawn.results}.items():
             parts[method].append(part(frame, corner))
         for method, frame in drawn.results.items():

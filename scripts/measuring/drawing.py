@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from measuring.timing import Turns, frame, in_turn
-from splat_addon.rendering import Frame, Renderer, Scene, Settings
+from splat_addon.rendering import Frame, Settings
 
 
 def draw_in_turn(
@@ -27,10 +27,6 @@ def draw_in_turn(
         return draw(settings)
 
     return in_turn({name: partial(job, settings) for name, settings in named.items()}, turns, frame, **options)
-
-
-def scene_in_turn(renderer: Renderer, scene: Scene, camera, choices, turns: int, **options) -> Turns:
-    return draw_in_turn(partial(renderer.render, scene, camera), choices, turns, **options)
 
 
 def holes(drawn: Frame, exact: Frame) -> int:

@@ -25,21 +25,22 @@ FEW = 500_000
 STEP = 1e-4
 
 
-def add_object(mesh) -> bpy.types.Object:
-    """The mesh as a smooth-shaded object, alone in the file and selected."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+def linked_object(mesh, is_smooth: bool = False) -> bpy.types.Object:
     data = bpy.data.meshes.new("model")
-    data.from_pydata(mesh.positions, [], mesh.triangles, shade_flat=False)
+    data.from_pydata(mesh.positions, [], mesh.triangles, shade_flat=not is_smooth)
     made = bpy.data.objects.new("model", data)
     bpy.context.collection.objects.link(made)
-    made.select_set(True)
-    bpy.context.view_layer.objects.active = made
     return made
 
 
 def our_operator(mesh, resolution, count):
-    """From a mesh object to a surfel object: reading, cleaning, sampling, and writing of attributes."""
-    source = add_object(mesh)
+    """From a smooth-shaded mesh object to a surfel object: reading, cleaning, sampling, and writing of attributes."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    source = linked_object(mesh, is_smooth=True)
+
+    def select():
+        source.select_set(True)
+        bpy.context.view_layer.objects.active = source
 
     def job():
         bpy.ops.object.surfels_from_mesh(resolution=resolution)
@@ -50,9 +51,9 @@ def our_operator(mesh, resolution, count):
         data = made.data
         bpy.data.objects.remove(made)
         bpy.data.meshes.remove(data)
-        source.select_set(True)
-        bpy.context.view_layer.objects.active = source
+        select()
 
+    select()
     job.after = after
     return job
 
@@ -130,10 +131,7 @@ def blender_bvh(mesh, resolution, count):
 
 def blender_poisson(mesh, resolution, count):
     """Geometry Nodes' Distribute Points on Faces, Poisson disc, for as many points within a few in 100."""
-    data = bpy.data.meshes.new("rival")
-    data.from_pydata(mesh.positions, [], mesh.triangles)
-    source = bpy.data.objects.new("rival", data)
-    bpy.context.collection.objects.link(source)
+    source = linked_object(mesh)
     group = bpy.data.node_groups.new("rival", "GeometryNodeTree")
     for direction in ("INPUT", "OUTPUT"):
         group.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
