@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What one process of a test run found and another need not find again: files that fall with the sources they rest on."""
+"""Files with what one process of a test run found and another need not find again; they fall with their sources."""
 
 from __future__ import annotations
 

@@ -3,8 +3,9 @@
 
 import sys
 
-import demo
 import pytest
+
+import demo
 
 
 @pytest.fixture(autouse=True)
@@ -71,5 +72,5 @@ def test_a_size_is_width_by_height():
 def test_errors_of_blender_are_seen_and_its_noise_is_not(capfdbinary):
     noise = "EGL Error (0x3009): EGL_BAD_MATCH: Arguments are inconsistent"
     code = f"import sys; sys.stderr.write({noise!r} + '\\nreal trouble\\n'); sys.exit(3)"
-    assert demo.run_without_noise([sys.executable, "-c", code]) == 3
+    assert demo.run_without_noise(args=[sys.executable, "-c", code]) == 3
     assert capfdbinary.readouterr().err.splitlines() == [b"real trouble"]

@@ -4,6 +4,7 @@
 import sys
 
 import pytest
+
 from environment import Problem, virtual_environment
 from environment.virtual_environment import make
 

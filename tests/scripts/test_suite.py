@@ -5,6 +5,7 @@ import importlib.util
 from pathlib import Path
 
 import pytest
+
 from testing.groups import BLENDER, PLAIN, QUICK, by_folder, paths_by_group, split_arguments
 
 
