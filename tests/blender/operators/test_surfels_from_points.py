@@ -154,7 +154,7 @@ def test_undo_takes_the_surfels_back(scan):
         ([], {}, "It has no points"),
         ([(0, 0, 0), (1, 0, 0)], {}, "2 usable points are too few"),
         ([(float("nan"), 0, 0)] * 9, {}, "None of the 9 points has finite coordinates"),
-        (sphere(9).tolist(), {"neighbours": 1}, "whole number of 3 or more, not 1"),
+        (sphere(9).tolist(), {"neighbours": 1}, "whole number from 3 to 256, not 1"),
         (sphere(9).tolist(), {"splat_size": 0.0}, "splat size must be a finite number above 0, not 0"),
         (sphere(9).tolist(), {"facing": "CAMERA"}, "The scene has no camera"),
     ],
