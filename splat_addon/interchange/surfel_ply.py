@@ -67,7 +67,7 @@ def write_ply(path: str | os.PathLike, surfels: Surfels, ascii: bool = False) ->
     for name, properties in _OPTIONAL.items():
         values = getattr(surfels, name)
         if values is not None:
-            columns |= split(properties, values.reshape(len(surfels), -1))
+            columns |= split(properties, values.reshape(len(surfels), len(properties)))
     origin = " ".join(repr(float(value)) for value in surfels.origin)
     comments = [_VERSION, *([f"{_ORIGIN} {origin}"] * has_origin), *([_SOLID] * surfels.is_solid)]
     write_vertices(path, columns, tuple(comments), ascii)
