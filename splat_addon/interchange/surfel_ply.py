@@ -102,7 +102,7 @@ def _fields(columns: dict[str, np.ndarray], comments: tuple[str, ...]) -> dict:
     with np.errstate(over="ignore", invalid="ignore"):
         positions = (positions - origin).astype(np.float32)
     colors = matrix(columns, _COLOR) if has(columns, _COLOR) else display_color(columns)
-    material = columns.get("material", np.zeros(len(positions)))
+    material = columns.get("material", np.zeros(len(positions))).astype(np.float64)
     optional = {name: matrix(columns, group) for name, group in _OPTIONAL.items() if has(columns, group)}
     return {
         "positions": positions,

@@ -155,7 +155,7 @@ def _ellipses(
         positions, normals, nearest, splat_size, stage(progress, *_STAGES["ellipses"])
     )
     # Nothing beside it in its own plane, or nothing near it at all: it is as large as the nearest that is better off.
-    stray = alone | ~known
+    stray = alone | ~known | ~_are_sizes(scales).all(axis=1)
     at = np.flatnonzero(stray)
     example = nearest[at, (~stray[nearest[at]]).argmax(axis=1)]
     scales[at] = np.where(stray[example], splat_size * distances[at, 0], scales[example].mean(axis=1))[:, None]
@@ -186,9 +186,14 @@ def _usable_normals(given) -> np.ndarray:
 def _usable_radii(given) -> np.ndarray:
     if "radii" not in given:
         return np.zeros(len(given["positions"]), bool)
-    with np.errstate(over="ignore", under="ignore"):
-        radii = given["radii"].astype(np.float32)
-    return np.isfinite(radii) & (radii > 0)
+    return _are_sizes(given["radii"])
+
+
+def _are_sizes(values: np.ndarray) -> np.ndarray:
+    """Which of them are half-axes that surfels can have, in float32."""
+    with np.errstate(over="ignore"):
+        values = values.astype(np.float32)
+    return np.isfinite(values) & (values > 0)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

@@ -48,6 +48,24 @@ def test_a_point_at_the_end_of_the_range_costs_the_others_neither_time_nor_digit
     assert ((kept * surfels.normals[near]).sum(axis=1) > 0.9).mean() > 0.999
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("choice", ["drop", "keep"])
+def test_damaged_points_cost_no_others_and_no_warning(choice):
+    """Whatever is damaged: positions, normals, radii or colours."""
+    random = np.random.default_rng(2)
+    damaged = [0, np.nan, np.inf, 1e38, 1e300, -1e300, 1e-300, 1e-45, 5e17]
+    for _ in range(20):
+        given = {name: random.normal(size=(30, *width)) for name, width in _WIDTHS.items()}
+        for values in given.values():
+            bad = random.random(values.shape) < 0.05
+            values[bad] = random.choice(damaged, bad.sum())
+        surfels, report = surfels_from_points(**given, neighbours=5, isolated=choice)
+        assert len(surfels) == 30 - sum(report.skipped().values()) and len(surfels) > 10
+
+
+_WIDTHS = {"positions": (3,), "normals": (3,), "radii": (), "colors": (4,)}
+
+
 def test_radii_beyond_float32_are_estimated_and_counted(sphere_points):
     points, _ = sphere_points(1000)
     radii = np.full(1000, 0.1)
