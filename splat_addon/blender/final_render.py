@@ -95,9 +95,17 @@ def _read(depsgraph, resources: _Resources):
 def report_failure(engine: bpy.types.RenderEngine, error: Exception) -> None:
     """Tell Blender, which then writes no file, renders no further frame and exits with 1 in background mode."""
     _release_resources()
-    if not isinstance(error, ValueError | RuntimeError):
-        traceback.print_exc()
-    engine.report({"ERROR"}, f"Surfel render failed: {error}")
+    engine.report({"ERROR"}, f"Surfel render failed: {sentence_of(error)}")
+
+
+def sentence_of(error: Exception) -> str:
+    """What is said of an error. One that is not meant for users goes to the console too, with where it happened."""
+    if isinstance(error, ValueError | RuntimeError):
+        return str(error)
+    traceback.print_exception(error)
+    if isinstance(error, MemoryError):
+        return "The memory does not suffice; render fewer surfels, or a smaller picture."
+    return f"This is a fault of the extension ({type(error).__name__}: {error}); the console says where it happened."
 
 
 class _Resources:

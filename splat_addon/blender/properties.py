@@ -29,6 +29,7 @@ from ..rendering.settings import (
 )
 from ..rendering.shading_models import SHADING_MODELS
 from ..rendering.storages import STORAGES
+from .enum_values import check_choices
 from .ids import RENDER_SETTINGS
 from .matcap_images import matcap_of
 from .mesh_sampling_settings import MeshSamplingProperties
@@ -257,6 +258,7 @@ def viewport_settings(scene: bpy.types.Scene) -> Settings:
 
 def _settings(scene, **choices) -> Settings:
     properties = getattr(scene, RENDER_SETTINGS)
+    check_choices(properties, "render properties")
     return Settings(
         method=properties.method,
         shading=properties.shading,

@@ -83,6 +83,18 @@ def color_times_strength(node: bpy.types.Node, owner: str, notes) -> tuple[float
     return tuple(c * strength.default_value for c in color.default_value[:3])
 
 
+#: What a world or a material sends out at most, in a channel: more would leave float32 once it falls on something.
+MAX_RADIANCE = 1e30
+
+
+def finite_radiance(radiance: tuple[float, float, float], owner: str, notes) -> tuple[float, float, float]:
+    """The radiance itself; where pictures cannot hold it, black, and a note. owner: the subject of a sentence."""
+    if all(abs(channel) <= MAX_RADIANCE for channel in radiance):
+        return radiance
+    notes.add(f"{owner} sends out {radiance[0]:g}, {radiance[1]:g}, {radiance[2]:g}, which no picture holds; it is black")
+    return 0.0, 0.0, 0.0
+
+
 def shading_material(material: bpy.types.Material | None, notes, own: Collection[str] = ()) -> Material:
     """How the shader at the material's output answers light, and what it sends out; the default one without a material.
 
@@ -95,7 +107,11 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
         notes.add(f"The material {material.name!r} has no Principled BSDF at its output; it is shaded as a default one")
         return Material(index=material.pass_index)
     fields, make = _SHADERS[node.type]
-    made = make({name: node.inputs[name].default_value for name in fields})
+    plain = {name: node.inputs[name].default_value for name in fields}
+    if emission := [name for name, field in fields.items() if field == "emission"]:
+        sent = finite_radiance(_sent(plain, *emission), f"The material {material.name!r}", notes)
+        plain |= dict(zip(emission, (sent, 1.0), strict=True))
+    made = make(plain)
     linked = [name for name, field in fields.items() if node.inputs[name].is_linked and field not in own]
     if not any(made.emission):
         linked = [name for name in linked if fields[name] != "emission" or "Strength" in name]
