@@ -12,7 +12,7 @@ from ..rendering import Frame, RenderCancelled, Renderer, open_device
 from .camera_export import depth_of_field_notes, view_camera
 from .live_meshes import LiveMeshes
 from .motion_blur import motion_blur_notes, moving_time, shutter_times
-from .properties import final_settings
+from .properties import final_settings, stops_where_broken
 from .render_passes import hand_over, outputs_of
 from .scene_export import Notes, SurfelStore, export_scene
 
@@ -51,6 +51,8 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
             if time is not None:
                 go(time)
             exported, said = _read(depsgraph, resources)
+            if said.left_out and stops_where_broken(scene):
+                raise ValueError(_left_out_sentence(said.left_out))
             notes.counts |= said.counts
             yield exported, view_camera(engine, depsgraph)
 
@@ -64,6 +66,11 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
     for sentence in motion_blur_notes(scene, settings.samples):
         notes.add(sentence)
     return frame, notes
+
+
+def _left_out_sentence(left_out: list[str]) -> str:
+    more = f" (and {len(left_out) - 1:,} more)" if len(left_out) > 1 else ""
+    return f"{left_out[0]}{more} Mend that, or set Broken Objects in the render properties to Warn."
 
 
 def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:

@@ -175,7 +175,7 @@ class LiveMeshes:
                 if live.drawn_at and len(live.drawn_part):
                     drawn += self._polygon_instances(live, notes)
             except ValueError as error:
-                notes.add(f"{live.owner} is left out: {error}")
+                notes.leave_out(live.owner, error)
         self._kept = {name: live for name, live in self._kept.items() if name in self._names}
         return sampled, drawn
 

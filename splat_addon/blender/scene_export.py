@@ -28,13 +28,20 @@ from .world_export import WorldStore
 
 @dataclass
 class Notes:
-    """What the user should hear about a scene: sentence -> how often."""
+    """What the user should hear about a scene: sentence -> how often. left_out: those that name an object or a light
+    that should be seen and is not."""
 
     counts: Counter = field(default_factory=Counter)
+    left_out: list[str] = field(default_factory=list)
 
     def add(self, sentence: str, count: int = 1) -> None:
         if count:
             self.counts[sentence] += count
+
+    def leave_out(self, name: str, error: ValueError) -> None:
+        """An object or a light of this name cannot be drawn."""
+        self.left_out.append(f"{name} is left out: {error}")
+        self.add(self.left_out[-1])
 
     def sentences(self) -> list[str]:
         """One sentence each, with its count where it happened more than once."""
@@ -115,7 +122,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
             elif object_.type in _NOT_DRAWN:
                 notes.add(f"Objects of type {_NOT_DRAWN[object_.type]} are not drawn; convert them to meshes first")
         except ValueError as error:
-            notes.add(f"{object_.name} is left out: {error}")
+            notes.leave_out(object_.name, error)
     sampled, polygons = live_meshes.instances(
         depsgraph, mesh_fineness(bpy_scene), are_meshes_texture_mapped(bpy_scene), notes
     )
@@ -132,7 +139,7 @@ def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], 
             try:
                 light = light_of(entry.object.data, np.array(entry.matrix_world, np.float64), notes)
             except ValueError as error:
-                notes.add(f"{entry.object.name} is left out: {error}")
+                notes.leave_out(entry.object.name, error)
                 continue
             if light:
                 lights.append(light)

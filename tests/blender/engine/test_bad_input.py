@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bad input: a sentence that names it, nothing crashes, what was skipped is counted, and the rest is rendered."""
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 import pytest
@@ -71,6 +73,22 @@ def test_an_object_that_lost_an_attribute_is_named_and_left_out(name, add_surfel
     torn.data.attributes.remove(torn.data.attributes[name])
     assert_good_is_drawn()
     assert f"Warning: torn is left out: The surfel mesh 'torn' has no attribute '{name}'" in said()
+
+
+@pytest.mark.parametrize("choice", ["BACKGROUND", "STOP"])
+def test_a_render_that_nobody_watches_stops_at_a_broken_object(choice, scene, good, add_surfels):
+    scene.surfel_splatting.broken_objects = choice
+    for name in ("torn", "torn too"):
+        torn = add_surfels([(0, 0, 1)], name=name)
+        torn.data.attributes.remove(torn.data.attributes["scale"])
+    with pytest.raises(RuntimeError, match=r"torn is left out: .* 'scale'.*\(and 1 more\) .*Broken Objects .* to Warn"):
+        bpy.ops.render.render(write_still=True)
+    assert not Path(scene.render.filepath).exists()
+
+
+def test_by_default_it_stops_in_background_only(scene):
+    scene.surfel_splatting.property_unset("broken_objects")
+    assert scene.surfel_splatting.broken_objects == "BACKGROUND" and bpy.app.background
 
 
 def test_an_attribute_of_the_wrong_type_is_named_and_its_object_left_out(add_surfels, assert_good_is_drawn, said):
