@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Choices that a .blend holds and this version does not have, as one that a later version saved: read as an empty text."""
+"""Choices that a .blend holds and this version does not have, such as a later version saved: they read as empty."""
 
 from __future__ import annotations
 

@@ -91,7 +91,8 @@ def finite_radiance(radiance: tuple[float, float, float], owner: str, notes) -> 
     """The radiance itself; where pictures cannot hold it, black, and a note. owner: the subject of a sentence."""
     if all(abs(channel) <= MAX_RADIANCE for channel in radiance):
         return radiance
-    notes.add(f"{owner} sends out {radiance[0]:g}, {radiance[1]:g}, {radiance[2]:g}, which no picture holds; it is black")
+    red, green, blue = radiance
+    notes.add(f"{owner} sends out {red:g}, {green:g}, {blue:g}, which no picture holds; it is black")
     return 0.0, 0.0, 0.0
 
 

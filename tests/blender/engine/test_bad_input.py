@@ -293,7 +293,7 @@ def test_a_choice_of_a_later_version_is_named(name, label, scene, good):
         bpy.ops.render.render(write_still=True)
 
 
-def test_an_object_s_choice_of_a_later_version_is_named_and_it_is_left_out(add_square, good, assert_good_is_drawn, said):
+def test_an_object_with_a_choice_of_a_later_version_is_left_out(add_square, good, assert_good_is_drawn, said):
     store_number(add_square("newer"), "render_as", 99)
     assert_good_is_drawn()
     assert "newer is left out: Render as in the object properties holds a choice" in said()

@@ -155,7 +155,7 @@ def test_two_slashes_stand_for_the_folder_of_the_blend(stored, import_ply, surfe
 
 @pytest.mark.parametrize("way", ["export", "import"])
 def test_before_the_blend_has_a_folder_two_slashes_are_an_error(stored, way):
-    with pytest.raises(RuntimeError, match="'//a.ply' begins in the folder of the .blend, which has not been saved"):
+    with pytest.raises(RuntimeError, match=r"'//a\.ply' begins in the folder of the \.blend, which has not been saved"):
         getattr(bpy.ops, f"{way}_scene").surfels_ply(filepath="//a.ply")
 
 

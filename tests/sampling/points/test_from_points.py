@@ -37,7 +37,7 @@ def test_points_that_stand_alone_are_counted_and_left_out_or_kept(grid_points, c
 @pytest.mark.parametrize("choice", ["drop", "keep"])
 def test_a_point_at_the_end_of_the_range_costs_the_others_neither_time_nor_digits(sphere_points, choice):
     """All others would share one of cells that are counted from end to end: 1.6 billion distances."""
-    points, normals = sphere_points(40_000)
+    points, _ = sphere_points(40_000)
     started = time.process_time()
     surfels, report = surfels_from_points(np.concatenate([points, [(5e17, -5e17, 0)]]), isolated=choice)
     assert time.process_time() - started < 10
