@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from . import (
+    camera_panels,
     conversion_settings,
     engine,
     mesh_sampling_settings,
@@ -13,6 +14,8 @@ from . import (
     points_panel,
     prediction,
     properties,
+    light_panels,
+    object_panels,
     render_panels,
     render_passes,
     sidebar,
@@ -25,6 +28,9 @@ MODULES = (
     engine,
     render_panels,
     passes_panel,
+    light_panels,
+    camera_panels,
+    object_panels,
     mesh_sampling_settings,
     conversion_settings,
     operators,
