@@ -8,17 +8,18 @@ from . import (
     camera_panels,
     conversion_settings,
     engine,
+    light_panels,
     mesh_sampling_settings,
+    object_panels,
     operators,
     passes_panel,
     points_panel,
     prediction,
     properties,
-    light_panels,
-    object_panels,
     render_panels,
     render_passes,
     sidebar,
+    view_layer_panels,
 )
 
 #: In the order of registration: what others refer to comes first.
@@ -31,6 +32,7 @@ MODULES = (
     light_panels,
     camera_panels,
     object_panels,
+    view_layer_panels,
     mesh_sampling_settings,
     conversion_settings,
     operators,

@@ -44,7 +44,7 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
 def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int, int]) -> tuple[Frame, Notes]:
     """Of the engine's active view, the `turn[0]`th of `turn[1]`."""
     scene, notes = depsgraph.scene, Notes()
-    times = shutter_times(scene, settings.samples)
+    times = shutter_times(scene, depsgraph.view_layer, settings.samples)
 
     def moments(go):
         for time in times or [None]:
@@ -63,7 +63,7 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
     camera_object = engine.camera_override or scene.camera
     for sentence in depth_of_field_notes(camera_object, settings.samples):
         notes.add(sentence)
-    for sentence in motion_blur_notes(scene, settings.samples):
+    for sentence in motion_blur_notes(scene, depsgraph.view_layer, settings.samples):
         notes.add(sentence)
     return frame, notes
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A light's Data tab: everything that the export reads of it. Blender's own panel for other engines has the type alone."""
+"""A light's Data tab: all that the export reads of it, where Blender's panel for other engines has the type alone."""
 
 from __future__ import annotations
 

@@ -138,6 +138,19 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
     return _Reader(shader, layers).surface()
 
 
+def plain_color(material: bpy.types.Material) -> tuple[tuple[float, float, float, float], bool]:
+    """The colour and opacity that a material has without its textures, and whether it has some."""
+    shader = surface_shader(material) if uses_nodes(material) else None
+    sockets = SHADERS.get(shader.bl_idname) if shader is not None else None
+    if sockets is None:
+        return tuple(material.diffuse_color), False
+    if "color" not in sockets:
+        return (0.0, 0.0, 0.0, 1.0), False
+    used = [shader.inputs[sockets[name][0]] for name in ("color", "opacity") if name in sockets]
+    color, *opacity = (constant(socket).value for socket in used)
+    return (*color, *(opacity[0] if opacity else (1.0,))), any(linked(socket) is not None for socket in used)
+
+
 def _bare_surface(layers: MeshLayers) -> Surface:
     if not default_color_layer(layers.mesh):
         return Surface()

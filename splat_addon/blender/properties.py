@@ -259,6 +259,8 @@ def final_settings(view_layer: bpy.types.ViewLayer, scene: bpy.types.Scene, outp
     """The settings of a final render of a view layer that needs these arrays."""
     properties = getattr(scene, RENDER_SETTINGS)
     choices = {name: getattr(properties, name) for name in ("supersampling", "samples", "profile")}
+    if view_layer.samples:
+        choices["samples"] = min(view_layer.samples, MAX_SAMPLES)
     return _settings(scene, outputs=outputs, alpha_threshold=view_layer.pass_alpha_threshold, **choices)
 
 

@@ -166,7 +166,9 @@ def stock_panels() -> Iterator[type]:
     """Blender's panels that show settings which this engine honours."""
     for panel in bpy.types.Panel.__subclasses__():
         engines = getattr(panel, "COMPAT_ENGINES", ())
-        is_ignored = panel.__name__ in _NOT_JOINED or "freestyle" in panel.__name__
+        # of a panel that the shader editor shows too there is a second class, with the same set of engines
+        name = panel.__name__.removeprefix("NODE_")
+        is_ignored = name in _NOT_JOINED or "freestyle" in name
         if "BLENDER_RENDER" in engines and not is_ignored:
             yield panel
         elif panel.__name__ in _JOINED_FROM_EEVEE:

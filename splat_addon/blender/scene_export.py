@@ -15,9 +15,11 @@ import numpy as np
 from ..rendering import Instance, Light, Scene
 from ..rendering.packing import MAX_SPLATS
 from ..surfels import Surfels, split
+from . import passed_over
 from .attributes import has_surfels, read_surfels
 from .light_linking import LightSets
 from .live_meshes import LiveMeshes, Place
+from .material_override import Overridden, override_of
 from .mesh_sampling_settings import are_meshes_texture_mapped, form_of, mesh_fineness
 from .object_detail import detail_of
 from .shading_export import light_of, shading_material
@@ -68,6 +70,7 @@ class SurfelStore:
     def __init__(self):
         self.world = WorldStore()
         self.textures = TextureStore()
+        self.overridden = Overridden()
         self._kept: dict[int, _Kept] = {}
         self._current: set[int] = set()
 
@@ -84,6 +87,7 @@ class SurfelStore:
 
     def begin_frame(self, changed: set[str] | None = None, are_materials_edited: bool = False) -> None:
         """Meshes named in `changed` (None: all) are read again the next time they are asked for."""
+        self.overridden.begin_frame()
         self.textures.begin_frame(are_materials_edited, is_told=changed is not None)
         self._current = {k for k in self._current if changed is not None and self._kept[k].name not in changed}
 
@@ -97,11 +101,14 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
 
     live_meshes: keeps the meshes that are no surfels.
     """
-    notes, bpy_scene = Notes(), depsgraph.scene
+    notes, bpy_scene, view_layer = Notes(), depsgraph.scene, depsgraph.view_layer_eval
+    override = override_of(depsgraph)
+    for sentence in passed_over.of_scene(bpy_scene):
+        notes.add(sentence)
     surfels, (lights, light_sets) = [], _lights(depsgraph, notes)
     for entry in depsgraph.object_instances:
         object_, matrix = entry.object, np.array(entry.matrix_world, np.float64)
-        if not entry.show_self:
+        if not entry.show_self or not (view_layer.use_solid and _is_seen(entry, depsgraph, notes)):
             continue
         try:
             if object_.type == "MESH":
@@ -113,10 +120,10 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                     "is_holdout": owner_of(entry).holdout_get(view_layer=depsgraph.view_layer),
                 }
                 if (what := _content(object_)) == "surfels":
-                    surfels += _instances(object_, matrix, fields, store, notes)
+                    surfels += _instances(object_, matrix, fields, store, notes, override)
                 elif what == "faces" and (form := form_of(entry, bpy_scene)).kind != "HIDDEN":
                     owner = owner_of(entry)
-                    live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), notes)
+                    live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), notes, override)
                 elif what == "points":
                     notes.add(_BARE_POINTS)
             elif object_.type in _NOT_DRAWN:
@@ -126,9 +133,28 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
     sampled, polygons = live_meshes.instances(
         depsgraph, mesh_fineness(bpy_scene), are_meshes_texture_mapped(bpy_scene), notes
     )
-    world, environment = store.world.read(depsgraph.scene.world, notes)
+    world, environment = store.world.read(_world_of(depsgraph), notes)
     lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
     return Scene((*surfels, *sampled), tuple(lights), world, environment, tuple(polygons)), notes
+
+
+def _world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
+    """That of the view layer, which from Blender 5.0 on may have one of its own, or none to see at all."""
+    view_layer = depsgraph.view_layer_eval
+    if not view_layer.use_sky:
+        return None
+    return getattr(view_layer, "world_override", None) or depsgraph.scene.world
+
+
+def _is_seen(entry: bpy.types.DepsgraphObjectInstance, depsgraph: bpy.types.Depsgraph, notes: Notes) -> bool:
+    """Whether the camera sees it. What it does not see casts no shadow here either, which is said."""
+    owner = owner_of(entry)
+    is_indirect = owner.indirect_only_get(view_layer=depsgraph.view_layer)
+    if entry.object.visible_camera and owner.visible_camera and not is_indirect:
+        return True
+    if entry.object.type in {"MESH", *_NOT_DRAWN} and entry.object.visible_shadow:
+        notes.add(f"{owner.name} is hidden from the camera, and in this engine its shadow with it")
+    return False
 
 
 def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], LightSets]:
@@ -142,6 +168,8 @@ def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], 
                 notes.leave_out(entry.object.name, error)
                 continue
             if light:
+                for sentence in passed_over.of_light(entry.object.original):
+                    notes.add(sentence)
                 lights.append(light)
                 objects.append(entry.object.original)
     return lights, LightSets(objects, notes)
@@ -162,7 +190,9 @@ def _content(object_: bpy.types.Object) -> str:
         return "surfels" if has_surfels(mesh) else "faces" if mesh.polygons else "points"
 
 
-def _instances(object_, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes: Notes) -> list[Instance]:
+def _instances(
+    object_, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes: Notes, override
+) -> list[Instance]:
     """Of an object that has surfels; one, unless it has more than the renderer holds in one.
 
     Raises ValueError for broken attributes or an unusable matrix.
@@ -171,6 +201,12 @@ def _instances(object_, matrix_world: np.ndarray, fields: dict, store: SurfelSto
         parts, skipped = store.get(mesh)
     if skipped:
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
+    for sentence in passed_over.of_object(object_.original):
+        notes.add(sentence)
+    if override is not None:
+        materials = (shading_material(override, notes),)
+        parts = tuple(store.overridden.get(part, override, notes) for part in parts)
+        return [Instance(part, matrix_world, materials, **fields) for part in parts]
     own = parts[0].arrays().keys()
     materials = tuple(shading_material(slot.material, notes, own) for slot in object_.material_slots)
     slots = object_.material_slots if parts[0].has_uvs else ()

@@ -12,6 +12,8 @@ import numpy as np
 
 from ..rendering import Light, Material
 from ..rendering.packing import reflectance
+from . import passed_over
+from .node_products import linked
 
 #: Blender's light type -> its emitting area, which multiplies the energy of a light that is not normalised (as
 #: Cycles measures it: a sun's disc at distance 1, a point's sphere, or 4 for one without size).
@@ -107,6 +109,8 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
     if node is None:
         notes.add(f"The material {material.name!r} has no Principled BSDF at its output; it is shaded as a default one")
         return Material(index=material.pass_index)
+    for sentence in passed_over.of_material(material, node):
+        notes.add(sentence)
     fields, make = _SHADERS[node.type]
     plain = {name: node.inputs[name].default_value for name in fields}
     if emission := [name for name, field in fields.items() if field == "emission"]:
@@ -165,7 +169,7 @@ def _levelled(ior: float, level: float) -> float:
 def output_source(tree: bpy.types.NodeTree, output_type: str, *wanted: str) -> bpy.types.Node | None:
     """The node of one of the types `wanted` that feeds the tree's active output, or None."""
     for node in tree.nodes:
-        if node.type == output_type and node.is_active_output and node.inputs["Surface"].links:
-            source = node.inputs["Surface"].links[0].from_node
-            return source if source.type in wanted else None
+        if node.type == output_type and node.is_active_output and (found := linked(node.inputs["Surface"])):
+            source = found[0]
+            return source if source.type in wanted and not source.mute else None
     return None

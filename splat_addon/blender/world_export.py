@@ -11,6 +11,7 @@ from mathutils import Euler
 
 from ..rendering import Environment
 from ..rendering.atlas import MAX_EDGE
+from . import passed_over
 from .shading_export import MAX_RADIANCE, color_times_strength, finite_radiance, output_source
 from .texture_images import UnreadableError, linear_pixels
 
@@ -29,6 +30,8 @@ class WorldStore:
         if world is None:
             return BLACK, None
         node = output_source(world.node_tree, "OUTPUT_WORLD", "BACKGROUND") if world.use_nodes else None
+        for sentence in passed_over.of_world(world):
+            notes.add(sentence)
         owner = f"The world {world.name!r}"
         if node is None:
             return (BLACK if world.use_nodes else tuple(world.color)), None
