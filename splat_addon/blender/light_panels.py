@@ -92,12 +92,14 @@ class DATA_PT_surfel_light_nodes(_LightPanel, bpy.types.Panel):
     bl_options = frozenset({"DEFAULT_CLOSED"})
 
     def draw_header(self, context):
-        self.layout.prop(context.light, "use_nodes", text="")
+        # Blender 6 is to leave it out
+        if "use_nodes" in context.light.bl_rna.properties:
+            self.layout.prop(context.light, "use_nodes", text="")
 
     def draw(self, context):
         layout, light = self.layout, context.light
         layout.use_property_split = True
-        layout.active = light.use_nodes
+        layout.active = getattr(light, "use_nodes", True)
         tree = light.node_tree
         output = tree.get_output_node("ALL") if tree else None
         if output is None:

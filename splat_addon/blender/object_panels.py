@@ -24,8 +24,6 @@ class OBJECT_PT_surfel_visibility(EnginePanel, bpy.types.Panel):
         column = self.layout.column()
         column.prop(context.object, "visible_camera", text="Camera")
         column.prop(context.object, "visible_shadow", text="Shadow")
-        column = self.layout.column(heading="Mask")
-        column.prop(context.object, "is_holdout")
 
 
 register, unregister = bpy.utils.register_classes_factory((OBJECT_PT_surfel_visibility,))
