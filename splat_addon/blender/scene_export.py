@@ -16,7 +16,7 @@ from ..rendering import Instance, Light, Scene
 from ..rendering.packing import MAX_SPLATS
 from ..surfels import Surfels, split
 from . import passed_over
-from .attributes import has_surfels, read_surfels
+from .attributes import has_surfels, have_same_values, read_stored
 from .light_linking import LightSets
 from .live_meshes import LiveMeshes, Place
 from .material_override import Overridden, override_of
@@ -55,6 +55,7 @@ class _Kept(NamedTuple):
     surfels: Surfels
     parts: tuple[Surfels, ...]
     skipped: int
+    strayed: int
 
 
 class SurfelStore:
@@ -73,17 +74,21 @@ class SurfelStore:
         self.overridden = Overridden()
         self._kept: dict[int, _Kept] = {}
         self._current: set[int] = set()
+        self._followed: dict = {}
 
-    def get(self, mesh: bpy.types.Mesh) -> tuple[tuple[Surfels, ...], int]:
-        """As `attributes.read_surfels`, in parts that the renderer can hold; once a mesh and frame."""
+    def get(self, mesh: bpy.types.Mesh) -> tuple[tuple[Surfels, ...], int, int]:
+        """As `attributes.read_stored`, in parts that the renderer can hold; once a mesh and frame."""
         key = mesh.session_uid
         if key not in self._current:
-            surfels, skipped = read_surfels(mesh)
-            known = (k for k in self._kept.values() if k.name == mesh.name_full and _same(k.surfels, surfels))
-            kept = next(known, None) or _Kept(mesh.name_full, surfels, split(surfels, MAX_SPLATS), skipped)
-            self._kept[key] = kept._replace(skipped=skipped)
+            surfels, skipped, strayed = read_stored(mesh, self._followed)
+            known = (
+                k for k in self._kept.values() if k.name == mesh.name_full and have_same_values(k.surfels, surfels)
+            )
+            kept = next(known, None) or _Kept(mesh.name_full, surfels, split(surfels, MAX_SPLATS), 0, 0)
+            self._kept[key] = kept._replace(skipped=skipped, strayed=strayed)
             self._current.add(key)
-        return self._kept[key].parts, self._kept[key].skipped
+        kept = self._kept[key]
+        return kept.parts, kept.skipped, kept.strayed
 
     def begin_frame(self, changed: set[str] | None = None, are_materials_edited: bool = False) -> None:
         """Meshes named in `changed` (None: all) are read again the next time they are asked for."""
@@ -94,6 +99,8 @@ class SurfelStore:
     def forget_unused(self) -> None:
         """Let go of meshes that this frame did not ask for."""
         self._kept = {key: kept for key, kept in self._kept.items() if key in self._current}
+        names = {kept.name for kept in self._kept.values()}
+        self._followed = {name: before for name, before in self._followed.items() if name in names}
 
 
 def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes: LiveMeshes) -> tuple[Scene, Notes]:
@@ -198,9 +205,14 @@ def _instances(
     Raises ValueError for broken attributes or an unusable matrix.
     """
     with _attributes_of(object_) as mesh:
-        parts, skipped = store.get(mesh)
+        parts, skipped, strayed = store.get(mesh)
     if skipped:
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
+    if strayed:
+        notes.add(
+            f"{object_.name}: {strayed:,} surfels were moved one by one, and lie as they did before; convert the "
+            "source again if it was bent"
+        )
     for sentence in passed_over.of_object(object_.original):
         notes.add(sentence)
     if override is not None:
@@ -221,9 +233,3 @@ def _attributes_of(object_: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
         yield object_.to_mesh() if object_.data.is_editmode else object_.data
     finally:
         object_.to_mesh_clear()
-
-
-def _same(a: Surfels, b: Surfels) -> bool:
-    mine, other = a.arrays(), b.arrays()
-    same_fields = a.is_solid == b.is_solid and mine.keys() == other.keys()
-    return same_fields and all(np.array_equal(mine[name], other[name]) for name in mine)

@@ -80,7 +80,7 @@ def reads(kind: str) -> set[str]:
     return found
 
 
-def visible_panels(tabs=frozenset().union(*TABS.values())):
+def visible_panels(tabs=frozenset({"data", "render", "output", "view_layer", "object", "material"})):
     """The classes of panels that these tabs of the properties editor may show for this engine."""
     panels = {p.__name__: p for p in bpy.types.Panel.__subclasses__()}
     panels |= {p.__name__: p for p in _subclasses(bpy.types.Panel)}
@@ -109,11 +109,11 @@ class Texts(ast.NodeVisitor):
     def __init__(self):
         self.found = set()
 
-    def visit_Constant(self, node):  # noqa: N802 - ast's name
+    def visit_Constant(self, node):
         if isinstance(node.value, str):
             self.found.add(node.value)
 
-    def visit_If(self, node):  # noqa: N802
+    def visit_If(self, node):
         test = ast.unparse(node.test)
         for child in node.orelse if "engine" in test and ids.ENGINE not in test else (*node.body, *node.orelse):
             self.visit(child)

@@ -15,7 +15,7 @@ from ...surfels import Surfels
 from ..attributes import has_surfels, read_surfels
 from ..ids import EXPORT_PLY
 from ..mesh_extraction import evaluated_mesh
-from .file_paths import absolute, file_sentence
+from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 
 #: The operator's choice -> function of path, surfels and whether to write text.
@@ -33,6 +33,7 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
     bl_options = {"PRESET"}  # noqa: RUF012 - Blender reads a set
 
     filename_ext = ".ply"
+    filepath: path_property("writing to")
     filter_glob: StringProperty(default="*.ply", options={"HIDDEN"})
     layout_kind: EnumProperty(
         name="Layout",

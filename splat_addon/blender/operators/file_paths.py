@@ -4,6 +4,16 @@
 from __future__ import annotations
 
 import bpy
+from bpy.props import StringProperty
+
+#: Blender 5.2 warns scripts that hand // to a path that does not say that it takes it.
+_OPTIONS = {"SKIP_PRESET"} | ({"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 2, 0) else set())
+
+
+def path_property(way: str):
+    """The operator's `filepath`, as Blender's helpers have it. way: "reading from" or "writing to"."""
+    description = f"Filepath used for {way} the file"
+    return StringProperty(name="File Path", description=description, maxlen=1024, subtype="FILE_PATH", options=_OPTIONS)
 
 
 def absolute(filepath: str) -> str:

@@ -16,7 +16,7 @@ from ...surfels import Surfels
 from ..ids import IMPORT_PLY
 from ..points_settings import PointsProperties, draw_points_properties, keywords, viewpoint
 from ..surfel_objects import add_surfel_object, select_only
-from .file_paths import absolute, file_sentence
+from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 
 
@@ -28,6 +28,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
     bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 - Blender reads a set
 
     filename_ext = ".ply"
+    filepath: path_property("reading from")
     filter_glob: StringProperty(default="*.ply", options={"HIDDEN"})
     flatness: FloatProperty(
         name="Flatness",
