@@ -32,6 +32,11 @@ def has_surfels(mesh: bpy.types.Mesh) -> bool:
     return not mesh.polygons and any(name in mesh.attributes for name in MARKS)
 
 
+def has_surfels_beside_faces(mesh: bpy.types.Mesh) -> bool:
+    """Whether surfels and an ordinary mesh were joined to `mesh`; only surfels that this extension wrote are told."""
+    return bool(mesh.polygons) and REST.name in mesh.attributes
+
+
 def write_surfels(name: str, surfels: Surfels) -> bpy.types.Mesh:
     """A new vertex-only mesh that stores `surfels`; `surfels.origin` is left to the object's location."""
     mesh = bpy.data.meshes.new(name)
@@ -69,9 +74,11 @@ class Stored(NamedTuple):
 
 
 def read_stored(mesh: bpy.types.Mesh, known: dict[str, tuple[Surfels, np.ndarray, Stored]] | None = None) -> Stored:
-    """The surfels that `mesh` stores, with origin (0, 0, 0). Where their centres have been moved together since they
-    were written, their frames are moved along (`interchange.followed`), which takes 4 s a million: known keeps what
-    came of it, by the name of the mesh, for as long as the values are the same.
+    """The surfels that `mesh` stores, with origin (0, 0, 0); beside faces, the points that belong to none.
+
+    Where their centres have been moved together since they were written, their frames are moved along
+    (`interchange.followed`), which takes 4 s a million: known keeps what came of it, by the name of the mesh, for as
+    long as the values are the same.
 
     Attributes are found by name; optional ones need not be there. Raises ValueError where another is missing or one is
     not of the stored type, and for a mesh in edit mode, whose points are not in its attributes then
@@ -85,11 +92,14 @@ def read_stored(mesh: bpy.types.Mesh, known: dict[str, tuple[Surfels, np.ndarray
     there = [field for field in OPTIONAL_LAYOUT if POINT_ATTRIBUTES[field].name in mesh.attributes]
     arrays = {field: _read(mesh, POINT_ATTRIBUTES[field]) for field in (*LAYOUT, *there)}
     arrays["scales"] = arrays["scales"][:, :2]
+    loose = _loose_points(mesh)
+    arrays = arrays if loose is None else {name: values[loose] for name, values in arrays.items()}
     surfels, skipped = valid_surfels(is_solid=bool(mesh.get(SOLID)), **arrays)
     rest = mesh.attributes.get(REST.name)
     if rest is None or (rest.data_type, rest.domain) != (REST.data_type, "POINT"):
         return Stored(surfels, skipped, 0)
     rest = _read(mesh, REST)
+    rest = rest if loose is None else rest[loose]
     if skipped:
         # their numbers take the materials' way
         numbers = np.where(arrays["materials"] < 0, -1, np.arange(len(rest)))
@@ -103,6 +113,17 @@ def read_stored(mesh: bpy.types.Mesh, known: dict[str, tuple[Surfels, np.ndarray
     moved, strayed = followed(surfels, rest)
     known[mesh.name_full] = surfels, rest, Stored(moved, skipped, strayed)
     return known[mesh.name_full][2]
+
+
+def _loose_points(mesh: bpy.types.Mesh) -> np.ndarray | None:
+    """(n,) the points that belong to no face, of a mesh with faces; None: all points are surfels."""
+    if not mesh.polygons:
+        return None
+    is_loose = np.ones(len(mesh.vertices), bool)
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
+    is_loose[corners] = False
+    return np.flatnonzero(is_loose)
 
 
 def have_same_values(a: Surfels, b: Surfels) -> bool:

@@ -15,6 +15,7 @@ import numpy as np
 from ..sampling import Channel, Image, NormalMap, Surface, Texture, VertexColors
 from ..sampling.surfaces import ALPHA, RED
 from . import node_products
+from .attributes import has_surfels_beside_faces
 from .node_products import AttributeSource, ImageSource, Product, constant, linked, product
 from .texture_images import UnreadableError, linear_pixels
 from .texture_placement import placement, uv_layer
@@ -260,7 +261,9 @@ def _is_alpha(source) -> bool:
 
 
 def default_color_layer(mesh: bpy.types.Mesh) -> str | None:
-    """The colour attribute that renders, or None."""
+    """The colour attribute that renders, or None. That of surfels that were joined to the mesh says nothing of it."""
+    if has_surfels_beside_faces(mesh):
+        return None
     name = mesh.attributes.default_color_name or mesh.attributes.active_color_name
     return name if name in mesh.color_attributes else None
 

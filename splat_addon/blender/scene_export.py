@@ -16,7 +16,7 @@ from ..rendering import Instance, Light, Scene
 from ..rendering.packing import MAX_SPLATS
 from ..surfels import Surfels, split
 from . import passed_over
-from .attributes import has_surfels, have_same_values, read_stored
+from .attributes import has_surfels, has_surfels_beside_faces, have_same_values, read_stored
 from .light_linking import LightSets
 from .live_meshes import LiveMeshes, Place
 from .material_override import Overridden, override_of
@@ -126,12 +126,13 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                     "index": object_.pass_index,
                     "is_holdout": owner_of(entry).holdout_get(view_layer=depsgraph.view_layer),
                 }
-                if (what := _content(object_)) == "surfels":
+                what = _content(object_)
+                if "surfels" in what:
                     surfels += _instances(object_, matrix, fields, store, notes, override)
-                elif what == "faces" and (form := form_of(entry, bpy_scene)).kind != "HIDDEN":
+                if "faces" in what and (form := form_of(entry, bpy_scene)).kind != "HIDDEN":
                     owner = owner_of(entry)
                     live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), notes, override)
-                elif what == "points":
+                if "points" in what:
                     notes.add(_BARE_POINTS)
             elif object_.type in _NOT_DRAWN:
                 notes.add(f"Objects of type {_NOT_DRAWN[object_.type]} are not drawn; convert them to meshes first")
@@ -189,12 +190,14 @@ _NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "v
 _BARE_POINTS = "Meshes of points without faces are not drawn; convert them with Object > Convert Points to Surfels"
 
 
-def _content(object_: bpy.types.Object) -> str:
-    """What a mesh object has: "surfels", "faces", "points" or "nothing"."""
+def _content(object_: bpy.types.Object) -> tuple[str, ...]:
+    """What a mesh object has of "surfels", "faces" and "points"."""
     with _attributes_of(object_) as mesh:
         if not len(mesh.vertices):
-            return "nothing"
-        return "surfels" if has_surfels(mesh) else "faces" if mesh.polygons else "points"
+            return ()
+        if mesh.polygons:
+            return ("surfels", "faces") if has_surfels_beside_faces(mesh) else ("faces",)
+        return ("surfels",) if has_surfels(mesh) else ("points",)
 
 
 def _instances(

@@ -134,6 +134,20 @@ def test_join(discs, picture, assert_drawn_as):
     assert_drawn_as(expected)
 
 
+@pytest.mark.parametrize("active", ["surfels", "mesh"])
+def test_join_with_a_mesh(discs, add_square, picture, assert_drawn_as, said, active):
+    made, square = discs(), add_square()
+    made.matrix_world, square.matrix_world = PLACE, Matrix.Translation((-2, -1, 0))
+    expected = picture()
+    made.select_set(True)
+    square.select_set(True)
+    bpy.context.view_layer.objects.active = made if active == "surfels" else square
+    bpy.ops.object.join()
+    said()
+    assert_drawn_as(expected)
+    assert "unusable" not in said()
+
+
 def test_what_was_moved_one_by_one_is_named(discs, picture, said):
     made = discs()
     positions = np.random.default_rng(9).normal(size=(20, 3)).astype(np.float32)
