@@ -89,24 +89,41 @@ def folder(text: str) -> Path:
 
 
 def run_without_noise(**command) -> int:
-    """The exit code of a process (`args`, `env`), whose stderr is handed on without NOISE."""
+    """The exit code of a process (`args`, `env`), whose stderr is handed on without NOISE.
+
+    Raises MissingError where it failed because something that it imports is not there.
+    """
     process = subprocess.Popen(**command, stderr=subprocess.PIPE)
+    missing = b""
     for line in process.stderr:
         if NOISE not in line:
             sys.stderr.buffer.write(line)
             sys.stderr.flush()
-    return process.wait()
+        if line.startswith((b"ModuleNotFoundError", b"ImportError")):
+            missing = line
+    code = process.wait()
+    if code and missing:
+        raise MissingError(missing.decode(errors="replace").strip())
+    return code
+
+
+class MissingError(Exception):
+    """What the environment lacks, in Python's words."""
 
 
 @environment.exit_with_problems
 def main(arguments: list) -> int:
     """Exit code: 0, 1 where the demo failed, 2 for wrong arguments."""
     options = parse(arguments)
-    python = environment.make("demo").python
+    made = environment.make("demo")
     options.out.mkdir(parents=True, exist_ok=True)
     arguments = ["--resolution", options.resolution, "--size", *options.size, "--out", options.out]
     arguments += ["--model", options.model] if options.model else []
-    return run_without_noise(**module_process(python, "demonstration", *arguments))
+    try:
+        return run_without_noise(**module_process(made.python, "demonstration", *arguments))
+    except MissingError as error:
+        environment.distrust(made)
+        raise Problem(f"{made.folder.name} is damaged ({error}): run this again, and it is made anew.") from None
 
 
 if __name__ == "__main__":

@@ -34,6 +34,7 @@ SAMPLES = 2
 EQUAL = 160.0
 PLAN = import_module("splat_addon.rendering.plan")
 
+
 @dataclass(frozen=True)
 class Panel:
     """name: of its column. x: the axis's label. shots: what is rendered, the same for every method.

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import tempfile
 from contextlib import contextmanager
@@ -18,6 +19,10 @@ from environment import Problem, exit_with_problems
 from environment.leaving import run_and_leave
 
 CONSOLE = Console()
+
+#: The last chunk of every PNG file.
+PNG_END = b"IEND\xaeB`\x82"
+FULL_DISK = "the disk is full, or the folder's quota used up; free some space and run this again."
 
 
 @exit_with_problems
@@ -50,7 +55,7 @@ def main(arguments: list) -> int:
     with step("Timing a second frame"):
         stats = timed_frame()
     with step("Saving"):
-        bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+        save(blend)
     CONSOLE.print(summary(options, triangles, surfels, seconds, stats))
     CONSOLE.print(f"Picture: {picture}\nBlender file: {blend}", soft_wrap=True, highlight=False)
     return 0
@@ -98,6 +103,25 @@ def render(picture: Path) -> None:
     call("The render failed", bpy.ops.render.render, write_still=True)
     if not picture.is_file():
         raise Problem(f"The render left no {picture}: see what Blender printed above.")
+    if not picture.read_bytes().endswith(PNG_END):
+        raise Problem(f"Only a part of {picture} could be written: {FULL_DISK}")
+
+
+def save(blend: Path) -> None:
+    """The file as a .blend; an earlier one is replaced once the new one has been read back.
+
+    Blender 5.2 says that a file is saved of which only a part is on a full disk.
+    """
+    unfinished = blend.with_name(f".{blend.stem}-{os.getpid()}.blend")
+    try:
+        call("The .blend could not be saved", bpy.ops.wm.save_as_mainfile, filepath=str(unfinished), copy=True)
+        with bpy.data.libraries.load(str(unfinished)):
+            pass
+        unfinished.replace(blend)
+    except OSError:
+        raise Problem(f"Only a part of {blend} could be written: {FULL_DISK}") from None
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 def timed_frame() -> dict:

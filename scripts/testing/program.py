@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-import tempfile
 from pathlib import Path
 
 from environment import ROOT, Problem
 from environment.diagnosis import install_problem, last_line
+from environment.lock import alone
 from environment.long_step import run_showing
 from environment.virtual_environment import pip_line, requirements_hash
 
@@ -21,9 +21,6 @@ REQUIREMENTS = ROOT / "requirements" / "program.txt"
 
 #: The variable by which tests/run_in_blender.py learns of the folder.
 PACKAGES_VARIABLE = "SURFEL_TEST_PACKAGES"
-
-#: Written last, with what was installed.
-STAMP = "installed.txt"
 
 MARK = "surfel-python"
 ASK_VERSION = f"import sys; print('{MARK}', '%d.%d' % sys.version_info[:2], flush=True)"
@@ -44,23 +41,12 @@ def prepare(program: str, python: Path) -> dict[str, str]:
     """
     version = _python_version(program)
     folder = ROOT / "build" / f"packages-{version}"
-    if not _is_whole(folder):
-        print(f"Fetching the tests' packages for the program's Python {version}; this is done once.", flush=True)
-        options = ["--python-version", version, "--only-binary=:all:", "--progress-bar", "off", "--no-input"]
-        # Two runs at once may both fetch them: each into a folder of its own, of which the first stays.
-        folder.parent.mkdir(exist_ok=True)
-        fresh = Path(tempfile.mkdtemp(prefix=folder.name, dir=folder.parent))
-        command = [str(python), "-m", "pip", "install", "--target", str(fresh), *options, "-r", str(REQUIREMENTS)]
-        code, output = run_showing(command, pip_line)
-        if code:
-            shutil.rmtree(fresh, ignore_errors=True)
-            raise Problem(install_problem(output) or f"pip could not fetch the packages: {last_line(output)}.")
-        (fresh / STAMP).write_text(requirements_hash(REQUIREMENTS))
-        if _is_whole(folder):
-            shutil.rmtree(fresh)
-        else:
-            shutil.rmtree(folder, ignore_errors=True)
-            fresh.rename(folder)
+    folder.parent.mkdir(exist_ok=True)
+    with alone(Path(f"{folder}.lock"), f"Waiting for another run that makes {folder.name}."):
+        stamp = folder / "installed.txt"
+        if not stamp.is_file() or stamp.read_text() != requirements_hash(REQUIREMENTS):
+            _fetch(folder, version, python)
+            stamp.write_text(requirements_hash(REQUIREMENTS))
     return {PACKAGES_VARIABLE: str(folder)}
 
 
@@ -71,9 +57,14 @@ def test_command(program: str, gpu_backend: str | None, pytest_arguments: list[s
     return [program, "--background", "--factory-startup", *backend, *script, "--", *pytest_arguments]
 
 
-def _is_whole(folder: Path) -> bool:
-    stamp = folder / STAMP
-    return stamp.is_file() and stamp.read_text() == requirements_hash(REQUIREMENTS)
+def _fetch(folder: Path, version: str, python: Path) -> None:
+    shutil.rmtree(folder, ignore_errors=True)
+    print(f"Fetching the tests' packages for the program's Python {version}; this is done once.", flush=True)
+    options = ["--python-version", version, "--only-binary=:all:", "--progress-bar", "off", "--no-input"]
+    command = [str(python), "-m", "pip", "install", "--target", str(folder), *options, "-r", str(REQUIREMENTS)]
+    code, output = run_showing(command, pip_line)
+    if code:
+        raise Problem(install_problem(output) or f"pip could not fetch the packages: {last_line(output)}.")
 
 
 def _python_version(program: str) -> str:

@@ -2,6 +2,7 @@
 """The demo's arguments: each wrong one is a sentence and exit code 2, before anything is made."""
 
 import sys
+from types import SimpleNamespace
 
 import pytest
 
@@ -67,6 +68,18 @@ def test_without_arguments_there_is_a_picture_of_suzanne_to_make():
 
 def test_a_size_is_width_by_height():
     assert demo.parse(["--size", "640x480"]).size == (640, 480)
+
+
+def test_a_module_that_is_gone_is_a_damaged_environment_which_the_next_run_makes_anew(monkeypatch, tmp_path, capsys):
+    made, distrusted = SimpleNamespace(python=sys.executable, folder=tmp_path / ".venv-bpy"), []
+    monkeypatch.setattr(demo.environment, "make", lambda purpose: made)
+    monkeypatch.setattr(demo.environment, "distrust", distrusted.append)
+    broken = {"args": [sys.executable, "-c", "import a_module_that_is_gone"]}
+    monkeypatch.setattr(demo, "module_process", lambda *arguments: broken)
+    assert demo.main(["--out", str(tmp_path)]) == 1
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert ".venv-bpy is damaged" in last and "a_module_that_is_gone" in last and "run this again" in last
+    assert distrusted == [made]
 
 
 def test_errors_of_blender_are_seen_and_its_noise_is_not(capfdbinary):

@@ -21,6 +21,7 @@ FORMATS = {
     "edge_threshold": {0.0: "", 0.25: "threshold 0.25", 1.0: "threshold 1"},
 }
 
+
 def settings_of(methods: tuple[str, ...], **values) -> list[Settings]:
     """Every method with every combination of the values."""
     combinations = [dict(zip(values, chosen)) for chosen in product(*values.values())]

@@ -24,6 +24,15 @@ PROGRAMS = 512
 BLENDS = ("none", "add")
 
 
+def check_texture_size(size: tuple[int, int], largest: int) -> None:
+    """Raises ValueError where a device whose textures have at most `largest` texels along an edge has none so large."""
+    if max(size) > largest:
+        raise ValueError(
+            f"A picture of {size[0]:,} x {size[1]:,} pixels does not fit on this graphics device, which holds up to "
+            f"{largest:,} along an edge; scale it down."
+        )
+
+
 @dataclass(frozen=True)
 class PipelineDescription:
     """name: for error messages. vertex, fragment: GLSL without declarations of the inputs and outputs below.
