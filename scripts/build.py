@@ -9,6 +9,7 @@ The builder is plain Python that comes with every Blender: here that of the demo
 import argparse
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import environment
@@ -19,6 +20,10 @@ BUILDER = Path("addons_core/bl_pkg/cli/blender_ext.py")
 TAGS = Path("modules/_bpy_internal/extensions/tags.py")
 
 
+#: What the builder calls them.
+ZIPS = "surfel_splatting-*.zip"
+
+
 def build(python: Path, blender_scripts: Path, out: Path) -> Path:
     """The new zip in `out`, built and validated.
 
@@ -26,14 +31,17 @@ def build(python: Path, blender_scripts: Path, out: Path) -> Path:
     Raises Problem with the tool's own words where the extension is refused.
     """
     out.mkdir(parents=True, exist_ok=True)
-    for old in out.glob("surfel_splatting-*.zip"):
-        old.unlink()
     tags = f"--valid-tags={blender_scripts / TAGS}"
     tool = [str(python), str(blender_scripts / BUILDER)]
-    _run([*tool, "build", tags, f"--source-dir={ROOT}", f"--output-dir={out}"])
-    (made,) = out.glob("surfel_splatting-*.zip")
-    _run([*tool, "validate", tags, str(made)])
-    return made
+    # An earlier zip stays until the new one is whole.
+    with tempfile.TemporaryDirectory(dir=out, prefix=".build-") as unfinished:
+        _run([*tool, "build", tags, f"--source-dir={ROOT}", f"--output-dir={unfinished}"])
+        (made,) = Path(unfinished).glob(ZIPS)
+        _run([*tool, "validate", tags, str(made)])
+        for old in out.glob(ZIPS):
+            if old.name != made.name:
+                old.unlink()
+        return made.replace(out / made.name)
 
 
 def _run(command: list) -> None:

@@ -4,7 +4,7 @@
     python3 scripts/demo.py [MODEL] [--resolution R] [--size WxH] [--out DIR]
 
 Runs on whatever Python starts it: makes an environment with Blender in it on first use, and hands over to
-demo_in_blender.py there. Written so that an old Python gets as far as the sentence in `environment`.
+`demonstration` there. Written so that an old Python gets as far as the sentence in `environment`.
 """
 
 import argparse
@@ -14,8 +14,9 @@ import sys
 from pathlib import Path
 
 import environment
-from demo_models import IMPORTERS, model_suffix
+from demonstration.models import IMPORTERS, model_suffix
 from environment import Problem
+from environment.module import module_process
 
 #: Cells along the longest side of each object in the model.
 RESOLUTIONS = 2, 8192
@@ -87,26 +88,42 @@ def folder(text: str) -> Path:
     return path
 
 
-def run_without_noise(command: list) -> int:
-    """The exit code of a command, whose stderr is handed on without NOISE."""
-    process = subprocess.Popen(command, stderr=subprocess.PIPE)
+def run_without_noise(**command) -> int:
+    """The exit code of a process (`args`, `env`), whose stderr is handed on without NOISE.
+
+    Raises MissingError where it failed because something that it imports is not there.
+    """
+    process = subprocess.Popen(**command, stderr=subprocess.PIPE)
+    missing = b""
     for line in process.stderr:
         if NOISE not in line:
             sys.stderr.buffer.write(line)
             sys.stderr.flush()
-    return process.wait()
+        if line.startswith((b"ModuleNotFoundError", b"ImportError")):
+            missing = line
+    code = process.wait()
+    if code and missing:
+        raise MissingError(missing.decode(errors="replace").strip())
+    return code
+
+
+class MissingError(Exception):
+    """What the environment lacks, in Python's words."""
 
 
 @environment.exit_with_problems
 def main(arguments: list) -> int:
     """Exit code: 0, 1 where the demo failed, 2 for wrong arguments."""
     options = parse(arguments)
-    python = environment.make("demo").python
+    made = environment.make("demo")
     options.out.mkdir(parents=True, exist_ok=True)
-    command = [str(python), str(Path(__file__).resolve().parent / "demo_in_blender.py")]
-    command += ["--resolution", str(options.resolution), "--size", *map(str, options.size), "--out", str(options.out)]
-    command += ["--model", str(options.model)] if options.model else []
-    return run_without_noise(command)
+    arguments = ["--resolution", options.resolution, "--size", *options.size, "--out", options.out]
+    arguments += ["--model", options.model] if options.model else []
+    try:
+        return run_without_noise(**module_process(made.python, "demonstration", *arguments))
+    except MissingError as error:
+        environment.distrust(made)
+        raise Problem(f"{made.folder.name} is damaged ({error}): run this again, and it is made anew.") from None
 
 
 if __name__ == "__main__":

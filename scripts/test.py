@@ -4,8 +4,8 @@
     python3 scripts/test.py [--quick] [--bpy VERSION] [--blender PATH [--gpu-backend NAME]] [PYTEST ARGUMENTS]
 
 Group "plain" draws on the standalone device; group "blender" draws inside Blender: in its wheel, or with --blender
-inside a program, which needs the plain group's pictures to compare with and nothing else of it. Outside of a program
-pytest-xdist runs as many processes as there are cores; -n 0 runs one.
+inside a program, a process for each folder, which needs the plain group's pictures to compare with and nothing else of
+it. Outside of a program pytest-xdist runs as many processes as there are cores; -n 0 runs one.
 """
 
 import argparse
@@ -17,7 +17,7 @@ from pathlib import Path
 import environment
 from environment import ROOT, Problem
 from testing import program
-from testing.groups import BLENDER, PLAIN, QUICK, paths_by_group, split_arguments
+from testing.groups import BLENDER, PLAIN, QUICK, by_folder, paths_by_group, split_arguments
 
 #: pytest's exit codes.
 PASSED, NO_TESTS = 0, 5
@@ -86,8 +86,9 @@ def main(arguments: list) -> int:
         codes[PLAIN] = run(PLAIN, command, **ONE_THREAD)
         print(f"== group {PLAIN}: pytest ended with exit code {codes[PLAIN]}", flush=True)
     if groups.get(BLENDER):
-        command = blender_command(options, python, [*groups[BLENDER], *pytest_arguments])
-        codes[BLENDER] = run(BLENDER, command, **(variables or ONE_THREAD))
+        for part in by_folder(groups[BLENDER]) if options.blender else [groups[BLENDER]]:
+            command = blender_command(options, python, [*part, *pytest_arguments])
+            codes[(BLENDER, *part)] = run(BLENDER, command, **(variables or ONE_THREAD))
     return verdict(codes)
 
 

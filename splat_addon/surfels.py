@@ -269,7 +269,9 @@ def _shaped(arrays: dict) -> dict[str, np.ndarray]:
     if unknown:
         raise ValueError(f"Surfels have no {', '.join(sorted(unknown))}.")
     layouts = {n: layout for n, layout in (LAYOUT | OPTIONAL_LAYOUT).items() if arrays.get(n) is not None}
-    arrays = {n: np.ascontiguousarray(arrays[n], layout[1]) for n, layout in layouts.items()}
+    with np.errstate(over="ignore", invalid="ignore"):
+        # what float32 cannot hold becomes infinite, and is met as such
+        arrays = {n: np.ascontiguousarray(arrays[n], layout[1]) for n, layout in layouts.items()}
     count = len(arrays["positions"])
     for name, array in arrays.items():
         columns = layouts[name][0]
@@ -302,7 +304,8 @@ def _finite(rows: np.ndarray) -> np.ndarray:
 
 def _unit(rows: np.ndarray) -> np.ndarray:
     # A product with a vector of ones: numpy's own sums are slow along an axis of three or four.
-    off = (rows * rows) @ np.ones(rows.shape[1], rows.dtype)
+    with np.errstate(over="ignore", invalid="ignore"):
+        off = (rows * rows) @ np.ones(rows.shape[1], rows.dtype)
     off -= 1
     np.abs(off, out=off)
     return off.max(initial=0) < 2 * UNIT_TOLERANCE or off < 2 * UNIT_TOLERANCE

@@ -47,7 +47,7 @@ def on_both_devices(request):
     def compare(name, draw, hold):
         file = kept / f"{name}.npz"
         if request.config.getoption("--device") == "blender":
-            assert file.exists(), f"{file} is missing: run the tests with --device standalone first (scripts/test.py does)"
+            assert file.exists(), f"{file} is missing: run these tests with --device standalone first"
             with np.load(file) as standalone:
                 hold(draw(), dict(standalone))
         elif not file.exists():

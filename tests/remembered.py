@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What one process of a test run found and another need not find again: files that fall with the sources they rest on."""
+"""Files with what one process of a test run found and another need not find again; they fall with their sources."""
 
 from __future__ import annotations
 
@@ -16,18 +16,21 @@ import numpy as np
 ROOT = Path(__file__).resolve().parent.parent
 
 
+#: Folders of a name that stay: a developer goes back and forth.
+KEPT = 4
+
+
 @cache
 def folder(name: str, *sources: str) -> Path:
-    """build/`name`/KEY, empty when a file that these patterns match, or numpy, is another one than the last time."""
-    digest = hashlib.sha256(np.__version__.encode())
+    """build/`name`/KEY, which is empty when a file that these patterns match changes."""
+    digest = hashlib.sha256()
     for file in sorted(file for pattern in sources for file in ROOT.glob(pattern)):
         digest.update(file.read_bytes())
-    every = ROOT / "build" / name
-    kept = every / digest.hexdigest()[:16]
+    kept = ROOT / "build" / name / digest.hexdigest()[:16]
     kept.mkdir(parents=True, exist_ok=True)
-    for other in every.iterdir():
-        if other != kept:
-            shutil.rmtree(other, ignore_errors=True)
+    kept.touch()
+    for old in sorted(kept.parent.iterdir(), key=lambda other: other.stat().st_mtime)[:-KEPT]:
+        shutil.rmtree(old, ignore_errors=True)
     return kept
 
 
@@ -44,7 +47,7 @@ def remembered(function: Callable) -> Callable:
     @wraps(function)
     def result(*arguments, **options):
         key = hashlib.sha256(pickle.dumps((function.__name__, arguments, options), protocol=5)).hexdigest()
-        file = folder("truths", "splat_addon/**/*.py") / key[:32]
+        file = folder(f"truths-numpy-{np.__version__}", "splat_addon/**/*.py") / key[:32]
         if file.exists():
             return pickle.loads(file.read_bytes())
         found = function(*arguments, **options)

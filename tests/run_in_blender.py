@@ -5,8 +5,8 @@ scripts/test.py --blender starts it, and names a folder with the packages that t
 """
 
 import os
+import runpy
 import sys
-import traceback
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -24,12 +24,5 @@ def run() -> int:
     return int(pytest.main(sys.argv[sys.argv.index("--") + 1 :]))
 
 
-exit_code = 1
-try:
-    exit_code = run()
-except BaseException:
-    traceback.print_exc()
-sys.stdout.flush()
-sys.stderr.flush()
-# Blender would go on to end its graphics context, in which some versions hang or crash.
-os._exit(exit_code)
+leaving = runpy.run_path(str(ROOT / "scripts" / "environment" / "leaving.py"))
+leaving["run_and_leave"](run)

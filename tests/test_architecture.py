@@ -22,7 +22,7 @@ MAY_IMPORT = {
 }
 #: `reference` reads rendering's data, never its passes.
 RENDERING_DATA = {"camera", "scene", "light", "environment", "shadow", "settings", "frame", "brdf_table", "view"}
-RENDERING_DATA |= {"polygons"}
+RENDERING_DATA |= {"polygons", "lens", "lines", "matcap", "panorama", "shading_models"}
 #: foreign module -> where it may be imported
 HOMES = {
     "bpy": ("blender/",),

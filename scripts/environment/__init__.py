@@ -14,6 +14,6 @@ if sys.version_info < (3, 8):  # noqa: UP036
     )
 
 from .problem import Problem, exit_with_problems
-from .virtual_environment import PYTHON_FOR_BPY, ROOT, Environment, make
+from .virtual_environment import PYTHON_FOR_BPY, ROOT, Environment, distrust, make
 
-__all__ = ("PYTHON_FOR_BPY", "ROOT", "Environment", "Problem", "exit_with_problems", "make")
+__all__ = ("PYTHON_FOR_BPY", "ROOT", "Environment", "Problem", "distrust", "exit_with_problems", "make")

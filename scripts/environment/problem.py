@@ -38,5 +38,6 @@ def exit_with_problems(main: Callable[..., int]) -> Callable[..., int]:
 
 
 def program_name() -> str:
-    """The name of the running script, to open its error sentences with."""
-    return os.path.basename(sys.argv[0])
+    """The name of the running script or module, to open its error sentences with."""
+    folder, name = os.path.split(sys.argv[0])
+    return os.path.basename(folder) if name == "__main__.py" else name

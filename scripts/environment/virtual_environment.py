@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes `.venv-bpy-VERSION` in the clone, once: a venv with a wheel of Blender and a script's requirements.
 
-A stamp, written last, holds the hashes of what was installed: with it the next run starts at once, without
-it a half-made environment is made anew.
+A stamp, written last, holds the hashes of what was installed and the names of what lies where packages lie: with it
+the next run starts at once; without it, or where one of these is gone, the environment is made anew.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from pathlib import Path
 
 from .diagnosis import import_problem, install_problem, last_line
 from .interpreters import INSTALL_REMEDY, find_interpreter
+from .lock import alone
 from .long_step import run_showing
 from .problem import Problem
 
@@ -30,6 +31,9 @@ DEFAULT_BPY = ("5.2.3", "5.0.1")
 
 #: purpose -> the purposes whose requirements its own file includes, itself among them.
 PURPOSES = {"demo": ("demo",), "test": ("demo", "test")}
+
+#: Begins a stamp's lines that name what was installed.
+_PACKAGE = "package "
 
 #: Where a venv keeps its interpreter.
 PROGRAM = Path("Scripts/python.exe" if os.name == "nt" else "bin/python")
@@ -67,7 +71,9 @@ def make(purpose: str, bpy_version: str | None = None) -> Environment:
             command = find_interpreter(PYTHON_FOR_BPY[version])
             if command is None:
                 continue
-            _install(environment, purpose, command)
+            with alone(Path(f"{environment.folder}.lock"), f"Another run makes {environment.folder.name}; waiting."):
+                if not _is_ready(environment, purpose):
+                    _install(environment, purpose, command)
         _check_import(environment)
         return environment
     wanted = PYTHON_FOR_BPY[bpy_version or DEFAULT_BPY[0]]
@@ -103,15 +109,42 @@ def _stamp(environment: Environment) -> Path:
 
 
 def _is_ready(environment: Environment, purpose: str) -> bool:
+    return _is_whole(environment) and _stamp_line(purpose) in _stamp_lines(environment)
+
+
+def _stamp_lines(environment: Environment) -> list[str]:
+    """Of the stamp, whatever is in it; none where there is no stamp."""
     stamp = _stamp(environment)
-    return environment.python.is_file() and stamp.is_file() and _stamp_line(purpose) in stamp.read_text().splitlines()
+    return stamp.read_text(encoding="utf-8", errors="replace").splitlines() if stamp.is_file() else []
+
+
+def _is_whole(environment: Environment) -> bool:
+    """Whether all that the stamp names is there."""
+    lines = _stamp_lines(environment)
+    named = {line[len(_PACKAGE) :] for line in lines if line.startswith(_PACKAGE)}
+    has_python = environment.python.is_file() and (environment.folder / "pyvenv.cfg").is_file()
+    return has_python and bool(lines) and named <= _packages(environment)
+
+
+def _packages(environment: Environment) -> set[str]:
+    """The names of the files and folders where packages lie."""
+    folders = environment.folder.glob("Lib/site-packages" if os.name == "nt" else "lib/python*/site-packages")
+    return {path.name for folder in folders for path in folder.iterdir() if path.name != "__pycache__"}
+
+
+def distrust(environment: Environment) -> None:
+    """Let the next run make the environment anew: something in it was found to be broken."""
+    _stamp(environment).unlink(missing_ok=True)
 
 
 def _install(environment: Environment, purpose: str, command: list[str]) -> None:
     """Makes the venv, or adds to a whole one whose requirements grew, and stamps it."""
     folder, stamp = environment.folder, _stamp(environment)
+    if stamp.is_file() and not _is_whole(environment):
+        print(f"Something is gone from {folder.name}, so it is made anew.", flush=True)
+        stamp.unlink()
     print(f"Making {folder.name} with bpy {environment.bpy_version} for the {purpose}; this is done once.", flush=True)
-    if stamp.is_file() and environment.python.is_file():
+    if stamp.is_file():
         stamp.unlink()
     else:
         shutil.rmtree(folder, ignore_errors=True)
@@ -121,7 +154,9 @@ def _install(environment: Environment, purpose: str, command: list[str]) -> None
     code, output = run_showing([str(environment.python), "-m", "pip", "install", *options, *wanted], pip_line)
     if code:
         raise Problem(install_problem(output) or f"pip could not install the requirements: {last_line(output)}.")
-    stamp.write_text("".join(_stamp_line(name) + "\n" for name in PURPOSES[purpose]))
+    lines = [_stamp_line(name) for name in PURPOSES[purpose]]
+    lines += [_PACKAGE + name for name in sorted(_packages(environment))]
+    stamp.write_text("".join(line + "\n" for line in lines), encoding="utf-8")
 
 
 def _make_venv(folder: Path, command: list[str]) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from environment import ROOT, Problem
 from environment.diagnosis import install_problem, last_line
+from environment.lock import alone
 from environment.long_step import run_showing
 from environment.virtual_environment import pip_line, requirements_hash
 
@@ -40,16 +41,12 @@ def prepare(program: str, python: Path) -> dict[str, str]:
     """
     version = _python_version(program)
     folder = ROOT / "build" / f"packages-{version}"
-    stamp = folder / "installed.txt"
-    if not stamp.is_file() or stamp.read_text() != requirements_hash(REQUIREMENTS):
-        shutil.rmtree(folder, ignore_errors=True)
-        print(f"Fetching the tests' packages for the program's Python {version}; this is done once.", flush=True)
-        options = ["--python-version", version, "--only-binary=:all:", "--progress-bar", "off", "--no-input"]
-        command = [str(python), "-m", "pip", "install", "--target", str(folder), *options, "-r", str(REQUIREMENTS)]
-        code, output = run_showing(command, pip_line)
-        if code:
-            raise Problem(install_problem(output) or f"pip could not fetch the packages: {last_line(output)}.")
-        stamp.write_text(requirements_hash(REQUIREMENTS))
+    folder.parent.mkdir(exist_ok=True)
+    with alone(Path(f"{folder}.lock"), f"Waiting for another run that makes {folder.name}."):
+        stamp = folder / "installed.txt"
+        if not stamp.is_file() or stamp.read_text() != requirements_hash(REQUIREMENTS):
+            _fetch(folder, version, python)
+            stamp.write_text(requirements_hash(REQUIREMENTS))
     return {PACKAGES_VARIABLE: str(folder)}
 
 
@@ -58,6 +55,16 @@ def test_command(program: str, gpu_backend: str | None, pytest_arguments: list[s
     backend = ["--gpu-backend", gpu_backend] if gpu_backend else []
     script = ["--python-exit-code", "1", "--python", str(ROOT / "tests" / "run_in_blender.py")]
     return [program, "--background", "--factory-startup", *backend, *script, "--", *pytest_arguments]
+
+
+def _fetch(folder: Path, version: str, python: Path) -> None:
+    shutil.rmtree(folder, ignore_errors=True)
+    print(f"Fetching the tests' packages for the program's Python {version}; this is done once.", flush=True)
+    options = ["--python-version", version, "--only-binary=:all:", "--progress-bar", "off", "--no-input"]
+    command = [str(python), "-m", "pip", "install", "--target", str(folder), *options, "-r", str(REQUIREMENTS)]
+    code, output = run_showing(command, pip_line)
+    if code:
+        raise Problem(install_problem(output) or f"pip could not fetch the packages: {last_line(output)}.")
 
 
 def _python_version(program: str) -> str:

@@ -2,7 +2,7 @@
 //             Karis, "Real Shading in Unreal Engine 4", 2013 (the albedo in two terms);
 //             Lagarde, de Rousiers, "Moving Frostbite to PBR", 2014, section 4.9.3 (the lobe's dominant direction);
 //             Turquin, "Practical multiple scattering compensation for microfacet models", 2019.
-// Summary: reads what scripts/fit_brdf_table.py tabulated of GGX. The twin of reference/brdf.py.
+// Summary: reads what reference/brdf_fit.py tabulated of GGX. The twin of reference/brdf.py.
 
 const vec2 TABLE_STEPS = vec2(31.0, 47.0);  // angles, roughnesses
 const float TABLE_LEAST_ROUGHNESS = 0.03;

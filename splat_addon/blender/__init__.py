@@ -5,9 +5,12 @@
 from __future__ import annotations
 
 from . import (
+    camera_panels,
     conversion_settings,
     engine,
+    light_panels,
     mesh_sampling_settings,
+    object_panels,
     operators,
     passes_panel,
     points_panel,
@@ -16,6 +19,7 @@ from . import (
     render_panels,
     render_passes,
     sidebar,
+    view_layer_panels,
 )
 
 #: In the order of registration: what others refer to comes first.
@@ -25,6 +29,10 @@ MODULES = (
     engine,
     render_panels,
     passes_panel,
+    light_panels,
+    camera_panels,
+    object_panels,
+    view_layer_panels,
     mesh_sampling_settings,
     conversion_settings,
     operators,

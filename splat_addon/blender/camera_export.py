@@ -99,6 +99,14 @@ _PROJECTIONS = {
     "FISHEYE_EQUISOLID": _equisolid,
 }
 
+#: panorama type -> what the camera says of it, in the order in which a panel shows it
+PANORAMA_PROPERTIES = {
+    "EQUIRECTANGULAR": ("latitude_min", "latitude_max", "longitude_min", "longitude_max"),
+    "FISHEYE_EQUIDISTANT": ("fisheye_fov",),
+    "FISHEYE_EQUISOLID": ("fisheye_lens", "fisheye_fov"),
+}
+assert PANORAMA_PROPERTIES.keys() == _PROJECTIONS.keys()
+
 _KINDS = {"PERSP": _flat_camera, "ORTHO": _flat_camera, "PANO": _panorama}
 
 

@@ -12,7 +12,7 @@ from ..rendering import Frame, RenderCancelled, Renderer, open_device
 from .camera_export import depth_of_field_notes, view_camera
 from .live_meshes import LiveMeshes
 from .motion_blur import motion_blur_notes, moving_time, shutter_times
-from .properties import final_settings
+from .properties import final_settings, stops_where_broken
 from .render_passes import hand_over, outputs_of
 from .scene_export import Notes, SurfelStore, export_scene
 
@@ -44,13 +44,15 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
 def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int, int]) -> tuple[Frame, Notes]:
     """Of the engine's active view, the `turn[0]`th of `turn[1]`."""
     scene, notes = depsgraph.scene, Notes()
-    times = shutter_times(scene, settings.samples)
+    times = shutter_times(scene, depsgraph.view_layer, settings.samples)
 
     def moments(go):
         for time in times or [None]:
             if time is not None:
                 go(time)
             exported, said = _read(depsgraph, resources)
+            if said.left_out and stops_where_broken(scene):
+                raise ValueError(_left_out_sentence(said.left_out))
             notes.counts |= said.counts
             yield exported, view_camera(engine, depsgraph)
 
@@ -61,9 +63,14 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
     camera_object = engine.camera_override or scene.camera
     for sentence in depth_of_field_notes(camera_object, settings.samples):
         notes.add(sentence)
-    for sentence in motion_blur_notes(scene, settings.samples):
+    for sentence in motion_blur_notes(scene, depsgraph.view_layer, settings.samples):
         notes.add(sentence)
     return frame, notes
+
+
+def _left_out_sentence(left_out: list[str]) -> str:
+    more = f" (and {len(left_out) - 1:,} more)" if len(left_out) > 1 else ""
+    return f"{left_out[0]}{more} Mend that, or set Broken Objects in the render properties to Warn."
 
 
 def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
@@ -95,9 +102,17 @@ def _read(depsgraph, resources: _Resources):
 def report_failure(engine: bpy.types.RenderEngine, error: Exception) -> None:
     """Tell Blender, which then writes no file, renders no further frame and exits with 1 in background mode."""
     _release_resources()
-    if not isinstance(error, ValueError | RuntimeError):
-        traceback.print_exc()
-    engine.report({"ERROR"}, f"Surfel render failed: {error}")
+    engine.report({"ERROR"}, f"Surfel render failed: {sentence_of(error)}")
+
+
+def sentence_of(error: Exception) -> str:
+    """What is said of an error. One that is not meant for users goes to the console too, with where it happened."""
+    if isinstance(error, ValueError | RuntimeError):
+        return str(error)
+    traceback.print_exception(error)
+    if isinstance(error, MemoryError):
+        return "The memory does not suffice; render fewer surfels, or a smaller picture."
+    return f"This is a fault of the extension ({type(error).__name__}: {error}); the console says where it happened."
 
 
 class _Resources:

@@ -68,3 +68,7 @@ POINT_ATTRIBUTES = {
     "uv_along_y": PointAttribute("uv_along_y", "FLOAT2", "vector", 2),
     "uv_border": PointAttribute("uv_border", "FLOAT2", "vector", 2),
 }
+
+#: Where each surfel was when its frame was right. Blender moves positions alone, in edit mode, by Apply, Mirror or
+#: Join; from the difference the frames are moved after them. Who moves both can take this attribute away.
+REST = PointAttribute("surfel_rest", "FLOAT_VECTOR", "vector", 3)

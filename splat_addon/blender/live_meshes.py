@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import bpy
@@ -30,6 +31,7 @@ from ..sampling import (
     predict_count,
 )
 from ..surfels import OPTIONAL_LAYOUT, Surfels, split
+from . import passed_over
 from .camera_density import without_camera
 from .conversion import MAX_SURFELS
 from .mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
@@ -60,7 +62,7 @@ class Place(NamedTuple):
 
 @dataclass(eq=False)
 class _LiveMesh:
-    """One evaluated mesh, wherever it stands.
+    """One evaluated mesh, wherever it stands. said: sentences on its materials and its object.
 
     key: of `mesh_key`, of the evaluation that was read. shown: a sampling, and the sets that it is drawn in.
     """
@@ -73,6 +75,7 @@ class _LiveMesh:
     texture_mapped: bool = False
     places: list[Place] = field(default_factory=list)
     owner: str = ""
+    said: list[str] = field(default_factory=list)
     tracked: TrackedSurfels | None = None
     fineness: dict[str, float] = field(default_factory=dict)
     spacing: float = 0.0
@@ -147,14 +150,24 @@ class LiveMeshes:
         """Read the pixels of textures again: an image or a material was edited."""
         self._images.clear()
 
-    def add(self, evaluated: bpy.types.Object, owner: bpy.types.Object, place: Place, notes) -> None:
-        """An entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry lives."""
-        key = *mesh_key(evaluated), place.form.group
+    def add(
+        self,
+        evaluated: bpy.types.Object,
+        owner: bpy.types.Object,
+        place: Place,
+        notes,
+        override: bpy.types.Material | None = None,
+    ) -> None:
+        """An entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry lives.
+
+        override: the material that it has in this view layer, whatever its own are.
+        """
+        key = *mesh_key(evaluated), override and override.session_uid, place.form.group
         if key not in self._frame:
             live = self._kept.setdefault(self._lasting_key(evaluated, place.form.group), _LiveMesh())
             live.places, live.owner = [], owner.name
             if live.key != key or self._changed is None or evaluated.data.name_full in self._changed:
-                self._read(live, evaluated, place.form.group, notes)
+                self._read(live, evaluated, place.form.group, override)
                 live.key = key
             self._frame[key] = live
         self._frame[key].places.append(place)
@@ -165,7 +178,7 @@ class LiveMeshes:
         """All that were added to this frame; the places of one mesh share its surfels or polygons."""
         sampled, drawn = [], []
         for live in self._frame.values():
-            for sentence in live.content.notes:
+            for sentence in (*live.content.notes, *live.said):
                 notes.add(sentence)
             if is_transparent(live.content.triangles):
                 live.places = [place._replace(form=place.form.of_transparent) for place in live.places]
@@ -175,7 +188,7 @@ class LiveMeshes:
                 if live.drawn_at and len(live.drawn_part):
                     drawn += self._polygon_instances(live, notes)
             except ValueError as error:
-                notes.add(f"{live.owner} is left out: {error}")
+                notes.leave_out(live.owner, error)
         self._kept = {name: live for name, live in self._kept.items() if name in self._names}
         return sampled, drawn
 
@@ -222,12 +235,18 @@ class LiveMeshes:
         self._names[(*name, number)] = name
         return (*name, number)
 
-    def _read(self, live: _LiveMesh, evaluated: bpy.types.Object, group: str, notes) -> None:
+    def _read(self, live: _LiveMesh, evaluated: bpy.types.Object, group: str, override) -> None:
+        # said anew each frame, as the mesh is not read anew each frame
+        live.said = list(passed_over.of_object(evaluated.original))
+        notes = SimpleNamespace(add=live.said.append)
         with readable_mesh(evaluated) as mesh:
+            slots = slot_materials(evaluated, mesh)
+            if override is not None:
+                slots = [override] * max(len(slots), 1)
             live.topology = read_topology(mesh, live.topology)
-            live.content = read_mesh(evaluated, mesh, live.topology, self._images)
+            live.content = read_mesh(evaluated, mesh, live.topology, self._images, slots)
             live.parts = parts_by_group(evaluated, mesh, live.content.triangles, group) if group else None
-            live.materials = tuple(shading_material(m, notes, OPTIONAL_LAYOUT) for m in slot_materials(evaluated, mesh))
+            live.materials = tuple(shading_material(material, notes, OPTIONAL_LAYOUT) for material in slots)
 
     def _sampled(
         self, live: _LiveMesh, depsgraph: bpy.types.Depsgraph, fineness: dict[str, float], texture_mapped: bool

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ..rendering import Matcap
+from ..rendering.atlas import MAX_EDGE
 from .texture_images import UnreadableError, linear_pixels
 
 #: Places along each side that a multilayer file is read at: 0.7 s, once. Blender's own have 512 pixels, of which a
@@ -30,6 +31,11 @@ def matcap_of(image: bpy.types.Image) -> Matcap:
             pixels = _first_layer(image) if image.type == "MULTILAYER" else linear_pixels(image, keep_alpha=False)
         except UnreadableError as reason:
             raise ValueError(f"Matcap shading cannot read its picture: it comes from {reason}.") from None
+        if max(pixels.shape[:2]) > MAX_EDGE:
+            raise ValueError(
+                f"The matcap {image.name!r} has {image.size[0]:,} x {image.size[1]:,} pixels, and {MAX_EDGE:,} along "
+                "an edge are the most; scale it down."
+            )
         # A painted image stays dirty until it is saved: the same pixels are the same matcap, with which a view refines.
         if _kept is None or _kept[0] != key or not np.array_equal(_kept[1].pixels, pixels[..., :3]):
             _kept = key, Matcap(pixels[..., :3])

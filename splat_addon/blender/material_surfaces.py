@@ -15,6 +15,7 @@ import numpy as np
 from ..sampling import Channel, Image, NormalMap, Surface, Texture, VertexColors
 from ..sampling.surfaces import ALPHA, RED
 from . import node_products
+from .attributes import has_surfels_beside_faces
 from .node_products import AttributeSource, ImageSource, Product, constant, linked, product
 from .texture_images import UnreadableError, linear_pixels
 from .texture_placement import placement, uv_layer
@@ -138,6 +139,19 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
     return _Reader(shader, layers).surface()
 
 
+def plain_color(material: bpy.types.Material) -> tuple[tuple[float, float, float, float], bool]:
+    """The colour and opacity that a material has without its textures, and whether it has some."""
+    shader = surface_shader(material) if uses_nodes(material) else None
+    sockets = SHADERS.get(shader.bl_idname) if shader is not None else None
+    if sockets is None:
+        return tuple(material.diffuse_color), False
+    if "color" not in sockets:
+        return (0.0, 0.0, 0.0, 1.0), False
+    used = [shader.inputs[sockets[name][0]] for name in ("color", "opacity") if name in sockets]
+    color, *opacity = (constant(socket).value for socket in used)
+    return (*color, *(opacity[0] if opacity else (1.0,))), any(linked(socket) is not None for socket in used)
+
+
 def _bare_surface(layers: MeshLayers) -> Surface:
     if not default_color_layer(layers.mesh):
         return Surface()
@@ -247,7 +261,9 @@ def _is_alpha(source) -> bool:
 
 
 def default_color_layer(mesh: bpy.types.Mesh) -> str | None:
-    """The colour attribute that renders, or None."""
+    """The colour attribute that renders, or None. That of surfels that were joined to the mesh says nothing of it."""
+    if has_surfels_beside_faces(mesh):
+        return None
     name = mesh.attributes.default_color_name or mesh.attributes.active_color_name
     return name if name in mesh.color_attributes else None
 

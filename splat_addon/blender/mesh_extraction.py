@@ -71,13 +71,18 @@ def read_topology(mesh: bpy.types.Mesh, known: Topology | None = None) -> Topolo
 
 
 def read_mesh(
-    evaluated: bpy.types.Object, mesh: bpy.types.Mesh, topology: Topology | None = None, images: dict | None = None
+    evaluated: bpy.types.Object,
+    mesh: bpy.types.Mesh,
+    topology: Topology | None = None,
+    images: dict | None = None,
+    slots: list[bpy.types.Material | None] | None = None,
 ) -> ExtractedMesh:
     """Everything that sampling needs of an evaluated object's mesh; no triangles where it has no faces.
 
-    topology: the mesh's, if it is known. images: keeps the textures' pixels from one call to the next.
+    topology: the mesh's, if it is known. images: keeps the textures' pixels from one call to the next. slots: the
+    materials, None: its own.
     """
-    slots = slot_materials(evaluated, mesh)
+    slots = slot_materials(evaluated, mesh) if slots is None else slots
     topology = read_topology(mesh) if topology is None else topology
     indices = _material_indices(mesh, topology, max(len(slots), 1))
     used = np.arange(min(len(topology), 1)) if indices is None else np.flatnonzero(np.bincount(indices))

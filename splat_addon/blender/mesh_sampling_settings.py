@@ -10,6 +10,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 
 from .conversion_settings import DENSITIES
 from .engine_panel import EnginePanel
+from .enum_values import check_choices
 from .ids import OBJECT_SETTINGS, RENDER_SETTINGS
 from .sources import has_surfaces, owner_of
 
@@ -213,7 +214,10 @@ def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) ->
     """
     owner = owner_of(entry)
     asked = [entry.object.original, owner] if owner.instance_type == "COLLECTION" else [owner]
-    chosen = [settings for settings in (getattr(o, OBJECT_SETTINGS) for o in asked) if settings.render_as != "SCENE"]
+    asked = [getattr(each, OBJECT_SETTINGS) for each in asked]
+    for settings in asked:
+        check_choices(settings, "object properties")
+    chosen = [settings for settings in asked if settings.render_as != "SCENE"]
     if any(settings.render_as == "HIDDEN" for settings in chosen):
         return Form("HIDDEN")
     if not chosen:

@@ -19,13 +19,13 @@ _OPENS = {"START": 0.0, "CENTER": -0.5, "END": -1.0}
 _CURVE_STEPS = 256
 
 
-def shutter_times(scene: bpy.types.Scene, samples: int) -> list[float]:
+def shutter_times(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, samples: int) -> list[float]:
     """Frames, with fractions, at which a final render of so many samples sees the scene; empty without motion blur.
 
     They lie as close as the shutter's curve is high (importance sampling, as Cycles'), so that each counts the same.
     """
     render = scene.render
-    if not render.use_motion_blur or samples == 1:
+    if not (render.use_motion_blur and view_layer.use_motion_blur) or samples == 1:
         return []
     moments = min(samples, getattr(scene, RENDER_SETTINGS).motion_blur_steps)
     now = scene.frame_current + scene.frame_subframe
@@ -53,9 +53,9 @@ def moving_time(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) 
             go(now)
 
 
-def motion_blur_notes(scene: bpy.types.Scene, samples: int) -> Iterator[str]:
+def motion_blur_notes(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, samples: int) -> Iterator[str]:
     """Why a scene that asks for motion blur will not show any."""
-    if scene.render.use_motion_blur and samples == 1:
+    if scene.render.use_motion_blur and view_layer.use_motion_blur and samples == 1:
         yield "Motion blur needs more than one of the render properties' Samples: this picture is sharp all over"
 
 

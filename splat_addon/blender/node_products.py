@@ -82,15 +82,41 @@ class Product:
 
 def product(socket: Socket) -> Product:
     """What a colour or number socket is the product of. Raises UnreadableError."""
-    source = linked(socket)
-    if source is None:
-        return constant(socket)
-    node, output = source
-    reader = _READERS.get((node.bl_idname, output))
-    if reader is None or node.mute:
-        raise UnreadableError(f"a {'muted ' if node.mute else ''}{node.bl_label} node")
-    read = reader(node)
-    return read.weighted(LUMINANCE) if socket.type == "VALUE" else read
+    return _Reading().product(socket)
+
+
+#: The most nodes that are followed one behind another: far more than anyone places, and within Python's own limit.
+MAX_CHAIN = 100
+
+
+class _Reading:
+    """One walk up a node tree. Each node's output is read once, however many sockets it feeds: in a chain of nodes that
+    take their predecessor twice, the number of paths doubles with each."""
+
+    def __init__(self):
+        self._read: dict[tuple[Node, str], Product] = {}
+        self._followed: list[tuple[Node, str]] = []
+
+    def product(self, socket: Socket) -> Product:
+        source = linked(socket)
+        if source is None:
+            return constant(socket)
+        read = self._read[source] if source in self._read else self._output(source)
+        return read.weighted(LUMINANCE) if socket.type == "VALUE" else read
+
+    def _output(self, source: tuple[Node, str]) -> Product:
+        node, output = source
+        reader = _READERS.get((node.bl_idname, output))
+        if reader is None or node.mute:
+            raise UnreadableError(f"a {'muted ' if node.mute else ''}{node.bl_label} node")
+        if source in self._followed:
+            raise UnreadableError(f"a {node.bl_label} node in a ring of nodes")
+        if len(self._followed) == MAX_CHAIN:
+            raise UnreadableError(f"a chain of more than {MAX_CHAIN} nodes")
+        self._followed.append(source)
+        self._read[source] = reader(node, self.product)
+        self._followed.pop()
+        return self._read[source]
 
 
 def constant(socket: Socket) -> Product:
@@ -100,25 +126,36 @@ def constant(socket: Socket) -> Product:
 
 
 def linked(socket: Socket) -> tuple[Node, str] | None:
-    """The node that feeds a socket, past any reroutes, and the identifier of its output; None where nothing does."""
+    """The node that feeds a socket, past any reroutes, and the identifier of its output; None where nothing does, which
+    is also so for reroutes that are linked in a ring."""
+    passed = set()
     while socket.links and not socket.links[0].is_muted:
         link = socket.links[0]
         if link.from_node.bl_idname != "NodeReroute":
             return link.from_node, link.from_socket.identifier
+        if link.from_node in passed:
+            return None
+        passed.add(link.from_node)
         socket = link.from_node.inputs[0]
     return None
 
 
-def _output(node: Node) -> Product:
+#: Reads a socket further up the tree.
+Read = Callable[[Socket], Product]
+#: Reads what a node puts out.
+Reader = Callable[[Node, Read], Product]
+
+
+def _output(node: Node, read: Read) -> Product:
     """The constant of an RGB or Value node."""
     return constant(node.outputs[0])
 
 
-def _color(node: Node) -> Product:
+def _color(node: Node, read: Read) -> Product:
     return Product((1.0, 1.0, 1.0), (ImageSource(node),))
 
 
-def _alpha(node: Node) -> Product:
+def _alpha(node: Node, read: Read) -> Product:
     return Product((1.0,), (ImageSource(node, ALPHA),))
 
 
@@ -130,33 +167,33 @@ def _attribute_name(node: Node) -> str:
     return node.attribute_name
 
 
-def _attribute_color(node: Node) -> Product:
+def _attribute_color(node: Node, read: Read) -> Product:
     return Product((1.0, 1.0, 1.0), (AttributeSource(_attribute_name(node)),))
 
 
-def _attribute_number(weights: tuple[float, ...]) -> Callable[[Node], Product]:
-    return lambda node: Product((1.0,), (AttributeSource(_attribute_name(node), weights),))
+def _attribute_number(weights: tuple[float, ...]) -> Reader:
+    return lambda node, read: Product((1.0,), (AttributeSource(_attribute_name(node), weights),))
 
 
 #: What the Attribute node's Factor is of a colour or vector; linked to a number, its Color is the luminance.
 _MEAN = (1 / 3, 1 / 3, 1 / 3, 0.0)
 
 
-def _component(weights: tuple[float, ...]) -> Callable[[Node], Product]:
-    def read(node: Node) -> Product:
+def _component(weights: tuple[float, ...]) -> Reader:
+    def component(node: Node, read: Read) -> Product:
         if getattr(node, "mode", "RGB") != "RGB":
             raise UnreadableError(f"a {node.bl_label} node in {node.mode}")
-        return product(node.inputs[0]).weighted(weights)
+        return read(node.inputs[0]).weighted(weights)
 
-    return read
+    return component
 
 
-def _mix(node: Node) -> Product:
+def _mix(node: Node, read: Read) -> Product:
     factor, a, b = (_input(node, name) for name in _MIX_INPUTS[node.bl_idname])
     is_product = getattr(node, "data_type", "RGBA") == "RGBA" and node.blend_type == "MULTIPLY"
     if not is_product or linked(factor) is not None or not np.isclose(factor.default_value, 1.0):
         raise UnreadableError(f"a {node.bl_label} node other than a full Multiply")
-    return product(a) * product(b)
+    return read(a) * read(b)
 
 
 def _input(node: Node, identifier: str) -> Socket:
@@ -193,11 +230,11 @@ _OPERATIONS = {
 }
 
 
-def _math(node: Node) -> Product:
+def _math(node: Node, read: Read) -> Product:
     operation = _OPERATIONS.get(node.operation)
     if operation is None:
         raise UnreadableError(f"a Math node that does {node.operation.replace('_', ' ').title()}")
-    a, b = product(node.inputs[0]), product(node.inputs[1])
+    a, b = read(node.inputs[0]), read(node.inputs[1])
     if node.operation == "MULTIPLY" and not node.use_clamp:
         return a * b
     if a.sources and b.sources:
@@ -208,16 +245,16 @@ def _math(node: Node) -> Product:
     return b.mapped(lambda x: top(operation(a.value[0], x) * 1.0), "Math")
 
 
-def _invert(node: Node) -> Product:
+def _invert(node: Node, read: Read) -> Product:
     factor = node.inputs[0]
     if linked(factor) is not None:
         raise UnreadableError("an Invert Color node with a linked factor")
     share = factor.default_value
-    return product(node.inputs[1]).mapped(lambda x: x + share * (1 - 2 * x), "Invert Color")
+    return read(node.inputs[1]).mapped(lambda x: x + share * (1 - 2 * x), "Invert Color")
 
 
-#: (node, output) -> function of the node giving its `Product`
-_READERS: dict[tuple[str, str], Callable[[Node], Product]] = {
+#: (node, output) -> function of the node, and of what reads the sockets that it depends on, giving its `Product`
+_READERS: dict[tuple[str, str], Reader] = {
     ("ShaderNodeRGB", "Color"): _output,
     ("ShaderNodeValue", "Value"): _output,
     ("ShaderNodeTexImage", "Color"): _color,

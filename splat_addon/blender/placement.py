@@ -27,7 +27,8 @@ def without_shear(matrix_world: Matrix) -> tuple[Matrix, np.ndarray | None]:
     plain = Matrix.LocRotScale(*matrix_world.decompose())
     made = np.array(plain, np.float64)
     if np.abs(made - whole)[:3, :3].max() <= _ROUNDING * np.abs(whole[:3, :3]).max():
-        return matrix_world, None
+        # a copy: an object's own matrix is a view of its memory, which an evaluated object may lose
+        return matrix_world.copy(), None
     return plain, np.linalg.solve(made[:3, :3], whole[:3, :3])
 
 

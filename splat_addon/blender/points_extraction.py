@@ -47,7 +47,9 @@ def extract_points(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> 
     """The points of an object as its modifiers make them."""
     evaluated = source.evaluated_get(depsgraph)
     materials = tuple(slot.material and slot.material.original for slot in evaluated.material_slots)
-    cloud = _evaluated_cloud(evaluated)
+    # The geometry set owns its point cloud, so it must live until the points are copied.
+    geometry = _evaluated_geometry(evaluated)
+    cloud = evaluated.data if evaluated.type == "POINTCLOUD" else geometry and geometry.pointcloud
     if cloud is not None:
         return _read_points(cloud.attributes, len(cloud.points), materials)
     with evaluated_mesh(source, depsgraph) as (_, mesh):
@@ -67,13 +69,11 @@ def sheared(points: ExtractedPoints, linear: np.ndarray) -> ExtractedPoints:
     )
 
 
-def _evaluated_cloud(evaluated: bpy.types.Object) -> bpy.types.PointCloud | None:
-    """A point cloud's own data, or the points that Geometry Nodes made of a mesh, whose data is then empty."""
-    if evaluated.type == "POINTCLOUD":
-        return evaluated.data
-    if len(evaluated.data.vertices) or not hasattr(evaluated, "evaluated_geometry"):
+def _evaluated_geometry(evaluated: bpy.types.Object) -> bpy.types.GeometrySet | None:
+    """What Geometry Nodes made of a mesh whose own vertices are gone; None for anything else."""
+    if evaluated.type != "MESH" or len(evaluated.data.vertices) or not hasattr(evaluated, "evaluated_geometry"):
         return None
-    return evaluated.evaluated_geometry().pointcloud
+    return evaluated.evaluated_geometry()
 
 
 def _read_points(attributes, count: int, materials) -> ExtractedPoints:

@@ -8,7 +8,7 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty
 from mathutils import Vector
 
 from ..sampling import DEFAULT_SPLAT_SIZE
-from ..sampling.points import DEFAULT_NEIGHBOURS, ISOLATED_CHOICES
+from ..sampling.points import DEFAULT_NEIGHBOURS, ISOLATED_CHOICES, MAX_NEIGHBOURS
 
 
 class PointsProperties:
@@ -22,6 +22,7 @@ class PointsProperties:
         ),
         default=DEFAULT_NEIGHBOURS,
         min=0,
+        max=MAX_NEIGHBOURS,
         soft_min=6,
         soft_max=64,
     )

@@ -29,6 +29,7 @@ from ..rendering.settings import (
 )
 from ..rendering.shading_models import SHADING_MODELS
 from ..rendering.storages import STORAGES
+from .enum_values import check_choices
 from .ids import RENDER_SETTINGS
 from .matcap_images import matcap_of
 from .mesh_sampling_settings import MeshSamplingProperties
@@ -234,6 +235,19 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         items=[(name, *texts) for name, texts in ACCUMULATIONS.items()],
         default=Settings.accumulation,
     )
+    broken_objects: EnumProperty(
+        name="Broken Objects",
+        description=(
+            "What happens to a final render when an object or a light cannot be drawn, such as surfels that lost an "
+            "attribute. A render that stops writes no file, and Blender in background then ends with exit code 1"
+        ),
+        items=(
+            ("BACKGROUND", "Stop in Background", "Stop where nobody watches, so that a render farm notices; else warn"),
+            ("STOP", "Stop", "Stop the render"),
+            ("WARN", "Warn", "Render without them, and name them in a warning"),
+        ),
+        default="BACKGROUND",
+    )
     profile: BoolProperty(
         name="Time Each Pass",
         description="Wait for the graphics device after every pass, and report how long each took",
@@ -245,7 +259,15 @@ def final_settings(view_layer: bpy.types.ViewLayer, scene: bpy.types.Scene, outp
     """The settings of a final render of a view layer that needs these arrays."""
     properties = getattr(scene, RENDER_SETTINGS)
     choices = {name: getattr(properties, name) for name in ("supersampling", "samples", "profile")}
+    if view_layer.samples:
+        choices["samples"] = min(view_layer.samples, MAX_SAMPLES)
     return _settings(scene, outputs=outputs, alpha_threshold=view_layer.pass_alpha_threshold, **choices)
+
+
+def stops_where_broken(scene: bpy.types.Scene) -> bool:
+    """Whether a final render stops when an object or a light cannot be drawn."""
+    choice = getattr(scene, RENDER_SETTINGS).broken_objects
+    return choice == "STOP" or (choice == "BACKGROUND" and bpy.app.background)
 
 
 def viewport_settings(scene: bpy.types.Scene) -> Settings:
@@ -257,6 +279,7 @@ def viewport_settings(scene: bpy.types.Scene) -> Settings:
 
 def _settings(scene, **choices) -> Settings:
     properties = getattr(scene, RENDER_SETTINGS)
+    check_choices(properties, "render properties")
     return Settings(
         method=properties.method,
         shading=properties.shading,

@@ -104,6 +104,15 @@ class RENDER_PT_surfel_motion_blur(_RenderPanel, bpy.types.Panel):
         self.layout.template_curve_mapping(render, "motion_blur_shutter_curve")
 
 
+class RENDER_PT_surfel_film(_RenderPanel, bpy.types.Panel):
+    bl_label = "Film"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.prop(context.scene.render, "film_transparent", text="Transparent")
+
+
 class RENDER_PT_surfel_shadows(_RenderPanel, bpy.types.Panel):
     bl_label = "Shadows"
     bl_options = frozenset({"DEFAULT_CLOSED"})
@@ -119,20 +128,31 @@ class RENDER_PT_surfel_transparency(_RenderPanel, bpy.types.Panel):
 class RENDER_PT_surfel_performance(_RenderPanel, bpy.types.Panel):
     bl_label = "Performance"
     bl_options = frozenset({"DEFAULT_CLOSED"})
-    properties = ("storage", "accumulation", "profile")
+    properties = ("storage", "accumulation", "profile", "broken_objects")
 
     def draw(self, context):
         super().draw(context)
         self.layout.prop(context.scene.render, "use_persistent_data", text="Persistent Data")
 
 
-#: Blender's panels whose settings this engine does not have, or replaces with its own.
+#: Blender's panels whose settings this engine does not have, or replaces with its own; so are all of Freestyle's.
 _NOT_JOINED = frozenset(
-    {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle", "RENDER_PT_simplify"}
+    {
+        "VIEWLAYER_PT_filter",
+        "VIEWLAYER_PT_layer_passes",
+        "RENDER_PT_simplify_greasepencil",
+        "DATA_PT_light",
+        "DATA_PT_spot",
+        "DATA_PT_preview",
+    }
 )
-#: EEVEE's panels that edit the nodes and the pass index which this engine reads; 4.5 has its settings under a name.
+#: EEVEE's panels that edit what this engine reads too: nodes, pass indices, depth of field, overrides. 4.5 has one of
+#: them under a name of its own.
 _JOINED_FROM_EEVEE = frozenset(
     {
+        "DATA_PT_camera_dof",
+        "DATA_PT_camera_dof_aperture",
+        "VIEWLAYER_PT_override",
         "EEVEE_MATERIAL_PT_context_material",
         "EEVEE_MATERIAL_PT_surface",
         "EEVEE_MATERIAL_PT_settings",
@@ -146,7 +166,10 @@ def stock_panels() -> Iterator[type]:
     """Blender's panels that show settings which this engine honours."""
     for panel in bpy.types.Panel.__subclasses__():
         engines = getattr(panel, "COMPAT_ENGINES", ())
-        if "BLENDER_RENDER" in engines and panel.__name__ not in _NOT_JOINED:
+        # of a panel that the shader editor shows too there is a second class, with the same set of engines
+        name = panel.__name__.removeprefix("NODE_")
+        is_ignored = name in _NOT_JOINED or "freestyle" in name
+        if "BLENDER_RENDER" in engines and not is_ignored:
             yield panel
         elif panel.__name__ in _JOINED_FROM_EEVEE:
             yield panel
@@ -162,6 +185,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         RENDER_PT_surfel_motion_blur,
         RENDER_PT_surfel_shadows,
         RENDER_PT_surfel_transparency,
+        RENDER_PT_surfel_film,
         RENDER_PT_surfel_performance,
     )
 )

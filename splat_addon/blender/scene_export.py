@@ -15,9 +15,11 @@ import numpy as np
 from ..rendering import Instance, Light, Scene
 from ..rendering.packing import MAX_SPLATS
 from ..surfels import Surfels, split
-from .attributes import has_surfels, read_surfels
+from . import passed_over
+from .attributes import has_surfels, has_surfels_beside_faces, have_same_values, read_stored
 from .light_linking import LightSets
 from .live_meshes import LiveMeshes, Place
+from .material_override import Overridden, override_of
 from .mesh_sampling_settings import are_meshes_texture_mapped, form_of, mesh_fineness
 from .object_detail import detail_of
 from .shading_export import light_of, shading_material
@@ -28,13 +30,20 @@ from .world_export import WorldStore
 
 @dataclass
 class Notes:
-    """What the user should hear about a scene: sentence -> how often."""
+    """What the user should hear about a scene: sentence -> how often. left_out: those that name an object or a light
+    that should be seen and is not."""
 
     counts: Counter = field(default_factory=Counter)
+    left_out: list[str] = field(default_factory=list)
 
     def add(self, sentence: str, count: int = 1) -> None:
         if count:
             self.counts[sentence] += count
+
+    def leave_out(self, name: str, error: ValueError) -> None:
+        """An object or a light of this name cannot be drawn."""
+        self.left_out.append(f"{name} is left out: {error}")
+        self.add(self.left_out[-1])
 
     def sentences(self) -> list[str]:
         """One sentence each, with its count where it happened more than once."""
@@ -46,6 +55,7 @@ class _Kept(NamedTuple):
     surfels: Surfels
     parts: tuple[Surfels, ...]
     skipped: int
+    strayed: int
 
 
 class SurfelStore:
@@ -61,28 +71,36 @@ class SurfelStore:
     def __init__(self):
         self.world = WorldStore()
         self.textures = TextureStore()
+        self.overridden = Overridden()
         self._kept: dict[int, _Kept] = {}
         self._current: set[int] = set()
+        self._followed: dict = {}
 
-    def get(self, mesh: bpy.types.Mesh) -> tuple[tuple[Surfels, ...], int]:
-        """As `attributes.read_surfels`, in parts that the renderer can hold; once a mesh and frame."""
+    def get(self, mesh: bpy.types.Mesh) -> tuple[tuple[Surfels, ...], int, int]:
+        """As `attributes.read_stored`, in parts that the renderer can hold; once a mesh and frame."""
         key = mesh.session_uid
         if key not in self._current:
-            surfels, skipped = read_surfels(mesh)
-            known = (k for k in self._kept.values() if k.name == mesh.name_full and _same(k.surfels, surfels))
-            kept = next(known, None) or _Kept(mesh.name_full, surfels, split(surfels, MAX_SPLATS), skipped)
-            self._kept[key] = kept._replace(skipped=skipped)
+            surfels, skipped, strayed = read_stored(mesh, self._followed)
+            known = (
+                k for k in self._kept.values() if k.name == mesh.name_full and have_same_values(k.surfels, surfels)
+            )
+            kept = next(known, None) or _Kept(mesh.name_full, surfels, split(surfels, MAX_SPLATS), 0, 0)
+            self._kept[key] = kept._replace(skipped=skipped, strayed=strayed)
             self._current.add(key)
-        return self._kept[key].parts, self._kept[key].skipped
+        kept = self._kept[key]
+        return kept.parts, kept.skipped, kept.strayed
 
     def begin_frame(self, changed: set[str] | None = None, are_materials_edited: bool = False) -> None:
         """Meshes named in `changed` (None: all) are read again the next time they are asked for."""
+        self.overridden.begin_frame()
         self.textures.begin_frame(are_materials_edited, is_told=changed is not None)
         self._current = {k for k in self._current if changed is not None and self._kept[k].name not in changed}
 
     def forget_unused(self) -> None:
         """Let go of meshes that this frame did not ask for."""
         self._kept = {key: kept for key, kept in self._kept.items() if key in self._current}
+        names = {kept.name for kept in self._kept.values()}
+        self._followed = {name: before for name, before in self._followed.items() if name in names}
 
 
 def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes: LiveMeshes) -> tuple[Scene, Notes]:
@@ -90,11 +108,14 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
 
     live_meshes: keeps the meshes that are no surfels.
     """
-    notes, bpy_scene = Notes(), depsgraph.scene
+    notes, bpy_scene, view_layer = Notes(), depsgraph.scene, depsgraph.view_layer_eval
+    override = override_of(depsgraph)
+    for sentence in passed_over.of_scene(bpy_scene):
+        notes.add(sentence)
     surfels, (lights, light_sets) = [], _lights(depsgraph, notes)
     for entry in depsgraph.object_instances:
         object_, matrix = entry.object, np.array(entry.matrix_world, np.float64)
-        if not entry.show_self:
+        if not entry.show_self or not (view_layer.use_solid and _is_seen(entry, depsgraph, notes)):
             continue
         try:
             if object_.type == "MESH":
@@ -105,23 +126,43 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                     "index": object_.pass_index,
                     "is_holdout": owner_of(entry).holdout_get(view_layer=depsgraph.view_layer),
                 }
-                if (what := _content(object_)) == "surfels":
-                    surfels += _instances(object_, matrix, fields, store, notes)
-                elif what == "faces" and (form := form_of(entry, bpy_scene)).kind != "HIDDEN":
+                what = _content(object_)
+                if "surfels" in what:
+                    surfels += _instances(object_, matrix, fields, store, notes, override)
+                if "faces" in what and (form := form_of(entry, bpy_scene)).kind != "HIDDEN":
                     owner = owner_of(entry)
-                    live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), notes)
-                elif what == "points":
+                    live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), notes, override)
+                if "points" in what:
                     notes.add(_BARE_POINTS)
             elif object_.type in _NOT_DRAWN:
                 notes.add(f"Objects of type {_NOT_DRAWN[object_.type]} are not drawn; convert them to meshes first")
         except ValueError as error:
-            notes.add(f"{object_.name} is left out: {error}")
+            notes.leave_out(object_.name, error)
     sampled, polygons = live_meshes.instances(
         depsgraph, mesh_fineness(bpy_scene), are_meshes_texture_mapped(bpy_scene), notes
     )
-    world, environment = store.world.read(depsgraph.scene.world, notes)
+    world, environment = store.world.read(_world_of(depsgraph), notes)
     lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
     return Scene((*surfels, *sampled), tuple(lights), world, environment, tuple(polygons)), notes
+
+
+def _world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
+    """That of the view layer, which from Blender 5.0 on may have one of its own, or none to see at all."""
+    view_layer = depsgraph.view_layer_eval
+    if not view_layer.use_sky:
+        return None
+    return getattr(view_layer, "world_override", None) or depsgraph.scene.world
+
+
+def _is_seen(entry: bpy.types.DepsgraphObjectInstance, depsgraph: bpy.types.Depsgraph, notes: Notes) -> bool:
+    """Whether the camera sees it. What it does not see casts no shadow here either, which is said."""
+    owner = owner_of(entry)
+    is_indirect = owner.indirect_only_get(view_layer=depsgraph.view_layer)
+    if entry.object.visible_camera and owner.visible_camera and not is_indirect:
+        return True
+    if entry.object.type in {"MESH", *_NOT_DRAWN} and entry.object.visible_shadow:
+        notes.add(f"{owner.name} is hidden from the camera, and in this engine its shadow with it")
+    return False
 
 
 def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], LightSets]:
@@ -132,9 +173,11 @@ def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], 
             try:
                 light = light_of(entry.object.data, np.array(entry.matrix_world, np.float64), notes)
             except ValueError as error:
-                notes.add(f"{entry.object.name} is left out: {error}")
+                notes.leave_out(entry.object.name, error)
                 continue
             if light:
+                for sentence in passed_over.of_light(entry.object.original):
+                    notes.add(sentence)
                 lights.append(light)
                 objects.append(entry.object.original)
     return lights, LightSets(objects, notes)
@@ -147,23 +190,38 @@ _NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "v
 _BARE_POINTS = "Meshes of points without faces are not drawn; convert them with Object > Convert Points to Surfels"
 
 
-def _content(object_: bpy.types.Object) -> str:
-    """What a mesh object has: "surfels", "faces", "points" or "nothing"."""
+def _content(object_: bpy.types.Object) -> tuple[str, ...]:
+    """What a mesh object has of "surfels", "faces" and "points"."""
     with _attributes_of(object_) as mesh:
         if not len(mesh.vertices):
-            return "nothing"
-        return "surfels" if has_surfels(mesh) else "faces" if mesh.polygons else "points"
+            return ()
+        if mesh.polygons:
+            return ("surfels", "faces") if has_surfels_beside_faces(mesh) else ("faces",)
+        return ("surfels",) if has_surfels(mesh) else ("points",)
 
 
-def _instances(object_, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes: Notes) -> list[Instance]:
+def _instances(
+    object_, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes: Notes, override
+) -> list[Instance]:
     """Of an object that has surfels; one, unless it has more than the renderer holds in one.
 
     Raises ValueError for broken attributes or an unusable matrix.
     """
     with _attributes_of(object_) as mesh:
-        parts, skipped = store.get(mesh)
+        parts, skipped, strayed = store.get(mesh)
     if skipped:
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
+    if strayed:
+        notes.add(
+            f"{object_.name}: {strayed:,} surfels were moved one by one, and lie as they did before; convert the "
+            "source again if it was bent"
+        )
+    for sentence in passed_over.of_object(object_.original):
+        notes.add(sentence)
+    if override is not None:
+        materials = (shading_material(override, notes),)
+        parts = tuple(store.overridden.get(part, override, notes) for part in parts)
+        return [Instance(part, matrix_world, materials, **fields) for part in parts]
     own = parts[0].arrays().keys()
     materials = tuple(shading_material(slot.material, notes, own) for slot in object_.material_slots)
     slots = object_.material_slots if parts[0].has_uvs else ()
@@ -178,9 +236,3 @@ def _attributes_of(object_: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
         yield object_.to_mesh() if object_.data.is_editmode else object_.data
     finally:
         object_.to_mesh_clear()
-
-
-def _same(a: Surfels, b: Surfels) -> bool:
-    mine, other = a.arrays(), b.arrays()
-    same_fields = a.is_solid == b.is_solid and mine.keys() == other.keys()
-    return same_fields and all(np.array_equal(mine[name], other[name]) for name in mine)

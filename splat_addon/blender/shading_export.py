@@ -12,6 +12,8 @@ import numpy as np
 
 from ..rendering import Light, Material
 from ..rendering.packing import reflectance
+from . import passed_over
+from .node_products import linked
 
 #: Blender's light type -> its emitting area, which multiplies the energy of a light that is not normalised (as
 #: Cycles measures it: a sun's disc at distance 1, a point's sphere, or 4 for one without size).
@@ -83,6 +85,19 @@ def color_times_strength(node: bpy.types.Node, owner: str, notes) -> tuple[float
     return tuple(c * strength.default_value for c in color.default_value[:3])
 
 
+#: What a world or a material sends out at most, in a channel: more would leave float32 once it falls on something.
+MAX_RADIANCE = 1e30
+
+
+def finite_radiance(radiance: tuple[float, float, float], owner: str, notes) -> tuple[float, float, float]:
+    """The radiance itself; where pictures cannot hold it, black, and a note. owner: the subject of a sentence."""
+    if all(abs(channel) <= MAX_RADIANCE for channel in radiance):
+        return radiance
+    red, green, blue = radiance
+    notes.add(f"{owner} sends out {red:g}, {green:g}, {blue:g}, which no picture holds; it is black")
+    return 0.0, 0.0, 0.0
+
+
 def shading_material(material: bpy.types.Material | None, notes, own: Collection[str] = ()) -> Material:
     """How the shader at the material's output answers light, and what it sends out; the default one without a material.
 
@@ -94,8 +109,14 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
     if node is None:
         notes.add(f"The material {material.name!r} has no Principled BSDF at its output; it is shaded as a default one")
         return Material(index=material.pass_index)
+    for sentence in passed_over.of_material(material, node):
+        notes.add(sentence)
     fields, make = _SHADERS[node.type]
-    made = make({name: node.inputs[name].default_value for name in fields})
+    plain = {name: node.inputs[name].default_value for name in fields}
+    if emission := [name for name, field in fields.items() if field == "emission"]:
+        sent = finite_radiance(_sent(plain, *emission), f"The material {material.name!r}", notes)
+        plain |= dict(zip(emission, (sent, 1.0), strict=True))
+    made = make(plain)
     linked = [name for name, field in fields.items() if node.inputs[name].is_linked and field not in own]
     if not any(made.emission):
         linked = [name for name in linked if fields[name] != "emission" or "Strength" in name]
@@ -148,7 +169,7 @@ def _levelled(ior: float, level: float) -> float:
 def output_source(tree: bpy.types.NodeTree, output_type: str, *wanted: str) -> bpy.types.Node | None:
     """The node of one of the types `wanted` that feeds the tree's active output, or None."""
     for node in tree.nodes:
-        if node.type == output_type and node.is_active_output and node.inputs["Surface"].links:
-            source = node.inputs["Surface"].links[0].from_node
-            return source if source.type in wanted else None
+        if node.type == output_type and node.is_active_output and (found := linked(node.inputs["Surface"])):
+            source = found[0]
+            return source if source.type in wanted and not source.mute else None
     return None

@@ -29,7 +29,12 @@ def has_surfaces(source: bpy.types.Object) -> bool:
         return source.instance_type == "COLLECTION" and source.instance_collection is not None
     if source.type in _SURFACES_BY_MODIFIERS:
         return bool(source.modifiers)
-    return source.type in _SURFACES and not (source.type == "MESH" and has_surfels(source.data))
+    return source.type in _SURFACES and not is_surfel_object(source)
+
+
+def is_surfel_object(source: bpy.types.Object) -> bool:
+    """Whether the object stores surfels itself."""
+    return source.type == "MESH" and has_surfels(source.data)
 
 
 @dataclass(eq=False)

@@ -28,9 +28,12 @@ def placement(
     Raises UnreadableError.
     """
     matrix, wraps = np.eye(3), None
-    socket = node.inputs["Vector"]
+    socket, passed = node.inputs["Vector"], set()
     while (source := linked(socket)) is not None:
         by, output = source
+        if by in passed:
+            raise UnreadableError(f"an image texture that is placed by a {by.bl_label} node in a ring of nodes")
+        passed.add(by)
         if by.bl_idname == "ShaderNodeMapping" and not by.mute:
             matrix = matrix @ _mapping(by)
             socket = by.inputs["Vector"]

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import traceback
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -13,6 +12,7 @@ import bpy
 
 from ..rendering import Refinement, Renderer, Shown, open_device
 from .camera_export import viewport_camera
+from .final_render import sentence_of
 from .live_meshes import LiveMeshes
 from .properties import viewport_settings
 from .scene_export import SurfelStore, export_scene
@@ -23,9 +23,7 @@ def guarded(engine: bpy.types.RenderEngine, callback, context, depsgraph) -> Non
     try:
         callback(engine, context, depsgraph)
     except Exception as error:
-        if not isinstance(error, ValueError | RuntimeError):
-            traceback.print_exc()
-        engine.update_stats("Surfel view failed", str(error))
+        engine.update_stats("Surfel view failed", sentence_of(error))
 
 
 def update(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:

@@ -10,7 +10,9 @@ import numpy as np
 from mathutils import Euler
 
 from ..rendering import Environment
-from .shading_export import color_times_strength, output_source
+from ..rendering.atlas import MAX_EDGE
+from . import passed_over
+from .shading_export import MAX_RADIANCE, color_times_strength, finite_radiance, output_source
 from .texture_images import UnreadableError, linear_pixels
 
 Color = tuple[float, float, float]
@@ -28,15 +30,19 @@ class WorldStore:
         if world is None:
             return BLACK, None
         node = output_source(world.node_tree, "OUTPUT_WORLD", "BACKGROUND") if world.use_nodes else None
+        for sentence in passed_over.of_world(world):
+            notes.add(sentence)
+        owner = f"The world {world.name!r}"
         if node is None:
             return (BLACK if world.use_nodes else tuple(world.color)), None
         picture = _picture(node.inputs["Color"], world, notes)
         if picture is None:
-            return color_times_strength(node, f"The world {world.name!r}", notes), None
+            return finite_radiance(color_times_strength(node, owner, notes), owner, notes), None
         strength = node.inputs["Strength"]
         if strength.is_linked:
-            notes.add(f"The world {world.name!r} has a textured strength; the socket's plain value is used")
-        return (float(strength.default_value),) * 3, self._environment(picture, notes)
+            notes.add(f"{owner} has a textured strength; the socket's plain value is used")
+        even = finite_radiance((float(strength.default_value),) * 3, owner, notes)
+        return even, self._environment(picture, notes)
 
     def _environment(self, picture: _Picture, notes) -> Environment | None:
         image = picture.image
@@ -48,12 +54,26 @@ class WorldStore:
             except UnreadableError as reason:
                 notes.add(f"The world's picture cannot be read and counts as white: {reason}")
                 return None
-            bad = ~np.isfinite(pixels)
+            bad = ~(np.abs(pixels) <= MAX_RADIANCE)
             if bad.any():
-                notes.add(f"The world's picture {image.name!r} has numbers that are not finite; they count as 0")
+                notes.add(f"The world's picture {image.name!r} has numbers that no picture holds; they count as 0")
                 pixels = np.where(bad, 0, pixels)
+            steps = [-(-edge // MAX_EDGE) for edge in pixels.shape[:2]]
+            if max(steps) > 1:
+                pixels = _reduced(pixels, *steps)
+                notes.add(
+                    f"The world's picture {image.name!r} is larger than {MAX_EDGE:,} pixels, which graphics devices "
+                    f"hold along an edge; it is shown at {pixels.shape[1]:,} x {pixels.shape[0]:,}"
+                )
             self._kept = key, Environment(pixels, picture.rotation)
         return self._kept[1]
+
+
+def _reduced(pixels: np.ndarray, down: int, across: int) -> np.ndarray:
+    """The means over blocks of so many rows and columns; what fills no block is left out."""
+    rows, columns = pixels.shape[0] // down, pixels.shape[1] // across
+    whole = pixels[: rows * down, : columns * across]
+    return whole.reshape(rows, down, columns, across, 3).mean(axis=(1, 3))
 
 
 class _Picture(NamedTuple):

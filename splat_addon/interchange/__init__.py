@@ -7,6 +7,7 @@ that surfels have), `gaussian_ply` (3D and 2D Gaussian splatting) and `point_ply
 """
 
 from .contents import read_contents
+from .following import followed
 from .gaussian_ply import DEFAULT_FLATNESS, Gaussians, write_gaussian_ply
 from .placement import joined, transformed
 from .point_ply import Points
@@ -17,6 +18,7 @@ __all__ = [
     "Gaussians",
     "Points",
     "StoredSurfels",
+    "followed",
     "joined",
     "read_contents",
     "read_ply",

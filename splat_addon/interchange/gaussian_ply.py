@@ -133,7 +133,8 @@ def _flat_frames(rotations: np.ndarray, sigmas: np.ndarray) -> tuple[np.ndarray,
     rotations = rotations.copy()
     for axis in (0, 1):
         at = np.flatnonzero(thin == axis)
-        rotations[at] = _product(rotations[at], np.float32(_TURNS[axis]))
+        with np.errstate(over="ignore", invalid="ignore"):
+            rotations[at] = _product(rotations[at], np.float32(_TURNS[axis]))
     order = (thin[:, None] + (1, 2)) % 3
     return rotations, np.take_along_axis(sigmas, order, axis=1)
 
@@ -172,4 +173,5 @@ def _colors(columns: dict[str, np.ndarray], kept: np.ndarray) -> np.ndarray:
 
 def _needs_origin(positions: np.ndarray) -> bool:
     """Whether the positions are finer than float32 keeps, as in files with double coordinates."""
-    return bool((positions.astype(np.float32) != positions).any())
+    with np.errstate(over="ignore"):
+        return bool((positions.astype(np.float32) != positions).any())

@@ -7,12 +7,12 @@ from __future__ import annotations
 import os
 import warnings
 from itertools import islice
-from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
 from .ply_header import TYPES, Element, Header, read_header
+from .whole_file import whole_file
 
 _VERTEX = "vertex"
 
@@ -50,7 +50,7 @@ def write_vertices(
 ) -> None:
     """A PLY file with (N,) columns as the vertices' properties, in their own types; little endian unless `ascii`.
 
-    The file appears under its name only when it is complete.
+    The file appears under its name only when it is complete. Raises OSError.
     """
     codes = {name: np.asarray(column).dtype.str[1:] for name, column in columns.items()}
     count = len(next(iter(columns.values())))
@@ -61,17 +61,13 @@ def write_vertices(
     head += [f"comment {comment}" for comment in comments]
     head += [f"element {_VERTEX} {count}"]
     head += [f"property {_TYPE_NAMES[code]} {name}" for name, code in codes.items()]
-    unfinished = Path(f"{os.fspath(path)}.part")
-    try:
-        with open(unfinished, "wb") as stream:
-            stream.write("\n".join([*head, "end_header", ""]).encode("ascii"))
-            if ascii:
-                np.savetxt(stream, rows, fmt=" ".join(_TEXT_FORMATS.get(code, "%d") for code in codes.values()))
-            else:
-                rows.tofile(stream)
-        os.replace(unfinished, path)
-    finally:
-        unfinished.unlink(missing_ok=True)
+    with whole_file(path) as stream:
+        stream.write("\n".join([*head, "end_header", ""]).encode("ascii"))
+        if ascii:
+            np.savetxt(stream, rows, fmt=" ".join(_TEXT_FORMATS.get(code, "%d") for code in codes.values()))
+        else:
+            # not `tofile`, which tells of a full disk only by two numbers
+            stream.write(rows.view(np.uint8).data)
 
 
 def _read_binary(stream: BinaryIO, size: int, header: Header, before, vertex: Element) -> dict[str, np.ndarray]:

@@ -107,5 +107,5 @@ def _add_property(elements: list[Element], words: list[str], line: str) -> None:
             f"The PLY header has a property that cannot be read, {line[:80]!r}; its types must be among the 16 of PLY."
         )
     if name in elements[-1].types:
-        raise ValueError(f"The PLY element {elements[-1].name!r} has two properties {name[:40]!r}; rename one.")
+        raise ValueError(f"The PLY element {elements[-1].name[:40]!r} has two properties {name[:40]!r}; rename one.")
     elements[-1].types[name] = None if is_list else TYPES[types[0]]

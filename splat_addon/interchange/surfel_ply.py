@@ -67,7 +67,7 @@ def write_ply(path: str | os.PathLike, surfels: Surfels, ascii: bool = False) ->
     for name, properties in _OPTIONAL.items():
         values = getattr(surfels, name)
         if values is not None:
-            columns |= split(properties, values.reshape(len(surfels), -1))
+            columns |= split(properties, values.reshape(len(surfels), len(properties)))
     origin = " ".join(repr(float(value)) for value in surfels.origin)
     comments = [_VERSION, *([f"{_ORIGIN} {origin}"] * has_origin), *([_SOLID] * surfels.is_solid)]
     write_vertices(path, columns, tuple(comments), ascii)
@@ -102,7 +102,7 @@ def _fields(columns: dict[str, np.ndarray], comments: tuple[str, ...]) -> dict:
     with np.errstate(over="ignore", invalid="ignore"):
         positions = (positions - origin).astype(np.float32)
     colors = matrix(columns, _COLOR) if has(columns, _COLOR) else display_color(columns)
-    material = columns.get("material", np.zeros(len(positions)))
+    material = columns.get("material", np.zeros(len(positions))).astype(np.float64)
     optional = {name: matrix(columns, group) for name, group in _OPTIONAL.items() if has(columns, group)}
     return {
         "positions": positions,

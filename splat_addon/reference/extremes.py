@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scenes at the edges of arithmetic: sheets seen edge-on, specks at the near plane, worlds moved and scaled.
 
-Builders that tests/extremes and scripts/measure_numerics.py share; `scenes` holds the everyday ones.
+Builders that tests/extremes and `sweeps` share; `scenes` holds the everyday ones.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the principled shading needs to know of the GGX lobe, tabulated by scripts/fit_brdf_table.py."""
+"""What the principled shading needs to know of the GGX lobe, tabulated by reference/brdf_fit.py."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ class Environment:
 
     @cached_property
     def _levels(self) -> np.ndarray:
-        pixels = reduced(self.pixels, BLURRED_ROWS)
+        pixels = reduced(_with_pixels_all_around(self.pixels), BLURRED_ROWS)
         directions, share = equirectangular_directions(pixels.shape[:2])
         toward = level_directions()
         cosines = toward.reshape(-1, 3) @ directions.T
@@ -99,6 +99,17 @@ def reduced(pixels: np.ndarray, rows: int) -> np.ndarray:
     if min(h, w) == 0 or step == 1:
         return pixels
     return pixels[: h * step, : w * step].reshape(h, step, w, step, 3).mean(axis=(1, 3), dtype=np.float64)
+
+
+#: Rows and columns that a picture is blurred from at least: in one of few pixels a surface may face none.
+_FEWEST_PIXELS = (8, 16)
+
+
+def _with_pixels_all_around(pixels: np.ndarray) -> np.ndarray:
+    """The picture with each pixel repeated until there are enough."""
+    for axis, fewest in enumerate(_FEWEST_PIXELS):
+        pixels = np.repeat(pixels, -(-fewest // pixels.shape[axis]), axis=axis)
+    return pixels
 
 
 def _lobe(cosines: np.ndarray, roughness: float) -> np.ndarray:

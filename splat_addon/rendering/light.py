@@ -14,6 +14,9 @@ MAX_SUN_HALF_ANGLE = 1.4
 #: How many sets of instances that differ in what lights them a picture can have: the channels of one texture.
 MAX_LIGHT_SETS = 4
 
+#: Of a light, in a channel: more would leave float32 once it falls on something.
+MAX_POWER = 1e30
+
 KINDS = ("sun", "point", "spot", "area")
 
 
@@ -50,13 +53,18 @@ class Light:
             raise ValueError(f"A light's kind must be one of {', '.join(KINDS)}, not {self.kind!r}.")
         for name in ("color", "energy", "position", "direction", "size", "spot_angle", "spot_blend", "half_axes"):
             if not np.isfinite(getattr(self, name)).all():
-                raise ValueError(f"A light's {name} must be finite, not {getattr(self, name)!r}.")
+                raise ValueError(f"A light's {name} must be finite, not {np.asarray(getattr(self, name)).tolist()}.")
+        if not np.abs(self.color).max() * abs(self.energy) <= MAX_POWER:
+            raise ValueError(
+                f"A light's colour times its energy must be at most {MAX_POWER:g}, which pictures can hold, not "
+                f"{np.asarray(self.color).tolist()} times {float(self.energy):g}."
+            )
         if not np.any(self.direction):
             raise ValueError("A light's direction must not be zero.")
         if self.size < 0:
             raise ValueError(f"A light's size must be 0 or more, not {self.size}.")
         if self.kind == "area" and not self.area > 0:
-            raise ValueError(f"An area light's half-axes must span an area, not {self.half_axes!r}.")
+            raise ValueError(f"An area light's half-axes must span an area, not {np.asarray(self.half_axes).tolist()}.")
 
     @property
     def area(self) -> float:
@@ -111,7 +119,11 @@ def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: flo
     if map_ranges is not None:
         texels[:, 6, :2] = map_ranges
         texels[:, 6, 2] = [_LAMP_SIZES[light.kind](light, scale) for light in lights]
-    return texels.astype(np.float32)
+    # a picture of a tiny scene has tiny units, in which a power may be beyond float32
+    return np.clip(texels, -_LARGEST, _LARGEST).astype(np.float32)
+
+
+_LARGEST = 1e37
 
 
 def _sun(light: Light, scale: float) -> tuple[float, float]:

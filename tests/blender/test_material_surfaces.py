@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Materials -> what surfels are made of, down to the surfels of a unit square whose UV map is its x and y."""
 
+from itertools import pairwise
+
 import bpy
 import numpy as np
 import pytest
@@ -218,9 +220,31 @@ def missing_attribute(nodes, image):
     nodes.link(nodes.add("ShaderNodeVertexColor", layer_name="nowhere"), "Color", nodes.principled, "Base Color")
 
 
+def ring_of_mappings(nodes, image):
+    texture, first, second = nodes.texture(image()), *(nodes.add("ShaderNodeMapping") for _ in range(2))
+    nodes.link(texture, "Color", nodes.principled, "Base Color").link(first, "Vector", texture, "Vector")
+    nodes.link(second, "Vector", first, "Vector").link(first, "Vector", second, "Vector")
+
+
+def ring_of_inverters(nodes, image):
+    first, second = (nodes.add("ShaderNodeInvert") for _ in range(2))
+    nodes.link(first, "Color", nodes.principled, "Base Color")
+    nodes.link(second, "Color", first, "Color").link(first, "Color", second, "Color")
+
+
+def long_chain(nodes, image):
+    links = [nodes.add("ShaderNodeMath", operation="ADD") for _ in range(500)]
+    for node, following in pairwise(links):
+        nodes.link(node, "Value", following, 0)
+    nodes.link(links[-1], "Value", nodes.principled, "Base Color")
+
+
 @pytest.mark.parametrize(
     ("build", "reason"),
     [
+        (ring_of_mappings, "placed by a Mapping node in a ring of nodes"),
+        (ring_of_inverters, "Invert Color node in a ring of nodes"),
+        (long_chain, "a chain of more than 100 nodes"),
         (procedural, "Noise Texture node"),
         (without_image, "without an image"),
         (missing_file, "'gone', which has no pixels"),
@@ -237,6 +261,29 @@ def test_what_cannot_be_read_falls_back_to_the_sockets_colour_and_is_reported(pa
     assert np.allclose(surfels.colors, (0.1, 0.2, 0.3, 1))
     warning = next(line for line in capfd.readouterr().out.splitlines() if line.startswith("Warning"))
     assert "material 'odd'" in warning and reason in warning
+
+
+def test_reroutes_in_a_ring_feed_nothing(painted, capfd):
+    nodes = Nodes("ring")
+    nodes.principled.inputs["Base Color"].default_value = (0.1, 0.2, 0.3, 1)
+    first, second = (nodes.add("NodeReroute") for _ in range(2))
+    nodes.link(first, "Output", nodes.principled, "Base Color")
+    nodes.link(second, "Output", first, 0).link(first, "Output", second, 0)
+    assert np.allclose(painted(nodes.material)[0].colors, (0.1, 0.2, 0.3, 1))
+
+
+def test_a_node_that_takes_its_predecessor_twice_is_read_once(painted):
+    """Along 40 of them lead 2 ** 40 paths."""
+    nodes = Nodes()
+    doubled = nodes.add("ShaderNodeValue")
+    doubled.outputs[0].default_value = 2.0**-40
+    for _ in range(40):
+        following = nodes.add("ShaderNodeMath", operation="ADD")
+        for socket in (0, 1):
+            nodes.link(doubled, "Value", following, socket)
+        doubled = following
+    nodes.link(doubled, "Value", nodes.principled, "Base Color")
+    assert np.allclose(painted(nodes.material)[0].colors, 1)
 
 
 def test_an_unreadable_alpha_costs_only_the_alpha(painted, image, capfd):

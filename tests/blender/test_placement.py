@@ -7,6 +7,8 @@ import pytest
 from mathutils import Matrix
 from mathutils.bvhtree import BVHTree
 
+from splat_addon.blender.placement import without_shear
+
 PLACES = {
     "offset": Matrix.Translation((100, -200, 300)),
     "turned": Matrix.Rotation(1.0, 4, (1, 2, 3)),
@@ -76,3 +78,10 @@ def test_normals_follow_the_shear_too(convert, surfels_of):
 def test_the_new_object_has_no_parent(suzanne, convert):
     suzanne.parent = bpy.data.objects.new("parent", None)
     assert convert(resolution=8)[0].parent is None
+
+
+def test_a_place_does_not_hang_on_an_evaluated_object_s_memory(suzanne):
+    """The matrix of an object is a view of its memory, and a conversion outlives the evaluation that it began with."""
+    evaluated = suzanne.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    assert evaluated.matrix_world.owner is not None
+    assert without_shear(evaluated.matrix_world)[0].owner is None

@@ -5,9 +5,8 @@ PYTHON -I session.py -- ZIP REPORT.json
 """
 
 import json
-import os
+import runpy
 import sys
-import traceback
 from pathlib import Path
 
 import bpy
@@ -56,15 +55,11 @@ def picture(file: Path) -> np.ndarray:
     return values.reshape(SIZE, SIZE, 4)[[32, 2, 2, 61], [32, 2, 61, 61]]
 
 
-exit_code = 1
-try:
+def report_facts() -> None:
     package, report = sys.argv[sys.argv.index("--") + 1 :]
-    facts = main(package, Path(report))
-    Path(report).write_text(json.dumps(facts))
-    exit_code = 0
-except BaseException:
-    traceback.print_exc()
-sys.stdout.flush()
-sys.stderr.flush()
-# Some versions hang or crash while Blender ends.
-os._exit(exit_code)
+    Path(report).write_text(json.dumps(main(package, Path(report))))
+
+
+# By its file, for the checkout is not on the path, and shall not be.
+leaving = runpy.run_path(str(Path(__file__).resolve().parents[2] / "scripts" / "environment" / "leaving.py"))
+leaving["run_and_leave"](report_facts)

@@ -29,6 +29,10 @@ def test_nothing_else_is_in(files):
     assert others == []
 
 
+def test_the_float64_reference_is_not_in(files):
+    assert [f for f in files if f.parts[:2] == ("splat_addon", "reference")] == []
+
+
 def test_the_root_holds_only_what_a_user_reads(files):
     known = {"__init__.py", "blender_manifest.toml", "LICENSE", "README.md"}
     assert {str(f) for f in files if len(f.parts) == 1} <= known

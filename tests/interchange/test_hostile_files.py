@@ -45,6 +45,7 @@ BINARY, TEXT = "format binary_little_endian 1.0", "format ascii 1.0"
         (["format binary 1.0", "element vertex 0", *XYZ], b"", "format must be one of"),
         (["element vertex 0", *XYZ], b"", "no line 'format'"),
         ([BINARY, "hello"], b"", "no PLY file has, 'hello'"),
+        ([BINARY, f"element {'e' * 200_000} 1", *XYZ, "property float x"], b"", "two properties 'x'"),
     ],
 )
 def test_a_damaged_file_is_one_sentence(ply, head, body, sentence):
@@ -84,6 +85,30 @@ def test_numbers_beyond_float32_are_counted_not_warned_of(ply, recwarn):
     body = b"1e300 0 0 0 0 1 1 0 0 0 1 1 nan\n0 0 0 0 0 1 1 0 0 0 1 1 1e300\n"
     stored = read_contents(ply(head, body))
     assert (len(stored.surfels), stored.unusable) == (1, 1) and not recwarn.list
+
+
+FRAME = ["x", "y", "z", "nx", "ny", "nz", "rot_0", "rot_1", "rot_2", "rot_3", "scale_0", "scale_1"]
+LAYOUTS = {
+    "surfels": [*FRAME, "material", "red", "green", "blue", "emission_0", "emission_1", "emission_2"],
+    "gaussians": [*FRAME, "scale_2", "opacity", "f_dc_0", "f_dc_1", "f_dc_2"],
+    "points": [*FRAME[:6], "radius", "red", "green", "blue", "alpha"],
+}
+DAMAGED = [0, -1, np.nan, np.inf, -np.inf, 1e30, 3e38, 1e-45, 1e300, -1e300, 1e-300, 5e17]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("kind", ["float", "double"])
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_damaged_numbers_are_never_warned_of_by_numpy(ply, layout, kind):
+    random, names = np.random.default_rng(5), LAYOUTS[layout]
+    for share in np.repeat((0.02, 0.3), 20):
+        rows = random.normal(size=(30, len(names)))
+        bad = random.random(rows.shape) < share
+        rows[bad] = random.choice(DAMAGED, bad.sum())
+        with np.errstate(over="ignore"):
+            body = rows.astype(kind.replace("float", "<f4").replace("double", "<f8")).tobytes()
+        read = read_contents(ply([BINARY, "element vertex 30", *(f"property {kind} {n}" for n in names)], body))
+        assert np.isfinite(read.surfels.positions).all() if layout != "points" else read.positions.shape == (30, 3)
 
 
 @settings(deadline=None, max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])

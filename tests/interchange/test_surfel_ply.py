@@ -22,6 +22,15 @@ def test_every_bit_comes_back(surfels, assert_same_bits, tmp_path, ascii, count)
     assert_same_bits(read_ply(tmp_path / "a.ply"), written)
 
 
+def test_an_empty_set_with_optional_fields_comes_back(surfels, tmp_path):
+    optional = {"roughness": np.zeros(0), "emission": np.zeros((0, 3)), "uvs": np.zeros((0, 2))}
+    write_ply(tmp_path / "a.ply", surfels(0, **optional))
+    read = read_ply(tmp_path / "a.ply")
+    assert {name: array.shape for name, array in read.arrays().items() if name in optional} == {
+        name: values.shape for name, values in optional.items()
+    }
+
+
 @settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     positions=arrays(np.float32, (3, 3), elements=FLOATS),

@@ -19,6 +19,12 @@ def test_an_even_picture_stays_even():
     np.testing.assert_allclose(levels(np.full((32, 64, 3), 0.7, np.float32)), 0.7, rtol=1e-5)
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("shape", [(1, 1), (8, 1), (1, 2), (2, 64)])
+def test_so_does_a_picture_of_few_pixels(shape):
+    np.testing.assert_allclose(levels(np.full((*shape, 3), 0.7, np.float32)), 0.7, rtol=1e-5)
+
+
 def test_solid_angles_add_up_to_the_sphere():
     directions, share = equirectangular_directions((31, 50))
     assert share.sum() == pytest.approx(4 * np.pi)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scripts.coverage import uncovered_points
+from splat_addon.reference.bare import uncovered_points
 from splat_addon.sampling import Channel, Surface, Tolerance, TriangleMesh, VertexColors, grid_spacing, sample_surface
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scripts.coverage import uncovered_points
+from splat_addon.reference.bare import uncovered_points
 from splat_addon.sampling import grid_spacing, sample_mesh
 from splat_addon.sampling.ellipses import ellipse_rotations, ellipse_scales
 from splat_addon.surfels import quaternion_axes

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scripts.coverage import uncovered_points
-from scripts.distances import distances
+from splat_addon.reference.bare import uncovered_points
+from splat_addon.reference.distances import distances
 from splat_addon.sampling import (
     REDUCTIONS,
     Channel,

@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfels follow a mesh: moved as a whole exactly, bent and stretched without holes, the same ones all along."""
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 from trimesh.transformations import rotation_matrix
 
+from splat_addon.reference.bare import uncovered_points
 from splat_addon.sampling import STRETCHED_SHARE, Channel, Surface, TrackedSurfels, TriangleMesh, VertexColors
 from splat_addon.sampling.binding import LARGEST_STRETCH
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-from coverage import uncovered_points
 
 TURN = rotation_matrix(1.1, (1, 2, 3))[:3, :3]
 

@@ -2,9 +2,11 @@
 """The demo's arguments: each wrong one is a sentence and exit code 2, before anything is made."""
 
 import sys
+from types import SimpleNamespace
+
+import pytest
 
 import demo
-import pytest
 
 
 @pytest.fixture(autouse=True)
@@ -68,8 +70,20 @@ def test_a_size_is_width_by_height():
     assert demo.parse(["--size", "640x480"]).size == (640, 480)
 
 
+def test_a_module_that_is_gone_is_a_damaged_environment_which_the_next_run_makes_anew(monkeypatch, tmp_path, capsys):
+    made, distrusted = SimpleNamespace(python=sys.executable, folder=tmp_path / ".venv-bpy"), []
+    monkeypatch.setattr(demo.environment, "make", lambda purpose: made)
+    monkeypatch.setattr(demo.environment, "distrust", distrusted.append)
+    broken = {"args": [sys.executable, "-c", "import a_module_that_is_gone"]}
+    monkeypatch.setattr(demo, "module_process", lambda *arguments: broken)
+    assert demo.main(["--out", str(tmp_path)]) == 1
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert ".venv-bpy is damaged" in last and "a_module_that_is_gone" in last and "run this again" in last
+    assert distrusted == [made]
+
+
 def test_errors_of_blender_are_seen_and_its_noise_is_not(capfdbinary):
     noise = "EGL Error (0x3009): EGL_BAD_MATCH: Arguments are inconsistent"
     code = f"import sys; sys.stderr.write({noise!r} + '\\nreal trouble\\n'); sys.exit(3)"
-    assert demo.run_without_noise([sys.executable, "-c", code]) == 3
+    assert demo.run_without_noise(args=[sys.executable, "-c", code]) == 3
     assert capfdbinary.readouterr().err.splitlines() == [b"real trouble"]

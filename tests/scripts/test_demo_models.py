@@ -5,7 +5,8 @@ import gzip
 import json
 
 import pytest
-from demo_models import unpack
+
+from demonstration.models import unpack
 from environment import Problem
 
 

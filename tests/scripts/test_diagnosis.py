@@ -2,6 +2,7 @@
 """What the loader and pip print becomes one sentence with the remedy."""
 
 import pytest
+
 from environment.diagnosis import import_problem, install_problem, last_line
 
 MISSING = "ImportError: libXi.so.6: cannot open shared object file: No such file or directory"

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """When an environment is made, when it is used as it lies, and what is said where it cannot be made."""
 
+import os
 import sys
+import threading
 
 import pytest
-from environment import Problem, virtual_environment
+
+from environment import Problem, distrust, virtual_environment
 from environment.virtual_environment import make
 
 
@@ -18,9 +21,12 @@ def machine(tmp_path, monkeypatch):
         python = folder / virtual_environment.PROGRAM
         python.parent.mkdir(parents=True)
         python.touch()
+        (folder / "pyvenv.cfg").touch()
 
     def install(command, pick):
         done.append("pip")
+        for package in ("bpy", "numpy"):
+            (machine.packages / package).mkdir(parents=True, exist_ok=True)
         return machine.pip
 
     def check(environment):
@@ -29,6 +35,7 @@ def machine(tmp_path, monkeypatch):
     class machine:
         pip = 0, ""
         folder = tmp_path / ".venv-bpy-5.2.3"
+        packages = folder / ("Lib/site-packages" if os.name == "nt" else "lib/python3.13/site-packages")
         requirements = tmp_path / "requirements"
 
     machine.done = done
@@ -79,6 +86,56 @@ def test_a_half_made_environment_is_made_anew(machine):
     (machine.folder / "left over").touch()
     make("demo")
     assert machine.done == ["venv", "pip", "check"] and not (machine.folder / "left over").exists()
+
+
+def without_a_package(machine):
+    (machine.packages / "numpy").rmdir()
+
+
+def without_its_settings(machine):
+    (machine.folder / "pyvenv.cfg").unlink()
+
+
+def with_a_stamp_of_bytes(machine):
+    (machine.folder / "installed.txt").write_bytes(bytes(range(256)))
+
+
+@pytest.mark.parametrize("damage", [without_a_package, without_its_settings, with_a_stamp_of_bytes])
+def test_a_damaged_environment_heals(machine, damage, capsys):
+    make("demo")
+    machine.done.clear()
+    damage(machine)
+    make("demo")
+    assert machine.done[-2:] == ["pip", "check"] and (machine.packages / "numpy").is_dir()
+    make("demo")
+    assert machine.done[-1:] == ["check"] and machine.done.count("pip") == 1
+
+
+def test_one_that_was_found_broken_is_made_anew(machine):
+    distrust(make("demo"))
+    machine.done.clear()
+    make("demo")
+    assert machine.done == ["venv", "pip", "check"]
+
+
+def test_of_two_first_runs_one_makes_it_and_the_other_waits(machine, monkeypatch, capsys):
+    install, is_made = virtual_environment.run_showing, threading.Event()
+
+    def slowly(command, pick):
+        is_made.wait(5)
+        return install(command, pick)
+
+    monkeypatch.setattr(virtual_environment, "run_showing", slowly)
+    runs = [threading.Thread(target=make, args=("demo",)) for _ in range(2)]
+    for run in runs:
+        run.start()
+    printed = ""
+    while "waiting" not in printed and any(run.is_alive() for run in runs):
+        printed += capsys.readouterr().out
+    is_made.set()
+    for run in runs:
+        run.join()
+    assert machine.done.count("pip") == 1 and machine.done.count("check") == 2
 
 
 def test_a_failed_installation_is_no_environment(machine):

@@ -1,27 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/measure_features.py: each feature is there on one side only, and the table says what the plan adds for it."""
+"""The costs of features: each is there on one side only, and the table says what the plan adds for it."""
 
 import csv
 import platform
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
-from costs.features import FEATURES
-from costs.planned import added, planned_bytes
-from costs.shots import plain
 
+from bench.features.planned import added, planned_bytes
+from splat_addon.reference.features import FEATURES
+from splat_addon.reference.shots import plain
 from splat_addon.rendering import Renderer, plan
 
-SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "measure_features.py"
 SIZE = (48, 48)
-
-
-def measure(*arguments):
-    command = [sys.executable, str(SCRIPT), *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True)
 
 
 def sides(feature):
@@ -59,21 +50,20 @@ def test_what_a_plan_adds_is_named_with_its_bytes(name, passes, textures, more):
 
 
 @pytest.mark.parametrize("device", ["standalone", "blender"])
-def test_a_table_and_a_csv_are_left_and_name_no_host(device, tmp_path):
-    done = measure(
-        "--device", device, "--quick", "--size", 32, "--turns", 2, "--out", tmp_path, "--only", "format", "lines of 4"
-    )
+def test_a_table_and_a_csv_are_left_and_name_no_host(device, bench, tmp_path):
+    few = "--quick", "--size", 32, "--turns", 2, "--only", "format", "lines of 4"
+    done = bench("features", "--device", device, "--out", tmp_path, *few)
     assert done.returncode == 0, done.stdout + done.stderr
-    with (tmp_path / "costs.csv").open(encoding="utf-8") as file:
+    with (tmp_path / "features.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert [row["feature"] for row in rows] == ["lines of 4 pixels", "float16 sums", "16-bit surfels"]
     for row in rows:
         assert float(row["ratio_min"]) <= float(row["ratio"]) <= float(row["ratio_max"])
-    text = (tmp_path / "costs.md").read_text(encoding="utf-8")
+    text = (tmp_path / "features.md").read_text(encoding="utf-8")
     assert "32 x 32 pixels, 10,000 splats, medians of 2 turns" in text and "| lines of 4 pixels | flat |" in text
     assert platform.node() not in text.split()
 
 
-def test_a_name_that_is_not_there_is_said(tmp_path):
-    done = measure("--out", tmp_path, "--only", "caustics")
+def test_a_name_that_is_not_there_is_said(bench, tmp_path):
+    done = bench("features", "--out", tmp_path, "--only", "caustics")
     assert done.returncode == 2 and "caustics" in done.stderr and "light" in done.stderr

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from environment.interpreters import candidate_commands, probe
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -5,6 +5,7 @@ import os
 import sys
 
 import pytest
+
 from environment import Problem, interpreters
 from environment.interpreters import find_interpreter
 

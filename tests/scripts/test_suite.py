@@ -5,7 +5,8 @@ import importlib.util
 from pathlib import Path
 
 import pytest
-from testing.groups import BLENDER, PLAIN, QUICK, paths_by_group, split_arguments
+
+from testing.groups import BLENDER, PLAIN, QUICK, by_folder, paths_by_group, split_arguments
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +64,11 @@ def test_the_whole_folder_runs_in_both_groups():
 def test_a_test_of_the_window_runs_only_where_it_is_named():
     groups = paths_by_group(["tests/window"])
     assert groups[PLAIN] == ["tests/window"] and not groups[BLENDER]
+
+
+def test_each_folder_has_its_process_in_a_program():
+    parts = by_folder(["tests/rendering/test_agreement.py", "tests/blender", "tests/rendering/methods"])
+    assert parts == [["tests/rendering/test_agreement.py", "tests/rendering/methods"], ["tests/blender"]]
 
 
 def test_the_quick_choice_is_of_tests_that_exist_in_both_groups():

@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/measure.py: what it leaves behind, on both devices, and that FLIP is read as its authors mean it."""
+"""The trade of speed for accuracy: what it leaves behind on both devices."""
 
 import csv
 import platform
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,20 +10,14 @@ from PIL import Image
 
 from splat_addon.reference import render_exact
 
-SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 TINY = ["--quick", "--size", "32", "--samples", "2", "--turns", "2", "--scenes", "text"]
 
 
-def measure(*arguments):
-    command = [sys.executable, str(SCRIPTS / "measure_trade.py"), *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True)
-
-
 @pytest.fixture(scope="module", params=["standalone", "blender"])
-def measured(request, tmp_path_factory):
+def measured(request, bench, tmp_path_factory):
     """(the finished run, its folder)"""
     folder = tmp_path_factory.mktemp(request.param)
-    done = measure("--device", request.param, "--out", folder, *TINY)
+    done = bench("trade", "--device", request.param, "--out", folder, *TINY)
     assert done.returncode == 0, done.stdout + done.stderr
     return done, folder
 
@@ -37,7 +28,7 @@ def rows_of(folder):
 
 
 def test_every_quick_choice_has_a_row_with_numbers_in_order(measured):
-    from trade.choices import choices
+    from bench.trade.choices import choices
 
     rows = rows_of(measured[1])
     assert len(rows) == len(choices(quick=True)) > 8
@@ -67,29 +58,29 @@ def test_plots_and_pictures_are_there(measured):
             assert np.asarray(picture.convert("L")).std() > 10, name
 
 
-def test_a_missing_model_is_said_aloud_and_the_rest_measured(tmp_path):
-    done = measure("--out", tmp_path, *TINY, "armadillo", "--models", tmp_path)
+def test_a_missing_model_is_said_aloud_and_the_rest_measured(bench, tmp_path):
+    done = bench("trade", "--out", tmp_path, *TINY, "armadillo", "--models", tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "SKIPPED armadillo" in done.stdout
+    assert "Skipped: armadillo" in done.stdout
     assert "**Skipped: armadillo**" in (tmp_path / "trade.md").read_text(encoding="utf-8")
     assert {row["scene"] for row in rows_of(tmp_path)} == {"text"}
 
 
-def test_nothing_measured_is_a_failure(tmp_path):
-    done = measure("--out", tmp_path, *TINY[:-1], "armadillo", "--models", tmp_path)
+def test_nothing_measured_is_a_failure(bench, tmp_path):
+    done = bench("trade", "--out", tmp_path, *TINY[:-1], "armadillo", "--models", tmp_path)
     assert done.returncode == 1 and "Nothing was measured" in done.stderr
 
 
 def test_the_frontier_keeps_what_nothing_beats():
-    from trade.frontier import frontier
+    from bench.trade.plots import frontier
 
     rows = [{"ratio": r, "flip_gaussian": f} for r, f in ((1, 0.5), (1, 0.4), (2, 0.4), (3, 0.1), (2.5, 0.6), (4, 0.2))]
     assert [(row["ratio"], row["flip_gaussian"]) for row in frontier(rows)] == [(1, 0.4), (3, 0.1)]
 
 
 def test_every_case_can_be_built_and_every_choice_is_its_own(models):
-    from trade.cases import CASES, View
-    from trade.choices import YARDSTICK, choices
+    from bench.trade.cases import CASES, View
+    from bench.trade.choices import YARDSTICK, choices
 
     view = View(16, models)
     for case in CASES.values():
@@ -101,9 +92,9 @@ def test_every_case_can_be_built_and_every_choice_is_its_own(models):
 
 
 def test_a_kept_truth_is_read_again_and_another_scenes_is_not(tmp_path):
-    from trade.cases import CASES, View
-    from trade.choices import YARDSTICK
-    from trade.truth import exact_frames
+    from bench.trade.cases import CASES, View
+    from bench.trade.choices import YARDSTICK
+    from splat_addon.reference.kept import exact_frames
 
     view = View(16, tmp_path)
     first = exact_frames(*CASES["text"].build(view), YARDSTICK, 1, tmp_path)
@@ -117,9 +108,9 @@ def test_a_kept_truth_is_read_again_and_another_scenes_is_not(tmp_path):
 
 @pytest.mark.parametrize("name", ["gaussian", "box"])
 def test_the_truth_is_the_references(name, tmp_path):
-    from trade.cases import CASES, View
-    from trade.choices import YARDSTICK
-    from trade.truth import exact_frames
+    from bench.trade.cases import CASES, View
+    from bench.trade.choices import YARDSTICK
+    from splat_addon.reference.kept import exact_frames
 
     scene, camera = CASES["torus"].build(View(24, tmp_path))
     frame, exact = (
@@ -130,44 +121,11 @@ def test_the_truth_is_the_references(name, tmp_path):
     np.testing.assert_allclose(frame.coverage, exact.coverage, atol=1e-5)
 
 
-@pytest.mark.parametrize(
-    ("a", "b"), [((0, 0, 0), (1, 1, 1)), ((0.2, 0.5, 0.1), (0.2, 0.4, 0.3)), ((0.5,) * 3, (0.5,) * 3)]
-)
-def test_flip_of_two_plain_colours_is_the_papers(a, b):
-    """Andersson et al. 2020: without detail only the colour pipeline is left."""
-    from trade.truth import mean_flip
-
-    pictures = (np.broadcast_to(np.float64(color), (32, 32, 3)) for color in (a, b))
-    assert mean_flip(*pictures) == pytest.approx(flip_of_colours(a, b), abs=2e-4)
-
-
-def flip_of_colours(a, b):
-    """Sections 4.1 and 4.3: Hunt-adjusted CIELAB, HyAB distance to the power 0.7, compressed beyond 0.4 of the
-    distance of green and blue onto 0.95 to 1. The colours are linear."""
-    to_xyz = np.array([(0.4123908, 0.3575843, 0.1804808), (0.2126390, 0.7151687, 0.0721923),
-                       (0.0193308, 0.1191948, 0.9505322)])  # fmt: skip
-
-    def hunt_lab(color):
-        ratio = to_xyz @ np.float64(color) / to_xyz.sum(axis=1)
-        f = np.where(ratio > (6 / 29) ** 3, np.cbrt(ratio), ratio / (3 * (6 / 29) ** 2) + 4 / 29)
-        lightness = 116 * f[1] - 16
-        return np.array([lightness, 0.01 * lightness * 500 * (f[0] - f[1]), 0.01 * lightness * 200 * (f[1] - f[2])])
-
-    def distance(a, b):
-        difference = hunt_lab(a) - hunt_lab(b)
-        return (abs(difference[0]) + np.hypot(*difference[1:])) ** 0.7
-
-    most = distance((0, 1, 0), (0, 0, 1))
-    least, knee, height = distance(a, b), 0.4 * most, 0.95
-    return height * least / knee if least < knee else height + (least - knee) / (most - knee) * (1 - height)
-
-
 def test_no_time_holds_the_packing_of_surfels():
     """Whose textures another storage takes the place of: the frame after a change of storage is not the one counted."""
     from types import SimpleNamespace
 
-    from trade.measurement import draw_turns
-
+    from measuring.drawing import draw_in_turn
     from splat_addon.rendering import Settings
 
     packed = []
@@ -178,5 +136,4 @@ def test_no_time_holds_the_packing_of_surfels():
         return SimpleNamespace(stats={"milliseconds": 100.0 if is_packing else 1.0})
 
     chosen = [Settings(storage=storage, method=m) for storage in ("float32", "16-bit") for m in ("quad", "mip")]
-    _, times = draw_turns(draw, chosen, 2, lambda: None)
-    assert times == {settings: [1.0, 1.0] for settings in chosen}
+    assert draw_in_turn(draw, chosen, 2).values == {settings: [1.0, 1.0] for settings in chosen}

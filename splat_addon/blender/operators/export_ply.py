@@ -15,6 +15,7 @@ from ...surfels import Surfels
 from ..attributes import has_surfels, read_surfels
 from ..ids import EXPORT_PLY
 from ..mesh_extraction import evaluated_mesh
+from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 
 #: The operator's choice -> function of path, surfels and whether to write text.
@@ -32,6 +33,7 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
     bl_options = {"PRESET"}  # noqa: RUF012 - Blender reads a set
 
     filename_ext = ".ply"
+    filepath: path_property("writing to")
     filter_glob: StringProperty(default="*.ply", options={"HIDDEN"})
     layout_kind: EnumProperty(
         name="Layout",
@@ -69,14 +71,17 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
             if not parts:
                 which = "selected" if self.use_selection else "visible"
                 raise ValueError(f"No {which} object is surfels; convert one first, or choose others.")
-            surfels = joined(parts)
-            _WRITERS[self.layout_kind](self.filepath, surfels, self.ascii)
-        except (ValueError, OSError, MemoryError) as error:
-            self.report({"ERROR"}, str(error) or "The memory does not suffice; export fewer surfels.")
+            surfels, path = joined(parts), absolute(self.filepath)
+            _WRITERS[self.layout_kind](path, surfels, self.ascii)
+        except OSError as error:
+            self.report({"ERROR"}, f"{self.filepath} cannot be written: {file_sentence(error)}")
+            return {"CANCELLED"}
+        except (ValueError, MemoryError) as error:
+            self.report({"ERROR"}, file_sentence(error))
             return {"CANCELLED"}
         if unusable:
             self.report({"WARNING"}, f"Skipped {unusable:,} unusable surfels")
-        self.report({"INFO"}, f"{len(surfels):,} surfels of {len(parts)} objects -> {self.filepath}")
+        self.report({"INFO"}, f"{len(surfels):,} surfels of {len(parts)} objects -> {path}")
         return {"FINISHED"}
 
 

@@ -16,6 +16,7 @@ from ...surfels import Surfels
 from ..ids import IMPORT_PLY
 from ..points_settings import PointsProperties, draw_points_properties, keywords, viewpoint
 from ..surfel_objects import add_surfel_object, select_only
+from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 
 
@@ -27,6 +28,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
     bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 - Blender reads a set
 
     filename_ext = ".ply"
+    filepath: path_property("reading from")
     filter_glob: StringProperty(default="*.ply", options={"HIDDEN"})
     flatness: FloatProperty(
         name="Flatness",
@@ -52,18 +54,18 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
             draw_points_properties(body, self)
 
     def execute(self, context):
+        name = Path(self.filepath.removeprefix("//")).name
         try:
-            contents = read_contents(self.filepath, self.flatness)
+            contents = read_contents(absolute(self.filepath), self.flatness)
             surfels, notes = _READERS[type(contents)](contents, self, context)
             if not len(surfels):
                 raise ValueError(f"The file gives no surfels{': ' if notes else ''}{'; '.join(notes)}.")
         except (ValueError, OSError, MemoryError) as error:
-            sentence = str(error) or "The memory does not suffice for this file."
-            self.report({"ERROR"}, f"{Path(self.filepath).name}: {sentence}")
+            self.report({"ERROR"}, f"{name}: {file_sentence(error)}")
             return {"CANCELLED"}
-        made = add_surfel_object(Path(self.filepath).stem, surfels, Matrix(), [context.collection])
+        made = add_surfel_object(Path(name).stem, surfels, Matrix(), [context.collection])
         select_only(context, [made])
-        self.report({"INFO"}, f"{Path(self.filepath).name}: {len(surfels):,} surfels")
+        self.report({"INFO"}, f"{name}: {len(surfels):,} surfels")
         for note in notes:
             self.report({"WARNING" if note.startswith("Skipped") else "INFO"}, note)
         return {"FINISHED"}

@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from .interface import FORMATS, PROGRAMS, PipelineDescription
+from .interface import FORMATS, PROGRAMS, PipelineDescription, check_texture_size
 
 _FORMAT_NAMES = {"DEPTH32F": "DEPTH_COMPONENT32F"}
 _BLEND_NAMES = {"none": "NONE", "add": "ADDITIVE_PREMULT"}
@@ -49,6 +49,7 @@ class BlenderDevice:
     def texture(self, size, format, data=None, samples=0):
         if samples:
             raise ValueError("Blender's gpu module has no multisampled textures.")
+        check_texture_size(size, self._gpu.capabilities.max_texture_size_get())
         return _Texture(self._gpu, size, format, data)
 
     def target(self, colors, depth=None):

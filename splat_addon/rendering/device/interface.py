@@ -17,11 +17,20 @@ import numpy as np
 #: format -> channels; RGBA16 holds 0 to 1 in multiples of 1 / 65535
 FORMATS = {"RGBA32F": 4, "RGBA16F": 4, "RGBA16": 4, "RG32F": 2, "R32F": 1, "DEPTH32F": 1}
 
-#: Programs that a device keeps: some twenty make a picture, and a setting that is animated may make new ones each frame.
+#: Programs that a device keeps: some twenty make a picture, but an animated setting may make new ones each frame.
 PROGRAMS = 512
 
 #: blend mode -> what happens to a fragment
 BLENDS = ("none", "add")
+
+
+def check_texture_size(size: tuple[int, int], largest: int) -> None:
+    """Raises ValueError where a device whose textures have at most `largest` texels along an edge has none so large."""
+    if max(size) > largest:
+        raise ValueError(
+            f"A picture of {size[0]:,} x {size[1]:,} pixels does not fit on this graphics device, which holds up to "
+            f"{largest:,} along an edge; scale it down."
+        )
 
 
 @dataclass(frozen=True)

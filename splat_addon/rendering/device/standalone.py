@@ -9,7 +9,7 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from .interface import FORMATS, PROGRAMS, PipelineDescription
+from .interface import FORMATS, PROGRAMS, PipelineDescription, check_texture_size
 
 _GL_TEXTURE_2D_MULTISAMPLE, _GL_TEXTURE_SAMPLES, _GL_SAMPLE_SHADING = 0x9100, 0x9106, 0x8C36
 _GL_TEXTURE_2D, _GL_DEPTH_COMPONENT, _GL_FLOAT, _GL_DEPTH_COMPONENT32F = 0x0DE1, 0x1902, 0x1406, 0x8CAC
@@ -51,6 +51,7 @@ class StandaloneDevice:
         self.multisample_counts = tuple(n for n in (2, 4, 8) if _has_multisampling(self._context, n))
 
     def texture(self, size, format, data=None, samples=0):
+        check_texture_size(size, self._context.info["GL_MAX_TEXTURE_SIZE"])
         return _Texture(self._context, size, format, data, samples)
 
     def target(self, colors, depth=None):

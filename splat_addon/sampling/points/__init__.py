@@ -5,7 +5,14 @@ Flow: `cleanup` -> `neighbours` (over `cells`) -> `normals` -> `orientation` -> 
 `from_points` puts them in order, `report` counts what was skipped and estimated.
 """
 
-from .from_points import DEFAULT_COLOR, DEFAULT_NEIGHBOURS, ISOLATED_CHOICES, surfels_from_points
+from .from_points import DEFAULT_COLOR, DEFAULT_NEIGHBOURS, ISOLATED_CHOICES, MAX_NEIGHBOURS, surfels_from_points
 from .report import PointsReport
 
-__all__ = ["DEFAULT_COLOR", "DEFAULT_NEIGHBOURS", "ISOLATED_CHOICES", "PointsReport", "surfels_from_points"]
+__all__ = [
+    "DEFAULT_COLOR",
+    "DEFAULT_NEIGHBOURS",
+    "ISOLATED_CHOICES",
+    "MAX_NEIGHBOURS",
+    "PointsReport",
+    "surfels_from_points",
+]

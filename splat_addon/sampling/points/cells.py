@@ -8,8 +8,12 @@ import numpy as np
 #: Cell numbers up to here can be added and multiplied in int64 without a thought.
 _MAX_KEY = 2**62
 
-#: Cells along the longest edge of the points' box at most; what lies closer together than one is told apart later.
-_MAX_CELLS = 2**50
+#: The cells this far from the origin hold all that lies beyond as well, so that a point far from all others does not
+#: make everyone's cells large. Two numbers of 53 bits that are larger than this many cells differ by many cells.
+_LAST_CELL = 2**60
+
+#: Below this, numbers lose their digits.
+_LEAST_SIZE = 1e-290
 
 
 class Cells:
@@ -17,7 +21,7 @@ class Cells:
 
     order: (N,) int32 points, cell by cell; a *place* is an index into it. columns: x, y and z by place in units of
     the cell, each with an infinite one at the end for the place N of no point. queries: (Q,) the points asked for, in
-    ascending order of the points; cell_of_query, place_of_query: (Q,).
+    ascending order of the points; cell_of_query, place_of_query: (Q,); is_far: (Q,) whether it is in the last cells.
     """
 
     def __init__(self, positions: np.ndarray, size: float, queries: np.ndarray):
@@ -31,6 +35,7 @@ class Cells:
         self._first = np.append(self._first, len(keys))
         self.columns = [np.append(column[self.order], np.inf) for column in scaled]
         self.queries = queries
+        self.is_far = _beyond_last(scaled)[queries]
         self.query_columns = [column[queries] for column in scaled]
         place_of_point = np.empty(len(keys), np.int32)
         place_of_point[self.order] = np.arange(len(keys), dtype=np.int32)
@@ -76,24 +81,35 @@ class Cells:
 def fine_cell_size(positions: np.ndarray, wanted: float) -> float:
     """A cell size at which an average point shares its cell with about `wanted` points, itself included, or fewer.
 
-    positions: (N, 3) with the least coordinates at 0. The average is over points, so one dense cluster counts.
+    positions: (N, 3), pairwise different. The average is over points, so one dense cluster counts; those in the last
+    cells do not. The size is a power of two: coordinates in units of it keep every bit.
     """
-    extent = float(positions.max())
-    size = 4 * extent / np.sqrt(len(positions))
-    while size > extent / _MAX_CELLS:
-        keys = np.sort(_cell_keys([column / size for column in positions.T])[0])
+    size = _power_of_two(4 * float(np.ptp(positions, axis=0).max()) / np.sqrt(len(positions)))
+    while True:
+        scaled = [column / size for column in positions.T]
+        keys = np.sort(_cell_keys(scaled)[0][~_beyond_last(scaled)])
         counts = np.diff(np.flatnonzero(np.diff(keys, prepend=-1, append=-1)))
-        company = np.square(counts, dtype=np.float64).sum() / len(keys)
-        if company <= 1.5 * wanted:
-            break
+        company = np.square(counts, dtype=np.float64).sum() / max(len(keys), 1)
+        if company <= 1.5 * wanted or size < _LEAST_SIZE:
+            return size
         # On a surface the number grows with the square of the size.
-        size *= np.sqrt(wanted / company)
-    return size
+        size = _power_of_two(size * np.sqrt(wanted / company))
+
+
+def _power_of_two(size: float) -> float:
+    """The next one below, or the number itself."""
+    return 2.0 ** np.floor(np.log2(size))
+
+
+def _beyond_last(scaled: list[np.ndarray]) -> np.ndarray:
+    """(N,) bool: which points lie in the last cells along some axis, from columns in units of the cell."""
+    return np.logical_or.reduce([np.abs(column) >= _LAST_CELL for column in scaled])
 
 
 def _cell_keys(scaled: list[np.ndarray]) -> tuple[np.ndarray, tuple[int, int]]:
     """(N,) int64 number of each point's cell, and how much it grows a cell along x and along y (1 along z)."""
-    cells = [np.floor(column).astype(np.int64) + 1 for column in scaled]
+    cells = [np.clip(np.floor(column), -_LAST_CELL, _LAST_CELL).astype(np.int64) for column in scaled]
+    cells = [column - (column.min() - 1) for column in cells]
     lengths = [int(column.max()) + 2 for column in cells]
     if lengths[0] * lengths[1] * lengths[2] > _MAX_KEY:
         cells = [_without_gaps(column) for column in cells]

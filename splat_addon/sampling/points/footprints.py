@@ -110,7 +110,7 @@ def _reaches(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> np.ndarray:
         for values, weight in ((reach, inverse), (cosine, unit)):
             weighted = along * weight
             values[row], values[row + half] = weighted.max(axis=0), -weighted.min(axis=0)
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
         reach = np.where(cosine >= _OPEN_COSINE, 1 / np.maximum(reach, 0), np.inf)
     reach = np.where(np.isinf(reach), np.roll(reach, half, axis=0), reach)
     return np.minimum(np.where(np.isinf(reach), 0.5, reach), _LONGEST)
@@ -137,5 +137,6 @@ def _ellipses(reach: np.ndarray, splat_size: float) -> tuple[np.ndarray, np.ndar
     half_axes = splat_size * spacing
     along = cosine[:, None] * np.cos(angle) + sine[:, None] * np.sin(angle)
     across = sine[:, None] * np.cos(angle) - cosine[:, None] * np.sin(angle)
-    squares = reach * reach * ((along / half_axes[0]) ** 2 + (across / half_axes[1]) ** 2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        squares = reach * reach * ((along / half_axes[0]) ** 2 + (across / half_axes[1]) ** 2)
     return angle, (half_axes * np.sqrt(np.maximum(squares.max(axis=0), 1))).T

@@ -23,6 +23,8 @@ from .report import PointsReport
 #: rings around a point and a little more.
 DEFAULT_NEIGHBOURS = 16
 _FEWEST_NEIGHBOURS = 3
+#: Their indices and distances are held for all points at once: 2 GB for a million points.
+MAX_NEIGHBOURS = 256
 
 DEFAULT_COLOR = (0.8, 0.8, 0.8, 1.0)
 
@@ -75,15 +77,22 @@ def surfels_from_points(
     surfels, keep, report = _estimate(given, neighbours, splat_size, isolated, viewpoint, report, progress)
     rank = np.argsort(order[keep], kind="stable")
     arrays = {name: array[keep][rank] for name, array in surfels.items()}
-    middle = (given["positions"].min(axis=0) + given["positions"].max(axis=0)) / 2
-    arrays["positions"] = given["positions"][keep][rank] - middle
-    return Surfels(origin=middle, **arrays), replace(report, surfels=len(rank))
+    positions = given["positions"][keep][rank]
+    middle = _middle(positions)
+    return Surfels(positions=positions - middle, origin=middle, **arrays), replace(report, surfels=len(rank))
+
+
+def _middle(positions: np.ndarray) -> np.ndarray:
+    """(3,) the median coordinates, each that of some point; of none, 0. Relative to it most points keep their digits,
+    however far away a few others are, which would pull the mean or the middle of the bounds along."""
+    half = len(positions) // 2
+    return np.array([np.partition(column, half)[half] for column in positions.T]) if len(positions) else np.zeros(3)
 
 
 def _estimate(given, neighbours, splat_size, isolated, viewpoint, report, progress):
     """Fields of `Surfels` but the positions, indices of the points to keep, and the report."""
     positions = given["positions"]
-    positions = positions - positions.mean(axis=0)
+    positions = positions - _middle(positions)
     missing_normals, missing_radii = ~_usable_normals(given), ~_usable_radii(given)
     estimates = missing_normals.any() or missing_radii.any()
     if estimates and len(positions) <= _FEWEST_NEIGHBOURS:
@@ -128,7 +137,7 @@ def _normals(given, positions, missing, nearest, viewpoint, progress) -> tuple[n
     if viewpoint is None:
         normals *= facing_outward(positions, normals, part)[:, None]
     else:
-        centre = given["positions"].mean(axis=0)
+        centre = _middle(given["positions"])
         normals *= facing_viewpoint(positions, normals, part, np.asarray(viewpoint, np.float64) - centre)[:, None]
     if not missing.all():
         own = np.flatnonzero(~missing)
@@ -146,7 +155,7 @@ def _ellipses(
         positions, normals, nearest, splat_size, stage(progress, *_STAGES["ellipses"])
     )
     # Nothing beside it in its own plane, or nothing near it at all: it is as large as the nearest that is better off.
-    stray = alone | ~known
+    stray = alone | ~known | ~_are_sizes(scales).all(axis=1)
     at = np.flatnonzero(stray)
     example = nearest[at, (~stray[nearest[at]]).argmax(axis=1)]
     scales[at] = np.where(stray[example], splat_size * distances[at, 0], scales[example].mean(axis=1))[:, None]
@@ -177,7 +186,14 @@ def _usable_normals(given) -> np.ndarray:
 def _usable_radii(given) -> np.ndarray:
     if "radii" not in given:
         return np.zeros(len(given["positions"]), bool)
-    return np.isfinite(given["radii"]) & (given["radii"] > 0)
+    return _are_sizes(given["radii"])
+
+
+def _are_sizes(values: np.ndarray) -> np.ndarray:
+    """Which of them are half-axes that surfels can have, in float32."""
+    with np.errstate(over="ignore"):
+        values = values.astype(np.float32)
+    return np.isfinite(values) & (values > 0)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
@@ -197,7 +213,8 @@ def _checked(positions, normals, radii, colors) -> dict[str, np.ndarray | None]:
     }
     arrays = {}
     for name, (values, allowed, dtype) in shapes.items():
-        array = None if values is None else np.asarray(values, dtype)
+        with np.errstate(over="ignore", invalid="ignore"):
+            array = None if values is None else np.asarray(values, dtype)
         if array is not None and array.shape not in allowed:
             wanted = " or ".join(map(str, allowed))
             raise ValueError(f"The points' {name} must have shape {wanted}, not {array.shape}.")
@@ -206,8 +223,10 @@ def _checked(positions, normals, radii, colors) -> dict[str, np.ndarray | None]:
 
 
 def _check_settings(neighbours, splat_size, isolated, viewpoint):
-    if neighbours < _FEWEST_NEIGHBOURS or neighbours != int(neighbours):
-        raise ValueError(f"The neighbours must be a whole number of {_FEWEST_NEIGHBOURS} or more, not {neighbours}.")
+    if not (_FEWEST_NEIGHBOURS <= neighbours <= MAX_NEIGHBOURS and neighbours == int(neighbours)):
+        raise ValueError(
+            f"The neighbours must be a whole number from {_FEWEST_NEIGHBOURS} to {MAX_NEIGHBOURS}, not {neighbours}."
+        )
     if not (math.isfinite(splat_size) and splat_size > 0):
         raise ValueError(f"The splat size must be a finite number above 0, not {splat_size}.")
     if isolated not in ISOLATED_CHOICES:

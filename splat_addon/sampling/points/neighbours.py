@@ -21,8 +21,10 @@ _BLOCK = 1 << 17
 #: the block's points lie in the ball that is certain.
 _WORTH_LOOKING = 2.5
 
-#: The last few points, mostly far from all others, are compared with every point.
-_FEW = 16
+#: The last few points, mostly far from all others, are compared with every point, which is cheaper than to look for
+#: the cells that hold their neighbours: so many points at least and at most, and so many comparisons in between.
+_FEW, _MORE = 16, 256
+_FEW_COMPARISONS = 1 << 23
 
 
 def nearest_neighbours(
@@ -38,22 +40,22 @@ def nearest_neighbours(
     total = len(positions)
     if not 1 <= count < total:
         raise ValueError(f"{total} points do not have {count} neighbours each; ask for 1 to {total - 1}.")
-    positions = positions - positions.min(axis=0)
-    neighbours, squares = np.empty((total, count), np.int32), np.empty((total, count), np.float32)
+    neighbours, distances = np.empty((total, count), np.int32), np.empty((total, count), np.float32)
     size = fine_cell_size(positions, (count + 1) / 2)
     waiting = np.arange(total)
-    while len(waiting) > _FEW:
+    few = np.clip(_FEW_COMPARISONS // total, _FEW, _MORE)
+    while len(waiting) > few:
         cells = Cells(positions, size, waiting)
         done = total - len(waiting)
-        found = _search(cells, count, neighbours, squares, lambda more, done=done: report((done + more) / total))
+        found = _search(cells, count, neighbours, distances, lambda more, done=done: report((done + more) / total))
         waiting = waiting[~found]
         size *= 2
-    _compare_with_all(positions, waiting, count, neighbours, squares)
-    return neighbours, np.sqrt(squares)
+    _compare_with_all(positions, waiting, count, neighbours, distances)
+    return neighbours, distances
 
 
 def _search(
-    cells: Cells, count: int, neighbours: np.ndarray, squares: np.ndarray, report: Callable[[int], None]
+    cells: Cells, count: int, neighbours: np.ndarray, distances: np.ndarray, report: Callable[[int], None]
 ) -> np.ndarray:
     """Fills the rows of the cells' queries that are certain, and says which of them are, (Q,) bool.
 
@@ -62,7 +64,8 @@ def _search(
     candidates = cells.candidate_counts()
     certain = np.zeros(len(cells.queries), bool)
     worth = min(_WORTH_LOOKING * (count + 1), len(cells.order))
-    queries = np.flatnonzero(candidates[cells.cell_of_query] >= worth)
+    # Those in the last cells may be far from what shares the cell with them.
+    queries = np.flatnonzero((candidates[cells.cell_of_query] >= worth) & ~cells.is_far)
     queries = queries[np.argsort(candidates[cells.cell_of_query[queries]], kind="stable")]
     found_so_far = 0
     for part in _blocks(candidates[cells.cell_of_query[queries]]):
@@ -72,7 +75,7 @@ def _search(
         good = has_all | (square[:, -1] < cells.certain_squares(of))
         rows = cells.queries[of[good]]
         neighbours[rows] = found[good]
-        squares[rows] = square[good] * np.float32(cells.size) ** 2
+        distances[rows] = np.sqrt(square[good], dtype=np.float64) * cells.size
         certain[of] = good
         found_so_far += int(np.count_nonzero(good))
         report(found_so_far)
@@ -112,7 +115,9 @@ def _smallest(squared: np.ndarray, places: np.ndarray, own: np.ndarray, count: i
 
     A float32 that is not negative orders like its bits, so square and place sort as one 64-bit integer.
     """
-    keys = squared.astype(np.float32).view(np.uint32).astype(np.uint64)
+    with np.errstate(over="ignore"):
+        squared = squared.astype(np.float32)
+    keys = squared.view(np.uint32).astype(np.uint64)
     keys <<= np.uint64(32)
     keys |= places.astype(np.uint64)
     keys = np.partition(keys, count, axis=1)[:, : count + 1]
@@ -124,10 +129,10 @@ def _smallest(squared: np.ndarray, places: np.ndarray, own: np.ndarray, count: i
     return found[:, 1:], squares[:, 1:]
 
 
-def _compare_with_all(positions, queries, count, neighbours, squares):
+def _compare_with_all(positions, queries, count, neighbours, distances):
     for query in queries:
         squared = ((positions - positions[query]) ** 2).sum(axis=1)
         squared[query] = np.inf
         nearest = np.argpartition(squared, count - 1)[:count]
         nearest = nearest[np.argsort(squared[nearest], kind="stable")]
-        neighbours[query], squares[query] = nearest, squared[nearest]
+        neighbours[query], distances[query] = nearest, np.sqrt(squared[nearest])

@@ -20,6 +20,8 @@ def scene(empty_file, tmp_path):
     made.render.film_transparent = True
     made.surfel_splatting.shading = "flat"
     made.surfel_splatting.method, made.surfel_splatting.supersampling = "quad", 1
+    # Where it is not told, a render in background stops at what it cannot draw.
+    made.surfel_splatting.broken_objects = "WARN"
     made.render.filepath = str(tmp_path / "picture.exr")
     set_format(made.render, "OPEN_EXR")
     return made

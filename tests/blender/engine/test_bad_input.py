@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bad input: a sentence that names it, nothing crashes, what was skipped is counted, and the rest is rendered."""
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 import pytest
@@ -71,6 +73,22 @@ def test_an_object_that_lost_an_attribute_is_named_and_left_out(name, add_surfel
     torn.data.attributes.remove(torn.data.attributes[name])
     assert_good_is_drawn()
     assert f"Warning: torn is left out: The surfel mesh 'torn' has no attribute '{name}'" in said()
+
+
+@pytest.mark.parametrize("choice", ["BACKGROUND", "STOP"])
+def test_a_render_that_nobody_watches_stops_at_a_broken_object(choice, scene, good, add_surfels):
+    scene.surfel_splatting.broken_objects = choice
+    for name in ("torn", "torn too"):
+        torn = add_surfels([(0, 0, 1)], name=name)
+        torn.data.attributes.remove(torn.data.attributes["scale"])
+    with pytest.raises(RuntimeError, match=r"torn is left out: .* 'scale'.*\(and 1 more\) .*Broken Objects .* to Warn"):
+        bpy.ops.render.render(write_still=True)
+    assert not Path(scene.render.filepath).exists()
+
+
+def test_by_default_it_stops_in_background_only(scene):
+    scene.surfel_splatting.property_unset("broken_objects")
+    assert scene.surfel_splatting.broken_objects == "BACKGROUND" and bpy.app.background
 
 
 def test_an_attribute_of_the_wrong_type_is_named_and_its_object_left_out(add_surfels, assert_good_is_drawn, said):
@@ -209,6 +227,87 @@ def test_a_light_with_an_unusable_energy_is_named_and_left_out(scene, assert_goo
     scene.collection.objects.link(light)
     assert_good_is_drawn()
     assert "Warning: dim is left out: A light's energy must be finite, not nan" in said()
+
+
+@pytest.mark.parametrize("strength", [1e35, INFINITE])
+def test_a_light_of_infinite_colour_is_named_and_left_out(strength, scene, assert_good_is_drawn, said):
+    light = bpy.data.objects.new("glare", bpy.data.lights.new("glare", "POINT"))
+    light.data.energy, light.data.color = 1e5, (strength, 1, 1)
+    scene.collection.objects.link(light)
+    assert_good_is_drawn()
+    assert "Warning: glare is left out: A light's colour times its energy must be at most 1e+30" in said()
+
+
+@pytest.mark.parametrize("strength", [3e38, INFINITE, NAN])
+def test_an_infinite_world_and_material_are_named_and_black(strength, good, scene, picture, said):
+    material, scene.world = bpy.data.materials.new("glow"), bpy.data.worlds.new("sky")
+    if bpy.app.version < (5, 0, 0):
+        material.use_nodes = scene.world.use_nodes = True
+    principled = material.node_tree.nodes["Principled BSDF"].inputs
+    principled["Emission Color"].default_value, principled["Emission Strength"].default_value = (1e5, 1, 1, 1), strength
+    background = scene.world.node_tree.nodes["Background"].inputs
+    background["Color"].default_value, background["Strength"].default_value = (1e5, 1, 1, 1), strength
+    good.data.materials.append(material)
+    scene.surfel_splatting.shading, scene.render.film_transparent = "principled", False
+    assert np.array_equal(picture()[16, 16], (0, 0, 0, 1))
+    text = said()
+    assert "The material 'glow' sends out" in text and "The world 'sky' sends out" in text
+
+
+def add_sky(scene, width, height):
+    scene.world = bpy.data.worlds.new("sky")
+    if bpy.app.version < (5, 0, 0):
+        scene.world.use_nodes = True
+    tree = scene.world.node_tree
+    node = tree.nodes.new("ShaderNodeTexEnvironment")
+    node.image = bpy.data.images.new("wide", width, height, float_buffer=True)
+    node.image.pixels.foreach_set(np.full(4 * width * height, 0.5, np.float32))
+    tree.links.new(node.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+
+
+def test_a_world_s_picture_of_one_pixel_lights(scene, good, picture):
+    add_sky(scene, 1, 1)
+    scene.surfel_splatting.shading = "principled"
+    assert np.isfinite(picture()).all() and 0.1 < picture()[16, 16, 1] < 0.6
+
+
+def test_a_world_s_picture_wider_than_devices_hold_is_shown_smaller_and_named(scene, add_camera, picture, said):
+    add_camera()
+    add_sky(scene, 40_000, 2)
+    scene.render.film_transparent = False
+    assert np.allclose(picture(), (0.5, 0.5, 0.5, 1))
+    assert "world's picture 'wide' is larger than 16,384 pixels" in said()
+
+
+def test_a_matcap_wider_than_devices_hold_is_refused_with_its_size(scene, good):
+    scene.surfel_splatting.shading = "matcap"
+    scene.surfel_splatting.matcap = bpy.data.images.new("wide", 40_000, 2)
+    with pytest.raises(RuntimeError, match="The matcap 'wide' has 40,000 x 2 pixels, and 16,384"):
+        bpy.ops.render.render(write_still=True)
+
+
+@pytest.mark.parametrize(("name", "label"), [("shading", "Shading"), ("method", "Method"), ("render_meshes", "Meshes")])
+def test_a_choice_of_a_later_version_is_named(name, label, scene, good):
+    store_number(scene, name, 99)
+    with pytest.raises(RuntimeError, match=rf"{label}.* in the render properties holds a choice that this version"):
+        bpy.ops.render.render(write_still=True)
+
+
+def test_an_object_with_a_choice_of_a_later_version_is_left_out(add_square, good, assert_good_is_drawn, said):
+    store_number(add_square("newer"), "render_as", 99)
+    assert_good_is_drawn()
+    assert "newer is left out: Render as in the object properties holds a choice" in said()
+
+
+def store_number(owner, name, number):
+    """As a file of a later version has it: the number of a choice that is not known here."""
+    owner.surfel_splatting.property_unset(name)
+    if hasattr(owner, "bl_system_properties_get"):
+        first = owner.surfel_splatting.bl_rna.properties[name].enum_items[1].identifier
+        setattr(owner.surfel_splatting, name, first)  # so that the group is stored
+        owner.bl_system_properties_get()["surfel_splatting"][name] = number
+    else:
+        owner.surfel_splatting[name] = number
 
 
 def test_a_material_without_a_principled_node_is_named(good, assert_good_is_drawn, said):

@@ -240,9 +240,12 @@ def triangles_of(object_) -> np.ndarray:
     """(T, 3, 3) corners of the evaluated mesh's triangles, which by construction are cut the same on every frame."""
     evaluated = object_.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh = evaluated.to_mesh()
-    corners = [[mesh.vertices[v].co for v in (f.vertices[0], *pair)] for f in mesh.polygons for pair in _fans(f)]
+    # An array before the mesh is cleared: a vertex's vector is a view of the mesh's memory.
+    corners = np.array(
+        [[mesh.vertices[v].co for v in (f.vertices[0], *pair)] for f in mesh.polygons for pair in _fans(f)], np.float64
+    )
     evaluated.to_mesh_clear()
-    return np.array(corners, np.float64)
+    return corners
 
 
 def _fans(face):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """File > Export and Import of surfels."""
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 import pytest
@@ -141,6 +143,26 @@ def test_nothing_to_export_is_an_error(add_square, tmp_path):
 def test_a_folder_that_cannot_be_written_is_an_error(stored, tmp_path):
     with pytest.raises(RuntimeError, match="No such file or directory"):
         bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "nowhere" / "a.ply"))
+
+
+def test_two_slashes_stand_for_the_folder_of_the_blend(stored, import_ply, surfels_of, tmp_path):
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    bpy.ops.export_scene.surfels_ply(filepath="//a.ply")
+    assert (tmp_path / "a.ply").is_file()
+    made = import_ply("//a.ply")
+    assert made.name == "a" and len(surfels_of(made)) == 200
+
+
+@pytest.mark.parametrize("way", ["export", "import"])
+def test_before_the_blend_has_a_folder_two_slashes_are_an_error(stored, way):
+    with pytest.raises(RuntimeError, match=r"'//a\.ply' begins in the folder of the \.blend, which has not been saved"):
+        getattr(bpy.ops, f"{way}_scene").surfels_ply(filepath="//a.ply")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="/dev/full is Linux's")
+def test_a_full_disk_is_named(stored, random_surfels):
+    with pytest.raises(RuntimeError, match="/dev/full cannot be written: No space left on device"):
+        bpy.ops.export_scene.surfels_ply(filepath="/dev/full")
 
 
 def test_undo_takes_an_import_back(random_surfels, tmp_path):

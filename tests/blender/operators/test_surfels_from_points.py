@@ -97,6 +97,20 @@ def test_a_point_cloud_is_converted(scan, convert_points, surfels_of):
     assert len(surfels) == 2000 and np.allclose(surfels.colors, (1, 0, 0, 1))
 
 
+def test_points_of_geometry_nodes_are_converted(scan, add_nodes, convert_points, surfels_of, world_positions):
+    """They are no mesh any more, and belong to a geometry set that Blender makes for whoever asks."""
+
+    def to_points(tree, start, end):
+        convert = tree.nodes.new("GeometryNodeMeshToPoints")
+        convert.inputs["Radius"].default_value = 0.25
+        tree.links.new(start, convert.inputs[0])
+        tree.links.new(convert.outputs[0], end)
+
+    add_nodes(scan, to_points)
+    made = convert_points(isolated="KEEP")
+    assert np.allclose(world_positions(made), sphere(), atol=1e-5) and (surfels_of(made).scales == 0.25).all()
+
+
 @pytest.mark.parametrize(("facing", "inward"), [("OUTWARD", False), ("CURSOR", True), ("CAMERA", True)])
 def test_normals_face_where_they_are_told(scan, convert_points, surfels_of, facing, inward):
     scan.location = (7, 0, 0)
@@ -140,7 +154,7 @@ def test_undo_takes_the_surfels_back(scan):
         ([], {}, "It has no points"),
         ([(0, 0, 0), (1, 0, 0)], {}, "2 usable points are too few"),
         ([(float("nan"), 0, 0)] * 9, {}, "None of the 9 points has finite coordinates"),
-        (sphere(9).tolist(), {"neighbours": 1}, "whole number of 3 or more, not 1"),
+        (sphere(9).tolist(), {"neighbours": 1}, "whole number from 3 to 256, not 1"),
         (sphere(9).tolist(), {"splat_size": 0.0}, "splat size must be a finite number above 0, not 0"),
         (sphere(9).tolist(), {"facing": "CAMERA"}, "The scene has no camera"),
     ],

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is left out is counted, what is given is used, what cannot be done is a sentence."""
 
+import time
+
 import numpy as np
 import pytest
 
@@ -30,6 +32,47 @@ def test_points_that_stand_alone_are_counted_and_left_out_or_kept(grid_points, c
     assert report.isolated == 2 and len(surfels) == kept
     assert surfels.radius.max() < 2
     assert report.skipped() == ({"that stand alone": 2} if choice == "drop" else {})
+
+
+@pytest.mark.parametrize("choice", ["drop", "keep"])
+def test_a_point_at_the_end_of_the_range_costs_the_others_neither_time_nor_digits(sphere_points, choice):
+    """All others would share one of cells that are counted from end to end: 1.6 billion distances."""
+    points, _ = sphere_points(40_000)
+    started = time.process_time()
+    surfels, report = surfels_from_points(np.concatenate([points, [(5e17, -5e17, 0)]]), isolated=choice)
+    assert time.process_time() - started < 10
+    near = slice(0, len(surfels) - (choice == "keep"))
+    assert report.isolated >= 1 and len(surfels) >= 39_900
+    kept = surfels.origin + surfels.positions[near].astype(np.float64)
+    assert np.abs(np.linalg.norm(kept, axis=1) - 1).max() < 1e-6
+    assert ((kept * surfels.normals[near]).sum(axis=1) > 0.9).mean() > 0.999
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("choice", ["drop", "keep"])
+def test_damaged_points_cost_no_others_and_no_warning(choice):
+    """Whatever is damaged: positions, normals, radii or colours."""
+    random = np.random.default_rng(2)
+    damaged = [0, np.nan, np.inf, 1e38, 1e300, -1e300, 1e-300, 1e-45, 5e17]
+    for _ in range(20):
+        given = {name: random.normal(size=(30, *width)) for name, width in _WIDTHS.items()}
+        for values in given.values():
+            bad = random.random(values.shape) < 0.05
+            values[bad] = random.choice(damaged, bad.sum())
+        surfels, report = surfels_from_points(**given, neighbours=5, isolated=choice)
+        assert len(surfels) == 30 - sum(report.skipped().values()) and len(surfels) > 10
+
+
+_WIDTHS = {"positions": (3,), "normals": (3,), "radii": (), "colors": (4,)}
+
+
+def test_radii_beyond_float32_are_estimated_and_counted(sphere_points):
+    points, _ = sphere_points(1000)
+    radii = np.full(1000, 0.1)
+    radii[:4] = 1e39, 1e300, 1e-50, np.inf
+    surfels, report = surfels_from_points(points, radii=radii, isolated="keep")
+    assert report.estimated_radii == 4 and (surfels.scales[4:] == np.float32(0.1)).all()
+    assert (surfels.scales[:4] < 1).all()
 
 
 def test_surfels_are_in_the_order_of_the_points(sphere_points):
@@ -98,7 +141,8 @@ def test_the_notes_name_every_number(grid_points):
         (np.eye(3), {}, "3 usable points are too few"),
         (np.ones((9, 3)), {}, "1 usable points are too few"),
         (np.full((9, 3), np.nan), {}, "None of the 9 points has finite coordinates"),
-        (np.eye(3), {"neighbours": 2}, "whole number of 3 or more, not 2"),
+        (np.eye(3), {"neighbours": 10**9}, "whole number from 3 to 256, not 1000000000"),
+        (np.eye(3), {"neighbours": 2}, "whole number from 3 to 256, not 2"),
         (np.eye(3), {"splat_size": 0}, "splat size must be a finite number above 0, not 0"),
         (np.eye(3), {"isolated": "maybe"}, "must be one of drop, keep, not 'maybe'"),
         (np.eye(3), {"viewpoint": (0, 0, np.nan)}, "viewpoint must be 3 finite numbers"),

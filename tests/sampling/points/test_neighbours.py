@@ -25,6 +25,8 @@ CLOUDS = {
     "a plane grid": np.stack((*np.divmod(np.arange(2500.0), 50), np.zeros(2500)), axis=1),
     "densities from 1 to 1e8": on_a_sphere(4000) * np.exp(3 * RANDOM.normal(size=(4000, 1))),
     "two far strays": np.concatenate([on_a_sphere(2000), [(1e9, 0, 0), (0, 1e12, 5)]]),
+    "two clusters far apart": np.concatenate([on_a_sphere(1000), 1e6 * on_a_sphere(1000) + 5e17]),
+    "strays at the end of the range": np.concatenate([on_a_sphere(2000), [(-5e17, 0, 0), (0, 1e18, 5)]]),
     "a dense cluster in the open": np.concatenate([RANDOM.random((1000, 3)), 1e-6 * RANDOM.random((1000, 3))]),
     "far from the origin": on_a_sphere(2000) + 1e7,
     "20 points": RANDOM.random((20, 3)),

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Measures something, or draws a figure of the docs.
+
+    python3 scripts/bench.py --list
+    python3 scripts/bench.py NAME [--help] [--quick] [--out DIR] [--turns N] [...]
+
+Runs on whatever Python starts it: makes the environment of the tests on first use, and hands over to `measuring` there,
+which leaves NAME.md, tables, plots and pictures in build/bench/NAME.
+"""
+
+import argparse
+import subprocess
+import sys
+
+import environment
+from environment import Problem
+from environment.module import module_process
+from measuring.registry import modules, summary
+
+
+@environment.exit_with_problems
+def main(arguments: list) -> int:
+    """The exit code of the measurement; 2 for a name that is not there."""
+    parser = argparse.ArgumentParser(prog="bench.py", description=__doc__.split("\n")[0])
+    parser.add_argument("--list", action="store_true", help="what there is, a line each")
+    parser.add_argument("--bpy", choices=sorted(environment.PYTHON_FOR_BPY), help="the wheel of Blender to take")
+    parser.add_argument("name", nargs="?", help="one of the list; NAME --help names its options")
+    parser.add_argument("rest", nargs=argparse.REMAINDER, help="what it is told")
+    options = parser.parse_args(arguments)
+    found = modules()
+    if options.list:
+        print("\n".join(f"{name:14} {summary(module)}" for name, module in found.items()))
+        return 0
+    if options.name not in found:
+        wrong = f"There is no {options.name} to measure or draw" if options.name else "Name what is to be measured"
+        raise Problem(f"{wrong}: {', '.join(found)} (see --list).", exit_code=2)
+    python = environment.make("test", options.bpy).python
+    return subprocess.run(**module_process(python, "measuring", options.name, *options.rest)).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

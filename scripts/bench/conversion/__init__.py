@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Seconds and memory of converting real meshes, against a cost model and against other ways to sample a mesh.
+
+The cost model is 0.25 us a triangle + 0.1 us a surfel. The others: trimesh, Geometry Nodes, Blender's BVH tree, Open3D
+where it is installed, and our operator as a whole. Meshes are smooth-shaded, without colours. Sampling includes the
+check at the door of Surfels. Extra bytes: the peak while sampling, above the cleaned mesh and the result. Others: how
+many times longer they take than our sampling, without cleaning; with its tree: in work, with the building of a tree.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+import splat_addon
+from bench.conversion.rivals import RIVALS, SLOW
+from measuring.models import load, short
+from measuring.timing import Spread, Turns, both, in_turn, peak_bytes
+from splat_addon.sampling import TriangleMesh, drop_unusable, sample_mesh
+from splat_addon.surfels import LAYOUT
+
+#: The cost model: seconds a triangle, seconds a surfel.
+TRIANGLE_COST, SURFEL_COST = 0.25e-6, 0.1e-6
+SURFEL_BYTES = sum(columns * np.dtype(dtype).itemsize for columns, dtype in LAYOUT.values())
+ARMADILLO, DRAGON = "armadillo.obj.gz", "dragon_vrip.ply.gz"
+QUICK = {"case": [(ARMADILLO, "16")]}
+CASES = (ARMADILLO, 256), (ARMADILLO, 1024), (DRAGON, 512), (DRAGON, 1024)
+OURS = (
+    "model", "resolution", "triangles", "surfels", "cleaning s", "sampling s", "of a processor", "M surfels/s at best",
+    "seconds / cost model", "extra bytes a surfel",
+)  # fmt: skip
+THEIRS = (
+    "model", "other", "its samples", "its seconds", "on the clock", "in work", "in work, a sample", "with its tree"
+)  # fmt: skip
+
+
+def arguments(parser) -> None:
+    parser.add_argument("--slow-turns", type=int, default=2, help="turns of the others that take long")
+    parser.add_argument("--case", nargs=2, action="append", metavar=("FILE", "RESOLUTION"))
+    parser.set_defaults(turns=7)
+
+
+def run(options, report) -> None:
+    report.header(how=f"median (least to most) of {options.turns} turns")
+    splat_addon.register()
+    lines = []
+
+    def rows():
+        for file, resolution in ((file, int(resolution)) for file, resolution in options.case or CASES):
+            mesh, name = load(options.models / file), short(file)
+            others = prepared_rivals(mesh, resolution)
+            limits = dict.fromkeys(SLOW, options.slow_turns)
+            steps = partial(report.steps, doing=f"{name} at {resolution}")
+            taken = in_turn({**ours(mesh, resolution), **others}, options.turns, both, limits, steps)
+            for other, job in others.items():
+                tree = getattr(job, "preparation", 0.0)
+                lines.append([f"{name} at {resolution}", other, *ratios(taken, other, tree)])
+            extra = f"{extra_bytes(mesh, resolution):.0f}"
+            yield name, resolution, f"{len(mesh):,}", *cells(taken, len(mesh)), extra
+
+    report.table(OURS, rows())
+    report.table(THEIRS, lines, "Others:")
+
+
+def ours(mesh: TriangleMesh, resolution: int) -> dict:
+    """Cleaning, and sampling the clean mesh of the same turn, which gives the number of surfels."""
+    clean = {}
+
+    def cleaning():
+        clean["mesh"], _ = drop_unusable(replace(mesh))  # a new one: a mesh keeps what is once found of it
+
+    return {"cleaning": cleaning, "sampling": lambda: len(sample_mesh(clean["mesh"], resolution=resolution))}
+
+
+def cells(taken: Turns, triangles: int) -> list[str]:
+    """Of our own row."""
+    clock, work = (taken.part(lambda pair, k=k: pair[k]) for k in (0, 1))
+    count, sampling = taken.results["sampling"], work.values["sampling"]
+    model = TRIANGLE_COST * triangles + SURFEL_COST * count
+    spreads = work.spread("cleaning"), clock.spread("sampling"), Spread.of(sampling)
+    best = f"{count / min(sampling) / 1e6:.2f}"
+    return [f"{count:,}", *(f"{s:.3g}" for s in spreads), best, f"{Spread.of(s / model for s in sampling):.3g}"]
+
+
+def ratios(taken: Turns, other: str, preparation: float) -> list[str]:
+    """Samples and seconds of another, and its times over ours: clock, work, work for a sample, work with its tree."""
+    clock, work = (taken.part(lambda pair, k=k: pair[k]) for k in (0, 1))
+    count, mine = taken.results[other], taken.results["sampling"]
+    each = Spread.of(ratio * mine / count for ratio in work.ratios(other, "sampling"))
+    pairs = zip(work.values[other], work.values["sampling"])
+    whole = Spread.of((theirs + preparation) / ours for theirs, ours in pairs)
+    spreads = clock.spread(other), clock.ratio(other, "sampling"), work.ratio(other, "sampling"), each, whole
+    return [f"{count:,}", *(f"{spread:.3g}" for spread in spreads)]
+
+
+def extra_bytes(mesh: TriangleMesh, resolution: int) -> float:
+    """Peak bytes a surfel while sampling, above the cleaned mesh and the result."""
+    mesh, _ = drop_unusable(mesh)
+    peak, surfels = peak_bytes(lambda: sample_mesh(mesh, resolution=resolution))
+    return peak / len(surfels) - SURFEL_BYTES
+
+
+def prepared_rivals(mesh: TriangleMesh, resolution: int) -> dict:
+    """name -> function that samples the same mesh and returns its number of samples; only those that are installed."""
+    usable, _ = drop_unusable(mesh)
+    count = len(sample_mesh(usable, resolution=resolution))
+    return {name: job for name, prepare in RIVALS.items() if (job := prepare(usable, resolution, count)) is not None}

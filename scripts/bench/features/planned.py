@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What one plan has that another has not: passes, what shaders do, textures and the bytes that those take."""
+
+from __future__ import annotations
+
+import math
+
+from splat_addon.rendering import FramePlan
+from splat_addon.rendering.plan.frame_plan import TEXTURES
+
+#: format -> bytes a texel
+BYTES = {"RGBA32F": 16, "RGBA16F": 8, "RGBA16": 8, "RG32F": 8, "R32F": 4, "DEPTH32F": 4}
+
+
+def planned_bytes(plan: FramePlan) -> int:
+    """Of the textures that passes write, for the first tile with its margin."""
+    _, _, width, height = plan.tiles[0]
+    pixels = width + 2 * plan.margin, height + 2 * plan.margin
+    texels = {name: math.prod(plan.size(name, pixels)) * max(plan.multisamples_of(name), 1) for name in plan.textures}
+    return sum(count * BYTES[plan.format(name)] for name, count in texels.items())
+
+
+def added(without: FramePlan, present: FramePlan) -> tuple[str, str]:
+    """What comes, and with a minus what goes: passes and what shaders do, and textures and tables."""
+    return _difference(_done(without), _done(present)), _difference(_read(without), _read(present))
+
+
+def _done(plan: FramePlan) -> list[str]:
+    features = [name.lower().replace("_", " ") for name, _ in plan.features]
+    return [*(p.name for p in plan.passes), *features, *(["linear depth"] if plan.linear_depth else [])]
+
+
+def _read(plan: FramePlan) -> list[str]:
+    return [*plan.textures, *(name for p in plan.passes for name in p.reads if name not in TEXTURES)]
+
+
+def _difference(before: list[str], after: list[str]) -> str:
+    comes = [name for name in dict.fromkeys(after) if name not in before]
+    goes = [f"-{name}" for name in dict.fromkeys(before) if name not in after]
+    return ", ".join(comes + goes)

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The picture at the extremes of arithmetic, for every method: numbers, plots and failures.
+
+Scenes are 64 x 64 pixels of 2 x 2 samples; the truth is `render_exact` with the same samples, PSNR is of sRGB, 160 dB
+stands for equal. A method that filters is not that truth's picture: its line shows by being level that the extreme
+changes nothing. An empty pixel, a cross in the plots, is one that the truth covers whole and the method not at all.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from importlib import import_module
+from unittest.mock import patch
+
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")
+from matplotlib import pyplot
+
+from measuring.drawing import holes
+from splat_addon.reference import render_exact, sweeps
+from splat_addon.reference.extremes import sheet
+from splat_addon.reference.metrics import psnr, srgb
+from splat_addon.rendering import Camera, Renderer, Scene, Settings, open_device
+from splat_addon.rendering.methods import METHODS
+
+DEVICES = ("standalone",)
+QUICK = {"only": "layers", "shots": 1}
+SAMPLES = 2
+EQUAL = 160.0
+PLAN = import_module("splat_addon.rendering.plan")
+
+
+@dataclass(frozen=True)
+class Panel:
+    """name: of its column. x: the axis's label. shots: what is rendered, the same for every method.
+    least: what tests/extremes hold quads to. against: "truth", or "itself" where the first shot is what the others must
+    equal. is_log: of the x axis. limits: constants of the plan that are changed, to show what it avoids.
+    """
+
+    name: str
+    x: str
+    shots: Callable[[], sweeps.Shots]
+    least: float
+    against: str = "truth"
+    is_log: bool = True
+    limits: Mapping[str, float] = field(default_factory=dict)
+
+
+HARDWARE_DEPTH = {"MAX_HARDWARE_DEPTH_RATIO": math.inf, "MAX_HARDWARE_DEPTH_RADIUS": math.inf}
+
+#: file -> its panels
+FIGURES = {
+    "invariance": (
+        Panel("scale", "scale of the world", sweeps.scale, 60, "itself"),
+        Panel("offset", "distance from the world's origin, in torus radii", sweeps.offset, 60, "itself"),
+    ),
+    "depth": (
+        Panel("near", "near plane, something right behind it", sweeps.near, 60),
+        Panel("near, hardware depth", "the same with the hardware's depth", sweeps.near, 60, limits=HARDWARE_DEPTH),
+        Panel("parallel span", "parallel camera: distance of the farthest", sweeps.span, 60),
+    ),
+    "grazing": (
+        Panel("grazing", "degrees left to edge-on", sweeps.grazing, 50),
+        Panel("floor", "height of the eye above a floor", sweeps.floor_below, 50),
+    ),
+    "views": (
+        Panel("field of view", "field of view, degrees", sweeps.field_of_view, 50, is_log=False),
+        Panel("off axis", "window off the axis, picture widths", sweeps.off_axis, 50),
+    ),
+    "sizes": (
+        Panel("giants", "radius of one splat, near distances", sweeps.giants, 50),
+        Panel("ratio", "length of ellipses over their width", sweeps.ratio, 50),
+        Panel("sub-pixel", "radius in pixels of 100,000 on a pixel", sweeps.sub_pixel, 50),
+    ),
+    "sums": (
+        Panel("overdraw", "splats over every sample, float32 sums", sweeps.overdraw, 80),
+        Panel("overdraw, float16", "splats over every sample, float16 sums", sweeps.overdraw_in_float16, 0),
+    ),
+    "layers": (
+        Panel("epsilon", "epsilon, radii", sweeps.epsilon, 40),
+        Panel("gap", "gap between two sheets, radii", sweeps.gap, 50),
+    ),
+}
+
+
+def failures() -> Iterator[tuple[str, str, Scene, Camera]]:
+    """What shows the limit of a method's formula, by its name and a label: tests/extremes' known failures."""
+    yield "affine", "sheet at 68 degrees", sweeps.lit(sheet(30, 1.0, 68, 2.0)), sweeps.origin_camera()
+    yield "affine", "window 5 widths off the axis", *next(shot for shot in sweeps.off_axis() if shot[0] == 5)[1:3]
+    yield "ewa", "one disc, a floor", *next(shot for shot in sweeps.giants() if shot[0] > 300)[1:3]
+    yield "raycast", "sheet edge-on", sweeps.lit(sheet(30, 1.0, 90, 2.0)), sweeps.origin_camera()
+    yield "homogeneous", "ellipses 10 : 1", *next(shot for shot in sweeps.ratio() if shot[0] == 10)[1:3]
+
+
+def plot_failures(device):
+    """Above what the methods draw, below the truth."""
+    shots = list(failures())
+    figure, axes = pyplot.subplots(2, len(shots), figsize=(2 * len(shots), 4.3), layout="constrained")
+    for (above, below), (method, label, scene, camera) in zip(axes.T, shots):
+        frame = Renderer(device).render(scene, camera, Settings(method=method, supersampling=SAMPLES))
+        for axis, picture in ((above, frame), (below, render_exact(scene, camera, samples=SAMPLES))):
+            axis.imshow(srgb(picture.color[..., :3]), origin="lower", interpolation="nearest")
+            axis.set(xticks=(), yticks=())
+        above.set_title(f"{method}: {label}", fontsize=7)
+        below.set_xlabel("truth", fontsize=7)
+    return figure
+
+
+def measure(panel: Panel, renderers: dict, most: int) -> dict[str, list[dict]]:
+    """method -> what was found at each of the first `most` x: PSNR, empty pixels, numbers that are not finite."""
+    results, firsts = {method: [] for method in METHODS}, {}
+    with ExitStack() as changed:
+        for name, value in panel.limits.items():
+            changed.enter_context(patch.object(PLAN, name, value))
+        for x, scene, camera, changes in list(panel.shots())[:most]:
+            settings, truth = Settings(supersampling=SAMPLES, **changes), None
+            if panel.against == "truth":
+                truth = render_exact(scene, camera, replace(settings, supersampling=1), samples=SAMPLES)
+            for method in METHODS:
+                frame = renderers[method].render(scene, camera, replace(settings, method=method))
+                known = truth or firsts.setdefault(method, frame)
+                not_finite = sum(np.count_nonzero(~np.isfinite(a)) for a in (frame.color, frame.depth, frame.normal))
+                decibels = min(psnr(frame.color, known.color), EQUAL)
+                found = {"x": x, "dB": decibels, "empty": holes(frame, known), "NaN": int(not_finite)}
+                results[method].append({"panel": panel.name, "method": method, **found})
+    return {method: sorted(found, key=lambda f: f["x"]) for method, found in results.items()}
+
+
+def plot_panels(panels: tuple[Panel, ...], results: dict):
+    """Panels side by side, every method a line; crosses where pixels are empty."""
+    size = (4.5 * len(panels), 3)
+    figure, axes = pyplot.subplots(1, len(panels), figsize=size, sharey=True, layout="constrained")
+    for axis, panel in zip(axes, panels):
+        for method, found in results[panel.name].items():
+            x, y = [f["x"] for f in found], [f["dB"] for f in found]
+            (line,) = axis.plot(x, y, marker="o", markersize=3, label=method)
+            y = [f["dB"] if f["empty"] else math.nan for f in found]
+            axis.plot(x, y, "x", color=line.get_color(), markersize=8)
+        if panel.least:
+            axis.axhline(panel.least, color="gray", linestyle="--", linewidth=1, label="quads, held by tests")
+        axis.set(xscale="log" if panel.is_log else "linear", xlabel=panel.x, ylim=(0, EQUAL + 10))
+        axis.grid(alpha=0.3)
+    axes[0].set_ylabel("PSNR, dB")
+    axes[-1].legend(fontsize=7)
+    return figure
+
+
+def cell(found: list[dict]) -> str:
+    """The least PSNR, and where there are any the empty pixels and what is not finite in all shots."""
+    counts = {name: sum(f[name] for f in found) for name in ("empty", "NaN")}
+    least = f"{min(f['dB'] for f in found):.0f}"
+    return ", ".join([least, *(f"{count} {name}" for name, count in counts.items() if count)])
+
+
+def arguments(parser) -> None:
+    parser.add_argument("--only", choices=[*FIGURES, "failures"], help="one figure")
+    parser.add_argument("--shots", type=int, help="of each panel, the first ones only")
+
+
+def run(options, report) -> None:
+    device = open_device(options.device)
+    report.header(device)
+    if options.only in (None, "failures"):
+        report.plot("failures", plot_failures(device))
+    figures = {name: panels for name, panels in FIGURES.items() if options.only in (None, name)}
+    renderers, every = {method: Renderer(device) for method in METHODS}, []
+
+    def rows():
+        for name, panels in figures.items():
+            results = {}
+            for panel in report.steps(panels, name):
+                results[panel.name] = measure(panel, renderers, options.shots)
+                every.extend(found for method in METHODS for found in results[panel.name][method])
+                yield panel.name, *map(cell, results[panel.name].values())
+            report.plot(name, plot_panels(panels, results))
+            report.csv("numerics", every)
+
+    if figures:
+        report.table(["least dB", *METHODS], rows())

@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What follows a deforming mesh: how well its surface stays covered, what a frame costs, and whether it flickers.
+
+The picture is of what Blender can show besides plain meshes, rendered without a conversion.
+"""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from dataclasses import replace
+from unittest.mock import patch
+
+import bpy
+import numpy as np
+
+import splat_addon
+from demonstration.scene import with_nodes
+from measuring.blender_scene import lit_scene, rendered
+from measuring.models import load
+from measuring.timing import in_turn
+from splat_addon.blender.mesh_extraction import evaluated_mesh, read_mesh, read_topology
+from splat_addon.reference.bare import uncovered_points
+from splat_addon.sampling import TrackedSurfels, sample_mesh
+
+QUICK = {"points": 500, "resolution": 16, "resolutions": [16], "frames": 3, "width": 120}
+COST = "resolution", "surfels", "reading", "following", "sampling anew", "nothing moved"
+
+
+def arguments(parser) -> None:
+    parser.add_argument("--points", type=int, default=200_000, help="of the surface, asked whether they are bare")
+    parser.add_argument("--resolution", type=int, default=128, help="of the armadillo whose cover is measured")
+    parser.add_argument("--resolutions", type=int, nargs="+", default=[128, 256, 512], help="of Suzanne who is timed")
+    parser.add_argument("--frames", type=int, default=12, help="of 256, looked at for flicker")
+    parser.add_argument("--width", type=int, default=1200, help="of the picture, in pixels")
+    parser.set_defaults(turns=7)
+
+
+def run(options, report) -> None:
+    splat_addon.register()
+    report.header()
+    draw_sources(options.width, report)
+    about = f"Armadillo, resolution {options.resolution}; of {options.points:,} points:"
+    report.table(("shape", "bare, followed", "bare, sampled anew", "stretched beyond 2.5"), coverage(options), about)
+    about = f"Smooth Suzanne; median (least to most) of {options.turns} frames, microseconds a surfel:"
+    report.table(COST, cost(options), about)
+    about = f"Suzanne bends over 256 frames; {options.frames} of them, 160 x 160 pixels, resolution 64: "
+    report.table(("surfels", "mean", "the worst of 1,000"), flicker(options), about + "|I(t-1) - 2 I(t) + I(t+1)|")
+
+
+def bent(p):
+    """Bent by 115 degrees about an axis one length beside the model."""
+    angle, radius = 2 * p[:, 1], 1 + p[:, 0]
+    return np.stack([radius * np.cos(angle) - 1, radius * np.sin(angle), p[:, 2]], axis=1)
+
+
+def twisted(p):
+    c, s = np.cos(3 * p[:, 1]), np.sin(3 * p[:, 1])
+    return np.stack([c * p[:, 0] - s * p[:, 2], p[:, 1], s * p[:, 0] + c * p[:, 2]], axis=1)
+
+
+def shapes(resolution: int) -> dict:
+    """name -> function of positions in lengths of the model's box about its middle"""
+    return {
+        "as sampled": lambda p: p,
+        "stretched by 2": lambda p: p * (1, 2, 1),
+        "stretched by 2.5": lambda p: p * (1, 2.5, 1),
+        "twice as large": lambda p: 2.0 * p,
+        "squeezed to a quarter": lambda p: p * (1, 0.25, 1),
+        "bent by 115 degrees": bent,
+        "twisted by 170 degrees": twisted,
+        "every vertex shaken by 0.1 H": lambda p: p + np.random.default_rng(0).normal(size=p.shape) * 0.1 / resolution,
+    }
+
+
+def coverage(options):
+    mesh = load(options.models / "armadillo.obj.gz")
+    low, high = mesh.bounds()
+    size = (high - low).max()
+    tracked, spacing = TrackedSurfels(mesh, resolution=options.resolution), size / options.resolution
+    for name, shape in shapes(options.resolution).items():
+        moved = replace(mesh, positions=shape((mesh.positions - (low + high) / 2) / size) * size)
+        surfels, stretched = tracked.at(moved)
+        kinds = surfels, sample_mesh(moved, spacing=spacing)
+        bare = (len(uncovered_points(moved, s, spacing, options.points)) / options.points for s in kinds)
+        yield name, *(f"{share:.3%}" for share in bare), f"{stretched:.2%}"
+
+
+def add_bending_monkey(levels: int, frames: int) -> bpy.types.Object:
+    """A smooth Suzanne with a shape key that bends it over so many frames."""
+    bpy.ops.mesh.primitive_monkey_add(size=2)
+    monkey = bpy.context.object
+    bpy.ops.object.shade_smooth()
+    monkey.modifiers.new("fine", "SUBSURF").levels = levels
+    bpy.ops.object.modifier_apply(modifier="fine")
+    monkey.shape_key_add(name="Basis")
+    key = monkey.shape_key_add(name="bent")
+    positions = np.empty(3 * len(key.data), np.float32)
+    key.data.foreach_get("co", positions)
+    p = positions.reshape(-1, 3)
+    angle, radius = 0.5 * p[:, 2], 2 + p[:, 0]
+    p[:] = np.stack([radius * np.cos(angle) - 2, p[:, 1], radius * np.sin(angle)], axis=1)
+    key.data.foreach_set("co", p.ravel())
+    for frame, value in ((1, 0.0), (1 + frames, 1.0)):
+        key.value = value
+        key.keyframe_insert("value", frame=frame)
+    return monkey
+
+
+def cost(options):
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    monkey, scene = add_bending_monkey(3, frames=32), bpy.context.scene
+    for resolution in options.resolutions:
+        state = {"topology": None, "frames": iter(range(1, 33))}
+
+        def turn_page(state=state):
+            scene.frame_set(next(state["frames"]))
+
+        def read(state=state):
+            with evaluated_mesh(monkey, bpy.context.evaluated_depsgraph_get()) as (evaluated, mesh):
+                state["topology"] = read_topology(mesh, state["topology"])
+                state["mesh"] = read_mesh(evaluated, mesh, state["topology"]).triangles
+            return state["mesh"]
+
+        turn_page()
+        tracked = TrackedSurfels(read(), resolution=resolution)
+        spacing = np.subtract(*state["mesh"].bounds()[::-1]).max() / resolution
+        jobs = {
+            "frame": turn_page,
+            "reading": read,
+            "following": lambda t=tracked, s=state: t.at(s["mesh"]),
+            "sampling anew": lambda h=spacing, s=state: sample_mesh(s["mesh"], spacing=h),
+            "nothing moved": lambda t=tracked, s=state: t.at(replace(s["mesh"], positions=s["mesh"].positions.copy())),
+        }
+        count = len(tracked.sampling.surfels)
+        taken = in_turn(jobs, options.turns).part(lambda seconds, count=count: 1e6 * seconds / count)
+        yield resolution, f"{count:,}", *(f"{taken.spread(name):.2f}" for name in COST[2:])
+
+
+def flicker(options):
+    """How much a pixel jumps from frame to frame: the size of the second difference in time of its brightness."""
+    never = patch.object(TrackedSurfels, "has_triangles_of", lambda tracked, mesh: mesh is tracked.mesh)
+    for name, tracking in (("followed", nullcontext()), ("sampled anew on each frame", never)):
+        scene = stage((160, 160), 4.2)
+        add_bending_monkey(2, frames=256)
+        scene.surfel_splatting.mesh_resolution, scene.surfel_splatting.supersampling = 64, 1
+        scene.frame_set(1)
+        with tracking:
+            shots = rendered(scene, options.frames)
+        jumps = np.abs(shots[:-2] - 2 * shots[1:-1] + shots[2:])[..., :3].mean(axis=-1)
+        values = jumps[:, (shots[..., 3] > 0.99).all(axis=0)]
+        yield name, f"{values.mean():.5f}", f"{np.quantile(values, 0.999):.4f}"
+
+
+def stage(size, width: float) -> bpy.types.Scene:
+    """An empty scene for our engine, seen orthographically from the front and a little above."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = lit_scene(size, (0.3, 0.3, 0.3), (0.7, 0.3, 0.4), 3.0)
+    scene.render.engine = "SURFEL_SPLATTING"
+    scene.surfel_splatting.render_meshes = "SURFELS"
+    scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", width
+    scene.camera.location, scene.camera.rotation_euler = (0, -20, 7), (1.24, 0, 0)
+    return scene
+
+
+def paint(painted: bpy.types.Object, color) -> None:
+    material = bpy.data.materials.new("paint")
+    with_nodes(material)
+    material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (*color, 1)
+    painted.data.materials.append(material)
+
+
+def draw_sources(width: int, report) -> None:
+    """A text, a bevelled curve, metaballs, instances of Geometry Nodes, a mirrored collection instance, a bent mesh."""
+    scene = stage((width, width // 5), 15.5)
+    scene.surfel_splatting.mesh_density, scene.surfel_splatting.mesh_pixels = "CAMERA", 1.0
+    bpy.ops.object.text_add(location=(-7.4, 0, -0.5), rotation=(np.pi / 2, 0, 0))
+    text = bpy.context.object
+    text.data.body, text.data.size, text.data.extrude, text.data.bevel_depth = "text", 1.3, 0.12, 0.03
+    paint(text, (0.8, 0.25, 0.05))
+    bpy.ops.curve.primitive_bezier_circle_add(radius=0.8, location=(-3.6, 0, 0), rotation=(0.9, 0.4, 0))
+    bpy.context.object.data.bevel_depth, bpy.context.object.data.resolution_u = 0.25, 32
+    paint(bpy.context.object, (0.05, 0.35, 0.7))
+    for offset in ((0, 0, 0), (0.9, 0.2, 0.5), (-0.4, 0, 0.8)):
+        bpy.ops.object.metaball_add(radius=0.9, location=(-1.2 + offset[0], offset[1], offset[2] - 0.4))
+        bpy.context.object.data.render_resolution = 0.1
+    paint(bpy.data.objects["Mball"], (0.1, 0.5, 0.15))
+    add_cubes_on_a_sphere((2.0, 0, 0))
+    add_mirrored_pair((3.8, 0, -0.2), (4.9, 0, -0.2))
+    monkey = add_bending_monkey(3, frames=1)
+    monkey.location, monkey.scale = (6.6, 0, 0), (0.85, 0.85, 0.85)
+    paint(monkey, (0.6, 0.1, 0.3))
+    scene.frame_set(2)
+    (drawn,) = rendered(scene)
+    report.picture("sources", [drawn[..., :3] + (1 - drawn[..., 3:]) * 0.9], colors=128)
+
+
+def add_cubes_on_a_sphere(location) -> None:
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=0.8, location=location)
+    ball, tree = bpy.context.object, bpy.data.node_groups.new("nodes", "GeometryNodeTree")
+    paint(ball, (0.8, 0.6, 0.1))
+    for direction in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+    kinds = "MeshCube", "InstanceOnPoints", "JoinGeometry", "InputNormal"
+    cube, place, join, normal = (tree.nodes.new(f"GeometryNode{kind}") for kind in kinds)
+    start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    align = tree.nodes.new("FunctionNodeAlignEulerToVector")
+    place.inputs["Scale"].default_value, align.axis = (0.16, 0.16, 0.16), "Z"
+    for socket, target in (
+        (normal.outputs[0], align.inputs["Vector"]),
+        (align.outputs[0], place.inputs["Rotation"]),
+        (cube.outputs["Mesh"], place.inputs["Instance"]),
+        (start.outputs[0], place.inputs["Points"]),
+        (place.outputs["Instances"], join.inputs[0]),
+        (start.outputs[0], join.inputs[0]),
+        (join.outputs[0], end.inputs[0]),
+    ):
+        tree.links.new(socket, target)
+    ball.modifiers.new("nodes", "NODES").node_group = tree
+
+
+def add_mirrored_pair(*locations) -> None:
+    """A collection that holds a cone leaning to one side, shown as it is and mirrored."""
+    scene, hidden = bpy.context.scene, bpy.data.collections.new("hidden")
+    bpy.ops.mesh.primitive_cone_add(radius1=0.5, depth=1.6, rotation=(0, 0.35, 0))
+    bpy.ops.object.shade_smooth_by_angle()
+    cone = bpy.context.object
+    paint(cone, (0.15, 0.5, 0.6))
+    hidden.objects.link(cone)
+    scene.collection.objects.unlink(cone)
+    for location, scale in zip(locations, ((1, 1, 1), (-1, 1, 1))):
+        instancer = bpy.data.objects.new("instancer", None)
+        instancer.instance_type, instancer.instance_collection = "COLLECTION", hidden
+        instancer.location, instancer.scale = location, scale
+        scene.collection.objects.link(instancer)

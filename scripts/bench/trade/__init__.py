@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The trade of speed for accuracy: scenes x methods x settings, each against the float64 reference.
+
+PSNR is of sRGB values; the pixel filters are the Gaussian of sigma 0.7071 px and the box. A time's ratio is the median
+over the turns of it and the yardstick's in the same turn. `to_float32`: PSNR to the same without 16-bit formats.
+A quick run draws the promised scenes at half the size with a quarter of the splats and a coarser truth.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from statistics import geometric_mean
+
+import numpy as np
+
+from bench.trade.cases import CASES, FULL, View
+from bench.trade.choices import YARDSTICK, choices, columns, label
+from bench.trade.plots import by_scene, frontier, plot_differences, plot_overview, plot_scene
+from environment import Problem
+from measuring.drawing import draw_in_turn, holes
+from splat_addon.reference.kept import FILTERS, exact_frames
+from splat_addon.reference.metrics import mean_flip, psnr
+from splat_addon.rendering import PRESETS, Renderer, Settings, open_device
+
+DEVICES = ("standalone", "blender")
+QUICK = {"size": FULL // 2, "turns": 2, "samples": 5}
+
+
+def arguments(parser) -> None:
+    parser.add_argument("--scenes", nargs="+", choices=CASES, metavar="NAME", help=f"some of: {', '.join(CASES)}")
+    parser.add_argument("--size", type=int, default=FULL, help="pixels along each side; splats keep theirs")
+    parser.add_argument("--samples", type=int, default=8, help="N of the truth's N x N samples a pixel; of no choice")
+
+
+def run(options, report) -> None:
+    names = options.scenes or [c.name for c in CASES.values() if c.is_promised or not options.quick]
+    renderer = Renderer(open_device(options.device))
+    chosen = choices(options.quick, renderer.device.multisample_counts)
+    truth = f"truth of {options.samples} x {options.samples} samples"
+    report.header(renderer.device, f"{options.size} x {options.size} pixels, medians of {options.turns} turns, {truth}")
+    rows, skipped = [], {}
+    for name in names:
+        try:
+            rows += measure(CASES[name], renderer, chosen, options, report)
+        except FileNotFoundError as error:
+            skipped[name] = str(error)
+            report.say(f"**Skipped: {name}**. {error}.")
+            continue
+        report.csv("trade", rows)
+        report.plot("overview", plot_overview(rows))
+    if not rows:
+        raise Problem(f"Nothing was measured. {'; '.join(skipped.values())}.")
+    for name in FILTERS:
+        about = f"PSNR in dB / mean FLIP under the {name} pixel filter; times are in that of {label(YARDSTICK)}:"
+        report.table(["", *by_scene(rows), "time"], summary(rows, chosen, name), about)
+    best = {id(row) for mine in by_scene(rows).values() for row in frontier(mine)}
+    lines = [[*row.values(), "*" if id(row) in best else ""] for row in rows]
+    report.table([*rows[0], ""], lines, "Every row; * is on the frontier of FLIP (gaussian) and time:")
+
+
+def measure(case, renderer: Renderer, chosen: list[Settings], options, report) -> list[dict]:
+    """The rows of one scene, whose plot and pictures are left in the folder."""
+    scene, camera = case.build(View(options.size, options.models))
+    lit = replace(YARDSTICK, shading=case.shading)
+    exact = exact_frames(scene, camera, lit, options.samples, options.out / "truth")
+
+    def draw(settings):
+        return renderer.render(scene, camera, replace(settings, shading=case.shading))
+
+    drawn = draw_in_turn(draw, chosen, options.turns, steps=lambda turns: report.steps(turns, case.name))
+    rows = []
+    for settings in chosen:
+        times = {"ratio": (drawn.ratio(settings, YARDSTICK), 2), "ms": (drawn.spread(settings), 1)}
+        rows.append({"scene": case.name, **columns(settings), **accuracy(drawn.results[settings], exact)})
+        whole = drawn.results.get(replace(settings, storage="float32", accumulation="float32"))
+        to_float32 = psnr(drawn.results[settings].color, whole.color) if whole else math.inf
+        rows[-1]["to_float32"] = "" if math.isinf(to_float32) else round(to_float32, 1)
+        for name, (spread, digits) in times.items():
+            ends = ((name, spread.median), (f"{name}_min", spread.least), (f"{name}_max", spread.most))
+            rows[-1] |= {key: round(value, digits) for key, value in ends}
+    stem = case.name.replace(" ", "-")
+    report.plot(stem, plot_scene(rows))
+    report.plot(f"{stem}-differences", plot_differences(drawn.results, exact["gaussian"]))
+    return rows
+
+
+def accuracy(frame, exact: dict) -> dict:
+    """Columns of a row: PSNR of sRGB and mean FLIP under each filter, holes, and pixels that are no numbers."""
+    row = {}
+    for name, truth in exact.items():
+        row[f"psnr_{name}"] = round(psnr(frame.color, truth.color), 2)
+        row[f"flip_{name}"] = round(mean_flip(frame.color, truth.color), 4)
+    not_finite = int(np.count_nonzero(~np.isfinite(frame.color).all(axis=2)))
+    return {**row, "holes": holes(frame, exact["box"]), "non_finite": not_finite}
+
+
+def summary(rows: list[dict], chosen: list[Settings], name: str):
+    """A line for each choice; the time is the geometric mean over the scenes, and its range."""
+    for settings in chosen:
+        wanted = columns(settings).items()
+        mine = [row for row in rows if wanted <= row.items()]
+        ratios = [row["ratio"] for row in mine]
+        time = f"{geometric_mean(ratios):.1f} ({min(ratios):.1f} to {max(ratios):.1f})"
+        preset = next((f" (**{p.label}**)" for p in PRESETS.values() if p.of(YARDSTICK) == settings), "")
+        cells = (f"{row[f'psnr_{name}']:.1f} / {row[f'flip_{name}']:.3f}" for row in mine)
+        yield [label(settings) + preset, *cells, time]

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How it is drawn: a table of settings, in which a new axis or value is one line."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import product
+
+from splat_addon.rendering import Settings
+from splat_addon.rendering.methods import METHODS
+
+#: What every time is divided by.
+YARDSTICK = Settings(method="quad", supersampling=1, shading="flat")
+
+#: Settings that a table shows beside method and samples -> their names in a few letters, the usual one's first.
+FORMATS = {
+    "multisampling": {0: "", 4: "4 hardware samples"},
+    "sample_shading": {False: "", True: "each shaded"},
+    "storage": {"float32": "", "16-bit": "16-bit surfels"},
+    "accumulation": {"float32": "", "float16": "16-bit sums"},
+    "edge_threshold": {0.0: "", 0.25: "threshold 0.25", 1.0: "threshold 1"},
+}
+
+
+def settings_of(methods: tuple[str, ...], **values) -> list[Settings]:
+    """Every method with every combination of the values."""
+    combinations = [dict(zip(values, chosen)) for chosen in product(*values.values())]
+    return [replace(YARDSTICK, method=method, **values) for method in methods for values in combinations]
+
+
+EVERY, BOTH = tuple(METHODS), ("quad", "mip")
+QUICK = settings_of(EVERY) + settings_of(("quad",), supersampling=(2, 4))
+ALL = [
+    *QUICK,
+    *settings_of(("quad",), supersampling=(3,)),
+    *settings_of(("mip",), supersampling=(2,)),
+    *settings_of(BOTH, accumulation=("float16",)),
+    *settings_of(BOTH, storage=("16-bit",), accumulation=("float32", "float16")),
+    *settings_of(("quad",), multisampling=(4,), sample_shading=(False, True)),
+    *settings_of(("quad",), edge_threshold=(0.25, 1.0)),
+    *settings_of(("quad",), multisampling=(4,), edge_threshold=(0.25,)),
+]
+
+#: What is shown beside the truth.
+PICTURED = frozenset([*settings_of(EVERY), replace(YARDSTICK, supersampling=2)])
+
+
+def choices(quick: bool = False, multisample_counts: tuple[int, ...] = ()) -> list[Settings]:
+    """Those that the device, by its counts, can draw; the yardstick is among them."""
+    return [settings for settings in (QUICK if quick else ALL) if settings.multisampling in (0, *multisample_counts)]
+
+
+def columns(settings: Settings) -> dict:
+    """The settings that tell choices apart, as the table shows them."""
+    return {
+        "method": settings.method,
+        "samples": f"{settings.supersampling} x {settings.supersampling}",
+        **{name: getattr(settings, name) for name in FORMATS},
+    }
+
+
+def label(settings: Settings) -> str:
+    """For plots: what differs from float32 is named."""
+    formats = [names[getattr(settings, name)] for name, names in FORMATS.items()]
+    samples = f"{settings.supersampling} x {settings.supersampling}"
+    return ", ".join([METHODS[settings.method].label, samples, *filter(None, formats)])

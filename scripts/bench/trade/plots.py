@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""FLIP against time, a panel for each scene: what lies towards the lower left is better, the line is the frontier of
+what is worth its time. And what the numbers look like: the truth beside some choices, with the map of FLIP under each.
+"""
+
+from __future__ import annotations
+
+import matplotlib
+import numpy as np
+
+matplotlib.use("Agg")
+from matplotlib import pyplot, ticker
+
+from bench.trade.choices import FORMATS, PICTURED, label
+from splat_addon.reference.kept import FILTERS
+from splat_addon.reference.metrics import flip_map, mean_flip, srgb
+from splat_addon.rendering.methods import METHODS
+
+#: Pixels an inch, and those above the pictures.
+DPI, CAPTION = 100, 30
+COLORS = dict(zip(METHODS, pyplot.cm.tab10.colors))
+
+
+def by_scene(rows: list[dict]) -> dict[str, list[dict]]:
+    return {scene: [row for row in rows if row["scene"] == scene] for scene in dict.fromkeys(r["scene"] for r in rows)}
+
+
+def frontier(rows: list[dict], error: str = "flip_gaussian", cost: str = "ratio") -> list[dict]:
+    """The rows of a scene that no other one beats in both, the fastest first; of equal ones, the first."""
+    kept = []
+    for row in sorted(rows, key=lambda row: (row[cost], row[error])):
+        if not kept or row[error] < kept[-1][error]:
+            kept.append(row)
+    return kept
+
+
+def plot_scene(rows: list[dict]):
+    """One scene: both filters, against milliseconds."""
+    figure, axes = pyplot.subplots(1, len(FILTERS), figsize=(9, 4), layout="constrained")
+    for axis, name in zip(axes, FILTERS):
+        _panel(axis, rows, f"flip_{name}", "ms")
+        axis.set(title=f"{rows[0]['scene']}, {name} filter", xlabel="ms a frame", ylabel="mean FLIP")
+    axes[0].legend(fontsize=7)
+    return figure
+
+
+def plot_overview(rows: list[dict]):
+    """Every scene under the Gaussian, against the yardstick's time."""
+    scenes = by_scene(rows)
+    across = min(len(scenes), 3)
+    down = -(-len(scenes) // across)
+    size = (3.2 * across, 2.5 * down)
+    figure, axes = pyplot.subplots(down, across, figsize=size, layout="constrained", squeeze=False)
+    for axis in axes.flat[len(scenes) :]:
+        axis.set_visible(False)
+    for axis, (scene, mine) in zip(axes.flat, scenes.items()):
+        _panel(axis, mine, "flip_gaussian", "ratio")
+        axis.set_title(scene, fontsize=9)
+        axis.tick_params(labelsize=7, which="both")
+    # Beside the panels: within one it would hide points.
+    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside upper center", ncols=8, fontsize=6)
+    figure.supxlabel("time in that of quads with one sample", fontsize=9)
+    figure.supylabel("mean FLIP, Gaussian filter", fontsize=9)
+    return figure
+
+
+def _panel(axis, rows: list[dict], error: str, cost: str) -> None:
+    best = frontier(rows, error, cost)
+    axis.step([r[cost] for r in best], [r[error] for r in best], color="0.7", where="post", zorder=0)
+    for method, color in COLORS.items():
+        mine = [row for row in rows if row["method"] == method]
+        if not mine:
+            continue
+        plain = (all(row[name] == next(iter(values)) for name, values in FORMATS.items()) for row in mine)
+        faces = [color if is_plain else "white" for is_plain in plain]
+        x, y = [row[cost] for row in mine], [row[error] for row in mine]
+        axis.scatter(x, y, c=faces, edgecolors=[color] * len(mine), s=22, label=METHODS[method].label)
+        for row, place in zip(mine, zip(x, y)):
+            axis.annotate(row["samples"][0], place, fontsize=6, xytext=(3, 2), textcoords="offset points")
+    axis.set(xscale="log", yscale="log")
+    for side in (axis.xaxis, axis.yaxis):
+        side.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+        side.set_major_formatter("{x:g}")
+        side.set_minor_formatter(ticker.NullFormatter())
+    axis.grid(alpha=0.3)
+
+
+def plot_differences(frames: dict, truth):
+    """The truth, then a column for each of the frames that are shown, a pixel for a pixel."""
+    colors = {"exact, Gaussian pixel": truth.color}
+    colors |= {label(settings): frame.color for settings, frame in frames.items() if settings in PICTURED}
+    height, width = truth.color.shape[:2]
+    size = len(colors) * width / DPI, (2 * height + CAPTION) / DPI
+    edges = {"left": 0, "right": 1, "bottom": 0, "top": 2 * height / (2 * height + CAPTION), "wspace": 0, "hspace": 0}
+    figure, axes = pyplot.subplots(2, len(colors), figsize=size, dpi=DPI, gridspec_kw=edges)
+    for axis in axes.flat:
+        axis.set_axis_off()
+    for (above, below), (name, color) in zip(axes.T, colors.items()):
+        above.imshow(srgb(np.nan_to_num(color[..., :3])), origin="lower", interpolation="nearest")
+        above.set_title(f"{name}\nFLIP {mean_flip(color, truth.color):.4f}", fontsize=7)
+        if color is not truth.color:
+            below.imshow(flip_map(color, truth.color), origin="lower", interpolation="nearest")
+    return figure

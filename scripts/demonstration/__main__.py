@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The demo's second half, inside bpy: model -> surfels -> picture, .blend and summary. Started by demo.py."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+from time import perf_counter
+
+import bpy
+from rich.console import Console
+from rich.table import Table
+
+from environment import Problem, exit_with_problems
+from environment.leaving import run_and_leave
+
+CONSOLE = Console()
+
+#: The last chunk of every PNG file.
+PNG_END = b"IEND\xaeB`\x82"
+FULL_DISK = "the disk is full, or the folder's quota used up; free some space and run this again."
+
+
+@exit_with_problems
+def main(arguments: list) -> int:
+    """Exit code 0, or 1 after one sentence."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--model", type=Path)
+    parser.add_argument("--resolution", type=int)
+    parser.add_argument("--size", type=int, nargs=2)
+    parser.add_argument("--out", type=Path)
+    options = parser.parse_args(arguments)
+
+    import splat_addon
+
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    splat_addon.register()
+    from demonstration.models import import_model
+    from demonstration.scene import dress, painted_suzanne
+
+    picture, blend = options.out / "render.png", options.out / "surfels.blend"
+    with step("Reading the model"):
+        meshes = import_model(options.model) if options.model else painted_suzanne()
+        triangles = triangle_count(meshes)
+    with step(f"Converting {triangles:,} triangles to surfels"):
+        surfels, seconds = convert(meshes, options.resolution)
+    with step("Rendering"):
+        dress(surfels, options.size)
+        bpy.context.scene.render.engine = "SURFEL_SPLATTING"
+        render(picture)
+    with step("Timing a second frame"):
+        stats = timed_frame()
+    with step("Saving"):
+        save(blend)
+    CONSOLE.print(summary(options, triangles, surfels, seconds, stats))
+    CONSOLE.print(f"Picture: {picture}\nBlender file: {blend}", soft_wrap=True, highlight=False)
+    return 0
+
+
+@contextmanager
+def step(doing: str):
+    """Shows that a long step runs, and afterwards what it took."""
+    started = perf_counter()
+    with CONSOLE.status(f"{doing} ..."):
+        yield
+    CONSOLE.print(f"{doing}: {perf_counter() - started:.1f} s", highlight=False)
+
+
+def triangle_count(meshes: list) -> int:
+    """Triangles of the objects with their modifiers."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    return sum(sum(len(p.vertices) - 2 for p in m.evaluated_get(depsgraph).data.polygons) for m in meshes)
+
+
+def convert(meshes: list, resolution: int) -> tuple[list, float]:
+    """The surfel objects made from `meshes` by the add-on's operator, and the seconds that it took."""
+    bpy.ops.object.select_all(action="DESELECT")
+    for mesh in meshes:
+        mesh.select_set(True)
+    bpy.context.view_layer.objects.active = meshes[0]
+    before = set(bpy.data.objects)
+    started = perf_counter()
+    call("The conversion failed", bpy.ops.object.surfels_from_mesh, resolution=resolution, source="HIDE")
+    seconds = perf_counter() - started
+    surfels = [
+        o for o in bpy.data.objects if o not in before and {"rotation", "scale"} <= set(o.data.attributes.keys())
+    ]
+    if not surfels:
+        raise Problem("The conversion made no surfels: the model has no face with an area.")
+    return surfels, seconds
+
+
+def render(picture: Path) -> None:
+    """F12 into a file."""
+    scene = bpy.context.scene
+    scene.render.filepath = str(picture)
+    scene.render.image_settings.file_format = "PNG"
+    picture.unlink(missing_ok=True)
+    call("The render failed", bpy.ops.render.render, write_still=True)
+    if not picture.is_file():
+        raise Problem(f"The render left no {picture}: see what Blender printed above.")
+    if not picture.read_bytes().endswith(PNG_END):
+        raise Problem(f"Only a part of {picture} could be written: {FULL_DISK}")
+
+
+def save(blend: Path) -> None:
+    """The file as a .blend; an earlier one is replaced once the new one has been read back.
+
+    Blender 5.2 says that a file is saved of which only a part is on a full disk.
+    """
+    unfinished = blend.with_name(f".{blend.stem}-{os.getpid()}.blend")
+    try:
+        call("The .blend could not be saved", bpy.ops.wm.save_as_mainfile, filepath=str(unfinished), copy=True)
+        with bpy.data.libraries.load(str(unfinished)):
+            pass
+        unfinished.replace(blend)
+    except OSError:
+        raise Problem(f"Only a part of {blend} could be written: {FULL_DISK}") from None
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def timed_frame() -> dict:
+    """The statistics of the second of two frames, rendered as an animation: its shaders are compiled and its surfels
+    on the device, as in every frame but the first."""
+    from splat_addon.blender.final_render import last_frame_stats
+
+    scene = bpy.context.scene
+    kept = scene.render.filepath, scene.frame_start, scene.frame_end
+    with tempfile.TemporaryDirectory() as folder:
+        scene.render.filepath, scene.frame_start, scene.frame_end = str(Path(folder) / "frame_"), 1, 2
+        scene.surfel_splatting.profile = True
+        call("The timed render failed", bpy.ops.render.render, animation=True)
+        scene.surfel_splatting.profile = False
+    scene.render.filepath, scene.frame_start, scene.frame_end = kept
+    return last_frame_stats
+
+
+def call(failure: str, operator, **options) -> None:
+    """An operator, whose error report becomes a Problem."""
+    try:
+        operator(**options)
+    except RuntimeError as error:
+        raise Problem(f"{failure}: {' '.join(str(error).replace('Error: ', '').split())}") from None
+
+
+def summary(options, triangles: int, surfels: list, seconds: float, stats: dict) -> Table:
+    """What was made and what it took."""
+    count = sum(len(o.data.vertices) for o in surfels)
+    table = Table(show_header=False, title="Surfel Splatting", title_justify="left")
+    table.add_row("Model", options.model.name if options.model else "Suzanne, subdivided and painted")
+    table.add_row("Triangles", f"{triangles:,}")
+    table.add_row("Surfels", f"{count:,} at resolution {options.resolution}")
+    table.add_row("Conversion", f"{seconds:.2f} s")
+    table.add_row("Frame", f"{stats['milliseconds']:.1f} ms at {options.size[0]} x {options.size[1]}")
+    for name, milliseconds in stats["passes"].items():
+        table.add_row(f"  {name}", f"{milliseconds:.1f} ms")
+    table.add_row("Blender", f"{bpy.app.version_string}, {stats['backend']}")
+    table.add_row("Device", stats["device"])
+    return table
+
+
+if __name__ == "__main__":
+    run_and_leave(lambda: main(sys.argv[1:]))

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Contact sheets of all passes of one picture, and of the shading models, three of them with lines.
+
+Depth and position are brought into 0 to 1 by what is there, indices and names get colours by their numbers; of the
+number of splats over a sample the square root is shown, white at 64; all else is shown as it is, in sRGB.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from splat_addon.reference import scenes
+from splat_addon.reference.metrics import srgb
+from splat_addon.reference.shots import ball
+from splat_addon.reference.still_life import still_life
+from splat_addon.rendering import EMPTY_DEPTH, Frame, Lines, Renderer, Settings, open_device
+from splat_addon.rendering.settings import OUTPUTS
+from splat_addon.rendering.shading_models import SHADING_MODELS
+
+DEVICES = ("standalone",)
+QUICK = {"width": 24}
+#: Of indices and names, black for 0.
+PALETTE = np.array([(0, 0, 0), (0.9, 0.3, 0.2), (0.2, 0.6, 0.9), (0.95, 0.8, 0.2), (0.3, 0.75, 0.4), (0.6, 0.4, 0.8)])
+
+
+def arguments(parser) -> None:
+    parser.add_argument("--method", default="mip")
+    parser.add_argument("--width", type=int, default=240, help="pixels of each pass")
+
+
+def run(options, report) -> None:
+    shot = still_life((options.width, options.width * 3 // 4))
+    renderer = Renderer(open_device(options.device))
+    frame = renderer.render(*shot, Settings(method=options.method, outputs=OUTPUTS))
+    report.picture("passes", shown(frame), columns=4, encode=None)
+    report.say(str(frame.stats["plan"]))
+    report.picture("shading", [renderer.render(*shot, settings).color for shot, settings in models()], columns=4)
+
+
+def models():
+    """Every model on the two tori, and three with lines."""
+    plain, shot = Settings(method="mip", supersampling=2, matcap=ball()), scenes.torus(size=(150, 112))
+    for name in SHADING_MODELS:
+        yield shot, replace(plain, shading=name)
+    for name in ("toon", "flat", "normals"):
+        yield shot, replace(plain, shading=name, lines=Lines(width=1.5))
+
+
+def shown(frame: Frame) -> list[np.ndarray]:
+    """(h, w, 3) of 0 to 1 each, as they are shown."""
+    hit, names = frame.depth < EMPTY_DEPTH, frame.cryptomatte.names
+    near, far = frame.depth[hit].min(), frame.depth[hit].max()
+    depth = np.where(hit, 1 - 0.9 * (frame.depth - near) / (far - near), 0)
+    low, high = frame.position[hit].min(axis=0), frame.position[hit].max(axis=0)
+    shares = (frame.cryptomatte.share_of(name)[..., None] * PALETTE[n] for n, name in enumerate(names, 1))
+    return [
+        srgb(frame.color[..., :3]),
+        grey(depth),
+        (frame.position - low) / (high - low) * hit[..., None],
+        frame.normal / 2 + 0.5 * frame.coverage[..., None],
+        srgb(frame.diffuse_color),
+        srgb(frame.emission),
+        frame.shadow,
+        PALETTE[frame.object_index.astype(int)],
+        PALETTE[frame.material_index.astype(int)],
+        sum(shares),
+        grey(frame.coverage),
+        grey(np.sqrt(frame.overdraw / 64)),
+    ]
+
+
+def grey(values: np.ndarray) -> np.ndarray:
+    return np.repeat(values[..., None], 3, axis=2)

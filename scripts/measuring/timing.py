@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Jobs in turn: whatever else the machine does meets all of them alike, so the ratios of one turn can be trusted.
+
+The first turn warms up (shaders, caches, memory) and is not counted. Quote medians of the turns' ratios.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+import tracemalloc
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
+
+Job = Callable[[], object]
+
+
+class Spread(NamedTuple):
+    """Median, least and most of some numbers."""
+
+    median: float
+    least: float
+    most: float
+
+    @classmethod
+    def of(cls, values: Iterable[float]) -> Spread:
+        values = list(values)
+        return cls(statistics.median(values), min(values), max(values))
+
+    def __format__(self, form: str) -> str:
+        return f"{self.median:{form}} ({self.least:{form}} to {self.most:{form}})"
+
+
+def _timed(clock: Callable[[], float], job: Job) -> tuple[float, object]:
+    started = clock()
+    result = job()
+    return clock() - started, result
+
+
+#: Ways to measure a job, each of which gives (number, what the job returned): seconds on the clock, seconds of all
+#: processors, which other work on the machine does not lengthen, and the milliseconds that a frame says it took.
+wall = partial(_timed, time.perf_counter)
+processor = partial(_timed, time.process_time)
+
+
+def both(job: Job) -> tuple[tuple[float, float], object]:
+    """(seconds on the clock, seconds of all processors)."""
+    on_clock, (work, result) = wall(lambda: processor(job))
+    return (on_clock, work), result
+
+
+def peak_bytes(job: Job) -> tuple[int, object]:
+    """The most that was allocated above what was there before, the result included."""
+    tracemalloc.start()
+    result = job()
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    return peak, result
+
+
+def frame(job: Job) -> tuple[float, object]:
+    result = job()
+    return result.stats["milliseconds"], result
+
+
+@dataclass(frozen=True)
+class Turns:
+    """values: name -> what was measured of a job in every counted turn. results: what it returned last."""
+
+    values: dict
+    results: dict
+
+    def spread(self, name) -> Spread:
+        return Spread.of(self.values[name])
+
+    def ratios(self, name, unit) -> list[float]:
+        """The job's number over that of another in the same turn."""
+        return [own / other for own, other in zip(self.values[name], self.values[unit])]
+
+    def ratio(self, name, unit) -> Spread:
+        return Spread.of(self.ratios(name, unit))
+
+    def part(self, pick: Callable) -> Turns:
+        """The same turns with `pick` of each value."""
+        return Turns({name: [pick(value) for value in own] for name, own in self.values.items()}, self.results)
+
+
+def in_turn(
+    jobs: Mapping, turns: int, measure: Callable = wall, limits: Mapping | None = None, steps: Callable = iter, warm=1
+) -> Turns:
+    """Every job once a turn. limits: name -> turns of a job that is too slow for all of them. steps: shows progress.
+
+    What a job has as its attribute `after` is called after it, untimed.
+    """
+    made = Turns({name: [] for name in jobs}, {})
+    for turn in steps(range(turns + warm)):
+        for name, job in jobs.items():
+            if turn < (limits or {}).get(name, turns) + warm:
+                value, made.results[name] = measure(job)
+                getattr(job, "after", bool)()
+                if turn >= warm:
+                    made.values[name].append(value)
+    return made

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What Blender's other engines show and this one does not: said, in a warning of the render and in the 3D view, where
+a scene asks for it.
+
+Each entry is a setting with the value at which it does nothing. What is in no table here is honoured.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import bpy
+
+#: type of a shader node -> its sockets that are passed over, and the value at which each does nothing. What depends on
+#: one of them, as a coat's roughness on its weight, is not named besides.
+SOCKETS = {
+    "BSDF_PRINCIPLED": {
+        "Thin Wall": False,
+        "Diffuse Roughness": 0.0,
+        "Subsurface Weight": 0.0,
+        "Specular Tint": (1.0, 1.0, 1.0, 1.0),
+        "Anisotropic": 0.0,
+        "Transmission Weight": 0.0,
+        "Coat Weight": 0.0,
+        "Sheen Weight": 0.0,
+        "Thin Film Thickness": 0.0,
+    },
+    "BSDF_DIFFUSE": {"Roughness": 0.0},
+}
+
+#: Sockets of a material's output besides its surface.
+_OUTPUTS = ("Volume", "Displacement", "Thickness")
+
+
+def of_material(material: bpy.types.Material, shader: bpy.types.Node) -> Iterator[str]:
+    """A sentence on what `shader`, at the material's output, and the output itself ask for in vain."""
+    neutral = SOCKETS.get(shader.type, {})
+    sockets = {socket.name: socket for socket in shader.inputs if socket.enabled}
+    names = [name for name, value in neutral.items() if name in sockets and not _does_nothing(sockets[name], value)]
+    output = material.node_tree.get_output_node("ALL")
+    names += [name for name in _OUTPUTS if output and name in output.inputs and output.inputs[name].is_linked]
+    if names:
+        yield f"The material {material.name!r} has {_listed(names)}, which this engine passes over"
+
+
+def _does_nothing(socket: bpy.types.NodeSocket, neutral: Any) -> bool:
+    if socket.is_linked:
+        return False
+    value = socket.default_value
+    return tuple(value) == neutral if isinstance(neutral, tuple) else value == neutral
+
+
+#: kind of thing -> a function that tells whether it is asked for, and the end of the sentence about its owner
+_Rules = tuple[tuple[Callable[[Any], bool], str], ...]
+
+_OBJECTS: _Rules = (
+    (lambda o: o.is_shadow_catcher, "is a shadow catcher, and this engine draws it as it is"),
+    (
+        lambda o: any(s.settings.type == "HAIR" and s.settings.render_type == "PATH" for s in o.particle_systems),
+        "has hair, which this engine does not draw",
+    ),
+)
+
+#: Lights send out one light for all kinds of rays here.
+_LIGHT_RAYS = ("visible_diffuse", "visible_glossy")
+
+_LIGHTS: _Rules = (
+    (
+        lambda o: not all(getattr(o, name) for name in _LIGHT_RAYS),
+        "is hidden from diffuse or glossy rays, and this engine shows its light to both",
+    ),
+    (
+        lambda o: o.data.diffuse_factor != 1 or o.data.specular_factor != 1,
+        "has an influence on diffuse or glossy light other than 1, which this engine passes over",
+    ),
+    (
+        lambda o: bool(o.light_linking and o.light_linking.blocker_collection),
+        "has shadow linking, and this engine lets everything cast its shadow",
+    ),
+)
+
+_WORLDS: _Rules = (
+    (
+        lambda w: bool(w.node_tree and (o := w.node_tree.get_output_node("ALL")) and o.inputs["Volume"].is_linked),
+        "has a volume, which this engine does not draw",
+    ),
+    (
+        lambda w: hasattr(w, "cycles_visibility") and not (w.cycles_visibility.camera and w.cycles_visibility.diffuse
+                                                            and w.cycles_visibility.glossy),
+        "is hidden from some rays, and this engine shows it to all",
+    ),
+)  # fmt: skip
+
+
+def of_object(owner: bpy.types.Object) -> Iterator[str]:
+    """Sentences on what an object that is drawn asks for in vain."""
+    return _said(_OBJECTS, owner, owner.name)
+
+
+def of_light(owner: bpy.types.Object) -> Iterator[str]:
+    """Sentences on what the object of a light asks for in vain."""
+    return _said(_LIGHTS, owner, owner.name)
+
+
+def of_world(world: bpy.types.World) -> Iterator[str]:
+    """Sentences on what a world asks for in vain."""
+    return _said(_WORLDS, world, f"The world {world.name!r}")
+
+
+def of_scene(scene: bpy.types.Scene) -> Iterator[str]:
+    """Sentences on what a scene asks for in vain."""
+    if scene.render.use_freestyle:
+        yield "Freestyle is switched on, which this engine does not have; use its own Lines in the render properties"
+
+
+def _said(rules: _Rules, asked: Any, name: str) -> Iterator[str]:
+    return (f"{name} {sentence}" for is_asked, sentence in rules if is_asked(asked))
+
+
+def _listed(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

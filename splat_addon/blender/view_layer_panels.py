@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a view layer includes, of what Blender's Filter panel for other engines shows more."""
+
+from __future__ import annotations
+
+import bpy
+
+from .engine_panel import EnginePanel
+
+
+class VIEWLAYER_PT_surfel_filter(EnginePanel, bpy.types.Panel):
+    bl_label = "Filter"
+    bl_context = "view_layer"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+
+    def draw(self, context):
+        super().draw(context)
+        view_layer = context.view_layer
+        column = self.layout.column(heading="Include")
+        column.prop(view_layer, "use_sky", text="Environment")
+        column.prop(view_layer, "use_solid", text="Surfaces")
+        row = self.layout.column(heading="Use").row()
+        row.active = context.scene.render.use_motion_blur
+        row.prop(view_layer, "use_motion_blur", text="Motion Blur")
+
+
+register, unregister = bpy.utils.register_classes_factory((VIEWLAYER_PT_surfel_filter,))

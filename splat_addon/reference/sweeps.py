@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An extreme of `extremes` step by step: from where arithmetic has room to where it has none.
+
+Each yields x, a scene, a camera and what differs from the default settings; pictures are small, for the truth is slow.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ..rendering.camera import Camera, look_at
+from ..rendering.light import Light
+from ..rendering.scene import Instance, Scene
+from . import scenes
+from .extremes import discs, sheet, speck, transformed
+
+Shots = Iterator[tuple[float, Scene, Camera, dict]]
+
+SIZE = (64, 64)
+LIGHTS, WORLD = (Light("sun", energy=2.0, direction=(0.3, 0.2, -1.0)),), (0.1, 0.1, 0.1)
+
+
+def origin_camera(size=SIZE, near=0.01, fov=60.0, shift=(0.0, 0.0)) -> Camera:
+    return Camera.perspective(np.eye(4), math.radians(fov), size, near, 1000, shift)
+
+
+def lit(*surfels) -> Scene:
+    return Scene(surfels, LIGHTS, WORLD)
+
+
+def scale() -> Shots:
+    world = scenes.torus(6000, SIZE)
+    for exponent in (0, *range(-18, 19, 3)):
+        s = 10.0**exponent
+        yield s, *transformed(*world, np.diag([s, s, s, 1])), {}
+
+
+def offset() -> Shots:
+    world = scenes.torus(6000, SIZE)
+    for exponent in range(0, 15):
+        matrix = np.eye(4)
+        matrix[:3, 3] = 10.0**exponent * np.array((1, -1, 0.5))
+        yield 10.0**exponent, *transformed(*world, matrix), {}
+
+
+def near() -> Shots:
+    scene, camera = scenes.torus(6000, SIZE)
+    for exponent in np.arange(-6, -0.9, 0.5):
+        moved = replace(camera, near=10.0**exponent, far=1e6)
+        yield moved.near, replace(scene, surfels=(*scene.surfels, speck(moved, 1.5 * moved.near))), moved, {}
+
+
+def span() -> Shots:
+    """A parallel camera, and one disc far behind the rest."""
+    scene, _ = scenes.torus(6000, SIZE)
+    matrix = look_at((0.3, -3.6, 2.2), (0, 0, 0))
+    for exponent in np.arange(1, 6.1, 0.5):
+        far = 10.0**exponent
+        camera = Camera.orthographic(matrix, 3.2, SIZE, 0.1, far)
+        behind = matrix.copy()
+        behind[:3, 3] += 0.5 * matrix[:3, 0] - 0.9 * far * matrix[:3, 2]
+        disc = Instance(discs((0, 0, 0), (0.1, 0, 0), (0, 0.1, 0), (1, 0, 0)), behind)
+        yield far, replace(scene, surfels=(*scene.surfels, disc)), camera, {}
+
+
+def grazing() -> Shots:
+    for flatness in (30, 20, 15, 10, 7, 5, 3, 2, 1.5, 1, 0.8, 0.6, 0.4, 0.2, 0.1, 0.01, 0.001):
+        yield flatness, lit(sheet(30, 1.0, 90 - flatness, 2.0)), origin_camera(), {}
+
+
+def floor_below() -> Shots:
+    """A floor of 24 x 24 discs that passes under the eye: the nearest reach behind it."""
+    for height in (0.3, 0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001):
+        floor = replace(sheet(24, 2.0, 90.0, 0.0), origin=(0.0, -height, 0.0))
+        yield height, lit(floor), origin_camera(near=1e-4), {}
+
+
+def field_of_view() -> Shots:
+    scene, _ = scenes.sphere(6000, SIZE)
+    for angle in (1, 5, 10, 30, 60, 90, 120, 140, 150, 160, 165, 170):
+        distance = max(1.1 / math.sin(math.radians(angle / 2)), 1.3)
+        matrix = look_at(distance * np.array((0, -1, 0.1)), (0, 0, 0))
+        yield angle, scene, Camera.perspective(matrix, math.radians(angle), SIZE, distance / 100, 10 * distance), {}
+
+
+def off_axis() -> Shots:
+    scene, _ = scenes.sphere(6000, SIZE)
+    width = 4 * 2 * math.tan(math.radians(30))
+    for shift in (0.2, 0.5, 1, 2, 5, 10, 20, 50, 100):
+        matrix = look_at((0, -4, 0), (0, 0, 0))
+        matrix[:3, 3] -= shift * width * matrix[:3, 0]
+        yield shift, scene, Camera.perspective(matrix, math.radians(60), SIZE, 0.1, 100, shift=(shift, 0)), {}
+
+
+def ratio() -> Shots:
+    """21 parallel ellipses side by side, longer and longer, at an angle."""
+    u, v = np.array(((math.cos(1), math.sin(1), 0), (-math.sin(1), math.cos(1), 0)))
+    for exponent in np.arange(0, 6.1, 0.5):
+        centers = np.linspace(-1, 1, 21)[:, None] * v + (0, 0, -3)
+        yield 10.0**exponent, lit(discs(centers, 0.08 * 10.0**exponent * u, 0.08 * v)), origin_camera(), {}
+
+
+def giants() -> Shots:
+    for exponent in np.arange(2, 10.1, 0.5):
+        radius = 10.0**exponent * 0.01
+        floor = discs((0.1, -1.03, -5), (radius, 0, 0), (0, 0.1 * radius, -radius), (0.2, 0.5, 0.9))
+        yield 10.0**exponent, lit(floor), origin_camera(), {}
+
+
+def overdraw() -> Shots:
+    for layers in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000):
+        random = np.random.default_rng(1)
+        centers = np.concatenate([random.normal(0, 0.02, (layers, 2)), -3 - 1e-3 * random.random((layers, 1))], axis=1)
+        yield layers, lit(discs(centers, (1.5, 0, 0), (0, 1.5, 0))), origin_camera((12, 12)), {}
+
+
+def overdraw_in_float16() -> Shots:
+    for layers, scene, camera, _ in overdraw():
+        yield layers, scene, camera, {"accumulation": "float16"}
+
+
+def sub_pixel() -> Shots:
+    camera = origin_camera((4, 4))
+    pixel = 3 * (camera.window[1] - camera.window[0]) / 4
+    centers = np.random.default_rng(1).random((100_000, 3)) * (pixel, pixel, 1e-3) - (0, 0, 3)
+    for radius in (0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001):
+        splats = discs(centers, (radius * pixel, 0, 0), (0, radius * pixel, 0))
+        yield radius, Scene((splats,)), camera, {"shading": "flat"}
+
+
+def epsilon() -> Shots:
+    world = scenes.torus(6000, SIZE)
+    for radii in (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5, 1, 2, 5, 10, 20, 50, 100):
+        yield radii, *world, {"epsilon": radii}
+
+
+def gap() -> Shots:
+    """A red sheet before a green one; epsilon is 0.5 radii."""
+    front = sheet(20, 1.0, 0, 3.0, (1, 0, 0))
+    for radii in (1e-6, 1e-3, 0.01, 0.1, 0.2, 0.3, 0.4, 0.45, 0.55, 0.6, 0.8, 1, 2):
+        back = sheet(20, 1.0, 0, 3.0 + radii * float(front.radius[0]), (0, 1, 0))
+        yield radii, Scene((front, back)), origin_camera(), {"shading": "flat"}

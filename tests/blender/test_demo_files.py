@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the demo leaves behind is whole: Blender itself calls a file saved that a full disk has cut off."""
+
+import importlib
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+
+resource = pytest.importorskip("resource", reason="limits of a file's size are POSIX")
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+
+
+@pytest.fixture
+def demo(monkeypatch):
+    monkeypatch.syspath_prepend(str(SCRIPTS))
+    return importlib.import_module("demo_in_blender")
+
+
+@pytest.fixture
+def full_disk():
+    """full_disk(size): no file can be larger from now on, as on a disk with so many bytes left."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    yield lambda size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def add_points(add_object, count):
+    mesh = bpy.data.meshes.new("points")
+    mesh.vertices.add(count)
+    noise = np.random.default_rng(0).random(3 * count, np.float32)
+    mesh.attributes["position"].data.foreach_set("vector", noise)
+    add_object(mesh)
+
+
+def test_a_file_that_a_full_disk_cuts_off_is_refused_and_the_earlier_one_kept(demo, add_object, full_disk, tmp_path):
+    add_points(add_object, 10)
+    demo.save(tmp_path / "surfels.blend")
+    earlier = (tmp_path / "surfels.blend").read_bytes()
+    add_points(add_object, 100_000)
+    # Blender notices that a buffer cannot be written, but not of the last one.
+    demo.save(tmp_path / "larger.blend")
+    full_disk((tmp_path / "larger.blend").stat().st_size - 100)
+    (tmp_path / "larger.blend").unlink()
+    with pytest.raises(demo.Problem, match=r"Only a part of .*surfels\.blend could be written: the disk is full"):
+        demo.save(tmp_path / "surfels.blend")
+    assert (tmp_path / "surfels.blend").read_bytes() == earlier
+    assert [path.name for path in tmp_path.iterdir()] == ["surfels.blend"]

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the export reads of Blender can be edited while this engine is chosen, and Blender's panels that show more than
+it reads stay away.
+
+Both sides are read from the source: the properties that the export's modules take from a light, a camera and so on, by
+the names that their variables have everywhere, and the properties that visible panels draw.
+"""
+
+import ast
+import inspect
+import textwrap
+from pathlib import Path
+
+import bpy
+import pytest
+
+from splat_addon import blender
+from splat_addon.blender import ids
+from splat_addon.blender.camera_export import PANORAMA_PROPERTIES
+
+#: module -> variable in it -> RNA types that it may be of
+VARIABLES = {
+    "light": {"light": ("PointLight", "SpotLight", "SunLight", "AreaLight")},
+    "camera": {"camera": ("Camera",), "data": ("Camera",), "cam": ("Camera",), "dof": ("CameraDOFSettings",)},
+    "render": {"render": ("RenderSettings",), "rd": ("RenderSettings",)},
+    "view layer": {name: ("ViewLayer",) for name in ("view_layer", "view_layer_eval", "layer")},
+    "object": {"object_": ("Object",), "owner": ("Object",), "ob": ("Object",), "object": ("Object",)},
+    "material": {"material": ("Material",), "mat": ("Material",)},
+}
+
+#: kind of thing -> the tabs of the properties editor in which its settings are looked for.
+TABS = {
+    "light": {"data"},
+    "camera": {"data"},
+    "render": {"render", "output", "view_layer"},
+    "view layer": {"view_layer"},
+    "object": {"object"},
+    "material": {"material"},
+}
+
+#: kind of thing -> the modules that read it for a picture
+READERS = {
+    "light": ("shading_export",),
+    "camera": ("camera_export",),
+    "render": ("camera_export", "final_render", "motion_blur", "properties"),
+    "view layer": ("final_render", "motion_blur", "properties", "render_passes", "scene_export", "material_override"),
+    "object": ("scene_export", "live_meshes"),
+    "material": ("shading_export", "material_surfaces"),
+}
+
+#: What is read but is no setting: names, identities, results, and what stands in the outliner, the timeline or the
+#: header of the properties editor, or belongs to Blender's node editor.
+NO_SETTINGS = {
+    *("name", "name_full", "session_uid", "original", "users", "type", "data", "id_data", "is_evaluated"),
+    *("matrix_world", "temperature_color", "material_slots", "vertex_groups", "modifiers", "parent", "node_tree"),
+    *("use_nodes", "objects", "layer_collection", "particle_systems", "light_linking", "frame_current"),
+    # the border is drawn in the view
+    *("border_min_x", "border_min_y", "border_max_x", "border_max_y"),
+    *("active_material", "session_uid", "views", "stereo", "dof", "instance_type", "instance_collection"),
+}
+
+
+def properties_of(types) -> set[str]:
+    """Settings that a user can change of any of these types."""
+    every = [p for name in types for p in getattr(bpy.types, name).bl_rna.properties]
+    return {p.identifier for p in every if not p.is_readonly or p.type == "POINTER"} - NO_SETTINGS
+
+
+def reads(kind: str) -> set[str]:
+    found = set()
+    for module in READERS[kind]:
+        tree = ast.parse((Path(blender.__file__).parent / f"{module}.py").read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Attribute):
+                owner = node.value.attr if isinstance(node.value, ast.Attribute) else getattr(node.value, "id", None)
+                types = VARIABLES[kind].get(owner, ())
+                found |= {node.attr} & properties_of(types)
+    if kind == "camera":
+        found |= {name for names in PANORAMA_PROPERTIES.values() for name in names}
+    return found
+
+
+def visible_panels(tabs=frozenset({"data", "render", "output", "view_layer", "object", "material"})):
+    """The classes of panels that these tabs of the properties editor may show for this engine."""
+    panels = {p.__name__: p for p in bpy.types.Panel.__subclasses__()}
+    panels |= {p.__name__: p for p in _subclasses(bpy.types.Panel)}
+    for panel in panels.values():
+        engines = getattr(panel, "COMPAT_ENGINES", None)
+        is_ours = panel.__module__.startswith(blender.__name__)
+        parent = panels.get(getattr(panel, "bl_parent_id", ""))
+        parent_engines = getattr(parent, "COMPAT_ENGINES", None) if parent else None
+        if engines is not None and ids.ENGINE not in engines and not is_ours:
+            continue
+        if parent_engines is not None and ids.ENGINE not in parent_engines:
+            continue
+        if getattr(panel, "bl_space_type", "") == "PROPERTIES" and getattr(panel, "bl_context", "") in tabs:
+            yield panel
+
+
+def _subclasses(base):
+    for each in base.__subclasses__():
+        yield each
+        yield from _subclasses(each)
+
+
+class Texts(ast.NodeVisitor):
+    """All texts in a source but those that only another engine gets to."""
+
+    def __init__(self):
+        self.found = set()
+
+    def visit_Constant(self, node):
+        if isinstance(node.value, str):
+            self.found.add(node.value)
+
+    def visit_If(self, node):
+        test = ast.unparse(node.test)
+        for child in node.orelse if "engine" in test and ids.ENGINE not in test else (*node.body, *node.orelse):
+            self.visit(child)
+
+
+def draws(kind: str) -> set[str]:
+    """The names of all properties in the source of visible panels, and of the tables and functions beside ours."""
+    texts = Texts()
+    for panel in visible_panels(TABS[kind]):
+        is_ours = panel.__module__.startswith(blender.__name__)
+        source = inspect.getsource(inspect.getmodule(panel) if is_ours else panel)
+        texts.visit(ast.parse(textwrap.dedent(source)))
+    return texts.found | {name for names in PANORAMA_PROPERTIES.values() for name in names}
+
+
+@pytest.mark.parametrize("kind", READERS)
+def test_what_is_read_is_shown_by_some_panel(kind):
+    read = reads(kind)
+    assert read, "nothing was found to be read, so the names of variables have changed"
+    assert not read - draws(kind)
+
+
+def test_the_walk_finds_what_is_known_to_be_read():
+    assert {"energy", "color", "use_shadow", "shadow_soft_size", "size_y", "spot_blend", "angle"} <= reads("light")
+    assert {"use_dof", "aperture_fstop", "focus_object", "panorama_type", "fisheye_lens", "clip_end"} <= reads("camera")
+    assert {"use_motion_blur", "film_transparent", "use_border", "use_persistent_data"} <= reads("render")
+    assert {"samples", "material_override", "use_sky", "use_solid"} <= reads("view layer")
+    assert {"visible_shadow", "visible_camera"} <= reads("object")
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["DATA_PT_light", "DATA_PT_spot", "DATA_PT_preview", "RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle",
+     "VIEWLAYER_PT_filter", "RENDER_PT_simplify_greasepencil", "VIEWLAYER_PT_layer_passes"],
+)  # fmt: skip
+def test_a_stock_panel_that_would_show_what_is_passed_over_stays_away(name):
+    assert not hasattr(bpy.types, name) or getattr(bpy.types, name) not in set(visible_panels())
+
+
+@pytest.mark.parametrize(
+    "name", ["DATA_PT_camera_dof", "RENDER_PT_simplify", "RENDER_PT_simplify_viewport", "VIEWLAYER_PT_override"]
+)
+def test_a_stock_panel_whose_settings_are_honoured_is_joined(name):
+    assert getattr(bpy.types, name) in set(visible_panels())
+
+
+def test_unregistering_leaves_the_stock_panels_as_they_were():
+    import splat_addon
+
+    splat_addon.unregister()
+    try:
+        engines = [getattr(p, "COMPAT_ENGINES", ()) for p in bpy.types.Panel.__subclasses__()]
+        assert not any(ids.ENGINE in each for each in engines)
+    finally:
+        splat_addon.register()

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/bench.py: what it lists, what it refuses, and that everything it lists can be started."""
+
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+import bench as package
+from environment.module import module_process
+from measuring.registry import modules, summary
+
+SCRIPT = Path(package.__file__).resolve().parents[1] / "bench.py"
+
+#: Those that draw or measure within a second where they are told to be quick, and need no Blender.
+SWIFT = ("polygons", "reductions", "textured")
+
+
+def start(*arguments):
+    return subprocess.run([sys.executable, str(SCRIPT), *arguments], capture_output=True, text=True)
+
+
+def in_one_process(code, *arguments):
+    process = module_process(sys.executable, "unused")
+    return subprocess.run([sys.executable, "-c", code, *arguments], env=process["env"], capture_output=True, text=True)
+
+
+def test_the_list_has_a_line_for_each_and_needs_no_environment():
+    done = subprocess.run([sys.executable, "-S", str(SCRIPT), "--list"], capture_output=True, text=True)
+    lines = done.stdout.splitlines()
+    assert [line.split()[0] for line in lines] == list(modules()) and len(lines) > 12
+    for line, module in zip(lines, modules().values(), strict=True):
+        assert line.endswith(summary(module)) and summary(module)
+
+
+@pytest.mark.parametrize("arguments", [(), ("nothing",)])
+def test_without_a_name_of_the_list_the_names_are_said(arguments):
+    done = start(*arguments)
+    assert done.returncode == 2 and "trade, transparency" in done.stderr and len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.skipif(find_spec("bpy") is None, reason="this Python has no bpy")
+def test_everything_listed_can_be_imported_and_takes_its_arguments():
+    code = (
+        "import sys; from measuring.__main__ import parse; from measuring.registry import modules\n"
+        "for name in modules():\n"
+        "    assert parse(name, ['--quick']).quick and parse(name, ['--turns', '2']).turns == 2, name\n"
+        "    assert callable(getattr(sys.modules[modules()[name]], 'run')), name\n"
+        "from environment.leaving import run_and_leave; run_and_leave(lambda: 0)"
+    )
+    done = in_one_process(code)
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_swift_ones_leave_a_page_that_says_how_it_was_come_by(models, tmp_path):
+    code = (
+        "import sys; from pathlib import Path; from measuring.__main__ import measure, parse\n"
+        "for name in sys.argv[2:]:\n"
+        "    measure(name, parse(name, ['--quick', '--out', str(Path(sys.argv[1]) / name)]), f'bench.py {name}')"
+    )
+    done = in_one_process(code, str(tmp_path), *SWIFT)
+    assert done.returncode == 0, done.stderr
+    for name in SWIFT:
+        page = (tmp_path / name / f"{name}.md").read_text(encoding="utf-8")
+        assert page.startswith("# ") and f"`bench.py {name}`" in page
+        assert list((tmp_path / name).glob("*.png")), name
