@@ -32,7 +32,7 @@ DEVICES = ("standalone",)
 QUICK = {"only": "layers", "shots": 1}
 SAMPLES = 2
 EQUAL = 160.0
-PLAN = import_module("splat_addon.rendering.plan")
+DEPTH_FORMAT = import_module("splat_addon.rendering.features.depth_format")
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ def measure(panel: Panel, renderers: dict, most: int) -> dict[str, list[dict]]:
     results, firsts = {method: [] for method in METHODS}, {}
     with ExitStack() as changed:
         for name, value in panel.limits.items():
-            changed.enter_context(patch.object(PLAN, name, value))
+            changed.enter_context(patch.object(DEPTH_FORMAT, name, value))
         for x, scene, camera, changes in list(panel.shots())[:most]:
             settings, truth = Settings(supersampling=SAMPLES, **changes), None
             if panel.against == "truth":

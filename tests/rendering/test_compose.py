@@ -6,8 +6,8 @@ from collections import defaultdict
 
 import pytest
 
-from splat_addon.rendering import compose as composing
-from splat_addon.rendering.compose import FOLDER, compose
+from splat_addon.rendering.plan import compose as composing
+from splat_addon.rendering.plan.compose import FOLDER, compose
 
 FILES = sorted(FOLDER.rglob("*.glsl"))
 #: Folders of which a text has one file.

@@ -9,9 +9,10 @@ import pytest
 from splat_addon.reference import scenes
 from splat_addon.reference.extremes import sheet
 from splat_addon.rendering import Camera, Instance, Renderer, Scene, Settings, look_at, renderer
-from splat_addon.rendering.plan.frame_plan import CELL
+from splat_addon.rendering.features import depth_bounds
+from splat_addon.rendering.features.hiz import CELL
 from splat_addon.rendering.methods import METHODS
-from splat_addon.rendering.passes import RUN
+from splat_addon.rendering.plan import executor
 from splat_addon.rendering.view import look
 
 SIZE = (64, 48)
@@ -76,29 +77,29 @@ def test_the_picture_is_the_same_without(name, supersampling, render, monkeypatc
         np.testing.assert_array_equal(getattr(culled, output), getattr(whole, output), err_msg=output)
 
 
-def test_a_cell_holds_the_farthest_that_is_seen_around_it(on_device):
+def test_a_cell_holds_the_farthest_that_is_seen_around_it(on_device, monkeypatch):
     """And what lies behind that alone is left out: told that nothing is seen, the pass draws nothing."""
     scene, camera = scenes.torus(count=6_000, size=SIZE)
     found = {}
 
-    def keep(tile, planned):
-        target = run_pass(tile, planned)
-        found["cells"] = target.read(0)[..., 0]
-        found["seen"] = tile.target(("seen_range",)).read(0)[..., 2]
+    def keep(tile, p):
+        target = run_pass(tile, p)
+        if p.name == "coarse_depth":
+            found["cells"] = target.read(0)[..., 0]
+            seen = tile.resources.device.target([tile.texture(depth_bounds.BOUNDS)])
+            found["seen"] = seen.read(0)[..., 2]
         return target
 
-    def forget(tile, planned):
-        target = keep(tile, planned)
-        target.clear(color=-1.0)
+    def forget(tile, p):
+        target = keep(tile, p)
+        if p.name == "coarse_depth":
+            target.clear(color=-1.0)
         return target
 
-    run_pass, pictures = RUN["coarse_depth"], []
-    try:
-        for run in (keep, forget):
-            RUN["coarse_depth"] = run
-            pictures.append(on_device(lambda device: Renderer(device).render(scene, camera, MIP)))
-    finally:
-        RUN["coarse_depth"] = run_pass
+    run_pass, pictures = executor.run_pass, []
+    for run in (keep, forget):
+        monkeypatch.setattr(executor, "run_pass", run)
+        pictures.append(on_device(lambda device: Renderer(device).render(scene, camera, MIP)))
     seen, cells = found["seen"], found["cells"]
     for y, x in np.ndindex(cells.shape):
         rows, columns = (slice(max(CELL * at - 2, 0), CELL * at + CELL + 2) for at in (y, x))

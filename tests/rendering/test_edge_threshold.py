@@ -44,4 +44,4 @@ def test_a_filtering_method_is_left_alone_and_the_plan_says_so(render):
     disc = Scene((discs((0, 0, -3)),))
     frames = [render(disc, CAMERA, Settings(supersampling=2, method="mip", edge_threshold=t)) for t in (0.0, 0.5)]
     np.testing.assert_array_equal(frames[0].color, frames[1].color)
-    assert dict(frames[1].stats["plan"].left_out)["edge threshold"] == "the weights of mip are smaller where it filters"
+    assert dict(frames[1].stats["plan"].skipped)["edge threshold"] == "the weights of mip are smaller where it filters"

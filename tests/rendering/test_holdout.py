@@ -106,4 +106,4 @@ def test_the_plan_names_what_cuts_and_what_cannot():
     assert dict(plan(scene, CAMERA, flat()).features)["HOLDOUT"] == "1 of 2 instances cut holes"
     assert "HOLDOUT" not in dict(plan(Scene([sheet(0)]), CAMERA, flat()).features)
     made = plan(scene, CAMERA, flat(method="affine_unfiltered"))
-    assert "drawn as others are" in dict(made.left_out)["holdout"]
+    assert "drawn as others are" in dict(made.skipped)["holdout"]

@@ -250,7 +250,7 @@ def test_of_nothing_is_nobodys(render):
 
 def test_they_cost_nothing_where_they_are_not_asked_for():
     made = plan(three(), CAMERA, Settings())
-    assert "identity" not in made.textures and "identity" in dict(made.left_out)
+    assert "identity" not in made.textures and "identity" in dict(made.skipped)
     made = plan(three(), CAMERA, settings())
     assert "identity" in made.textures and "object_index" in made.passes[0].reason
 

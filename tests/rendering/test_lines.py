@@ -147,7 +147,7 @@ def test_lines_are_drawn_with_every_kind_of_sum(others, cube, darkness, request)
 def test_lines_are_planned_only_where_they_are_asked_for(cube):
     without = plan(Scene([cube]), FRONT, Settings())
     assert "lines" not in without.textures and without.margin == 2
-    assert "lines" in dict(without.left_out)
+    assert "lines" in dict(without.skipped)
     planned = plan(Scene([cube]), FRONT, Settings(lines=Lines(width=2.5)))
     assert [p.name for p in planned.passes].count("lines") == 1
     assert planned.margin == 2 + math.ceil(2.5 + 5)

@@ -22,7 +22,7 @@ from splat_addon.rendering import (
     Settings,
     look_at,
 )
-from splat_addon.rendering.passes import RUN
+from splat_addon.rendering.plan import executor
 from splat_addon.rendering.settings import OUTPUTS
 from splat_addon.surfels import Surfels, axes_quaternions
 
@@ -184,8 +184,8 @@ def test_an_empty_scene_is_its_background(render):
 
 
 def test_shadow_maps_of_lamps_are_drawn_once_for_all_faces(render, monkeypatch):
-    count, run = [], RUN["shadow_maps"]
-    monkeypatch.setitem(RUN, "shadow_maps", lambda *a: count.append(1) or run(*a))
+    count, run = [], executor.run_pass
+    monkeypatch.setattr(executor, "run_pass", lambda t, p: (p.name == "shadow_maps" and count.append(1)) or run(t, p))
     lamp = Light("point", energy=60, position=tuple(MATRIX[:3, 3] + (1, 0, 0)), casts_shadow=True)
     scene = replace(ball(smooth, 4000), lights=(lamp,))
     settings = Settings(method="quad", samples=2, shadow_resolution=64)

@@ -19,7 +19,9 @@ from splat_addon.rendering import (
     make_polygons,
     plan,
 )
-from splat_addon.rendering.passes.attributes import describe
+from splat_addon.rendering.features import INPUTS
+from splat_addon.rendering.plan.executor import describe
+from splat_addon.rendering.plan.graph import Loop
 from splat_addon.rendering.settings import Lines
 from splat_addon.surfels import Surfels
 
@@ -158,12 +160,12 @@ TABLE = {
     ),
     "transparent": (
         TRANSPARENT, {"layers": 2, "blends_rest": False},
-        ("visibility", "start_layers", *LAYER, *LAYER, "attributes", "shading"),
+        ("visibility", "start_layers", *LAYER, "attributes", "shading"),
         LAYER_TEXTURES, "", (),
     ),
     "transparent, the rest blended": (
         TRANSPARENT, {"layers": 2},
-        ("visibility", "start_layers", *LAYER, "rest", "rest_shading", "rest_layer", "peel_rest", "attributes",
+        ("visibility", "start_layers", *LAYER, "light_splats", "rest", "rest_shading", "rest_layer", "peel_rest", "attributes",
          "shading"),
         LAYER_TEXTURES + " lit_splats rest_sum rest_weight", "", (),
     ),
@@ -199,8 +201,8 @@ def test_a_scene_gets_what_it_needs_and_nothing_else(name):
     made = plan(scene, CAMERA, Settings(**{"method": "quad", **settings}))
     assert tuple(p.name for p in made.passes) == passes
     assert set(made.textures) == changed(TEXTURES, textures)
-    assert {read for p in made.passes for read in p.reads} - set(made.textures) == changed(READS, reads)
-    assert tuple(feature for feature, _ in made.features) == features
+    assert {read for p in made.passes for read in p.reads} & set(INPUTS) == changed(READS, reads)
+    assert {feature for feature, _ in made.features} == set(features)
     assert all(p.reason for p in made.passes)
 
 
@@ -230,7 +232,7 @@ def test_the_plan_prints_each_pass_with_its_reason(name):
     printed = str(made)
     for planned in made.passes:
         assert planned.name in printed and planned.reason in printed
-    for what, why in made.left_out:
+    for what, why in made.skipped:
         assert f"without {what}: {why}" in printed
 
 
@@ -246,4 +248,5 @@ def test_every_planned_sum_is_written_in_whatever_space_a_method_works(name, sce
     made = plan(scene, CAMERA, Settings(method=method, **settings))
     (attributes,) = [p for p in made.passes if p.name == "attributes"]
     assert name in attributes.writes
-    assert f"  {name} = " in describe(attributes, made).fragment
+    vertex = attributes.host.replace(".frag", ".vert")
+    assert f"  {name} = " in describe(made, attributes, vertex).fragment

@@ -18,7 +18,7 @@ from splat_addon.rendering import (
     Settings,
     plan,
 )
-from splat_addon.rendering.passes import RUN
+from splat_addon.rendering.plan import executor
 
 SETTINGS = Settings(method="quad", samples=4, outputs=("color",))
 
@@ -64,8 +64,14 @@ def small_tiles(monkeypatch):
 def drawn(monkeypatch):
     """Names of the last passes that ran."""
     names = []
-    for name in ("shading", "resolve"):
-        monkeypatch.setitem(RUN, name, lambda *a, run=RUN[name], name=name: names.append(name) or run(*a))
+    run = executor.run_pass
+
+    def noting(tile, p):
+        if p.name in ("shading", "resolve"):
+            names.append(p.name)
+        return run(tile, p)
+
+    monkeypatch.setattr(executor, "run_pass", noting)
     return names
 
 
@@ -153,8 +159,8 @@ def test_a_picture_as_background_refines(redraws, render):
 
 
 def test_shadow_maps_are_drawn_once_while_nothing_changes(redraws, monkeypatch):
-    count, run = [], RUN["shadow_maps"]
-    monkeypatch.setitem(RUN, "shadow_maps", lambda *a: count.append(1) or run(*a))
+    count, run = [], executor.run_pass
+    monkeypatch.setattr(executor, "run_pass", lambda t, p: (p.name == "shadow_maps" and count.append(1)) or run(t, p))
     scene, camera = torus()
     sun = Light("sun", energy=2.0, direction=(1, -0.5, -1), casts_shadow=True)
     lit = replace(scene, lights=(sun,))

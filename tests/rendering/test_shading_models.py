@@ -66,7 +66,7 @@ def test_depth_runs_from_the_nearest_to_the_farthest(edge, render, monkeypatch):
         monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", edge)
     step = replace(floor(2.0, half=0.5), positions=floor(2.0, half=0.5).positions + np.float32((-0.5, 0, 0)))
     frame = render(Scene([floor(), step]), ABOVE, Settings(method="quad", shading="depth", supersampling=1))
-    near, far = frame.stats["plan"].depth_range
+    near, far = frame.stats["plan"].facts["depth_range"]
     assert 2.8 < near < 3 and 5 < far < 5.5  # of boxes around splats
     covered = frame.coverage > 0
     assert np.allclose(frame.color[covered, 0], ((frame.depth - near) / (far - near))[covered], atol=1e-4)

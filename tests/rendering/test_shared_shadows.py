@@ -8,7 +8,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.rendering import Lens, Light, Settings, renderer
-from splat_addon.rendering.passes import RUN
+from splat_addon.rendering.plan import executor
 
 SETTINGS = Settings(method="quad", samples=4, shadow_resolution=128)
 SUN = Light("sun", energy=2.0, direction=(1, -0.5, -1), casts_shadow=True)
@@ -18,13 +18,14 @@ LAMP = Light("point", energy=60, position=(-2, 1, 2), casts_shadow=True)
 @pytest.fixture
 def drawn(monkeypatch):
     """The plans of the frames whose shadow maps were drawn."""
-    plans, run = [], RUN["shadow_maps"]
+    plans, run = [], executor.run_pass
 
-    def counting(tile, planned):
-        plans.append(tile.plan)
-        return run(tile, planned)
+    def counting(tile, p):
+        if p.name == "shadow_maps":
+            plans.append(tile.plan)
+        return run(tile, p)
 
-    monkeypatch.setitem(RUN, "shadow_maps", counting)
+    monkeypatch.setattr(executor, "run_pass", counting)
     return plans
 
 

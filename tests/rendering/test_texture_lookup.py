@@ -8,7 +8,7 @@ from splat_addon.images import EXTENSIONS, Image
 from splat_addon.rendering.atlas import make_atlas
 from splat_addon.rendering.device.interface import PipelineDescription
 from splat_addon.rendering.scene import SurfaceTexture
-from splat_addon.rendering.compose import FOLDER, compose
+from splat_addon.rendering.plan.compose import FOLDER, compose
 from splat_addon.rendering.texture_lookup import texture_colors
 
 #: Of a pixel filtered with a Gaussian of sigma 0.7071, pixels squared.

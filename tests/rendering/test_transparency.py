@@ -260,14 +260,14 @@ def test_multisampling_is_refused():
 def test_what_cannot_peel_says_so(settings):
     scene, camera = spheres(16)
     made = plan(scene, camera, Settings(**settings))
-    assert made.layers == 0
-    assert "drawn opaque" in dict(made.left_out)["transparency"]
+    assert made.facts["layers"] == 0
+    assert "drawn opaque" in dict(made.skipped)["transparency"]
 
 
 def test_nothing_of_an_opaque_scene_is_for_layers():
     scene, camera = scenes.sphere(count=100)
     made = plan(scene, camera, Settings())
-    assert made.layers == 0 and not any("layer" in t or "peeled" in t for t in made.textures)
+    assert made.facts["layers"] == 0 and not any("layer" in t or "peeled" in t for t in made.textures)
 
 
 def under_the_sun(*casters, **options) -> Scene:
@@ -305,7 +305,7 @@ def test_shadows_are_as_transparent_as_their_casters(opacities, size, render):
 def test_opaque_casters_have_shadows_as_before():
     scene = under_the_sun(half(1.0, 1.0))
     made = plan(scene, CAMERA, Settings())
-    assert made.shadow_maps and not made.has("SCREEN_DOOR")
+    assert made.facts["shadow_maps"] and not made.has("SCREEN_DOOR")
     assert plan(under_the_sun(half(0.5, 1.0)), CAMERA, Settings()).has("SCREEN_DOOR")
     casts_none = under_the_sun(replace(half(0.5, 1.0), casts_shadow=False))
     assert not plan(casts_none, CAMERA, Settings()).has("SCREEN_DOOR")

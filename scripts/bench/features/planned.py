@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 from splat_addon.rendering import FramePlan
-from splat_addon.rendering.plan.frame_plan import TEXTURES
+from splat_addon.rendering.features import INPUTS
 
 #: format -> bytes a texel
 BYTES = {"RGBA32F": 16, "RGBA16F": 8, "RGBA16": 8, "RG32F": 8, "R32F": 4, "DEPTH32F": 4}
@@ -16,8 +16,10 @@ def planned_bytes(plan: FramePlan) -> int:
     """Of the textures that passes write, for the first tile with its margin."""
     _, _, width, height = plan.tiles[0]
     pixels = width + 2 * plan.margin, height + 2 * plan.margin
-    texels = {name: math.prod(plan.size(name, pixels)) * max(plan.multisamples_of(name), 1) for name in plan.textures}
-    return sum(count * BYTES[plan.format(name)] for name, count in texels.items())
+    return sum(
+        math.prod(plan.size(t, pixels)) * max(plan.multisamples_of(t), 1) * BYTES[plan.format(t)]
+        for t in plan.filled.values()
+    )
 
 
 def added(without: FramePlan, present: FramePlan) -> tuple[str, str]:
@@ -31,7 +33,7 @@ def _done(plan: FramePlan) -> list[str]:
 
 
 def _read(plan: FramePlan) -> list[str]:
-    return [*plan.textures, *(name for p in plan.passes for name in p.reads if name not in TEXTURES)]
+    return [*plan.textures, *(name for p in plan.passes for name in p.reads if name in INPUTS)]
 
 
 def _difference(before: list[str], after: list[str]) -> str:

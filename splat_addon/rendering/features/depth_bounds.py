@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ..plan.executor import fill
 from ..plan.graph import Part, Pass, Texture
 from . import silhouettes, visibility
 
@@ -21,7 +22,7 @@ def bounds(planning, reason: str, seen: Texture, kind: str = "opaque") -> Pass:
         words=("writes_depth",) if rows > 1 else (),
     )
     state = dict.fromkeys(("depth_test", "depth_write", "fragment_depth"), rows > 1)
-    return Pass("seen_range", reason, "seen_range.frag", lambda tile, p: tile.fill(p), (own,), kind, state)
+    return Pass("seen_range", reason, "seen_range.frag", fill, (own,), kind, state)
 
 
 def passes(planning):

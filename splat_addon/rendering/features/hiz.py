@@ -6,6 +6,7 @@ One level of a hierarchical z-buffer (Greene, Kass, Miller 1993).
 
 from __future__ import annotations
 
+from ..plan.executor import fill
 from ..plan.graph import Part, Pass, Texture
 from . import depth_bounds
 
@@ -34,14 +35,9 @@ def pays(planning) -> str:
 def passes(planning):
     if planning.shown and (why := planning.find(pays)):
         own = Part("hiz", reads=(depth_bounds.BOUNDS,), writes=(FARTHEST,))
-        yield Pass("coarse_depth", why, "coarse_depth.frag", run, (own,))
+        yield Pass("coarse_depth", why, "coarse_depth.frag", fill, (own,))
 
 
 def parts(planning, p):
     if p.host == "screen_space.frag" and p.kind == "opaque" and planning.find(pays):
         yield Part("hiz", reads=(FARTHEST,))
-
-
-def run(tile, p):
-    """Fill the texture."""
-    return tile.fill(p)

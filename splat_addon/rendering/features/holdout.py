@@ -37,7 +37,7 @@ def passes(planning):
 
 
 def parts(planning, p):
-    if p.kind != "opaque" or not _count(planning):
+    if p.kind != "opaque" or not planning.find(_count):
         return
     if p.host == "seen_range.frag":
         yield Part("holdout", reads=(_depth(planning),), called=((_depth(planning), "holes"),))

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..brdf_table import brdf_texels
+from ..plan.executor import fill
 from ..plan.graph import Part, Pass, Texture
 from . import depth_bounds, outputs, silhouettes, visibility
 from .drawing import LIT_HOSTS
@@ -22,10 +23,6 @@ SHADED = Texture("shaded")
 SURFACE = Texture("surface")
 
 
-def _fill(tile, p: Pass):
-    return tile.fill(p)
-
-
 def _samples(planning) -> tuple[tuple[str, int], ...]:
     settings = planning.settings
     is_mean = settings.multisampling and not settings.sample_shading
@@ -36,7 +33,7 @@ def _samples(planning) -> tuple[tuple[str, int], ...]:
 def deferred(planning, reason: str, kind: str = "opaque") -> Pass:
     """Shades every sample and keeps it."""
     own = Part("lighting", writes=(SHADED, SURFACE), constants=_samples(planning))
-    return Pass("sample_shading", reason, "sample_shading.frag", _fill, (own,), kind)
+    return Pass("sample_shading", reason, "sample_shading.frag", fill, (own,), kind)
 
 
 def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque", state=None) -> Pass:
@@ -49,7 +46,7 @@ def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque"
         called=((seen, "seen_depth"),),
         constants=(("SAMPLES", planning.settings.supersampling), ("ROWS", rows)),
     )
-    return Pass("resolve", reason, "resolve.frag", _fill, (own,), kind, state or {}, adds=bool(state))
+    return Pass("resolve", reason, "resolve.frag", fill, (own,), kind, state or {}, adds=bool(state))
 
 
 def layer_pixels(planning) -> Pass:
@@ -65,7 +62,7 @@ def layer_pixels(planning) -> Pass:
         writes=writes,
         constants=(("SAMPLES", planning.settings.supersampling),),
     )
-    return Pass("layer", "nearer layers cover it", "layer.frag", _fill, (own,), "layer", add, adds=True)
+    return Pass("layer", "nearer layers cover it", "layer.frag", fill, (own,), "layer", add, adds=True)
 
 
 def passes(planning):
@@ -77,7 +74,7 @@ def passes(planning):
         yield _filtered(planning, "silhouettes are filtered", visibility.nearest_depth(planning), pixels)
     else:
         own = Part("lighting", writes=pixels, constants=_samples(planning))
-        yield Pass("shading", once, "shading.frag", _fill, (own,))
+        yield Pass("shading", once, "shading.frag", fill, (own,))
 
 
 def parts(planning, p):

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 from ..lines import CREASE_REACH
+from ..plan.executor import fill
 from ..plan.graph import Part, Pass, Texture
 from .drawing import LIT_HOSTS
 
@@ -33,7 +34,7 @@ def passes(planning):
         choices=(("samples", "mean" if settings.multisampling else "each"),),
     )
     why = "silhouettes and creases are drawn before their samples are mixed"
-    yield Pass("lines", why, "lines.frag", lambda tile, p: tile.fill(p), (own,))
+    yield Pass("lines", why, "lines.frag", fill, (own,))
 
 
 def parts(planning, p):

@@ -57,7 +57,7 @@ def passes(planning):
 
 
 def parts(planning, p):
-    if not asked_for(planning):
+    if not planning.find(asked_for):
         return
     if p.host == "visibility.frag" and p.kind in ("opaque", "layer"):
         texture = LAYER_IDENTITY if p.kind == "layer" else IDENTITY

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..packing import SPLATS_PER_ROW, row_count
+from ..plan.executor import fill
 from ..plan.graph import Part, Pass, Texture
 from . import gbuffer, lighting
 from .drawing import RASTERIZERS, draw_block, draw_splats, drawn_by, splat_textures, storage_samplers
@@ -25,7 +26,6 @@ def passes_of_rest(planning) -> tuple[Pass, ...]:
 
     planning.facts["lit_rows"] = lit_rows(planning.scene)
     samples = (("SAMPLES", planning.settings.supersampling),)
-    fill = lambda tile, p: tile.fill(p)  # noqa: E731
     add = {"blend": "add"}
     light = Part("oit", inputs=storage_samplers(planning.settings.storage), writes=(LIT,))
     rest = Part("oit", ("rest",), (LIT,), writes=(ACCUM, WEIGHT)), *rasterized(planning)
@@ -34,9 +34,9 @@ def passes_of_rest(planning) -> tuple[Pass, ...]:
     shade = Part("oit", reads=(ACCUM, WEIGHT, gbuffer.DEPTH_SUM), writes=(lighting.SHADED,))
     put = Part("oit", reads=(lighting.SHADED, transparency.PEELED), writes=(transparency.COLOR,), constants=samples)
     peel = Part("oit", reads=(lighting.SHADED,), updates=(transparency.PEELED,))
-    each = Pass("light_splats", "", "lit_splats.frag", run, (light,), "rest")
+    each = Pass("light_splats", "each splat is lit by itself", "lit_splats.frag", run, (light,), "rest")
     return (
-        Pass("rest", "all that is left, each splat lit by itself", host, run, rest, "rest", state, each=each),
+        Pass("rest", "all that is left is added up", host, run, rest, "rest", state, each=each),
         Pass("rest_shading", "its weights tell how much it hides", "rest_shading.frag", fill, (shade,), "rest"),
         Pass("rest_layer", "nearer layers cover it", "rest_layer.frag", fill, (put,), "rest", add, adds=True),
         Pass("peel_rest", "it covers what is opaque", "peel_rest.frag", fill, (peel,), "rest"),

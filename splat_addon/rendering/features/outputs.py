@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from ..plan.frame_plan import FramePlan
 from ..plan.graph import Part, Texture
-from .drawing import LIT_HOSTS
+from .drawing import LIT_HOSTS, SPLAT_HOSTS
 
 NAMES = (
     "overdraw", "weight_output", "shadow_output", "normal_coverage", "diffuse_color", "emission_output",
@@ -40,6 +40,8 @@ SAMPLES = {name: Texture(f"sample_{name}") for name in _HANDED_ON}
 LAYERS = {name: Texture(f"layers_{name}", per="pixel") for name in _HANDED_ON}
 LAYERS_NORMAL = Texture("layers_normal", per="pixel")
 OVERDRAW = Texture("overdraw_sum", "R32F", is_multisampled=True)
+
+_HOSTS = (*LIT_HOSTS, *SPLAT_HOSTS, "lit_splats.frag", "resolve.frag", "layer.frag", "background.frag")
 
 #: Whoever an output is written for, functions know it by one name.
 CALLED = tuple((kind[name], f"out_{name}") for kind in (PIXELS, SAMPLES, LAYERS) for name in _HANDED_ON)
@@ -94,10 +96,17 @@ def passes(planning):
     return ()
 
 
+def _found(planning):
+    """What is wanted, handed on, and handed on by layers."""
+    return wanted(planning), _handed_on(planning), _handed_on(planning, True)
+
+
 def parts(planning, p):
+    if not p.host.endswith(_HOSTS):
+        return
     model, in_layer = planning.model, p.kind == "layer"
     is_counted = counts_splats(planning) and p.kind == "opaque"
-    if is_counted and p.host in ("object_space.frag", "screen_space.frag", "point_sprite.frag"):
+    if is_counted and p.host in SPLAT_HOSTS:
         yield Part("overdraw", writes=(OVERDRAW,))
     if is_counted and p.host in LIT_HOSTS:
         yield Part("overdraw", ("overdraw_model",) if model.sums else (), reads=(OVERDRAW,))
@@ -108,7 +117,7 @@ def parts(planning, p):
             yield Part("shadow_output")
     has_layers = p.host in ("shading.frag", "resolve.frag") and bool(planning.facts.get("layers")) and not in_layer
     if p.host in ("shading.frag", "resolve.frag", "layer.frag", "background.frag"):
-        if "normal_coverage" in wanted(planning):
+        if "normal_coverage" in planning.find(_found)[0]:
             texture = LAYERS_NORMAL if in_layer else PIXELS["normal_coverage"]
             before = {"reads": (LAYERS_NORMAL,), "words": ("layers_normal",)} if has_layers else {}
             yield Part("normal_coverage", writes=(texture,), **before)
@@ -118,7 +127,8 @@ def parts(planning, p):
 def _handing(planning, p, in_layer: bool, has_layers: bool):
     """What is handed on from samples to pixels."""
     has_material = ("has_material",) if planning.model.has_material and "diffuse_color" in planning.settings.outputs else ()
-    names, of_layers = _handed_on(planning, in_layer), _handed_on(planning, True)
+    _, of_all, of_layers = planning.find(_found)
+    names = of_layers if in_layer else of_all
     for name in names:
         words = [*(has_material if p.host in LIT_HOSTS else ())]
         reads = []

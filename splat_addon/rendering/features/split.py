@@ -14,7 +14,7 @@ def _count(planning) -> int:
 def passes(planning):
     """None; it says whether there are any."""
     if planning.shown:
-        if split := _count(planning):
+        if split := planning.find(_count):
             planning.has("SPLIT", f"{split} instances are polygons near the camera, or surfels beyond that")
         else:
             planning.skip("split objects", "all are drawn whole")
@@ -22,7 +22,7 @@ def passes(planning):
 
 
 def parts(planning, p):
-    if not _count(planning):
+    if not planning.find(_count):
         return
     varyings = (("smooth", "vec3", "split_place"),)
     if p.host in SPLAT_HOSTS:

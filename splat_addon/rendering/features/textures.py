@@ -17,17 +17,22 @@ _OF_POLYGONS = (
 _ATLAS = ("texture_atlas", "texture_table")
 
 
+def _are_textured(planning) -> tuple[bool, bool]:
+    """Whether some of the surfels look textures up, and of the polygons."""
+    scene = planning.scene
+    return any(i.is_textured for i in scene.surfels), any(i.is_textured for i in scene.polygons)
+
+
 def parts(planning, p):
     settings, each = planning.settings, planning.settings.multisampling and planning.settings.sample_shading
     # of what is evaluated once: a sample, or each of its hardware samples, which is a smaller piece of the pixel
     variance = planning.method.pixel_variance / (settings.multisampling if each else 1)
     shared = {"constants": (("PIXEL_VARIANCE", repr(variance)),), "only": "textured"}
-    scene = planning.scene
     hosts = "object_space.frag", "screen_space.frag"
-    if p.host in hosts and p.kind in ("opaque", "layer") and any(i.is_textured for i in scene.surfels):
+    if p.host in hosts and p.kind in ("opaque", "layer") and planning.find(_are_textured)[0]:
         varyings = (*_VARYINGS, *_AXES) if p.host == "object_space.frag" else _VARYINGS
         yield Part("textures", inputs=("surfel_uvs", *_ATLAS), varyings=varyings, **shared)
-    if p.host == "polygons.frag" and any(i.is_textured for i in scene.polygons):
+    if p.host == "polygons.frag" and planning.find(_are_textured)[1]:
         plane = (("flat", "vec3", "triangle_plane"),)
         yield Part("polygon_plane", varyings=plane, only="textured")
         yield Part("textures", inputs=("polygon_uvs", *_ATLAS), varyings=_OF_POLYGONS, **shared)

@@ -15,6 +15,7 @@ of its samples, and the opaque picture what all of them do.
 
 from __future__ import annotations
 
+from ..plan.executor import fill
 from ..plan.graph import Loop, Part, Pass, Texture
 from . import depth_bounds, gbuffer, lighting, oit, outputs, visibility
 from .drawing import SPLAT_HOSTS
@@ -76,7 +77,6 @@ def _body(planning) -> tuple[Pass, ...]:
     found = visibility.drawn("visibility", "behind nearer layers, before what is opaque", own, planning, "layer")
     occupied = Part("transparency", reads=(DEPTH,), writes=(OCCUPANCY,))
     bounds = depth_bounds.bounds(planning, "depths are compared in the shader", DEPTH, "layer")
-    fill = lambda tile, p: tile.fill(p)  # noqa: E731
     peel = Part("transparency", reads=(DEPTH, lighting.SHADED), updates=(PEELED,))
     return (
         found,

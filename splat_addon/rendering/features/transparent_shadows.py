@@ -17,7 +17,7 @@ def _casting(planning) -> int:
 def passes(planning):
     """None; it says whether anything casts such."""
     if planning.shown:
-        if casting := _casting(planning):
+        if casting := planning.find(_casting):
             planning.has("SCREEN_DOOR", f"shadows of {casting} instances are as transparent as those")
         else:
             planning.skip("transparent shadows", "nothing transparent casts any")
@@ -25,7 +25,7 @@ def passes(planning):
 
 
 def parts(planning, p):
-    if not _casting(planning):
+    if not planning.find(_casting):
         return
     if p.host == "visibility.frag" and p.kind == "shadow":
         yield Part("transparent_shadows", varyings=(("flat", "vec2", "opacity_surface"),), only="splats")

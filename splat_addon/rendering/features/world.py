@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..plan.executor import fill
 from ..plan.graph import Part, Pass
 from . import outputs
 from .drawing import LIT_HOSTS
@@ -37,8 +38,7 @@ def passes(planning):
         if _is_shown(planning):
             samples = ("SAMPLES", planning.settings.supersampling)
             own = Part("world", writes=outputs.pixel_textures(planning), constants=(samples,), called=outputs.CALLED)
-            run = lambda tile, p: tile.fill(p)  # noqa: E731
-            yield Pass("background", "the world is a picture", "background.frag", run, (own,))
+            yield Pass("background", "the world is a picture", "background.frag", fill, (own,))
     elif not planning.scene.environment:
         planning.skip("environment", "the world is even")
 

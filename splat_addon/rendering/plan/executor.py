@@ -173,6 +173,16 @@ def _ordered(words: Iterable[str]) -> tuple[str, ...]:
     return tuple(sorted(words, key=lambda word: (ORDER.get(word, len(ORDER)), word)))
 
 
+def fill(tile: TileContext, p: Pass) -> Target:
+    """Run a pass that is drawn over the whole of what it writes."""
+    return tile.fill(p)
+
+
+def run_pass(tile: TileContext, p: Pass) -> Target:
+    """The target that was drawn into."""
+    return p.run(tile, p)
+
+
 class Execution:
     """One frame's steps, tile by tile. told: called before each pass with its name. done: after it, with its target."""
 
@@ -193,7 +203,7 @@ class Execution:
         if p.once is not None and self._is_shared_done:
             return None
         self._told(p, self._number - 1)
-        target = p.run(tile, p)
+        target = run_pass(tile, p)
         self._done(p, target)
         for texture in p.all("updates"):
             tile.swap(texture)

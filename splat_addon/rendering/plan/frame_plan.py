@@ -111,10 +111,11 @@ class FramePlan:
         for step in self.steps:
             if isinstance(step, Loop):
                 lines.append(f"  {step.name}, up to {step.times} times while any of {step.stop.name}; {step.reason}")
-                lines += [_shown(p, "    ") for p in step.body]
-                lines += ["  and if none was empty:", *(_shown(p, "    ") for p in step.last)] if step.last else []
+                lines += [_shown(p, "    ") for p in each_pass(step.body)]
+                if step.last:
+                    lines += ["  and if none was empty:", *(_shown(p, "    ") for p in each_pass(step.last))]
             else:
-                lines.append(_shown(step, "  "))
+                lines += [_shown(p, "  ") for p in each_pass((step,))]
         lines += [f"  with {name}: {why}" for name, why in self.features]
         lines += [f"  without {what}: {why}" for what, why in self.skipped]
         return "\n".join(lines)

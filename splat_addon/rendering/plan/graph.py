@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..device.interface import FORMATS
 
@@ -22,7 +22,7 @@ class Texture:
     """What passes write. name: also of the sampler that reads it. format: a name in `device.interface.FORMATS`.
 
     per: what it holds one value for, a name in `frame_plan.SIZES`. is_multisampled: it has the frame's hardware samples.
-    is_half_as_float16: of float16, where sums are that.
+    is_sum: of float16, where sums are that.
     """
 
     name: str
@@ -44,8 +44,7 @@ class Texture:
 _FILLS = ("writes", "updates")
 
 
-@dataclass(frozen=True)
-class Part:
+class Part(NamedTuple):
     """What one feature does in a pass.
 
     feature: its name, and that of its GLSL file. words: what else is said to the composition of shaders.
@@ -81,11 +80,13 @@ class Part:
 
     def needed(self, live: set[Texture]) -> Part:
         """Without the attachments that nobody reads; depth stays, the pass tests with it."""
+        if all(t in live or t.is_depth for t in self.fills):
+            return self
         kept = {name: tuple(t for t in getattr(self, name) if t in live or t.is_depth) for name in _FILLS}
-        return replace(self, **kept)
+        return self._replace(**kept)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Pass:
     """name: told to the user. reason: why the frame needs it. host: its fragment shader, which features know it by.
 
@@ -136,7 +137,7 @@ class Pass:
         return (*(t.name for t in self.all("writes")), *(f"{t.name}_next" for t in self.all("updates")))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Loop:
     """Passes that repeat `times`, or until one leaves nothing in `stop`, which is read back; `last` where none does."""
 
@@ -166,7 +167,7 @@ def changed(steps: Iterable[Step], change: Callable[[Pass], Pass]) -> tuple[Step
     def one(step: Step) -> Step:
         if isinstance(step, Loop):
             return replace(step, body=changed(step.body, change), last=changed(step.last, change))
-        return replace(change(step), each=step.each and change(step.each))
+        return replace(change(step), each=change(step.each)) if step.each else change(step)
 
     return tuple(one(step) for step in steps)
 
@@ -192,7 +193,8 @@ def trimmed(steps: Iterable[Step], live: Iterable[Texture], stop=None, after=())
         if live.intersection(step.fills):
             pairs = [(old, old.needed(live)) for old in step.parts]
             parts = tuple(new for old, new in pairs if new.fills or not old.fills or old is step.parts[0])
-            kept.append(replace(step, parts=parts))
+            is_same = len(parts) == len(step.parts) and all(a is b for a, b in zip(parts, step.parts, strict=True))
+            kept.append(step if is_same else replace(step, parts=parts))
             if not step.adds:
                 live -= set(kept[-1].all("writes"))
             live |= set(kept[-1].all("reads", "updates", "tests"))

@@ -52,7 +52,7 @@ def test_one_pass_is_one_pass():
     planned = plan(*POSES["torus"], ONE_PASS)
     assert [p.name for p in planned.passes] == ["attributes", "shading"]
     assert "visibility_depth" not in planned.textures
-    assert any(what == "visibility" for what, _ in planned.left_out)
+    assert any(what == "visibility" for what, _ in planned.skipped)
 
 
 def test_in_one_pass_every_pixel_is_a_splat_and_the_nearest_wins(render):
