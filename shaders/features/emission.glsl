@@ -26,7 +26,7 @@ void emission_attributes(Splat splat, int index) {
 
 #part gbuffer, gbuffer_emission
 void emission_add(inout Fragment f) {
-  emission_sum = vec4(emission, 1.0) * f.weight;
+  gbuffer_emission = vec4(emission, 1.0) * f.weight;
 }
 
 #part polygons.frag, gbuffer_emission
@@ -36,7 +36,7 @@ void emission_add() {
 
 #part shaded_sample, gbuffer_emission
 void emission_outputs(inout Shaded s) {
-  vec4 e = SUM_AT(emission_sum, s.texel, s.tap);
+  vec4 e = SUM_AT(gbuffer_emission, s.texel, s.tap);
   // Its own weights: those of float16 sums are scaled.
   s.outputs.emission = e.w > 0.0 ? e.rgb / e.w : vec3(0.0);
 }

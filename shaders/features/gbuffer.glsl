@@ -7,7 +7,7 @@ void gbuffer_weigh(inout Fragment f) {
 }
 
 void gbuffer_add(inout Fragment f) {
-  color_sum = vec4(stored_color(f.color), 1.0) * (f.weight * f.opacity);
+  gbuffer_color = vec4(stored_color(f.color), 1.0) * (f.weight * f.opacity);
 }
 
 #part screen_space.frag

@@ -10,9 +10,9 @@ void holdout_keep(inout Candidate c) {
   c.seen.w = c.seen.z;
 }
 
-#part seen_range.frag
+#part depth_bounds.frag
 void holdout_bound(ivec2 texel, float own) {
-  if (own < 1.0 && texelFetch(holes, ivec2(texel.x, ROWS * texel.y), 0).r <= own) seen_range.w = NOTHING_SEEN;
+  if (own < 1.0 && texelFetch(holes, ivec2(texel.x, ROWS * texel.y), 0).r <= own) depth_bounds.w = NOTHING_SEEN;
 }
 
 #part shading.frag
@@ -21,7 +21,7 @@ void holdout_cut(MeanSurface mean, ivec2 texel, int tap, inout bool is_cut) {
   is_cut = is_hole(texel, tap, mean);
 }
 
-#part sample_shading.frag
+#part deferred_lighting.frag
 #include "lib/hole.glsl"
 void holdout_cut(inout MeanSurface mean, ivec2 texel) {
   if (is_hole(texel, 0, mean)) mean.coverage = 0.0;

@@ -3,7 +3,7 @@
 
 #part gbuffer
 void light_links_add(inout Fragment f) {
-  light_set_sum = draw.light_set * f.weight;
+  gbuffer_light_set = draw.light_set * f.weight;
 }
 
 #part lights
@@ -15,7 +15,7 @@ void light_links_receive(inout LightTexels of) {
 
 #part shaded_sample
 void light_links_attributes(inout Shaded s) {
-  light_set = texelFetch(light_set_sum, s.texel, 0);
+  light_set = texelFetch(gbuffer_light_set, s.texel, 0);
   light_set /= max(dot(light_set, vec4(1.0)), 1e-30);
 }
 

@@ -4,7 +4,7 @@
 #part lines.frag, depth_bounds
 // A filter reaches past silhouettes.
 void lines_see(ivec2 texel, inout bool is_seen) {
-  is_seen = is_seen && texelFetch(seen_range, texel, 0).z < 1e38;
+  is_seen = is_seen && texelFetch(depth_bounds, texel, 0).z < 1e38;
 }
 
 #part shaded_sample

@@ -21,12 +21,12 @@ void materials_attributes(Splat splat, int index) {
 
 #part gbuffer
 void materials_add(inout Fragment f) {
-  material_sum = vec4(material, 1.0) * f.weight;
+  gbuffer_material = vec4(material, 1.0) * f.weight;
 }
 
 #part shaded_sample
 void materials_attributes(inout Shaded s) {
-  s.material = s.mean.weight > 0.0 ? SUM_AT(material_sum, s.texel, s.tap).xyz / s.mean.weight : vec3(0.0);
+  s.material = s.mean.weight > 0.0 ? SUM_AT(gbuffer_material, s.texel, s.tap).xyz / s.mean.weight : vec3(0.0);
 }
 
 #part shaded_sample, polygons

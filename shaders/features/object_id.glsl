@@ -32,7 +32,7 @@ void object_id_add() {
   polygon_identity = vec2(number, depth_at);
 }
 
-#part seen_range.frag
+#part depth_bounds.frag
 void object_id_write(ivec2 texel, inout float own) {
   identity = texelFetch(row_identity, ivec2(texel.x, ROWS * texel.y), 0).xy;
 }

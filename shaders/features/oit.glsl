@@ -12,8 +12,8 @@ void oit_attributes(Splat splat, int index) {
 const float MOST_OPAQUE = 0.999;
 
 void oit_add(inout Fragment f) {
-  rest_sum = vec4(f.color, 1.0) * (f.weight * opacity);
-  rest_weight = vec2(-log(1.0 - min(opacity, MOST_OPAQUE)), 1.0) * f.weight;
+  oit_accum = vec4(f.color, 1.0) * (f.weight * opacity);
+  oit_weight = vec2(-log(1.0 - min(opacity, MOST_OPAQUE)), 1.0) * f.weight;
 }
 
 #part screen_space.frag

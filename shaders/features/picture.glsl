@@ -22,7 +22,7 @@ void picture_pixel(vec4 color, vec4 normal, float nearest, bool is_seen_nearer, 
   write_pixel(color * share, normal * share, nearest, added(NO_OUTPUTS, outputs, share));
 }
 
-#part sample_shading.frag
+#part deferred_lighting.frag
 // Sums of weights below this are of backs, and of the ends of filters. Their depth is kept with a sign.
 const float FAINT = 0.004;
 

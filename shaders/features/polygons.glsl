@@ -10,7 +10,7 @@ const float ROUNDING = 3e-5;
 
 // Where splats do not hide it.
 void polygons_keep() {
-  float seen = texelFetch(seen_range, ivec2(gl_FragCoord.xy), 0).z;
+  float seen = texelFetch(depth_bounds, ivec2(gl_FragCoord.xy), 0).z;
   if (depth_at > seen + ROUNDING * abs(seen)) discard;
 }
 

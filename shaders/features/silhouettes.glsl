@@ -9,7 +9,7 @@ void silhouettes_keep(inout Candidate c) {
   if (!c.in_space && (c.seen.w - c.compared > apart || c.plane.depth - length(c.plane.slope) - apart > c.seen.z)) discard;
 }
 
-#part seen_range.frag
+#part depth_bounds.frag
 // Nearest and farthest of what the filter reaches in the sample's rows.
 void silhouettes_reach(ivec2 texel, inout vec2 row) {
   int last = textureSize(seen_depth, 0).x - 1;
@@ -21,12 +21,12 @@ void silhouettes_reach(ivec2 texel, inout vec2 row) {
   }
 }
 
-#part seen_range.frag, writes_depth
+#part depth_bounds.frag, writes_depth
 void silhouettes_write(ivec2 texel, inout float own) {
   gl_FragDepth = own;
 }
 
-#part rest_layer.frag
+#part oit_layer.frag
 #include "lib/silhouette_filter.glsl"
 
 void silhouettes_filter(ivec2 texel, vec4 own, inout vec4 seen) {

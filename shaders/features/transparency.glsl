@@ -33,9 +33,9 @@ void transparency_keep() {
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/layer_ties.glsl"
 
-// As lib/peeled.glsl has it; what is in a layer was compared as depth along the view, and is so here.
+// As lib/peel_state.glsl has it; what is in a layer was compared as depth along the view, and is so here.
 bool is_in_nearer_layer(float depth) {
-  float until = texelFetch(peeled, ivec2(gl_FragCoord.xy), 0).x;
+  float until = texelFetch(peel_state, ivec2(gl_FragCoord.xy), 0).x;
   return until > 0.0 && (until == 1.0 || depth <= view_depth(until));
 }
 
@@ -47,14 +47,14 @@ void transparency_keep(inout Candidate c) {
   if (is_in_nearer_layer(tied(c.compared, 0.5))) discard;
 }
 
-#part seen_range.frag, layer
+#part depth_bounds.frag, layer
 // Never behind what is opaque there.
 void transparency_write(ivec2 texel, inout float own) {
   own = min(own, texelFetch(visibility_depth, texel, 0).r);
 }
 
 #part shading.frag
-#include "lib/peeled.glsl"
+#include "lib/peel_state.glsl"
 void transparency_count(ivec2 texel, inout float through, inout bool is_first) {
   through = let_through(texel);
   is_first = is_first_surface(texel);
@@ -67,7 +67,7 @@ void transparency_before(inout vec4 color, inout vec4 normal, inout float neares
 }
 
 #part resolve.frag
-#include "lib/peeled.glsl"
+#include "lib/peel_state.glsl"
 void transparency_count(inout Resolved sum, inout Seen s) {
   s.shown *= let_through(s.at);
   s.is_first = is_first_surface(s.at);

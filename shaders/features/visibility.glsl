@@ -3,7 +3,7 @@
 
 #part screen_space.frag, depth_bounds
 void visibility_look(inout Candidate c) {
-  c.seen = texelFetch(seen_range, ivec2(gl_FragCoord.xy), 0);
+  c.seen = texelFetch(depth_bounds, ivec2(gl_FragCoord.xy), 0);
 }
 
 #part screen_space.frag, depth_bounds, opaque

@@ -3,7 +3,7 @@
 //          no nearer one is opaque enough to have them; of methods that filter no silhouettes.
 
 #include "lib/layer_at.glsl"
-#include "lib/peeled.glsl"
+#include "lib/peel_state.glsl"
 #include "hosts/layer_pixel.glsl"
 
 void main() {

@@ -18,7 +18,7 @@ const float LARGEST_SHARE = 0.7;
 #parts
 // Normal and depth; EMPTY where nothing is seen, OUTSIDE beyond what was drawn.
 vec4 sight_at(ivec2 texel) {
-  ivec2 size = SIZE_OF(color_sum);
+  ivec2 size = SIZE_OF(gbuffer_color);
   if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size))) return vec4(0.0, 0.0, 0.0, OUTSIDE);
   MeanSurface mean = mean_surface(texel, 0);
   bool is_seen = mean.coverage > 0.0;

@@ -19,10 +19,10 @@ struct MeanSurface {
 // tap: which of the texel's hardware samples, 0 where it has one.
 MeanSurface mean_surface(ivec2 texel, int tap) {
   MeanSurface mean = MeanSurface(0.0, 0.0, 0.0, 1.0, vec3(0.0), vec3(0.0), 0.0);
-  vec4 c = SUM_AT(color_sum, texel, tap);
+  vec4 c = SUM_AT(gbuffer_color, texel, tap);
   if (c.w > 0.0) {
     float weights = c.w;
-    vec4 n = SUM_AT(normal_sum, texel, tap);
+    vec4 n = SUM_AT(gbuffer_normal, texel, tap);
     #hook mean(weights, n, texel, tap)
     c.rgb = summed_color(c.rgb);
     mean = MeanSurface(weights, 0.0, min(c.w / weights, 1.0), 1.0, c.rgb / c.w, n.xyz, n.w);

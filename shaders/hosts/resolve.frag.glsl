@@ -57,7 +57,7 @@ vec4 same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth, out bool is
 vec2 reached_range(ivec2 texel, ivec2 size) {
   vec2 reached = vec2(1.0, 0.0);
   for (int y = -FILTER_REACH; y <= FILTER_REACH; y++) {
-    vec2 row = texelFetch(seen_range, ivec2(texel.x, clamp(texel.y + y, 0, size.y - 1)), 0).xy;
+    vec2 row = texelFetch(depth_bounds, ivec2(texel.x, clamp(texel.y + y, 0, size.y - 1)), 0).xy;
     reached = vec2(min(reached.x, row.x), max(reached.y, row.y));
   }
   return reached;

@@ -3,7 +3,7 @@
 //          what hides them was moved back by its epsilon.
 
 #include "depth_formats/{depth_format}.glsl"
-#include "lib/peeled.glsl"
+#include "lib/peel_state.glsl"
 #include "lib/layer_ties.glsl"
 
 // steps: by which splats that tie are counted in; of visibility 0, so that attributes have all that is visible.

@@ -95,7 +95,7 @@ struct Met {
 };
 
 // toward: a place in the light's view. Where it leaves a face of a lamp's cube, the next face has it.
-Met look_toward(ShadowPlace here, vec3 toward, int number) {
+Met tap_toward(ShadowPlace here, vec3 toward, int number) {
   bool is_parallel = here.atlas.w > 0.5;
   vec3 row_x = vec3(1.0, 0.0, 0.0), row_y = vec3(0.0, 1.0, 0.0), row_z = vec3(0.0, 0.0, 1.0);
   vec3 next = vec3(here.atlas.xy, here.depths.x);
@@ -135,10 +135,10 @@ float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lam
                             : min(1.0 / NEAREST_SHARE, length(here.position) / size) - 1.0;
   reach = max(reach, 0.0);
   float blockers = 0.0, sum = 0.0;
-  for (int i = 0; i < SEARCH_LOOKS; i++) {
-    vec2 look = soft_look(i, SEARCH_LOOKS);
+  for (int i = 0; i < SEARCH_TAPS; i++) {
+    vec2 look = soft_tap(i, SEARCH_TAPS);
     float past = look.x * look.x * reach;  // closer to one another in the middle, where what is near hides the lamp
-    Met met = look_toward(here, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
+    Met met = tap_toward(here, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
     if (met.depth + bias < met.lit) {
       blockers += 1.0;
       sum += met.way;
@@ -149,13 +149,13 @@ float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lam
   float gap = max(is_parallel ? here.depth - blocker : 1.0 / blocker - 1.0, 0.0);
   if (size * gap < 4.0 * bias) return hard_share(here, bias);
   float lit = 0.0;
-  for (int i = 0; i < FILTER_LOOKS; i++) {
-    vec2 look = soft_look(i, FILTER_LOOKS);
+  for (int i = 0; i < FILTER_TAPS; i++) {
+    vec2 look = soft_tap(i, FILTER_TAPS);
     float past = look.x * min(gap, reach);
-    Met met = look_toward(here, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
+    Met met = tap_toward(here, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
     lit += met.depth + bias >= met.lit ? 1.0 : 0.0;
   }
-  return lit / float(FILTER_LOOKS);
+  return lit / float(FILTER_TAPS);
 }
 
 // caster: number of the light's first map, of its maps, and its size in units of the shaded view (of a sun as it is).

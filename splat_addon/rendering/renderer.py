@@ -29,7 +29,7 @@ from .scene import Scene
 from .settings import OUTPUTS, Settings, held_arrays
 from .shadow import ShadowMap, casting, same_maps
 from .storages import get_storage
-from .view import clip_range, look
+from .view import clip_range, build_view
 
 #: x, y, width, height in pixels.
 Tile = tuple[int, int, int, int]
@@ -229,7 +229,7 @@ class Renderer:
         )
         self.resources.forget_atlases_but({placed.textures for placed in scene.shown})
         casters = casting(scene)
-        shadow_views = tuple(look(casters, made.camera, settings.epsilon) for made in frame_plan.facts["shadow_maps"])
+        shadow_views = tuple(build_view(casters, made.camera, settings.epsilon) for made in frame_plan.facts["shadow_maps"])
         whole = None
         if len(frame_plan.tiles) > 1:
             drawn = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan))
@@ -238,7 +238,7 @@ class Renderer:
         for number, tile in enumerate(frame_plan.tiles):
             stats["tile"] = number
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
-            view = look(scene, tile_camera, settings.epsilon, whole)
+            view = build_view(scene, tile_camera, settings.epsilon, whole)
             context = TileContext(
                 self.resources, frame_plan, scene, tile_camera, settings, view, shadow_views, tile, INPUTS
             )

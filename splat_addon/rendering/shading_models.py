@@ -99,7 +99,7 @@ SHADING_MODELS = {
             "none needed",
             "How many splats a sample is the mean of: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red",
             1.04,
-            sums=("overdraw_sum",),
+            sums=("gbuffer_overdraw",),
         ),
         ShadingModel(
             "weight",

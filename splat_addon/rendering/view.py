@@ -32,7 +32,7 @@ SPLIT_OVERLAP = 1.5
 
 
 @dataclass(frozen=True, eq=False)
-class PlacedInstance:
+class DrawItem:
     """model_view: (4, 4) float64, positions (without origin) to scaled view space.
     normal_matrix: (3, 3) float64, its inverse transpose up to a positive factor.
     hides_backs: splats or polygons that show their back are left out.
@@ -68,11 +68,11 @@ class View:
     first: float
     far: float
     projection: np.ndarray
-    placed: tuple[PlacedInstance, ...]
+    placed: tuple[DrawItem, ...]
     outside: int
     degenerate: int
     depth_span: float
-    polygons: tuple[PlacedInstance, ...] = ()
+    polygons: tuple[DrawItem, ...] = ()
     contact: float = 0.0
 
     def least_offset(self, linear_depth: bool) -> float:
@@ -100,7 +100,7 @@ def _clipped(camera: Camera, seen, epsilon: float) -> ClipRange:
     return ClipRange(near, far, _power_of_two_scale(camera, seen, near))
 
 
-def look(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | None = None) -> View:
+def build_view(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | None = None) -> View:
     """The scene's instances as this camera sees them. epsilon: how far visibility moves splats back, in radii.
 
     whole: of the camera that this one is cropped from, if it is; depths are stored for all that it sees, so that they,
@@ -119,7 +119,7 @@ def look(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | None =
         of_kind = placed[type(instance)]
         hides_backs, split = instance.hides_backs(camera), _split(instance) * scale
         is_whole = not _beyond(instance.some_places(camera), camera).any()
-        of_kind.append(PlacedInstance(instance, model_view, normal_matrix, hides_backs, is_whole, overlap, split))
+        of_kind.append(DrawItem(instance, model_view, normal_matrix, hides_backs, is_whole, overlap, split))
     return View(
         scale=scale,
         near=camera.near * scale,

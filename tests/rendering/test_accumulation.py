@@ -29,11 +29,11 @@ def test_the_plan_names_the_formats(render):
         render(scene, camera, Settings(method="quad", supersampling=2, accumulation=a)).stats["plan"]
         for a in ("float32", "float16")
     ]
-    assert [{plan.format(name) for name in ("color_sum", "normal_sum", "material_sum")} for plan in plans] == [
+    assert [{plan.format(name) for name in ("gbuffer_color", "gbuffer_normal", "gbuffer_material")} for plan in plans] == [
         {"RGBA32F"},
         {"RGBA16F"},
     ]
-    assert ["depth_sum" in plan.textures for plan in plans] == [False, True]
+    assert ["gbuffer_depth" in plan.textures for plan in plans] == [False, True]
     assert "float16 sums" in str(plans[1])
 
 

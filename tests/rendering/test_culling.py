@@ -13,7 +13,7 @@ from splat_addon.rendering.features import depth_bounds
 from splat_addon.rendering.features.hiz import CELL
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan import executor
-from splat_addon.rendering.view import look
+from splat_addon.rendering.view import build_view
 
 SIZE = (64, 48)
 MIP = Settings(method="mip", outputs=("color", "depth", "normal", "coverage", "overdraw"))
@@ -69,10 +69,10 @@ def test_the_picture_is_the_same_without(name, supersampling, render, monkeypatc
     scene, camera = SCENES[name]()
     settings = replace(MIP, supersampling=supersampling)
     culled = render(scene, camera, settings)
-    assert "coarse_depth" in culled.stats["plan"].textures
+    assert "hiz" in culled.stats["plan"].textures
     monkeypatch.setitem(METHODS, "mip", replace(METHODS["mip"], culls_hidden=False))
     whole = render(scene, camera, settings)
-    assert "coarse_depth" not in whole.stats["plan"].textures and whole.color[..., 3].max() > 0
+    assert "hiz" not in whole.stats["plan"].textures and whole.color[..., 3].max() > 0
     for output in settings.outputs:
         np.testing.assert_array_equal(getattr(culled, output), getattr(whole, output), err_msg=output)
 
@@ -84,7 +84,7 @@ def test_a_cell_holds_the_farthest_that_is_seen_around_it(on_device, monkeypatch
 
     def keep(tile, p):
         target = run_pass(tile, p)
-        if p.name == "coarse_depth":
+        if p.name == "hiz":
             found["cells"] = target.read(0)[..., 0]
             seen = tile.resources.device.target([tile.texture(depth_bounds.BOUNDS)])
             found["seen"] = seen.read(0)[..., 2]
@@ -92,7 +92,7 @@ def test_a_cell_holds_the_farthest_that_is_seen_around_it(on_device, monkeypatch
 
     def forget(tile, p):
         target = keep(tile, p)
-        if p.name == "coarse_depth":
+        if p.name == "hiz":
             target.clear(color=-1.0)
         return target
 
@@ -125,7 +125,7 @@ def test_backs_of_solids_may_collapse_in_the_view_or_before_it(method, render, m
     places = []
 
     def elsewhere(*arguments):
-        view = look(*arguments)
+        view = build_view(*arguments)
         places.extend(p.is_whole for p in (*view.placed, *view.polygons) if p.hides_backs)
         turned = (tuple(replace(p, is_whole=not p.is_whole) for p in ps) for ps in (view.placed, view.polygons))
         return replace(view, placed=next(turned), polygons=next(turned))
@@ -141,6 +141,6 @@ def test_backs_of_solids_may_collapse_in_the_view_or_before_it(method, render, m
 
 def test_what_reaches_out_of_the_picture_is_not_seen_whole():
     scene, camera = scenes.torus(count=4_000, size=SIZE)
-    assert all(placed.is_whole for placed in look(scene, camera, 1.0).placed)
+    assert all(placed.is_whole for placed in build_view(scene, camera, 1.0).placed)
     near, eye = near_torus()
-    assert not any(placed.is_whole for placed in look(near, eye, 1.0).placed)
+    assert not any(placed.is_whole for placed in build_view(near, eye, 1.0).placed)

@@ -76,11 +76,11 @@ def skipped(scene, camera, **settings):
 
 def test_the_plan_sums_only_what_differs():
     scene, camera = sphere(lights=(Light("sun"),))
-    assert {"material_sum", "emission_sum"} <= skipped(scene, camera).keys()
-    assert skipped(scene, camera)["emission_sum"].endswith("none")
+    assert {"gbuffer_material", "gbuffer_emission"} <= skipped(scene, camera).keys()
+    assert skipped(scene, camera)["gbuffer_emission"].endswith("none")
     for fields, name, other in (
-        ({"roughness": 0.5}, "material_sum", "emission_sum"),
-        ({"emission": (0, 0, 1)}, "emission_sum", "material_sum"),
+        ({"roughness": 0.5}, "gbuffer_material", "gbuffer_emission"),
+        ({"emission": (0, 0, 1)}, "gbuffer_emission", "gbuffer_material"),
     ):
         planned = plan(with_own(scene, **fields), camera, SETTINGS)
         assert name in planned.textures and other not in planned.textures
@@ -92,7 +92,7 @@ def test_the_plan_sums_only_what_differs():
 def test_one_emission_for_all_is_a_number_and_no_sum():
     scene, camera = sphere()
     planned = plan(with_material(scene, emission=(0, 0, 1)), camera, SETTINGS)
-    assert "emission_sum" not in planned.textures and "EMISSION" in dict(planned.features)
+    assert "gbuffer_emission" not in planned.textures and "EMISSION" in dict(planned.features)
     assert "EMISSION" not in dict(plan(scene, camera, SETTINGS).features)
 
 
@@ -102,7 +102,7 @@ def test_materials_that_differ_in_emission_alone_add_no_material_sum():
     glowing = replace(first, materials=(Material(emission=(1, 0, 0)),))
     plain = replace(first, materials=(Material(),))
     planned = plan(Scene((plain, glowing)), camera, SETTINGS)
-    assert "emission_sum" in planned.textures and "material_sum" not in planned.textures
+    assert "gbuffer_emission" in planned.textures and "gbuffer_material" not in planned.textures
 
 
 def test_an_instance_that_has_no_own_values_stands_beside_one_that_has(render):

@@ -53,10 +53,10 @@ OTHERS = replace(
 PASSES = ("visibility", "attributes", "shading")
 AMONG = ("visibility", "attributes", "polygons", "shading")
 AMONG_TEXTURES = "polygon_color polygon_normal polygon_depth"
-TEXTURES = {"visibility_depth", "color_sum", "normal_sum", "combined", "depth", "normal_coverage"}
+TEXTURES = {"visibility_depth", "gbuffer_color", "gbuffer_normal", "combined", "depth", "normal_coverage"}
 READS = {"brdf_table"}
-LAYER = ("visibility", "left", "attributes", "sample_shading", "layer", "peel")
-LAYER_TEXTURES = "layer_depth left depth_sum shaded surface peeled peeled_next layers layers_depth layers_normal"
+LAYER = ("visibility", "layer_occupancy", "attributes", "deferred_lighting", "layer", "peel")
+LAYER_TEXTURES = "layer_depth layer_occupancy gbuffer_depth shaded surface peel_state peel_state_next layers layers_depth layers_normal"
 
 
 TRANSPARENT = Scene([Instance(replace(surfels(), colors=np.full((2, 4), 0.5)))])
@@ -82,15 +82,15 @@ TABLE = {
     "light with a size": (lit(size=0.1), {}, PASSES, "", "lights", ("SIZED_LIGHTS",)),
     "shadow": (lit(casts_shadow=True), {}, ("shadow_maps", *PASSES), "shadow_depth", "lights shadow_maps", ()),
     "shadow, switched off": (lit(casts_shadow=True), {"shadow_resolution": 0}, PASSES, "", "lights", ()),
-    "linked light": (lit(receivers=(1,)), {}, PASSES, "light_set_sum", "lights", ()),
+    "linked light": (lit(receivers=(1,)), {}, PASSES, "gbuffer_light_set", "lights", ()),
     "world's picture": (IN_PICTURE, {}, PASSES, "", "environment_image environment_levels", ()),
     "the same, flat": (IN_PICTURE, {"shading": "flat"}, PASSES, "", "-brdf_table environment_image", ()),
-    "two materials": (of(ROUGH, SHINY), {}, PASSES, "material_sum", "", ()),
+    "two materials": (of(ROUGH, SHINY), {}, PASSES, "gbuffer_material", "", ()),
     "two materials, flat": (of(ROUGH, SHINY), {"shading": "flat"}, PASSES, "", "-brdf_table", ()),
     "one emission": (of(GLOWING), {}, PASSES, "", "", ("EMISSION",)),
-    "two emissions": (of(GLOWING, Material()), {}, PASSES, "emission_sum", "", ()),
-    "own roughness": (Scene([Instance(surfels(roughness=[0.1, 0.9]))]), {}, PASSES, "material_sum", "", ()),
-    "float16 sums": (PLAIN, {"accumulation": "float16"}, PASSES, "depth_sum", "", ()),
+    "two emissions": (of(GLOWING, Material()), {}, PASSES, "gbuffer_emission", "", ()),
+    "own roughness": (Scene([Instance(surfels(roughness=[0.1, 0.9]))]), {}, PASSES, "gbuffer_material", "", ()),
+    "float16 sums": (PLAIN, {"accumulation": "float16"}, PASSES, "gbuffer_depth", "", ()),
     "colour alone": (PLAIN, {"outputs": ("color",)}, PASSES, "-normal_coverage", "", ()),
     "diffuse colour": (
         PLAIN, {"outputs": ("color", "diffuse_color")}, PASSES, "-normal_coverage diffuse_color", "", ("METALS",),
@@ -105,7 +105,7 @@ TABLE = {
         "-normal_coverage shadow_depth shadow_overdraw", "lights shadow_maps", ("SHADOW_SHARE",),
     ),
     "count of splats": (
-        PLAIN, {"outputs": ("overdraw",)}, PASSES, "-normal_coverage overdraw_sum shadow_overdraw", "", (),
+        PLAIN, {"outputs": ("overdraw",)}, PASSES, "-normal_coverage gbuffer_overdraw shadow_overdraw", "", (),
     ),
     "position": (PLAIN, {"outputs": ("position",)}, PASSES, "-normal_coverage", "", ()),
     "polygons": (HYBRID, {}, AMONG, AMONG_TEXTURES, "", ()),
@@ -119,43 +119,43 @@ TABLE = {
     ),
     "polygons alone": (replace(HYBRID, surfels=()), {}, AMONG, AMONG_TEXTURES, "", ()),
     "polygons of another material under a linked light": (
-        OTHERS, {}, AMONG, f"{AMONG_TEXTURES} polygon_material polygon_emission emission_sum light_set_sum", "lights",
+        OTHERS, {}, AMONG, f"{AMONG_TEXTURES} polygon_material polygon_emission gbuffer_emission gbuffer_light_set", "lights",
         (),
     ),
     "polygons, flat, by mip": (
         OTHERS, {"shading": "flat", "method": "mip"},
-        ("visibility", "seen_range", "attributes", "polygons", "sample_shading", "resolve"),
-        f"{AMONG_TEXTURES} row_depth seen_range shaded surface", "-brdf_table", (),
+        ("visibility", "depth_bounds", "attributes", "polygons", "deferred_lighting", "resolve"),
+        f"{AMONG_TEXTURES} row_depth depth_bounds shaded surface", "-brdf_table", (),
     ),
     "whose it is, where filters reach past what is visible": (
         PLAIN, {"outputs": ("object_index",), "method": "ewa"},
-        ("visibility", "rims", "seen_range", "attributes", "shading"),
-        "-normal_coverage identity rim_depth seen_range", "", (),
+        ("visibility", "edge_ids", "depth_bounds", "attributes", "shading"),
+        "-normal_coverage identity edge_depth depth_bounds", "", (),
     ),
     "whose it is": (PLAIN, {"outputs": ("object_index",)}, PASSES, "-normal_coverage identity", "", ()),
     "lines": (PLAIN, {"lines": Lines()}, ("visibility", "attributes", "lines", "shading"), "lines", "", ()),
-    "overdraw": (PLAIN, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", ()),
+    "overdraw": (PLAIN, {"shading": "overdraw"}, PASSES, "gbuffer_overdraw", "-brdf_table", ()),
     "mip": (
-        PLAIN, {"method": "mip"}, ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
-        "row_depth seen_range shaded surface", "", (),
+        PLAIN, {"method": "mip"}, ("visibility", "depth_bounds", "attributes", "deferred_lighting", "resolve"),
+        "row_depth depth_bounds shaded surface", "", (),
     ),
     "mip, backs": (
         TURNED_OVER, {"method": "mip"},
-        ("visibility", "seen_range", "coarse_depth", "attributes", "sample_shading", "resolve"),
-        "row_depth seen_range coarse_depth shaded surface", "", (),
+        ("visibility", "depth_bounds", "hiz", "attributes", "deferred_lighting", "resolve"),
+        "row_depth depth_bounds hiz shaded surface", "", (),
     ),
     "mip, the backs of a solid": (
         Scene([replace(TURNED_OVER.surfels[0], surfels=surfels().as_solid())]), {"method": "mip"},
-        ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
-        "row_depth seen_range shaded surface", "", (),
+        ("visibility", "depth_bounds", "attributes", "deferred_lighting", "resolve"),
+        "row_depth depth_bounds shaded surface", "", (),
     ),
     "backs, by a method of the papers": (
-        TURNED_OVER, {"method": "raycast"}, ("visibility", "seen_range", "attributes", "shading"), "seen_range", "", (),
+        TURNED_OVER, {"method": "raycast"}, ("visibility", "depth_bounds", "attributes", "shading"), "depth_bounds", "", (),
     ),
     "mip, more outputs": (
         PLAIN, {"method": "mip", "outputs": ("emission", "overdraw")},
-        ("visibility", "seen_range", "attributes", "sample_shading", "resolve"),
-        "-normal_coverage row_depth seen_range shaded surface emission sample_emission overdraw_sum "
+        ("visibility", "depth_bounds", "attributes", "deferred_lighting", "resolve"),
+        "-normal_coverage row_depth depth_bounds shaded surface emission sample_emission gbuffer_overdraw "
         "shadow_overdraw sample_shadow_overdraw", "", (),
     ),
     "transparent": (
@@ -165,15 +165,15 @@ TABLE = {
     ),
     "transparent, the rest blended": (
         TRANSPARENT, {"layers": 2},
-        ("visibility", "start_layers", *LAYER, "light_splats", "rest", "rest_shading", "rest_layer", "peel_rest", "attributes",
+        ("visibility", "start_layers", *LAYER, "light_splats", "rest", "oit_shading", "oit_layer", "peel_oit", "attributes",
          "shading"),
-        LAYER_TEXTURES + " lit_splats rest_sum rest_weight", "", (),
+        LAYER_TEXTURES + " lit_splats oit_accum oit_weight", "", (),
     ),
     "transparent, by mip": (
         TRANSPARENT, {"layers": 1, "blends_rest": False, "method": "mip"},
-        ("visibility", "start_layers", "visibility", "left", "seen_range", "attributes", "sample_shading", "resolve",
-         "peel", "seen_range", "attributes", "sample_shading", "resolve"),
-        LAYER_TEXTURES + " seen_range", "", (),
+        ("visibility", "start_layers", "visibility", "layer_occupancy", "depth_bounds", "attributes", "deferred_lighting", "resolve",
+         "peel", "depth_bounds", "attributes", "deferred_lighting", "resolve"),
+        LAYER_TEXTURES + " depth_bounds", "", (),
     ),
     "transparent, colour alone": (
         TRANSPARENT, {"layers": 1, "blends_rest": False, "outputs": ("color",)},
@@ -181,13 +181,13 @@ TABLE = {
         LAYER_TEXTURES + " -normal_coverage -layers_normal", "", (),
     ),
     "transparent, overdraw": (
-        TRANSPARENT, {"shading": "overdraw"}, PASSES, "overdraw_sum", "-brdf_table", (),
+        TRANSPARENT, {"shading": "overdraw"}, PASSES, "gbuffer_overdraw", "-brdf_table", (),
     ),
     "holdout": (HOLED, {}, PASSES, "", "", ("HOLDOUT",)),
     "holdout, by mip": (
         HOLED, {"method": "mip"},
-        ("visibility", "holdouts", "seen_range", "attributes", "sample_shading", "resolve"),
-        "row_depth row_holdout_depth seen_range shaded surface", "", ("HOLDOUT",),
+        ("visibility", "holdouts", "depth_bounds", "attributes", "deferred_lighting", "resolve"),
+        "row_depth row_holdout_depth depth_bounds shaded surface", "", ("HOLDOUT",),
     ),
     "one pass": (
         PLAIN, {"method": "affine_unfiltered"}, ("attributes", "shading"), "-visibility_depth seen_depth", "", (),
@@ -240,8 +240,8 @@ def test_the_plan_prints_each_pass_with_its_reason(name):
 @pytest.mark.parametrize(
     ("name", "scene", "settings"),
     [
-        ("light_set_sum", lit(receivers=(1,)), {}),
-        ("overdraw_sum", PLAIN, {"shading": "overdraw"}),
+        ("gbuffer_light_set", lit(receivers=(1,)), {}),
+        ("gbuffer_overdraw", PLAIN, {"shading": "overdraw"}),
     ],
 )
 def test_every_planned_sum_is_written_in_whatever_space_a_method_works(name, scene, settings, method):

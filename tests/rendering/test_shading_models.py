@@ -152,9 +152,9 @@ def test_models_plan_no_more_than_they_look_at():
     lights = [from_above(0.9, casts_shadow=True, size=0.1, receivers=(0,))]
     for model in SHADING_MODELS.values():
         planned = plan(Scene([thing, other], lights, environment=sky), ABOVE, Settings(shading=model.name, matcap=BALL))
-        read = {name for p in planned.passes for name in p.reads if p.name == "sample_shading"}
-        assert ("lights" in read) == ("light_set_sum" in read) == ("shadow_maps" in read) == model.is_lit
-        assert ("material_sum" in read) == ("emission_sum" in read) == model.has_material
+        read = {name for p in planned.passes for name in p.reads if p.name == "deferred_lighting"}
+        assert ("lights" in read) == ("gbuffer_light_set" in read) == ("shadow_maps" in read) == model.is_lit
+        assert ("gbuffer_material" in read) == ("gbuffer_emission" in read) == model.has_material
         assert ("environment_levels" in read) == model.has_world
         assert ("brdf_table" in read) == (model.name == "principled")
         assert planned.has("SIZED_LIGHTS") == model.is_lit

@@ -11,7 +11,7 @@ from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Light, Material, Scene, Settings, look_at, plan
 from splat_addon.rendering.methods import METHODS
-from splat_addon.rendering.view import clip_range, look
+from splat_addon.rendering.view import clip_range, build_view
 from splat_addon.surfels import Surfels
 
 PEELING = [name for name, method in METHODS.items() if method.works_in != "sprites"]
@@ -241,9 +241,9 @@ def test_tiles_store_the_depths_of_the_whole(method, edge, render, monkeypatch):
 
 def test_parts_of_a_picture_are_as_deep_as_the_whole():
     scene, camera = spheres(64)
-    whole = look(scene, camera, 0.5)
+    whole = build_view(scene, camera, 0.5)
     for part in (camera.cropped(0, 0, 9, 9), camera.cropped(50, 40, 8, 9)):
-        own, common = look(scene, part, 0.5), look(scene, part, 0.5, clip_range(scene, camera, 0.5))
+        own, common = build_view(scene, part, 0.5), build_view(scene, part, 0.5, clip_range(scene, camera, 0.5))
         assert (own.first, own.far) != (whole.first, whole.far)
         assert (common.first, common.far, common.scale) == (whole.first, whole.far, whole.scale)
         assert common.least_offset(False) == whole.least_offset(False)
@@ -267,7 +267,7 @@ def test_what_cannot_peel_says_so(settings):
 def test_nothing_of_an_opaque_scene_is_for_layers():
     scene, camera = scenes.sphere(count=100)
     made = plan(scene, camera, Settings())
-    assert made.facts["layers"] == 0 and not any("layer" in t or "peeled" in t for t in made.textures)
+    assert made.facts["layers"] == 0 and not any("layer" in t or "peel" in t for t in made.textures)
 
 
 def under_the_sun(*casters, **options) -> Scene:

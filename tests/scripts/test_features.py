@@ -32,12 +32,12 @@ def test_each_feature_makes_another_picture_or_another_plan(feature, on_device):
     ("name", "passes", "textures", "more"),
     [
         ("hard shadow of a sun", "shadow_maps", "shadow_depth, shadow_maps", 1024 * 1024 * 4),
-        ("two materials", "", "material_sum", 48 * 48 * 16),
+        ("two materials", "", "gbuffer_material", 48 * 48 * 16),
         ("lines of 1.5 pixels", "lines", "lines", None),
         ("a picture of the world", "", "environment_image, environment_levels", 0),
         ("float16 sums", "", "depth_sum", 48 * 48 * (8 - 8 - 8)),
         ("depth written by fragments, 1000 times as deep", "linear depth", "", 0),
-        ("a splat at the near plane, drawn in space", "straddling", "", 0),
+        ("a splat at the near plane, drawn in space", "near_clipped", "", 0),
         ("4 hardware samples a pixel", "", "", 3 * 48 * 48 * (4 + 16 + 16)),
     ],
 )

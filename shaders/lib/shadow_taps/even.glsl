@@ -7,10 +7,10 @@ vec2 hard_filter(vec2 distance) {
   return max(2.0 - abs(distance), 0.0);
 }
 
-const int SEARCH_LOOKS = SOFT_SAMPLES, FILTER_LOOKS = SOFT_SAMPLES;
+const int SEARCH_TAPS = SOFT_SAMPLES, FILTER_TAPS = SOFT_SAMPLES;
 
 // Radius and angle in the unit disc.
-vec2 soft_look(int number, int count) {
+vec2 soft_tap(int number, int count) {
   float at = float(number) + shadow_turn;
   return vec2(sqrt(at / float(count)), at * GOLDEN_ANGLE);
 }

@@ -14,10 +14,10 @@ vec2 hard_filter(vec2 distance) {
 }
 
 // Of which a mask hides some; and where surfaces behind one another block, their mean depth is of those it keeps.
-const int SEARCH_LOOKS = 2 * SOFT_SAMPLES, FILTER_LOOKS = 4 * SOFT_SAMPLES;
+const int SEARCH_TAPS = 2 * SOFT_SAMPLES, FILTER_TAPS = 4 * SOFT_SAMPLES;
 
 // Radius and angle in the unit disc. count: a multiple of 16.
-vec2 soft_look(int number, int count) {
+vec2 soft_tap(int number, int count) {
   ivec2 place = ivec2(number & 3, (number >> 2) & 3);
   int turned = 4 * mask_level(2, place) + mask_level(4, place), widened = 4 * mask_level(3, place) + mask_level(1, place);
   float turn = float(number >> 4);

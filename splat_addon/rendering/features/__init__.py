@@ -32,7 +32,7 @@ from . import (
     shadows,
     silhouettes,
     split,
-    straddling,
+    near_clipped,
     textures,
     transparency,
     transparent_shadows,
@@ -43,7 +43,7 @@ from . import (
 FEATURES = (
     world,
     depth_format,
-    straddling,
+    near_clipped,
     split,
     shadows,
     visibility,

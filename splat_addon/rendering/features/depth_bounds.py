@@ -7,7 +7,7 @@ from ..plan.executor import fill
 from ..plan.graph import Part, Pass, Texture
 from . import silhouettes, visibility
 
-BOUNDS = Texture("seen_range")
+BOUNDS = Texture("depth_bounds")
 
 
 def bounds(planning, reason: str, seen: Texture, kind: str = "opaque") -> Pass:
@@ -22,7 +22,7 @@ def bounds(planning, reason: str, seen: Texture, kind: str = "opaque") -> Pass:
         words=("writes_depth",) if rows > 1 else (),
     )
     state = dict.fromkeys(("depth_test", "depth_write", "fragment_depth"), rows > 1)
-    return Pass("seen_range", reason, "seen_range.frag", fill, (own,), kind, state)
+    return Pass("depth_bounds", reason, "depth_bounds.frag", fill, (own,), kind, state)
 
 
 def passes(planning):

@@ -14,17 +14,17 @@ from ..plan.graph import Pass
 from ..plan.uniforms import DRAW, std140
 from ..scene import Instance
 from ..storages import get_storage
-from ..view import PlacedInstance
+from ..view import DrawItem
 
 #: where a method works -> the host of its shaders
 RASTERIZERS = {"space": "object_space", "picture": "screen_space", "sprites": "point_sprite"}
 #: Fragment shaders that add splats to sums.
 SPLAT_HOSTS = tuple(f"{name}.frag" for name in RASTERIZERS.values())
 #: Fragment shaders that light samples.
-LIT_HOSTS = ("shading.frag", "sample_shading.frag")
+LIT_HOSTS = ("shading.frag", "deferred_lighting.frag")
 
 
-def drawn_by(p: Pass, tile: TileContext) -> tuple[PlacedInstance, ...]:
+def drawn_by(p: Pass, tile: TileContext) -> tuple[DrawItem, ...]:
     """What a pass draws of the tile's view: where transparent layers are planned, those or all the rest; what cuts
     holes has depths and nothing else.
     """
@@ -49,7 +49,7 @@ def splat_textures(tile: TileContext, instance: Instance) -> dict[str, Callable[
     }
 
 
-def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[PlacedInstance], vertex, *variants, viewport=None):
+def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None):
     """One draw call an instance. variants: of the pass's programs. viewport: as `Device.draw_triangles` takes it."""
     program = None
     for placed in placed_ones:
@@ -60,7 +60,7 @@ def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[Placed
         tile.resources.device.draw_triangles(program, target, triangles, blocks, textures, viewport)
 
 
-def draw_polygons(tile: TileContext, p: Pass, target, placed_ones: Iterable[PlacedInstance], vertex, *variants, viewport=None):
+def draw_polygons(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None):
     """The same; epsilon is how far behind polygons splats may lie."""
     program, resources = None, tile.resources
     for placed in placed_ones:
@@ -78,7 +78,7 @@ def draw_polygons(tile: TileContext, p: Pass, target, placed_ones: Iterable[Plac
         resources.device.draw_triangles(program, target, instance.polygons.triangles, blocks, textures, viewport)
 
 
-def draw_block(tile: TileContext, placed: PlacedInstance, epsilon: float) -> np.ndarray:
+def draw_block(tile: TileContext, placed: DrawItem, epsilon: float) -> np.ndarray:
     """Values of `uniforms.DRAW`."""
     normal_matrix = np.eye(4)
     normal_matrix[:3, :3] = placed.normal_matrix

@@ -8,22 +8,22 @@ from . import depth_format, visibility
 from .drawing import LIT_HOSTS, RASTERIZERS, draw_splats, drawn_by
 from .rasterizers import rasterized
 
-NAMES = ("gbuffer", "depth_in_normals", "depth_sum")
+NAMES = ("gbuffer", "depth_in_normals", "gbuffer_depth")
 VALUES = {
     "color_scale": ("float", lambda tile: tile.color_scale),
     "color_unit": ("float", lambda tile: 1 / tile.color_scale),
 }
 
-COLOR = Texture("color_sum", is_multisampled=True, is_sum=True)
-NORMAL = Texture("normal_sum", is_multisampled=True, is_sum=True)
-DEPTH_SUM = Texture("depth_sum", "RG32F", is_multisampled=True)
+COLOR = Texture("gbuffer_color", is_multisampled=True, is_sum=True)
+NORMAL = Texture("gbuffer_normal", is_multisampled=True, is_sum=True)
+DEPTH_SUM = Texture("gbuffer_depth", "RG32F", is_multisampled=True)
 SPRITE_DEPTH = Texture("seen_depth", "DEPTH32F")
 
 
 def depth_parts(planning, kind: str, **fields) -> Part:
     """Depths are beside normals, or apart. fields: what is done with them."""
     is_apart = kind == "layer" or planning.settings.accumulation == "float16"
-    name = "depth_sum" if is_apart else "depth_in_normals"
+    name = "gbuffer_depth" if is_apart else "depth_in_normals"
     return Part(name, **{field: (*textures, DEPTH_SUM) if is_apart else textures for field, textures in fields.items()})
 
 

@@ -14,7 +14,7 @@ from . import depth_bounds
 CELL = 4
 CONSTANTS = {"CELL": CELL}
 
-FARTHEST = Texture("coarse_depth", "R32F", "cell")
+FARTHEST = Texture("hiz", "R32F", "cell")
 
 
 def pays(planning) -> str:
@@ -35,7 +35,7 @@ def pays(planning) -> str:
 def passes(planning):
     if planning.shown and (why := planning.find(pays)):
         own = Part("hiz", reads=(depth_bounds.BOUNDS,), writes=(FARTHEST,))
-        yield Pass("coarse_depth", why, "coarse_depth.frag", fill, (own,))
+        yield Pass("hiz", why, "hiz.frag", fill, (own,))
 
 
 def parts(planning, p):

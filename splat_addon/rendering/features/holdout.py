@@ -39,7 +39,7 @@ def passes(planning):
 def parts(planning, p):
     if p.kind != "opaque" or not planning.find(_count):
         return
-    if p.host == "seen_range.frag":
+    if p.host == "depth_bounds.frag":
         yield Part("holdout", reads=(_depth(planning),), called=((_depth(planning), "holes"),))
     if p.host in LIT_HOSTS:
         yield Part("holdout", reads=(visibility.DEPTH,))

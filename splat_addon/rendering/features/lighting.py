@@ -33,7 +33,7 @@ def _samples(planning) -> tuple[tuple[str, int], ...]:
 def deferred(planning, reason: str, kind: str = "opaque") -> Pass:
     """Shades every sample and keeps it."""
     own = Part("lighting", writes=(SHADED, SURFACE), constants=_samples(planning))
-    return Pass("sample_shading", reason, "sample_shading.frag", fill, (own,), kind)
+    return Pass("deferred_lighting", reason, "deferred_lighting.frag", fill, (own,), kind)
 
 
 def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque", state=None) -> Pass:
@@ -80,5 +80,5 @@ def passes(planning):
 def parts(planning, p):
     if p.host in (*LIT_HOSTS, "lit_splats.frag") and planning.model.tables:
         yield Part("lighting", inputs=planning.model.tables)
-    if p.kind == "opaque" and p.host in ("sample_shading.frag", "resolve.frag"):
+    if p.kind == "opaque" and p.host in ("deferred_lighting.frag", "resolve.frag"):
         yield Part("picture")

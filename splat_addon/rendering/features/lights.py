@@ -11,7 +11,7 @@ NAMES = ("lights", "light_links", "sized_lights")
 VALUES = {"light_count": ("float", lambda tile: len(tile.scene.lights))}
 INPUTS = {"lights": shadows.lights_texture}
 
-SETS = Texture("light_set_sum", is_multisampled=True, is_sum=True)
+SETS = Texture("gbuffer_light_set", is_multisampled=True, is_sum=True)
 
 
 def _are_linked(planning) -> bool:

@@ -9,8 +9,8 @@ from .drawing import LIT_HOSTS, SPLAT_HOSTS
 
 NAMES = ("materials", "emission")
 
-MATERIAL = Texture("material_sum", is_multisampled=True, is_sum=True)
-EMISSION = Texture("emission_sum", is_multisampled=True)
+MATERIAL = Texture("gbuffer_material", is_multisampled=True, is_sum=True)
+EMISSION = Texture("gbuffer_emission", is_multisampled=True)
 
 
 def shared(planning):

@@ -13,7 +13,7 @@ IDENTITY = Texture("identity", "RG32F")
 ROW_IDENTITY = Texture("row_identity", "RG32F", "row")
 LAYER_IDENTITY = Texture("layer_identity", "RG32F")
 POLYGON_IDENTITY = Texture("polygon_identity", "RG32F")
-EDGE_DEPTH = Texture("rim_depth", "DEPTH32F")
+EDGE_DEPTH = Texture("edge_depth", "DEPTH32F")
 _VARYINGS = (("flat", "float", "number"),)
 
 
@@ -53,7 +53,7 @@ def passes(planning):
         own = Part("object_id", ("rims",), (visibility.DEPTH,), writes=(IDENTITY, EDGE_DEPTH), varyings=_VARYINGS)
         state = {"depth_test": True, "depth_write": True}
         parts = own, *rasterized(planning)
-        yield Pass("rims", why, "screen_space.frag", run_edges, parts, "rims", state, adds=True)
+        yield Pass("edge_ids", why, "screen_space.frag", run_edges, parts, "rims", state, adds=True)
 
 
 def parts(planning, p):
@@ -70,7 +70,7 @@ def parts(planning, p):
         yield Part("object_id", writes=(IDENTITY,), varyings=_VARYINGS)
     if p.host == "polygons.frag" and _polygons_apart(planning):
         yield Part("object_id", writes=(POLYGON_IDENTITY,), varyings=_VARYINGS)
-    if p.host == "seen_range.frag" and p.kind == "opaque" and planning.find(silhouettes.have_rows):
+    if p.host == "depth_bounds.frag" and p.kind == "opaque" and planning.find(silhouettes.have_rows):
         yield Part("object_id", reads=(ROW_IDENTITY,), writes=(IDENTITY,))
     if p.host == "peel.frag":
         yield Part("object_id", reads=(LAYER_IDENTITY,), updates=(IDENTITY,))

@@ -11,8 +11,8 @@ from .drawing import RASTERIZERS, draw_block, draw_splats, drawn_by, splat_textu
 from .rasterizers import rasterized
 
 LIT = Texture("lit_splats", per="splat")
-ACCUM = Texture("rest_sum")
-WEIGHT = Texture("rest_weight", "RG32F")
+ACCUM = Texture("oit_accum")
+WEIGHT = Texture("oit_weight", "RG32F")
 
 
 def lit_rows(scene) -> int:
@@ -37,9 +37,9 @@ def passes_of_rest(planning) -> tuple[Pass, ...]:
     each = Pass("light_splats", "each splat is lit by itself", "lit_splats.frag", run, (light,), "rest")
     return (
         Pass("rest", "all that is left is added up", host, run, rest, "rest", state, each=each),
-        Pass("rest_shading", "its weights tell how much it hides", "rest_shading.frag", fill, (shade,), "rest"),
-        Pass("rest_layer", "nearer layers cover it", "rest_layer.frag", fill, (put,), "rest", add, adds=True),
-        Pass("peel_rest", "it covers what is opaque", "peel_rest.frag", fill, (peel,), "rest"),
+        Pass("oit_shading", "its weights tell how much it hides", "oit_shading.frag", fill, (shade,), "rest"),
+        Pass("oit_layer", "nearer layers cover it", "oit_layer.frag", fill, (put,), "rest", add, adds=True),
+        Pass("peel_oit", "it covers what is opaque", "peel_oit.frag", fill, (peel,), "rest"),
     )
 
 

@@ -39,7 +39,7 @@ PIXELS = {
 SAMPLES = {name: Texture(f"sample_{name}") for name in _HANDED_ON}
 LAYERS = {name: Texture(f"layers_{name}", per="pixel") for name in _HANDED_ON}
 LAYERS_NORMAL = Texture("layers_normal", per="pixel")
-OVERDRAW = Texture("overdraw_sum", "R32F", is_multisampled=True)
+OVERDRAW = Texture("gbuffer_overdraw", "R32F", is_multisampled=True)
 
 _HOSTS = (*LIT_HOSTS, *SPLAT_HOSTS, "lit_splats.frag", "resolve.frag", "layer.frag", "background.frag")
 
@@ -137,7 +137,7 @@ def _handing(planning, p, in_layer: bool, has_layers: bool):
         if has_layers and name in of_layers:
             reads.append(LAYERS[name])
             words.append(f"layers_{name}")
-        kinds = {"sample_shading.frag": SAMPLES, "shading.frag": PIXELS, "background.frag": PIXELS}
+        kinds = {"deferred_lighting.frag": SAMPLES, "shading.frag": PIXELS, "background.frag": PIXELS}
         kinds |= {"resolve.frag": LAYERS if in_layer else PIXELS, "layer.frag": LAYERS}
         if p.host in kinds:
             texture = kinds[p.host][name]

@@ -20,5 +20,5 @@ def parts(planning, p):
     if planning.method.filters_silhouettes:
         if p.host == "screen_space.frag" and p.kind in ("opaque", "layer"):
             yield Part("silhouettes")
-        if p.host in ("seen_range.frag", "rest_layer.frag"):
+        if p.host in ("depth_bounds.frag", "oit_layer.frag"):
             yield Part("silhouettes")

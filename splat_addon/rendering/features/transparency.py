@@ -28,8 +28,8 @@ CONSTANTS = {"BLOCKS": BLOCKS}
 VALUES = {"alpha_threshold": ("float", lambda tile: tile.settings.alpha_threshold)}
 
 DEPTH = Texture("layer_depth", "DEPTH32F")
-OCCUPANCY = Texture("left", "R32F", "block")
-PEELED = Texture("peeled", "RG32F")
+OCCUPANCY = Texture("layer_occupancy", "R32F", "block")
+PEELED = Texture("peel_state", "RG32F")
 COLOR = Texture("layers", per="pixel")
 COLOR_DEPTH = Texture("layers_depth", "R32F", "pixel")
 
@@ -80,7 +80,7 @@ def _body(planning) -> tuple[Pass, ...]:
     peel = Part("transparency", reads=(DEPTH, lighting.SHADED), updates=(PEELED,))
     return (
         found,
-        Pass("left", "layers end where nothing is left", "left.frag", fill, (occupied,), "layer"),
+        Pass("layer_occupancy", "layers end where nothing is left", "layer_occupancy.frag", fill, (occupied,), "layer"),
         *(() if in_space else (bounds,)),
         gbuffer.attributes(planning, "splats of one layer blend", DEPTH, "layer"),
         lighting.deferred(planning, "a layer is lit once", "layer"),
@@ -101,7 +101,7 @@ def parts(planning, p):
             yield Part("transparency", reads=tested, **opacity)
         if p.host == "screen_space.frag":
             yield Part("transparency", reads=(PEELED,), **opacity)
-        if p.host == "seen_range.frag":
+        if p.host == "depth_bounds.frag":
             yield Part("transparency", reads=(opaque,))
         if p.host in ("resolve.frag", "layer.frag"):
             yield Part("transparency", reads=(PEELED,))

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from splat_addon.rendering import EMPTY_DEPTH, Camera, Renderer, Scene, Settings
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.methods.plane import splat_plane, straddling_samples
-from splat_addon.rendering.view import look
+from splat_addon.rendering.view import build_view
 from splat_addon.surfels import Surfels, axes_quaternions
 
 SIZE = 48
@@ -93,7 +93,7 @@ def drawn(renderer, method, surfels, camera):
     """(SIZE, SIZE) sums of weights that the attribute pass leaves, and the frame's depths."""
     settings = Settings(method=method, supersampling=1, shading="flat", epsilon=1e9)
     frame = renderer.render(Scene((surfels,)), camera, settings)
-    return sum_of(renderer, "color_sum")[..., 3], frame.depth
+    return sum_of(renderer, "gbuffer_color")[..., 3], frame.depth
 
 
 def sum_of(renderer, name):
@@ -199,7 +199,7 @@ def test_depths_that_a_filter_reaches_beyond_a_grazing_splat_are_held_near_it(me
         renderer = Renderer(device)
         for splat in splats:
             picture, _ = drawn(renderer, method, splat.surfels(camera), camera)
-            yield picture, sum_of(renderer, "normal_sum")[..., 3]
+            yield picture, sum_of(renderer, "gbuffer_normal")[..., 3]
 
     for splat, (picture, depth_sum) in zip(splats, on_device(lambda device: list(job(device))), strict=True):
         surfels = splat.surfels(camera)
@@ -208,7 +208,7 @@ def test_depths_that_a_filter_reaches_beyond_a_grazing_splat_are_held_near_it(me
         is_seen = (weights > 1e-6) & (picture > 1e-6)
         assert is_seen.any()
         depths = depths[is_seen]
-        drawn_depths = depth_sum[is_seen] / picture[is_seen] / look(Scene((surfels,)), camera, 1e9).scale
+        drawn_depths = depth_sum[is_seen] / picture[is_seen] / build_view(Scene((surfels,)), camera, 1e9).scale
         np.testing.assert_allclose(drawn_depths, depths, rtol=0, atol=0.02 * splat.size)
         reach = np.abs(depths + axes[0][2])
         is_held.append(np.count_nonzero(np.isclose(reach, reach.max(), rtol=1e-9)) > 1)

@@ -3,7 +3,7 @@
 
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
-  float before = texelFetch(peeled, texel, 0).y;
+  float before = texelFetch(peel_state, texel, 0).y;
   float hidden = 1.0 - (1.0 - abs(before)) * (1.0 - texelFetch(shaded, texel, 0).w);
-  peeled_next = vec2(1.0, before < 0.0 ? -hidden : hidden);
+  peel_state_next = vec2(1.0, before < 0.0 ? -hidden : hidden);
 }

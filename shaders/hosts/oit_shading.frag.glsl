@@ -7,12 +7,12 @@
 #include "lib/front_weight.glsl"
 
 float front_weight_at(ivec2 texel) {
-  return front_weight(texelFetch(depth_sum, texel, 0).y);
+  return front_weight(texelFetch(gbuffer_depth, texel, 0).y);
 }
 
 // Of the splats of the layer before; at its rim, where it falls off, of what is beside that.
 float surface_weight(ivec2 texel) {
-  ivec2 last = textureSize(depth_sum, 0) - 1;
+  ivec2 last = textureSize(gbuffer_depth, 0) - 1;
   float own = front_weight_at(texel), most = own;
   for (int y = -1; y <= 1; y++) {
     for (int x = -1; x <= 1; x++) {
@@ -24,8 +24,8 @@ float surface_weight(ivec2 texel) {
 
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
-  vec4 sum = texelFetch(rest_sum, texel, 0);
-  vec2 weights = texelFetch(rest_weight, texel, 0).xy;
+  vec4 sum = texelFetch(oit_accum, texel, 0);
+  vec2 weights = texelFetch(oit_weight, texel, 0).xy;
   shaded = vec4(0.0);
   if (sum.w > 0.0) {
     float one = surface_weight(texel);

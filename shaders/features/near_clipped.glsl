@@ -9,14 +9,14 @@ bool reaches_near(Splat splat) {
 }
 
 #part screen_space.vert
-void straddling_clip(Splat splat, inout bool in_space) {
+void near_clipped_clip(Splat splat, inout bool in_space) {
   in_space = reaches_near(splat);
 }
 
 // The method may have lengthened it. The first three varyings then carry its centre and half-axes.
-void straddling_clipped(Splat splat, inout bool in_space) {
+void near_clipped_clipped(Splat splat, inout bool in_space) {
   in_space = reaches_near(splat);
-  straddling = in_space ? 1.0 : 0.0;
+  near_clipped = in_space ? 1.0 : 0.0;
   if (!in_space) return;
   plane_ab = vec4(splat.position, 0.0);
   plane_center_gh = vec4(splat.axis_u, 0.0);
@@ -24,7 +24,7 @@ void straddling_clipped(Splat splat, inout bool in_space) {
   plane_det_radius = vec4(0.0);
 }
 
-void straddling_place(Splat splat, vec2 corner, bool in_space) {
+void near_clipped_place(Splat splat, vec2 corner, bool in_space) {
   vec2 grown = corner * STRADDLING_MARGIN;
   vec3 eye = splat.position + splat.axis_u * grown.x + splat.axis_v * grown.y;
   if (in_space && !splat.is_hidden) gl_Position = view.projection * vec4(eye, 1.0);
@@ -43,8 +43,8 @@ vec3 place_in_space(vec2 point) {
   return vec3(uv, dot(cross(s, t), p) / w);
 }
 
-void straddling_weigh(inout Candidate c) {
-  c.in_space = straddling > 0.5;
+void near_clipped_weigh(inout Candidate c) {
+  c.in_space = near_clipped > 0.5;
   if (!c.in_space) return;
   c.place = place_in_space(view.window.xy + gl_FragCoord.xy * view.window.zw);
   float rho2 = dot(c.place.xy, c.place.xy);

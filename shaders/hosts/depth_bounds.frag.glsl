@@ -17,6 +17,6 @@ void main() {
   #hook reach(texel, row)
   #hook write(texel, own)
   float depth = view_depth(own);
-  seen_range = vec4(row, own < 1.0 ? vec2(depth) : vec2(NOTHING_SEEN, -NOTHING_SEEN));
+  depth_bounds = vec4(row, own < 1.0 ? vec2(depth) : vec2(NOTHING_SEEN, -NOTHING_SEEN));
   #hook bound(texel, own)
 }

@@ -1,15 +1,15 @@
 // References: Greene, Kass, Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993 (one level of its pyramid).
 // Summary: of each cell of samples, and CELL_REACH around it, the farthest depth that is seen.
 
-#include "lib/cells.glsl"
+#include "lib/hiz_cells.glsl"
 
 void main() {
-  ivec2 first = ivec2(gl_FragCoord.xy) * CELL - CELL_REACH, last = textureSize(seen_range, 0) - 1;
+  ivec2 first = ivec2(gl_FragCoord.xy) * CELL - CELL_REACH, last = textureSize(depth_bounds, 0) - 1;
   float farthest = -3.4e38;
   for (int y = 0; y < CELL + 2 * CELL_REACH; y++) {
     for (int x = 0; x < CELL + 2 * CELL_REACH; x++) {
-      farthest = max(farthest, texelFetch(seen_range, clamp(first + ivec2(x, y), ivec2(0), last), 0).z);
+      farthest = max(farthest, texelFetch(depth_bounds, clamp(first + ivec2(x, y), ivec2(0), last), 0).z);
     }
   }
-  coarse_depth = farthest;
+  hiz = farthest;
 }

@@ -8,5 +8,5 @@ void main() {
   for (int y = first.y; y < end.y; y++) {
     for (int x = first.x; x < end.x; x++) nearest = min(nearest, texelFetch(layer_depth, ivec2(x, y), 0).r);
   }
-  left = nearest < 1.0 ? 1.0 : 0.0;
+  layer_occupancy = nearest < 1.0 ? 1.0 : 0.0;
 }

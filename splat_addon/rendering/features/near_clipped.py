@@ -11,12 +11,12 @@ def passes(planning):
     """None; it says whether there may be any."""
     if planning.shown:
         if planning.find(depth_format.extent).reaches_near:
-            planning.has("STRADDLING", "splats that may reach the near plane are drawn in space")
+            planning.has("NEAR_CLIPPED", "splats that may reach the near plane are drawn in space")
         else:
-            planning.skip("straddling splats", "none reaches the near plane")
+            planning.skip("near_clipped splats", "none reaches the near plane")
     return ()
 
 
 def parts(planning, p):
     if p.host == "screen_space.frag" and planning.find(depth_format.extent).reaches_near:
-        yield Part("straddling", varyings=(("flat", "float", "straddling"),))
+        yield Part("near_clipped", varyings=(("flat", "float", "near_clipped"),))

@@ -1,7 +1,7 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6; resolve.frag.glsl, whose filter this has.
 // Summary: what all that is left behind the transparent layers adds to a pixel, under them. Hook: `filter` of a sample.
 
-#include "lib/peeled.glsl"
+#include "lib/peel_state.glsl"
 
 #parts
 void main() {

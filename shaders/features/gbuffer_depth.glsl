@@ -1,0 +1,21 @@
+// References: docs/numerics.md, Formats.
+// Summary: depths and their weights apart, in float32: where sums are float16, and where colours count by opacity.
+
+#part gbuffer
+void gbuffer_depth_add(inout Fragment f) {
+  gbuffer_normal = vec4(normal, 0.0) * f.weight;
+  gbuffer_depth = vec2(f.depth, 1.0) * f.weight;
+}
+
+#part mean_surface, layer
+// Colours count by opacity there: the weights are by the depths.
+void gbuffer_depth_layer_mean(inout float weights, inout vec4 n, ivec2 texel, int tap) {
+  weights = SUM_AT(gbuffer_depth, texel, tap).y;
+}
+
+#part mean_surface
+void gbuffer_depth_mean(inout float weights, inout vec4 n, ivec2 texel, int tap) {
+  vec2 depths = SUM_AT(gbuffer_depth, texel, tap).xy;
+  n /= weights;
+  n.w = depths.x / depths.y;
+}
