@@ -21,8 +21,8 @@ MAY_IMPORT = {
     "blender": {"surfels", "sampling", "rendering", "interchange"},
 }
 #: `reference` reads rendering's data, never its passes.
-RENDERING_DATA = {"camera", "scene", "light", "environment", "shadow", "settings", "frame", "brdf_table", "view"}
-RENDERING_DATA |= {"polygons", "lens", "lines", "matcap", "panorama", "shading_models"}
+RENDERING_DATA = {"scene", "shadow", "settings", "frame", "view", "methods", "shading_models"}
+RENDERING_DATA |= {"upload"}  # of which the table of GGX alone
 #: foreign module -> where it may be imported
 HOMES = {
     "bpy": ("blender/",),

@@ -15,7 +15,7 @@ import numpy as np
 from splat_addon.reference import scenes
 from splat_addon.reference.metrics import psnr, srgb
 from splat_addon.rendering import Camera, Light, PolygonInstance, Renderer, Scene, Settings, look_at, open_device
-from splat_addon.rendering.polygons import make_polygons
+from splat_addon.rendering.scene.polygons import make_polygons
 from splat_addon.sampling import Channel, Surface, TriangleMesh, VertexColors, edge_samples, sample_mesh
 from splat_addon.surfels import concatenate
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import bpy
 
-from ..rendering.light import MAX_LIGHT_SETS
+from ..rendering.scene.light import MAX_LIGHT_SETS
 
 
 class Receivers(NamedTuple):

@@ -18,7 +18,7 @@ import bpy
 import numpy as np
 
 from ..rendering import Instance, Material, PolygonInstance, Polygons, SurfaceTexture
-from ..rendering.packing import MAX_SPLATS
+from ..rendering.upload.packing import MAX_SPLATS
 from ..sampling import (
     STRETCHED_SHARE,
     NotSeenError,

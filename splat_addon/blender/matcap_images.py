@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from ..rendering import Matcap
-from ..rendering.atlas import MAX_EDGE
+from ..rendering.upload.atlas import MAX_EDGE
 from .texture_images import UnreadableError, linear_pixels
 
 #: Places along each side that a multilayer file is read at: 0.7 s, once. Blender's own have 512 pixels, of which a

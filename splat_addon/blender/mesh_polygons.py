@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..rendering import Polygons
-from ..rendering.polygons import MAX_TRIANGLES
+from ..rendering.scene.polygons import MAX_TRIANGLES
 from ..sampling import Surface, TriangleMesh, corner_values
 from ..surfels import OPAQUE
 

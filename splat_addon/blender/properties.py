@@ -15,9 +15,9 @@ from bpy.props import (
     PointerProperty,
 )
 
-from ..rendering.lines import MAX_WIDTH, Lines
-from ..rendering.matcap import Matcap
 from ..rendering.methods import METHODS
+from ..rendering.scene.lines import MAX_WIDTH, Lines
+from ..rendering.scene.matcap import Matcap
 from ..rendering.settings import (
     ACCUMULATIONS,
     MAX_LAYERS,
@@ -28,7 +28,7 @@ from ..rendering.settings import (
     Settings,
 )
 from ..rendering.shading_models import SHADING_MODELS
-from ..rendering.storages import STORAGES
+from ..rendering.upload.storages import STORAGES
 from .enum_values import check_choices
 from .ids import RENDER_SETTINGS
 from .matcap_images import matcap_of

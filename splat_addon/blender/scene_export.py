@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 
 from ..rendering import Instance, Light, Scene
-from ..rendering.packing import MAX_SPLATS
+from ..rendering.upload.packing import MAX_SPLATS
 from ..surfels import Surfels, split
 from . import passed_over
 from .attributes import has_surfels, has_surfels_beside_faces, have_same_values, read_stored

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from ..rendering import Light, Material
-from ..rendering.packing import reflectance
+from ..rendering.upload.packing import reflectance
 from . import passed_over
 from .node_products import linked
 

@@ -10,7 +10,7 @@ import numpy as np
 from mathutils import Euler
 
 from ..rendering import Environment
-from ..rendering.atlas import MAX_EDGE
+from ..rendering.upload.atlas import MAX_EDGE
 from . import passed_over
 from .shading_export import MAX_RADIANCE, color_times_strength, finite_radiance, output_source
 from .texture_images import UnreadableError, linear_pixels

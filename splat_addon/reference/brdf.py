@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..rendering.brdf_table import LEAST_ROUGHNESS, brdf_table
+from ..rendering.upload.brdf_table import LEAST_ROUGHNESS, brdf_table
 
 #: Half-axes over distance below which a quad counts as a point with its area, which float32 needs; 4e-4 off at most.
 SMALL_QUAD = 0.02

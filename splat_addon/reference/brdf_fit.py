@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes splat_addon/rendering/brdf_table.npy: what the principled shading needs to know of GGX, tabulated.
+"""Makes splat_addon/rendering/upload/brdf_table.npy: what the principled shading needs to know of GGX, tabulated.
 
     python -m splat_addon.reference.brdf_fit [--out FILE]
 
@@ -19,7 +19,7 @@ import numpy as np
 from rich.progress import track
 from scipy.optimize import minimize
 
-TABLE = Path(__file__).resolve().parents[1] / "rendering" / "brdf_table.npy"
+TABLE = Path(__file__).resolve().parents[1] / "rendering" / "upload" / "brdf_table.npy"
 ROUGHNESS, ANGLES = 48, 32
 LEAST_ROUGHNESS = 0.03
 SIDE = 40  # samples along each side of the unit square

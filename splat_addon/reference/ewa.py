@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..rendering.camera import Camera
 from ..rendering.frame import EMPTY_DEPTH, Frame
 from ..rendering.scene import Scene
+from ..rendering.scene.camera import Camera
 from ..rendering.settings import Settings
 from .exact import DEFAULTS, shaded_rays
 from .filters import SIGMA

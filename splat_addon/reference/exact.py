@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..rendering.camera import Camera
 from ..rendering.frame import EMPTY_DEPTH, Frame
 from ..rendering.scene import Scene
+from ..rendering.scene.camera import Camera
 from ..rendering.settings import Settings
 from .filters import filter_weights, resample
 from .outputs import OUTPUTS

@@ -11,9 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..rendering.camera import Camera
-from ..rendering.light import Light
 from ..rendering.scene import Instance, Scene
+from ..rendering.scene.camera import Camera
+from ..rendering.scene.light import Light
 from ..surfels import Surfels, axes_quaternions
 
 #: Half-diagonals of its cell by which a sheet's disc reaches: neighbours overlap at the corners.

@@ -6,9 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 
-from ..rendering.light import Light
-from ..rendering.lines import Lines
 from ..rendering.scene import Material
+from ..rendering.scene.light import Light
+from ..rendering.scene.lines import Lines
 from ..rendering.settings import OUTPUTS
 from ..rendering.shading_models import SHADING_MODELS
 from . import shots

@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..rendering.camera import Camera
-from ..rendering.light import MAX_SUN_HALF_ANGLE, Light
 from ..rendering.scene import Scene
+from ..rendering.scene.camera import Camera
+from ..rendering.scene.light import MAX_SUN_HALF_ANGLE, Light
 from .brdf import unit
 from .shadows import lit_share
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..rendering.camera import Camera
 from ..rendering.scene import Scene
+from ..rendering.scene.camera import Camera
 from ..rendering.settings import Settings
 from .brdf import dot
 from .lights import all_incident

@@ -7,9 +7,9 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..rendering.camera import Camera
-from ..rendering.light import MAX_LIGHT_SETS
 from ..rendering.scene import PolygonInstance, Scene
+from ..rendering.scene.camera import Camera
+from ..rendering.scene.light import MAX_LIGHT_SETS
 from ..rendering.view import overlapping_radii
 from .rays import RayGrid, Surface
 from .splats import BACK_WEIGHT

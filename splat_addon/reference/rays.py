@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..rendering.camera import Camera
+from ..rendering.scene.camera import Camera
 from .splats import BACK_WEIGHT, Splats
 from .textures import point_colors
 

@@ -13,10 +13,10 @@ from dataclasses import replace
 import numpy as np
 
 from ..images import Image
-from ..rendering.camera import Camera, look_at
-from ..rendering.light import Light
-from ..rendering.polygons import Polygons, make_polygons
 from ..rendering.scene import Instance, Material, PolygonInstance, Scene, SurfaceTexture
+from ..rendering.scene.camera import Camera, look_at
+from ..rendering.scene.light import Light
+from ..rendering.scene.polygons import Polygons, make_polygons
 from ..surfels import Surfels, axes_quaternions
 from .lettering import PLACE, page
 

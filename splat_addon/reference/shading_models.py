@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..rendering.camera import Camera
 from ..rendering.scene import Scene
+from ..rendering.scene.camera import Camera
 from ..rendering.settings import Settings
 from ..rendering.view import depth_extent
 from .brdf import dot, unit

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..rendering.camera import Camera
-from ..rendering.light import Light
 from ..rendering.scene import Scene
+from ..rendering.scene.camera import Camera
+from ..rendering.scene.light import Light
 from ..rendering.shadow import casting
 from .polygons import are_lit
 from .splats import Splats, eye_splats

@@ -12,14 +12,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..rendering.camera import Camera
-from ..rendering.environment import Environment
-from ..rendering.lens import Lens
-from ..rendering.light import Light
-from ..rendering.matcap import Matcap
-from ..rendering.panorama import Equirectangular, Panorama
-from ..rendering.polygons import make_polygons
 from ..rendering.scene import Instance, Material, PolygonInstance, Scene
+from ..rendering.scene.camera import Camera
+from ..rendering.scene.environment import Environment
+from ..rendering.scene.lens import Lens
+from ..rendering.scene.light import Light
+from ..rendering.scene.matcap import Matcap
+from ..rendering.scene.panorama import Equirectangular, Panorama
+from ..rendering.scene.polygons import make_polygons
 from ..rendering.settings import Settings
 from . import scenes
 from .extremes import discs

@@ -10,9 +10,9 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from ..rendering.camera import Camera
-from ..rendering.light import MAX_LIGHT_SETS
 from ..rendering.scene import Instance, Scene
+from ..rendering.scene.camera import Camera
+from ..rendering.scene.light import MAX_LIGHT_SETS
 from .textures import surfel_textures
 
 #: What the back of a splat weighs against a front, and how much further it is moved away: shaders/common/sides.glsl.

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..rendering.camera import Camera, look_at
-from ..rendering.light import Light
 from ..rendering.scene import Instance, Material, Scene
+from ..rendering.scene.camera import Camera, look_at
+from ..rendering.scene.light import Light
 from .extremes import sheet
 from .scenes import sphere, torus
 

@@ -12,9 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..rendering.camera import Camera, look_at
-from ..rendering.light import Light
 from ..rendering.scene import Instance, Scene
+from ..rendering.scene.camera import Camera, look_at
+from ..rendering.scene.light import Light
 from . import scenes
 from .extremes import discs, sheet, speck, transformed
 

@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 
-from ..rendering.camera import Camera
 from ..rendering.scene import SurfaceTexture
+from ..rendering.scene.camera import Camera
 from .filters import filter_weights, resample
 from .textures import point_colors
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..rendering.camera import Camera
-from ..rendering.environment import LEVEL_SIDE, LEVELS, Environment
 from ..rendering.scene import Scene
+from ..rendering.scene.camera import Camera
+from ..rendering.scene.environment import LEVEL_SIDE, LEVELS, Environment
 
 
 class WorldLight:

@@ -4,23 +4,23 @@
 scene, camera, settings -> plan -> view -> passes on a device -> Frame
 """
 
-from .camera import Camera, look_at
 from .cryptomatte import Cryptomatte
 from .device import open_device
-from .environment import Environment
 from .frame import EMPTY_DEPTH, Frame
-from .lens import Lens
-from .light import Light
-from .lines import Lines
-from .matcap import Matcap
-from .panorama import EquidistantFisheye, Equirectangular, EquisolidFisheye, Panorama
 from .plan import plan
 from .plan.frame_plan import FramePlan
-from .polygons import Polygons, make_polygons
 from .presets import PRESETS, Preset
 from .refinement import Refinement
 from .renderer import RenderCancelled, Renderer, Shown
 from .scene import Instance, Material, PolygonInstance, Scene, SurfaceTexture
+from .scene.camera import Camera, look_at
+from .scene.environment import Environment
+from .scene.lens import Lens
+from .scene.light import Light
+from .scene.lines import Lines
+from .scene.matcap import Matcap
+from .scene.panorama import EquidistantFisheye, Equirectangular, EquisolidFisheye, Panorama
+from .scene.polygons import Polygons, make_polygons
 from .settings import Settings
 
 __all__ = (

@@ -16,8 +16,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from .camera import Camera
 from .frame import Frame
+from .scene.camera import Camera
 from .settings import NEAREST, OUTPUTS
 
 #: Arrays of a frame that are means over its samples.

@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .accumulation import sample_camera, sample_points
-from .camera import Camera
 from .frame import EMPTY_DEPTH, Frame
-from .panorama import Panorama
+from .scene.camera import Camera
+from .scene.panorama import Panorama
 from .settings import NEAREST, OUTPUTS, Settings, held_arrays
 
 #: (a sample's camera, the one that shadow maps are fitted to, settings, progress) -> Frame

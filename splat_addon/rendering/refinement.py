@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from .accumulation import sample_camera
-from .camera import Camera
 from .renderer import Renderer, Shown
 from .scene import Scene
+from .scene.camera import Camera
 from .settings import Settings
 from .shadow import ShadowMap
 

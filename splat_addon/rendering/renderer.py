@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 
 from .accumulation import mean_frame, sample_blocks, sample_camera
-from .camera import Camera
 from .device import Device
 from .device.interface import Texture as DeviceTexture
 from .features import INPUTS
@@ -18,18 +17,19 @@ from .features.accumulation import SUM
 from .features.outputs import HELD_BY, PIXELS, check_samplers
 from .frame import EMPTY_DEPTH, Frame
 from .identity import Identified, nearer
-from .panorama import Panorama
 from .panorama_faces import panorama_frame
 from .plan import plan
 from .plan.executor import Execution, TileContext, texture_key
 from .plan.frame_plan import FramePlan
 from .plan.graph import Texture
-from .resources import Resources
 from .scene import Scene
+from .scene.camera import Camera
+from .scene.panorama import Panorama
 from .settings import OUTPUTS, Settings, held_arrays
 from .shadow import ShadowMap, casting, same_maps
-from .storages import get_storage
-from .view import clip_range, build_view
+from .upload.resources import Resources
+from .upload.storages import get_storage
+from .view import build_view, clip_range
 
 #: x, y, width, height in pixels.
 Tile = tuple[int, int, int, int]
@@ -153,7 +153,9 @@ class Renderer:
         try:
             for tile, _ in self._tiles(scene, camera, settings, frame_plan, self._new_stats(frame_plan), None):
                 self.device.restore()
-                texture = self.resources.texture(texture_key(PIXELS["combined"], _drawn(tile, frame_plan)[2:], frame_plan))
+                texture = self.resources.texture(
+                    texture_key(PIXELS["combined"], _drawn(tile, frame_plan)[2:], frame_plan)
+                )
                 yield Shown(tile, texture, (frame_plan.margin, frame_plan.margin, *tile[2:]))
         finally:
             self.device.restore()
@@ -229,7 +231,9 @@ class Renderer:
         )
         self.resources.forget_atlases_but({placed.textures for placed in scene.shown})
         casters = casting(scene)
-        shadow_views = tuple(build_view(casters, made.camera, settings.epsilon) for made in frame_plan.facts["shadow_maps"])
+        shadow_views = tuple(
+            build_view(casters, made.camera, settings.epsilon) for made in frame_plan.facts["shadow_maps"]
+        )
         whole = None
         if len(frame_plan.tiles) > 1:
             drawn = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan))

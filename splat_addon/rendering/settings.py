@@ -6,8 +6,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .lines import Lines
-from .matcap import Matcap
+from .scene.lines import Lines
+from .scene.matcap import Matcap
 from .shading_models import get_shading_model
 
 #: accumulation -> (label, what it costs and gains)

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .camera import Camera, look_at
-from .light import MAX_SUN_HALF_ANGLE, Light
 from .scene import Scene
+from .scene.camera import Camera, look_at
+from .scene.light import MAX_SUN_HALF_ANGLE, Light
 from .view import View, sees_any, visible_corners
 
 #: More maps than this do not fit into the atlas; the lights that come last then cast no shadow.

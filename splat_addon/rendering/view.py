@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .camera import Camera
 from .scene import Instance, Placed, PolygonInstance, Scene
+from .scene.camera import Camera
 
 #: The clip range reaches this share of its ends (a parallel camera's, of its length or window) further than the bounds,
 #: so that rounding clips nothing, be they as near to one another as they may.

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from splat_addon.rendering.camera import Camera
+from splat_addon.rendering.scene.camera import Camera
 from splat_addon.surfels import Surfels, axes_quaternions
 
 

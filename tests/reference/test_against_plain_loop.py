@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import render_exact
-from splat_addon.rendering.camera import Camera, look_at
 from splat_addon.rendering.frame import EMPTY_DEPTH
 from splat_addon.rendering.scene import Instance, Scene
+from splat_addon.rendering.scene.camera import Camera, look_at
 from splat_addon.rendering.settings import Settings
 from splat_addon.surfels import Surfels
 

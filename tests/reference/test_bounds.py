@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from splat_addon.reference.splats import Splats, projected_bounds
-from splat_addon.rendering.camera import Camera
+from splat_addon.rendering.scene.camera import Camera
 
 CAMERAS = {
     "perspective": Camera.perspective(np.eye(4), 1.0, (8, 8), 0.1, 50),

@@ -9,7 +9,7 @@ import pytest
 from splat_addon.reference import render_ewa, render_exact, scenes
 from splat_addon.reference.filters import SIGMA
 from splat_addon.rendering import Camera, Scene, Settings
-from splat_addon.rendering.camera import look_at
+from splat_addon.rendering.scene.camera import look_at
 
 FLAT = Settings(shading="flat")
 SIZE = (64, 64)

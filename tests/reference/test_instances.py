@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import render_exact
-from splat_addon.rendering.light import Light
 from splat_addon.rendering.scene import Instance, Material, Scene
+from splat_addon.rendering.scene.light import Light
 
 SUN = Light("sun", energy=3, direction=(0.3, -0.4, -1))
 NORMAL = np.array((0.4, 0.2, 0.9))

@@ -6,7 +6,7 @@ import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.lettering import page
-from splat_addon.rendering.camera import Camera, look_at
+from splat_addon.rendering.scene.camera import Camera, look_at
 from splat_addon.rendering.settings import Settings
 from splat_addon.surfels import LAYOUT
 

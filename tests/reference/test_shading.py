@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from splat_addon.reference import render_exact
 from splat_addon.reference.brdf import specular_term, table_at
-from splat_addon.rendering.light import Light
 from splat_addon.rendering.scene import Instance, Material, Scene
+from splat_addon.rendering.scene.light import Light
 from splat_addon.rendering.settings import Settings
 
 #: No dielectric coat and no highlight: what is left is Lambert's law, to 0.3 %.

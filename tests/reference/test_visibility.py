@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import render_exact
-from splat_addon.rendering.camera import Camera, look_at
 from splat_addon.rendering.scene import Scene
+from splat_addon.rendering.scene.camera import Camera, look_at
 from splat_addon.rendering.settings import Settings
 
 RED, GREEN = (1, 0, 0), (0, 1, 0)

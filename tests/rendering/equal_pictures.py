@@ -22,9 +22,19 @@ SIZE = (48, 40)
 RANDOM_CASES = 260
 #: More than any other picture has; those of one pass are counted together by the tool's users.
 OUTPUTS = (
-    "color", "depth", "normal", "coverage", "position", "diffuse_color", "emission", "shadow", "overdraw",
-    "object_index", "material_index", "cryptomatte",
-)  # fmt: skip
+    "color",
+    "depth",
+    "normal",
+    "coverage",
+    "position",
+    "diffuse_color",
+    "emission",
+    "shadow",
+    "overdraw",
+    "object_index",
+    "material_index",
+    "cryptomatte",
+)
 
 
 def main() -> int:
@@ -171,12 +181,23 @@ def small(scene, camera):
 
 def random_case(rng):
     """Scene, camera, settings and whether the view refines."""
+    from splat_addon.images import Image
     from splat_addon.reference import extremes, scenes
     from splat_addon.rendering import (
-        Camera, Environment, Instance, Light, Lines, Matcap, Material, PolygonInstance, Scene, Settings,
-        SurfaceTexture, look_at, make_polygons,
-    )  # fmt: skip
-    from splat_addon.images import Image
+        Camera,
+        Environment,
+        Instance,
+        Light,
+        Lines,
+        Matcap,
+        Material,
+        PolygonInstance,
+        Scene,
+        Settings,
+        SurfaceTexture,
+        look_at,
+        make_polygons,
+    )
     from splat_addon.rendering.methods import METHODS
     from splat_addon.rendering.shading_models import SHADING_MODELS
 
@@ -194,22 +215,25 @@ def random_case(rng):
     texture = (SurfaceTexture(checks), None)
 
     points = scenes.fibonacci_sphere(700)
-    ball = extremes.discs(
-        points, *(a * 0.11 for a in scenes._tangents(points, rng.uniform(0, 6, 700))), normals=points
-    )
+    ball = extremes.discs(points, *(a * 0.11 for a in scenes._tangents(points, rng.uniform(0, 6, 700))), normals=points)
     ball = replace(ball, materials=(np.arange(700) % 2).astype(np.int32))
     if some(0.3):
         x, y, z = points.T
         ball = replace(
-            ball, roughness=0.5 + 0.4 * x, metallic=np.clip(0.5 + y, 0, 1) if some(0.5) else None,
+            ball,
+            roughness=0.5 + 0.4 * x,
+            metallic=np.clip(0.5 + y, 0, 1) if some(0.5) else None,
             emission=np.stack([np.maximum(z, 0), 0 * x, x * x], axis=1) if some(0.5) else None,
-        )  # fmt: skip
+        )
     if some(0.25):
         flat = np.tile((0.05, 0.0), (700, 1))
         ball = replace(
-            ball, uvs=points[:, :2], uv_along_x=flat, uv_along_y=flat[:, ::-1],
+            ball,
+            uvs=points[:, :2],
+            uv_along_x=flat,
+            uv_along_y=flat[:, ::-1],
             uv_border=np.tile((0.6, 0.3), (700, 1)) if some(0.5) else None,
-        )  # fmt: skip
+        )
     if some(0.2):
         ball = ball.as_solid()
     turned = np.diag((pick(1.0, 1.0, -1.0), 1.0, pick(1.0, 0.6), 1.0))
@@ -253,9 +277,15 @@ def random_case(rng):
         kind = pick("point", "spot", "area")
         lights.append(
             Light(
-                kind, (1, 0.6, 0.3), 80.0, (-1.5, -2, 2), (0.5, 0.6, -1), pick(0.0, 0.3), casts_shadow=some(0.5),
+                kind,
+                (1, 0.6, 0.3),
+                80.0,
+                (-1.5, -2, 2),
+                (0.5, 0.6, -1),
+                pick(0.0, 0.3),
+                casts_shadow=some(0.5),
                 receivers=pick(None, None, (1,), (0, 2)),
-            )  # fmt: skip
+            )
         )
     sky = Environment(rng.random((8, 16, 3)).astype(np.float32)) if some(0.25) else None
     scene = Scene(surfels, lights, (0.4, 0.5, 0.6), sky, polygons)
@@ -269,7 +299,9 @@ def random_case(rng):
     if far > 1e3 and surfels:
         beyond = camera.matrix_world.copy()
         beyond[:3, 3] -= 1e5 * beyond[:3, 2]
-        scene = replace(scene, surfels=[*scene.surfels, Instance(extremes.discs((0, 0, 0), (5e3, 0, 0), (0, 5e3, 0)), beyond)])
+        scene = replace(
+            scene, surfels=[*scene.surfels, Instance(extremes.discs((0, 0, 0), (5e3, 0, 0), (0, 5e3, 0)), beyond)]
+        )
     method = pick("mip", "mip", "mip", "quad", "quad", *METHODS)
     wanted = [name for name in OUTPUTS if some(0.85 if name == "color" else pick(0.15, 0.5))] or ["color"]
     multisampling = pick(0, 4) if METHODS[method].works_in == "space" else 0

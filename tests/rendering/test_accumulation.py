@@ -29,7 +29,9 @@ def test_the_plan_names_the_formats(render):
         render(scene, camera, Settings(method="quad", supersampling=2, accumulation=a)).stats["plan"]
         for a in ("float32", "float16")
     ]
-    assert [{plan.format(name) for name in ("gbuffer_color", "gbuffer_normal", "gbuffer_material")} for plan in plans] == [
+    assert [
+        {plan.format(name) for name in ("gbuffer_color", "gbuffer_normal", "gbuffer_material")} for plan in plans
+    ] == [
         {"RGBA32F"},
         {"RGBA16F"},
     ]

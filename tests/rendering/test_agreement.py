@@ -28,8 +28,8 @@ from splat_addon.rendering import (
     SurfaceTexture,
     look_at,
 )
-from splat_addon.rendering.plan.frame_plan import FILTER_MARGIN
 from splat_addon.rendering.methods import METHODS, get_method
+from splat_addon.rendering.plan.frame_plan import FILTER_MARGIN
 from splat_addon.rendering.shading_models import SHADING_MODELS
 
 TOLERANCE = 1e-4

@@ -18,7 +18,7 @@ from splat_addon.rendering import (
     Scene,
     Settings,
 )
-from splat_addon.rendering.polygons import make_polygons
+from splat_addon.rendering.scene.polygons import make_polygons
 from splat_addon.rendering.settings import OUTPUTS
 
 CAMERA = Camera.perspective(np.eye(4), 0.9, (40, 30))

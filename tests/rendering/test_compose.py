@@ -11,7 +11,16 @@ from splat_addon.rendering.plan.compose import FOLDER, compose
 
 FILES = sorted(FOLDER.rglob("*.glsl"))
 #: Folders of which a text has one file.
-CHOICES = {"methods", "shading_models", "storage", "depth_formats", "sum_formats", "samples", "background", "world_light"}
+CHOICES = {
+    "methods",
+    "shading_models",
+    "storage",
+    "depth_formats",
+    "sum_formats",
+    "samples",
+    "background",
+    "world_light",
+}
 CHOICES |= {"shadow_taps", "polygon_share"}
 GLOBAL = re.compile(r"^(?:const )?(?:struct (\w+)|\w+ (\w+)(?:\[\d*\])?(?:\(| =|;))", re.MULTILINE)
 

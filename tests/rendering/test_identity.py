@@ -24,7 +24,7 @@ from splat_addon.rendering.accumulation import mean_frame
 from splat_addon.rendering.cryptomatte import added_up, murmur3_32, name_hash
 from splat_addon.rendering.identity import NUMBERED, Identities, nearest_numbers, tile_matte
 from splat_addon.rendering.methods import METHODS
-from splat_addon.rendering.polygons import make_polygons
+from splat_addon.rendering.scene.polygons import make_polygons
 from splat_addon.surfels import Surfels
 
 SIZE = (40, 30)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from splat_addon.rendering import Camera, Scene, Settings
-from splat_addon.rendering.lens import Lens
+from splat_addon.rendering.scene.lens import Lens
 from splat_addon.surfels import Surfels
 
 SIZE = 48

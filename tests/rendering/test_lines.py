@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from splat_addon.rendering import Camera, Instance, Lines, Renderer, Scene, Settings, look_at, plan
-from splat_addon.rendering.plan.frame_plan import FILTER_MARGIN
 from splat_addon.rendering.methods import get_method
+from splat_addon.rendering.plan.frame_plan import FILTER_MARGIN
 from splat_addon.sampling import TriangleMesh, sample_mesh
 
 SIZE = (96, 64)

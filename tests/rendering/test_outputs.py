@@ -22,7 +22,7 @@ from splat_addon.rendering import (
     look_at,
 )
 from splat_addon.rendering.identity import NUMBERED
-from splat_addon.rendering.polygons import make_polygons
+from splat_addon.rendering.scene.polygons import make_polygons
 from splat_addon.rendering.settings import OUTPUTS as ALL_OUTPUTS
 
 #: tests/rendering/test_identity.py has the others.

@@ -21,7 +21,6 @@ from splat_addon.rendering import (
 )
 from splat_addon.rendering.features import INPUTS
 from splat_addon.rendering.plan.executor import describe
-from splat_addon.rendering.plan.graph import Loop
 from splat_addon.rendering.settings import Lines
 from splat_addon.surfels import Surfels
 

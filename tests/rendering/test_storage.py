@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from splat_addon.reference import scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Scene, Settings
-from splat_addon.rendering.packing_16_bit import pack_16_bit, spatial_order
-from splat_addon.rendering.storages import STORAGES
+from splat_addon.rendering.upload.packing_16_bit import pack_16_bit, spatial_order
+from splat_addon.rendering.upload.storages import STORAGES
 from splat_addon.surfels import LAYOUT, Surfels, quaternion_axes
 
 BLOCK = 512

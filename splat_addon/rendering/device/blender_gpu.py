@@ -98,7 +98,6 @@ class BlenderDevice:
             else:
                 batch.draw_range(shader, elem_start=0, elem_count=vertices)
 
-
     def _uniform(self, block):
         """The uniform buffer of an array, which stays alive with it."""
         if id(block) not in self._uniforms:

@@ -123,7 +123,9 @@ class Device(Protocol):
         viewport: x, y, width, height in pixels of the part of the target to draw into; None for all of it.
         """
 
-    def draw_fullscreen(self, pipeline, target, blocks: list[np.ndarray], textures: list[Texture], viewport=None) -> None:
+    def draw_fullscreen(
+        self, pipeline, target, blocks: list[np.ndarray], textures: list[Texture], viewport=None
+    ) -> None:
         """Draw one triangle of three vertices, 0 to 2, that `fullscreen.vert.glsl` stretches over the viewport."""
 
     def finish(self, target: Target) -> None:

@@ -166,7 +166,10 @@ def _declared(description: PipelineDescription, source: str, varying: str) -> st
     lines += [f"#define {name} {value}" for name, value in description.defines]
     for struct, instance, fields in description.blocks:
         members = " ".join(f"{kind} {name};" for kind, name in fields)
-        lines += [f"struct {struct} {{ {members} }};", f"layout(std140) uniform {struct}Block {{ {struct} {instance}; }};"]
+        lines += [
+            f"struct {struct} {{ {members} }};",
+            f"layout(std140) uniform {struct}Block {{ {struct} {instance}; }};",
+        ]
     kinds = {name: "sampler2DMS" for name in description.multisampled}
     lines += [f"uniform {kinds.get(name, 'sampler2D')} {name};" for name in description.samplers]
     lines += [f"{interpolation} {varying} {kind} {name};" for interpolation, kind, name in description.varyings]

@@ -11,8 +11,8 @@ Each module decides from a `Planning` whether the frame needs it, and says why n
     NAMES                  its files in shaders/features, where they are not one of its own name
 """
 
-from ..packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT
-from ..polygons import CORNERS_PER_ROW, TEXELS_PER_CORNER
+from ..scene.polygons import CORNERS_PER_ROW, TEXELS_PER_CORNER
+from ..upload.packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT
 from . import (
     accumulation,
     depth_bounds,
@@ -25,6 +25,7 @@ from . import (
     lights,
     lines,
     materials,
+    near_clipped,
     object_id,
     oit,
     outputs,
@@ -32,7 +33,6 @@ from . import (
     shadows,
     silhouettes,
     split,
-    near_clipped,
     textures,
     transparency,
     transparent_shadows,

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..plan.executor import fill
+from ..plan.frame_plan import VISIBILITY_ROWS
 from ..plan.graph import Part, Pass, Texture
 from . import silhouettes, visibility
 
@@ -12,7 +13,7 @@ BOUNDS = Texture("depth_bounds")
 
 def bounds(planning, reason: str, seen: Texture, kind: str = "opaque") -> Pass:
     """The pass, of the depths that are seen; and the depths of samples, where visibility has more rows than they."""
-    rows = silhouettes.VISIBILITY_ROWS if seen.per == "row" else 1
+    rows = VISIBILITY_ROWS if seen.per == "row" else 1
     own = Part(
         "depth_bounds",
         reads=(seen,),

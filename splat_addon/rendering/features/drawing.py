@@ -8,12 +8,12 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from ..device.interface import Texture as DeviceTexture
-from ..light import MAX_LIGHT_SETS
 from ..plan.executor import TileContext
 from ..plan.graph import Pass
 from ..plan.uniforms import DRAW, std140
 from ..scene import Instance
-from ..storages import get_storage
+from ..scene.light import MAX_LIGHT_SETS
+from ..upload.storages import get_storage
 from ..view import DrawItem
 
 #: where a method works -> the host of its shaders
@@ -60,7 +60,9 @@ def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawIt
         tile.resources.device.draw_triangles(program, target, triangles, blocks, textures, viewport)
 
 
-def draw_polygons(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None):
+def draw_polygons(
+    tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None
+):
     """The same; epsilon is how far behind polygons splats may lie."""
     program, resources = None, tile.resources
     for placed in placed_ones:

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-from ..brdf_table import brdf_texels
 from ..plan.executor import fill
+from ..plan.frame_plan import VISIBILITY_ROWS
 from ..plan.graph import Part, Pass, Texture
-from . import depth_bounds, outputs, silhouettes, visibility
+from ..upload.brdf_table import brdf_texels
+from . import depth_bounds, outputs, visibility
 from .drawing import LIT_HOSTS
 
 NAMES = ("lighting", "picture")
@@ -38,7 +39,7 @@ def deferred(planning, reason: str, kind: str = "opaque") -> Pass:
 
 def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque", state=None) -> Pass:
     """Filters silhouettes."""
-    rows = silhouettes.VISIBILITY_ROWS if seen.per == "row" else 1
+    rows = VISIBILITY_ROWS if seen.per == "row" else 1
     own = Part(
         "lighting",
         reads=(SHADED, SURFACE, seen, depth_bounds.BOUNDS),

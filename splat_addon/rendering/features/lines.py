@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import math
 
-from ..lines import CREASE_REACH
 from ..plan.executor import fill
 from ..plan.graph import Part, Pass, Texture
+from ..scene.lines import CREASE_REACH
 from .drawing import LIT_HOSTS
 
 CONSTANTS = {"CREASE_REACH": CREASE_REACH}

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from ..packing import pack_materials, shared_emission, shared_material
 from ..plan.graph import Part, Texture
+from ..upload.packing import pack_materials, shared_emission, shared_material
 from .drawing import LIT_HOSTS, SPLAT_HOSTS
 
 NAMES = ("materials", "emission")

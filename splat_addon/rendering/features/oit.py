@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from ..packing import SPLATS_PER_ROW, row_count
 from ..plan.executor import fill
 from ..plan.graph import Part, Pass, Texture
+from ..upload.packing import SPLATS_PER_ROW, row_count
 from . import gbuffer, lighting
 from .drawing import RASTERIZERS, draw_block, draw_splats, drawn_by, splat_textures, storage_samplers
 from .rasterizers import rasterized

@@ -126,7 +126,9 @@ def parts(planning, p):
 
 def _handing(planning, p, in_layer: bool, has_layers: bool):
     """What is handed on from samples to pixels."""
-    has_material = ("has_material",) if planning.model.has_material and "diffuse_color" in planning.settings.outputs else ()
+    has_material = (
+        ("has_material",) if planning.model.has_material and "diffuse_color" in planning.settings.outputs else ()
+    )
     _, of_all, of_layers = planning.find(_found)
     names = of_layers if in_layer else of_all
     for name in names:

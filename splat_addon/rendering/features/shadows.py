@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..camera import Camera
-from ..light import pack_lights
 from ..plan.executor import TileContext
 from ..plan.graph import Part, Pass, Texture
+from ..scene.camera import Camera
+from ..scene.light import pack_lights
 from ..shadow import MAX_MAPS, map_ranges, pack_shadow_maps, same_maps, shadow_maps
 from ..view import View
 from . import visibility

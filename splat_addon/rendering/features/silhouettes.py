@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..plan.frame_plan import FILTER_MARGIN, VISIBILITY_ROWS
+from ..plan.frame_plan import FILTER_MARGIN
 from ..plan.graph import Part
 
 CONSTANTS = {"FILTER_REACH": FILTER_MARGIN}

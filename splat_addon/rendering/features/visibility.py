@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..plan.executor import TileContext
+from ..plan.frame_plan import VISIBILITY_ROWS
 from ..plan.graph import Part, Pass, Texture
 from ..view import View
 from . import depth_format, silhouettes
@@ -83,5 +84,5 @@ def draw(tile: TileContext, p: Pass, target, splats, polygons, viewport=None) ->
 def _seen_by_rows(view: View, rows: int) -> View:
     """A view moved in the picture, so that the first of a sample's rows goes through its centre as the sample does."""
     projection = view.projection.copy()
-    projection[1] -= projection[3] * (silhouettes.VISIBILITY_ROWS - 1) / rows
+    projection[1] -= projection[3] * (VISIBILITY_ROWS - 1) / rows
     return replace(view, projection=projection)

@@ -32,9 +32,7 @@ _LIGHTS = Part("world", inputs=("environment_image", "environment_levels"), choi
 def passes(planning):
     """A world without anything in it is a pass of its own."""
     if not planning.shown:
-        planning.skip(
-            "all other passes", "the scene has neither surfels nor polygons: the picture is its background"
-        )
+        planning.skip("all other passes", "the scene has neither surfels nor polygons: the picture is its background")
         if _is_shown(planning):
             samples = ("SAMPLES", planning.settings.supersampling)
             own = Part("world", writes=outputs.pixel_textures(planning), constants=(samples,), called=outputs.CALLED)

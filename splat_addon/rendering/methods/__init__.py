@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ways to rasterise and filter a splat: one registry entry, one GLSL file and one numpy twin each."""
+"""The ways to rasterise and filter a splat: one registry entry, one GLSL file and one numpy twin
+(reference/methods) each."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
-
-from . import affine, affine_unfiltered, ewa, homogeneous, homogeneous_printed, mip, quad, raycast
 
 
 @dataclass(frozen=True)
@@ -20,14 +18,12 @@ class Method:
     culls_hidden: splats that lie behind all that is seen are found before they are drawn. The papers draw them, so do
         their methods here.
     pixel_variance: of its pixel filter, samples squared; 1/12 is that of a box. Textures are looked up under it.
-    twin: the same functions in numpy.
     """
 
     name: str
     label: str
     paper: str
     summary: str
-    twin: ModuleType
     works_in: str = "picture"
     filters_silhouettes: bool = False
     culls_hidden: bool = False
@@ -42,7 +38,6 @@ METHODS = {
             "Mip Filter",
             "this project, after Zwicker et al. 2001",
             "Smooth and still at one sample a pixel: 40 to 47 dB in 1.3 to 1.9 times the time of Quads",
-            mip,
             filters_silhouettes=True,
             culls_hidden=True,
         ),
@@ -51,7 +46,6 @@ METHODS = {
             "Quads",
             "View-independent object-space surface splatting, section 4",
             "No filter: the fastest, and with many samples the sharpest",
-            quad,
             works_in="space",
             pixel_variance=1 / 12,
         ),
@@ -60,35 +54,30 @@ METHODS = {
             "EWA",
             "Zwicker et al. 2001, Ren et al. 2002",
             "The classic filter, in the picture; blurs silhouettes",
-            ewa,
         ),
         Method(
             "raycast",
             "Ray Cast",
             "Botsch et al. 2005, sections 3 and 5",
             "Exact ellipses, no smaller than the pixel's disc",
-            raycast,
         ),
         Method(
             "homogeneous",
             "Homogeneous",
             "Guennebaud et al. 2006, section 4, repaired",
             "Exact discs no smaller than the pixel's filter, at the depth of their planes; 3 dB truer at flat angles",
-            homogeneous,
         ),
         Method(
             "homogeneous_printed",
             "Homogeneous, as Printed",
             "Guennebaud et al. 2006, section 4, equations 8 to 10",
             "The paper's own formulas: a disc that faces the ray vanishes, small ones lose their depth",
-            homogeneous_printed,
         ),
         Method(
             "affine",
             "Affine",
             "Botsch and Kobbelt 2003, section 4",
             "Discs in point sprites; opens holes at flat angles",
-            affine,
             pixel_variance=1 / 12,
         ),
         Method(
@@ -96,7 +85,6 @@ METHODS = {
             "Affine, One Pass",
             "Botsch and Kobbelt 2003, section 5",
             "Discs in point sprites of which the nearest is seen: nothing blends, 0.65 to 0.7 of the time of Quads",
-            affine_unfiltered,
             works_in="sprites",
             pixel_variance=1 / 12,
         ),

@@ -10,12 +10,12 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from ..camera import Camera
 from ..scene import Scene
+from ..scene.camera import Camera
 from ..settings import Settings
-from ..storages import get_storage
+from ..upload.storages import get_storage
 from .frame_plan import FILTER_MARGIN, VISIBILITY_ROWS, FramePlan
-from .graph import Pass, Texture, changed, trimmed
+from .graph import Pass, changed, trimmed
 from .planning import Planning
 
 #: A target's edge in samples; a larger picture is rendered in tiles, so that memory stays below about 1 GB.
@@ -116,7 +116,7 @@ def _of_blocks(plan: FramePlan, pixels: tuple[int, int]) -> tuple[int, int]:
 
 
 def _of_splats(plan: FramePlan, pixels: tuple[int, int]) -> tuple[int, int]:
-    from ..packing import SPLATS_PER_ROW
+    from ..upload.packing import SPLATS_PER_ROW
 
     return SPLATS_PER_ROW, plan.facts["lit_rows"]
 

@@ -10,13 +10,13 @@ from functools import cached_property
 
 import numpy as np
 
-from ..camera import Camera
 from ..device.interface import Pipeline, PipelineDescription, Target
 from ..device.interface import Texture as DeviceTexture
 from ..identity import Identities
-from ..resources import Resources, TextureKey
 from ..scene import Scene
+from ..scene.camera import Camera
 from ..settings import Settings
+from ..upload.resources import Resources, TextureKey
 from ..view import View
 from .compose import DEFAULTS, compose
 from .frame_plan import FramePlan
@@ -62,11 +62,7 @@ class TileContext:
         called = dict(p.all("called"))
         read = {called.get(texture, texture.name): texture for texture in p.all("reads", "updates")}
         return [
-            made[name]()
-            if name in made
-            else self.texture(read[name])
-            if name in read
-            else self.inputs[name](self)
+            made[name]() if name in made else self.texture(read[name]) if name in read else self.inputs[name](self)
             for name in program.description.samplers
         ]
 
@@ -153,7 +149,7 @@ def describe(plan: FramePlan, p: Pass, vertex: str = "fullscreen.vert", *variant
     drawn = [texture for part in parts for texture in part.fills if not texture.is_depth]
     sampled = [(called.get(t, t.name), t) for part in parts for t in (*part.reads, *part.updates)]
     return PipelineDescription(
-        name=p.name if not variants else f"{p.name} ({', '.join(variants)})",
+        name="_".join((p.name, *variants)),
         vertex=texts[0],
         fragment=texts[1],
         blocks=blocks_in(*texts),

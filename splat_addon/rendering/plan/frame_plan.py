@@ -9,7 +9,6 @@ from functools import cached_property
 
 from .graph import Loop, Pass, Step, Texture, each_pass
 
-
 #: Samples that the filter of silhouettes reads up and down.
 FILTER_MARGIN = 2
 

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TypeVar
 
-from ..camera import Camera
 from ..methods import get_method
 from ..scene import Scene
+from ..scene.camera import Camera
 from ..settings import Settings
 from ..shading_models import get_shading_model
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from splat_addon.blender import final_render
-from splat_addon.rendering import storages
+from splat_addon.rendering.upload import storages
 
 
 @pytest.fixture

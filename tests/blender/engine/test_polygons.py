@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from splat_addon.blender import final_render
-from splat_addon.rendering import polygons, resources
+from splat_addon.rendering.scene import polygons
+from splat_addon.rendering.upload import resources
 
 
 @pytest.fixture

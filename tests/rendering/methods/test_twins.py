@@ -14,9 +14,10 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
+from splat_addon.reference.methods import TWINS
+from splat_addon.reference.methods.plane import splat_plane, straddling_samples
 from splat_addon.rendering import EMPTY_DEPTH, Camera, Renderer, Scene, Settings
 from splat_addon.rendering.methods import METHODS
-from splat_addon.rendering.methods.plane import splat_plane, straddling_samples
 from splat_addon.rendering.view import build_view
 from splat_addon.surfels import Surfels, axes_quaternions
 
@@ -118,7 +119,7 @@ def twin_weights(method, axes, camera, shift=(0.0, 0.0)):
         weights, depths = straddling_samples(position, u, v, points, camera.is_orthographic)
     else:
         plane = splat_plane(position, u, v, camera.is_orthographic)
-        weights, depths = METHODS[method].twin.samples(plane, points, pixel)
+        weights, depths = TWINS[method](plane, points, pixel)
     is_seen = (weights > 0) & (depths >= NEAR) & (depths <= FAR)
     return np.where(is_seen, weights, 0.0).reshape(SIZE, SIZE), depths.reshape(SIZE, SIZE)
 

@@ -12,8 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..surfels import Surfels
-from .scene import Material, Placed
+from ...surfels import Surfels
+from ..scene import Material, Placed
 
 SPLATS_PER_ROW = 512
 TEXELS_PER_SPLAT = 4

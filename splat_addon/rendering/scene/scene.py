@@ -12,8 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..images import Image
-from ..surfels import Surfels, quaternion_axes
+from ...images import Image
+from ...surfels import Surfels, quaternion_axes
 from .camera import Camera
 from .environment import Environment
 from .light import MAX_LIGHT_SETS, Light

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..images import EXTENSIONS, Image, Pyramid
-from .scene import SurfaceTexture
+from ...images import EXTENSIONS, Image, Pyramid
+from ..scene import SurfaceTexture
 
 #: Of the atlas, along each edge: what every tested backend has. Textures that do not fit lose their finest level.
 MAX_EDGE = 16384

@@ -9,13 +9,13 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ..surfels import Surfels
+from ...surfels import Surfels
+from ..device import Device
+from ..device.interface import Pipeline, PipelineDescription, Texture
+from ..scene import Placed, SurfaceTexture
+from ..scene.polygons import Polygons, pack_polygon_uvs, pack_polygons
 from .atlas import FORMAT, make_atlas
-from .device import Device
-from .device.interface import Pipeline, PipelineDescription, Texture
 from .packing import pack_materials, pack_own_materials, pack_uvs
-from .polygons import Polygons, pack_polygon_uvs, pack_polygons
-from .scene import Placed, SurfaceTexture
 from .storages import Storage
 
 #: name, width, height, format, samples a texel (0 for one) of a texture that a pass writes.

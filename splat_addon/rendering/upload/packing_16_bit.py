@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..surfels import Surfels
+from ...surfels import Surfels
 from .packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT, octahedral, row_count
 
 #: A share of a splat's shorter half-axis that is seen.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..surfels import Surfels
+from ...surfels import Surfels
 from .packing import pack_surfels
 from .packing_16_bit import pack_16_bit, spatial_order
 
