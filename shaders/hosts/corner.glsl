@@ -1,4 +1,4 @@
-// References: rendering/polygons.py, which writes this layout.
+// References: rendering/scene/polygons.py, which writes this layout.
 // Summary: the corners of polygons, pulled from their texture, and the side of a triangle that is seen. Hook:
 //          `attributes`, what fragments are told beside.
 

@@ -1,5 +1,5 @@
 // References: Blender manual, "Light Objects" (units); Cycles' spot falloff (a smooth step between cosines).
-// Summary: what each light sends to a place: the texels of rendering/light.py as a direction, an irradiance and, of a
+// Summary: what each light sends to a place: the texels of rendering/scene/light.py as a direction, an irradiance and, of a
 //          light with a size, four corners. A round light is a square of its area that faces the place, as Cycles takes a disc there.
 //          Hooks: `receive` what of its strength is meant for the surface, `spread` the square of a light with a size,
 //          `reach` before anything is in the way, `hide` what is, `arrive` after that.

@@ -27,7 +27,7 @@ vec3 specular_albedo(vec2 terms, vec3 f0, float f90, out vec3 scattered) {
 }
 
 // Where the lobe reflects light from on average: off the mirrored direction, the more so the rougher the surface is and
-// the flatter it is seen. The view's frame: see rendering/brdf_table.py.
+// the flatter it is seen. The view's frame: see rendering/upload/brdf_table.py.
 vec3 mean_direction(vec2 mean, vec3 to_eye, vec3 normal) {
   vec3 across = to_eye - normal * dot(to_eye, normal);
   return normalize(normal * mean.y + across * (mean.x / max(length(across), 1e-6)));

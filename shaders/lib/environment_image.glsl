@@ -1,4 +1,4 @@
-// References: Blender's Environment Texture (the equirectangular map); rendering/environment.py, which makes the texture.
+// References: Blender's Environment Texture (the equirectangular map); rendering/scene/environment.py, which makes the texture.
 // Summary: the picture of the world in a direction.
 
 vec3 environment_image_at(vec3 direction) {

@@ -1,7 +1,7 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 3 (the plane's homography); written relative to the splat's
 //             centre, which keeps its digits for small and far splats where adj(M) loses them.
 // Summary: from a point of the picture to the place in a splat's plane, for perspective and parallel cameras alike.
-//          The twin of rendering/methods/plane.py.
+//          The twin of reference/methods/plane.py.
 //
 // Depth z counts forwards. Places and lengths in the picture are in pixels from its lower left corner, as
 // gl_FragCoord is. `view.window` holds that corner and the step of one pixel, on the plane at distance 1.

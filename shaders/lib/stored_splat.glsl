@@ -1,4 +1,4 @@
-// References: rendering/storages.py, which registers the ways to store splats.
+// References: rendering/upload/storages.py, which registers the ways to store splats.
 // Summary: a splat as it is stored, in its object's space; the file of the storage in use finds it in its textures.
 
 struct StoredSplat {

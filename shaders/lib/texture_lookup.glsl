@@ -4,7 +4,7 @@
 // Summary: a texture's colour under a footprint, given by its variances. Where it is wider than a texel, the average of
 //          the texels in an ellipse, of the level on which it is about a texel wide across; where the texture is
 //          magnified, bilinear probes. No sampler state and no derivative of the hardware: the same on every device.
-//          The twin of rendering/texture_lookup.py. The layout of atlas and table is rendering/atlas.py's.
+//          The twin of rendering/upload/texture_lookup.py. The layout of atlas and table is rendering/upload/atlas.py's.
 //
 // The includer declares the samplers `texture_atlas` and `texture_table`.
 

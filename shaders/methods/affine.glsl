@@ -1,7 +1,7 @@
 // References: Botsch, Kobbelt, "High-Quality Point-Based Rendering on Modern GPUs", 2003, section 4 (a disc in a point
 //             sprite: the depth offset of its plane bounds the ellipse, the affine approximation of its shape).
 // Summary: discs only; the offset in the picture, in radii, and the depth offset of the plane there make the place.
-//          The twin of rendering/methods/affine.py.
+//          The twin of reference/methods/affine.py.
 
 const float LEAST_COSINE = 0.1;  // a disc seen flatter is drawn as one seen at this angle
 

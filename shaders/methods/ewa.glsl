@@ -1,7 +1,7 @@
 // References: Zwicker, Pfister, van Baar, Gross, "Surface Splatting", 2001, equations 9 to 12; Ren et al. 2002; the
 //             amplitude that keeps the integral: Yu et al., "Mip-Splatting", 2024.
 // Summary: the classic yardstick: the splat's projection is taken as affine at its centre, and joined with the
-//          pixel's Gaussian in the picture. The twin of rendering/methods/ewa.py.
+//          pixel's Gaussian in the picture. The twin of reference/methods/ewa.py.
 
 const float KERNEL_VARIANCE = 0.25;
 const float FILTER_VARIANCE = 0.5;  // square pixels

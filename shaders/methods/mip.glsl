@@ -3,7 +3,7 @@
 // Summary: the pixel's Gaussian is mapped into the splat's plane, joined with the kernel there and scaled to keep
 //          its integral: neither a vanishing splat nor a stretched one loses or gains weight. The kernel's rim is
 //          blurred as much as the pixel's Gaussian blurs it: where splats are larger than pixels, nothing else is.
-//          The twin of rendering/methods/mip.py.
+//          The twin of reference/methods/mip.py.
 
 const float KERNEL_VARIANCE = 0.25;
 const float FILTER_VARIANCE = 0.5;  // square pixels

@@ -2,7 +2,7 @@
 //             perspective-correct interpolation) and equation 12 (the kernel without a low-pass filter).
 // Summary: a splat is the quad of its two half-axes in space, clipped by the hardware. The pixel's place in the
 //          ellipse is interpolated; the kernel is a Gaussian of sigma 1/2, cut at the ellipse.
-//          The twin of rendering/methods/quad.py.
+//          The twin of reference/methods/quad.py.
 
 // The corner of the splat's quad, in the space of its arguments.
 vec3 footprint_corner(vec3 position, vec3 axis_u, vec3 axis_v, vec2 corner) {

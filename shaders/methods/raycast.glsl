@@ -1,7 +1,7 @@
 // References: Botsch, Hornung, Zwicker, Kobbelt 2005, section 3 (ray casting a splat) and section 5 (the union of the
 //             kernel and the pixel's low-pass as an approximation of EWA).
 // Summary: the exact place in the ellipse, or the distance from the centre in pixels if that is less.
-//          The twin of rendering/methods/raycast.py.
+//          The twin of reference/methods/raycast.py.
 
 const float FOOTPRINT_END = 1.0;
 

@@ -1,4 +1,4 @@
-// References: rendering/packing_16_bit.py, which writes this layout and says what each number may lose;
+// References: rendering/upload/packing_16_bit.py, which writes this layout and says what each number may lose;
 //             Terzakis, Lourakis, Ait-Boudaoud, "Modified Rodrigues Parameters", J. Math. Imaging Vis. 2018 (rotation).
 // Summary: four texels of 16-bit numbers a splat, 512 splats a row; each row is a block with its own box, longest
 //          half-axis and brightest colour, in float32.

@@ -1,4 +1,4 @@
-// References: rendering/packing.py, which writes this layout.
+// References: rendering/upload/packing.py, which writes this layout.
 // Summary: four texels of float32 a splat, 512 splats a row.
 
 #include "lib/octahedron.glsl"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The GGX lobe under points, quads and an even world, in plain numpy; the twin of shaders/shading/brdf.glsl.
+"""The GGX lobe under points, quads and an even world, in plain numpy; the twin of shaders/lib/brdf.glsl.
 
 Sources:
 - Trowbridge & Reitz 1975; Walter et al. 2007, "Microfacet Models for Refraction", eq. 33: the distribution D.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What lights send to places, by definition and in float64; the twin of shaders/shading/lights.glsl.
+"""What lights send to places, by definition and in float64; the twin of shaders/hosts/lights.glsl.
 
 A light with a size is a square of its area; a round one faces the place that it lights, as
 Cycles takes a disc there. Blender's manual has the units;

@@ -15,7 +15,7 @@ from .rays import RayGrid, Surface
 from .splats import BACK_WEIGHT
 from .textures import point_colors
 
-#: The least weight of a front, the least cosine between normals of one surface: shaders/common/mean_surface.glsl.
+#: The least weight of a front, the least cosine between normals of one surface: shaders/hosts/mean_surface.glsl.
 LEAST_FRONT = 0.02
 SAME_SURFACE = 0.7
 

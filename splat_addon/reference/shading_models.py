@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The shading models in float64: the twins of shaders/shading/*.glsl, by name.
+"""The shading models in float64: the twins of shaders/shading_models/*.glsl, by name.
 
 Each takes what rays see (`Surface`), their grid, the scene, its camera and the settings, and gives (n, 3) radiance.
 """

@@ -15,11 +15,11 @@ from ..rendering.scene.camera import Camera
 from ..rendering.scene.light import MAX_LIGHT_SETS
 from .textures import surfel_textures
 
-#: What the back of a splat weighs against a front, and how much further it is moved away: shaders/common/sides.glsl.
+#: What the back of a splat weighs against a front, and how much further it is moved away: shaders/lib/sides.glsl.
 BACK_WEIGHT = 1e-3
 BACK_EPSILON = 2.0
 
-#: A splat that shows less of itself is not there at all: shaders/common/sides.glsl.
+#: A splat that shows less of itself is not there at all: shaders/lib/sides.glsl.
 LEAST_OPACITY = 1e-3
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The radiance that reaches a surface from all around, in plain numpy; the twin of shaders/common/world.glsl."""
+"""The radiance that reaches a surface from all around, in plain numpy; the twin of shaders/lib/world_light."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ INDICES = ("object_index", "material_index")
 #: The arrays of a frame that need numbers.
 NUMBERED = (*INDICES, "cryptomatte")
 
-#: Of the Gaussian of shaders/resolve.frag.glsl, in samples; and what columns weigh there.
+#: Of the Gaussian of shaders/hosts/resolve.frag.glsl, in samples; and what columns weigh there.
 _FILTER_VARIANCE = 0.5
 _COLUMN_WEIGHTS = np.array([1.0, 2.0, 1.0])
 

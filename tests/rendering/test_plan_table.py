@@ -55,7 +55,8 @@ AMONG_TEXTURES = "polygon_color polygon_normal polygon_depth"
 TEXTURES = {"visibility_depth", "gbuffer_color", "gbuffer_normal", "combined", "depth", "normal_coverage"}
 READS = {"brdf_table"}
 LAYER = ("visibility", "layer_occupancy", "attributes", "deferred_lighting", "layer", "peel")
-LAYER_TEXTURES = "layer_depth layer_occupancy gbuffer_depth shaded surface peel_state peel_state_next layers layers_depth layers_normal"
+LAYER_TEXTURES = "layer_depth layer_occupancy gbuffer_depth shaded surface peel_state peel_state_next "
+LAYER_TEXTURES += "layers layers_depth layers_normal"
 
 
 TRANSPARENT = Scene([Instance(replace(surfels(), colors=np.full((2, 4), 0.5)))])
@@ -118,7 +119,8 @@ TABLE = {
     ),
     "polygons alone": (replace(HYBRID, surfels=()), {}, AMONG, AMONG_TEXTURES, "", ()),
     "polygons of another material under a linked light": (
-        OTHERS, {}, AMONG, f"{AMONG_TEXTURES} polygon_material polygon_emission gbuffer_emission gbuffer_light_set", "lights",
+        OTHERS, {}, AMONG, f"{AMONG_TEXTURES} polygon_material polygon_emission gbuffer_emission gbuffer_light_set",
+        "lights",
         (),
     ),
     "polygons, flat, by mip": (
@@ -149,7 +151,8 @@ TABLE = {
         "row_depth depth_bounds shaded surface", "", (),
     ),
     "backs, by a method of the papers": (
-        TURNED_OVER, {"method": "raycast"}, ("visibility", "depth_bounds", "attributes", "shading"), "depth_bounds", "", (),
+        TURNED_OVER, {"method": "raycast"}, ("visibility", "depth_bounds", "attributes", "shading"),
+        "depth_bounds", "", (),
     ),
     "mip, more outputs": (
         PLAIN, {"method": "mip", "outputs": ("emission", "overdraw")},
@@ -164,14 +167,14 @@ TABLE = {
     ),
     "transparent, the rest blended": (
         TRANSPARENT, {"layers": 2},
-        ("visibility", "start_layers", *LAYER, "light_splats", "rest", "oit_shading", "oit_layer", "peel_oit", "attributes",
-         "shading"),
+        ("visibility", "start_layers", *LAYER, "light_splats", "rest", "oit_shading", "oit_layer", "peel_oit",
+         "attributes", "shading"),
         LAYER_TEXTURES + " lit_splats oit_accum oit_weight", "", (),
     ),
     "transparent, by mip": (
         TRANSPARENT, {"layers": 1, "blends_rest": False, "method": "mip"},
-        ("visibility", "start_layers", "visibility", "layer_occupancy", "depth_bounds", "attributes", "deferred_lighting", "resolve",
-         "peel", "depth_bounds", "attributes", "deferred_lighting", "resolve"),
+        ("visibility", "start_layers", "visibility", "layer_occupancy", "depth_bounds", "attributes",
+         "deferred_lighting", "resolve", "peel", "depth_bounds", "attributes", "deferred_lighting", "resolve"),
         LAYER_TEXTURES + " depth_bounds", "", (),
     ),
     "transparent, colour alone": (

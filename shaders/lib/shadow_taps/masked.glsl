@@ -1,4 +1,4 @@
-// References: common/screen_door.glsl, whose masks these looks meet; Vogel, "A Better Way to Construct the Sunflower
+// References: lib/screen_door.glsl, whose masks these taps meet; Vogel, "A Better Way to Construct the Sunflower
 //             Head", 1979.
 // Summary: looks into a shadow map of masked surfaces, spread over a disc. Which looks a surface hides is its mask's
 //          choice: so those of every place of a mask are a spiral of their own over the disc, and those of places that

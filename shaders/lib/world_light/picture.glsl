@@ -1,4 +1,4 @@
-// References: Karis, "Real Shading in Unreal Engine 4", 2013 (a picture blurred by the lobe); rendering/environment.py,
+// References: Karis, "Real Shading in Unreal Engine 4", 2013 (a picture blurred by the lobe); rendering/scene/environment.py,
 //             which makes the textures; Blender's Environment Texture (the equirectangular map).
 // Summary: the radiance that reaches a surface from all around, of a picture of the world.
 

@@ -36,7 +36,7 @@ def check_texture_size(size: tuple[int, int], largest: int) -> None:
 @dataclass(frozen=True)
 class PipelineDescription:
     """name: for error messages. vertex, fragment: GLSL without declarations of the inputs and outputs below.
-    blocks: (struct name, instance name, ((type, field), ...)) of each uniform block, std140; of mat4, vec4, vec2, float.
+    blocks: (struct name, instance name, ((type, field), ...)) of each uniform block, std140: mat4, vec4, vec2, float.
     samplers: names of 2D float textures, in slot order. multisampled: those with several samples a texel.
     varyings: (interpolation "smooth" | "flat", type, name) from vertex to fragment.
     outputs: (type, name) in slot order; empty for depth only.

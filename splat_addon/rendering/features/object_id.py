@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whose the samples are: a number that passes which find what is nearest leave beside its depth, and filters beyond it."""
+"""Whose the samples are: a number that passes which find what is nearest leave beside its depth."""
 
 from __future__ import annotations
 

@@ -167,6 +167,6 @@ def check_samplers(plan: FramePlan, room: int) -> None:
             read |= dict.fromkeys(texture.name for part in parts for texture in (*part.reads, *part.updates))
             if len(read) > room:
                 raise ValueError(
-                    f"The {p.name} pass would read {len(read)} textures at once ({', '.join(read)}), and this device has "
-                    f"room for {room}. Leave outputs out, or give all objects one material and no transparency."
+                    f"The {p.name} pass would read {len(read)} textures at once ({', '.join(read)}), and this device "
+                    f"has room for {room}. Leave outputs out, or give all objects one material and no transparency."
                 )

@@ -10,7 +10,7 @@ CONSTANTS = {"FILTER_REACH": FILTER_MARGIN}
 
 
 def have_rows(planning) -> bool:
-    """Whether visibility has more rows than there are of samples: what transparent layers hide is known at these alone."""
+    """Whether visibility has more rows than samples have: what transparent layers hide is known at samples alone."""
     from . import transparency
 
     return planning.method.filters_silhouettes and not planning.find(transparency.layers)

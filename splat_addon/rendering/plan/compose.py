@@ -6,7 +6,7 @@ A *host* is a shader, or a function of several, that marks with `#hook name(argu
 
     #part HOST, WORD ...
 
-A section is in a text where all its words hold: the host's name (its file's), the stage (vertex, fragment), the features
+A section is in a text where all its words hold: the host's name (its file's), the stage (vertex, fragment), features
 that are present, and what else a pass says of itself (layer, opaque ...). At a hook every function of these sections is
 called whose name begins with the feature's, or with one of the section's words, and ends with the hook's: in the
 features' order. Other functions help them. Any file may have sections of its own in the same way. `#include "path"`
@@ -62,8 +62,9 @@ class _File(NamedTuple):
 
 @cache
 def compose(root: str, words: tuple[str, ...] = (), names: tuple[tuple[str, str], ...] = (), origins=False) -> str:
-    """The text of shaders/hosts/`root`.glsl. words: the features that are present, in their order, and what else is said
-    of the pass. names: what is filled in for {names} in paths. origins: with a comment where each file begins and ends.
+    """The text of shaders/hosts/`root`.glsl. words: the features that are present, in their order, and what else is
+    said of the pass. names: what is filled in for {names} in paths. origins: with a comment where each file
+    begins and ends.
 
     Raises FileNotFoundError for a file that is not there and ValueError for a feature's function without a hook.
     """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A frame as an ordered list of passes over typed textures, to which features add parts.
 
-Order is the list's, so nothing is scheduled, and no texture has versions: a pass that writes without reading ends the life
-of what was there, which lets passes share a texture (each transparent layer has the sums of the opaque picture).
+Order is the list's, so nothing is scheduled, and no texture has versions: a pass that writes without reading ends the
+life of what was there, which lets passes share a texture (each transparent layer has the sums of the opaque picture).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _TYPES = {1: "float", 2: "vec2", 4: "vec4"}
 class Texture:
     """What passes write. name: also of the sampler that reads it. format: a name in `device.interface.FORMATS`.
 
-    per: what it holds one value for, a name in `frame_plan.SIZES`. is_multisampled: it has the frame's hardware samples.
+    per: what it holds one value for, a name in `plan.SIZES`. is_multisampled: it has the frame's hardware samples.
     is_sum: of float16, where sums are that.
     """
 
@@ -92,8 +92,8 @@ class Pass:
 
     run: run(tile, pass) -> the target that was drawn into. kind: "opaque", "layer", "rest", ..., for features.
     state: of its pipelines, fields of `PipelineDescription`. adds: to what is there, which it does not clear.
-    once: what its result depends on, if it is made with the first tile for all: it is made again where `is_same` of that
-        of the last frame is False. each: a pass that it runs itself, for each instance.
+    once: what its result depends on, if it is made with the first tile for all: it is made again where `is_same` of
+        that of the last frame is False. each: a pass that it runs itself, for each instance.
     """
 
     name: str

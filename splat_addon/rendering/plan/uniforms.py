@@ -37,8 +37,8 @@ VIEW: Block = (
 
 #: light_set: 1 in the channel of the instance's set. orientation: -1 for a mirrored object. epsilon: how far visibility
 #: moves splats back, in radii, or polygons, in view units. least_offset: of both, as a share of the distance; of an
-#: orthographic camera a length. first_slot, more_slots: number of its first material slot, and of slots after it. split:
-#: as of `DrawItem`. nowhere: the depth, between -1 and 1 in the view, at which what is not drawn collapses.
+#: orthographic camera a length. first_slot, more_slots: number of its first material slot, and of those after it.
+#: split: as of `DrawItem`. nowhere: the depth, between -1 and 1 in the view, at which what is not drawn collapses.
 DRAW: Block = (
     "Draw",
     "draw",

@@ -78,7 +78,7 @@ class Light:
         return self.kind == "area" or self.size > 0
 
 
-#: Rows of float32 texels a light: see shaders/shading/lights.glsl.
+#: Rows of float32 texels a light: see shaders/hosts/lights.glsl.
 TEXELS_PER_LIGHT = 7
 
 #: A square with the area of a disc has this half-side in radii.

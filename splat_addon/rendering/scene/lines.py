@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 MAX_WIDTH = 16.0
 
-#: Pixels beside a line within which a crease must have turned the normal; shaders/lines.frag.glsl has the same.
+#: Pixels beside a line within which a crease must have turned the normal; shaders/hosts/lines.frag.glsl has the same.
 CREASE_REACH = 3.0
 
 

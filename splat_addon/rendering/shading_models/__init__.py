@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class ShadingModel:
-    """name: also of shaders/shading/<name>.glsl and of its twin in `reference.shading_models`. label: for users.
+    """name: also of shaders/shading_models/<name>.glsl and of its twin in `reference.shading_models`. label: for users.
     source: of the model. summary: what it shows. cost: time of a frame, as a multiple of flat's (docs/features.md).
 
     is_lit: it looks at lights, with their shadows and the objects they are linked to.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The textures of one object in one image, with all their levels: a shader then needs a single draw and no sampler.
 
-`gpu` of Blender 4.5 and 5.0 can neither set a texture's filter nor its levels, so shaders/common/texture_lookup.glsl
+`gpu` of Blender 4.5 and 5.0 can neither set a texture's filter nor its levels, so shaders/lib/texture_lookup.glsl
 does both by hand. The table has a row for each material slot:
     factor.rgb, levels (0: none)   |   extension, closest, width, height   |   x, y, width, height of each level
 """

@@ -62,7 +62,7 @@ def row_count(surfels: Surfels) -> int:
 
 
 def octahedral(normals: np.ndarray) -> np.ndarray:
-    """(2, N) octahedral coordinates of (N, 3) unit vectors; the twin of shaders/common/octahedron.glsl."""
+    """(2, N) octahedral coordinates of (N, 3) unit vectors; the twin of shaders/lib/octahedron.glsl."""
     x, y, z = np.ascontiguousarray(normals.T)
     size = np.abs(x) + np.abs(y) + np.abs(z)
     x, y = x / size, y / size

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The numpy twin of shaders/common/texture_lookup.glsl: a texture's colour under a footprint, in float64."""
+"""The numpy twin of shaders/lib/texture_lookup.glsl: a texture's colour under a footprint, in float64."""
 
 from __future__ import annotations
 
