@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 resource = pytest.importorskip("resource", reason="limits of a file's size are POSIX")
+pytest.importorskip("rich", reason="the demo has an environment of its own")
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 
