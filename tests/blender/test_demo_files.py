@@ -17,7 +17,7 @@ SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 @pytest.fixture
 def demo(monkeypatch):
     monkeypatch.syspath_prepend(str(SCRIPTS))
-    return importlib.import_module("demo_in_blender")
+    return importlib.import_module("demonstration.__main__")
 
 
 @pytest.fixture
