@@ -140,15 +140,18 @@ def kept(surfels: Surfels, rows) -> Surfels:
 
 def draw(meshes: dict, renderer: Renderer, report) -> None:
     """Where reductions fail, side by side; and the same mesh sampled plainly, adaptively, and coloured by size."""
-    view = (0.75, -1.1, 0.7), (0, 0, 1), 1.7
-    shown = [sampled(smooth_cube(), 100, reduction) for reduction in ("normal", "shading normal")]
+    cube = smooth_cube()
+    view = cube.bounds(), (0.75, -1.1, 0.7), (0, 0, 1), 1.7
+    shown = [sampled(cube, 100, reduction) for reduction in ("normal", "shading normal")]
     report.picture("smooth_cube", [render(renderer, surfels, *view) for surfels in shown], colors=128)
     if "phoenix_bird.glb" in meshes:
-        bird, view = colored_by_side(meshes["phoenix_bird.glb"]), ((0.3, 0.8, 0.5), (0, 1, 0), 0.75)
+        bird = colored_by_side(meshes["phoenix_bird.glb"])
+        view = bird.bounds(), (0.3, 0.8, 0.5), (0, 1, 0), 0.75
         shown = [sampled(bird, 256, reduction) for reduction in ("none", "normal", "three_to_one")]
         report.picture("phoenix_bird", [render(renderer, surfels, *view) for surfels in shown], colors=128)
     if "CesiumMilkTruck.glb" in meshes:
-        mesh, view = meshes["CesiumMilkTruck.glb"], ((0.9, 0.5, 0.9), (0, 1, 0), 1.45)
+        mesh = meshes["CesiumMilkTruck.glb"]
+        view = mesh.bounds(), (0.9, 0.5, 0.9), (0, 1, 0), 1.45
         spacing = grid_spacing(mesh, resolution=200)
         plain = sample_surface(mesh, resolution=200).surfels
         merged = sample_surface(mesh, resolution=200, tolerance=Tolerance(0.1 * spacing)).surfels
@@ -188,10 +191,10 @@ def colored_by_size(surfels: Surfels, spacing: float) -> Surfels:
     return replace(surfels, colors=np.concatenate([by_size, np.ones_like(shade)], axis=1))
 
 
-def render(renderer: Renderer, surfels: Surfels, toward, up, distance: float, sun: bool = False) -> np.ndarray:
-    """(400, 400, 4) of the surfels in their own colours, or under a sun. distance: of the eye, in box diagonals."""
+def render(renderer: Renderer, surfels: Surfels, box, toward, up, distance: float, sun: bool = False) -> np.ndarray:
+    """(400, 400, 4) of the surfels in their own colours, or under a sun. distance: in the box's diagonals."""
     eye = 2 * distance * np.array(toward) / np.linalg.norm(toward)
-    scene, camera = in_view(surfels, 400, eye, fov=0.6, up=up)
+    scene, camera = in_view(surfels, 400, eye, fov=0.6, up=up, box=box)
     lights = (Light("sun", energy=2.0, direction=(-0.7, -0.8, -0.4)),) if sun else ()
     scene = replace(scene, lights=lights, world=(0.3, 0.3, 0.3) if sun else (1.0, 1.0, 1.0))
     settings = Settings(method="quad", shading="principled" if sun else "flat", supersampling=3)

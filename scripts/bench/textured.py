@@ -22,7 +22,7 @@ from splat_addon.rendering import Camera, Instance, Renderer, Scene, Settings, S
 from splat_addon.sampling import Channel, Image, Surface, Texture, TriangleMesh, sample_surface
 
 DEVICES = ("standalone",)
-QUICK = {"size": 8, "resolutions": [8, 16]}
+QUICK = {"size": 32, "resolutions": [8, 16]}
 #: name -> settings and the pixel filter of its truth
 METHODS = {
     "mip": (Settings(method="mip", supersampling=1, shading="flat"), "gaussian"),

@@ -37,10 +37,10 @@ def short(path: str | Path) -> str:
 
 
 def in_view(
-    surfels, size: int, eye=(1.2, 0.7, 2.6), target=(0, 0, 0), fov: float = 0.66, up=(0, 1, 0)
+    surfels, size: int, eye=(1.2, 0.7, 2.6), target=(0, 0, 0), fov: float = 0.66, up=(0, 1, 0), box=None
 ) -> tuple[Scene, Camera]:
-    """A model under a sun. eye, target: in half diagonals of its box from its middle."""
-    low, high = (surfels.origin + corner for corner in surfels.local_bounds)
+    """A model under a sun. eye, target: in half diagonals of its box, or of another, from its middle."""
+    low, high = box or (surfels.origin + corner for corner in surfels.local_bounds)
     middle, reach = (low + high) / 2, float(np.linalg.norm(high - low)) / 2
     pose = look_at(middle + reach * np.array(eye), middle + reach * np.array(target), up)
     camera = Camera.perspective(pose, fov, (size, size), reach / 100, reach * 10)

@@ -77,8 +77,8 @@ def read_stored(mesh: bpy.types.Mesh, known: dict[str, tuple[Surfels, np.ndarray
     """The surfels that `mesh` stores, with origin (0, 0, 0); beside faces, the points that belong to none.
 
     Where their centres have been moved together since they were written, their frames are moved along
-    (`interchange.followed`), which takes 4 s a million: known keeps what came of it, by the name of the mesh, for as
-    long as the values are the same.
+    (`interchange.followed`), which takes seconds a million: known keeps what came of it, by the name of the mesh, for
+    as long as the values are the same.
 
     Attributes are found by name; optional ones need not be there. Raises ValueError where another is missing or one is
     not of the stored type, and for a mesh in edit mode, whose points are not in its attributes then

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 resource = pytest.importorskip("resource", reason="limits of a file's size are POSIX")
+pytest.importorskip("rich", reason="the demo has an environment of its own")
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 
@@ -16,7 +17,7 @@ SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 @pytest.fixture
 def demo(monkeypatch):
     monkeypatch.syspath_prepend(str(SCRIPTS))
-    return importlib.import_module("demo_in_blender")
+    return importlib.import_module("demonstration.__main__")
 
 
 @pytest.fixture

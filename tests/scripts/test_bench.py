@@ -15,7 +15,7 @@ from measuring.registry import modules, summary
 SCRIPT = Path(package.__file__).resolve().parents[1] / "bench.py"
 
 #: Those that draw or measure within a second where they are told to be quick, and need no Blender.
-SWIFT = ("polygons", "reductions", "textured")
+SWIFT = ("polygons", "textured")
 
 
 def start(*arguments):
@@ -54,15 +54,10 @@ def test_everything_listed_can_be_imported_and_takes_its_arguments():
     assert done.returncode == 0, done.stderr
 
 
-def test_the_swift_ones_leave_a_page_that_says_how_it_was_come_by(models, tmp_path):
-    code = (
-        "import sys; from pathlib import Path; from measuring.__main__ import measure, parse\n"
-        "for name in sys.argv[2:]:\n"
-        "    measure(name, parse(name, ['--quick', '--out', str(Path(sys.argv[1]) / name)]), f'bench.py {name}')"
-    )
-    done = in_one_process(code, str(tmp_path), *SWIFT)
+@pytest.mark.parametrize("name", SWIFT)
+def test_a_swift_one_leaves_a_page_that_says_how_it_was_come_by(name, bench, tmp_path):
+    done = bench(name, "--quick", "--out", tmp_path)
     assert done.returncode == 0, done.stderr
-    for name in SWIFT:
-        page = (tmp_path / name / f"{name}.md").read_text(encoding="utf-8")
-        assert page.startswith("# ") and f"`bench.py {name}`" in page
-        assert list((tmp_path / name).glob("*.png")), name
+    page = (tmp_path / f"{name}.md").read_text(encoding="utf-8")
+    assert page.startswith("# ") and f"`python3 scripts/bench.py {name} --quick --out" in page
+    assert list(tmp_path.glob("*.png"))

@@ -14,8 +14,11 @@ MAX_SUN_HALF_ANGLE = 1.4
 #: How many sets of instances that differ in what lights them a picture can have: the channels of one texture.
 MAX_LIGHT_SETS = 4
 
-#: Of a light, in a channel: more would leave float32 once it falls on something.
-MAX_POWER = 1e30
+#: The largest irradiance, in a channel: what is lit by more may leave float32.
+MAX_IRRADIANCE = 1e30
+
+#: The largest power of a lamp, in a channel. A lamp as far away as a star needs it; float32 holds no more.
+MAX_POWER = 3e38
 
 KINDS = ("sun", "point", "spot", "area")
 
@@ -54,9 +57,10 @@ class Light:
         for name in ("color", "energy", "position", "direction", "size", "spot_angle", "spot_blend", "half_axes"):
             if not np.isfinite(getattr(self, name)).all():
                 raise ValueError(f"A light's {name} must be finite, not {np.asarray(getattr(self, name)).tolist()}.")
-        if not np.abs(self.color).max() * abs(self.energy) <= MAX_POWER:
+        largest = MAX_IRRADIANCE if self.kind == "sun" else MAX_POWER
+        if not np.abs(self.color).max() * abs(self.energy) <= largest:
             raise ValueError(
-                f"A light's colour times its energy must be at most {MAX_POWER:g}, which pictures can hold, not "
+                f"A light's colour times its energy must be at most {largest:g}, which pictures can hold, not "
                 f"{np.asarray(self.color).tolist()} times {float(self.energy):g}."
             )
         if not np.any(self.direction):
@@ -120,10 +124,7 @@ def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: flo
         texels[:, 6, :2] = map_ranges
         texels[:, 6, 2] = [_LAMP_SIZES[light.kind](light, scale) for light in lights]
     # a picture of a tiny scene has tiny units, in which a power may be beyond float32
-    return np.clip(texels, -_LARGEST, _LARGEST).astype(np.float32)
-
-
-_LARGEST = 1e37
+    return np.clip(texels, -MAX_IRRADIANCE, MAX_IRRADIANCE).astype(np.float32)
 
 
 def _sun(light: Light, scale: float) -> tuple[float, float]:
