@@ -132,7 +132,7 @@ def test_backs_of_solids_may_collapse_in_the_view_or_before_it(method, render, m
 
     settings = replace(MIP, method=method)
     frames = [render(scene, camera, settings)]
-    monkeypatch.setattr(renderer, "look", elsewhere)
+    monkeypatch.setattr(renderer, "build_view", elsewhere)
     frames.append(render(scene, camera, settings))
     assert places == [True, True]
     for output in settings.outputs:
