@@ -173,4 +173,4 @@ def test_only_a_view_that_refines_keeps_a_sum():
     plain, refined = plan(scene, camera, SETTINGS), plan(scene, camera, SETTINGS, is_added_up=True)
     assert refined.passes[:-1] == plain.passes
     assert set(refined.textures) - set(plain.textures) == {"sample_sum"}
-    assert refined.size("sample_sum", (7, 7)) == camera.size and "refines" in str(refined)
+    assert refined.size(refined.filled["sample_sum"], (7, 7)) == camera.size and "refines" in str(refined)
