@@ -157,6 +157,8 @@ def test_a_stock_panel_that_would_show_what_is_passed_over_stays_away(name):
     "name", ["DATA_PT_camera_dof", "RENDER_PT_simplify", "RENDER_PT_simplify_viewport", "VIEWLAYER_PT_override"]
 )
 def test_a_stock_panel_whose_settings_are_honoured_is_joined(name):
+    if name == "VIEWLAYER_PT_override" and bpy.app.version < (5, 0, 0):
+        pytest.skip("before 5.0 it is Cycles' own, and this engine has one too")
     assert getattr(bpy.types, name) in set(visible_panels())
 
 
