@@ -17,6 +17,7 @@ SURFELS_FROM_POINTS = "object.surfels_from_points"
 EXPORT_PLY = "export_scene.surfels_ply"
 IMPORT_PLY = "import_scene.surfels_ply"
 RENDER_PRESET = "render.surfel_preset"
+SHOW_SURFELS = "view3d.surfels_show"
 
 SIDEBAR_TAB = "Surfels"
 SIDEBAR_PANEL = "VIEW3D_PT_surfels_from_mesh"
