@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..clip_lines import kept
 from ..rendering.camera import Camera
 from .splats import BACK_WEIGHT, Splats
 from .textures import point_colors
@@ -247,4 +248,7 @@ def _intersections(splats: Splats, ray, splat, grid: RayGrid) -> Hits:
         rho2 = a * a + b * b
         hit = np.flatnonzero((rho2 <= 1) & (depth >= grid.camera.near) & (depth <= grid.camera.far))
     place = np.stack([a[hit], b[hit]], axis=1)
+    if chunk.is_clipped:
+        inside = np.flatnonzero(kept(place, chunk.clip[local[hit]], chunk.reflex[local[hit]]))
+        hit, place = hit[inside], place[inside]
     return Hits(ray[hit], splat[hit], place, rho2[hit], depth[hit], np.linalg.norm(direction[hit], axis=1))

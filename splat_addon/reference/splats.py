@@ -35,6 +35,7 @@ class Splats:
     texture: (N,) objects, the `SurfaceTexture` that takes the place of color, or None. uv: (N, 2) at the centre;
     uv_along: (N, 2, 2), its change along u (row 0) and v (row 1). uv_border: (N, 2) m of the line m . q = 1 behind
     which the texture is not looked up.
+    clip: (N, 2, 3) lines in (a, b) at which each ends, and reflex: (N,) bool, as `Surfels.clip_lines` gives them.
     opacity: (N,), 1 where not is_transparent: (N,) bool, of instances that something shows through.
     is_holdout: (N,) bool, of those that hide and show nothing.
     """
@@ -51,6 +52,8 @@ class Splats:
     uv: np.ndarray
     uv_along: np.ndarray
     uv_border: np.ndarray
+    clip: np.ndarray
+    reflex: np.ndarray
     opacity: np.ndarray
     is_transparent: np.ndarray
     is_holdout: np.ndarray
@@ -61,6 +64,11 @@ class Splats:
     def radius(self) -> np.ndarray:
         """(N,) the longer half-diameter, world units: what a splat's epsilon is measured in."""
         return np.sqrt(np.maximum(np.einsum("ij,ij->i", self.u, self.u), np.einsum("ij,ij->i", self.v, self.v)))
+
+    @property
+    def is_clipped(self) -> bool:
+        """Whether a line reaches into one of them."""
+        return bool((self.clip[:, :, 2] < 1).any())
 
     def push(self, epsilon: float) -> np.ndarray:
         """(N,) how far each is moved away to find what hides it, world units. epsilon: in radii."""
@@ -81,7 +89,8 @@ def eye_splats(scene: Scene, camera: Camera) -> Splats:
     if not parts:
         vectors, rest = (
             np.zeros((6, 0, 3)),
-            (np.zeros(0, bool), np.zeros(0, object), *_no_uvs(0), np.ones(0), *np.zeros((2, 0), bool)),
+            (np.zeros(0, bool), np.zeros(0, object), *_no_uvs(0), np.zeros((0, 2, 3)), np.zeros(0, bool))
+            + (np.ones(0), *np.zeros((2, 0), bool)),
         )
         return Splats(*vectors, np.zeros((0, 10)), *rest)
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
@@ -111,7 +120,7 @@ def _instance_splats(instance: Instance, camera: Camera) -> Splats:
     opacity, is_transparent = np.ones(count), np.full(count, instance.is_transparent)
     if instance.is_transparent:
         opacity = np.clip(surfels.colors[:, 3].astype(np.float64), 0, 1)
-    rest = opacity, is_transparent, np.full(count, instance.is_holdout)
+    rest = *surfels.clip_lines(), opacity, is_transparent, np.full(count, instance.is_holdout)
     splats = Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0, textures, *uvs, *rest)
     return splats.take(np.flatnonzero(cosine >= 0)) if instance.hides_backs(camera) else splats
 

@@ -16,7 +16,9 @@ import numpy as np
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
 from .adaptive import Tolerance, merge_flat
 from .attributes import SampleFiller
+from .borders import find_borders
 from .cleaning import drop_unusable
+from .clipping import clipped
 from .depth_cube import depth_cube
 from .fineness import check_fineness, grid_spacing
 from .grid import make_grid
@@ -69,6 +71,7 @@ def sample_surface(
     splat_size: float = DEFAULT_SPLAT_SIZE,
     tolerance: Tolerance | None = None,
     texture_mapped: bool = False,
+    crease_angle: float | None = None,
     progress: Progress | None = None,
 ) -> Sampling:
     """Surfels of a mesh on a grid of exact rays, in the order of axis, triangle, row, column.
@@ -114,6 +117,8 @@ def sample_surface(
     _fill(filler, images, stage(progress, 0.5, 1.0))
     if chosen.merge is not None:
         arrays = chosen.merge(arrays, grid.spacing)
+    if crease_angle is not None:
+        arrays |= clipped(arrays, find_borders(mesh, crease_angle), grid.surfel_origin)
     saved, error = 0, 0.0
     if tolerance is not None:
         axes = np.repeat(np.arange(3), [int(spans.counts.sum(dtype=np.int64)) for spans in images])
