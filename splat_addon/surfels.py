@@ -38,6 +38,7 @@ OPTIONAL_LAYOUT = {
     "uv_border": (2, np.float32, 0.0),
     "clip_line": (2, np.int16, 0),
     "clip_line_2": (2, np.int16, 0),
+    "blend_depth": (1, np.float32, 1.0),
 }
 
 #: Least alpha of an opaque surfel: filtering an image of ones leaves them a few roundings short of 1.
@@ -67,6 +68,8 @@ class Surfels:
     uv_border: (N, 2) m of a line m . q = 1 in half-axes, beyond which the texture is not looked up; 0 and None: none.
     clip_line, clip_line_2: (N, 2) int16, up to two lines at which the splat ends, as `clip_lines` packs them: 4 bytes
         each; 0 and None: none.
+    blend_depth: (N,) float32, 0 to 1, how far splats of the same surface lie off its plane, in the longer half-axis: no
+        deeper does it blend with others, nor deeper than the renderer's epsilon; None: that everywhere.
 
     Raises ValueError with one sentence for a wrong shape, a non-finite or an out-of-range value;
     `valid_surfels` drops and counts such rows instead.
@@ -89,6 +92,7 @@ class Surfels:
     uv_border: np.ndarray | None = None
     clip_line: np.ndarray | None = None
     clip_line_2: np.ndarray | None = None
+    blend_depth: np.ndarray | None = None
 
     def __post_init__(self):
         arrays = _shaped(self.arrays())

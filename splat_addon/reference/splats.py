@@ -36,6 +36,7 @@ class Splats:
     uv_along: (N, 2, 2), its change along u (row 0) and v (row 1). uv_border: (N, 2) m of the line m . q = 1 behind
     which the texture is not looked up.
     clip: (N, 2, 3) lines in (a, b) at which each ends, and reflex: (N,) bool, as `Surfels.clip_lines` gives them.
+    blend: (N,) how far off its plane it blends with others, in radii; infinite: not known.
     opacity: (N,), 1 where not is_transparent: (N,) bool, of instances that something shows through.
     is_holdout: (N,) bool, of those that hide and show nothing.
     """
@@ -54,6 +55,7 @@ class Splats:
     uv_border: np.ndarray
     clip: np.ndarray
     reflex: np.ndarray
+    blend: np.ndarray
     opacity: np.ndarray
     is_transparent: np.ndarray
     is_holdout: np.ndarray
@@ -74,6 +76,10 @@ class Splats:
         """(N,) how far each is moved away to find what hides it, world units. epsilon: in radii."""
         return epsilon * self.radius() * np.where(self.is_back, BACK_EPSILON, 1.0)
 
+    def blend_depth(self) -> np.ndarray:
+        """(N,) how far off its plane each blends with others, world units."""
+        return self.blend * self.radius()
+
     def take(self, rows: np.ndarray) -> Splats:
         """The splats of some rows."""
         return Splats(*(getattr(self, f.name)[rows] for f in fields(self)))
@@ -90,7 +96,7 @@ def eye_splats(scene: Scene, camera: Camera) -> Splats:
         vectors, rest = (
             np.zeros((6, 0, 3)),
             (np.zeros(0, bool), np.zeros(0, object), *_no_uvs(0), np.zeros((0, 2, 3)), np.zeros(0, bool))
-            + (np.ones(0), *np.zeros((2, 0), bool)),
+            + (*np.ones((2, 0)), *np.zeros((2, 0), bool)),
         )
         return Splats(*vectors, np.zeros((0, 10)), *rest)
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
@@ -120,7 +126,8 @@ def _instance_splats(instance: Instance, camera: Camera) -> Splats:
     opacity, is_transparent = np.ones(count), np.full(count, instance.is_transparent)
     if instance.is_transparent:
         opacity = np.clip(surfels.colors[:, 3].astype(np.float64), 0, 1)
-    rest = *surfels.clip_lines(), opacity, is_transparent, np.full(count, instance.is_holdout)
+    blend = np.full(count, np.inf) if surfels.blend_depth is None else surfels.blend_depth.astype(np.float64)
+    rest = *surfels.clip_lines(), blend, opacity, is_transparent, np.full(count, instance.is_holdout)
     splats = Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0, textures, *uvs, *rest)
     return splats.take(np.flatnonzero(cosine >= 0)) if instance.hides_backs(camera) else splats
 

@@ -26,6 +26,9 @@ _OFF_PLANE, _OFF_ANYHOW = 0.35, 0.1
 #: A border within this of a line, in half-axes, is that line.
 _SAME_LINE = 0.06
 
+#: What is missing of the surface weighs so many times what is too much of it: nothing else may cover it.
+_BARE = 8.0
+
 #: Where a corner is judged: rings of places in the unit circle, and how much each weighs.
 _RINGS = ((0.3, 6), (0.6, 10), (0.88, 14))
 
@@ -169,23 +172,22 @@ def _corners(sides: _Sides, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     of_line = places @ sides.line[:, :2].T + sides.line[:, 2]
     keeps = (of_line >= 0).T
     first = keeps[starts][owner]
-    wrongs = np.stack(
-        [((shown != belongs[owner]) @ weights) for shown in (first, first & keeps, first | keeps)], axis=1
-    )
+    belongs = belongs[owner]
+    shown = first, first & keeps, first | keeps, np.ones_like(first)
+    wrongs = np.stack([(s & ~belongs) @ weights + _BARE * ((belongs & ~s) @ weights) for s in shown], axis=1)
     # One line where a second gains nothing.
     wrongs[:, 0] -= 1e-3
-    flat = wrongs.reshape(-1)
-    group = np.repeat(owner, 3)
+    flat, group = wrongs.reshape(-1), np.repeat(owner, len(shown))
     order = np.lexsort((flat, group))
     best = order[np.append(True, group[order][1:] != group[order][:-1])]
-    row, kind = np.divmod(best, 3)
+    row, kind = np.divmod(best, len(shown))
     one, other = sides.line[starts], sides.line[row]
     turn = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
     # The order says which corner it is.
-    swap = np.where(kind == 1, turn < 0, turn > 0)[:, None]
-    none = np.array((1.0, 0.0, 1.0))
-    first, second = np.where(swap, other, one), np.where(swap, one, other)
-    return np.where((kind == 0)[:, None], one, first), np.where((kind == 0)[:, None], none, second)
+    swap = np.where(kind == 1, turn < 0, turn > 0) & (kind != 0)
+    first, second = (np.where(s[:, None], a, b) for s, a, b in ((swap, other, one), (swap, one, other)))
+    first[kind == 3] = second[(kind == 0) | (kind == 3)] = (1.0, 0.0, 1.0)
+    return first, second
 
 
 def _places() -> tuple[np.ndarray, np.ndarray]:
