@@ -61,15 +61,22 @@ def kept(places: np.ndarray, lines: np.ndarray, reflex: np.ndarray) -> np.ndarra
     return np.where(reflex, inside.any(axis=1), inside.all(axis=1))
 
 
-def turned(packed: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """(n, 2) int16 lines of the same places after the ellipse's axes turned by (n,) radians in its own circle: the
-    new coordinates are u cos + v sin and v cos - u sin."""
-    turns = packed[:, 0] - np.rint(np.asarray(angle) * (TURN / (2 * np.pi))).astype(np.int64)
-    return np.stack([turns.astype(np.int16), packed[:, 1]], axis=1)
+def turned(fields: dict[str, np.ndarray], angle: np.ndarray, mirrored: np.ndarray | bool = False) -> dict:
+    """`CLIP_FIELDS` of the same places after the ellipses' axes turned in their own circles, those that are there.
 
-
-def moved(packed: np.ndarray, offset: np.ndarray) -> np.ndarray:
-    """(n, 2) int16 lines of the same places after the ellipse moved by (n, 2) `offset`, in half-axes."""
-    lines = unpack_lines(packed)
-    lines[:, 2] += np.einsum("nk,nk->n", lines[:, :2], offset)
-    return np.where(packed[:, 1:] > 0, pack_lines(lines), packed)
+    fields: name -> (n, 2) int16, or None. angle: (n,) radians; the new coordinates are u cos + v sin and
+    v cos - u sin. mirrored: (n,) bool, where the second is also turned round; two lines then change places, as their
+    order tells a convex corner from a reflex one.
+    """
+    there = {name: fields[name] for name in CLIP_FIELDS if fields[name] is not None}
+    back = np.rint(np.asarray(angle) * (TURN / (2 * np.pi))).astype(np.int64)
+    sign = np.where(mirrored, -1, 1)
+    result = {}
+    for name, packed in there.items():
+        turns = np.where(packed[:, 1] > 0, sign * (packed[:, 0] - back), 0)
+        result[name] = np.stack([turns.astype(np.int16), packed[:, 1]], axis=1)
+    if len(result) == 2:
+        first, second = (result[name] for name in CLIP_FIELDS)
+        swap = (np.broadcast_to(mirrored, len(first)) & (second[:, 1] > 0))[:, None]
+        result = dict(zip(CLIP_FIELDS, (np.where(swap, second, first), np.where(swap, first, second)), strict=True))
+    return result

@@ -275,6 +275,7 @@ _DEMANDS = {
     "materials": "0 or more",
     "clip_line": "a direction and a cut of 0 or more",
     "clip_line_2": "a direction and a cut of 0 or more",
+    "blend_depth": "0 to 1",
 }
 
 
@@ -348,6 +349,7 @@ _CHECKS = {
     "materials": lambda rows: rows >= 0,
     "clip_line": lambda rows: rows[:, 1] >= 0,
     "clip_line_2": lambda rows: rows[:, 1] >= 0,
+    "blend_depth": lambda rows: (rows >= 0) & (rows <= 1),
 }
 
 

@@ -93,11 +93,8 @@ def eye_splats(scene: Scene, camera: Camera) -> Splats:
     """Every instance's surfels in the eye space of `camera`."""
     parts = [_instance_splats(instance, camera) for instance in scene.surfels]
     if not parts:
-        vectors, rest = (
-            np.zeros((6, 0, 3)),
-            (np.zeros(0, bool), np.zeros(0, object), *_no_uvs(0), np.zeros((0, 2, 3)), np.zeros(0, bool))
-            + (*np.ones((2, 0)), *np.zeros((2, 0), bool)),
-        )
+        vectors, flags = np.zeros((6, 0, 3)), np.zeros((4, 0), bool)
+        rest = flags[0], np.zeros(0, object), *_no_uvs(0), np.zeros((0, 2, 3)), flags[1], *np.zeros((2, 0)), *flags[2:]
         return Splats(*vectors, np.zeros((0, 10)), *rest)
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
 

@@ -13,6 +13,9 @@ import numpy as np
 from .joining import have_same_values
 from .mesh import TriangleMesh, corner_indices, corners_at, doubled_areas
 
+#: Radians; planes that differ by more make a crease.
+DEFAULT_CREASE_ANGLE = np.radians(30)
+
 #: Largest difference of a component of colour across an edge where it still goes on.
 COLOR_BREAK = 0.02
 
@@ -44,15 +47,24 @@ class Borders:
         return Borders(*(getattr(self, f.name)[rows] for f in fields(self)))
 
 
-def find_borders(mesh: TriangleMesh, angle: float) -> Borders:
-    """The border edges of a usable mesh.
+@dataclass(frozen=True, eq=False)
+class EdgeSurvey:
+    """borders: where the surface breaks off. bends: (T,) radians, by how much each triangle's plane differs from those
+    that it goes on in, at most."""
+
+    borders: Borders
+    bends: np.ndarray
+
+
+def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE) -> EdgeSurvey:
+    """The edges of a usable mesh.
 
     angle: radians; an edge is a crease where its faces' planes, or the shading normals at one of its ends, differ by
     more. Vertices at one place are one. An edge of one face, or of more than two, is a border of each. Faces that wind
     differently are compared as if they did not.
     """
     normals = _unit(_face_normals(mesh))
-    triangles, numbers, edge = _breaking(mesh, normals, np.cos(angle))
+    triangles, numbers, edge, bends = _breaking(mesh, normals, np.cos(angle))
     a, b = mesh.triangles[triangles, numbers], mesh.triangles[triangles, (numbers + 1) % 3]
     start, end = mesh.positions[a], mesh.positions[b]
     inward = _unit(np.cross(normals[triangles], end - start))
@@ -65,11 +77,12 @@ def find_borders(mesh: TriangleMesh, angle: float) -> Borders:
     if mesh.corner_colors is not None:
         colors = mesh.corner_colors[triangles[:, None], ends, :4].mean(axis=1)
     materials = np.zeros(len(triangles), int) if mesh.materials is None else mesh.materials[triangles]
-    return Borders(start, end, inward, normals[triangles], edge, shading, colors, materials, triangles)
+    borders = Borders(start, end, inward, normals[triangles], edge, shading, colors, materials, triangles)
+    return EdgeSurvey(borders, bends)
 
 
 def _breaking(mesh: TriangleMesh, normals: np.ndarray, least: float):
-    """(B,) triangles, (B,) corners at which their edge starts, and (B,) edges, ascending."""
+    """(B,) triangles, (B,) corners at which their edge starts, (B,) edges, ascending; and (T,) bends."""
     places = mesh.places.take(corner_indices(mesh.triangles))
     # The sum of two hashes names an edge alike from both sides.
     keys = np.concatenate([places[0] + places[1], places[1] + places[2], places[2] + places[0]])
@@ -82,28 +95,35 @@ def _breaking(mesh: TriangleMesh, normals: np.ndarray, least: float):
     count = len(mesh)
     is_border = counts != 2
     pairs = np.flatnonzero(~is_border)
-    (k, s), (l, t) = (np.divmod(order.take(starts.take(pairs) + side), count) for side in (0, 1))
-    is_border[pairs] = _breaks(mesh, normals, places, (s, k), (t, l), least)
+    (k, s), (n, t) = (np.divmod(order.take(starts.take(pairs) + side), count) for side in (0, 1))
+    breaks, cosine = _breaks(mesh, normals, places, (s, k), (t, n), least)
+    is_border[pairs] = breaks
+    bends = np.zeros(count)
+    goes_on = np.flatnonzero(~breaks & (cosine < 1))
+    bend = np.arccos(np.clip(cosine[goes_on], -1, 1))
+    for triangle in (s, t):
+        np.maximum.at(bends, triangle[goes_on], bend)
     found = np.flatnonzero(is_border)
     sides = counts.take(found)
     edge = np.repeat(np.arange(len(found)), sides)
     within = np.arange(len(edge)) - np.repeat(np.cumsum(sides) - sides, sides)
     number, triangle = np.divmod(order.take(np.repeat(starts.take(found), sides) + within), count)
-    return triangle, number, edge
+    return triangle, number, edge, bends
 
 
 def _breaks(mesh: TriangleMesh, normals: np.ndarray, places: np.ndarray, one, other, least: float) -> np.ndarray:
-    """(p,) bool of edges with two sides, each given by its triangle and its corner."""
-    (s, k), (t, l) = one, other
-    ahead = places[k, s] == places[l, t]
+    """(p,) bool of edges with two sides, each given by its triangle and its corner; and (p,) cosines of planes."""
+    (s, k), (t, n) = one, other
+    ahead = places[k, s] == places[n, t]
     cosine = sum(normals[s, c] * normals[t, c] for c in range(3))
     # Two faces that go along their edge in the same direction wind differently.
-    breaks = np.where(ahead, -cosine, cosine) < least
+    planes = np.where(ahead, -cosine, cosine)
+    breaks = planes < least
     rest = np.flatnonzero(~breaks)
-    s, k, t, l, ahead = (values[rest] for values in (s, k, t, l, ahead))
+    s, k, t, n, ahead = (values[rest] for values in (s, k, t, n, ahead))
     breaks_too = np.zeros(len(rest), bool)
     # The same end of the edge, in both triangles.
-    far = np.where(ahead, l, (l + 1) % 3), np.where(ahead, (l + 1) % 3, l)
+    far = np.where(ahead, n, (n + 1) % 3), np.where(ahead, (n + 1) % 3, n)
     for mine, its in zip((k, (k + 1) % 3), far, strict=True):
         if mesh.corner_normals is not None:
             a, b = _unit(mesh.corner_normals[s, mine]), _unit(mesh.corner_normals[t, its])
@@ -115,7 +135,7 @@ def _breaks(mesh: TriangleMesh, normals: np.ndarray, places: np.ndarray, one, ot
     if mesh.materials is not None:
         breaks_too |= _look_different(mesh, mesh.materials[s], mesh.materials[t])
     breaks[rest] = breaks_too
-    return breaks
+    return breaks, planes
 
 
 def _look_different(mesh: TriangleMesh, s: np.ndarray, t: np.ndarray) -> np.ndarray:

@@ -27,7 +27,7 @@ _OFF_PLANE, _OFF_ANYHOW = 0.35, 0.1
 _SAME_LINE = 0.06
 
 #: What is missing of the surface weighs so many times what is too much of it: nothing else may cover it.
-_BARE = 8.0
+_BARE = 1.0
 
 #: Where a corner is judged: rings of places in the unit circle, and how much each weighs.
 _RINGS = ((0.3, 6), (0.6, 10), (0.88, 14))
@@ -89,9 +89,7 @@ def _sides(arrays: dict[str, np.ndarray], borders: Borders, origin: np.ndarray) 
     sizes = arrays["scales"][surfel].astype(np.float64)
     to_start, to_end = borders.start[side] - center, borders.end[side] - center
     inward, normal = borders.inward[side], borders.normals[side]
-    start, end = (
-        np.stack([_dot(t, x) / sizes[:, 0], _dot(t, y) / sizes[:, 1]], axis=1) for t in (to_start, to_end)
-    )
+    start, end = (np.stack([_dot(t, x) / sizes[:, 0], _dot(t, y) / sizes[:, 1]], axis=1) for t in (to_start, to_end))
     nearest, distance = _nearest_on_segment(start, end)
     line = np.stack([_dot(inward, x) * sizes[:, 0], _dot(inward, y) * sizes[:, 1], -_dot(to_start, inward)], axis=1)
     length = np.hypot(line[:, 0], line[:, 1])

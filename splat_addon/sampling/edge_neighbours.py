@@ -10,64 +10,83 @@ from .borders import Borders
 #: Edges are cut into pieces of at most this, in the largest radius of a surfel.
 _PIECE = 0.5
 
-_PRIMES = np.array((73856093, 19349663, 83492791), np.int64)
+#: Of the hash of a cell (Teschner et al., "Optimized Spatial Hashing", 2003), and its bits.
+_PRIMES = np.array((73856093, 19349663, 83492791), np.int32)
+_BITS = 20
 
 
 def edge_neighbours(
     positions: np.ndarray, radii: np.ndarray, borders: Borders, origin: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(m,) surfels and (m,) sides of edges that may be nearer to them than their radius; all such pairs, each once.
+    """(m,) surfels, ascending, and (m,) sides of edges that are nearer to them than their radius; each pair once.
 
     positions: (N, 3) relative to `origin`. radii: (N,).
     """
     largest = float(radii.max(initial=0))
+    starts = np.flatnonzero(np.append(True, borders.edges[1:] != borders.edges[:-1]))
+    sides = np.diff(np.append(starts, len(borders)))
+    start, end = (np.ascontiguousarray((ends[starts] - origin).T, np.float32) for ends in (borders.start, borders.end))
+    points, edge_of_piece = _pieces(start, end, _PIECE * largest)
+    # In cells of twice the reach of a surfel, all that reach a piece lie in 8 cells at most.
     reach = largest * (1 + _PIECE / 2)
-    points, edge = _pieces(borders, origin, _PIECE * largest)
-    cell = 2 * reach
-    corner = np.floor((points - reach) / cell).astype(np.int64)
-    keys, piece = [], np.tile(np.arange(len(points)), 8)
-    for dx, dy, dz in np.ndindex(2, 2, 2):
-        keys.append(_key(corner + (dx, dy, dz)))
-    keys = np.concatenate(keys)
+    corner = np.floor((points - np.float32(reach)) * np.float32(0.5 / reach)).astype(np.int32)
+    keys = np.concatenate([_keys(*(corner + np.array(step, np.int32)[:, None])) for step in np.ndindex(2, 2, 2)])
     order = np.argsort(keys, kind="stable")
-    keys, piece = keys[order], piece[order]
-    own = _key(np.floor(positions / np.float32(cell)).astype(np.int64))
-    near = _sieved(own, keys)
-    first, last = (np.searchsorted(keys, own[near], side) for side in ("left", "right"))
-    counts = last - first
-    surfel = np.repeat(near, counts)
-    within = np.arange(len(surfel)) - np.repeat(np.cumsum(counts) - counts, counts)
-    piece = piece[np.repeat(first, counts) + within]
-    offset = positions[surfel] - points[piece]
-    limit = radii + largest * (_PIECE / 2)
-    close = np.flatnonzero(np.einsum("ij,ij->i", offset, offset) <= limit[surfel] ** 2)
-    pairs = np.unique(surfel[close] * np.int64(edge.max(initial=0) + 1) + edge[piece[close]])
-    surfel, edge = np.divmod(pairs, np.int64(edge.max(initial=0) + 1))
-    starts = np.searchsorted(borders.edges, np.arange(borders.edges[-1] + 2))
-    sides = np.diff(starts)[edge]
-    within = np.arange(sides.sum()) - np.repeat(np.cumsum(sides) - sides, sides)
-    return np.repeat(surfel, sides), np.repeat(starts[edge], sides) + within
+    keys, piece = keys.take(order), np.tile(np.arange(len(edge_of_piece)), 8).take(order)
+
+    counts = np.bincount(keys, minlength=1 << _BITS)
+    firsts = np.cumsum(counts) - counts
+    own = _keys(*(np.floor(column * np.float32(0.5 / reach)).astype(np.int32) for column in positions.T))
+    near = np.flatnonzero((counts > 0).take(own))
+    own = own.take(near)
+    row, at = _expanded(firsts.take(own), counts.take(own))
+    piece = piece.take(at)
+    x, y, z = (
+        column.take(near).take(row) - point.take(piece) for column, point in zip(positions.T, points, strict=True)
+    )
+    limit = radii.take(near) + np.float32(largest * _PIECE / 2)
+    close = np.flatnonzero(x * x + y * y + z * z <= (limit * limit).take(row))
+    count = len(starts)
+    pairs = np.sort(near.take(row.take(close)) * np.int64(count) + edge_of_piece.take(piece.take(close)))
+    pairs = pairs[np.append(True, pairs[1:] != pairs[:-1])] if len(pairs) else pairs
+    surfel, edge = np.divmod(pairs, count)
+    close = _distances(positions, surfel, start, end, edge) <= radii.take(surfel) * np.float32(1 + 1e-4)
+    surfel, edge = surfel.compress(close), edge.compress(close)
+    row, side = _expanded(starts.take(edge), sides.take(edge))
+    return surfel.take(row), side
 
 
-def _pieces(borders: Borders, origin: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
-    """(k, 3) float32 middles of pieces of the edges, relative to `origin`, and (k,) the edge of each."""
-    first = np.flatnonzero(np.append(True, borders.edges[1:] != borders.edges[:-1]))
-    start, end = borders.start[first] - origin, borders.end[first] - origin
-    counts = np.maximum(np.ceil(np.linalg.norm(end - start, axis=1) / longest), 1).astype(np.int64)
-    edge = np.repeat(np.arange(len(first)), counts)
-    place = (np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts) + 0.5) / counts[edge]
-    return (start[edge] + (end - start)[edge] * place[:, None]).astype(np.float32), edge
+def _expanded(first: np.ndarray, counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(m,) rows, each `counts` times, and (m,) numbers that count up from their `first`."""
+    row = np.repeat(np.arange(len(counts)), counts)
+    number = np.arange(len(row))
+    number += (first - np.cumsum(counts) + counts).take(row)
+    return row, number
 
 
-def _key(cells: np.ndarray) -> np.ndarray:
-    """(n,) int64 that are equal for equal (n, 3) cells, and rarely for others."""
-    x, y, z = (cells * _PRIMES).T
-    return x ^ y ^ z
+def _pieces(start: np.ndarray, end: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
+    """(3, k) float32 middles of pieces of (3, e) edges, and (k,) the edge of each."""
+    along = end - start
+    counts = np.maximum(np.ceil(np.sqrt((along * along).sum(axis=0)) / longest), 1).astype(np.int64)
+    edge, number = _expanded(np.zeros(len(counts), np.int64), counts)
+    place = ((number + 0.5) / counts.take(edge)).astype(np.float32)
+    return start.take(edge, axis=1) + along.take(edge, axis=1) * place, edge
 
 
-def _sieved(own: np.ndarray, keys: np.ndarray) -> np.ndarray:
-    """Where in `own` a key is that may be among `keys`."""
-    size = 1 << max(int(len(keys) * 8).bit_length(), 10)
-    there = np.zeros(size, bool)
-    there[keys & (size - 1)] = True
-    return np.flatnonzero(there[own & (size - 1)])
+def _distances(positions: np.ndarray, surfel: np.ndarray, start: np.ndarray, end: np.ndarray, edge: np.ndarray):
+    """(m,) float32 of surfels from segments."""
+    along = end - start
+    square = np.maximum((along * along).sum(axis=0), np.float32(1e-37))
+    offset = [column.take(surfel) - s.take(edge) for column, s in zip(positions.T, start, strict=True)]
+    along = along.take(edge, axis=1)
+    share = np.clip(sum(o * a for o, a in zip(offset, along, strict=True)) / square.take(edge), 0, 1)
+    return np.sqrt(sum((o - a * share) ** 2 for o, a in zip(offset, along, strict=True)))
+
+
+def _keys(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """(n,) int32 that are equal for equal cells, of `_BITS` bits; seldom for others."""
+    keys = x * _PRIMES[0]
+    keys ^= y * _PRIMES[1]
+    keys ^= z * _PRIMES[2]
+    keys &= (1 << _BITS) - 1
+    return keys

@@ -16,7 +16,8 @@ import numpy as np
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
 from .adaptive import Tolerance, merge_flat
 from .attributes import SampleFiller
-from .borders import find_borders
+from .blending import blending_per_radius
+from .borders import DEFAULT_CREASE_ANGLE, survey_edges
 from .cleaning import drop_unusable
 from .clipping import clipped
 from .depth_cube import depth_cube
@@ -72,6 +73,7 @@ def sample_surface(
     tolerance: Tolerance | None = None,
     texture_mapped: bool = False,
     crease_angle: float | None = None,
+    fits_blending: bool = False,
     progress: Progress | None = None,
 ) -> Sampling:
     """Surfels of a mesh on a grid of exact rays, in the order of axis, triangle, row, column.
@@ -82,6 +84,10 @@ def sample_surface(
     "grazing" refuses a sample. splat_size: smaller half-axis of a splat, in H.
     tolerance: how far from flat the surface may be where larger surfels take the place of several; None: all alike.
     texture_mapped: surfels whose colour is one image also keep where they lie in it, to look it up when rendered.
+    crease_angle: radians; where the surface turns by more, and at borders of materials, colours and the surface itself,
+    splats end at clip lines (`clipping`); None: they reach over. Renderers must honour these: `reference` does, the
+    engine not yet. fits_blending: each has the depth that the surface asks for (`blending`), and not the same for all;
+    that, too, only `reference` follows yet.
     progress: called between chunks with the finished share, 0 to 1; where it returns False, `SamplingCancelled` rises.
     Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the middle.
     A connected part that lies between the rays gets one surfel. A mesh without usable triangles gives none.
@@ -113,12 +119,17 @@ def sample_surface(
     layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in (*palette.optional, *uv_fields)}
     arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
     tangents = layered_tangents(mesh) if palette.needs_tangents else None
-    filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, palette, tangents, seams, arrays)
+    needs_edges = crease_angle is not None or fits_blending
+    edges = survey_edges(mesh, DEFAULT_CREASE_ANGLE if crease_angle is None else crease_angle) if needs_edges else None
+    if fits_blending:
+        arrays["blend_depth"] = np.empty(total, np.float32)
+    bends = blending_per_radius(mesh, edges.bends) if fits_blending else None
+    filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, palette, tangents, seams, bends, arrays)
     _fill(filler, images, stage(progress, 0.5, 1.0))
     if chosen.merge is not None:
         arrays = chosen.merge(arrays, grid.spacing)
     if crease_angle is not None:
-        arrays |= clipped(arrays, find_borders(mesh, crease_angle), grid.surfel_origin)
+        arrays |= clipped(arrays, edges.borders, grid.surfel_origin)
     saved, error = 0, 0.0
     if tolerance is not None:
         axes = np.repeat(np.arange(3), [int(spans.counts.sum(dtype=np.int64)) for spans in images])
@@ -127,9 +138,20 @@ def sample_surface(
     small_parts = int(lost[1].max(initial=-1)) + 1
     if small_parts:
         extra = part_surfels(mesh, coordinates, grid, lost, splat_size, palette, tangents, bool(uv_fields))
-        arrays = {name: np.concatenate([array, extra[name]]) for name, array in arrays.items()}
+        arrays = {
+            name: np.concatenate([array, extra.get(name, _default(name, small_parts))])
+            for name, array in arrays.items()
+        }
     surfels = Surfels(origin=grid.surfel_origin, **arrays)
     return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error)
+
+
+def _default(name: str, count: int) -> np.ndarray | None:
+    """(count, columns) of what an optional field means where it is not there; None for another."""
+    if name not in OPTIONAL_LAYOUT:
+        return None
+    columns, dtype, value = OPTIONAL_LAYOUT[name]
+    return np.full((count, columns) if columns > 1 else count, value, dtype)
 
 
 def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[float], None]):
