@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..clip_lines import pack_lines
+from ..clip_lines import CLIP_FIELDS, are_reflex, pack_lines, unpack_lines
 from ..surfels import quaternion_axes
 from .borders import Borders
 from .edge_neighbours import edge_neighbours
@@ -30,13 +30,14 @@ _SAME_LINE = 0.06
 _BARE = 1.0
 
 #: Where a corner is judged: rings of places in the unit circle, and how much each weighs.
-_RINGS = ((0.3, 6), (0.6, 10), (0.88, 14))
+_RINGS = ((0.3, 6), (0.6, 10), (0.85, 16), (0.98, 24))
 
 
 @dataclass(frozen=True, eq=False)
 class _Sides:
     """m meetings of a surfel with a side of an edge, ordered by surfel. surfel, side: (m,). start, end: (m, 2) in the
-    unit circle. line: (m, 3) of unit direction. distance: (m,) of the edge from the centre."""
+    unit circle. line: (m, 3) of unit direction. distance: (m,) of the edge from the centre. tips: (m, 2) as `Borders`
+    has them."""
 
     surfel: np.ndarray
     side: np.ndarray
@@ -44,22 +45,33 @@ class _Sides:
     end: np.ndarray
     line: np.ndarray
     distance: np.ndarray
+    tips: np.ndarray
 
     def take(self, rows: np.ndarray) -> _Sides:
         return _Sides(*(getattr(self, f.name)[rows] for f in fields(self)))
 
 
-def clipped(arrays: dict[str, np.ndarray], borders: Borders, origin: np.ndarray) -> dict[str, np.ndarray]:
-    """`CLIP_FIELDS` of surfels, those that are needed.
+@dataclass(frozen=True, eq=False)
+class Clipping:
+    """fields: `CLIP_FIELDS` of the surfels, those that are needed. surfel, side: (m,) which surfels meet which sides of
+    the borders. lines: (m, 2, 3) at which that surfel ends, of unit direction, and reflex: (m,) bool (`clip_lines`)."""
+
+    fields: dict[str, np.ndarray]
+    surfel: np.ndarray
+    side: np.ndarray
+    lines: np.ndarray
+    reflex: np.ndarray
+
+
+def clip(arrays: dict[str, np.ndarray], borders: Borders, origin: np.ndarray) -> Clipping:
+    """Where surfels end.
 
     arrays: by field of `Surfels`, positions relative to `origin`.
     """
     count = len(arrays["positions"])
-    if not len(borders) or not count:
-        return {}
-    sides = _sides(arrays, borders, origin)
-    if not len(sides.surfel):
-        return {}
+    sides = _sides(arrays, borders, origin) if len(borders) and count else None
+    if sides is None or not len(sides.surfel):
+        return Clipping({}, *np.zeros((2, 0), np.intp), np.zeros((0, 2, 3)), np.zeros(0, bool))
     is_first = np.append(True, sides.surfel[1:] != sides.surfel[:-1])
     first = np.flatnonzero(is_first)
     surfel, lines = sides.surfel[first], sides.line[first]
@@ -71,13 +83,14 @@ def clipped(arrays: dict[str, np.ndarray], borders: Borders, origin: np.ndarray)
     if len(corners):
         rows = np.flatnonzero(np.isin(owner, corners))
         lines[corners], second[corners] = _corners(sides.take(rows), np.searchsorted(corners, owner[rows]))
-    fields_of = {}
-    for name, values in zip(("clip_line", "clip_line_2"), (lines, second), strict=True):
-        packed = pack_lines(values)
-        if packed[:, 1].any():
-            fields_of[name] = np.zeros((count, 2), np.int16)
-            fields_of[name][surfel] = np.where(packed[:, 1:] > 0, packed, 0)
-    return fields_of
+    result, both = {}, [pack_lines(values) for values in (lines, second)]
+    for name, packed in zip(CLIP_FIELDS, both, strict=True):
+        packed[packed[:, 1] == 0] = 0
+        if packed.any():
+            result[name] = np.zeros((count, 2), np.int16)
+            result[name][surfel] = packed
+    lines, reflex = np.stack([unpack_lines(packed) for packed in both], axis=1), are_reflex(*both)
+    return Clipping(result, sides.surfel, sides.side, lines[owner], reflex[owner])
 
 
 def _sides(arrays: dict[str, np.ndarray], borders: Borders, origin: np.ndarray) -> _Sides:
@@ -104,7 +117,9 @@ def _sides(arrays: dict[str, np.ndarray], borders: Borders, origin: np.ndarray) 
     # At an end that two edges share, the one whose line is farther off says on which side the centre is.
     order = np.lexsort((-np.abs(line[rows, 2]), np.round(distance[rows], 6), surfel[rows]))
     rows = rows[order]
-    sides = _Sides(surfel[rows], side[rows], start[rows], end[rows], line[rows], distance[rows])
+    sides = _Sides(
+        surfel[rows], side[rows], start[rows], end[rows], line[rows], distance[rows], borders.tips[side[rows]]
+    )
     return sides.take(np.flatnonzero(_is_own(sides)))
 
 
@@ -143,7 +158,7 @@ def _nearest_on_segment(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray,
 
 
 def _needs_more(sides: _Sides, first: np.ndarray) -> np.ndarray:
-    """(m,) bool: whether what lies of an edge in the circle is off its surfel's first line."""
+    """(m,) bool: whether what lies of an edge in the circle is off its surfel's first line, or ends there."""
     along = sides.end - sides.start
     a, b, c = _dot(along, along), _dot(sides.start, along), _dot(sides.start, sides.start) - 1
     root = np.sqrt(np.maximum(b * b - a * c, 0))
@@ -152,7 +167,10 @@ def _needs_more(sides: _Sides, first: np.ndarray) -> np.ndarray:
     for share in ((-b - root) / a, (-b + root) / a):
         place = sides.start + along * np.clip(share, 0, 1)[:, None]
         np.maximum(off, np.abs(_dot(place, first[:, :2]) + first[:, 2]), out=off)
-    return off > _SAME_LINE
+    has_tip = np.zeros(len(along), bool)
+    for place, is_tip in zip((sides.start, sides.end), sides.tips.T, strict=True):
+        has_tip |= is_tip & (_dot(place, place) < 1)
+    return (off > _SAME_LINE) | has_tip
 
 
 def _corners(sides: _Sides, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -174,7 +192,7 @@ def _corners(sides: _Sides, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     shown = first, first & keeps, first | keeps, np.ones_like(first)
     wrongs = np.stack([(s & ~belongs) @ weights + _BARE * ((belongs & ~s) @ weights) for s in shown], axis=1)
     # One line where a second gains nothing.
-    wrongs[:, 0] -= 1e-3
+    wrongs[:, 0] -= 1e-4
     flat, group = wrongs.reshape(-1), np.repeat(owner, len(shown))
     order = np.lexsort((flat, group))
     best = order[np.append(True, group[order][1:] != group[order][:-1])]
@@ -212,7 +230,8 @@ def _inside_of_each(sides: _Sides, places: np.ndarray) -> tuple[np.ndarray, np.n
     away = offset - along[:, None] * share[..., None]
     across = np.einsum("pk,mk->mp", places, sides.line[:, :2]) + sides.line[:, 2:]
     distance = np.sqrt(np.einsum("mpk,mpk->mp", away, away))
-    return across >= 0, distance - 1e-6 * np.abs(across)
+    beyond = (sides.tips[:, :1] & (share <= 0)) | (sides.tips[:, 1:] & (share >= 1))
+    return (across >= 0) | beyond, distance - 1e-6 * np.abs(across)
 
 
 def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:

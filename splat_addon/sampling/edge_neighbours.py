@@ -39,7 +39,7 @@ def edge_neighbours(
     own = _keys(*(np.floor(column * np.float32(0.5 / reach)).astype(np.int32) for column in positions.T))
     near = np.flatnonzero((counts > 0).take(own))
     own = own.take(near)
-    row, at = _expanded(firsts.take(own), counts.take(own))
+    row, at = expanded(firsts.take(own), counts.take(own))
     piece = piece.take(at)
     x, y, z = (
         column.take(near).take(row) - point.take(piece) for column, point in zip(positions.T, points, strict=True)
@@ -52,11 +52,11 @@ def edge_neighbours(
     surfel, edge = np.divmod(pairs, count)
     close = _distances(positions, surfel, start, end, edge) <= radii.take(surfel) * np.float32(1 + 1e-4)
     surfel, edge = surfel.compress(close), edge.compress(close)
-    row, side = _expanded(starts.take(edge), sides.take(edge))
+    row, side = expanded(starts.take(edge), sides.take(edge))
     return surfel.take(row), side
 
 
-def _expanded(first: np.ndarray, counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def expanded(first: np.ndarray, counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(m,) rows, each `counts` times, and (m,) numbers that count up from their `first`."""
     row = np.repeat(np.arange(len(counts)), counts)
     number = np.arange(len(row))
@@ -68,7 +68,7 @@ def _pieces(start: np.ndarray, end: np.ndarray, longest: float) -> tuple[np.ndar
     """(3, k) float32 middles of pieces of (3, e) edges, and (k,) the edge of each."""
     along = end - start
     counts = np.maximum(np.ceil(np.sqrt((along * along).sum(axis=0)) / longest), 1).astype(np.int64)
-    edge, number = _expanded(np.zeros(len(counts), np.int64), counts)
+    edge, number = expanded(np.zeros(len(counts), np.int64), counts)
     place = ((number + 0.5) / counts.take(edge)).astype(np.float32)
     return start.take(edge, axis=1) + along.take(edge, axis=1) * place, edge
 

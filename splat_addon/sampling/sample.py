@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -16,12 +16,13 @@ import numpy as np
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
 from .adaptive import Tolerance, merge_flat
 from .attributes import SampleFiller
-from .blending import blending_per_radius
+from .blending import blend_depths, blending_per_radius
 from .borders import DEFAULT_CREASE_ANGLE, survey_edges
 from .cleaning import drop_unusable
-from .clipping import clipped
+from .clipping import clip
 from .depth_cube import depth_cube
 from .fineness import check_fineness, grid_spacing
+from .gaps import gap_surfels
 from .grid import make_grid
 from .lost_parts import SampledSurface, lost_parts
 from .mesh import TriangleMesh
@@ -45,6 +46,8 @@ class Sampling:
 
     small_parts: how many parts lay between all rays; each has one surfel, and these come last.
     keeps_both_sides: the surfels of a solid are solid. Not where two sides were merged, or a part has one disc.
+    gap_triangles: (k,) those of surfels that were added where others, which end at clip lines, left something bare;
+        these come before those of small parts.
     saved: how many fewer surfels there are than without a tolerance. error: the largest distance of a merged surfel's
         plane from those that it replaces, object units.
     """
@@ -54,6 +57,7 @@ class Sampling:
     keeps_both_sides: bool = True
     saved: int = 0
     error: float = 0.0
+    gap_triangles: np.ndarray = field(default_factory=lambda: np.empty(0, np.intp))
 
 
 def sample_mesh(mesh: TriangleMesh, **options) -> Surfels:
@@ -128,30 +132,42 @@ def sample_surface(
     _fill(filler, images, stage(progress, 0.5, 1.0))
     if chosen.merge is not None:
         arrays = chosen.merge(arrays, grid.spacing)
+    gaps, gap_triangles = {}, np.empty(0, np.intp)
     if crease_angle is not None:
-        arrays |= clipped(arrays, edges.borders, grid.surfel_origin)
+        clipping = clip(arrays, edges.borders, grid.surfel_origin)
+        gaps, gap_triangles = gap_surfels(mesh, edges.borders, arrays, clipping, grid, splat_size, palette, tangents)
+        if bends is not None and gaps:
+            gaps["blend_depth"] = blend_depths(bends[gap_triangles], gaps["scales"].max(axis=1))
+        arrays |= clipping.fields
     saved, error = 0, 0.0
     if tolerance is not None:
         axes = np.repeat(np.arange(3), [int(spans.counts.sum(dtype=np.int64)) for spans in images])
         arrays, error = merge_flat(arrays, axes, grid.spacing, tolerance)
         saved = total - len(arrays["positions"])
+    if gaps:
+        arrays = _appended(arrays, gaps)
     small_parts = int(lost[1].max(initial=-1)) + 1
     if small_parts:
         extra = part_surfels(mesh, coordinates, grid, lost, splat_size, palette, tangents, bool(uv_fields))
-        arrays = {
-            name: np.concatenate([array, extra.get(name, _default(name, small_parts))])
-            for name, array in arrays.items()
-        }
+        arrays = _appended(arrays, extra)
     surfels = Surfels(origin=grid.surfel_origin, **arrays)
-    return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error)
+    return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error, gap_triangles)
 
 
-def _default(name: str, count: int) -> np.ndarray | None:
-    """(count, columns) of what an optional field means where it is not there; None for another."""
-    if name not in OPTIONAL_LAYOUT:
-        return None
-    columns, dtype, value = OPTIONAL_LAYOUT[name]
-    return np.full((count, columns) if columns > 1 else count, value, dtype)
+def _appended(arrays: dict[str, np.ndarray], more: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Both, by field; what only one of them has means nothing for the other."""
+    both = {}
+    for name in arrays | more:
+        parts = []
+        for part in (arrays, more):
+            if name in part:
+                parts.append(part[name])
+            else:
+                columns, dtype, value = OPTIONAL_LAYOUT[name]
+                count = len(part["positions"])
+                parts.append(np.full((count, columns) if columns > 1 else count, value, dtype))
+        both[name] = np.concatenate(parts)
+    return both
 
 
 def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[float], None]):
