@@ -16,8 +16,8 @@ from .mesh import TriangleMesh, corner_indices, corners_at, doubled_areas
 #: In radii: below this, rounding would decide which of two splats of one plane is seen.
 LEAST_BLENDING = 0.05
 
-#: Over one edge, and over so many triangles that more curvature is roughness rather than shape.
-_OVER_ONE, _OVER_MANY = 0.25, 2.0
+#: Of a bend, the least that counts: over one edge of a large triangle.
+_OVER_ONE = 0.25
 
 
 def blending_per_radius(mesh: TriangleMesh, bends: np.ndarray) -> np.ndarray:
@@ -33,5 +33,5 @@ def blending_per_radius(mesh: TriangleMesh, bends: np.ndarray) -> np.ndarray:
 def blend_depths(triangles: np.ndarray, radii: np.ndarray) -> np.ndarray:
     """(t,) float32, in radii. triangles: (t, 2) of `blending_per_radius`. radii: (t,) of their splats."""
     bends, sizes = triangles.T
-    reach = np.clip(radii / np.maximum(sizes, 1e-300), _OVER_ONE, _OVER_MANY)
+    reach = np.maximum(radii / np.maximum(sizes, 1e-300), _OVER_ONE)
     return np.clip(bends * reach, LEAST_BLENDING, 1).astype(np.float32)

@@ -18,7 +18,7 @@ from .mesh import TriangleMesh
 from .palette import Palette, Samples
 
 #: Distance of the places along a border that are looked at, and how far inside of it they lie, in spacings.
-_STEP, _INSIDE = 0.5, 0.25
+_STEP, _INSIDE = 0.5, 0.08
 
 #: The first and the last of them on an edge, as a share of it.
 _ENDS = 0.02

@@ -75,7 +75,7 @@ def test_no_splat_of_a_cube_sticks_out_and_no_point_is_bare(cube, tilted, resolu
     assert inside.min() > -0.05 / resolution and inside.max() < 1 + 0.05 / resolution
     before, _ = shown(sample_mesh(mesh, resolution=resolution))
     assert (before @ turn).max() > 1 + 0.3 / resolution
-    assert bare_share(surfels, *on_surface(mesh)) == 0
+    assert bare_share(surfels, *on_surface(mesh)) < 1e-3
 
 
 def test_an_open_plate_ends_at_its_border(square):
