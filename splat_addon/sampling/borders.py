@@ -27,8 +27,7 @@ class Borders:
     start, end: (B, 3) float64, object units, with the face at the left. inward: (B, 3) unit, in the face's plane,
     across the edge. normals: (B, 3) unit, of the face. edges: (B,) number of the edge, ascending; sides of one edge
     share it. shading: (B, 3) unit mean of the face's shading normals at the edge. colors: (B, 4) mean corner colour,
-    0 where the mesh has none. materials: (B,). triangles: (B,) the face. tips: (B, 2) bool, whether no other border
-    goes on from the start, and from the end: the surface goes on around it.
+    0 where the mesh has none. materials: (B,). triangles: (B,) the face.
     """
 
     start: np.ndarray
@@ -40,7 +39,6 @@ class Borders:
     colors: np.ndarray
     materials: np.ndarray
     triangles: np.ndarray
-    tips: np.ndarray
 
     def __len__(self) -> int:
         return len(self.start)
@@ -79,17 +77,8 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE) -> Edg
     if mesh.corner_colors is not None:
         colors = mesh.corner_colors[triangles[:, None], ends, :4].mean(axis=1)
     materials = np.zeros(len(triangles), int) if mesh.materials is None else mesh.materials[triangles]
-    tips = _tips(mesh.places[np.stack([a, b], axis=1)], edge)
-    borders = Borders(start, end, inward, normals[triangles], edge, shading, colors, materials, triangles, tips)
+    borders = Borders(start, end, inward, normals[triangles], edge, shading, colors, materials, triangles)
     return EdgeSurvey(borders, bends)
-
-
-def _tips(ends: np.ndarray, edge: np.ndarray) -> np.ndarray:
-    """(B, 2) bool: which of the places, (B, 2), at the ends of sides no other edge has."""
-    _, place = np.unique(ends, return_inverse=True)
-    place = place.reshape(-1, 2)
-    is_first = np.append(True, edge[1:] != edge[:-1])[: len(edge)]
-    return (np.bincount(place[is_first].ravel(), minlength=1) == 1)[place] if len(edge) else np.zeros((0, 2), bool)
 
 
 def _breaking(mesh: TriangleMesh, normals: np.ndarray, least: float):

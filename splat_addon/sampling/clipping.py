@@ -36,8 +36,7 @@ _RINGS = ((0.3, 6), (0.6, 10), (0.85, 16), (0.98, 24))
 @dataclass(frozen=True, eq=False)
 class _Sides:
     """m meetings of a surfel with a side of an edge, ordered by surfel. surfel, side: (m,). start, end: (m, 2) in the
-    unit circle. line: (m, 3) of unit direction. distance: (m,) of the edge from the centre. tips: (m, 2) as `Borders`
-    has them."""
+    unit circle. line: (m, 3) of unit direction. distance: (m,) of the edge from the centre."""
 
     surfel: np.ndarray
     side: np.ndarray
@@ -45,7 +44,6 @@ class _Sides:
     end: np.ndarray
     line: np.ndarray
     distance: np.ndarray
-    tips: np.ndarray
 
     def take(self, rows: np.ndarray) -> _Sides:
         return _Sides(*(getattr(self, f.name)[rows] for f in fields(self)))
@@ -117,9 +115,7 @@ def _sides(arrays: dict[str, np.ndarray], borders: Borders, origin: np.ndarray) 
     # At an end that two edges share, the one whose line is farther off says on which side the centre is.
     order = np.lexsort((-np.abs(line[rows, 2]), np.round(distance[rows], 6), surfel[rows]))
     rows = rows[order]
-    sides = _Sides(
-        surfel[rows], side[rows], start[rows], end[rows], line[rows], distance[rows], borders.tips[side[rows]]
-    )
+    sides = _Sides(surfel[rows], side[rows], start[rows], end[rows], line[rows], distance[rows])
     return sides.take(np.flatnonzero(_is_own(sides)))
 
 
@@ -158,7 +154,7 @@ def _nearest_on_segment(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray,
 
 
 def _needs_more(sides: _Sides, first: np.ndarray) -> np.ndarray:
-    """(m,) bool: whether what lies of an edge in the circle is off its surfel's first line, or ends there."""
+    """(m,) bool: whether what lies of an edge in the circle is off its surfel's first line."""
     along = sides.end - sides.start
     a, b, c = _dot(along, along), _dot(sides.start, along), _dot(sides.start, sides.start) - 1
     root = np.sqrt(np.maximum(b * b - a * c, 0))
@@ -167,10 +163,7 @@ def _needs_more(sides: _Sides, first: np.ndarray) -> np.ndarray:
     for share in ((-b - root) / a, (-b + root) / a):
         place = sides.start + along * np.clip(share, 0, 1)[:, None]
         np.maximum(off, np.abs(_dot(place, first[:, :2]) + first[:, 2]), out=off)
-    has_tip = np.zeros(len(along), bool)
-    for place, is_tip in zip((sides.start, sides.end), sides.tips.T, strict=True):
-        has_tip |= is_tip & (_dot(place, place) < 1)
-    return (off > _SAME_LINE) | has_tip
+    return off > _SAME_LINE
 
 
 def _corners(sides: _Sides, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -230,8 +223,7 @@ def _inside_of_each(sides: _Sides, places: np.ndarray) -> tuple[np.ndarray, np.n
     away = offset - along[:, None] * share[..., None]
     across = np.einsum("pk,mk->mp", places, sides.line[:, :2]) + sides.line[:, 2:]
     distance = np.sqrt(np.einsum("mpk,mpk->mp", away, away))
-    beyond = (sides.tips[:, :1] & (share <= 0)) | (sides.tips[:, 1:] & (share >= 1))
-    return (across >= 0) | beyond, distance - 1e-6 * np.abs(across)
+    return across >= 0, distance - 1e-6 * np.abs(across)
 
 
 def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:

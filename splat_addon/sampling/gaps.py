@@ -29,8 +29,9 @@ _TO_MIDDLE = 0.3
 #: A place is covered this far into an ellipse, squared.
 _COVERED = 0.95
 
-#: One surfel covers about so many places in a row.
-_PLACES = 3
+#: One surfel covers about so many places in a row, and is of this share of the others' size: where these fail, the
+#: surface is small.
+_PLACES, _SIZE = 2, 0.6
 
 
 def gap_surfels(
@@ -73,7 +74,7 @@ def _bare(mesh: TriangleMesh, borders: Borders, arrays, clipping: Clipping, grid
     is_covered = np.zeros(len(side), bool)
     is_covered[_covered(borders, arrays, clipping, grid, counts, places)] = True
     bare = np.flatnonzero(~is_covered)
-    # Of a run of bare places the second, the fifth, ...; of a single one that.
+    # Of a run of bare places the second, the fourth, ...; of a single one that.
     starts = np.append(True, (bare[1:] != bare[:-1] + 1) | (side[bare[1:]] != side[bare[:-1]])) if len(bare) else bare
     first = np.flatnonzero(starts)
     sizes = np.diff(np.append(first, len(bare)))
@@ -113,7 +114,7 @@ def _surfels(mesh, triangles, places, normals, grid: Grid, splat_size, palette: 
     for axis in range(3):
         at = np.flatnonzero(axes == axis)
         rotations[at] = ellipse_rotations(np.ascontiguousarray(normals[at].T), axis)
-        scales[at] = ellipse_scales(normals[at, axis], splat_size * grid.spacing)
+        scales[at] = ellipse_scales(normals[at, axis], _SIZE * splat_size * grid.spacing)
     materials = np.zeros(count, np.int32) if mesh.materials is None else mesh.materials[triangles].astype(np.int32)
     arrays = {
         "positions": (places - grid.surfel_origin).astype(np.float32),
