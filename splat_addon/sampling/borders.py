@@ -6,6 +6,7 @@ There splats are to end: `clipping` cuts them at these edges.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -14,7 +15,7 @@ from .joining import have_same_values
 from .mesh import TriangleMesh, corner_indices, corners_at, doubled_areas
 
 #: Radians; planes that differ by more make a crease.
-DEFAULT_CREASE_ANGLE = np.radians(30)
+DEFAULT_CREASE_ANGLE = math.radians(30)
 
 #: Largest difference of a component of colour across an edge where it still goes on.
 COLOR_BREAK = 0.02
