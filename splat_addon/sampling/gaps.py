@@ -23,6 +23,9 @@ _STEP, _INSIDE = 0.5, 0.08
 #: The first and the last of them on an edge, as a share of it.
 _ENDS = 0.02
 
+#: Edge of a cell of which one place is enough, in spacings.
+_CELL = 0.6
+
 #: Inside of a triangle, no farther on the way to its middle than this.
 _TO_MIDDLE = 0.3
 
@@ -80,6 +83,10 @@ def _bare(mesh: TriangleMesh, borders: Borders, arrays, clipping: Clipping, grid
     sizes = np.diff(np.append(first, len(bare)))
     run, place = expanded(np.zeros(len(sizes), np.int64), sizes)
     chosen = bare[place % _PLACES == np.minimum(1, sizes[run] - 1)]
+    # Of edges far shorter than a spacing one place for many: those of a cell that face alike.
+    cells = np.floor((places[chosen] - grid.surfel_origin) / (_CELL * grid.spacing))
+    _, first = np.unique(np.column_stack([cells, np.rint(borders.normals[side[chosen]])]), axis=0, return_index=True)
+    chosen = chosen[np.sort(first)]
     return side[chosen], places[chosen]
 
 
