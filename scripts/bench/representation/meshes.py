@@ -82,11 +82,9 @@ def drilled_plate() -> tuple[np.ndarray, np.ndarray]:
     rings = [_ring(0, 0, 1.0, 96)] + [_ring(*hole, 48 if hole[2] > 0.05 else 12) for hole in holes]
     flat = np.concatenate(rings)
     faces = Delaunay(flat).simplices
-    middle = flat[faces].mean(axis=1)
-    inside = np.ones(len(faces), bool)
-    for x, y, radius in holes:
-        inside &= np.hypot(middle[:, 0] - x, middle[:, 1] - y) > radius * 0.99
-    faces = faces[inside]
+    # What has all corners on one hole's rim lies in the hole.
+    ring = np.repeat(np.arange(len(rings)), [len(points) for points in rings])[faces]
+    faces = faces[(ring != ring[:, :1]).any(axis=1) | (ring[:, 0] == 0)]
     (x1, y1), (x2, y2) = ((flat[faces[:, k]] - flat[faces[:, 0]]).T for k in (1, 2))
     faces = np.where((x1 * y2 - x2 * y1 < 0)[:, None], faces[:, ::-1], faces)
     count, walls, start = len(flat), [], 0
