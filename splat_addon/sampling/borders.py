@@ -12,7 +12,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from .joining import have_same_values
-from .mesh import TriangleMesh, corner_indices, corners_at, doubled_areas
+from .mesh import TriangleMesh, corner_indices, corners_at, doubled_areas, triangle_chunks
+from .scan_conversion import expand
 
 #: Radians; planes that differ by more make a crease.
 DEFAULT_CREASE_ANGLE = math.radians(30)
@@ -64,13 +65,15 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE) -> Edg
     more. Vertices at one place are one. An edge of one face, or of more than two, is a border of each. Faces that wind
     differently are compared as if they did not.
     """
-    normals = _unit(_face_normals(mesh))
-    triangles, numbers, edge, bends = _breaking(mesh, normals, np.cos(angle))
+    components = _face_normals(mesh)
+    components /= np.maximum(np.sqrt((components * components).sum(axis=0)), 1e-300)
+    triangles, numbers, edge, bends = _breaking(mesh, components, np.cos(angle))
     a, b = mesh.triangles[triangles, numbers], mesh.triangles[triangles, (numbers + 1) % 3]
     start, end = mesh.positions[a], mesh.positions[b]
-    inward = _unit(np.cross(normals[triangles], end - start))
+    normals = components.take(triangles, axis=1).T
+    inward = _unit(np.cross(normals, end - start))
     ends = np.stack([numbers, (numbers + 1) % 3], axis=1)
-    shading = normals[triangles]
+    shading = normals
     if mesh.corner_normals is not None:
         given = _unit(mesh.corner_normals[triangles[:, None], ends].astype(np.float64).sum(axis=1))
         shading = np.where((given != 0).any(axis=1)[:, None], given, shading)
@@ -78,65 +81,75 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE) -> Edg
     if mesh.corner_colors is not None:
         colors = mesh.corner_colors[triangles[:, None], ends, :4].mean(axis=1)
     materials = np.zeros(len(triangles), int) if mesh.materials is None else mesh.materials[triangles]
-    borders = Borders(start, end, inward, normals[triangles], edge, shading, colors, materials, triangles)
+    borders = Borders(start, end, inward, normals, edge, shading, colors, materials, triangles)
     return EdgeSurvey(borders, bends)
 
 
 def _breaking(mesh: TriangleMesh, normals: np.ndarray, least: float):
-    """(B,) triangles, (B,) corners at which their edge starts, (B,) edges, ascending; and (T,) bends."""
+    """(B,) triangles, (B,) corners at which their edge starts, (B,) edges, ascending; and (T,) bends.
+
+    normals: (3, T) unit. A *corner* here is a number k T + t: the k-th of triangle t, at which its k-th edge starts.
+    """
+    count = len(mesh)
     places = mesh.places.take(corner_indices(mesh.triangles))
     # The sum of two hashes names an edge alike from both sides.
-    keys = np.concatenate([places[0] + places[1], places[1] + places[2], places[2] + places[0]])
-    order = np.argsort(keys, kind="stable")
+    keys = (places + places[[1, 2, 0]]).ravel()
+    order = np.argsort(keys)
     ordered = keys.take(order)
     is_first = np.ones(len(order) + 1, bool)
     np.not_equal(ordered[1:], ordered[:-1], out=is_first[1:-1])
     starts = np.flatnonzero(is_first)
     counts = np.diff(starts)
-    count = len(mesh)
     is_border = counts != 2
     pairs = np.flatnonzero(~is_border)
-    (k, s), (n, t) = (np.divmod(order.take(starts.take(pairs) + side), count) for side in (0, 1))
-    breaks, cosine = _breaks(mesh, normals, places, (s, k), (t, n), least)
+    one, other = (order.take(starts.take(pairs) + side) for side in (0, 1))
+    breaks, cosine = _breaks(mesh, normals, places.ravel(), one, other, least)
     is_border[pairs] = breaks
     bends = np.zeros(count)
     goes_on = np.flatnonzero(~breaks & (cosine < 1))
-    bend = np.arccos(np.clip(cosine[goes_on], -1, 1))
-    for triangle in (s, t):
-        np.maximum.at(bends, triangle[goes_on], bend)
+    bend = np.arccos(np.maximum(cosine.take(goes_on), -1))
+    for corners in (one, other):
+        np.maximum.at(bends, corners.take(goes_on) % count, bend)
     found = np.flatnonzero(is_border)
-    sides = counts.take(found)
-    edge = np.repeat(np.arange(len(found)), sides)
-    within = np.arange(len(edge)) - np.repeat(np.cumsum(sides) - sides, sides)
-    number, triangle = np.divmod(order.take(np.repeat(starts.take(found), sides) + within), count)
+    edge, within = expand(counts.take(found))
+    number, triangle = np.divmod(order.take(starts.take(found).take(edge) + within), count)
     return triangle, number, edge, bends
 
 
-def _breaks(mesh: TriangleMesh, normals: np.ndarray, places: np.ndarray, one, other, least: float) -> np.ndarray:
-    """(p,) bool of edges with two sides, each given by its triangle and its corner; and (p,) cosines of planes."""
-    (s, k), (t, n) = one, other
-    ahead = places[k, s] == places[n, t]
-    cosine = sum(normals[s, c] * normals[t, c] for c in range(3))
+def _breaks(mesh: TriangleMesh, normals: np.ndarray, places: np.ndarray, one, other, least: float):
+    """(p,) bool of edges with two sides, which start at a corner each; and (p,) cosines of planes."""
+    count = len(mesh)
+    s, t = one % count, other % count
+    ahead = places.take(one) == places.take(other)
+    cosine = sum(row.take(s) * row.take(t) for row in normals)
     # Two faces that go along their edge in the same direction wind differently.
-    planes = np.where(ahead, -cosine, cosine)
-    breaks = planes < least
-    rest = np.flatnonzero(~breaks)
-    s, k, t, n, ahead = (values[rest] for values in (s, k, t, n, ahead))
-    breaks_too = np.zeros(len(rest), bool)
-    # The same end of the edge, in both triangles.
-    far = np.where(ahead, n, (n + 1) % 3), np.where(ahead, (n + 1) % 3, n)
-    for mine, its in zip((k, (k + 1) % 3), far, strict=True):
+    np.negative(cosine, out=cosine, where=ahead)
+    breaks = cosine < least
+    k, n = one // count, other // count
+    has_colors = mesh.corner_colors is not None and any(surface.color.factors for surface in mesh.surfaces)
+    for step in (0, 1):
+        # The same end of the edge, in both triangles.
+        mine, its = 3 * s + (k + step) % 3, 3 * t + (n + np.where(ahead, step, 1 - step)) % 3
         if mesh.corner_normals is not None:
-            a, b = _unit(mesh.corner_normals[s, mine]), _unit(mesh.corner_normals[t, its])
-            cosine = np.where(ahead, -1, 1) * (a * b).sum(axis=1)
-            breaks_too |= (cosine < least) & ((a != 0).any(axis=1) & (b != 0).any(axis=1))
-        if mesh.corner_colors is not None and any(surface.color.factors for surface in mesh.surfaces):
-            difference = np.abs(mesh.corner_colors[s, mine] - mesh.corner_colors[t, its])
-            breaks_too |= difference.max(axis=1) > COLOR_BREAK
+            at, a, b = _differing(mesh.corner_normals, mine, its)
+            side = np.where(ahead.take(at), -1.0, 1.0) * _dots(_unit(a), _unit(b))
+            breaks[at] |= (side < least) & (a != 0).any(axis=1) & (b != 0).any(axis=1)
+        if has_colors:
+            at, a, b = _differing(mesh.corner_colors, mine, its)
+            breaks[at] |= np.abs(a - b).max(axis=1, initial=0) > COLOR_BREAK
     if mesh.materials is not None:
-        breaks_too |= _look_different(mesh, mesh.materials[s], mesh.materials[t])
-    breaks[rest] = breaks_too
-    return breaks, planes
+        breaks |= _look_different(mesh, mesh.materials.take(s), mesh.materials.take(t))
+    return breaks, cosine
+
+
+def _differing(values: np.ndarray, one: np.ndarray, other: np.ndarray):
+    """Which of two (p,) corners, 3 t + k, have different values of (T, 3, c), and these, (d, c) each."""
+    rows = values.reshape(-1, values.shape[2])
+    differs = np.zeros(len(one), bool)
+    for column in rows.T:
+        differs |= column.take(one) != column.take(other)
+    at = np.flatnonzero(differs)
+    return at, rows.take(one.take(at), axis=0), rows.take(other.take(at), axis=0)
 
 
 def _look_different(mesh: TriangleMesh, s: np.ndarray, t: np.ndarray) -> np.ndarray:
@@ -150,8 +163,15 @@ def _look_different(mesh: TriangleMesh, s: np.ndarray, t: np.ndarray) -> np.ndar
 
 
 def _face_normals(mesh: TriangleMesh) -> np.ndarray:
-    """(T, 3), as long as twice the area."""
-    return doubled_areas(corners_at(np.ascontiguousarray(mesh.positions.T), corner_indices(mesh.triangles))).T
+    """(3, T), as long as twice the area."""
+    components, normals = np.ascontiguousarray(mesh.positions.T), np.empty((3, len(mesh)))
+    for chunk in triangle_chunks(len(mesh)):
+        normals[:, chunk] = doubled_areas(corners_at(components, corner_indices(mesh.triangles[chunk])))
+    return normals
+
+
+def _dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.einsum("ij,ij->i", a, b)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from .borders import Borders
+from .scan_conversion import expand
 
 #: Edges are cut into pieces of at most this, in the largest radius of a surfel.
 _PIECE = 0.5
@@ -39,8 +40,8 @@ def edge_neighbours(
     own = _keys(*(np.floor(column * np.float32(0.5 / reach)).astype(np.int32) for column in positions.T))
     near = np.flatnonzero((counts > 0).take(own))
     own = own.take(near)
-    row, at = expanded(firsts.take(own), counts.take(own))
-    piece = piece.take(at)
+    row, number = expand(counts.take(own))
+    piece = piece.take(firsts.take(own).take(row) + number)
     x, y, z = (
         column.take(near).take(row) - point.take(piece) for column, point in zip(positions.T, points, strict=True)
     )
@@ -52,23 +53,15 @@ def edge_neighbours(
     surfel, edge = np.divmod(pairs, count)
     close = _distances(positions, surfel, start, end, edge) <= radii.take(surfel) * np.float32(1 + 1e-4)
     surfel, edge = surfel.compress(close), edge.compress(close)
-    row, side = expanded(starts.take(edge), sides.take(edge))
-    return surfel.take(row), side
-
-
-def expanded(first: np.ndarray, counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(m,) rows, each `counts` times, and (m,) numbers that count up from their `first`."""
-    row = np.repeat(np.arange(len(counts)), counts)
-    number = np.arange(len(row))
-    number += (first - np.cumsum(counts) + counts).take(row)
-    return row, number
+    row, number = expand(sides.take(edge))
+    return surfel.take(row), starts.take(edge).take(row) + number
 
 
 def _pieces(start: np.ndarray, end: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray]:
     """(3, k) float32 middles of pieces of (3, e) edges, and (k,) the edge of each."""
     along = end - start
     counts = np.maximum(np.ceil(np.sqrt((along * along).sum(axis=0)) / longest), 1).astype(np.int64)
-    edge, number = expanded(np.zeros(len(counts), np.int64), counts)
+    edge, number = expand(counts)
     place = ((number + 0.5) / counts.take(edge)).astype(np.float32)
     return start.take(edge, axis=1) + along.take(edge, axis=1) * place, edge
 

@@ -11,11 +11,11 @@ from ..clip_lines import kept
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, quaternion_axes
 from .borders import Borders
 from .clipping import Clipping, clip
-from .edge_neighbours import expanded
 from .ellipses import ellipse_rotations, ellipse_scales
 from .grid import Grid
 from .mesh import TriangleMesh
 from .palette import Palette, Samples
+from .scan_conversion import expand
 
 #: Distance of the places along a border that are looked at, and how far inside of it they lie, in spacings.
 _STEP, _INSIDE = 0.5, 0.08
@@ -66,7 +66,7 @@ def _bare(mesh: TriangleMesh, borders: Borders, arrays, clipping: Clipping, grid
     """(k,) sides of borders and (k, 3) places beside them, in their triangles, that no surfel covers."""
     length = np.linalg.norm(borders.end - borders.start, axis=1)
     counts = np.ceil(length / (_STEP * grid.spacing)).astype(np.int64) + 1
-    side, number = expanded(np.zeros(len(counts), np.int64), counts)
+    side, number = expand(counts)
     # From one end of the edge to the other: corners are what is left bare most easily.
     share = (_ENDS + (1 - 2 * _ENDS) * number / np.maximum(counts[side] - 1, 1))[:, None]
     on_edge = borders.start[side] + (borders.end - borders.start)[side] * share
@@ -81,7 +81,7 @@ def _bare(mesh: TriangleMesh, borders: Borders, arrays, clipping: Clipping, grid
     starts = np.append(True, (bare[1:] != bare[:-1] + 1) | (side[bare[1:]] != side[bare[:-1]])) if len(bare) else bare
     first = np.flatnonzero(starts)
     sizes = np.diff(np.append(first, len(bare)))
-    run, place = expanded(np.zeros(len(sizes), np.int64), sizes)
+    run, place = expand(sizes)
     chosen = bare[place % _PLACES == np.minimum(1, sizes[run] - 1)]
     # Of edges far shorter than a spacing one place for many: those of a cell that face alike.
     cells = np.floor((places[chosen] - grid.surfel_origin) / (_CELL * grid.spacing))
@@ -104,7 +104,8 @@ def _covered(borders: Borders, arrays, clipping: Clipping, grid: Grid, counts: n
     last = counts[side] - 1
     low, high = (np.clip((foot + sign * reach) * last, 0, last) for sign in (-1, 1))
     low, high = np.floor(low).astype(np.int64), np.ceil(high).astype(np.int64) + 1
-    meeting, number = expanded(low, high - low)
+    meeting, number = expand(high - low)
+    number += low.take(meeting)
     place = (np.cumsum(counts) - counts)[side[meeting]] + number
     offset = places[place] - center[meeting]
     q = np.stack([np.einsum("ij,ij->i", offset, axis[meeting]) for axis in (x, y)], axis=1) / sizes[meeting]
