@@ -93,7 +93,7 @@ def clip(arrays: dict[str, np.ndarray], borders: Borders, origin: np.ndarray) ->
 
 def _sides(arrays: dict[str, np.ndarray], borders: Borders, origin: np.ndarray) -> _Sides:
     """Of each surfel the sides of edges that reach into its ellipse, the nearest first."""
-    surfel, side = edge_neighbours(arrays["positions"], arrays["scales"].max(axis=1), borders, origin)
+    surfel, side = edge_neighbours(arrays["positions"], np.maximum(*arrays["scales"].T), borders, origin)
     axes = quaternion_axes(arrays["rotations"][surfel])
     x, y, z = (axis.astype(np.float64) for axis in axes)
     center = arrays["positions"][surfel] + origin
@@ -178,8 +178,7 @@ def _corners(sides: _Sides, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     nearest = np.minimum.reduceat(distance, starts, axis=0)
     is_nearest = distance == nearest[owner]
     belongs = np.logical_and.reduceat(inside | ~is_nearest, starts, axis=0)
-    of_line = places @ sides.line[:, :2].T + sides.line[:, 2]
-    keeps = (of_line >= 0).T
+    keeps = inside
     first = keeps[starts][owner]
     belongs = belongs[owner]
     shown = first, first & keeps, first | keeps, np.ones_like(first)
@@ -216,14 +215,22 @@ def _inside_of_each(sides: _Sides, places: np.ndarray) -> tuple[np.ndarray, np.n
     At an end that two edges share, both are as far, and the one whose line is farther off is right: it counts as a
     little nearer.
     """
-    along = sides.end - sides.start
-    square = np.maximum(_dot(along, along), 1e-300)
-    offset = places[None] - sides.start[:, None]
-    share = np.clip(np.einsum("mpk,mk->mp", offset, along) / square[:, None], 0, 1)
-    away = offset - along[:, None] * share[..., None]
-    across = np.einsum("pk,mk->mp", places, sides.line[:, :2]) + sides.line[:, 2:]
-    distance = np.sqrt(np.einsum("mpk,mpk->mp", away, away))
-    return across >= 0, distance - 1e-6 * np.abs(across)
+    (x, y), (u, v) = (a.T.astype(np.float32)[..., None] for a in (sides.start, sides.end - sides.start))
+    a, b, c = sides.line.T.astype(np.float32)[..., None]
+    px, py = places.T.astype(np.float32)
+    to_x, to_y = px - x, py - y
+    share = to_x * (u / np.maximum(u * u + v * v, np.float32(1e-30)))
+    share += to_y * (v / np.maximum(u * u + v * v, np.float32(1e-30)))
+    np.clip(share, 0, 1, out=share)
+    to_x -= u * share
+    to_y -= v * share
+    across = a * px + b * py + c
+    to_x *= to_x
+    to_y *= to_y
+    to_x += to_y
+    np.sqrt(to_x, out=to_x)
+    to_x -= np.float32(1e-4) * np.abs(across)
+    return across >= 0, to_x
 
 
 def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -9,11 +9,10 @@ from .borders import Borders
 from .scan_conversion import expand
 
 #: Edges are cut into pieces of at most this, in the largest radius of a surfel.
-_PIECE = 0.5
+_PIECE = 1.0
 
-#: Of the hash of a cell (Teschner et al., "Optimized Spatial Hashing", 2003), and its bits.
+#: Of the hash of a cell (Teschner et al., "Optimized Spatial Hashing", 2003).
 _PRIMES = np.array((73856093, 19349663, 83492791), np.int32)
-_BITS = 20
 
 
 def edge_neighbours(
@@ -31,13 +30,14 @@ def edge_neighbours(
     # In cells of twice the reach of a surfel, all that reach a piece lie in 8 cells at most.
     reach = largest * (1 + _PIECE / 2)
     corner = np.floor((points - np.float32(reach)) * np.float32(0.5 / reach)).astype(np.int32)
-    keys = np.concatenate([_keys(*(corner + np.array(step, np.int32)[:, None])) for step in np.ndindex(2, 2, 2)])
+    bits = min(max(int(8 * len(edge_of_piece)).bit_length() + 1, 10), 20)
+    keys = np.concatenate([_keys(bits, *(corner + np.array(step, np.int32)[:, None])) for step in np.ndindex(2, 2, 2)])
     order = np.argsort(keys, kind="stable")
     keys, piece = keys.take(order), np.tile(np.arange(len(edge_of_piece)), 8).take(order)
 
-    counts = np.bincount(keys, minlength=1 << _BITS)
+    counts = np.bincount(keys, minlength=1 << bits)
     firsts = np.cumsum(counts) - counts
-    own = _keys(*(np.floor(column * np.float32(0.5 / reach)).astype(np.int32) for column in positions.T))
+    own = _keys(bits, *(np.floor(column * np.float32(0.5 / reach)).astype(np.int32) for column in positions.T))
     near = np.flatnonzero((counts > 0).take(own))
     own = own.take(near)
     row, number = expand(counts.take(own))
@@ -76,10 +76,10 @@ def _distances(positions: np.ndarray, surfel: np.ndarray, start: np.ndarray, end
     return np.sqrt(sum((o - a * share) ** 2 for o, a in zip(offset, along, strict=True)))
 
 
-def _keys(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """(n,) int32 that are equal for equal cells, of `_BITS` bits; seldom for others."""
+def _keys(bits: int, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """(n,) int32 that are equal for equal cells, of so many bits; seldom for others."""
     keys = x * _PRIMES[0]
     keys ^= y * _PRIMES[1]
     keys ^= z * _PRIMES[2]
-    keys &= (1 << _BITS) - 1
+    keys &= (1 << bits) - 1
     return keys

@@ -8,7 +8,8 @@ import pytest
 
 from splat_addon.clip_lines import pack_lines
 from splat_addon.reference import render_exact
-from splat_addon.rendering import Instance, Scene, Settings
+from splat_addon.reference.shadows import lit_share
+from splat_addon.rendering import Camera, Instance, Light, Scene, Settings
 
 SETTINGS = Settings(shading="flat", transparent_film=True)
 LEFT, LOW = pack_lines(np.array([[1.0, 0, 0]])), pack_lines(np.array([[0, 1.0, 0]]))
@@ -67,6 +68,20 @@ def test_clipped_splats_hide_nothing_where_they_are_cut(disc, ellipses, perspect
     scene = Scene((replace(disc(clip_line=LEFT)[0], colors=np.array([[1, 0, 0, 1]])), behind))
     color = render_exact(scene, perspective((32, 32)), SETTINGS, samples=2).color
     assert np.allclose(color[16, 14, :3], (0, 1, 0)) and np.allclose(color[16, 18, :3], (1, 0, 0))
+
+
+def test_a_clipped_splat_shadows_with_what_is_left_of_it(disc, ellipses):
+    """A disc at height 1 under a sun from above: half of it shadows half as much."""
+    floor = ellipses((0, 0, 0), (4, 0, 0), (0, 4, 0))
+    places = np.stack([*np.meshgrid(*[np.linspace(-2, 2, 41)] * 2), np.zeros((41, 41))], axis=2).reshape(-1, 3)
+    camera = Camera.orthographic(np.eye(4), 4, (8, 8), -10, 10)
+    sun, shares = Light("sun", direction=(0, 0, -1)), []
+    for caster in disc(clip_line=LEFT):
+        scene = Scene((floor, replace(caster, origin=(0, 0, 5))), (sun,))
+        shares.append((1 - lit_share(sun, scene, camera, places, 0.1)).reshape(41, 41))
+    half, whole = shares
+    assert whole.sum() > 100 and half[:, 20:].sum() == whole[:, 20:].sum()
+    assert half[:, :20].sum() == 0
 
 
 def sheets(ellipses, gap, blend):
