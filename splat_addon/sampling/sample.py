@@ -101,6 +101,8 @@ def sample_surface(
     chosen = find_reduction(reduction)
     check_fineness(spacing, resolution, count)
     check_grazing_angle(grazing_angle)
+    if crease_angle is not None and not 0 < crease_angle <= math.pi:
+        raise ValueError(f"A crease's angle must be above 0 and up to pi radians, not {crease_angle}.")
     if not (math.isfinite(splat_size) and splat_size > 0):
         raise ValueError(f"The splat size must be a finite number above 0, not {splat_size}.")
     if tolerance is not None and chosen.merge is not None:
@@ -129,16 +131,20 @@ def sample_surface(
         arrays["blend_depth"] = np.empty(total, np.float32)
     bends = blending_per_radius(mesh, edges.bends) if fits_blending else None
     filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, palette, tangents, seams, bends, arrays)
-    _fill(filler, images, stage(progress, 0.5, 1.0))
+    filled = 1.0 if crease_angle is None else 0.6
+    _fill(filler, images, stage(progress, 0.5, filled))
     if chosen.merge is not None:
         arrays = chosen.merge(arrays, grid.spacing)
     gaps, gap_triangles = {}, np.empty(0, np.intp)
     if crease_angle is not None:
+        report = stage(progress, filled, 1.0)
         clipping = clip(arrays, edges.borders, grid.surfel_origin)
+        report(0.7)
         gaps, gap_triangles = gap_surfels(mesh, edges.borders, arrays, clipping, grid, splat_size, palette, tangents)
         if bends is not None and gaps:
             gaps["blend_depth"] = blend_depths(bends[gap_triangles], gaps["scales"].max(axis=1))
         arrays |= clipping.fields
+        report(1.0)
     saved, error = 0, 0.0
     if tolerance is not None:
         axes = np.repeat(np.arange(3), [int(spans.counts.sum(dtype=np.int64)) for spans in images])

@@ -8,6 +8,7 @@ import trimesh
 from splat_addon.clip_lines import kept
 from splat_addon.sampling import (
     Channel,
+    SamplingCancelled,
     Surface,
     Tolerance,
     TrackedSurfels,
@@ -131,6 +132,20 @@ def test_a_face_narrower_than_a_cell_is_covered_by_surfels_of_its_own():
 def test_a_smooth_surface_has_no_lines(sphere):
     surfels = sample_mesh(sphere, resolution=24, crease_angle=ANGLE)
     assert surfels.clip_line is None and surfels.clip_line_2 is None and not surfels.is_clipped
+
+
+@pytest.mark.parametrize("angle", [0.0, -1.0, 4.0, np.nan])
+def test_an_angle_that_is_none_is_refused(cube, angle):
+    with pytest.raises(ValueError, match="angle must be above 0"):
+        sample_mesh(cube(), resolution=4, crease_angle=angle)
+
+
+def test_clipping_can_be_cancelled_and_says_how_far_it_is(cube):
+    shares = []
+    sample_mesh(cube(), resolution=8, crease_angle=ANGLE, progress=shares.append)
+    assert shares == sorted(shares) and shares[-1] == 1 and any(0.6 < share < 1 for share in shares)
+    with pytest.raises(SamplingCancelled):
+        sample_mesh(cube(), resolution=8, crease_angle=ANGLE, progress=lambda share: share < 0.8)
 
 
 def test_without_the_option_there_are_no_lines(cube):
