@@ -26,9 +26,6 @@ _OFF_PLANE, _OFF_ANYHOW = 0.35, 0.1
 #: A border within this of a line, in half-axes, is that line.
 _SAME_LINE = 0.06
 
-#: What is missing of the surface weighs so many times what is too much of it: nothing else may cover it.
-_BARE = 1.0
-
 #: Where a corner is judged: rings of places in the unit circle, and how much each weighs.
 _RINGS = ((0.3, 6), (0.6, 10), (0.85, 16), (0.98, 24))
 
@@ -182,7 +179,7 @@ def _corners(sides: _Sides, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     first = keeps[starts][owner]
     belongs = belongs[owner]
     shown = first, first & keeps, first | keeps, np.ones_like(first)
-    wrongs = np.stack([(s & ~belongs) @ weights + _BARE * ((belongs & ~s) @ weights) for s in shown], axis=1)
+    wrongs = np.stack([(kind != belongs).astype(np.float32) @ weights for kind in shown], axis=1)
     # One line where a second gains nothing.
     wrongs[:, 0] -= 1e-4
     flat, group = wrongs.reshape(-1), np.repeat(owner, len(shown))
@@ -206,7 +203,7 @@ def _places() -> tuple[np.ndarray, np.ndarray]:
         places.append(np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1))
         weights.append(np.full(count, radius * np.exp(-2 * radius**2) / count))
     weights = np.concatenate(weights)
-    return np.concatenate(places), weights / weights.sum()
+    return np.concatenate(places), (weights / weights.sum()).astype(np.float32)
 
 
 def _inside_of_each(sides: _Sides, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
