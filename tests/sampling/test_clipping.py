@@ -190,6 +190,13 @@ def test_faces_that_wind_differently_end_at_the_same_edges(cube):
     assert points.min() > -1e-3 and points.max() < 1 + 1e-3
 
 
+def test_an_edge_between_faces_that_wind_differently_is_none_where_they_are_flat(square):
+    mesh = square()
+    turned = TriangleMesh(mesh.positions, np.array([(0, 1, 2), (0, 3, 2)]))
+    one, other = (sample_mesh(m, resolution=13, crease_angle=ANGLE) for m in (mesh, turned))
+    assert (one.clip_line[:, 1] > 0).sum() == (other.clip_line[:, 1] > 0).sum()
+
+
 def test_split_vertices_are_one(cube):
     mesh = cube()
     apart = TriangleMesh(mesh.positions[mesh.triangles].reshape(-1, 3), np.arange(36).reshape(-1, 3))
