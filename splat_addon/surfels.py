@@ -14,6 +14,8 @@ from functools import cached_property
 
 import numpy as np
 
+from .clip_lines import CLIP_FIELDS, are_reflex, unpack_lines
+
 #: field -> (columns, dtype); one column is stored flat.
 LAYOUT = {
     "positions": (3, np.float32),
@@ -34,6 +36,9 @@ OPTIONAL_LAYOUT = {
     "uv_along_x": (2, np.float32, 0.0),
     "uv_along_y": (2, np.float32, 0.0),
     "uv_border": (2, np.float32, 0.0),
+    "clip_line": (2, np.int16, 0),
+    "clip_line_2": (2, np.int16, 0),
+    "blend_depth": (1, np.float32, 1.0),
 }
 
 #: Least alpha of an opaque surfel: filtering an image of ones leaves them a few roundings short of 1.
@@ -61,6 +66,10 @@ class Surfels:
     uvs: (N, 2) float32 texture coordinates at the centres; uv_along_x, uv_along_y: (N, 2) their change along the local
         x and y half-axis. Where both changes are 0, and without all three, no texture is looked up: `colors` shows.
     uv_border: (N, 2) m of a line m . q = 1 in half-axes, beyond which the texture is not looked up; 0 and None: none.
+    clip_line, clip_line_2: (N, 2) int16, up to two lines at which the splat ends, as `clip_lines` packs them: 4 bytes
+        each; 0 and None: none.
+    blend_depth: (N,) float32, 0 to 1, how far splats of the same surface lie off its plane, in the longer half-axis: no
+        deeper does it blend with others, nor deeper than the renderer's epsilon; None: that everywhere.
 
     Raises ValueError with one sentence for a wrong shape, a non-finite or an out-of-range value;
     `valid_surfels` drops and counts such rows instead.
@@ -81,6 +90,9 @@ class Surfels:
     uv_along_x: np.ndarray | None = None
     uv_along_y: np.ndarray | None = None
     uv_border: np.ndarray | None = None
+    clip_line: np.ndarray | None = None
+    clip_line_2: np.ndarray | None = None
+    blend_depth: np.ndarray | None = None
 
     def __post_init__(self):
         arrays = _shaped(self.arrays())
@@ -127,6 +139,17 @@ class Surfels:
     def has_own_material(self) -> bool:
         """Whether something of their materials is in their own fields."""
         return not all(a is None for a in (self.roughness, self.metallic, self.emission))
+
+    @property
+    def is_clipped(self) -> bool:
+        """Whether some of them may end at a line before their ellipse does."""
+        return self.clip_line is not None or self.clip_line_2 is not None
+
+    def clip_lines(self) -> tuple[np.ndarray, np.ndarray]:
+        """(N, 2, 3) float64 lines a u + b v + c >= 0 of unit direction in half-axes, and (N,) bool, of which surfels
+        they make a reflex corner (`clip_lines.kept`)."""
+        first, second = (_or_default(self, name) for name in CLIP_FIELDS)
+        return np.stack([unpack_lines(first), unpack_lines(second)], axis=1), are_reflex(first, second)
 
     def as_solid(self) -> Surfels:
         """The same surfels, said to be solid; the arrays are shared."""
@@ -250,6 +273,9 @@ _DEMANDS = {
     "scales": "finite and above 0",
     "normals": "unit vectors",
     "materials": "0 or more",
+    "clip_line": "a direction and a cut of 0 or more",
+    "clip_line_2": "a direction and a cut of 0 or more",
+    "blend_depth": "0 to 1",
 }
 
 
@@ -321,6 +347,9 @@ _CHECKS = {
     "normals": _unit,
     "scales": _sizes,
     "materials": lambda rows: rows >= 0,
+    "clip_line": lambda rows: rows[:, 1] >= 0,
+    "clip_line_2": lambda rows: rows[:, 1] >= 0,
+    "blend_depth": lambda rows: (rows >= 0) & (rows <= 1),
 }
 
 

@@ -12,12 +12,13 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 
 #: room -> the rooms that it may import
 MAY_IMPORT = {
-    "surfels": set(),
+    "clip_lines": set(),
+    "surfels": {"clip_lines"},
     "images": set(),
-    "sampling": {"surfels", "images"},
-    "rendering": {"surfels", "images"},
-    "interchange": {"surfels"},
-    "reference": {"surfels", "images", "rendering"},
+    "sampling": {"clip_lines", "surfels", "images"},
+    "rendering": {"clip_lines", "surfels", "images"},
+    "interchange": {"clip_lines", "surfels"},
+    "reference": {"clip_lines", "surfels", "images", "rendering"},
     "blender": {"surfels", "sampling", "rendering", "interchange"},
 }
 #: `reference` reads rendering's data, never its passes.

@@ -19,7 +19,12 @@ def arrays(count, *optional):
         "normals": [[0, 0, 1]] * count,
         "colors": random.uniform(size=(count, 4)),
         "materials": np.zeros(count, int),
-    } | {name: random.uniform(size=(count, *SHAPES[name])) for name in optional}
+    } | {name: values_of(name, count, random) for name in optional}
+
+
+def values_of(name, count, random):
+    values = random.uniform(size=(count, *SHAPES[name]))
+    return values if OPTIONAL_LAYOUT[name][1] == np.float32 else np.rint(1000 * values)
 
 
 @pytest.fixture(params=OPTIONAL_LAYOUT)
@@ -44,12 +49,12 @@ def test_a_wrong_shape_is_named(name):
 
 def test_a_value_that_is_not_finite_is_refused_or_dropped_with_its_row(name):
     given = arrays(5, name)
-    given[name][2] = np.nan
+    given[name][2] = np.nan if OPTIONAL_LAYOUT[name][1] == np.float32 else -1
     with pytest.raises(ValueError, match=f"1 of 5 surfels have unusable {name}, first row 2"):
         Surfels(**given)
     surfels, skipped = valid_surfels(**given)
     assert skipped == 1
-    assert np.array_equal(getattr(surfels, name), np.delete(given[name], 2, 0).astype(np.float32))
+    assert np.array_equal(getattr(surfels, name), np.delete(given[name], 2, 0).astype(OPTIONAL_LAYOUT[name][1]))
 
 
 def test_a_field_that_does_not_exist_is_named():

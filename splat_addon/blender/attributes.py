@@ -23,6 +23,10 @@ from .ids import POINT_ATTRIBUTES, REST, SOLID, PointAttribute
 MARKS = tuple(POINT_ATTRIBUTES[field].name for field in ("rotations", "scales"))
 
 
+#: Of the attributes that hold no floats.
+_TYPES = {"INT": np.int32, "INT16_2D": np.int16}
+
+
 def has_surfels(mesh: bpy.types.Mesh) -> bool:
     """Whether `mesh` is meant as surfels: no faces, and at least one of the attributes `rotation` and `scale`.
 
@@ -144,7 +148,7 @@ def _padded(values: np.ndarray, columns: int) -> np.ndarray:
 def _read(mesh: bpy.types.Mesh, layout: PointAttribute) -> np.ndarray:
     """(N,) or (N, columns) values of one attribute."""
     shape = (len(mesh.vertices), layout.columns) if layout.columns > 1 else len(mesh.vertices)
-    values = np.empty(shape, np.int32 if layout.data_type == "INT" else np.float32)
+    values = np.empty(shape, _TYPES.get(layout.data_type, np.float32))
     if len(values):
         _find(mesh, layout).data.foreach_get(layout.property, values.ravel())
     return values

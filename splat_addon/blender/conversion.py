@@ -49,7 +49,8 @@ class Choices:
     """fineness: one keyword and value: "resolution", "spacing" or "count" as sampling takes them, or "pixels" that a
     surfel may cover for the scene's camera. reduction, grazing_angle: as sampling takes them. splat_size: half-axis of
     a splat, in spacings. tolerance: how far from flat, object units, where surfels may become larger, or None.
-    texture_mapped: colours that are one image are looked up in it when rendered.
+    texture_mapped: colours that are one image are looked up in it when rendered. crease_angle: radians, beyond which
+    splats end at edges and blend as deep as the surface asks for, or None.
     space: "object" or "world", whose units lengths are in and which the surfels are even in. join: all sources become
     one, in world units. bake: what materials cannot be read for comes from Blender's own bake."""
 
@@ -59,6 +60,7 @@ class Choices:
     grazing_angle: float = DEFAULT_GRAZING_ANGLE
     tolerance: float | None = None
     texture_mapped: bool = False
+    crease_angle: float | None = None
     space: str = "object"
     join: bool = False
     bake: bool = False
@@ -172,6 +174,8 @@ def sample(conversion: Conversion, progress: Callable[[float], bool | None] | No
         splat_size=choices.splat_size,
         tolerance=None if choices.tolerance is None else Tolerance(choices.tolerance),
         texture_mapped=choices.texture_mapped,
+        crease_angle=choices.crease_angle,
+        fits_blending=choices.crease_angle is not None,
         progress=progress,
     )
     solid = sampling.keeps_both_sides and is_solid(conversion.whole)

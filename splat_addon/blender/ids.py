@@ -17,6 +17,7 @@ SURFELS_FROM_POINTS = "object.surfels_from_points"
 EXPORT_PLY = "export_scene.surfels_ply"
 IMPORT_PLY = "import_scene.surfels_ply"
 RENDER_PRESET = "render.surfel_preset"
+SHOW_SURFELS = "view3d.surfels_show"
 
 SIDEBAR_TAB = "Surfels"
 SIDEBAR_PANEL = "VIEW3D_PT_surfels_from_mesh"
@@ -67,6 +68,9 @@ POINT_ATTRIBUTES = {
     "uv_along_x": PointAttribute("uv_along_x", "FLOAT2", "vector", 2),
     "uv_along_y": PointAttribute("uv_along_y", "FLOAT2", "vector", 2),
     "uv_border": PointAttribute("uv_border", "FLOAT2", "vector", 2),
+    "clip_line": PointAttribute("clip_line", "INT16_2D", "value", 2),
+    "clip_line_2": PointAttribute("clip_line_2", "INT16_2D", "value", 2),
+    "blend_depth": PointAttribute("blend_depth", "FLOAT", "value", 1),
 }
 
 #: Where each surfel was when its frame was right. Blender moves positions alone, in edit mode, by Apply, Mirror or

@@ -34,6 +34,19 @@ class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
             column = self.layout.column(align=True)
             column.prop(properties, name, text=label)
             column.prop(properties, f"viewport_{name}", text="Viewport")
+        for blur in blurs_that_need_samples(context.scene, context.view_layer):
+            self.layout.label(text=f"{blur} needs more samples", icon="INFO")
+
+
+def blurs_that_need_samples(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> Iterator[str]:
+    """What is switched on and would not be seen in a final render of one sample."""
+    if (view_layer.samples or getattr(scene, RENDER_SETTINGS).samples) > 1:
+        return
+    camera = scene.camera
+    if camera is not None and camera.type == "CAMERA" and camera.data.type == "PERSP" and camera.data.dof.use_dof:
+        yield "Depth of Field"
+    if scene.render.use_motion_blur and view_layer.use_motion_blur:
+        yield "Motion Blur"
 
 
 class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):

@@ -9,10 +9,12 @@ from .camera_density import without_camera
 from .conversion import Choices
 from .conversion_settings import PROPERTY_NAMES, choices, draw_properties
 from .gathering import frame_of, groups
-from .ids import CONVERSION_SETTINGS, OBJECT_SETTINGS, SIDEBAR_PANEL, SIDEBAR_TAB, SURFELS_FROM_MESH
+from .ids import CONVERSION_SETTINGS, OBJECT_SETTINGS, SHOW_SURFELS, SIDEBAR_PANEL, SIDEBAR_TAB, SURFELS_FROM_MESH
 from .object_detail import detail_of, finer
+from .operators.show_surfels import shows_surfels
 from .operators.surfels_from_mesh import selected_sources
 from .prediction import known_extents
+from .sources import is_surfel_object
 
 
 class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
@@ -31,11 +33,14 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         if sources and context.mode == "OBJECT":
             text = prediction(context, sources, choices(settings))
         else:
-            text = "Select something with a surface, in object mode"
+            text = "Select surfaces, in Object Mode"
         self.layout.label(text=text, icon="INFO")
         button = self.layout.operator(SURFELS_FROM_MESH, icon="OUTLINER_OB_POINTCLOUD")
         for name in PROPERTY_NAMES:
             setattr(button, name, getattr(settings, name))
+        # Another engine shows of a surfel object the outline of a box.
+        if context.active_object is not None and is_surfel_object(context.active_object) and not shows_surfels(context):
+            self.layout.operator(SHOW_SURFELS, icon="SHADING_RENDERED")
 
 
 def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], asked: Choices) -> str:

@@ -24,4 +24,21 @@ class VIEWLAYER_PT_surfel_filter(EnginePanel, bpy.types.Panel):
         row.prop(view_layer, "use_motion_blur", text="Motion Blur")
 
 
-register, unregister = bpy.utils.register_classes_factory((VIEWLAYER_PT_surfel_filter,))
+class VIEWLAYER_PT_surfel_override(EnginePanel, bpy.types.Panel):
+    """As Blender's own, which before 5.0 is Cycles' alone."""
+
+    bl_label = "Override"
+    bl_context = "view_layer"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and not hasattr(bpy.types, "VIEWLAYER_PT_override")
+
+    def draw(self, context):
+        super().draw(context)
+        for name in ("material_override", "world_override", "samples"):
+            self.layout.prop(context.view_layer, name)
+
+
+register, unregister = bpy.utils.register_classes_factory((VIEWLAYER_PT_surfel_filter, VIEWLAYER_PT_surfel_override))

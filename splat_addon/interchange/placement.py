@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..clip_lines import CLIP_FIELDS, turned
 from ..surfels import Surfels, axes_quaternions, concatenate, empty_surfels
 
 
@@ -46,6 +47,8 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
             uvs["uv_border"] = np.concatenate(
                 [across * cosine + up * sine, (up * cosine - across * sine) * side], axis=1
             )
+    mirrored = np.einsum("ij,ij->i", y, short) < 0
+    clips = turned({name: getattr(surfels, name) for name in CLIP_FIELDS}, angle[:, 0], mirrored)
     return replace(
         surfels,
         origin=origin,
@@ -54,6 +57,7 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
         scales=np.stack([np.linalg.norm(axis, axis=1) for axis in (long, short)], axis=1),
         normals=normals,
         **uvs,
+        **clips,
     )
 
 

@@ -12,6 +12,7 @@
 | radius | float | the larger half-axis |
 | material | int | index of the material slot |
 | roughness, metallic, emission_0 .. emission_2, uvs_0 ... | float | where the surfels have them (`OPTIONAL_LAYOUT`) |
+| clip_line_0, clip_line_1, clip_line_2_0, clip_line_2_1 | short | likewise, packed as `clip_lines` says |
 
 Comments: "surfel_splatting 1", "origin X Y Z" where it is not 0, "solid" where the surfels are.
 """

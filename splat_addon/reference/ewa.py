@@ -58,6 +58,7 @@ def render_ewa(
     A splat's projection is taken as affine at its centre; one whose centre lies before the near plane has none and is
     left out (`stats["left_out"]` counts them). All are opaque. What is visible is found by the unfiltered splats on the
     rays through the pixels' centres, as `render_exact` does; the sums are normalised and shaded once a pixel.
+    Clip lines cut what hides, and not the kernels, which the paper ends nowhere.
     """
     splats = eye_splats(scene, camera).as_opaque()
     before = -splats.center[:, 2] > (-np.inf if camera.is_orthographic else camera.near)

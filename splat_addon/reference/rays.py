@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..clip_lines import kept
 from ..rendering.scene.camera import Camera
 from .splats import BACK_WEIGHT, Splats
 from .textures import point_colors
@@ -100,7 +101,7 @@ class Surface:
 @dataclass(frozen=True, eq=False)
 class Hits:
     """M meetings of a ray with a splat: their numbers, the place (M, 2) in the ellipse and its rho^2, the depth along
-    -Z, the direction's length."""
+    -Z, the direction's length, and how far the ray leaves the plane while the depth grows by 1."""
 
     ray: np.ndarray
     splat: np.ndarray
@@ -108,6 +109,7 @@ class Hits:
     rho2: np.ndarray
     depth: np.ndarray
     stretch: np.ndarray
+    facing: np.ndarray
 
 
 def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float, limit=np.inf) -> Surface:
@@ -125,12 +127,12 @@ def visible_depth(splats: Splats, boxes, grid: RayGrid, epsilon: float, after=-n
 
     after, until: depths, or (count,) of them; only the hits beyond the one and not beyond the other count.
     """
-    push = splats.push(epsilon)
+    push, blend = splats.push(epsilon), splats.blend_depth()
     visibility = np.full(grid.count, np.inf)
     for hits in _hits(splats, boxes, grid):
         between = _between(hits, grid, after, until)
         # A point e moved back to e (1 + push / |e|) gains push / |direction| in depth, as |e| = depth |direction|.
-        moved = hits.depth + push[hits.splat] / hits.stretch
+        moved = hits.depth + np.minimum(push[hits.splat] / hits.stretch, blend[hits.splat] / hits.facing)
         np.minimum.at(visibility, hits.ray[between], moved[between])
     return visibility
 
@@ -247,4 +249,9 @@ def _intersections(splats: Splats, ray, splat, grid: RayGrid) -> Hits:
         rho2 = a * a + b * b
         hit = np.flatnonzero((rho2 <= 1) & (depth >= grid.camera.near) & (depth <= grid.camera.far))
     place = np.stack([a[hit], b[hit]], axis=1)
-    return Hits(ray[hit], splat[hit], place, rho2[hit], depth[hit], np.linalg.norm(direction[hit], axis=1))
+    if chunk.is_clipped:
+        inside = np.flatnonzero(kept(place, chunk.clip[local[hit]], chunk.reflex[local[hit]]))
+        hit, place = hit[inside], place[inside]
+    facing = np.abs(np.einsum("ij,ij->i", plane[hit], direction[hit])) / np.sqrt(square[local[hit], 0])
+    stretch = np.linalg.norm(direction[hit], axis=1)
+    return Hits(ray[hit], splat[hit], place, rho2[hit], depth[hit], stretch, facing)

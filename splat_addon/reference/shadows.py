@@ -100,5 +100,8 @@ def _part_is_seen(splats: Splats, moved: np.ndarray, lamp: np.ndarray, position:
         a = share * (ray @ dual_u.T) - np.einsum("ij,ij->i", dual_u, to_center)
         b = share * (ray @ dual_v.T) - np.einsum("ij,ij->i", dual_v, to_center)
         hit = (a * a + b * b <= 1) & (share > 0)
+        if splats.is_clipped:
+            inside = [splats.clip[:, k, 0] * a + splats.clip[:, k, 1] * b + splats.clip[:, k, 2] >= 0 for k in (0, 1)]
+            hit &= np.where(splats.reflex, inside[0] | inside[1], inside[0] & inside[1])
         distance = share * length[:, None] + moved
     return ~(hit & (distance < length[:, None])).any(axis=1)

@@ -35,6 +35,8 @@ class Splats:
     texture: (N,) objects, the `SurfaceTexture` that takes the place of color, or None. uv: (N, 2) at the centre;
     uv_along: (N, 2, 2), its change along u (row 0) and v (row 1). uv_border: (N, 2) m of the line m . q = 1 behind
     which the texture is not looked up.
+    clip: (N, 2, 3) lines in (a, b) at which each ends, and reflex: (N,) bool, as `Surfels.clip_lines` gives them.
+    blend: (N,) how far off its plane it blends with others, in radii; infinite: not known.
     opacity: (N,), 1 where not is_transparent: (N,) bool, of instances that something shows through.
     is_holdout: (N,) bool, of those that hide and show nothing.
     """
@@ -51,6 +53,9 @@ class Splats:
     uv: np.ndarray
     uv_along: np.ndarray
     uv_border: np.ndarray
+    clip: np.ndarray
+    reflex: np.ndarray
+    blend: np.ndarray
     opacity: np.ndarray
     is_transparent: np.ndarray
     is_holdout: np.ndarray
@@ -62,9 +67,18 @@ class Splats:
         """(N,) the longer half-diameter, world units: what a splat's epsilon is measured in."""
         return np.sqrt(np.maximum(np.einsum("ij,ij->i", self.u, self.u), np.einsum("ij,ij->i", self.v, self.v)))
 
+    @property
+    def is_clipped(self) -> bool:
+        """Whether a line reaches into one of them."""
+        return bool((self.clip[:, :, 2] < 1).any())
+
     def push(self, epsilon: float) -> np.ndarray:
         """(N,) how far each is moved away to find what hides it, world units. epsilon: in radii."""
         return epsilon * self.radius() * np.where(self.is_back, BACK_EPSILON, 1.0)
+
+    def blend_depth(self) -> np.ndarray:
+        """(N,) how far off its plane each blends with others, world units."""
+        return self.blend * self.radius()
 
     def take(self, rows: np.ndarray) -> Splats:
         """The splats of some rows."""
@@ -79,10 +93,8 @@ def eye_splats(scene: Scene, camera: Camera) -> Splats:
     """Every instance's surfels in the eye space of `camera`."""
     parts = [_instance_splats(instance, camera) for instance in scene.surfels]
     if not parts:
-        vectors, rest = (
-            np.zeros((6, 0, 3)),
-            (np.zeros(0, bool), np.zeros(0, object), *_no_uvs(0), np.ones(0), *np.zeros((2, 0), bool)),
-        )
+        vectors, flags = np.zeros((6, 0, 3)), np.zeros((4, 0), bool)
+        rest = flags[0], np.zeros(0, object), *_no_uvs(0), np.zeros((0, 2, 3)), flags[1], *np.zeros((2, 0)), *flags[2:]
         return Splats(*vectors, np.zeros((0, 10)), *rest)
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
 
@@ -111,7 +123,8 @@ def _instance_splats(instance: Instance, camera: Camera) -> Splats:
     opacity, is_transparent = np.ones(count), np.full(count, instance.is_transparent)
     if instance.is_transparent:
         opacity = np.clip(surfels.colors[:, 3].astype(np.float64), 0, 1)
-    rest = opacity, is_transparent, np.full(count, instance.is_holdout)
+    blend = np.full(count, np.inf) if surfels.blend_depth is None else surfels.blend_depth.astype(np.float64)
+    rest = *surfels.clip_lines(), blend, opacity, is_transparent, np.full(count, instance.is_holdout)
     splats = Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0, textures, *uvs, *rest)
     return splats.take(np.flatnonzero(cosine >= 0)) if instance.hides_backs(camera) else splats
 

@@ -2,14 +2,16 @@
 """Sampling: a mesh becomes surfels by exact scan conversion onto a layered depth cube. Numpy only.
 
 Flow: `mesh` (`joining`) -> `cleaning` (`survey`) -> `fineness`, `grid` -> `depth_cube` (`reductions`,
-`scan_conversion`) -> `attributes` (`ellipses`, `palette` of `surfaces`, `tangents`) -> `merging`, `adaptive` ->
-`lost_parts`, `part_surfels` -> `Surfels`; `sample` puts them in order.
+`scan_conversion`) -> `attributes` (`ellipses`, `palette` of `surfaces`, `tangents`, `blending`) -> `merging` ->
+`clipping` at `borders` (`edge_neighbours`, `gaps`) -> `adaptive` -> `lost_parts`, `part_surfels` -> `Surfels`; `sample`
+puts them in order.
 `closest_approach` says how fine a camera needs it. `tracked` surfels follow a mesh that deforms, by their `binding`.
 Points without faces become surfels in `points`.
 """
 
 from ..images import Image
 from .adaptive import Tolerance
+from .borders import DEFAULT_CREASE_ANGLE
 from .cleaning import drop_unusable
 from .closest_approach import NotSeenError, Outline, camera_spacing, outline
 from .corners import corner_values
@@ -26,6 +28,7 @@ from .surfaces import Channel, NormalMap, Surface, Texture, VertexColors
 from .tracked import STRETCHED_SHARE, TrackedSurfels
 
 __all__ = [
+    "DEFAULT_CREASE_ANGLE",
     "DEFAULT_GRAZING_ANGLE",
     "DEFAULT_SPLAT_SIZE",
     "LEAST_GRAZING_ANGLE",

@@ -14,7 +14,9 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from ..clip_lines import CLIP_FIELDS
 from ..surfels import LAYOUT, quaternion_axes
+from .blending import LEAST_BLENDING
 from .ellipses import ellipse_rotations, ellipse_scales
 from .grid import BLOCK
 from .texture_mapping import BORDER, UV_FIELDS, from_uv_planes, is_mapped, slips, uv_planes
@@ -98,7 +100,7 @@ def merge_flat(
     while len(levels) <= LEVELS and len(levels[-1].keys):
         levels.append(_parents(levels[-1], 2 ** (len(levels) - 1), spacing, tolerance))
     parts, error = [], 0.0
-    optional = {name: array for name, array in arrays.items() if name not in (*LAYOUT, *UV_FIELDS, BORDER)}
+    optional = _averaged(arrays)
     has_uvs = "uvs" in arrays
     wanted = np.arange(len(levels[-1].keys))
     for level in range(len(levels) - 1, 0, -1):
@@ -107,7 +109,7 @@ def merge_flat(
         discs = nodes.take(np.flatnonzero(alone))
         made, images = _discs(discs, level, spacing), _block(discs.keys)[0] >> 1
         uvs = from_uv_planes(discs.uvs, made, images, spacing) if has_uvs else {}
-        parts.append(made | uvs | _unstacked(discs.colors[:, 4:], optional))
+        parts.append(made | uvs | _unstacked(discs.colors[:, 4:], optional) | _edge_fields(arrays, made, tolerance))
         error = max(error, float((nodes.errors * _cosines(nodes.planes))[alone].max(initial=0.0)))
         free = np.ones(len(levels[level - 1].keys), bool)
         free[levels[level].children.ravel()] = False
@@ -128,13 +130,34 @@ def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
     planes = np.stack([pw, -nu / nw, -nv / nw], axis=1)
     order = np.lexsort((pw, keys))
     zeros = np.zeros(len(axes))
-    averaged = (array for name, array in arrays.items() if name not in (*LAYOUT, *UV_FIELDS, BORDER))
-    colors = np.column_stack([arrays["colors"], *averaged])
+    tints = zeros.copy()
+    for name in CLIP_FIELDS:
+        if name in arrays:
+            # What ends at an edge is like nothing else.
+            tints[arrays[name][:, 1] > 0] = np.inf
+    colors = np.column_stack([arrays["colors"], *_averaged(arrays).values()])
     uvs = uv_planes(arrays, axes, spacing)
     nodes = _Nodes(
-        keys, planes, arrays["normals"], colors, arrays["materials"], zeros, zeros, zeros, uvs, zeros, zeros[:, None]
+        keys, planes, arrays["normals"], colors, arrays["materials"], zeros, zeros, tints, uvs, zeros, zeros[:, None]
     )
     return nodes.take(order), order
+
+
+def _averaged(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The optional fields of which a merged disc has the mean."""
+    others = (*LAYOUT, *UV_FIELDS, BORDER, *CLIP_FIELDS, "blend_depth")
+    return {name: array for name, array in arrays.items() if name not in others}
+
+
+def _edge_fields(arrays, made, tolerance: Tolerance) -> dict[str, np.ndarray]:
+    """Clip lines and blend depths of merged discs, where `arrays` have such: the surface goes on around them, and stays
+    within the tolerance of their planes, as do their neighbours."""
+    count = len(made["scales"])
+    fields = {name: np.zeros((count, 2), np.int16) for name in CLIP_FIELDS if name in arrays}
+    if "blend_depth" in arrays:
+        depth = LEAST_BLENDING + 2 * tolerance.distance / made["scales"].max(axis=1)
+        fields["blend_depth"] = np.minimum(depth, 1).astype(np.float32)
+    return fields
 
 
 def _key(side: np.ndarray, column: np.ndarray, row: np.ndarray) -> np.ndarray:

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .ellipses import ellipse_rotations, ellipse_scales
+from .blending import blend_depths
+from .ellipses import MAX_STRETCH, ellipse_rotations, ellipse_scales
 from .grid import Grid
 from .mesh import TriangleMesh, corner_indices, corners_at, crossed, doubled_areas
 from .palette import Palette, Samples
@@ -36,7 +37,8 @@ class SampleFiller:
     """Fills the rows of preallocated arrays, span after span.
 
     mesh: usable. coordinates: (3, V) float64, of its vertices on the grid. half_size: of a splat, object units.
-    palette: of the mesh. tangents: (T, 3, 4 layers) at its corners, as `Samples` has them, or None.
+    palette: of the mesh. bends: (T, 2), as `blend_depths` takes them, or None.
+    tangents: (T, 3, 4 layers) at its corners, as `Samples` has them, or None.
     arrays: field of `Surfels` -> array to fill.
     """
 
@@ -49,11 +51,12 @@ class SampleFiller:
         palette: Palette,
         tangents: np.ndarray | None,
         seams: np.ndarray | None,
+        bends: np.ndarray | None,
         arrays: dict[str, np.ndarray],
     ):
         self._mesh, self._coordinates, self._grid = mesh, coordinates, grid
         self._half_size, self._palette, self._tangents, self._arrays = half_size, palette, tangents, arrays
-        self._seams = seams
+        self._seams, self._bends = seams, bends
         self._centres = [grid.centres(axis) for axis in range(3)]
 
     def fill(self, spans: Spans, axis: int, rows: slice):
@@ -78,6 +81,9 @@ class SampleFiller:
         normals *= 1 / np.sqrt(_squares(normals))
         _write_rows(ellipse_rotations(normals, axis), triangle, out["rotations"])
         _write_rows(ellipse_scales(normals[axis], self._half_size), triangle, out["scales"])
+        if self._bends is not None:
+            longest = self._half_size / np.abs(normals[axis]).clip(1 / MAX_STRETCH)
+            _write_rows(blend_depths(self._bends.take(triangles, axis=0), longest), triangle, out["blend_depth"])
         if self._mesh.corner_normals is None:
             _write_rows(np.ascontiguousarray(normals.T, np.float32), triangle, out["normals"])
         else:

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..clip_lines import CLIP_FIELDS, turned
 from ..surfels import Surfels, axes_quaternions
 from .mesh import TriangleMesh, doubled_areas, gather_corners, triangle_chunks
-from .sample import sample_surface
+from .sample import Sampling, sample_surface
 
 #: Surfels whose longer axis has grown by more than this show less detail than was asked for.
 LARGEST_STRETCH = 2.5
@@ -34,11 +35,15 @@ class Binding:
     these *runs* is worked out once a run, by columns, in float64.
     """
 
-    def __init__(self, mesh: TriangleMesh, surfels: Surfels, options: dict):
+    def __init__(self, mesh: TriangleMesh, sampling: Sampling, options: dict):
+        surfels = sampling.surfels
         self._middle = mesh.positions.mean(axis=0)
         # Sampled once more with the triangle's number for a material: the order of samples depends on the shape alone.
         named = TriangleMesh(mesh.positions, mesh.triangles, materials=np.arange(len(mesh), dtype=np.int32))
-        triangles = sample_surface(named, **options).surfels.materials
+        alike = {name: value for name, value in options.items() if name not in ("crease_angle", "fits_blending")}
+        triangles = sample_surface(named, **alike).surfels.materials
+        before = len(triangles) - sampling.small_parts
+        triangles = np.concatenate([triangles[:before], sampling.gap_triangles, triangles[before:]])
         is_new = np.ones(len(triangles) + 1, bool)
         is_new[1:-1] = triangles[1:] != triangles[:-1]
         for shared in (surfels.rotations, surfels.scales):
@@ -59,6 +64,7 @@ class Binding:
                 vectors = half_axis[self._starts[:-1][chunk]].T.astype(np.float64)
                 axis[:, chunk] = [_dot(row, vectors) for row in inverse]
         self._areas = _areas(mesh)
+        self.count = count
         self.repaint(mesh, surfels)
 
     def repaint(self, mesh: TriangleMesh, surfels: Surfels):
@@ -72,7 +78,8 @@ class Binding:
         shift = mesh.positions.mean(axis=0) - self._middle
         origin = rest.origin + np.where(np.isfinite(shift), shift, 0.0)
         uv_fields = [name for name in ("uv_along_x", "uv_along_y", "uv_border") if getattr(rest, name) is not None]
-        names = ("positions", "rotations", "scales", "normals", *uv_fields)
+        clip_fields = [name for name in CLIP_FIELDS if getattr(rest, name) is not None]
+        names = ("positions", "rotations", "scales", "normals", *uv_fields, *clip_fields)
         out, stretched = {name: np.array(getattr(rest, name)) for name in names}, 0
         for chunk in triangle_chunks(len(self._triangles)):
             rows, of_run = self._rows(chunk)
@@ -94,8 +101,12 @@ class Binding:
                 here["uv_along_x"][...], here["uv_along_y"][...] = x * cosine + y * sine, y * cosine - x * sine
                 if rest.uv_border is not None:
                     across, up = rest.uv_border[rows, :1], rest.uv_border[rows, 1:]
-                    turned = across * cosine + up * sine, up * cosine - across * sine
-                    here["uv_border"][...] = np.concatenate(turned, axis=1)
+                    columns = across * cosine + up * sine, up * cosine - across * sine
+                    here["uv_border"][...] = np.concatenate(columns, axis=1)
+            here_lines = {name: out[name][rows] if name in out else None for name in CLIP_FIELDS}
+            lines = turned(here_lines, np.nan_to_num(np.arctan2(ellipse.sine, ellipse.cosine))[of_run])
+            for name, values in lines.items():
+                here[name][...] = values
             too_far = _stretch(p, q, sizes) > LARGEST_STRETCH
             stretched += int(np.count_nonzero(too_far.take(of_run)))
         return out, origin, max(stretched / max(len(rest), 1), self._grown_share(mesh))

@@ -70,11 +70,11 @@ def part_surfels(
     palette.fill(arrays, samples)
     if texture_mapped:
         arrays |= {name: np.zeros((count, 2), np.float32) for name in (*UV_FIELDS, BORDER)}
-        fill_uvs(arrays, mesh.surfaces, samples, _axis_steps(corners[:, :, largest] * grid.spacing, arrays))
+        fill_uvs(arrays, mesh.surfaces, samples, axis_steps_of(corners[:, :, largest] * grid.spacing, arrays))
     return arrays
 
 
-def _axis_steps(corners: np.ndarray, arrays: dict[str, np.ndarray]) -> np.ndarray:
+def axis_steps_of(corners: np.ndarray, arrays: dict[str, np.ndarray]) -> np.ndarray:
     """(2, 2, p) how many of the two edges from a triangle's first corner the discs' half-axes are, in its plane.
 
     corners: (3, 3, p), object units. By the dual basis of the edges; not finite for a triangle without area.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -16,9 +16,13 @@ import numpy as np
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
 from .adaptive import Tolerance, merge_flat
 from .attributes import SampleFiller
+from .blending import blend_depths, blending_per_radius
+from .borders import DEFAULT_CREASE_ANGLE, survey_edges
 from .cleaning import drop_unusable
+from .clipping import clip
 from .depth_cube import depth_cube
 from .fineness import check_fineness, grid_spacing
+from .gaps import gap_surfels
 from .grid import make_grid
 from .lost_parts import SampledSurface, lost_parts
 from .mesh import TriangleMesh
@@ -42,6 +46,8 @@ class Sampling:
 
     small_parts: how many parts lay between all rays; each has one surfel, and these come last.
     keeps_both_sides: the surfels of a solid are solid. Not where two sides were merged, or a part has one disc.
+    gap_triangles: (k,) those of surfels that were added where others, which end at clip lines, left something bare;
+        these come before those of small parts.
     saved: how many fewer surfels there are than without a tolerance. error: the largest distance of a merged surfel's
         plane from those that it replaces, object units.
     """
@@ -51,6 +57,7 @@ class Sampling:
     keeps_both_sides: bool = True
     saved: int = 0
     error: float = 0.0
+    gap_triangles: np.ndarray = field(default_factory=lambda: np.empty(0, np.intp))
 
 
 def sample_mesh(mesh: TriangleMesh, **options) -> Surfels:
@@ -69,6 +76,8 @@ def sample_surface(
     splat_size: float = DEFAULT_SPLAT_SIZE,
     tolerance: Tolerance | None = None,
     texture_mapped: bool = False,
+    crease_angle: float | None = None,
+    fits_blending: bool = False,
     progress: Progress | None = None,
 ) -> Sampling:
     """Surfels of a mesh on a grid of exact rays, in the order of axis, triangle, row, column.
@@ -79,6 +88,10 @@ def sample_surface(
     "grazing" refuses a sample. splat_size: smaller half-axis of a splat, in H.
     tolerance: how far from flat the surface may be where larger surfels take the place of several; None: all alike.
     texture_mapped: surfels whose colour is one image also keep where they lie in it, to look it up when rendered.
+    crease_angle: radians; where the surface turns by more, and at borders of materials, colours and the surface itself,
+    splats end at clip lines (`clipping`); None: they reach over. Renderers must honour these: `reference` does, the
+    engine not yet. fits_blending: each has the depth that the surface asks for (`blending`), and not the same for all;
+    that, too, only `reference` follows yet.
     progress: called between chunks with the finished share, 0 to 1; where it returns False, `SamplingCancelled` rises.
     Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the middle.
     A connected part that lies between the rays gets one surfel. A mesh without usable triangles gives none.
@@ -88,6 +101,8 @@ def sample_surface(
     chosen = find_reduction(reduction)
     check_fineness(spacing, resolution, count)
     check_grazing_angle(grazing_angle)
+    if crease_angle is not None and not 0 < crease_angle <= math.pi:
+        raise ValueError(f"A crease's angle must be above 0 and up to pi radians, not {crease_angle}.")
     if not (math.isfinite(splat_size) and splat_size > 0):
         raise ValueError(f"The splat size must be a finite number above 0, not {splat_size}.")
     if tolerance is not None and chosen.merge is not None:
@@ -110,21 +125,55 @@ def sample_surface(
     layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in (*palette.optional, *uv_fields)}
     arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
     tangents = layered_tangents(mesh) if palette.needs_tangents else None
-    filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, palette, tangents, seams, arrays)
-    _fill(filler, images, stage(progress, 0.5, 1.0))
+    needs_edges = crease_angle is not None or fits_blending
+    edges = survey_edges(mesh, DEFAULT_CREASE_ANGLE if crease_angle is None else crease_angle) if needs_edges else None
+    if fits_blending:
+        arrays["blend_depth"] = np.empty(total, np.float32)
+    bends = blending_per_radius(mesh, edges.bends) if fits_blending else None
+    filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, palette, tangents, seams, bends, arrays)
+    filled = 1.0 if crease_angle is None else 0.6
+    _fill(filler, images, stage(progress, 0.5, filled))
     if chosen.merge is not None:
         arrays = chosen.merge(arrays, grid.spacing)
+    gaps, gap_triangles = {}, np.empty(0, np.intp)
+    if crease_angle is not None:
+        report = stage(progress, filled, 1.0)
+        clipping = clip(arrays, edges.borders, grid.surfel_origin)
+        report(0.7)
+        gaps, gap_triangles = gap_surfels(mesh, edges.borders, arrays, clipping, grid, splat_size, palette, tangents)
+        if bends is not None and gaps:
+            gaps["blend_depth"] = blend_depths(bends[gap_triangles], gaps["scales"].max(axis=1))
+        arrays |= clipping.fields
+        report(1.0)
     saved, error = 0, 0.0
     if tolerance is not None:
         axes = np.repeat(np.arange(3), [int(spans.counts.sum(dtype=np.int64)) for spans in images])
         arrays, error = merge_flat(arrays, axes, grid.spacing, tolerance)
         saved = total - len(arrays["positions"])
+    if gaps:
+        arrays = _appended(arrays, gaps)
     small_parts = int(lost[1].max(initial=-1)) + 1
     if small_parts:
         extra = part_surfels(mesh, coordinates, grid, lost, splat_size, palette, tangents, bool(uv_fields))
-        arrays = {name: np.concatenate([array, extra[name]]) for name, array in arrays.items()}
+        arrays = _appended(arrays, extra)
     surfels = Surfels(origin=grid.surfel_origin, **arrays)
-    return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error)
+    return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error, gap_triangles)
+
+
+def _appended(arrays: dict[str, np.ndarray], more: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Both, by field; what only one of them has means nothing for the other."""
+    both = {}
+    for name in arrays | more:
+        parts = []
+        for part in (arrays, more):
+            if name in part:
+                parts.append(part[name])
+            else:
+                columns, dtype, value = OPTIONAL_LAYOUT[name]
+                count = len(part["positions"])
+                parts.append(np.full((count, columns) if columns > 1 else count, value, dtype))
+        both[name] = np.concatenate(parts)
+    return both
 
 
 def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[float], None]):

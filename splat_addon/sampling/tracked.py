@@ -58,7 +58,7 @@ class TrackedSurfels:
             self._last = mesh, (self._surfels, 0.0)
             return self._last[1]
         if self._binding is None:
-            self._binding = Binding(self.mesh, self.sampling.surfels, self._options)
+            self._binding = Binding(self.mesh, self.sampling, self._options)
         arrays, origin, stretched = self._binding.arrays_on(mesh)
         surfels = Surfels(origin=origin, **(self.sampling.surfels.arrays() | arrays))
         self._last = mesh, (self._as_solid_as(mesh, surfels), stretched)
@@ -69,6 +69,8 @@ class TrackedSurfels:
         self.mesh = replace(mesh, positions=self.mesh.positions, corner_normals=self.mesh.corner_normals)
         self.sampling = sample_surface(self.mesh, **self._options)
         self._surfels = replace(self.sampling.surfels, is_solid=self._surfels.is_solid)
+        if self._binding is not None and len(self.sampling.surfels) != self._binding.count:
+            self._binding = None  # other colours have other borders, and gaps beside them
         if self._binding is not None:
             self._binding.repaint(self.mesh, self.sampling.surfels)
 

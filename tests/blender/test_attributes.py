@@ -46,8 +46,10 @@ def test_optional_fields_have_attributes_only_where_they_are_there(random_surfel
     assert not set(OPTIONAL_LAYOUT) & set(plain.attributes.keys())
     assert all(getattr(read_surfels(plain)[0], name) is None for name in OPTIONAL_LAYOUT)
     values = {
-        name: np.random.default_rng(5).uniform(size=(100, columns) if columns > 1 else 100)
-        for name, (columns, _, _) in OPTIONAL_LAYOUT.items()
+        name: np.random.default_rng(5).uniform(
+            0, 1 if dtype == np.float32 else 30_000, (100, columns) if columns > 1 else 100
+        )
+        for name, (columns, dtype, _) in OPTIONAL_LAYOUT.items()
     }
     rich = replace(surfels, **values)
     read, _ = read_surfels(write_surfels("rich", rich))

@@ -41,11 +41,11 @@ def test_a_file_that_a_full_disk_cuts_off_is_refused_and_the_earlier_one_kept(de
     demo.save(tmp_path / "surfels.blend")
     earlier = (tmp_path / "surfels.blend").read_bytes()
     add_points(add_object, 100_000)
-    # Blender notices that a buffer cannot be written, but not of the last one.
+    # Blender 5 notices that a buffer cannot be written, but not of the last one; 4.5 notices both.
     demo.save(tmp_path / "larger.blend")
     full_disk((tmp_path / "larger.blend").stat().st_size - 100)
     (tmp_path / "larger.blend").unlink()
-    with pytest.raises(demo.Problem, match=r"Only a part of .*surfels\.blend could be written: the disk is full"):
+    with pytest.raises(demo.Problem, match=r"Only a part of .*surfels\.blend could be written|could not be saved"):
         demo.save(tmp_path / "surfels.blend")
     assert (tmp_path / "surfels.blend").read_bytes() == earlier
     assert [path.name for path in tmp_path.iterdir()] == ["surfels.blend"]

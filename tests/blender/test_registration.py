@@ -28,7 +28,7 @@ def test_unregistering_takes_everything_away_and_registering_brings_it_back():
 def test_the_operator_and_the_sidebar_have_the_same_settings_with_the_same_defaults():
     operator = bpy.ops.object.surfels_from_mesh.get_rna_type().properties
     settings = getattr(bpy.context.scene, ids.CONVERSION_SETTINGS).bl_rna.properties
-    assert len(conversion_settings.PROPERTY_NAMES) == 15
+    assert len(conversion_settings.PROPERTY_NAMES) == 17
     for name in conversion_settings.PROPERTY_NAMES:
         assert (operator[name].default, operator[name].description) == (
             settings[name].default,

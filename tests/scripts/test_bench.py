@@ -15,7 +15,7 @@ from measuring.registry import modules, summary
 SCRIPT = Path(package.__file__).resolve().parents[1] / "bench.py"
 
 #: Those that draw or measure within a second where they are told to be quick, and need no Blender.
-SWIFT = ("polygons", "textured")
+SWIFT = ("polygons", "representation", "textured")
 
 
 def start(*arguments):

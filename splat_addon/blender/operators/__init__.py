@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from . import export_ply, import_ply, render_preset, surfels_from_mesh, surfels_from_points
+from . import export_ply, import_ply, render_preset, show_surfels, surfels_from_mesh, surfels_from_points
 
-MODULES = (surfels_from_mesh, surfels_from_points, export_ply, import_ply, render_preset)
+MODULES = (surfels_from_mesh, surfels_from_points, export_ply, import_ply, render_preset, show_surfels)
 
 
 def register():

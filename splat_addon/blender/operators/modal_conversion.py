@@ -9,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import bpy
 
 from ..conversion_batch import Batch
+from ..ids import ENGINE, ENGINE_LABEL
 
 _TIMER_SECONDS = 0.05
 
@@ -92,6 +93,8 @@ class ModalConversion:
         for conversion, _ in made:
             self.report({"INFO"}, f"{conversion.name}: {conversion.summary()}")
             self._tell(conversion)
+        if made and context.scene.render.engine != ENGINE:
+            self.report({"INFO"}, f"Choose the render engine {ENGINE_LABEL} to see the surfels")
         # An error fails a script's call; where others were converted, that would hide them from it.
         for name, sentence in batch.refused:
             self.report({"WARNING" if made else "ERROR"}, f"{name}: {sentence}")

@@ -99,3 +99,12 @@ def test_a_camera_that_cannot_be_rendered_is_named_and_the_exit_code_is_1(render
     assert result.returncode == 1
     assert "Surfel render failed: The panorama type of the camera 'camera' is Mirror Ball" in result.stdout
     assert not list(tmp_path.glob("frame_*"))
+
+
+def test_surfels_that_lost_an_attribute_end_it_with_exit_code_1(render_file, scene, surfels, add_camera, tmp_path):
+    scene.surfel_splatting.property_unset("broken_objects")
+    add_camera()
+    surfels.data.attributes.remove(surfels.data.attributes["scale"])
+    result = render_file("-f", "1")
+    assert result.returncode == 1 and "surfels is left out: The surfel mesh" in result.stdout
+    assert not list(tmp_path.glob("frame_*"))

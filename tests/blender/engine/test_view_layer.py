@@ -66,6 +66,8 @@ def test_without_its_environment_a_layer_has_no_world(things, sky, picture):
 @pytest.mark.skipif("world_override" not in bpy.types.ViewLayer.bl_rna.properties, reason="Blender 5.0 brought it")
 def test_the_world_override_takes_the_world_s_place(things, sky, picture):
     other = bpy.data.worlds.new("other")
+    if bpy.app.version < (5, 0, 0):
+        other.use_nodes = True
     other.node_tree.nodes["Background"].inputs["Color"].default_value = (0.5, 0, 0, 1)
     bpy.context.view_layer.world_override = other
     assert np.allclose(picture()[2, 2], (0.5, 0, 0, 1))

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Representation error: how true pictures of surfels are to the mesh that they came from.
+
+The truth is the mesh's triangles in float64 with 8 x 8 samples a pixel, which shares no code with surfels, under the
+Gaussian of 0.7071 pixels. Meshes are coloured by their normals, split at creases over 30 degrees, unlit, over grey of
+0.05, and seen three times from 1.4 diagonals of their boxes. "engine": surfels as the operator makes them, drawn by the
+device. The others are exact pictures (--exact): "now" of the same surfels; "clip" of ones that end at clip lines;
+"blend" of ones that blend as deep as their surface asks for; "both". PSNR is of sRGB; a pixel is wrong where a
+component is off by more than 0.15; bare where the mesh covers it whole and the surfels not by 0.98; spilled where they
+cover 0.02 of it and the mesh nothing. Conversion: the median ratio of times to surfels without edges, in turn.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+from bench.representation.error import over_grey, picture_error
+from bench.representation.meshes import load_colored, view
+from measuring.models import short
+from measuring.timing import Spread, in_turn
+from splat_addon.reference import render_exact
+from splat_addon.reference.triangles import render_triangles
+from splat_addon.rendering import Renderer, Scene, Settings, open_device
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, is_solid, sample_surface
+
+DEVICES = ("standalone",)
+QUICK = {"size": 48, "resolution": [24], "model": ["plate"], "views": 1, "exact": 2}
+MODELS = "plate", "fandisk.obj.gz", "truck.obj.gz", "armadillo.obj.gz", "bunny.obj.gz", "rangemap_lato315.ply.gz"
+SETTINGS = Settings(shading="flat", transparent_film=True)
+
+#: name -> options of `sample_surface`
+KINDS = {
+    "now": {},
+    "clip": {"crease_angle": DEFAULT_CREASE_ANGLE},
+    "blend": {"fits_blending": True},
+    "both": {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True},
+}
+COLUMNS = (
+    "model",
+    "resolution",
+    "view",
+    "picture",
+    "PSNR",
+    "FLIP",
+    "FLIP 99 %",
+    "largest blob",
+    "wrong",
+    "bare",
+    "spilled",
+)
+
+
+def arguments(parser) -> None:
+    parser.add_argument("--size", type=int, default=384, help="pixels along each side")
+    parser.add_argument("--resolution", type=int, nargs="+", default=[256], help="cells along the longest edge")
+    parser.add_argument("--model", nargs="+", default=MODELS, help='files among the models, or "plate"')
+    parser.add_argument("--views", type=int, default=3, choices=(1, 2, 3))
+    parser.add_argument("--exact", type=int, default=0, help="samples along a pixel of exact pictures; 0 for none")
+    parser.add_argument("--kind", nargs="+", default=list(KINDS), choices=KINDS, help="of exact pictures")
+
+
+def run(options, report) -> None:
+    renderer = Renderer(open_device(options.device))
+    exact = f"exact pictures of {options.exact} x {options.exact} samples" if options.exact else "no exact pictures"
+    report.header(renderer.device, f"{options.size} x {options.size} pixels; {exact}")
+    meshes = {name: load_colored(options.models, name) for name in options.model}
+    report.table(COLUMNS, rows(meshes, renderer, options, report))
+    columns = "model", "resolution", "kind", "surfels", "added", "lines", "two", "reflex", "conversion"
+    report.table(columns, conversions(meshes, options))
+
+
+def converted(mesh, resolution: int, kind: str):
+    surfels = sample_surface(mesh, resolution=resolution, **KINDS[kind]).surfels
+    return surfels.as_solid() if is_solid(mesh) else surfels
+
+
+def rows(meshes, renderer, options, report):
+    for name, mesh in meshes.items():
+        cameras = [view(mesh, k, options.size) for k in range(options.views)]
+        corners, colors = mesh.positions[mesh.triangles], mesh.corner_colors[..., :3]
+        truths = [render_triangles(corners, colors, camera) for camera in cameras]
+        for resolution in options.resolution:
+            scenes = {"engine": Scene((converted(mesh, resolution, "now"),))}
+            draw = {"engine": partial(renderer.render, settings=SETTINGS)}
+            for kind in options.kind if options.exact else ():
+                scenes[kind] = Scene((converted(mesh, resolution, kind),))
+                how = {"settings": SETTINGS, "samples": options.exact, "pixel_filter": "gaussian"}
+                draw[kind] = partial(render_exact, **how)
+            for kind, scene in scenes.items():
+                for k, (camera, truth) in enumerate(zip(cameras, truths, strict=True)):
+                    color = draw[kind](scene, camera).color
+                    shown = over_grey(color[..., :3], color[..., 3]), over_grey(truth.color, truth.coverage)
+                    found = picture_error(*shown, color[..., 3], truth.coverage)
+                    report.picture(f"{short(name)}_{resolution}_{k}_{kind}", [*shown, found.difference])
+                    yield (
+                        short(name), resolution, k, kind, f"{found.psnr:.1f}", f"{found.flip:.4f}",
+                        f"{found.flip_99:.3f}", found.blob, found.wrong, found.bare, found.spilled,
+                    )  # fmt: skip
+
+
+def conversions(meshes, options):
+    for name, mesh in meshes.items():
+        for resolution in options.resolution:
+            jobs = {k: partial(sample_surface, mesh, resolution=resolution, **KINDS[k]) for k in options.kind}
+            turns = in_turn({"now": jobs.get("now", partial(converted, mesh, resolution, "now"))} | jobs, options.turns)
+            for kind in options.kind:
+                sampling, (lines, reflex) = turns.results[kind], turns.results[kind].surfels.clip_lines()
+                cut = lines[..., 2] < 1
+                ratio = Spread.of(turns.ratios(kind, "now"))
+                yield (
+                    short(name), resolution, kind, f"{len(sampling.surfels):,}", len(sampling.gap_triangles),
+                    f"{cut.any(axis=1).sum():,}", f"{cut.all(axis=1).sum():,}", f"{reflex.sum():,}", f"{ratio:.2f}",
+                )  # fmt: skip

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One click from a conversion to its picture: the render engine, and the 3D view's shading."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..ids import ENGINE, ENGINE_LABEL, SHOW_SURFELS
+
+
+def shows_surfels(context: bpy.types.Context) -> bool:
+    """Whether the engine is chosen and the 3D view, where the context has one, renders with it."""
+    space = context.space_data
+    is_rendered = space is None or space.type != "VIEW_3D" or space.shading.type == "RENDERED"
+    return context.scene.render.engine == ENGINE and is_rendered
+
+
+class VIEW3D_OT_surfels_show(bpy.types.Operator):
+    """Choose the render engine that draws surfels, and Rendered shading in this 3D view"""
+
+    bl_idname = SHOW_SURFELS
+    bl_label = f"Show with {ENGINE_LABEL}"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads a set
+
+    def execute(self, context):
+        context.scene.render.engine = ENGINE
+        space = context.space_data
+        if space is not None and space.type == "VIEW_3D":
+            space.shading.type = "RENDERED"
+        return {"FINISHED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((VIEW3D_OT_surfels_show,))

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Splats end where their surface does: nothing sticks out over an edge, and nothing is left bare beside it."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from splat_addon.clip_lines import kept
+from splat_addon.sampling import (
+    Channel,
+    SamplingCancelled,
+    Surface,
+    Tolerance,
+    TrackedSurfels,
+    TriangleMesh,
+    VertexColors,
+    sample_mesh,
+    sample_surface,
+)
+
+ANGLE = np.radians(30)
+DISC = np.array([(r * np.cos(t), r * np.sin(t)) for r in (0.3, 0.7, 0.999) for t in np.arange(24) * np.pi / 12])
+
+
+def shown(surfels):
+    """(n, 3) points of the splats that are not cut away, in object space, and (n,) the surfel of each."""
+    lines, reflex = surfels.clip_lines()
+    row = np.repeat(np.arange(len(surfels)), len(DISC))
+    places = np.tile(DISC, (len(surfels), 1))
+    at = np.flatnonzero(kept(places, lines[row], reflex[row]))
+    u, v = (axis.astype(float) for axis in surfels.half_axes())
+    row, places = row[at], places[at]
+    return surfels.origin + surfels.positions[row] + u[row] * places[:, :1] + v[row] * places[:, 1:], row
+
+
+def bare_share(surfels, points, normals):
+    """The share of (n, 3) points of the surface that no splat of it shows."""
+    lines, reflex = surfels.clip_lines()
+    u, v = (axis.astype(float) for axis in surfels.half_axes())
+    z, bare = surfels.geometric_normals(), 0
+    for point, normal in zip(points, normals, strict=True):
+        offset = point - surfels.origin - surfels.positions
+        q = np.stack([(offset * a).sum(1) / (a * a).sum(1) for a in (u, v)], axis=1)
+        near = ((q * q).sum(1) <= 1) & (np.abs((offset * z).sum(1)) < 0.2 * surfels.radius) & (np.abs(z @ normal) > 0.8)
+        at = np.flatnonzero(near)
+        bare += not kept(q[at], lines[at], reflex[at]).any()
+    return bare / len(points)
+
+
+def on_surface(mesh, count=1500):
+    solid = trimesh.Trimesh(mesh.positions, mesh.triangles, process=False)
+    points, faces = trimesh.sample.sample_surface(solid, count, seed=3)
+    return np.asarray(points), solid.face_normals[faces]
+
+
+def plate(outline, triangles, **fields):
+    corners = np.array([(x, y, 0.0) for x, y in outline])
+    return TriangleMesh(corners, np.array(triangles), **fields)
+
+
+@pytest.fixture
+def tilted():
+    """tilted(mesh): turned against all axes."""
+    turn = trimesh.transformations.euler_matrix(0.4, 0.7, 0.2)[:3, :3]
+    return lambda mesh: TriangleMesh(mesh.positions @ turn.T, mesh.triangles, materials=mesh.materials), turn
+
+
+@pytest.mark.parametrize("resolution", [5, 16])
+def test_no_splat_of_a_cube_sticks_out_and_no_point_is_bare(cube, tilted, resolution):
+    turn_mesh, turn = tilted
+    mesh = turn_mesh(cube())
+    surfels = sample_mesh(mesh, resolution=resolution, crease_angle=ANGLE)
+    points, _ = shown(surfels)
+    inside = points @ turn
+    # Of a corner of a few hundredths of a splat, a second line is spared.
+    assert inside.min() > -0.05 / resolution and inside.max() < 1 + 0.05 / resolution
+    before, _ = shown(sample_mesh(mesh, resolution=resolution))
+    assert (before @ turn).max() > 1 + 0.3 / resolution
+    assert bare_share(surfels, *on_surface(mesh)) < 1e-3
+
+
+def test_an_open_plate_ends_at_its_border(square):
+    surfels = sample_mesh(square(), resolution=9, crease_angle=ANGLE)
+    points, _ = shown(surfels)
+    assert points[:, :2].min() > -1e-3 and points[:, :2].max() < 1 + 1e-3
+    # Its diagonal is no border.
+    assert (surfels.clip_line[:, 1] > 0).mean() < 0.6
+
+
+def test_a_reflex_corner_keeps_what_is_inside_of_either_line(tilted):
+    turn_mesh, turn = tilted
+    outline = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
+    mesh = turn_mesh(plate(outline, [(0, 1, 3), (1, 2, 3), (0, 3, 5), (3, 4, 5)]))
+    surfels = sample_mesh(mesh, resolution=17, crease_angle=ANGLE)
+    points, _ = shown(surfels)
+    x, y = (points @ turn).T[:2]
+    assert surfels.clip_lines()[1].any()
+    assert not ((x > 1.002) & (y > 1.002)).any()
+    assert bare_share(surfels, *on_surface(mesh)) == 0
+
+
+@pytest.mark.parametrize("corners", [6, 24])
+def test_a_hole_of_a_few_cells_stays_open_and_its_rim_covered(corners):
+    t = np.arange(corners) * 2 * np.pi / corners
+    hole = 0.15 * np.stack([np.cos(t), np.sin(t)], axis=1)
+    square_rim = np.stack([np.cos(t), np.sin(t)], axis=1) / np.maximum(abs(np.cos(t)), abs(np.sin(t)))[:, None]
+    i, j = np.arange(corners), (np.arange(corners) + 1) % corners
+    faces = np.concatenate([np.stack([i, i + corners, j + corners], 1), np.stack([i, j + corners, j], 1)])
+    mesh = plate(np.concatenate([hole, square_rim]), faces)
+    spacing = 0.06
+    surfels = sample_mesh(mesh, spacing=spacing, crease_angle=ANGLE)
+    points, _ = shown(surfels)
+    inner = 0.15 * np.cos(np.pi / corners)
+    assert np.linalg.norm(points[:, :2], axis=1).min() > inner - 0.35 * spacing
+    assert np.linalg.norm(shown(sample_mesh(mesh, spacing=spacing))[0][:, :2], axis=1).min() < inner - 0.6 * spacing
+    assert bare_share(surfels, *on_surface(mesh, 4000)) < 1e-3
+
+
+def test_a_face_narrower_than_a_cell_is_covered_by_surfels_of_its_own():
+    """A box whose edge is cut off by a face of a tenth of a cell, which few rays meet."""
+    box = trimesh.convex.convex_hull([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1) if (x, y) != (1, 1)]
+                                     + [(0.99, 1, z) for z in (0, 1)] + [(1, 0.99, z) for z in (0, 1)])  # fmt: skip
+    mesh = TriangleMesh(box.vertices, box.faces)
+    sampling = sample_surface(mesh, resolution=10, crease_angle=np.radians(20))
+    points, normals = on_surface(mesh, 40_000)
+    narrow = np.flatnonzero((normals[:, 0] > 0.5) & (normals[:, 1] > 0.5))
+    assert len(narrow) > 50 and len(sampling.gap_triangles) > 5
+    assert bare_share(sampling.surfels, points[narrow], normals[narrow]) == 0
+    assert len(sampling.gap_triangles) < len(sampling.surfels) / 4
+
+
+def test_a_smooth_surface_has_no_lines(sphere):
+    surfels = sample_mesh(sphere, resolution=24, crease_angle=ANGLE)
+    assert surfels.clip_line is None and surfels.clip_line_2 is None and not surfels.is_clipped
+
+
+@pytest.mark.parametrize("angle", [0.0, -1.0, 4.0, np.nan])
+def test_an_angle_that_is_none_is_refused(cube, angle):
+    with pytest.raises(ValueError, match="angle must be above 0"):
+        sample_mesh(cube(), resolution=4, crease_angle=angle)
+
+
+def test_clipping_can_be_cancelled_and_says_how_far_it_is(cube):
+    shares = []
+    sample_mesh(cube(), resolution=8, crease_angle=ANGLE, progress=shares.append)
+    assert shares == sorted(shares) and shares[-1] == 1 and any(0.6 < share < 1 for share in shares)
+    with pytest.raises(SamplingCancelled):
+        sample_mesh(cube(), resolution=8, crease_angle=ANGLE, progress=lambda share: share < 0.8)
+
+
+def test_without_the_option_there_are_no_lines(cube):
+    assert not sample_mesh(cube(), resolution=8).is_clipped
+
+
+def test_materials_that_look_different_end_at_their_border(square):
+    colors = Surface(Channel((1, 0, 0, 1))), Surface(Channel((0, 1, 0, 1)))
+    mesh = square(materials=np.array([0, 1]), surfaces=colors)
+    points, row = shown(surfels := sample_mesh(mesh, resolution=13, crease_angle=ANGLE))
+    above = points[:, 1] - points[:, 0]
+    first = surfels.materials[row] == 0
+    assert above[first].max() < 2e-3 and above[~first].min() > -2e-3
+    same = square(materials=np.array([0, 1]), surfaces=(colors[0], colors[0]))
+    assert (shown(sample_mesh(same, resolution=13, crease_angle=ANGLE))[0][:, :2] @ (-1, 1)).max() > 0.1
+
+
+def test_colours_end_where_they_break(square):
+    corner_colors = np.ones((2, 3, 4), np.float32)
+    corner_colors[1, :, 0] = 0
+    mesh = square(corner_colors=corner_colors, surfaces=(Surface(Channel((1, 1, 1, 1), VertexColors())),))
+    points, row = shown(surfels := sample_mesh(mesh, resolution=13, crease_angle=ANGLE))
+    first = surfels.colors[row, 0] > 0.5
+    above = points[:, 1] - points[:, 0]
+    assert above[first].max() < 2e-3 and above[~first].min() > -2e-3
+
+
+def test_normals_that_break_are_a_crease(square):
+    normals = np.zeros((2, 3, 3))
+    normals[:, :, 2] = 1
+    normals[1] = (0.6, 0, 0.8)
+    flat = sample_mesh(square(), resolution=13, crease_angle=ANGLE)
+    broken = sample_mesh(square(corner_normals=normals), resolution=13, crease_angle=ANGLE)
+    assert (broken.clip_line[:, 1] > 0).sum() > (flat.clip_line[:, 1] > 0).sum() + 13
+
+
+def test_faces_that_wind_differently_end_at_the_same_edges(cube):
+    mesh = cube()
+    triangles = mesh.triangles.copy()
+    triangles[::2] = triangles[::2, ::-1]
+    points, _ = shown(sample_mesh(TriangleMesh(mesh.positions, triangles), resolution=9, crease_angle=ANGLE))
+    assert points.min() > -1e-3 and points.max() < 1 + 1e-3
+
+
+def test_an_edge_between_faces_that_wind_differently_is_none_where_they_are_flat(square):
+    mesh = square()
+    turned = TriangleMesh(mesh.positions, np.array([(0, 1, 2), (0, 3, 2)]))
+    one, other = (sample_mesh(m, resolution=13, crease_angle=ANGLE) for m in (mesh, turned))
+    assert (one.clip_line[:, 1] > 0).sum() == (other.clip_line[:, 1] > 0).sum()
+
+
+def test_split_vertices_are_one(cube):
+    mesh = cube()
+    apart = TriangleMesh(mesh.positions[mesh.triangles].reshape(-1, 3), np.arange(36).reshape(-1, 3))
+    one, other = (sample_mesh(m, resolution=9, crease_angle=ANGLE) for m in (mesh, apart))
+    assert np.array_equal(one.clip_line, other.clip_line)
+
+
+def test_merged_surfels_leave_the_lines_of_others(cube):
+    plain = sample_mesh(cube(), resolution=32, crease_angle=ANGLE)
+    merged = sample_surface(cube(), resolution=32, crease_angle=ANGLE, tolerance=Tolerance(1e-4))
+    assert merged.saved > len(plain) / 3
+    assert (merged.surfels.clip_line[:, 1] > 0).sum() == (plain.clip_line[:, 1] > 0).sum()
+    assert shown(merged.surfels)[0].max() < 1 + 1e-3
+
+
+def test_lines_go_with_a_mesh_that_deforms(cube):
+    tracked = TrackedSurfels(cube(), resolution=9, crease_angle=ANGLE)
+    move = np.array([(1.2, 0.5, 0), (0, 0.8, 0.3), (0.1, 0, 1)])
+    surfels, _ = tracked.at(TriangleMesh(cube().positions @ move.T, cube().triangles))
+    inside = shown(surfels)[0] @ np.linalg.inv(move).T
+    assert inside.min() > -3e-3 and inside.max() < 1 + 3e-3
+
+
+def test_surfels_that_fill_gaps_follow_a_mesh_too():
+    strip = TriangleMesh(np.array([(0, 0, 0), (1, 0, 0), (1, 0.004, 0), (0, 0.004, 0.0)]) + 0.0013,
+                         np.array([(0, 1, 2), (0, 2, 3)]))  # fmt: skip
+    tracked = TrackedSurfels(strip, spacing=0.05, crease_angle=ANGLE)
+    assert len(tracked.sampling.gap_triangles)
+    surfels, _ = tracked.at(TriangleMesh(strip.positions + np.array([0, 0, 2]), strip.triangles))
+    assert np.allclose(surfels.positions[:, 2] + surfels.origin[2], 2.0013)
