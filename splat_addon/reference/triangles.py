@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..rendering.camera import Camera
+from ..rendering.scene.camera import Camera
 from .filters import filter_weights, resample
 
 #: Pairs of a triangle and a sample that are handled at once: about 100 bytes each.
