@@ -77,7 +77,7 @@ def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
     """What the user and scripts are told of a picture."""
     notes.add(_FLATTENED, frame.stats["instances_degenerate"])
     notes.add(_COARSE, frame.stats["surfels_coarse"])
-    if why := dict(frame.stats["plan"].left_out).get("transparency"):
+    if why := dict(frame.stats["plan"].skipped).get("transparency"):
         notes.add(why[0].upper() + why[1:])
     for sentence in notes.sentences():
         engine.report({"WARNING"}, sentence)
