@@ -38,7 +38,7 @@ def test_the_list_has_a_line_for_each_and_needs_no_environment():
 @pytest.mark.parametrize("arguments", [(), ("nothing",)])
 def test_without_a_name_of_the_list_the_names_are_said(arguments):
     done = start(*arguments)
-    assert done.returncode == 2 and "trade, transparency" in done.stderr and len(done.stderr.splitlines()) == 1
+    assert done.returncode == 2 and "textured, trade" in done.stderr and len(done.stderr.splitlines()) == 1
 
 
 @pytest.mark.skipif(find_spec("bpy") is None, reason="this Python has no bpy")

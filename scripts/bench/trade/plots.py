@@ -12,7 +12,6 @@ matplotlib.use("Agg")
 from matplotlib import pyplot, ticker
 
 from bench.trade.choices import FORMATS, PICTURED, label
-from splat_addon.reference.kept import FILTERS
 from splat_addon.reference.metrics import flip_map, mean_flip, srgb
 from splat_addon.rendering.methods import METHODS
 
@@ -32,16 +31,6 @@ def frontier(rows: list[dict], error: str = "flip_gaussian", cost: str = "ratio"
         if not kept or row[error] < kept[-1][error]:
             kept.append(row)
     return kept
-
-
-def plot_scene(rows: list[dict]):
-    """One scene: both filters, against milliseconds."""
-    figure, axes = pyplot.subplots(1, len(FILTERS), figsize=(9, 4), layout="constrained")
-    for axis, name in zip(axes, FILTERS):
-        _panel(axis, rows, f"flip_{name}", "ms")
-        axis.set(title=f"{rows[0]['scene']}, {name} filter", xlabel="ms a frame", ylabel="mean FLIP")
-    axes[0].legend(fontsize=7)
-    return figure
 
 
 def plot_overview(rows: list[dict]):
