@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What follows a deforming mesh: how well its surface stays covered, what a frame costs, and whether it flickers.
+"""What follows a deforming mesh: how well its surface stays covered, and whether it flickers.
 
 The picture is of what Blender can show besides plain meshes, rendered without a conversion.
 """
@@ -17,22 +17,17 @@ import splat_addon
 from demonstration.scene import with_nodes
 from measuring.blender_scene import lit_scene, rendered
 from measuring.models import load
-from measuring.timing import in_turn
-from splat_addon.blender.mesh_extraction import evaluated_mesh, read_mesh, read_topology
 from splat_addon.reference.bare import uncovered_points
 from splat_addon.sampling import TrackedSurfels, sample_mesh
 
-QUICK = {"points": 500, "resolution": 16, "resolutions": [16], "frames": 3, "width": 120}
-COST = "resolution", "surfels", "reading", "following", "sampling anew", "nothing moved"
+QUICK = {"points": 500, "resolution": 16, "frames": 3, "width": 120}
 
 
 def arguments(parser) -> None:
     parser.add_argument("--points", type=int, default=200_000, help="of the surface, asked whether they are bare")
     parser.add_argument("--resolution", type=int, default=128, help="of the armadillo whose cover is measured")
-    parser.add_argument("--resolutions", type=int, nargs="+", default=[128, 256, 512], help="of Suzanne who is timed")
     parser.add_argument("--frames", type=int, default=12, help="of 256, looked at for flicker")
     parser.add_argument("--width", type=int, default=1200, help="of the picture, in pixels")
-    parser.set_defaults(turns=7)
 
 
 def run(options, report) -> None:
@@ -41,8 +36,6 @@ def run(options, report) -> None:
     draw_sources(options.width, report)
     about = f"Armadillo, resolution {options.resolution}; of {options.points:,} points:"
     report.table(("shape", "bare, followed", "bare, sampled anew", "stretched beyond 2.5"), coverage(options), about)
-    about = f"Smooth Suzanne; median (least to most) of {options.turns} frames, microseconds a surfel:"
-    report.table(COST, cost(options), about)
     about = f"Suzanne bends over 256 frames; {options.frames} of them, 160 x 160 pixels, resolution 64: "
     report.table(("surfels", "mean", "the worst of 1,000"), flicker(options), about + "|I(t-1) - 2 I(t) + I(t+1)|")
 
@@ -104,36 +97,6 @@ def add_bending_monkey(levels: int, frames: int) -> bpy.types.Object:
         key.value = value
         key.keyframe_insert("value", frame=frame)
     return monkey
-
-
-def cost(options):
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    monkey, scene = add_bending_monkey(3, frames=32), bpy.context.scene
-    for resolution in options.resolutions:
-        state = {"topology": None, "frames": iter(range(1, 33))}
-
-        def turn_page(state=state):
-            scene.frame_set(next(state["frames"]))
-
-        def read(state=state):
-            with evaluated_mesh(monkey, bpy.context.evaluated_depsgraph_get()) as (evaluated, mesh):
-                state["topology"] = read_topology(mesh, state["topology"])
-                state["mesh"] = read_mesh(evaluated, mesh, state["topology"]).triangles
-            return state["mesh"]
-
-        turn_page()
-        tracked = TrackedSurfels(read(), resolution=resolution)
-        spacing = np.subtract(*state["mesh"].bounds()[::-1]).max() / resolution
-        jobs = {
-            "frame": turn_page,
-            "reading": read,
-            "following": lambda t=tracked, s=state: t.at(s["mesh"]),
-            "sampling anew": lambda h=spacing, s=state: sample_mesh(s["mesh"], spacing=h),
-            "nothing moved": lambda t=tracked, s=state: t.at(replace(s["mesh"], positions=s["mesh"].positions.copy())),
-        }
-        count = len(tracked.sampling.surfels)
-        taken = in_turn(jobs, options.turns).part(lambda seconds, count=count: 1e6 * seconds / count)
-        yield resolution, f"{count:,}", *(f"{taken.spread(name):.2f}" for name in COST[2:])
 
 
 def flicker(options):

@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
+from functools import partial
 from importlib import import_module
 from unittest.mock import patch
 
@@ -21,8 +22,9 @@ import numpy as np
 matplotlib.use("Agg")
 from matplotlib import pyplot
 
+from bench.numerics import sweeps
 from measuring.drawing import holes
-from splat_addon.reference import render_exact, sweeps
+from splat_addon.reference import render_exact
 from splat_addon.reference.extremes import sheet
 from splat_addon.reference.metrics import psnr, srgb
 from splat_addon.rendering import Camera, Renderer, Scene, Settings, open_device
@@ -66,7 +68,7 @@ FIGURES = {
     ),
     "grazing": (
         Panel("grazing", "degrees left to edge-on", sweeps.grazing, 50),
-        Panel("floor", "height of the eye above a floor", sweeps.floor_below, 50),
+        Panel("floor", "height of the eye above a floor", sweeps.floor, 50),
     ),
     "views": (
         Panel("field of view", "field of view, degrees", sweeps.field_of_view, 50, is_log=False),
@@ -79,7 +81,7 @@ FIGURES = {
     ),
     "sums": (
         Panel("overdraw", "splats over every sample, float32 sums", sweeps.overdraw, 80),
-        Panel("overdraw, float16", "splats over every sample, float16 sums", sweeps.overdraw_in_float16, 0),
+        Panel("overdraw, float16", "the same, float16 sums", partial(sweeps.overdraw, accumulation="float16"), 0),
     ),
     "layers": (
         Panel("epsilon", "epsilon, radii", sweeps.epsilon, 40),
