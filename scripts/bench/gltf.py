@@ -75,7 +75,7 @@ def framed(meshes: list[bpy.types.Object], options) -> bpy.types.Scene:
     """A sun without shadow, a grey world, and a camera that sees all of the meshes."""
     turn = math.radians(options.angle)
     scene = lit_scene(options.size, (0.28, 0.31, 0.35), (math.radians(40), math.radians(25), turn), 1.6)
-    scene.objects["sun"].data.use_shadow = False
+    scene.objects["Sun"].data.use_shadow = False
     corners = np.array([o.matrix_world @ Vector(c) for o in meshes for c in o.bound_box])
     middle, radius = (corners.min(0) + corners.max(0)) / 2, np.linalg.norm(np.ptp(corners, axis=0)) / 2
     towards, camera = Vector((math.sin(turn), -math.cos(turn), 0.45)).normalized(), scene.camera

@@ -133,65 +133,23 @@ def paint(painted: bpy.types.Object, color) -> None:
 
 
 def draw_sources(width: int, report) -> None:
-    """A text, a bevelled curve, metaballs, instances of Geometry Nodes, a mirrored collection instance, a bent mesh."""
-    scene = stage((width, width // 5), 15.5)
+    """A text, a bevelled curve, metaballs and a bent mesh."""
+    scene = stage((width, width // 4), 10.5)
     scene.surfel_splatting.mesh_density, scene.surfel_splatting.mesh_pixels = "CAMERA", 1.0
-    bpy.ops.object.text_add(location=(-7.4, 0, -0.5), rotation=(np.pi / 2, 0, 0))
+    bpy.ops.object.text_add(location=(-5.0, 0, -0.5), rotation=(np.pi / 2, 0, 0))
     text = bpy.context.object
     text.data.body, text.data.size, text.data.extrude, text.data.bevel_depth = "text", 1.3, 0.12, 0.03
     paint(text, (0.8, 0.25, 0.05))
-    bpy.ops.curve.primitive_bezier_circle_add(radius=0.8, location=(-3.6, 0, 0), rotation=(0.9, 0.4, 0))
+    bpy.ops.curve.primitive_bezier_circle_add(radius=0.8, location=(-1.2, 0, 0), rotation=(0.9, 0.4, 0))
     bpy.context.object.data.bevel_depth, bpy.context.object.data.resolution_u = 0.25, 32
     paint(bpy.context.object, (0.05, 0.35, 0.7))
     for offset in ((0, 0, 0), (0.9, 0.2, 0.5), (-0.4, 0, 0.8)):
-        bpy.ops.object.metaball_add(radius=0.9, location=(-1.2 + offset[0], offset[1], offset[2] - 0.4))
+        bpy.ops.object.metaball_add(radius=0.9, location=(1.2 + offset[0], offset[1], offset[2] - 0.4))
         bpy.context.object.data.render_resolution = 0.1
     paint(bpy.data.objects["Mball"], (0.1, 0.5, 0.15))
-    add_cubes_on_a_sphere((2.0, 0, 0))
-    add_mirrored_pair((3.8, 0, -0.2), (4.9, 0, -0.2))
     monkey = add_bending_monkey(3, frames=1)
-    monkey.location, monkey.scale = (6.6, 0, 0), (0.85, 0.85, 0.85)
+    monkey.location, monkey.scale = (4.1, 0, 0), (0.85, 0.85, 0.85)
     paint(monkey, (0.6, 0.1, 0.3))
     scene.frame_set(2)
     (drawn,) = rendered(scene)
     report.picture("sources", [drawn[..., :3] + (1 - drawn[..., 3:]) * 0.9], colors=128)
-
-
-def add_cubes_on_a_sphere(location) -> None:
-    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=2, radius=0.8, location=location)
-    ball, tree = bpy.context.object, bpy.data.node_groups.new("nodes", "GeometryNodeTree")
-    paint(ball, (0.8, 0.6, 0.1))
-    for direction in ("INPUT", "OUTPUT"):
-        tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
-    kinds = "MeshCube", "InstanceOnPoints", "JoinGeometry", "InputNormal"
-    cube, place, join, normal = (tree.nodes.new(f"GeometryNode{kind}") for kind in kinds)
-    start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
-    align = tree.nodes.new("FunctionNodeAlignEulerToVector")
-    place.inputs["Scale"].default_value, align.axis = (0.16, 0.16, 0.16), "Z"
-    for socket, target in (
-        (normal.outputs[0], align.inputs["Vector"]),
-        (align.outputs[0], place.inputs["Rotation"]),
-        (cube.outputs["Mesh"], place.inputs["Instance"]),
-        (start.outputs[0], place.inputs["Points"]),
-        (place.outputs["Instances"], join.inputs[0]),
-        (start.outputs[0], join.inputs[0]),
-        (join.outputs[0], end.inputs[0]),
-    ):
-        tree.links.new(socket, target)
-    ball.modifiers.new("nodes", "NODES").node_group = tree
-
-
-def add_mirrored_pair(*locations) -> None:
-    """A collection that holds a cone leaning to one side, shown as it is and mirrored."""
-    scene, hidden = bpy.context.scene, bpy.data.collections.new("hidden")
-    bpy.ops.mesh.primitive_cone_add(radius1=0.5, depth=1.6, rotation=(0, 0.35, 0))
-    bpy.ops.object.shade_smooth_by_angle()
-    cone = bpy.context.object
-    paint(cone, (0.15, 0.5, 0.6))
-    hidden.objects.link(cone)
-    scene.collection.objects.unlink(cone)
-    for location, scale in zip(locations, ((1, 1, 1), (-1, 1, 1))):
-        instancer = bpy.data.objects.new("instancer", None)
-        instancer.instance_type, instancer.instance_collection = "COLLECTION", hidden
-        instancer.location, instancer.scale = location, scale
-        scene.collection.objects.link(instancer)

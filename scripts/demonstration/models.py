@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import gzip
-import json
 import re
 import shutil
 import tempfile
@@ -63,35 +62,24 @@ def unpack(path: Path, folder: Path) -> Path:
 
 def _copy_named_files(text_file: Path, source: Path, folder: Path) -> None:
     """Copies what a file names from `source` to `folder`; a material library names textures in its turn."""
-    names = _NAMED_FILES.get(text_file.suffix.lower())
-    for name in names(text_file) if names else ():
+    pattern = _NAMED_FILES.get(text_file.suffix.lower())
+    text = text_file.read_text(encoding="utf-8", errors="replace") if pattern else ""
+    for name in re.findall(pattern, text, re.MULTILINE) if pattern else ():
+        name = urllib.parse.unquote(name) if text_file.suffix.lower() == ".gltf" else name
         original, copy = source / name, folder / name
-        if original.is_file() and folder.resolve() in copy.resolve().parents and not copy.exists():
+        is_inside = folder.resolve() in copy.resolve().parents
+        if is_inside and original.is_file() and not copy.exists():
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(original, copy)
             _copy_named_files(copy, source, folder)
 
 
-def _libraries_of_obj(path: Path) -> list[str]:
-    with path.open(encoding="utf-8", errors="replace") as lines:
-        return [line.split(None, 1)[1].strip() for line in lines if re.match(r"mtllib\s+\S", line)]
-
-
-def _textures_of_mtl(path: Path) -> list[str]:
-    text = path.read_text(encoding="utf-8", errors="replace")
-    return [line.split()[-1] for line in text.splitlines() if re.match(r"\s*(map_\w+|bump|norm|refl)\s+\S", line)]
-
-
-def _files_of_gltf(path: Path) -> list[str]:
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise Problem(f"{path.name} is not a glTF file: {_one_line(error)}.") from None
-    parts = (*content.get("buffers", ()), *content.get("images", ()))
-    return [urllib.parse.unquote(p["uri"]) for p in parts if "uri" in p and not p["uri"].startswith("data:")]
-
-
-_NAMED_FILES = {".obj": _libraries_of_obj, ".mtl": _textures_of_mtl, ".gltf": _files_of_gltf}
+#: suffix -> where a text of that kind names another file.
+_NAMED_FILES = {
+    ".obj": r"^mtllib[ \t]+(\S.*?)\s*$",
+    ".mtl": r"^\s*(?:map_\w+|bump|norm|refl)[ \t](?:.*[ \t])?(\S+)\s*$",
+    ".gltf": r'"uri"\s*:\s*"(?!data:)([^"]+)"',
+}
 
 
 def _keep_images() -> None:

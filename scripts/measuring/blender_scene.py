@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from demonstration.scene import even_world
+from demonstration.scene import add_light, even_world
 
 
 def lit_scene(size: tuple[int, int], world, sun_turned, sun_energy: float) -> bpy.types.Scene:
@@ -21,11 +21,10 @@ def lit_scene(size: tuple[int, int], world, sun_turned, sun_energy: float) -> bp
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.film_transparent = True
     scene.world = even_world(world)
-    sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
-    sun.data.energy, sun.data.angle, sun.rotation_euler = sun_energy, 0.0, sun_turned
+    sun = add_light("SUN", sun_energy, (1.0, 1.0, 1.0))
+    sun.data.angle, sun.rotation_euler = 0.0, sun_turned
     scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-    for made in (sun, scene.camera):
-        scene.collection.objects.link(made)
+    scene.collection.objects.link(scene.camera)
     return scene
 
 

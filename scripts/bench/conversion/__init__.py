@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Seconds and memory of converting meshes and bare points, against a cost model and other ways to sample a mesh.
 
-The cost model is 0.25 us a triangle + 0.1 us a surfel. The others: trimesh, Geometry Nodes, Blender's BVH tree, Open3D
-where it is installed, and our operator as a whole. Meshes are smooth-shaded, without colours. Sampling includes the
+The cost model is 0.25 us a triangle + 0.1 us a surfel. The others: trimesh, Geometry Nodes, Open3D where it is
+installed, and our operator as a whole. Meshes are smooth-shaded, without colours. Sampling includes the
 check at the door of Surfels. Extra bytes: the peak while sampling, above the cleaned mesh and the result. Others: how
 many times longer they take than our sampling, without cleaning; with its tree: in work, with the building of a tree.
 """
