@@ -16,7 +16,7 @@ import numpy as np
 from mathutils import Vector
 
 import splat_addon
-from demonstration.models import import_model
+from demonstration.models import convert, import_model
 from measuring.blender_scene import lit_scene, rendered
 from splat_addon.reference.metrics import psnr, srgb
 from splat_addon.rendering.presets import PRESETS
@@ -45,7 +45,7 @@ def run(options, report) -> None:
     model = (options.model or options.models / "CesiumMilkTruck.glb").resolve()
     meshes = import_model(model)
     scene = framed(meshes, options)
-    surfels, seconds = converted(meshes, options)
+    surfels, seconds = convert(meshes, density="CAMERA", pixels=options.pixels, bake_materials=options.bake)
     scene.render.engine = "SURFEL_SPLATTING"
     scene.surfel_splatting.shading = "principled"
     for name, value in PRESETS[options.preset].values.items():
@@ -86,16 +86,6 @@ def framed(meshes: list[bpy.types.Object], options) -> bpy.types.Scene:
     camera.rotation_euler = towards.to_track_quat("Z", "Y").to_euler()
     bpy.context.view_layer.update()
     return scene
-
-
-def converted(meshes: list[bpy.types.Object], options) -> tuple[list[bpy.types.Object], float]:
-    """The surfel objects of the meshes, and the seconds that it took."""
-    before = set(bpy.data.objects)
-    for mesh in bpy.context.view_layer.objects:
-        mesh.select_set(mesh in meshes)
-    started = time.perf_counter()
-    bpy.ops.object.surfels_from_mesh(density="CAMERA", pixels=options.pixels, bake_materials=options.bake)
-    return sorted(set(bpy.data.objects) - before, key=lambda o: o.name), time.perf_counter() - started
 
 
 def picture(scene: bpy.types.Scene, hidden: list[bpy.types.Object]) -> tuple[np.ndarray, float]:

@@ -27,7 +27,6 @@ from splat_addon.sampling import (
     sample_surface,
     surfels_from_points,
 )  # fmt: skip
-from splat_addon.sampling.adaptive import MERGED_SIZE
 from splat_addon.surfels import Surfels
 
 DEVICES = ("standalone",)
@@ -129,7 +128,7 @@ def sampled(mesh: TriangleMesh, resolution: float, reduction: str) -> Surfels:
 
 
 def draw(meshes: dict, renderer: Renderer, report) -> None:
-    """Where reductions fail, side by side; and the same mesh sampled plainly, adaptively, and coloured by size."""
+    """Where reductions fail, side by side; and the same mesh sampled plainly and adaptively."""
     if "phoenix_bird.glb" in meshes:
         bird = colored_by_side(meshes["phoenix_bird.glb"])
         view = bird.bounds(), (0.3, 0.8, 0.5), (0, 1, 0), 0.75
@@ -143,7 +142,6 @@ def draw(meshes: dict, renderer: Renderer, report) -> None:
         merged = sample_surface(mesh, resolution=200, tolerance=Tolerance(0.1 * spacing)).surfels
         views = [render(renderer, surfels, *view, sun=True) for surfels in (plain, merged)]
         report.say(f"Adaptive van: {len(plain):,} and {len(merged):,} surfels, PSNR {psnr(*views):.1f} dB.")
-        views.append(render(renderer, colored_by_size(merged, spacing), *view))
         report.picture("adaptive", views, colors=128)
 
 
@@ -164,13 +162,6 @@ def colored_by_side(mesh: TriangleMesh) -> TriangleMesh:
     colors = np.where(up[:, None], (0.05, 0.25, 0.8, 1), (0.9, 0.3, 0.05, 1))
     surface = Surface(Channel((1, 1, 1, 1), VertexColors()))
     return replace(mesh, corner_colors=np.repeat(colors[:, None], 3, axis=1), surfaces=(surface,))
-
-
-def colored_by_size(surfels: Surfels, spacing: float) -> Surfels:
-    sizes = np.rint(np.log2(surfels.scales[:, 1] / (MERGED_SIZE * spacing))).clip(0).astype(int)
-    shade = np.random.default_rng(0).uniform(0.6, 1, (len(surfels), 1))
-    by_size = np.array([(0.6, 0.6, 0.6), (0.1, 0.5, 0.8), (0.1, 0.7, 0.2), (0.9, 0.4, 0.05)])[sizes] * shade
-    return replace(surfels, colors=np.concatenate([by_size, np.ones_like(shade)], axis=1))
 
 
 def render(renderer: Renderer, surfels: Surfels, box, toward, up, distance: float, sun: bool = False) -> np.ndarray:

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What follows a deforming mesh: how well its surface stays covered, and whether it flickers.
-
-The picture is of what Blender can show besides plain meshes, rendered without a conversion.
-"""
+"""What follows a deforming mesh: how well its surface stays covered, and whether it flickers."""
 
 from __future__ import annotations
 
@@ -14,26 +11,23 @@ import bpy
 import numpy as np
 
 import splat_addon
-from demonstration.scene import with_nodes
 from measuring.blender_scene import lit_scene, rendered
 from measuring.models import load
 from splat_addon.reference.bare import uncovered_points
 from splat_addon.sampling import TrackedSurfels, sample_mesh
 
-QUICK = {"points": 500, "resolution": 16, "frames": 3, "width": 120}
+QUICK = {"points": 500, "resolution": 16, "frames": 3}
 
 
 def arguments(parser) -> None:
     parser.add_argument("--points", type=int, default=200_000, help="of the surface, asked whether they are bare")
     parser.add_argument("--resolution", type=int, default=128, help="of the armadillo whose cover is measured")
     parser.add_argument("--frames", type=int, default=12, help="of 256, looked at for flicker")
-    parser.add_argument("--width", type=int, default=1200, help="of the picture, in pixels")
 
 
 def run(options, report) -> None:
     splat_addon.register()
     report.header()
-    draw_sources(options.width, report)
     about = f"Armadillo, resolution {options.resolution}; of {options.points:,} points:"
     report.table(("shape", "bare, followed", "bare, sampled anew", "stretched beyond 2.5"), coverage(options), about)
     about = f"Suzanne bends over 256 frames; {options.frames} of them, 160 x 160 pixels, resolution 64: "
@@ -78,7 +72,7 @@ def coverage(options):
         yield name, *(f"{share:.3%}" for share in bare), f"{stretched:.2%}"
 
 
-def add_bending_monkey(levels: int, frames: int) -> bpy.types.Object:
+def add_bending_monkey(levels: int, frames: int) -> None:
     """A smooth Suzanne with a shape key that bends it over so many frames."""
     bpy.ops.mesh.primitive_monkey_add(size=2)
     monkey = bpy.context.object
@@ -96,14 +90,18 @@ def add_bending_monkey(levels: int, frames: int) -> bpy.types.Object:
     for frame, value in ((1, 0.0), (1 + frames, 1.0)):
         key.value = value
         key.keyframe_insert("value", frame=frame)
-    return monkey
 
 
 def flicker(options):
     """How much a pixel jumps from frame to frame: the size of the second difference in time of its brightness."""
     never = patch.object(TrackedSurfels, "has_triangles_of", lambda tracked, mesh: mesh is tracked.mesh)
     for name, tracking in (("followed", nullcontext()), ("sampled anew on each frame", never)):
-        scene = stage((160, 160), 4.2)
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        scene = lit_scene((160, 160), (0.3, 0.3, 0.3), (0.7, 0.3, 0.4), 3.0)
+        scene.render.engine = "SURFEL_SPLATTING"
+        scene.surfel_splatting.render_meshes = "SURFELS"
+        scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 4.2
+        scene.camera.location, scene.camera.rotation_euler = (0, -20, 7), (1.24, 0, 0)
         add_bending_monkey(2, frames=256)
         scene.surfel_splatting.mesh_resolution, scene.surfel_splatting.supersampling = 64, 1
         scene.frame_set(1)
@@ -112,44 +110,3 @@ def flicker(options):
         jumps = np.abs(shots[:-2] - 2 * shots[1:-1] + shots[2:])[..., :3].mean(axis=-1)
         values = jumps[:, (shots[..., 3] > 0.99).all(axis=0)]
         yield name, f"{values.mean():.5f}", f"{np.quantile(values, 0.999):.4f}"
-
-
-def stage(size, width: float) -> bpy.types.Scene:
-    """An empty scene for our engine, seen orthographically from the front and a little above."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    scene = lit_scene(size, (0.3, 0.3, 0.3), (0.7, 0.3, 0.4), 3.0)
-    scene.render.engine = "SURFEL_SPLATTING"
-    scene.surfel_splatting.render_meshes = "SURFELS"
-    scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", width
-    scene.camera.location, scene.camera.rotation_euler = (0, -20, 7), (1.24, 0, 0)
-    return scene
-
-
-def paint(painted: bpy.types.Object, color) -> None:
-    material = bpy.data.materials.new("paint")
-    with_nodes(material)
-    material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (*color, 1)
-    painted.data.materials.append(material)
-
-
-def draw_sources(width: int, report) -> None:
-    """A text, a bevelled curve, metaballs and a bent mesh."""
-    scene = stage((width, width // 4), 10.5)
-    scene.surfel_splatting.mesh_density, scene.surfel_splatting.mesh_pixels = "CAMERA", 1.0
-    bpy.ops.object.text_add(location=(-5.0, 0, -0.5), rotation=(np.pi / 2, 0, 0))
-    text = bpy.context.object
-    text.data.body, text.data.size, text.data.extrude, text.data.bevel_depth = "text", 1.3, 0.12, 0.03
-    paint(text, (0.8, 0.25, 0.05))
-    bpy.ops.curve.primitive_bezier_circle_add(radius=0.8, location=(-1.2, 0, 0), rotation=(0.9, 0.4, 0))
-    bpy.context.object.data.bevel_depth, bpy.context.object.data.resolution_u = 0.25, 32
-    paint(bpy.context.object, (0.05, 0.35, 0.7))
-    for offset in ((0, 0, 0), (0.9, 0.2, 0.5), (-0.4, 0, 0.8)):
-        bpy.ops.object.metaball_add(radius=0.9, location=(1.2 + offset[0], offset[1], offset[2] - 0.4))
-        bpy.context.object.data.render_resolution = 0.1
-    paint(bpy.data.objects["Mball"], (0.1, 0.5, 0.15))
-    monkey = add_bending_monkey(3, frames=1)
-    monkey.location, monkey.scale = (4.1, 0, 0), (0.85, 0.85, 0.85)
-    paint(monkey, (0.6, 0.1, 0.3))
-    scene.frame_set(2)
-    (drawn,) = rendered(scene)
-    report.picture("sources", [drawn[..., :3] + (1 - drawn[..., 3:]) * 0.9], colors=128)

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A model file becomes mesh objects, through Blender's own importers; gzipped files are unpacked first."""
+"""A model file becomes mesh objects, through Blender's own importers, and these become surfels.
+
+Gzipped files are unpacked first.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ import gzip
 import re
 import shutil
 import tempfile
+import time
 import urllib.parse
 import zlib
 from pathlib import Path
@@ -37,15 +41,37 @@ def import_model(path: Path) -> list:
     module, name, options = IMPORTERS[model_suffix(path)]
     with tempfile.TemporaryDirectory() as folder:
         readable = unpack(path, Path(folder)) if path.name.lower().endswith(".gz") else path
-        try:
-            getattr(getattr(bpy.ops, module), name)(filepath=str(readable), **options)
-        except RuntimeError as error:
-            raise Problem(f"{path} cannot be read as {model_suffix(path)}: {_one_line(error)}.") from None
+        operator = getattr(getattr(bpy.ops, module), name)
+        call(f"{path} cannot be read as {model_suffix(path)}", operator, filepath=str(readable), **options)
         _keep_images()
     meshes = [o for o in bpy.context.view_layer.objects if o.type == "MESH" and o.data.polygons and o.visible_get()]
     if not meshes:
         raise Problem(f"{path} holds no mesh with faces, and surfels are made from faces.")
     return meshes
+
+
+def convert(meshes: list, **options) -> tuple[list, float]:
+    """The surfel objects made from `meshes` by the add-on's operator with its options, and the seconds that it took."""
+    import bpy
+
+    for one in bpy.context.view_layer.objects:
+        one.select_set(one in meshes)
+    bpy.context.view_layer.objects.active = meshes[0]
+    before, started = set(bpy.data.objects), time.perf_counter()
+    call("The conversion failed", bpy.ops.object.surfels_from_mesh, **options)
+    seconds, made = time.perf_counter() - started, set(bpy.data.objects) - before
+    surfels = [o for o in bpy.data.objects if o in made and {"rotation", "scale"} <= set(o.data.attributes.keys())]
+    if not surfels:
+        raise Problem("The conversion made no surfels: the model has no face with an area.")
+    return surfels, seconds
+
+
+def call(failure: str, operator, **options) -> None:
+    """An operator, whose error report becomes a Problem."""
+    try:
+        operator(**options)
+    except RuntimeError as error:
+        raise Problem(f"{failure}: {_one_line(error)}.") from None
 
 
 def unpack(path: Path, folder: Path) -> Path:

@@ -17,7 +17,7 @@ import numpy as np
 
 from bench.trade.cases import CASES, FULL, View
 from bench.trade.choices import CHOICES, YARDSTICK, choices, columns, label
-from bench.trade.plots import by_scene, frontier, plot_differences, plot_overview
+from bench.trade.plots import by_scene, draw_differences, frontier, plot_overview
 from environment import Problem
 from measuring.drawing import draw_in_turn, holes
 from splat_addon.reference import render_exact
@@ -84,7 +84,7 @@ def measure(case, renderer: Renderer, chosen: list[Settings], options, report) -
         for name, (spread, digits) in times.items():
             ends = ((name, spread.median), (f"{name}_min", spread.least), (f"{name}_max", spread.most))
             rows[-1] |= {key: round(value, digits) for key, value in ends}
-    report.plot(f"{case.name.replace(' ', '-')}-differences", plot_differences(drawn.results, exact["gaussian"]))
+    draw_differences(case.name.replace(" ", "-"), drawn.results, exact["gaussian"], report)
     return rows
 
 
