@@ -142,15 +142,19 @@ def draw(meshes: dict, renderer: Renderer, report) -> None:
         merged = sample_surface(mesh, resolution=200, tolerance=Tolerance(0.1 * spacing)).surfels
         views = [render(renderer, surfels, *view, sun=True) for surfels in (plain, merged)]
         report.say(f"Adaptive van: {len(plain):,} and {len(merged):,} surfels, PSNR {psnr(*views):.1f} dB.")
+        sizes = np.log2(merged.scales[:, 1] / merged.scales[:, 1].min()).clip(0, 3) / 3
+        by_size = np.column_stack([sizes, 0.3 + 0.4 * sizes, 1 - sizes, np.ones(len(sizes))])
+        views.append(render(renderer, replace(merged, colors=by_size), *view))
         report.picture("adaptive", views, colors=128)
 
 
 def draw_points(path, renderer: Renderer, report) -> None:
     """A range map's bare points, and the surfels made from them."""
     points = load_any(path).vertices
-    facing = np.tile((0.0, 0.0, 1.0), (len(points), 1)), np.full(len(points), 0.08)
-    bare, whole = surfels_from_points(points, *facing)[0], surfels_from_points(points, viewpoint=(0, 0, 0))[0]
-    view = (points.min(axis=0), points.max(axis=0)), (0, 0, 1), (0, 1, 0), 0.75
+    facing, dark = np.tile((0.0, 0.0, 1.0), (len(points), 1)), np.full((len(points), 4), (0.05, 0.05, 0.05, 1))
+    bare, *_ = surfels_from_points(points, facing, np.full(len(points), 0.12), dark)
+    whole, *_ = surfels_from_points(points, viewpoint=(0, 0, 0))
+    view = (points.min(axis=0), points.max(axis=0)), (0, -0.05, 1), (0, 1, 0), 1.2
     views = render(renderer, bare, *view), render(renderer, whole, *view, sun=True)
     report.picture("range_map", views, colors=128)
 
