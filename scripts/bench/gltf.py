@@ -93,5 +93,5 @@ def picture(scene: bpy.types.Scene, hidden: list[bpy.types.Object]) -> tuple[np.
     for one in bpy.data.objects:
         one.hide_render = one in hidden
     started = time.perf_counter()
-    (pixels,) = rendered(scene)
+    pixels = rendered(scene)
     return pixels, time.perf_counter() - started

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The picture at the extremes of arithmetic, for every method: numbers, plots and failures.
+"""The picture at the extremes of arithmetic, for every method: numbers and plots.
 
 Scenes are 64 x 64 pixels of 2 x 2 samples; the truth is `render_exact` with the same samples, PSNR is of sRGB, 160 dB
 stands for equal. A method that filters is not that truth's picture: its line shows by being level that the extreme
@@ -90,23 +90,6 @@ FIGURES = {
 }
 
 
-def failures() -> Iterator[tuple[str, Scene, Camera]]:
-    """What shows the limit of a method's formula: tests/extremes' known failures."""
-    yield "affine", sweeps.lit(sheet(30, 1.0, 68, 2.0)), sweeps.origin_camera()
-    yield "affine", *next(shot for shot in sweeps.off_axis() if shot[0] == 5)[1:3]
-    yield "ewa", *next(shot for shot in sweeps.giants() if shot[0] > 300)[1:3]
-    yield "raycast", sweeps.lit(sheet(30, 1.0, 90, 2.0)), sweeps.origin_camera()
-    yield "homogeneous", *next(shot for shot in sweeps.ratio() if shot[0] == 10)[1:3]
-
-
-def draw_failures(device, report) -> None:
-    """Above what the methods draw, below the truth."""
-    shots = list(failures())
-    drawn = [Renderer(device).render(*shot, Settings(method=m, supersampling=SAMPLES)) for m, *shot in shots]
-    exact = [render_exact(*shot, samples=SAMPLES) for _, *shot in shots]
-    report.picture("failures", [frame.color for frame in drawn + exact], columns=len(shots), enlarged=3)
-
-
 def measure(panel: Panel, renderers: dict, most: int) -> dict[str, list[dict]]:
     """method -> what was found at each of the first `most` x: PSNR, empty pixels, numbers that are not finite."""
     results, firsts = {method: [] for method in METHODS}, {}
@@ -154,15 +137,13 @@ def cell(found: list[dict]) -> str:
 
 
 def arguments(parser) -> None:
-    parser.add_argument("--only", choices=[*FIGURES, "failures"], help="one figure")
+    parser.add_argument("--only", choices=FIGURES, help="one figure")
     parser.add_argument("--shots", type=int, help="of each panel, the first ones only")
 
 
 def run(options, report) -> None:
     device = open_device(options.device)
     report.header(device)
-    if options.only in (None, "failures"):
-        draw_failures(device, report)
     figures = {name: panels for name, panels in FIGURES.items() if options.only in (None, name)}
     renderers, every = {method: Renderer(device) for method in METHODS}, []
 
@@ -176,5 +157,4 @@ def run(options, report) -> None:
             report.plot(name, plot_panels(panels, results))
             report.csv("numerics", every)
 
-    if figures:
-        report.table(["least dB", *METHODS], rows())
+    report.table(["least dB", *METHODS], rows())
