@@ -9,7 +9,7 @@ changes nothing. An empty pixel, a cross in the plots, is one that the truth cov
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -25,9 +25,8 @@ from matplotlib import pyplot
 from bench.numerics import sweeps
 from measuring.drawing import holes
 from splat_addon.reference import render_exact
-from splat_addon.reference.extremes import sheet
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import Camera, Renderer, Scene, Settings, open_device
+from splat_addon.rendering import Renderer, Settings, open_device
 from splat_addon.rendering.methods import METHODS
 
 DEVICES = ("standalone",)
