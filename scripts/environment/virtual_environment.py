@@ -23,8 +23,6 @@ from .problem import Problem
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
-REQUIREMENTS = ROOT / "requirements"
-
 #: bpy -> the one Python that its wheel runs on.
 PYTHON_FOR_BPY = {"5.2.3": "3.13", "5.0.1": "3.11", "4.5.15": "3.11"}
 
@@ -98,8 +96,12 @@ def requirements_hash(path: Path) -> str:
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
+def _requirements(purpose: str) -> Path:
+    return ROOT / "requirements" / f"{purpose}.txt"
+
+
 def _stamp_line(purpose: str) -> str:
-    return f"{purpose} {requirements_hash(REQUIREMENTS / f'{purpose}.txt')}"
+    return f"{purpose} {requirements_hash(_requirements(purpose))}"
 
 
 def _stamp(environment: Environment) -> Path:
@@ -147,7 +149,7 @@ def _install(environment: Environment, purpose: str, command: list[str]) -> None
     else:
         shutil.rmtree(folder, ignore_errors=True)
         _make_venv(folder, command)
-    wanted = [f"bpy=={environment.bpy_version}", "-r", str(REQUIREMENTS / f"{purpose}.txt")]
+    wanted = [f"bpy=={environment.bpy_version}", "-r", str(_requirements(purpose))]
     options = ["--disable-pip-version-check", "--no-input", "--progress-bar", "off", "--prefer-binary"]
     code, output = run_showing([str(environment.python), "-m", "pip", "install", *options, *wanted], pip_line)
     if code:
