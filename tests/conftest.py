@@ -17,7 +17,7 @@ if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
 
 from splat_addon import reference  # noqa: E402
-from tests.remembered import folder, remembered, write  # noqa: E402
+from splat_addon.reference.kept import folder, remembered, write  # noqa: E402
 
 # The truth does not depend on the device, so the group of tests that comes first finds it for both. Tests import these
 # two by name, and all of them after this file.

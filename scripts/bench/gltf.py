@@ -16,7 +16,7 @@ import numpy as np
 from mathutils import Vector
 
 import splat_addon
-from demonstration.models import import_model
+from demonstration.models import convert, import_model
 from measuring.blender_scene import lit_scene, rendered
 from splat_addon.reference.metrics import psnr, srgb
 from splat_addon.rendering.presets import PRESETS
@@ -45,7 +45,7 @@ def run(options, report) -> None:
     model = (options.model or options.models / "CesiumMilkTruck.glb").resolve()
     meshes = import_model(model)
     scene = framed(meshes, options)
-    surfels, seconds = converted(meshes, options)
+    surfels, seconds = convert(meshes, density="CAMERA", pixels=options.pixels, bake_materials=options.bake)
     scene.render.engine = "SURFEL_SPLATTING"
     scene.surfel_splatting.shading = "principled"
     for name, value in PRESETS[options.preset].values.items():
@@ -75,7 +75,7 @@ def framed(meshes: list[bpy.types.Object], options) -> bpy.types.Scene:
     """A sun without shadow, a grey world, and a camera that sees all of the meshes."""
     turn = math.radians(options.angle)
     scene = lit_scene(options.size, (0.28, 0.31, 0.35), (math.radians(40), math.radians(25), turn), 1.6)
-    scene.objects["sun"].data.use_shadow = False
+    scene.objects["Sun"].data.use_shadow = False
     corners = np.array([o.matrix_world @ Vector(c) for o in meshes for c in o.bound_box])
     middle, radius = (corners.min(0) + corners.max(0)) / 2, np.linalg.norm(np.ptp(corners, axis=0)) / 2
     towards, camera = Vector((math.sin(turn), -math.cos(turn), 0.45)).normalized(), scene.camera
@@ -88,20 +88,10 @@ def framed(meshes: list[bpy.types.Object], options) -> bpy.types.Scene:
     return scene
 
 
-def converted(meshes: list[bpy.types.Object], options) -> tuple[list[bpy.types.Object], float]:
-    """The surfel objects of the meshes, and the seconds that it took."""
-    before = set(bpy.data.objects)
-    for mesh in bpy.context.view_layer.objects:
-        mesh.select_set(mesh in meshes)
-    started = time.perf_counter()
-    bpy.ops.object.surfels_from_mesh(density="CAMERA", pixels=options.pixels, bake_materials=options.bake)
-    return sorted(set(bpy.data.objects) - before, key=lambda o: o.name), time.perf_counter() - started
-
-
 def picture(scene: bpy.types.Scene, hidden: list[bpy.types.Object]) -> tuple[np.ndarray, float]:
     """(h, w, 4) without these objects, and its seconds."""
     for one in bpy.data.objects:
         one.hide_render = one in hidden
     started = time.perf_counter()
-    (pixels,) = rendered(scene)
+    pixels = rendered(scene)
     return pixels, time.perf_counter() - started

@@ -2,26 +2,31 @@
 """Table 2 of view-independent object-space splatting for real models, and where each reduction fails.
 
 Surfels (and their share of the original); bare surface at the default splat size, and distance of the surfels from the
-surface (rms); and what adaptive sampling leaves. Choosing by the shading normal is here as a counter-example alone; the
-product has no such reduction.
+surface (rms); and what adaptive sampling leaves.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from unittest.mock import patch
 
 import numpy as np
 import trimesh
 
-from measuring.models import in_view, load, short
-from splat_addon import sampling
+from measuring.models import in_view, load, load_any, short
 from splat_addon.reference.bare import uncovered_points
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Light, Renderer, Settings, open_device
-from splat_addon.sampling import Tolerance, TriangleMesh, drop_unusable, grid_spacing, sample_surface
-from splat_addon.sampling.adaptive import MERGED_SIZE
-from splat_addon.sampling.reductions import Reduction
+from splat_addon.sampling import (
+    Channel,
+    Surface,
+    Tolerance,
+    TriangleMesh,
+    VertexColors,
+    drop_unusable,
+    grid_spacing,
+    sample_surface,
+    surfels_from_points,
+)  # fmt: skip
 from splat_addon.surfels import Surfels
 
 DEVICES = ("standalone",)
@@ -40,9 +45,8 @@ PUBLISHED = {
     "Tiger": (206_064, 140_203, 180_282, 136_143),
     "Butterfly": (251_897, 212_943, 251_480, 224_144),
 }
-#: The table's order, then what the product does not have.
+#: The table's order.
 COLUMNS = {"none": "original", "three_to_one": "3-to-1", "grazing": "Zwicker's (70 deg)", "normal": "normal"}
-COLUMNS["shading normal"] = "by shading normal"
 ADAPTIVE = "model", "tolerance", "surfels", "times fewer", "error reported", "largest distance found", "bare"
 
 
@@ -57,6 +61,7 @@ def run(options, report) -> None:
     report.header(how=f"resolution {options.resolution:g}")
     meshes = {name: drop_unusable(load(options.models / name))[0] for name in report.steps(options.only, "Loading")}
     draw(meshes, renderer, report)
+    draw_points(options.models / "rangemap_lato315.ply.gz", renderer, report)
     report.table(["model", *COLUMNS.values()], counts(meshes, options), "Surfels (share of the original):")
     about = "Bare surface at the default splat size, and distance of the surfels from the surface (rms):"
     report.table(["model", *COLUMNS.values()], errors(meshes, options), about)
@@ -66,7 +71,7 @@ def run(options, report) -> None:
 def counts(meshes: dict, options):
     """The paper's table with our models below its own."""
     for name, published in PUBLISHED.items():
-        yield f"*published: {name}*", *with_ratio(published), ""
+        yield f"*published: {name}*", *with_ratio(published)
     for name, mesh in meshes.items():
         made = [len(sampled(mesh, options.resolution, reduction)) for reduction in COLUMNS]
         yield short(name), *with_ratio(made)
@@ -116,34 +121,14 @@ def adaptive(meshes: dict, options):
 
 
 def sampled(mesh: TriangleMesh, resolution: float, reduction: str) -> Surfels:
-    """By a reduction of the product, or by the shading normal; without the surfels of parts that no ray meets."""
-    if reduction == "shading normal":
-        return sampled_by_shading_normal(mesh, resolution)
+    """Without the surfels of parts that no ray meets."""
     made = sample_surface(mesh, resolution=resolution, reduction=reduction)
-    return kept(made.surfels, slice(len(made.surfels) - made.small_parts))
-
-
-def sampled_by_shading_normal(mesh: TriangleMesh, resolution: float) -> Surfels:
-    """Of each image's samples those whose interpolated normal points along its axis more than along the others."""
-    parts = []
-    for axis in range(3):
-        keeps = lambda normals, grazing_angle, a=axis: (normals > 0) & (np.arange(3)[:, None] == a)  # noqa: E731
-        with patch.dict(sampling.REDUCTIONS, alone=Reduction("", "", keeps, keeps)):
-            whole = sampled(mesh, resolution, "alone")
-        parts.append(kept(whole, np.abs(whole.normals).argmax(axis=1) == axis))
-    return replace(parts[0], **{name: np.concatenate([p.arrays()[name] for p in parts]) for name in parts[0].arrays()})
-
-
-def kept(surfels: Surfels, rows) -> Surfels:
-    return replace(surfels, **{name: array[rows] for name, array in surfels.arrays().items()})
+    rows = slice(len(made.surfels) - made.small_parts)
+    return replace(made.surfels, **{name: array[rows] for name, array in made.surfels.arrays().items()})
 
 
 def draw(meshes: dict, renderer: Renderer, report) -> None:
-    """Where reductions fail, side by side; and the same mesh sampled plainly, adaptively, and coloured by size."""
-    cube = smooth_cube()
-    view = cube.bounds(), (0.75, -1.1, 0.7), (0, 0, 1), 1.7
-    shown = [sampled(cube, 100, reduction) for reduction in ("normal", "shading normal")]
-    report.picture("smooth_cube", [render(renderer, surfels, *view) for surfels in shown], colors=128)
+    """Where reductions fail, side by side; and the same mesh sampled plainly and adaptively."""
     if "phoenix_bird.glb" in meshes:
         bird = colored_by_side(meshes["phoenix_bird.glb"])
         view = bird.bounds(), (0.3, 0.8, 0.5), (0, 1, 0), 0.75
@@ -157,23 +142,21 @@ def draw(meshes: dict, renderer: Renderer, report) -> None:
         merged = sample_surface(mesh, resolution=200, tolerance=Tolerance(0.1 * spacing)).surfels
         views = [render(renderer, surfels, *view, sun=True) for surfels in (plain, merged)]
         report.say(f"Adaptive van: {len(plain):,} and {len(merged):,} surfels, PSNR {psnr(*views):.1f} dB.")
-        views.append(render(renderer, colored_by_size(merged, spacing), *view))
+        sizes = np.log2(merged.scales[:, 1] / merged.scales[:, 1].min()).clip(0, 3) / 3
+        by_size = np.column_stack([sizes, 0.3 + 0.4 * sizes, 1 - sizes, np.ones(len(sizes))])
+        views.append(render(renderer, replace(merged, colors=by_size), *view))
         report.picture("adaptive", views, colors=128)
 
 
-def smooth_cube() -> TriangleMesh:
-    """A cube coloured by face; its vertex normals are means over triangles, as many exporters write them."""
-    box = trimesh.creation.box()
-    colors = np.ones((12, 3, 4))
-    colors[..., :3] = 0.25 + 0.5 * np.abs(box.face_normals)[:, None]
-    normals = np.zeros((8, 3))
-    np.add.at(normals, box.faces, box.face_normals[:, None])
-    return colored(TriangleMesh(box.vertices, box.faces, corner_normals=normals[box.faces]), colors)
-
-
-def colored(mesh: TriangleMesh, corner_colors: np.ndarray) -> TriangleMesh:
-    channel = sampling.Channel((1, 1, 1, 1), sampling.VertexColors())
-    return replace(mesh, corner_colors=corner_colors, surfaces=(sampling.Surface(channel),))
+def draw_points(path, renderer: Renderer, report) -> None:
+    """A range map's bare points, and the surfels made from them."""
+    points = load_any(path).vertices
+    facing, dark = np.tile((0.0, 0.0, 1.0), (len(points), 1)), np.full((len(points), 4), (0.05, 0.05, 0.05, 1))
+    bare, *_ = surfels_from_points(points, facing, np.full(len(points), 0.12), dark)
+    whole, *_ = surfels_from_points(points, viewpoint=(0, 0, 0))
+    view = (points.min(axis=0), points.max(axis=0)), (0, -0.05, 1), (0, 1, 0), 1.2
+    views = render(renderer, bare, *view), render(renderer, whole, *view, sun=True)
+    report.picture("range_map", views, colors=128)
 
 
 def colored_by_side(mesh: TriangleMesh) -> TriangleMesh:
@@ -181,14 +164,8 @@ def colored_by_side(mesh: TriangleMesh) -> TriangleMesh:
     a, b, c = np.moveaxis(mesh.positions[mesh.triangles], 1, 0)
     up = np.cross(b - a, c - a)[:, 1] > 0
     colors = np.where(up[:, None], (0.05, 0.25, 0.8, 1), (0.9, 0.3, 0.05, 1))
-    return colored(mesh, np.repeat(colors[:, None], 3, axis=1))
-
-
-def colored_by_size(surfels: Surfels, spacing: float) -> Surfels:
-    sizes = np.rint(np.log2(surfels.scales[:, 1] / (MERGED_SIZE * spacing))).clip(0).astype(int)
-    shade = np.random.default_rng(0).uniform(0.6, 1, (len(surfels), 1))
-    by_size = np.array([(0.6, 0.6, 0.6), (0.1, 0.5, 0.8), (0.1, 0.7, 0.2), (0.9, 0.4, 0.05)])[sizes] * shade
-    return replace(surfels, colors=np.concatenate([by_size, np.ones_like(shade)], axis=1))
+    surface = Surface(Channel((1, 1, 1, 1), VertexColors()))
+    return replace(mesh, corner_colors=np.repeat(colors[:, None], 3, axis=1), surfaces=(surface,))
 
 
 def render(renderer: Renderer, surfels: Surfels, box, toward, up, distance: float, sun: bool = False) -> np.ndarray:

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How fast a picture converges with the samples that it is the mean of, what they cost, and what they make.
+"""How fast a picture converges with the samples that it is the mean of, and what they make.
 
 PSNR is of sRGB: of still pictures from `render_exact` with 16 x 16 rays a pixel, of blurred ones from the mean of 1024
-samples, of panoramas from the means of 8 x 8 pixels of a larger one by Quads. Times are ratios to one sample of the
-same method, in turn, at four times the size, where a frame's fixed costs count less. Pictures: turning tori still, in 4
+samples, of panoramas from the means of 8 x 8 pixels of a larger one by Quads. Pictures: turning tori still, in 4
 moments and in one for each of 8 samples; balls all around, equirectangular, equidistant and equisolid.
 """
 
@@ -11,11 +10,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
-from measuring.drawing import draw_in_turn
 from splat_addon import rendering
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
@@ -38,7 +35,6 @@ def run(options, report) -> None:
     renderer = Renderer(open_device(options.device))
     report.header(renderer.device, f"{options.size} x {options.size} pixels, {options.splats:,} splats")
     report.table(["dB", "method", *map(str, COUNTS)], quality(renderer, options))
-    report.table(["time", "method", *map(str, COUNTS[:3])], times(renderer, options))
     shot = scenes.torus(6 * options.splats, (4 * options.size,) * 2)
     moments = ((0.5,), moment_places(8, 4), moment_places(8, 8))
     report.picture("motion_blur", [turning(renderer, *shot, places, 8) for places in moments])
@@ -98,13 +94,3 @@ def panoramas(height: int):
     yield Panorama(pose, rendering.Equirectangular(), (2 * height, height), near=0.01)
     yield Panorama(pose, rendering.EquidistantFisheye(math.pi), square, near=0.01)
     yield Panorama(pose, rendering.EquisolidFisheye(math.pi, 12.0, (36.0, 36.0)), square, near=0.01)
-
-
-def times(renderer: Renderer, options):
-    scene, camera = scenes.torus(count=4 * options.splats, size=(4 * options.size, 4 * options.size))
-    scene = replace(scene, lights=tuple(replace(light, casts_shadow=True) for light in scene.lights))
-    for name, shadows in (("two lights", 0), ("with shadows", 512)):
-        for method in METHODS:
-            counted = {n: replace(chosen(method, n, lit=True), shadow_resolution=shadows) for n in COUNTS[:3]}
-            drawn = draw_in_turn(partial(renderer.render, scene, camera), counted, options.turns)
-            yield name, method, *(f"{drawn.ratio(n, 1).median:.1f}" for n in counted)

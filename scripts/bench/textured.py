@@ -17,7 +17,7 @@ import numpy as np
 from measuring.timing import in_turn, processor
 from splat_addon.reference.lettering import page
 from splat_addon.reference.metrics import psnr
-from splat_addon.reference.textured_sphere import textured_sphere
+from splat_addon.reference.seen_texture import seen_texture
 from splat_addon.rendering import Camera, Instance, Renderer, Scene, Settings, SurfaceTexture, look_at, open_device
 from splat_addon.sampling import Channel, Image, Surface, Texture, TriangleMesh, sample_surface
 
@@ -47,7 +47,7 @@ def run(options, report) -> None:
 
     def rows():
         for name, (settings, pixel_filter) in METHODS.items():
-            seen, inside = textured_sphere(SurfaceTexture(image), camera, pixel_filter)
+            seen, inside = seen_texture(SurfaceTexture(image), camera, pixel_filter, on_sphere)
             for resolution, surfels in report.steps(made.items(), name):
                 kinds = {"own": without_uvs(surfels), "mapped": surfels}
                 jobs = {k: partial(renderer.render, scene_of(s, image), camera, settings) for k, s in kinds.items()}
@@ -61,6 +61,16 @@ def run(options, report) -> None:
     coarse, fine = made.get(32, made[min(made)]), made[max(made)]
     shown = (scene_of(surfels, image) for surfels in (without_uvs(coarse), coarse, without_uvs(fine)))
     report.picture("textured", [renderer.render(s, camera, METHODS["mip"][0]).color for s in shown], colors=128)
+
+
+def on_sphere(eye: np.ndarray, rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where rays meet the unit sphere: longitude and latitude, and whether it is well seen."""
+    along = -rays @ eye
+    inside = along**2 - eye @ eye + 1
+    points = eye + rays * (along - np.sqrt(np.maximum(inside, 0)))[:, None]
+    well = (inside > 0) & (-np.einsum("ij,ij->i", points, rays) > math.cos(math.radians(75)))
+    longitude = np.arctan2(points[:, 1], points[:, 0]) / (2 * np.pi) % 1
+    return np.stack([longitude, np.arcsin(np.clip(points[:, 2], -1, 1)) / np.pi + 0.5], axis=1), well
 
 
 def text_image() -> Image:

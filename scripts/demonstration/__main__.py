@@ -15,6 +15,7 @@ import bpy
 from rich.console import Console
 from rich.table import Table
 
+from demonstration.models import call
 from environment import Problem, exit_with_problems
 from environment.leaving import run_and_leave
 
@@ -39,7 +40,7 @@ def main(arguments: list) -> int:
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     splat_addon.register()
-    from demonstration.models import import_model
+    from demonstration.models import convert, import_model
     from demonstration.scene import dress, painted_suzanne
 
     picture, blend = options.out / "render.png", options.out / "surfels.blend"
@@ -47,7 +48,7 @@ def main(arguments: list) -> int:
         meshes = import_model(options.model) if options.model else painted_suzanne()
         triangles = triangle_count(meshes)
     with step(f"Converting {triangles:,} triangles to surfels"):
-        surfels, seconds = convert(meshes, options.resolution)
+        surfels, seconds = convert(meshes, resolution=options.resolution, source="HIDE")
     with step("Rendering"):
         dress(surfels, options.size)
         bpy.context.scene.render.engine = "SURFEL_SPLATTING"
@@ -74,24 +75,6 @@ def triangle_count(meshes: list) -> int:
     """Triangles of the objects with their modifiers."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
     return sum(sum(len(p.vertices) - 2 for p in m.evaluated_get(depsgraph).data.polygons) for m in meshes)
-
-
-def convert(meshes: list, resolution: int) -> tuple[list, float]:
-    """The surfel objects made from `meshes` by the add-on's operator, and the seconds that it took."""
-    bpy.ops.object.select_all(action="DESELECT")
-    for mesh in meshes:
-        mesh.select_set(True)
-    bpy.context.view_layer.objects.active = meshes[0]
-    before = set(bpy.data.objects)
-    started = perf_counter()
-    call("The conversion failed", bpy.ops.object.surfels_from_mesh, resolution=resolution, source="HIDE")
-    seconds = perf_counter() - started
-    surfels = [
-        o for o in bpy.data.objects if o not in before and {"rotation", "scale"} <= set(o.data.attributes.keys())
-    ]
-    if not surfels:
-        raise Problem("The conversion made no surfels: the model has no face with an area.")
-    return surfels, seconds
 
 
 def render(picture: Path) -> None:
@@ -138,14 +121,6 @@ def timed_frame() -> dict:
         scene.surfel_splatting.profile = False
     scene.render.filepath, scene.frame_start, scene.frame_end = kept
     return last_frame_stats
-
-
-def call(failure: str, operator, **options) -> None:
-    """An operator, whose error report becomes a Problem."""
-    try:
-        operator(**options)
-    except RuntimeError as error:
-        raise Problem(f"{failure}: {' '.join(str(error).replace('Error: ', '').split())}") from None
 
 
 def summary(options, triangles: int, surfels: list, seconds: float, stats: dict) -> Table:

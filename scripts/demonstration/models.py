@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A model file becomes mesh objects, through Blender's own importers; gzipped files are unpacked first."""
+"""A model file becomes mesh objects, through Blender's own importers, and these become surfels.
+
+Gzipped files are unpacked first.
+"""
 
 from __future__ import annotations
 
 import gzip
-import json
 import re
 import shutil
 import tempfile
+import time
 import urllib.parse
 import zlib
 from pathlib import Path
@@ -38,15 +41,37 @@ def import_model(path: Path) -> list:
     module, name, options = IMPORTERS[model_suffix(path)]
     with tempfile.TemporaryDirectory() as folder:
         readable = unpack(path, Path(folder)) if path.name.lower().endswith(".gz") else path
-        try:
-            getattr(getattr(bpy.ops, module), name)(filepath=str(readable), **options)
-        except RuntimeError as error:
-            raise Problem(f"{path} cannot be read as {model_suffix(path)}: {_one_line(error)}.") from None
+        operator = getattr(getattr(bpy.ops, module), name)
+        call(f"{path} cannot be read as {model_suffix(path)}", operator, filepath=str(readable), **options)
         _keep_images()
     meshes = [o for o in bpy.context.view_layer.objects if o.type == "MESH" and o.data.polygons and o.visible_get()]
     if not meshes:
         raise Problem(f"{path} holds no mesh with faces, and surfels are made from faces.")
     return meshes
+
+
+def convert(meshes: list, **options) -> tuple[list, float]:
+    """The surfel objects made from `meshes` by the add-on's operator with its options, and the seconds that it took."""
+    import bpy
+
+    for one in bpy.context.view_layer.objects:
+        one.select_set(one in meshes)
+    bpy.context.view_layer.objects.active = meshes[0]
+    before, started = set(bpy.data.objects), time.perf_counter()
+    call("The conversion failed", bpy.ops.object.surfels_from_mesh, **options)
+    seconds, made = time.perf_counter() - started, set(bpy.data.objects) - before
+    surfels = [o for o in bpy.data.objects if o in made and {"rotation", "scale"} <= set(o.data.attributes.keys())]
+    if not surfels:
+        raise Problem("The conversion made no surfels: the model has no face with an area.")
+    return surfels, seconds
+
+
+def call(failure: str, operator, **options) -> None:
+    """An operator, whose error report becomes a Problem."""
+    try:
+        operator(**options)
+    except RuntimeError as error:
+        raise Problem(f"{failure}: {_one_line(error)}.") from None
 
 
 def unpack(path: Path, folder: Path) -> Path:
@@ -63,35 +88,24 @@ def unpack(path: Path, folder: Path) -> Path:
 
 def _copy_named_files(text_file: Path, source: Path, folder: Path) -> None:
     """Copies what a file names from `source` to `folder`; a material library names textures in its turn."""
-    names = _NAMED_FILES.get(text_file.suffix.lower())
-    for name in names(text_file) if names else ():
+    pattern = _NAMED_FILES.get(text_file.suffix.lower())
+    text = text_file.read_text(encoding="utf-8", errors="replace") if pattern else ""
+    for name in re.findall(pattern, text, re.MULTILINE) if pattern else ():
+        name = urllib.parse.unquote(name) if text_file.suffix.lower() == ".gltf" else name
         original, copy = source / name, folder / name
-        if original.is_file() and folder.resolve() in copy.resolve().parents and not copy.exists():
+        is_inside = folder.resolve() in copy.resolve().parents
+        if is_inside and original.is_file() and not copy.exists():
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(original, copy)
             _copy_named_files(copy, source, folder)
 
 
-def _libraries_of_obj(path: Path) -> list[str]:
-    with path.open(encoding="utf-8", errors="replace") as lines:
-        return [line.split(None, 1)[1].strip() for line in lines if re.match(r"mtllib\s+\S", line)]
-
-
-def _textures_of_mtl(path: Path) -> list[str]:
-    text = path.read_text(encoding="utf-8", errors="replace")
-    return [line.split()[-1] for line in text.splitlines() if re.match(r"\s*(map_\w+|bump|norm|refl)\s+\S", line)]
-
-
-def _files_of_gltf(path: Path) -> list[str]:
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise Problem(f"{path.name} is not a glTF file: {_one_line(error)}.") from None
-    parts = (*content.get("buffers", ()), *content.get("images", ()))
-    return [urllib.parse.unquote(p["uri"]) for p in parts if "uri" in p and not p["uri"].startswith("data:")]
-
-
-_NAMED_FILES = {".obj": _libraries_of_obj, ".mtl": _textures_of_mtl, ".gltf": _files_of_gltf}
+#: suffix -> where a text of that kind names another file.
+_NAMED_FILES = {
+    ".obj": r"^mtllib[ \t]+(\S.*?)\s*$",
+    ".mtl": r"^\s*(?:map_\w+|bump|norm|refl)[ \t](?:.*[ \t])?(\S+)\s*$",
+    ".gltf": r'"uri"\s*:\s*"(?!data:)([^"]+)"',
+}
 
 
 def _keep_images() -> None:

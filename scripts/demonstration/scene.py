@@ -66,8 +66,11 @@ def dress(surfel_objects: list, size: tuple[int, int]) -> None:
     reach = float(np.linalg.norm(high - low)) / 2
     middle = mathutils.Vector((low + high) / 2)
     scene.world = even_world((0.2, 0.2, 0.2))
-    add_sun(mathutils.Vector((-0.5, -0.7, 0.9)))
-    add_point(middle + reach * mathutils.Vector((1.6, -0.9, 0.6)), reach)
+    key = add_light("SUN", 2.2, (1.0, 0.95, 0.88))
+    key.rotation_euler = mathutils.Vector((-0.5, -0.7, 0.9)).to_track_quat("Z", "Y").to_euler()
+    # A cool fill light, whose power grows with the square of the model's size: every size is lit alike.
+    fill = add_light("POINT", 30 * reach**2, (0.75, 0.87, 1.0))
+    fill.location = middle + reach * mathutils.Vector((1.6, -0.9, 0.6))
     scene.camera = framing_camera(points, reach, size)
 
 
@@ -103,22 +106,13 @@ def framing_camera(points: np.ndarray, reach: float, size: tuple[int, int]):
     return camera
 
 
-def add_sun(toward: mathutils.Vector) -> None:
-    """The key light, shining from `toward`."""
-    data = bpy.data.lights.new("Sun", "SUN")
-    data.energy, data.color = 2.2, (1.0, 0.95, 0.88)
-    sun = bpy.data.objects.new("Sun", data)
-    sun.rotation_euler = toward.to_track_quat("Z", "Y").to_euler()
-    bpy.context.collection.objects.link(sun)
-
-
-def add_point(location: mathutils.Vector, reach: float) -> None:
-    """A cool fill light; its power grows with the square of the model's size, so every size is lit alike."""
-    data = bpy.data.lights.new("Point", "POINT")
-    data.energy, data.color = 30 * reach**2, (0.75, 0.87, 1.0)
-    point = bpy.data.objects.new("Point", data)
-    point.location = location
-    bpy.context.collection.objects.link(point)
+def add_light(kind: str, energy: float, color: tuple[float, float, float]) -> bpy.types.Object:
+    """A lamp at the origin."""
+    data = bpy.data.lights.new(kind.title(), kind)
+    data.energy, data.color = energy, color
+    lamp = bpy.data.objects.new(kind.title(), data)
+    bpy.context.collection.objects.link(lamp)
+    return lamp
 
 
 def even_world(color: tuple[float, float, float]):

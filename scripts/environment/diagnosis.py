@@ -7,6 +7,7 @@ Each table is a list of (pattern in the text, sentence); the first that matches 
 from __future__ import annotations
 
 import re
+from functools import partial
 
 DEBIAN = (
     "libegl1 libgl1 libgl1-mesa-dri libvulkan1 libx11-6 libxrender1 libxfixes3 libxi6 libxkbcommon0 "
@@ -58,25 +59,20 @@ INSTALL_PROBLEMS = (
 )
 
 
-def import_problem(text: str) -> str | None:
-    """The sentence for a failed `import bpy`, from what it printed; None where nothing known is in it."""
-    return _first_match(IMPORT_PROBLEMS, text)
+def _known_problem(table, text: str) -> str | None:
+    """The sentence for what a failed process printed; None where nothing that the table knows is in it."""
+    for pattern, sentence in table:
+        match = re.search(pattern, text)
+        if match:
+            return sentence.format(*match.groups())
+    return None
 
 
-def install_problem(text: str) -> str | None:
-    """The sentence for a failed `pip install`, from what it printed; None where nothing known is in it."""
-    return _first_match(INSTALL_PROBLEMS, text)
+#: Text -> sentence: of a failed `import bpy`, and of a failed `pip install`.
+import_problem, install_problem = (partial(_known_problem, table) for table in (IMPORT_PROBLEMS, INSTALL_PROBLEMS))
 
 
 def last_line(text: str) -> str:
     """The last line that says something, for errors that no table knows."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     return lines[-1].rstrip(".") if lines else "it printed nothing"
-
-
-def _first_match(table, text: str) -> str | None:
-    for pattern, sentence in table:
-        match = re.search(pattern, text)
-        if match:
-            return sentence.format(*match.groups())
-    return None

@@ -71,17 +71,11 @@ def probe(command: list[str]) -> tuple[str, ...]:
 
 def candidate_commands(version: str) -> Iterator[list[str]]:
     """Commands that may be a Python `version`, likeliest first, none twice."""
-    seen = set()
-    for command in (*running(version), *on_path(version), *windows_launcher(version), *pyenv(version)):
-        if tuple(command) not in seen:
-            seen.add(tuple(command))
-            yield command
-
-
-def running(version: str) -> Iterator[list[str]]:
-    """The interpreter that runs this, where it has the version."""
-    if sys.version_info[:2] == tuple(int(part) for part in version.split(".")):
-        yield [sys.executable]
+    running = [[sys.executable]] if "%d.%d" % sys.version_info[:2] == version else []  # noqa: UP031
+    # The launcher knows the installations of Windows that are not on the PATH.
+    launcher = [["py", f"-{version}"]] if WINDOWS else []
+    found = (*running, *on_path(version), *launcher, *pyenv(version))
+    yield from map(list, dict.fromkeys(map(tuple, found)))
 
 
 def on_path(version: str) -> Iterator[list[str]]:
@@ -92,12 +86,6 @@ def on_path(version: str) -> Iterator[list[str]]:
         for folder in folders:
             if (folder / (name + suffix)).is_file():
                 yield [str(folder / (name + suffix))]
-
-
-def windows_launcher(version: str) -> Iterator[list[str]]:
-    """`py -3.13`, which knows the installations that are not on the PATH."""
-    if WINDOWS:
-        yield ["py", f"-{version}"]
 
 
 def pyenv(version: str) -> Iterator[list[str]]:

@@ -9,6 +9,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO, Iterator
 
+if os.name == "nt":
+    import msvcrt
+else:
+    import fcntl
+
 #: Seconds between two tries.
 _PAUSE = 0.2
 
@@ -20,42 +25,24 @@ def alone(path: Path, waiting: str) -> Iterator[None]:
     path: of the lock, which is made where it is not there, and stays. waiting: printed once where another is first.
     """
     with open(path, "ab") as stream:
-        has_told = False
-        while not _take(stream):
-            if not has_told:
-                print(waiting, flush=True)
-                has_told = True
-            time.sleep(_PAUSE)
+        if not _locked(stream, True):
+            print(waiting, flush=True)
+            while not _locked(stream, True):
+                time.sleep(_PAUSE)
         try:
             yield
         finally:
-            _let_go(stream)
+            _locked(stream, False)
 
 
-if os.name == "nt":
-    import msvcrt
-
-    def _take(stream: BinaryIO) -> bool:
-        stream.seek(0)
-        try:
-            msvcrt.locking(stream.fileno(), msvcrt.LK_NBLCK, 1)
-        except OSError:
-            return False
-        return True
-
-    def _let_go(stream: BinaryIO) -> None:
-        stream.seek(0)
-        msvcrt.locking(stream.fileno(), msvcrt.LK_UNLCK, 1)
-
-else:
-    import fcntl
-
-    def _take(stream: BinaryIO) -> bool:
-        try:
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            return False
-        return True
-
-    def _let_go(stream: BinaryIO) -> None:
-        fcntl.flock(stream, fcntl.LOCK_UN)
+def _locked(stream: BinaryIO, is_wanted: bool) -> bool:
+    """Takes the lock, or lets go of it; False where another process has it."""
+    try:
+        if os.name == "nt":
+            stream.seek(0)
+            msvcrt.locking(stream.fileno(), msvcrt.LK_NBLCK if is_wanted else msvcrt.LK_UNLCK, 1)
+        else:
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB if is_wanted else fcntl.LOCK_UN)
+    except OSError:
+        return False
+    return True

@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 import os
-import queue
 import subprocess
 import threading
 import time
 from typing import Callable
 
-#: Seconds of silence after which a sign of life is printed.
+#: Seconds between two signs of life.
 PATIENCE = 15
 
 
@@ -19,45 +18,27 @@ def run_showing(command: list[str], pick: Callable[[str], str | None]) -> tuple[
 
     pick: makes the line to show from a line of output; None leaves it out.
     """
-    started = time.monotonic()
-    process = subprocess.Popen(
-        command,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        env={**os.environ, "PYTHONUNBUFFERED": "1"},
-        text=True,
-        encoding="utf-8",
-        errors="replace",
-    )
-    lines: queue.Queue[str | None] = queue.Queue()
-    threading.Thread(target=_forward, args=(process.stdout, lines), daemon=True).start()
-    output = []
-    doing = "starting"
+    started, shown, is_over = time.monotonic(), ["Starting"], threading.Event()
+
+    def show(text: str) -> None:
+        print(f"  [{time.monotonic() - started:4.0f} s] {text}", flush=True)
+
+    def reassure() -> None:
+        while not is_over.wait(PATIENCE):
+            show(f"still {shown[-1][:1].lower()}{shown[-1][1:]}")
+
+    output = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "encoding": "utf-8", "errors": "replace"}
+    environment, lines = {**os.environ, "PYTHONUNBUFFERED": "1"}, []
+    process = subprocess.Popen(command, stdin=subprocess.DEVNULL, env=environment, **output)
+    threading.Thread(target=reassure, daemon=True).start()
     try:
-        while True:
-            try:
-                line = lines.get(timeout=PATIENCE)
-            except queue.Empty:
-                _show(started, f"still {doing}")
-                continue
-            if line is None:
-                return process.wait(), "".join(output)
-            output.append(line)
-            shown = pick(line)
-            if shown:
-                doing = shown[:1].lower() + shown[1:]
-                _show(started, shown)
+        for line in process.stdout:
+            lines.append(line)
+            if pick(line):
+                shown.append(pick(line))
+                show(shown[-1])
+        return process.wait(), "".join(lines)
     finally:
+        is_over.set()
         if process.poll() is None:
             process.kill()
-
-
-def _forward(stream, lines: queue.Queue) -> None:
-    for line in stream:
-        lines.put(line)
-    lines.put(None)
-
-
-def _show(started: float, text: str) -> None:
-    print(f"  [{time.monotonic() - started:4.0f} s] {text}", flush=True)

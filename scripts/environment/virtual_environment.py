@@ -163,8 +163,8 @@ def _make_venv(folder: Path, command: list[str]) -> None:
     made = subprocess.run([*command, "-m", "venv", str(folder)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if made.returncode:
         text = made.stdout.decode(errors="replace")
-        known = install_problem(text)
-        raise Problem(known or f"{folder} could not be made with {' '.join(command)}: {last_line(text)}.")
+        failure = f"{folder} could not be made with {' '.join(command)}: {last_line(text)}."
+        raise Problem(install_problem(text) or failure)
 
 
 def pip_line(line: str) -> str | None:

@@ -14,8 +14,18 @@ import numpy as np
 from splat_addon.reference import scenes
 from splat_addon.reference.metrics import srgb
 from splat_addon.reference.shots import ball
-from splat_addon.reference.still_life import still_life
-from splat_addon.rendering import EMPTY_DEPTH, Frame, Lines, Renderer, Settings, open_device
+from splat_addon.rendering import (
+    EMPTY_DEPTH,
+    Camera,
+    Frame,
+    Light,
+    Lines,
+    Material,
+    Renderer,
+    Scene,
+    Settings,
+    open_device,
+)  # fmt: skip
 from splat_addon.rendering.settings import OUTPUTS
 from splat_addon.rendering.shading_models import SHADING_MODELS
 
@@ -37,6 +47,22 @@ def run(options, report) -> None:
     report.picture("passes", shown(frame), columns=4, encode=None)
     report.say(str(frame.stats["plan"]))
     report.picture("shading", [renderer.render(*shot, settings).color for shot, settings in models()], columns=4)
+
+
+def still_life(size: tuple[int, int]) -> tuple[Scene, Camera]:
+    """Two tori of splats in a floor and beside a glowing ball, both of polygons; each has a name and numbers."""
+    (scene, camera), (among, _) = scenes.torus(60_000, size), scenes.polygons()
+    floor, ball = among.polygons
+    place = np.diag((0.4, 0.4, 0.4, 1.0))
+    place[:3, 3] = 0.85, -1.2, 0
+    glowing = Material(roughness=0.6, emission=(0.5, 0.15, 0.02))
+    things = *scene.surfels, floor, replace(ball, matrix_world=place, materials=(glowing,))
+    outer, inner, *polygons = (
+        replace(thing, name=name, index=number, materials=(replace(thing.materials[0], index=number),))
+        for number, (name, thing) in enumerate(zip(("outer", "inner", "floor", "ball"), things), 1)
+    )
+    sun = Light("sun", (1, 0.95, 0.85), 2.6, direction=(0.7, 0.5, -1), size=0.05, casts_shadow=True)
+    return Scene((outer, inner), (sun,), (0.12, 0.15, 0.2), polygons=polygons), camera
 
 
 def models():

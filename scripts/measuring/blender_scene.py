@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from demonstration.scene import even_world
+from demonstration.scene import add_light, even_world
 
 
 def lit_scene(size: tuple[int, int], world, sun_turned, sun_energy: float) -> bpy.types.Scene:
@@ -21,31 +21,25 @@ def lit_scene(size: tuple[int, int], world, sun_turned, sun_energy: float) -> bp
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.film_transparent = True
     scene.world = even_world(world)
-    sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
-    sun.data.energy, sun.data.angle, sun.rotation_euler = sun_energy, 0.0, sun_turned
+    sun = add_light("SUN", sun_energy, (1.0, 1.0, 1.0))
+    sun.data.angle, sun.rotation_euler = 0.0, sun_turned
     scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-    for made in (sun, scene.camera):
-        scene.collection.objects.link(made)
+    scene.collection.objects.link(scene.camera)
     return scene
 
 
-def rendered(scene: bpy.types.Scene, frames: int = 1) -> np.ndarray:
-    """(frames, h, w, 4) linear, premultiplied, row 0 at the bottom: an animation from the current frame on."""
+def rendered(scene: bpy.types.Scene) -> np.ndarray:
+    """(h, w, 4) linear, premultiplied, row 0 at the bottom."""
     settings = scene.render.image_settings
     if hasattr(settings, "media_type"):
         settings.media_type = "IMAGE"
     settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGBA", "32"
-    scene.frame_start, scene.frame_end = scene.frame_current, scene.frame_current + frames - 1
     with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = str(Path(folder) / "frame_####")
-        bpy.ops.render.render(animation=True)
-        return np.stack([_pixels(path) for path in sorted(Path(folder).iterdir())])
-
-
-def _pixels(path: Path) -> np.ndarray:
-    image = bpy.data.images.load(str(path))
-    width, height = image.size
-    pixels = np.empty(4 * width * height, np.float32)
-    image.pixels.foreach_get(pixels)
-    bpy.data.images.remove(image)
+        scene.render.filepath = str(Path(folder) / "picture.exr")
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(scene.render.filepath)
+        width, height = image.size
+        pixels = np.empty(4 * width * height, np.float32)
+        image.pixels.foreach_get(pixels)
+        bpy.data.images.remove(image)
     return pixels.reshape(height, width, 4)

@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 from rich.console import Console
+from rich.markdown import Markdown
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-from rich.table import Table
 
 from environment import ROOT
 from splat_addon.reference.metrics import srgb
@@ -70,10 +70,7 @@ class Report:
             self.parts[at] = "\n\n".join(filter(None, (title, markdown(columns, lines))))
             self._write()
         if self.console.is_terminal:
-            shown = Table(*columns, title=title, title_justify="left")
-            for line in lines:
-                shown.add_row(*line)
-            self.console.print(shown)
+            self.console.print(Markdown(self.parts[at]))
         else:
             print(f"\n{self.parts[at]}", flush=True)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scenes at the edges of arithmetic: sheets seen edge-on, specks at the near plane, worlds moved and scaled.
 
-Builders that tests/extremes and `sweeps` share; `scenes` holds the everyday ones.
+Builders that tests/extremes and `scripts/bench.py numerics` share; `scenes` holds the everyday ones.
 """
 
 from __future__ import annotations
@@ -55,6 +55,36 @@ def speck(camera: Camera, depth: float) -> Instance:
     matrix = camera.matrix_world.copy()
     matrix[:3, 3] += (0.25 * matrix[:3, 0] - matrix[:3, 2]) * depth
     return Instance(discs((0, 0, 0), (depth / 30, 0, 0), (0, depth / 30, 0), (1, 0, 0)), matrix)
+
+
+def floor_below(height: float) -> Surfels:
+    """24 x 24 discs that pass under the eye at the origin: the nearest reach behind it."""
+    return replace(sheet(24, 2.0, 90.0, 0.0), origin=(0.0, -height, 0.0))
+
+
+def giant_floor(radius: float) -> Surfels:
+    """One disc, from under the eye to its horizon."""
+    return discs((0.1, -1.03, -5), (radius, 0, 0), (0, 0.1 * radius, -radius), (0.2, 0.5, 0.9))
+
+
+def stripes(long: float, short: float, turn: float) -> Surfels:
+    """21 parallel ellipses side by side, turned about the axis by radians."""
+    u, v = np.array(((math.cos(turn), math.sin(turn), 0), (-math.sin(turn), math.cos(turn), 0)))
+    return discs(np.linspace(-1, 1, 21)[:, None] * v + (0, 0, -3), u * long, v * short)
+
+
+def pile(layers: int, colors=None) -> Surfels:
+    """Discs right behind one another, each over the whole picture."""
+    random = np.random.default_rng(1)
+    centers = np.concatenate([random.normal(0, 0.02, (layers, 2)), -3 - 1e-3 * random.random((layers, 1))], axis=1)
+    return discs(centers, (1.5, 0, 0), (0, 1.5, 0), colors)
+
+
+def crowd(camera: Camera, count: int, radius: float) -> Surfels:
+    """Splats of a radius in pixels, spread over the pixel right above the middle."""
+    pixel = 3 * (camera.window[1] - camera.window[0]) / camera.size[0]
+    centers = np.random.default_rng(1).random((count, 3)) * (pixel, pixel, 1e-3) - (0, 0, 3)
+    return discs(centers, (radius * pixel, 0, 0), (0, radius * pixel, 0))
 
 
 def transformed(scene: Scene, camera: Camera, matrix: np.ndarray) -> tuple[Scene, Camera]:

@@ -84,7 +84,7 @@ class Settings:
     transparent_film: leave the background out and keep its alpha at 0.
     outputs: which arrays of the `Frame` are wanted; the others are None and cost nothing. A position and
         an index bring the depth that they belong to.
-    storage: the form in which surfels lie on the device, a name in `rendering.storages`.
+    storage: the form in which surfels lie on the device, a name in `upload.storages`.
     accumulation: of the sums of colour and material, a name in `ACCUMULATIONS`.
     profile: wait for the device after each pass, so that the frame's statistics hold a time for each.
     """

@@ -3,7 +3,7 @@
 
 import pytest
 
-from splat_addon.reference.extremes import discs
+from splat_addon.reference.extremes import discs, giant_floor
 
 #: Of the near distance, 0.01: above 1e7 the driver's clipping loses the quad (docs/numerics.md).
 RADII = [1e-2, 1e-1, 1e0, 1e1, 1e2, 1e3, 1e4]
@@ -12,7 +12,7 @@ RADII = [1e-2, 1e-1, 1e0, 1e1, 1e2, 1e3, 1e4]
 @pytest.mark.parametrize("kind", ["floor", "wall", "both"])
 @pytest.mark.parametrize("radius", RADII)
 def test_a_giant_floor_reaches_to_its_horizon(radius, kind, hold, lit, camera):
-    floor = discs((0.1, -1.03, -5), (radius, 0, 0), (0, 0.1 * radius, -radius), (0.2, 0.5, 0.9))
+    floor = giant_floor(radius)
     wall = discs((0, 0, -6), (radius, 0, 0), (0, radius, 0), (0.9, 0.5, 0.2))
     splats = {"floor": (floor,), "wall": (wall,), "both": (floor, wall)}[kind]
     hold({kind: (lit(*splats), camera())})

@@ -4,26 +4,17 @@
 import numpy as np
 import pytest
 
-from splat_addon.reference.extremes import discs
+from splat_addon.reference.extremes import crowd, discs
 from splat_addon.rendering import Scene, Settings
 
 COUNT = 1_000_000
-DEPTH = 3.0
 FLAT = Settings(supersampling=2, shading="flat")
-
-
-def crowd(camera, count, radius):
-    """Splats of a radius in pixels, spread over the pixel right above the middle."""
-    pixel = DEPTH * (camera.window[1] - camera.window[0]) / camera.size[0]
-    random = np.random.default_rng(1)
-    centers = random.random((count, 3)) * (pixel, pixel, 1e-3) - (0, 0, DEPTH)
-    return Scene((discs(centers, (radius * pixel, 0, 0), (0, radius * pixel, 0)),))
 
 
 def test_a_million_splats_give_their_mean(hold, camera, is_default):
     """Those that users get without asking; the others a tenth of them, to save time."""
     camera, count = camera(size=(4, 4)), COUNT if is_default else COUNT // 10
-    hold({f"{count:,}": (crowd(camera, count, 0.2), camera, FLAT)}, least=100)
+    hold({f"{count:,}": (Scene((crowd(camera, count, 0.2),)), camera, FLAT)}, least=100)
 
 
 @pytest.mark.parametrize(
@@ -32,12 +23,12 @@ def test_a_million_splats_give_their_mean(hold, camera, is_default):
 def test_splats_down_to_a_hundredth_of_a_pixel_are_found(radius, count, hold, camera):
     """By those whose ellipse holds a sample; the quad's corners are known to 1/256 pixel."""
     camera = camera(size=(4, 4))
-    hold({f"{radius} pixels": (crowd(camera, count, radius), camera, FLAT)})
+    hold({f"{radius} pixels": (Scene((crowd(camera, count, radius),)), camera, FLAT)})
 
 
 def test_splats_below_the_rasterisers_grid_break_nothing(render_all, camera):
     camera = camera(size=(4, 4))
-    (frame,) = render_all([(crowd(camera, 10_000, 1e-6), camera, FLAT)])
+    (frame,) = render_all([(Scene((crowd(camera, 10_000, 1e-6),)), camera, FLAT)])
     assert np.isfinite(frame.color).all()
 
 

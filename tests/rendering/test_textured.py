@@ -9,9 +9,8 @@ import pytest
 
 from splat_addon.images import EXTENSIONS, Image
 from splat_addon.reference import render_exact, scenes
-from splat_addon.reference.filters import filter_weights, resample
 from splat_addon.reference.metrics import psnr
-from splat_addon.reference.textures import point_colors
+from splat_addon.reference.seen_texture import seen_texture
 from splat_addon.rendering import Camera, Renderer, Scene, Settings, look_at
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.scene import SurfaceTexture
@@ -30,23 +29,10 @@ def whole_plane(elevation):
     return replace(scene, surfels=(replace(instance, surfels=surfels),)), camera
 
 
-def seen_texture(texture, camera, pixel_filter, samples=10):
-    """(SIZE, SIZE, 3) the texture on the plane z = 0 by rays, and (SIZE, SIZE) bool where only its inside is seen."""
-    weights = filter_weights(pixel_filter, samples)
-    margin = (len(weights) // samples - 1) // 2
-    left, right, bottom, top = camera.window
-    steps = (np.arange(-margin * samples, (SIZE + margin) * samples) + 0.5) / (SIZE * samples)
-    x, y = np.meshgrid(left + steps * (right - left), bottom + steps * (top - bottom))
-    rays = np.stack([x, y, -np.ones_like(x)], axis=-1).reshape(-1, 3) @ camera.matrix_world[:3, :3].T
-    eye = camera.matrix_world[:3, 3]
+def on_plane(eye, rays):
+    """Where rays meet the plane z = 0: texture coordinates, and whether it is well inside of the texture."""
     points = (eye - rays * (eye[2] / rays[:, 2:]))[:, :2]
-    points[rays[:, 2] >= 0] = np.inf
-    inside = (np.abs(points) < 0.9).all(axis=1)
-    colors = np.zeros((len(points), 3))
-    colors[inside] = point_colors(texture, points[inside] * 0.75 + 0.5)
-    values = np.concatenate([colors, inside[:, None]], axis=1).reshape(*x.shape, 4)
-    pixels = resample(values, weights, samples)
-    return pixels[..., :3], pixels[..., 3] > 1 - 1e-9
+    return points * 0.75 + 0.5, (rays[:, 2] < 0) & (np.abs(points) < 0.9).all(axis=1)
 
 
 @pytest.mark.parametrize("elevation", [89, 35, 12])
@@ -54,7 +40,7 @@ def seen_texture(texture, camera, pixel_filter, samples=10):
 def test_few_large_surfels_show_the_texture(method, samples, least, elevation, render):
     scene, camera = whole_plane(elevation)
     texture = scene.surfels[0].textures[0]
-    seen, inside = seen_texture(texture, camera, FILTERS.get(method, "gaussian"))
+    seen, inside = seen_texture(texture, camera, FILTERS.get(method, "gaussian"), on_plane)
     frame = render(scene, camera, Settings(method=method, supersampling=samples, shading="flat"))
     assert inside.sum() > 500
     assert psnr(frame.color[inside][None, :, :3], seen[inside][None]) > least
@@ -63,7 +49,7 @@ def test_few_large_surfels_show_the_texture(method, samples, least, elevation, r
 def test_without_texture_coordinates_so_few_surfels_show_next_to_nothing(render):
     scene, camera = whole_plane(35)
     (instance,) = scene.surfels
-    seen, inside = seen_texture(instance.textures[0], camera, "box")
+    seen, inside = seen_texture(instance.textures[0], camera, "box", on_plane)
     averaged = np.tile((*seen[inside].mean(axis=0), 1.0), (16, 1))
     bare = replace(instance.surfels, colors=averaged, uvs=None, uv_along_x=None, uv_along_y=None)
     frame = render(

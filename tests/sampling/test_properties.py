@@ -7,7 +7,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from splat_addon.reference.bare import uncovered_points
-from splat_addon.reference.distances import distances
 from splat_addon.sampling import (
     REDUCTIONS,
     Channel,
@@ -22,6 +21,7 @@ from splat_addon.sampling import (
 )
 from splat_addon.sampling import mesh as mesh_module
 from splat_addon.sampling import sample as sample_module
+from tests.sampling.distances import distances
 
 RESOLUTION = 64
 

@@ -16,14 +16,3 @@ def test_a_cube_is_met_by_the_rays_of_its_faces_cells():
     mesh, _ = drop_unusable(TriangleMesh(box.vertices, box.faces))
     rays = hitting_rays(mesh, 16)
     assert len(rays) == 3 * 16**2 and (np.abs(rays[:, 3:]).sum(axis=1) == 1).all()
-
-
-def test_blenders_bvh_tree_meets_each_face_of_a_cube_once_a_ray():
-    pytest.importorskip("bpy")  # brings mathutils
-    from bench.conversion.rivals import blender_bvh
-    from splat_addon.sampling import TriangleMesh, drop_unusable
-
-    box = trimesh.creation.box()
-    mesh, _ = drop_unusable(TriangleMesh(box.vertices, box.faces))
-    job = blender_bvh(mesh, 15, 0)
-    assert job() == 2 * 3 * 15**2 and job.preparation >= 0

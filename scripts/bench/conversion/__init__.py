@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seconds and memory of converting real meshes, against a cost model and against other ways to sample a mesh.
+"""Seconds and memory of converting meshes and bare points, against a cost model and other ways to sample a mesh.
 
-The cost model is 0.25 us a triangle + 0.1 us a surfel. The others: trimesh, Geometry Nodes, Blender's BVH tree, Open3D
-where it is installed, and our operator as a whole. Meshes are smooth-shaded, without colours. Sampling includes the
+The cost model is 0.25 us a triangle + 0.1 us a surfel. The others: trimesh, Geometry Nodes, Open3D where it is
+installed, and our operator as a whole. Meshes are smooth-shaded, without colours. Sampling includes the
 check at the door of Surfels. Extra bytes: the peak while sampling, above the cleaned mesh and the result. Others: how
 many times longer they take than our sampling, without cleaning; with its tree: in work, with the building of a tree.
 """
@@ -16,16 +16,16 @@ import numpy as np
 
 import splat_addon
 from bench.conversion.rivals import RIVALS, SLOW
-from measuring.models import load, short
-from measuring.timing import Spread, Turns, both, in_turn, peak_bytes
-from splat_addon.sampling import TriangleMesh, drop_unusable, sample_mesh
+from measuring.models import load, load_any, short
+from measuring.timing import Spread, Turns, both, in_turn, peak_bytes, processor
+from splat_addon.sampling import TriangleMesh, drop_unusable, sample_mesh, surfels_from_points
 from splat_addon.surfels import LAYOUT
 
 #: The cost model: seconds a triangle, seconds a surfel.
 TRIANGLE_COST, SURFEL_COST = 0.25e-6, 0.1e-6
 SURFEL_BYTES = sum(columns * np.dtype(dtype).itemsize for columns, dtype in LAYOUT.values())
 ARMADILLO, DRAGON = "armadillo.obj.gz", "dragon_vrip.ply.gz"
-QUICK = {"case": [(ARMADILLO, "16")]}
+QUICK = {"case": [(ARMADILLO, "16")], "points": 2_000}
 CASES = (ARMADILLO, 256), (ARMADILLO, 1024), (DRAGON, 512), (DRAGON, 1024)
 OURS = (
     "model", "resolution", "triangles", "surfels", "cleaning s", "sampling s", "of a processor", "M surfels/s at best",
@@ -34,9 +34,11 @@ OURS = (
 THEIRS = (
     "model", "other", "its samples", "its seconds", "on the clock", "in work", "in work, a sample", "with its tree"
 )  # fmt: skip
+BARE = "points of a", "points", "surfels", "s", "points/s", "peak bytes a point"
 
 
 def arguments(parser) -> None:
+    parser.add_argument("--points", type=int, default=1_000_000, help="at most, of each cloud of bare points")
     parser.add_argument("--slow-turns", type=int, default=2, help="turns of the others that take long")
     parser.add_argument("--case", nargs=2, action="append", metavar=("FILE", "RESOLUTION"))
     parser.set_defaults(turns=7)
@@ -62,6 +64,22 @@ def run(options, report) -> None:
 
     report.table(OURS, rows())
     report.table(THEIRS, lines, "Others:")
+    report.table(BARE, from_points(options, report), "Bare points, in processor seconds of one thread:")
+
+
+def from_points(options, report):
+    """Of a range map and of random points of a sphere, in random order: the worst that a memory cache can meet."""
+    scan = np.asarray(load_any(options.models / "rangemap_lato315.ply.gz").vertices)
+    ball = np.random.default_rng(0).normal(size=(options.points, 3))
+    clouds = {"range map": scan, "sphere": ball / np.linalg.norm(ball, axis=1, keepdims=True)}
+    clouds = {name: points[: options.points] for name, points in clouds.items()}
+    jobs = {name: partial(surfels_from_points, points) for name, points in clouds.items()}
+    taken = in_turn(jobs, options.turns, processor, steps=partial(report.steps, doing="points"))
+    for name, job in jobs.items():
+        peak, (surfels, *_) = peak_bytes(job)
+        count, seconds = len(clouds[name]), taken.spread(name)
+        rate = f"{count / seconds.median:,.0f}"
+        yield name, f"{count:,}", f"{len(surfels):,}", f"{seconds:.2f}", rate, f"{peak / count:.0f}"
 
 
 def ours(mesh: TriangleMesh, resolution: int) -> dict:

@@ -13,16 +13,12 @@ from functools import partial
 import bpy
 import numpy as np
 import trimesh
-from mathutils import Vector
-from mathutils.bvhtree import BVHTree
 
 from measuring.timing import processor
 from splat_addon.sampling import grid_spacing, sample_mesh
 
 #: Beyond this many samples trimesh's thinning is left out.
 FEW = 500_000
-#: How far a ray that goes on starts behind its last hit, in spacings.
-STEP = 1e-4
 
 
 def linked_object(mesh, is_smooth: bool = False) -> bpy.types.Object:
@@ -109,26 +105,6 @@ def trimesh_points(sample, most, mesh, resolution, count):
     return (lambda: len(sample(shape, count, seed=0)[0])) if count < most else None
 
 
-def blender_bvh(mesh, resolution, count):
-    """The same rays, one after another through Blender's BVH tree, on from each hit: what a script would do."""
-    polygons = mesh.positions.tolist(), mesh.triangles.tolist()
-    preparation, tree = processor(lambda: BVHTree.FromPolygons(*polygons, all_triangles=True))
-    rays = [(Vector(ray[:3]), Vector(ray[3:])) for ray in hitting_rays(mesh, resolution).tolist()]
-    step = STEP * grid_spacing(mesh, resolution=resolution)
-
-    def job():
-        samples = []
-        for origin, direction in rays:
-            onward = direction * step
-            while (hit := tree.ray_cast(origin, direction))[0] is not None:
-                samples.append(hit[:2])
-                origin = hit[0] + onward
-        return len(samples)
-
-    job.preparation = preparation
-    return job
-
-
 def blender_poisson(mesh, resolution, count):
     """Geometry Nodes' Distribute Points on Faces, Poisson disc, for as many points within a few in 100."""
     source = linked_object(mesh)
@@ -169,11 +145,10 @@ def blender_poisson(mesh, resolution, count):
 RIVALS = {
     "our operator, as a whole": our_operator,
     "Geometry Nodes, Poisson disc": blender_poisson,
-    "Blender's BVH tree, all hits": blender_bvh,
     "Open3D, all hits": open3d_intersections,
     "trimesh, random": partial(trimesh_points, trimesh.sample.sample_surface, np.inf),
     "trimesh, even": partial(trimesh_points, trimesh.sample.sample_surface_even, FEW),
 }
 
 #: These run only in the first turns.
-SLOW = ("Geometry Nodes, Poisson disc", "Blender's BVH tree, all hits", "trimesh, even")
+SLOW = ("Geometry Nodes, Poisson disc", "trimesh, even")

@@ -35,19 +35,7 @@ KINDS = {
     "blend": {"fits_blending": True},
     "both": {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True},
 }
-COLUMNS = (
-    "model",
-    "resolution",
-    "view",
-    "picture",
-    "PSNR",
-    "FLIP",
-    "FLIP 99 %",
-    "largest blob",
-    "wrong",
-    "bare",
-    "spilled",
-)
+COLUMNS = "model resolution view picture PSNR FLIP FLIP_99_% largest_blob wrong bare spilled".replace("_", " ").split()
 
 
 def arguments(parser) -> None:

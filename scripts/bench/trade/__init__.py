@@ -10,25 +10,29 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from statistics import geometric_mean
 
 import numpy as np
 
 from bench.trade.cases import CASES, FULL, View
-from bench.trade.choices import YARDSTICK, choices, columns, label
-from bench.trade.plots import by_scene, frontier, plot_differences, plot_overview, plot_scene
+from bench.trade.choices import CHOICES, YARDSTICK, choices, columns, label
+from bench.trade.plots import by_scene, draw_differences, frontier, plot_overview
 from environment import Problem
 from measuring.drawing import draw_in_turn, holes
-from splat_addon.reference.kept import FILTERS, exact_frames
+from splat_addon.reference import render_exact
+from splat_addon.reference.filters import PIXEL_FILTERS
+from splat_addon.reference.kept import remembered
 from splat_addon.reference.metrics import mean_flip, psnr
 from splat_addon.rendering import PRESETS, Renderer, Settings, open_device
 
 DEVICES = ("standalone", "blender")
-QUICK = {"size": FULL // 2, "turns": 2, "samples": 5}
+QUICK = {"size": FULL // 2, "turns": 2, "samples": 5, "choices": "methods"}
 
 
 def arguments(parser) -> None:
     parser.add_argument("--scenes", nargs="+", choices=CASES, metavar="NAME", help=f"some of: {', '.join(CASES)}")
+    parser.add_argument("--choices", choices=CHOICES, default="all", help="the settings that each is drawn with")
     parser.add_argument("--size", type=int, default=FULL, help="pixels along each side; splats keep theirs")
     parser.add_argument("--samples", type=int, default=8, help="N of the truth's N x N samples a pixel; of no choice")
 
@@ -36,7 +40,7 @@ def arguments(parser) -> None:
 def run(options, report) -> None:
     names = options.scenes or [c.name for c in CASES.values() if c.is_promised or not options.quick]
     renderer = Renderer(open_device(options.device))
-    chosen = choices(options.quick, renderer.device.multisample_counts)
+    chosen = choices(options.choices, renderer.device.multisample_counts)
     truth = f"truth of {options.samples} x {options.samples} samples"
     report.header(renderer.device, f"{options.size} x {options.size} pixels, medians of {options.turns} turns, {truth}")
     rows, skipped = [], {}
@@ -51,7 +55,7 @@ def run(options, report) -> None:
         report.plot("overview", plot_overview(rows))
     if not rows:
         raise Problem(f"Nothing was measured. {'; '.join(skipped.values())}.")
-    for name in FILTERS:
+    for name in PIXEL_FILTERS:
         about = f"PSNR in dB / mean FLIP under the {name} pixel filter; times are in that of {label(YARDSTICK)}:"
         report.table(["", *by_scene(rows), "time"], summary(rows, chosen, name), about)
     best = {id(row) for mine in by_scene(rows).values() for row in frontier(mine)}
@@ -63,7 +67,8 @@ def measure(case, renderer: Renderer, chosen: list[Settings], options, report) -
     """The rows of one scene, whose plot and pictures are left in the folder."""
     scene, camera = case.build(View(options.size, options.models))
     lit = replace(YARDSTICK, shading=case.shading)
-    exact = exact_frames(scene, camera, lit, options.samples, options.out / "truth")
+    truth = partial(remembered(render_exact), scene, camera, lit, samples=options.samples)
+    exact = {name: truth(pixel_filter=name) for name in PIXEL_FILTERS}
 
     def draw(settings):
         return renderer.render(scene, camera, replace(settings, shading=case.shading))
@@ -79,9 +84,7 @@ def measure(case, renderer: Renderer, chosen: list[Settings], options, report) -
         for name, (spread, digits) in times.items():
             ends = ((name, spread.median), (f"{name}_min", spread.least), (f"{name}_max", spread.most))
             rows[-1] |= {key: round(value, digits) for key, value in ends}
-    stem = case.name.replace(" ", "-")
-    report.plot(stem, plot_scene(rows))
-    report.plot(f"{stem}-differences", plot_differences(drawn.results, exact["gaussian"]))
+    draw_differences(case.name.replace(" ", "-"), drawn.results, exact["gaussian"], report)
     return rows
 
 

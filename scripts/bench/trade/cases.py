@@ -87,6 +87,10 @@ def _armadillo(**pose):
     return lambda view: in_view(_armadillo_surfels(view), view.size, **pose)
 
 
+def _transparent_spheres(view: View) -> tuple[Scene, Camera]:
+    return scenes.transparent_spheres(view.over(5333), size=view.picture)
+
+
 _whole_armadillo = _armadillo(fov=0.48)
 _near_armadillo = _armadillo(eye=(0.2, 0.6, 0.9), target=(0, 0.35, 0), fov=0.5)
 
@@ -107,5 +111,6 @@ CASES = {
         Case("checker at 60", "the 40 x 40 fields from above: splats larger than pixels", _checker(60)),
         Case("text at 10", "the page at 10 degrees", _text(10)),
         Case("coarse sphere", "2,000 splats, each many pixels", _sphere(2_000)),
+        Case("transparent spheres", "27, as in Guennebaud et al. 2006", _transparent_spheres, shading="principled"),
     )
 }

@@ -19,6 +19,8 @@ FORMATS = {
     "storage": {"float32": "", "16-bit": "16-bit surfels"},
     "accumulation": {"float32": "", "float16": "16-bit sums"},
     "edge_threshold": {0.0: "", 0.25: "threshold 0.25", 1.0: "threshold 1"},
+    "layers": {n: f"{n} layers" if n != YARDSTICK.layers else "" for n in (3, 2, 6, 8)},
+    "blends_rest": {True: "", False: "the rest lost"},
 }
 
 
@@ -29,9 +31,9 @@ def settings_of(methods: tuple[str, ...], **values) -> list[Settings]:
 
 
 EVERY, BOTH = tuple(METHODS), ("quad", "mip")
-QUICK = settings_of(EVERY) + settings_of(("quad",), supersampling=(2, 4))
+METHODS_ALONE = settings_of(EVERY) + settings_of(("quad",), supersampling=(2, 4))
 ALL = [
-    *QUICK,
+    *METHODS_ALONE,
     *settings_of(("quad",), supersampling=(3,)),
     *settings_of(("mip",), supersampling=(2,)),
     *settings_of(BOTH, accumulation=("float16",)),
@@ -41,13 +43,22 @@ ALL = [
     *settings_of(("quad",), multisampling=(4,), edge_threshold=(0.25,)),
 ]
 
+#: Of transparent surfaces. As many as the deepest of a scene lose nothing.
+LAYERS = [
+    YARDSTICK,
+    *settings_of(("quad",), supersampling=(2,), layers=(2, 3, 6, 8)),
+    *settings_of(("mip",), layers=(2, 3, 6, 8)),
+    *settings_of(("mip",), layers=(3, 6), blends_rest=(False,)),
+]
+CHOICES = {"methods": METHODS_ALONE, "all": ALL, "layers": LAYERS}
+
 #: What is shown beside the truth.
-PICTURED = frozenset([*settings_of(EVERY), replace(YARDSTICK, supersampling=2)])
+PICTURED = frozenset([*settings_of(EVERY), replace(YARDSTICK, supersampling=2), *LAYERS[-2:]])
 
 
-def choices(quick: bool = False, multisample_counts: tuple[int, ...] = ()) -> list[Settings]:
-    """Those that the device, by its counts, can draw; the yardstick is among them."""
-    return [settings for settings in (QUICK if quick else ALL) if settings.multisampling in (0, *multisample_counts)]
+def choices(name: str = "all", multisample_counts: tuple[int, ...] = ()) -> list[Settings]:
+    """Those of `CHOICES` that the device, by its counts, can draw; the yardstick is among them."""
+    return [settings for settings in CHOICES[name] if settings.multisampling in (0, *multisample_counts)]
 
 
 def columns(settings: Settings) -> dict:

@@ -12,12 +12,9 @@ matplotlib.use("Agg")
 from matplotlib import pyplot, ticker
 
 from bench.trade.choices import FORMATS, PICTURED, label
-from splat_addon.reference.kept import FILTERS
 from splat_addon.reference.metrics import flip_map, mean_flip, srgb
 from splat_addon.rendering.methods import METHODS
 
-#: Pixels an inch, and those above the pictures.
-DPI, CAPTION = 100, 30
 COLORS = dict(zip(METHODS, pyplot.cm.tab10.colors))
 
 
@@ -32,16 +29,6 @@ def frontier(rows: list[dict], error: str = "flip_gaussian", cost: str = "ratio"
         if not kept or row[error] < kept[-1][error]:
             kept.append(row)
     return kept
-
-
-def plot_scene(rows: list[dict]):
-    """One scene: both filters, against milliseconds."""
-    figure, axes = pyplot.subplots(1, len(FILTERS), figsize=(9, 4), layout="constrained")
-    for axis, name in zip(axes, FILTERS):
-        _panel(axis, rows, f"flip_{name}", "ms")
-        axis.set(title=f"{rows[0]['scene']}, {name} filter", xlabel="ms a frame", ylabel="mean FLIP")
-    axes[0].legend(fontsize=7)
-    return figure
 
 
 def plot_overview(rows: list[dict]):
@@ -85,19 +72,12 @@ def _panel(axis, rows: list[dict], error: str, cost: str) -> None:
     axis.grid(alpha=0.3)
 
 
-def plot_differences(frames: dict, truth):
-    """The truth, then a column for each of the frames that are shown, a pixel for a pixel."""
-    colors = {"exact, Gaussian pixel": truth.color}
-    colors |= {label(settings): frame.color for settings, frame in frames.items() if settings in PICTURED}
-    height, width = truth.color.shape[:2]
-    size = len(colors) * width / DPI, (2 * height + CAPTION) / DPI
-    edges = {"left": 0, "right": 1, "bottom": 0, "top": 2 * height / (2 * height + CAPTION), "wspace": 0, "hspace": 0}
-    figure, axes = pyplot.subplots(2, len(colors), figsize=size, dpi=DPI, gridspec_kw=edges)
-    for axis in axes.flat:
-        axis.set_axis_off()
-    for (above, below), (name, color) in zip(axes.T, colors.items()):
-        above.imshow(srgb(np.nan_to_num(color[..., :3])), origin="lower", interpolation="nearest")
-        above.set_title(f"{name}\nFLIP {mean_flip(color, truth.color):.4f}", fontsize=7)
-        if color is not truth.color:
-            below.imshow(flip_map(color, truth.color), origin="lower", interpolation="nearest")
-    return figure
+def draw_differences(name: str, frames: dict, truth, report) -> None:
+    """The truth, then a column for each of the frames that are shown, with the map of FLIP under it."""
+    shown = {label(settings): frame.color[..., :3] for settings, frame in frames.items() if settings in PICTURED}
+    truth = truth.color[..., :3]
+    labels = (f"{label} {mean_flip(color, truth):.4f}" for label, color in shown.items())
+    report.say(f"{name}, FLIP under the Gaussian: {'; '.join(labels)}.")
+    above = [srgb(np.nan_to_num(color)) for color in (truth, *shown.values())]
+    below = [flip_map(color, truth) for color in (truth, *shown.values())]
+    report.picture(f"{name}-differences", above + below, columns=len(above), encode=None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An extreme of `extremes` step by step: from where arithmetic has room to where it has none.
+"""An extreme step by step: from where arithmetic has room to where it has none.
 
 Each yields x, a scene, a camera and what differs from the default settings; pictures are small, for the truth is slow.
 """
@@ -12,11 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..rendering.scene import Instance, Scene
-from ..rendering.scene.camera import Camera, look_at
-from ..rendering.scene.light import Light
-from . import scenes
-from .extremes import discs, sheet, speck, transformed
+from splat_addon.reference import extremes, scenes
+from splat_addon.reference.extremes import discs, floor_below, giant_floor, sheet, speck, transformed
+from splat_addon.rendering import Camera, Instance, Light, Scene, look_at
 
 Shots = Iterator[tuple[float, Scene, Camera, dict]]
 
@@ -24,8 +22,8 @@ SIZE = (64, 64)
 LIGHTS, WORLD = (Light("sun", energy=2.0, direction=(0.3, 0.2, -1.0)),), (0.1, 0.1, 0.1)
 
 
-def origin_camera(size=SIZE, near=0.01, fov=60.0, shift=(0.0, 0.0)) -> Camera:
-    return Camera.perspective(np.eye(4), math.radians(fov), size, near, 1000, shift)
+def origin_camera(size=SIZE, near=0.01) -> Camera:
+    return Camera.perspective(np.eye(4), math.radians(60), size, near, 1000)
 
 
 def lit(*surfels) -> Scene:
@@ -72,11 +70,9 @@ def grazing() -> Shots:
         yield flatness, lit(sheet(30, 1.0, 90 - flatness, 2.0)), origin_camera(), {}
 
 
-def floor_below() -> Shots:
-    """A floor of 24 x 24 discs that passes under the eye: the nearest reach behind it."""
+def floor() -> Shots:
     for height in (0.3, 0.2, 0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001):
-        floor = replace(sheet(24, 2.0, 90.0, 0.0), origin=(0.0, -height, 0.0))
-        yield height, lit(floor), origin_camera(near=1e-4), {}
+        yield height, lit(floor_below(height)), origin_camera(near=1e-4), {}
 
 
 def field_of_view() -> Shots:
@@ -97,39 +93,25 @@ def off_axis() -> Shots:
 
 
 def ratio() -> Shots:
-    """21 parallel ellipses side by side, longer and longer, at an angle."""
-    u, v = np.array(((math.cos(1), math.sin(1), 0), (-math.sin(1), math.cos(1), 0)))
+    """Ellipses longer and longer, at an angle."""
     for exponent in np.arange(0, 6.1, 0.5):
-        centers = np.linspace(-1, 1, 21)[:, None] * v + (0, 0, -3)
-        yield 10.0**exponent, lit(discs(centers, 0.08 * 10.0**exponent * u, 0.08 * v)), origin_camera(), {}
+        yield 10.0**exponent, lit(extremes.stripes(0.08 * 10.0**exponent, 0.08, 1.0)), origin_camera(), {}
 
 
 def giants() -> Shots:
     for exponent in np.arange(2, 10.1, 0.5):
-        radius = 10.0**exponent * 0.01
-        floor = discs((0.1, -1.03, -5), (radius, 0, 0), (0, 0.1 * radius, -radius), (0.2, 0.5, 0.9))
-        yield 10.0**exponent, lit(floor), origin_camera(), {}
+        yield 10.0**exponent, lit(giant_floor(10.0**exponent * 0.01)), origin_camera(), {}
 
 
-def overdraw() -> Shots:
+def overdraw(**changes) -> Shots:
     for layers in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000):
-        random = np.random.default_rng(1)
-        centers = np.concatenate([random.normal(0, 0.02, (layers, 2)), -3 - 1e-3 * random.random((layers, 1))], axis=1)
-        yield layers, lit(discs(centers, (1.5, 0, 0), (0, 1.5, 0))), origin_camera((12, 12)), {}
-
-
-def overdraw_in_float16() -> Shots:
-    for layers, scene, camera, _ in overdraw():
-        yield layers, scene, camera, {"accumulation": "float16"}
+        yield layers, lit(extremes.pile(layers)), origin_camera((12, 12)), changes
 
 
 def sub_pixel() -> Shots:
     camera = origin_camera((4, 4))
-    pixel = 3 * (camera.window[1] - camera.window[0]) / 4
-    centers = np.random.default_rng(1).random((100_000, 3)) * (pixel, pixel, 1e-3) - (0, 0, 3)
     for radius in (0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001):
-        splats = discs(centers, (radius * pixel, 0, 0), (0, radius * pixel, 0))
-        yield radius, Scene((splats,)), camera, {"shading": "flat"}
+        yield radius, Scene((extremes.crowd(camera, 100_000, radius),)), camera, {"shading": "flat"}
 
 
 def epsilon() -> Shots:

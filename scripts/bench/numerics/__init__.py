@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The picture at the extremes of arithmetic, for every method: numbers, plots and failures.
+"""The picture at the extremes of arithmetic, for every method: numbers and plots.
 
 Scenes are 64 x 64 pixels of 2 x 2 samples; the truth is `render_exact` with the same samples, PSNR is of sRGB, 160 dB
 stands for equal. A method that filters is not that truth's picture: its line shows by being level that the extreme
@@ -9,9 +9,10 @@ changes nothing. An empty pixel, a cross in the plots, is one that the truth cov
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
+from functools import partial
 from importlib import import_module
 from unittest.mock import patch
 
@@ -21,11 +22,11 @@ import numpy as np
 matplotlib.use("Agg")
 from matplotlib import pyplot
 
+from bench.numerics import sweeps
 from measuring.drawing import holes
-from splat_addon.reference import render_exact, sweeps
-from splat_addon.reference.extremes import sheet
-from splat_addon.reference.metrics import psnr, srgb
-from splat_addon.rendering import Camera, Renderer, Scene, Settings, open_device
+from splat_addon.reference import render_exact
+from splat_addon.reference.metrics import psnr
+from splat_addon.rendering import Renderer, Settings, open_device
 from splat_addon.rendering.methods import METHODS
 
 DEVICES = ("standalone",)
@@ -66,7 +67,7 @@ FIGURES = {
     ),
     "grazing": (
         Panel("grazing", "degrees left to edge-on", sweeps.grazing, 50),
-        Panel("floor", "height of the eye above a floor", sweeps.floor_below, 50),
+        Panel("floor", "height of the eye above a floor", sweeps.floor, 50),
     ),
     "views": (
         Panel("field of view", "field of view, degrees", sweeps.field_of_view, 50, is_log=False),
@@ -79,36 +80,13 @@ FIGURES = {
     ),
     "sums": (
         Panel("overdraw", "splats over every sample, float32 sums", sweeps.overdraw, 80),
-        Panel("overdraw, float16", "splats over every sample, float16 sums", sweeps.overdraw_in_float16, 0),
+        Panel("overdraw, float16", "the same, float16 sums", partial(sweeps.overdraw, accumulation="float16"), 0),
     ),
     "layers": (
         Panel("epsilon", "epsilon, radii", sweeps.epsilon, 40),
         Panel("gap", "gap between two sheets, radii", sweeps.gap, 50),
     ),
 }
-
-
-def failures() -> Iterator[tuple[str, str, Scene, Camera]]:
-    """What shows the limit of a method's formula, by its name and a label: tests/extremes' known failures."""
-    yield "affine", "sheet at 68 degrees", sweeps.lit(sheet(30, 1.0, 68, 2.0)), sweeps.origin_camera()
-    yield "affine", "window 5 widths off the axis", *next(shot for shot in sweeps.off_axis() if shot[0] == 5)[1:3]
-    yield "ewa", "one disc, a floor", *next(shot for shot in sweeps.giants() if shot[0] > 300)[1:3]
-    yield "raycast", "sheet edge-on", sweeps.lit(sheet(30, 1.0, 90, 2.0)), sweeps.origin_camera()
-    yield "homogeneous", "ellipses 10 : 1", *next(shot for shot in sweeps.ratio() if shot[0] == 10)[1:3]
-
-
-def plot_failures(device):
-    """Above what the methods draw, below the truth."""
-    shots = list(failures())
-    figure, axes = pyplot.subplots(2, len(shots), figsize=(2 * len(shots), 4.3), layout="constrained")
-    for (above, below), (method, label, scene, camera) in zip(axes.T, shots):
-        frame = Renderer(device).render(scene, camera, Settings(method=method, supersampling=SAMPLES))
-        for axis, picture in ((above, frame), (below, render_exact(scene, camera, samples=SAMPLES))):
-            axis.imshow(srgb(picture.color[..., :3]), origin="lower", interpolation="nearest")
-            axis.set(xticks=(), yticks=())
-        above.set_title(f"{method}: {label}", fontsize=7)
-        below.set_xlabel("truth", fontsize=7)
-    return figure
 
 
 def measure(panel: Panel, renderers: dict, most: int) -> dict[str, list[dict]]:
@@ -158,15 +136,13 @@ def cell(found: list[dict]) -> str:
 
 
 def arguments(parser) -> None:
-    parser.add_argument("--only", choices=[*FIGURES, "failures"], help="one figure")
+    parser.add_argument("--only", choices=FIGURES, help="one figure")
     parser.add_argument("--shots", type=int, help="of each panel, the first ones only")
 
 
 def run(options, report) -> None:
     device = open_device(options.device)
     report.header(device)
-    if options.only in (None, "failures"):
-        report.plot("failures", plot_failures(device))
     figures = {name: panels for name, panels in FIGURES.items() if options.only in (None, name)}
     renderers, every = {method: Renderer(device) for method in METHODS}, []
 
@@ -180,5 +156,4 @@ def run(options, report) -> None:
             report.plot(name, plot_panels(panels, results))
             report.csv("numerics", every)
 
-    if figures:
-        report.table(["least dB", *METHODS], rows())
+    report.table(["least dB", *METHODS], rows())
