@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from splat_addon.rendering.brdf_table import brdf_table
+from splat_addon.rendering.upload.brdf_table import brdf_table
 
 
 @pytest.mark.parametrize(("row", "column"), [(47, 0), (30, 10), (16, 20)])

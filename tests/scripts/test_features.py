@@ -35,9 +35,9 @@ def test_each_feature_makes_another_picture_or_another_plan(feature, on_device):
         ("two materials", "", "gbuffer_material", 48 * 48 * 16),
         ("lines of 1.5 pixels", "lines", "lines", None),
         ("a picture of the world", "", "environment_image, environment_levels", 0),
-        ("float16 sums", "", "depth_sum", 48 * 48 * (8 - 8 - 8)),
+        ("float16 sums", "", "gbuffer_depth", 48 * 48 * (8 - 8 - 8)),
         ("depth written by fragments, 1000 times as deep", "linear depth", "", 0),
-        ("a splat at the near plane, drawn in space", "near_clipped", "", 0),
+        ("a splat at the near plane, drawn in space", "near clipped", "", 0),
         ("4 hardware samples a pixel", "", "", 3 * 48 * 48 * (4 + 16 + 16)),
     ],
 )

@@ -13,7 +13,7 @@ def passes(planning):
         if planning.find(depth_format.extent).reaches_near:
             planning.has("NEAR_CLIPPED", "splats that may reach the near plane are drawn in space")
         else:
-            planning.skip("near_clipped splats", "none reaches the near plane")
+            planning.skip("near-clipped splats", "none reaches the near plane")
     return ()
 
 
