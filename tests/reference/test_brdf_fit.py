@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+
 from splat_addon.rendering.upload.brdf_table import brdf_table
 
 
