@@ -21,7 +21,9 @@ void ambient_occlusion_reflected(inout vec3 light, float roughness) {
 
 #part shaded_sample
 const int OCCLUSION_SLICES = 4;
-const int OCCLUSION_STEPS = 8;
+// Least cosine to the viewer that a normal counts with: a mean of normals may face away, what is seen does not.
+const float LEAST_OCCLUSION_FACING = 0.2;
+const int OCCLUSION_STEPS = 12;
 
 vec3 sample_place(ivec2 texel, float depth) {
   vec2 place = view.window.xy + (vec2(texel) + 0.5) * view.window.zw;
@@ -67,7 +69,7 @@ float open_share_at(ivec2 texel, vec3 position, vec3 normal, vec3 to_eye) {
     ivec2 along = is_between ? ivec2[4](ivec2(2, 1), ivec2(1, 2), ivec2(-1, 2), ivec2(-2, 1))[i] : straight;
     vec3 across = vec3(vec2(along) * view.window.zw, 0.0);
     across = normalize(across - to_eye * dot(across, to_eye));
-    vec2 own = vec2(max(dot(normal, to_eye), 1e-4), dot(normal, across));  // the normal in the slice
+    vec2 own = vec2(max(dot(normal, to_eye), LEAST_OCCLUSION_FACING), dot(normal, across));  // the normal in the slice
     float size = length(own), tilt = atan(own.y, own.x), lowest = own.y / size;
     float after = acos(horizon_cosine(texel, position, to_eye, along, reach, phase, -lowest));
     float before = -acos(horizon_cosine(texel, position, to_eye, -along, reach, phase, lowest));

@@ -14,21 +14,18 @@ TILE_SHARE = 1 / 8
 DEPTHS = Texture("occluders", "R32F")
 
 
-def is_there(planning) -> bool:
-    """Whether the frame has any; it says why not."""
-    if not planning.shown or not planning.settings.ambient_occlusion:
-        why = "its distance is 0" if planning.shown else ""
-    elif not planning.model.has_world:
-        why = f"{planning.model.name} shading does not look at the world's light"
-    elif not any(planning.scene.world):
-        why = "the world is dark"
-    elif all(i.is_transparent for i in planning.scene.surfels) and not planning.scene.polygons:
-        why = "transparent layers have none, and nothing is opaque"
-    else:
-        return True
-    if why:
-        planning.skip("ambient occlusion", why)
-    return False
+def missing(planning) -> str:
+    """Why the frame has none, or nothing."""
+    scene = planning.scene
+    if not planning.settings.ambient_occlusion:
+        return "its distance is 0"
+    if not planning.model.has_world:
+        return f"{planning.model.name} shading does not look at the world's light"
+    if not any(scene.world):
+        return "the world is dark"
+    if not scene.polygons and all(instance.is_transparent for instance in scene.surfels):
+        return "transparent layers have none, and nothing is opaque"
+    return ""
 
 
 def margin(planning) -> int:
@@ -36,7 +33,7 @@ def margin(planning) -> int:
     from ..plan import tile_edge
 
     edge = tile_edge(planning)
-    return int(TILE_SHARE * edge) if planning.find(is_there) and max(planning.camera.size) > edge else 0
+    return int(TILE_SHARE * edge) if not planning.find(missing) and max(planning.camera.size) > edge else 0
 
 
 def _reach(tile) -> float:
@@ -53,23 +50,32 @@ VALUES = {
 
 def passes(planning):
     """The depths that are looked at."""
-    if planning.find(is_there):
-        pixels = planning.facts["occlusion_margin"] = margin(planning)
-        why = f"surfaces within {planning.settings.ambient_occlusion:g} keep the world's light from one another"
-        if pixels:
-            why += f"; the picture is drawn in tiles, so they are looked for up to {pixels} pixels away"
-        if any(instance.is_transparent for instance in planning.scene.surfels):
-            why += "; transparent layers neither have it nor cause it"
-        own = Part(
-            "ambient_occlusion",
-            writes=(DEPTHS,),
-            constants=(("MEAN_OF", planning.settings.multisampling),),
-            choices=(("samples", "mean" if planning.settings.multisampling else "each"),),
-        )
-        sums = gbuffer.depth_parts(planning, "opaque", reads=(gbuffer.COLOR, gbuffer.NORMAL))
-        yield Pass("occluders", why, "occluders.frag", fill, (own, sums, *polygons.joined(planning)))
+    if not planning.shown:
+        return
+    if why := planning.find(missing):
+        planning.skip("ambient occlusion", why)
+        return
+    yield _depths(planning)
+
+
+def _depths(planning) -> Pass:
+    settings, pixels = planning.settings, margin(planning)
+    planning.facts["occlusion_margin"] = pixels
+    why = f"surfaces within {settings.ambient_occlusion:g} keep the world's light from one another"
+    if pixels:
+        why += f"; the picture is drawn in tiles, so they are looked for up to {pixels} pixels away"
+    if any(instance.is_transparent for instance in planning.scene.surfels):
+        why += "; transparent layers neither have it nor cause it"
+    own = Part(
+        "ambient_occlusion",
+        writes=(DEPTHS,),
+        constants=(("MEAN_OF", settings.multisampling),),
+        choices=(("samples", "mean" if settings.multisampling else "each"),),
+    )
+    sums = gbuffer.depth_parts(planning, "opaque", reads=(gbuffer.COLOR, gbuffer.NORMAL))
+    return Pass("occluders", why, "occluders.frag", fill, (own, sums, *polygons.joined(planning)))
 
 
 def parts(planning, p):
-    if p.kind == "opaque" and p.host in LIT_HOSTS and planning.find(is_there):
+    if p.kind == "opaque" and p.host in LIT_HOSTS and not planning.find(missing):
         yield Part("ambient_occlusion", reads=(DEPTHS,))
