@@ -23,7 +23,7 @@ void ambient_occlusion_reflected(inout vec3 light, float roughness) {
 const int OCCLUSION_SLICES = 4;
 // Least cosine to the viewer that a normal counts with: a mean of normals may face away, what is seen does not.
 const float LEAST_OCCLUSION_FACING = 0.2;
-const int OCCLUSION_STEPS = 12;
+const int OCCLUSION_STEPS = 8;
 
 vec3 sample_place(ivec2 texel, float depth) {
   vec2 place = view.window.xy + (vec2(texel) + 0.5) * view.window.zw;

@@ -88,7 +88,7 @@ def test_the_twin_is_the_view_factor_of_a_wall():
 
 @pytest.mark.parametrize("is_parallel", [True, False])
 def test_the_picture_is_the_twins(is_parallel, render):
-    """12 steps along 4 slices a sample pass over some of what is between them: 0.02 on average, 0.06 a sample."""
+    """8 steps along 4 slices a sample pass over some of what is between them: 0.02 on average, 0.06 a sample."""
     view = camera(is_parallel)
     with_it = render(scene(), view, SETTINGS)
     without = render(scene(), view, replace(SETTINGS, ambient_occlusion=0.0))

@@ -71,7 +71,7 @@ def seen(scene, add_camera, add_object):
 
 @pytest.mark.parametrize("make", [bowl, corner])
 def test_a_concave_model_is_nearer_to_cycles(make, seen, scene, picture, switch_to_cycles):
-    """By more than 3 dB: 7 in the bowl, where light is reflected many times, 13 in the corner."""
+    """By more than 3 dB: 5 in the bowl, where light is reflected many times, 13 in the corner."""
     whole, made = seen(make)
     without = picture()
     scene.surfel_splatting.use_ambient_occlusion, scene.surfel_splatting.ambient_occlusion_distance = True, 10.0
