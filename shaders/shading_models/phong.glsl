@@ -3,7 +3,7 @@
 // Summary: Lambert's diffuse light and Blinn's highlight, of the metal's colour or the reflectance; an even world.
 
 #include "lib/half_vector.glsl"
-#include "lib/world_light/{world_light}.glsl"
+#include "hosts/world_light.glsl"
 
 const float PI = 3.14159265358979;
 

@@ -5,7 +5,7 @@
 //          reflects, under lights and the world. The twin of reference/shading.py.
 
 #include "lib/brdf.glsl"
-#include "lib/world_light/{world_light}.glsl"
+#include "hosts/world_light.glsl"
 
 const float PI = 3.14159265358979;
 const float LEAST_ROUGHNESS = 0.03;

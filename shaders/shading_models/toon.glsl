@@ -4,7 +4,7 @@
 //          rougher the material. Steps and their softness are the frame's.
 
 #include "lib/half_vector.glsl"
-#include "lib/world_light/{world_light}.glsl"
+#include "hosts/world_light.glsl"
 
 const float PI = 3.14159265358979;
 

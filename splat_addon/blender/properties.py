@@ -202,6 +202,19 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         max=MAX_SHADOW_RESOLUTION,
         default=Settings.shadow_resolution,
     )
+    use_ambient_occlusion: BoolProperty(
+        name="Ambient Occlusion",
+        description="Surfaces that the picture shows keep the world's light from one another",
+        default=False,
+    )
+    ambient_occlusion_distance: FloatProperty(
+        name="Distance",
+        description="How far away a surface may be to keep the world's light from another",
+        subtype="DISTANCE",
+        min=0.0,
+        soft_max=100.0,
+        default=1.0,
+    )
     layers: IntProperty(
         name="Layers",
         description=(
@@ -290,6 +303,7 @@ def _settings(scene, **choices) -> Settings:
         epsilon=properties.epsilon,
         edge_threshold=properties.edge_threshold,
         shadow_resolution=properties.shadow_resolution,
+        ambient_occlusion=properties.ambient_occlusion_distance if properties.use_ambient_occlusion else 0.0,
         layers=properties.layers,
         blends_rest=properties.blends_rest,
         storage=properties.storage,

@@ -132,6 +132,19 @@ class RENDER_PT_surfel_shadows(_RenderPanel, bpy.types.Panel):
     properties = ("shadow_resolution",)
 
 
+class RENDER_PT_surfel_ambient_occlusion(_RenderPanel, bpy.types.Panel):
+    bl_label = "Ambient Occlusion"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("ambient_occlusion_distance",)
+
+    def draw_header(self, context):
+        self.layout.prop(getattr(context.scene, RENDER_SETTINGS), "use_ambient_occlusion", text="")
+
+    def draw(self, context):
+        self.layout.active = getattr(context.scene, RENDER_SETTINGS).use_ambient_occlusion
+        super().draw(context)
+
+
 class RENDER_PT_surfel_transparency(_RenderPanel, bpy.types.Panel):
     bl_label = "Transparency"
     bl_options = frozenset({"DEFAULT_CLOSED"})
@@ -197,6 +210,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         RENDER_PT_surfel_lines,
         RENDER_PT_surfel_motion_blur,
         RENDER_PT_surfel_shadows,
+        RENDER_PT_surfel_ambient_occlusion,
         RENDER_PT_surfel_transparency,
         RENDER_PT_surfel_film,
         RENDER_PT_surfel_performance,

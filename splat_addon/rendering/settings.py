@@ -78,6 +78,8 @@ class Settings:
     epsilon: how far, in radii of each splat, the visibility pass moves it back along the view ray;
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
     shadow_resolution: texels along the side of a shadow map; 0 leaves shadows out.
+    ambient_occlusion: up to this distance, in units of the scene, surfaces keep the world's light from one another, as
+        far as the picture shows them; 0 leaves it out.
     layers: of transparent surfaces behind one another, the most that each pixel is made of. blends_rest: the last of
         them is all that is left, unordered and as if lit at each splat; else what lies behind the last is lost.
     alpha_threshold: the least opacity of a surface that the depth and the normal are taken from.
@@ -102,6 +104,7 @@ class Settings:
     edge_threshold: float = 0.0
     epsilon: float = 0.5
     shadow_resolution: int = 1024
+    ambient_occlusion: float = 0.0
     layers: int = 3
     blends_rest: bool = True
     alpha_threshold: float = 0.5
@@ -130,6 +133,8 @@ class Settings:
             raise ValueError(f"edge_threshold must be 0 or more splat weights, not {self.edge_threshold}.")
         if self.shadow_resolution not in range(MAX_SHADOW_RESOLUTION + 1):
             raise ValueError(f"shadow_resolution must be 0 to {MAX_SHADOW_RESOLUTION}, not {self.shadow_resolution}.")
+        if not (math.isfinite(self.ambient_occlusion) and self.ambient_occlusion >= 0):
+            raise ValueError(f"ambient_occlusion must be a distance of 0 or more, not {self.ambient_occlusion}.")
         if self.layers not in range(1, MAX_LAYERS + 1):
             raise ValueError(f"layers must be 1 to {MAX_LAYERS}, not {self.layers}.")
         if self.blends_rest and self.layers < 2:

@@ -220,6 +220,7 @@ CASES = [
     ("own_materials", "mip", {"storage": "16-bit"}),
     ("depth_of_field", "quad", {"samples": 3}),
     *(("panorama", method, {}) for method in ("quad", "mip")),
+    *(("polygons", method, {"ambient_occlusion": 1.0}) for method in ("quad", "mip")),
 ]
 
 

@@ -1,6 +1,6 @@
 // References: Karis, "Real Shading in Unreal Engine 4", 2013 (a picture blurred by the lobe); rendering/scene/environment.py,
 //             which makes the textures; Blender's Environment Texture (the equirectangular map).
-// Summary: the radiance that reaches a surface from all around, of a picture of the world.
+// Summary: the radiance that is sent to a surface from all around, of a picture of the world.
 
 #include "lib/environment_image.glsl"
 
@@ -22,11 +22,11 @@ vec3 environment_level_at(int level, vec3 direction) {
   return mix(below, above, share.y);
 }
 
-vec3 world_irradiance(vec3 normal) {  // over pi
+vec3 sent_irradiance(vec3 normal) {  // over pi
   return frame.world.rgb * environment_level_at(BLURRED_LEVELS, mat3(frame.to_environment) * normal);
 }
 
-vec3 world_reflection(vec3 direction, float roughness) {
+vec3 sent_reflection(vec3 direction, float roughness) {
   vec3 toward = mat3(frame.to_environment) * direction;
   if (roughness < BLURRED_ROUGHNESS[0]) {
     vec3 sharp = environment_image_at(toward);

@@ -8,6 +8,7 @@ Each module decides from a `Planning` whether the frame needs it, and says why n
     VALUES                 name -> (type, value for a tile) of what shaders are told in the frame's block
     INPUTS                 sampler -> the texture for a tile that no pass writes
     CONSTANTS              what Python and shaders both know by a name
+    margin(planning)       pixels beside a tile's own that its functions look at
     NAMES                  its files in shaders/features, where they are not one of its own name
 """
 
@@ -15,6 +16,7 @@ from ..scene.polygons import CORNERS_PER_ROW, TEXELS_PER_CORNER
 from ..upload.packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT
 from . import (
     accumulation,
+    ambient_occlusion,
     depth_bounds,
     depth_format,
     edge_threshold,
@@ -60,6 +62,7 @@ FEATURES = (
     gbuffer,
     oit,
     polygons,
+    ambient_occlusion,
     outputs,
     lines,
     edge_threshold,

@@ -54,8 +54,7 @@ def parts(planning, p):
     if p.host == "polygons.frag":
         yield from _drawn(planning)
     if p.kind == "opaque" and p.host in (*LIT_HOSTS, "lines.frag"):
-        share = "known" if planning.method.works_in == "picture" else "compared"
-        yield Part("polygons", reads=(COLOR, NORMAL), choices=(("polygon_share", share),))
+        yield from joined(planning)
     if p.kind == "opaque" and p.host in LIT_HOSTS:
         differ, glow = materials.differ(planning)
         if differ or lights._are_linked(planning):
@@ -64,6 +63,13 @@ def parts(planning, p):
             yield Part("emission", reads=(EMISSION,))
         if planning.find(shadows.maps):
             yield Part("polygon_plane", reads=(PLANE,))
+
+
+def joined(planning):
+    """What joins them with the splats' means."""
+    if planning.scene.polygons:
+        share = "known" if planning.method.works_in == "picture" else "compared"
+        yield Part("polygons", reads=(COLOR, NORMAL), choices=(("polygon_share", share),))
 
 
 def _drawn(planning):

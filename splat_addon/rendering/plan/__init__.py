@@ -50,7 +50,7 @@ def plan(
     is_linear = planning.find(depth_format.linear)[0]
     each = settings.multisampling and not settings.sample_shading
     made = FramePlan(
-        tiles=_tiles(camera.size, _tile_edge(planning)),
+        tiles=_tiles(camera.size, tile_edge(planning)),
         samples=settings.supersampling,
         multisamples=settings.multisampling,
         sample_shading=bool(settings.multisampling and settings.sample_shading),
@@ -87,11 +87,12 @@ def _with_parts(planning: Planning, p: Pass, features) -> Pass:
 
 
 def _margin(planning: Planning) -> int:
-    """Pixels drawn around a tile and not kept: what filters and lines read."""
-    from ..features import lines, transparency
+    """Pixels drawn around a tile and not kept: what features look at beside it."""
+    from ..features import FEATURES, transparency
 
     filtered = FILTER_MARGIN if planning.facts["filters_silhouettes"] else 0
-    return filtered + (transparency.LAYER_MARGIN if planning.facts.get("layers") else 0) + lines.margin(planning)
+    layered = transparency.LAYER_MARGIN if planning.facts.get("layers") else 0
+    return filtered + layered + sum(f.margin(planning) for f in FEATURES if hasattr(f, "margin"))
 
 
 def _of_picture(plan: FramePlan, pixels: tuple[int, int]) -> tuple[int, int]:
@@ -140,7 +141,7 @@ SIZES = {
 }
 
 
-def _tile_edge(planning: Planning) -> int:
+def tile_edge(planning: Planning) -> int:
     """In pixels: along it lie the samples, and the square root of the hardware's samples in each. To filter silhouettes
     takes half as many textures again.
     """

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ambient occlusion: what surfaces of the picture keep of the world's light from one another (Jimenez et al. 2016)."""
+
+from __future__ import annotations
+
+from ..plan.executor import fill
+from ..plan.graph import Part, Pass, Texture
+from . import gbuffer, polygons
+from .drawing import LIT_HOSTS
+
+#: Of a tile's edge: how far is looked for occluders in a picture that is drawn in tiles.
+TILE_SHARE = 1 / 8
+
+DEPTHS = Texture("occluders", "R32F")
+
+
+def missing(planning) -> str:
+    """Why the frame has none, or nothing."""
+    scene = planning.scene
+    if not planning.settings.ambient_occlusion:
+        return "its distance is 0"
+    if not planning.model.has_world:
+        return f"{planning.model.name} shading does not look at the world's light"
+    if not any(scene.world):
+        return "the world is dark"
+    if not scene.polygons and all(instance.is_transparent for instance in scene.surfels):
+        return "transparent layers have none, and nothing is opaque"
+    return ""
+
+
+def margin(planning) -> int:
+    """Pixels that are looked at beside a tile's own; 0 where the whole picture is one tile."""
+    from ..plan import tile_edge
+
+    edge = tile_edge(planning)
+    return int(TILE_SHARE * edge) if not planning.find(missing) and max(planning.camera.size) > edge else 0
+
+
+def _reach(tile) -> float:
+    """In samples."""
+    pixels = tile.plan.facts["occlusion_margin"] or max(tile.camera.size)
+    return pixels * tile.plan.samples
+
+
+VALUES = {
+    "occlusion_distance": ("float", lambda tile: tile.settings.ambient_occlusion * tile.view.scale),
+    "occlusion_reach": ("float", _reach),
+}
+
+
+def passes(planning):
+    """The depths that are looked at."""
+    if not planning.shown:
+        return
+    if why := planning.find(missing):
+        planning.skip("ambient occlusion", why)
+        return
+    yield _depths(planning)
+
+
+def _depths(planning) -> Pass:
+    settings, pixels = planning.settings, margin(planning)
+    planning.facts["occlusion_margin"] = pixels
+    why = f"surfaces within {settings.ambient_occlusion:g} keep the world's light from one another"
+    if pixels:
+        why += f"; the picture is drawn in tiles, so they are looked for up to {pixels} pixels away"
+    if any(instance.is_transparent for instance in planning.scene.surfels):
+        why += "; transparent layers neither have it nor cause it"
+    own = Part(
+        "ambient_occlusion",
+        writes=(DEPTHS,),
+        constants=(("MEAN_OF", settings.multisampling),),
+        choices=(("samples", "mean" if settings.multisampling else "each"),),
+    )
+    sums = gbuffer.depth_parts(planning, "opaque", reads=(gbuffer.COLOR, gbuffer.NORMAL))
+    return Pass("occluders", why, "occluders.frag", fill, (own, sums, *polygons.joined(planning)))
+
+
+def parts(planning, p):
+    if p.kind == "opaque" and p.host in LIT_HOSTS and not planning.find(missing):
+        yield Part("ambient_occlusion", reads=(DEPTHS,))
