@@ -16,7 +16,7 @@ const float GRAZING_GAIN = 50.0;
 
 struct Lobe {
   vec3 normal;
-  vec3 view;
+  vec3 to_viewer;
   float nv;
   float roughness;
   vec3 diffuse_albedo;
@@ -31,9 +31,9 @@ struct Lobe {
 vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
   Lobe lobe;
   lobe.normal = normal;
-  lobe.view = view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
+  lobe.to_viewer = view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
   lobe.roughness = clamp(material.x, LEAST_ROUGHNESS, 1.0);
-  lobe.nv = max(dot(normal, lobe.view), MIN_COSINE);
+  lobe.nv = max(dot(normal, lobe.to_viewer), MIN_COSINE);
   float metallic = clamp(material.y, 0.0, 1.0);
   lobe.f0 = mix(vec3(material.z), base, metallic);
   float coat_f90 = min(GRAZING_GAIN * material.z, 1.0);
@@ -44,7 +44,7 @@ vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
   vec3 coat = specular_albedo(terms, vec3(material.z), coat_f90, scattered);
   lobe.diffuse_albedo = base * (1.0 - metallic) * (1.0 - coat);
   lobe.specular_albedo = specular_albedo(terms, lobe.f0, lobe.f90, lobe.scattered);
-  vec3 reflected = mean_direction(terms_mean.zw, lobe.view, normal);
+  vec3 reflected = mean_direction(terms_mean.zw, lobe.to_viewer, normal);
   vec3 radiance = lobe.diffuse_albedo * world_irradiance(normal)
       + lobe.specular_albedo * world_reflection(reflected, lobe.roughness);
   #hook lit(radiance, lobe, position, normal)
@@ -58,9 +58,9 @@ vec3 from_point(Lobe lobe, vec3 to_light, vec3 irradiance) {
   float nl = max(dot(lobe.normal, to_light), 0.0);
   if (!(nl > 0.0)) return vec3(0.0);
   float a2 = lobe.roughness * lobe.roughness * lobe.roughness * lobe.roughness, nv = lobe.nv;
-  vec3 halfway = normalize(lobe.view + to_light);
+  vec3 halfway = normalize(lobe.to_viewer + to_light);
   float nh = clamp(dot(lobe.normal, halfway), 0.0, 1.0);
-  float vh = clamp(dot(lobe.view, halfway), 0.0, 1.0);
+  float vh = clamp(dot(lobe.to_viewer, halfway), 0.0, 1.0);
   vec3 sine = cross(lobe.normal, halfway);  // sin^2 + a^2 cos^2: 1 - cos^2 (1 - a^2) loses all digits on a mirror
   float d = (nh > 0.0 ? dot(sine, sine) : 1.0) + nh * nh * a2;
   float distribution = a2 / (PI * d * d);
@@ -71,7 +71,7 @@ vec3 from_point(Lobe lobe, vec3 to_light, vec3 irradiance) {
 
 #part lights, sized_lights
 vec3 from_quad(Lobe lobe, Incident light) {
-  vec3 across = normalize(lobe.view - lobe.normal * dot(lobe.view, lobe.normal) + vec3(1e-7, 2e-7, 0.0));
+  vec3 across = normalize(lobe.to_viewer - lobe.normal * dot(lobe.to_viewer, lobe.normal) + vec3(1e-7, 2e-7, 0.0));
   mat3 to_tangent = transpose(mat3(across, cross(lobe.normal, across), lobe.normal));
   vec3 middle = to_tangent * light.middle, u = to_tangent * light.half_u, v = to_tangent * light.half_v;
   vec4 m = table_at(lobe.roughness, lobe.nv, 0);

@@ -54,6 +54,15 @@ def test_global_names_are_unique():
     assert not shared
 
 
+def test_nothing_is_named_as_a_block_is():
+    """Blender 4.5 makes a macro of a block's name, which would take the place of a field or variable of that name."""
+    for file in FILES:
+        plain = re.sub(r"//.*", "", file.read_text(encoding="utf-8"))
+        taken = re.findall(r"\.(?:view|draw|frame)\b|\b\w+ (?:view|draw|frame)\s*[;,=)\[(]", plain)
+        taken = [text for text in taken if not text.startswith("return ")]
+        assert not taken, f"{file}: {taken}"
+
+
 def test_a_function_for_a_hook_that_is_not_there_is_refused(tmp_path, monkeypatch):
     write(tmp_path, "hosts/small.frag", "#parts\nvoid main() {\n  #hook color(c)\n}\n")
     write(tmp_path, "features/tint", "#part small.frag\nvoid tint_colour(inout vec3 c) {}\n")
