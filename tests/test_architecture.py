@@ -28,8 +28,8 @@ RENDERING_DATA |= {"upload"}  # of which the table of GGX alone
 HOMES = {
     "bpy": ("blender/",),
     "mathutils": ("blender/",),
-    "gpu": ("rendering/device/blender_gpu.py", "blender/viewport.py"),
-    "gpu_extras": ("blender/viewport.py",),
+    "gpu": ("rendering/device/blender_gpu.py", "blender/engine/viewport.py"),
+    "gpu_extras": ("blender/engine/viewport.py",),
     "moderngl": ("rendering/device/standalone.py",),
 }
 

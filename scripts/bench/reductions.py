@@ -26,7 +26,7 @@ from splat_addon.sampling import (
     grid_spacing,
     sample_surface,
     surfels_from_points,
-)  # fmt: skip
+)
 from splat_addon.surfels import Surfels
 
 DEVICES = ("standalone",)

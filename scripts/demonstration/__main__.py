@@ -110,7 +110,7 @@ def save(blend: Path) -> None:
 def timed_frame() -> dict:
     """The statistics of the second of two frames, rendered as an animation: its shaders are compiled and its surfels
     on the device, as in every frame but the first."""
-    from splat_addon.blender.final_render import last_frame_stats
+    from splat_addon.blender.engine.final_render import last_frame_stats
 
     scene = bpy.context.scene
     kept = scene.render.filepath, scene.frame_start, scene.frame_end

@@ -25,7 +25,7 @@ from splat_addon.rendering import (
     Scene,
     Settings,
     open_device,
-)  # fmt: skip
+)
 from splat_addon.rendering.settings import OUTPUTS
 from splat_addon.rendering.shading_models import SHADING_MODELS
 

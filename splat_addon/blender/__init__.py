@@ -4,20 +4,16 @@
 
 from __future__ import annotations
 
-from . import (
+from . import mesh_sampling_settings, operators, properties
+from .conversion import mesh_settings, prediction
+from .engine import render_engine, render_passes
+from .ui import (
     camera_panels,
-    conversion_settings,
-    engine,
     light_panels,
-    mesh_sampling_settings,
     object_panels,
-    operators,
     passes_panel,
     points_panel,
-    prediction,
-    properties,
     render_panels,
-    render_passes,
     sidebar,
     view_layer_panels,
 )
@@ -26,7 +22,7 @@ from . import (
 MODULES = (
     properties,
     render_passes,
-    engine,
+    render_engine,
     render_panels,
     passes_panel,
     light_panels,
@@ -34,7 +30,7 @@ MODULES = (
     object_panels,
     view_layer_panels,
     mesh_sampling_settings,
-    conversion_settings,
+    mesh_settings,
     operators,
     prediction,
     sidebar,

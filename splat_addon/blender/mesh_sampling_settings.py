@@ -8,13 +8,13 @@ from typing import NamedTuple
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
-from .conversion_settings import DENSITIES
-from .engine_panel import EnginePanel
+from .conversion.mesh_settings import DENSITIES
 from .enum_values import check_choices
+from .geometry.sources import has_surfaces, owner_of
 from .ids import OBJECT_SETTINGS, RENDER_SETTINGS
-from .sources import has_surfaces, owner_of
+from .ui.engine_panel import EnginePanel
 
-#: density -> the property of `MeshSamplingProperties` that holds the number, and the kind of fineness that it is.
+#: density -> the property of `MeshSamplingProperties` that holds the number, and the kind of density that it is.
 _FINENESS = {
     "RESOLUTION": ("mesh_resolution", "resolution"),
     "SPACING": ("mesh_spacing", "spacing"),

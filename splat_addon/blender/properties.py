@@ -31,7 +31,7 @@ from ..rendering.shading_models import SHADING_MODELS
 from ..rendering.upload.storages import STORAGES
 from .enum_values import check_choices
 from .ids import RENDER_SETTINGS
-from .matcap_images import matcap_of
+from .materials.matcap_images import matcap_of
 from .mesh_sampling_settings import MeshSamplingProperties
 
 

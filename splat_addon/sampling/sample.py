@@ -14,26 +14,26 @@ from functools import partial
 import numpy as np
 
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
-from .adaptive import Tolerance, merge_flat
-from .attributes import SampleFiller
-from .blending import blend_depths, blending_per_radius
-from .borders import DEFAULT_CREASE_ANGLE, survey_edges
-from .cleaning import drop_unusable
-from .clipping import clip
-from .depth_cube import depth_cube
-from .fineness import check_fineness, grid_spacing
-from .gaps import gap_surfels
-from .grid import make_grid
-from .lost_parts import SampledSurface, lost_parts
-from .mesh import TriangleMesh
-from .palette import Palette
-from .part_surfels import part_surfels
+from .attributes.blend_depths import blend_depths, blending_per_radius
+from .attributes.material_sampler import MaterialSampler
+from .attributes.sample_attributes import SampleFiller
+from .attributes.tangents import layered_tangents
+from .attributes.texture_mapping import BORDER, UV_FIELDS, is_texture_mapped
+from .attributes.texture_seams import seam_edges
+from .density import check_fineness, grid_spacing
+from .edges.borders import DEFAULT_CREASE_ANGLE, survey_edges
+from .edges.clipping import clip
+from .edges.gaps import gap_surfels
+from .ldc.depth_cube import depth_cube
+from .ldc.grid import make_grid
+from .ldc.reductions import DEFAULT_GRAZING_ANGLE, check_grazing_angle, find_reduction
+from .ldc.scan_conversion import BATCH, Spans, batches
+from .mesh.cleaning import drop_unusable
+from .mesh.triangle_mesh import TriangleMesh
 from .progress import Progress, stage
-from .reductions import DEFAULT_GRAZING_ANGLE, check_grazing_angle, find_reduction
-from .scan_conversion import BATCH, Spans, batches
-from .tangents import layered_tangents
-from .texture_mapping import BORDER, UV_FIELDS, is_texture_mapped
-from .texture_seams import seam_edges
+from .refine.adaptive import Tolerance, merge_flat
+from .refine.component_surfels import component_surfels
+from .refine.missed_components import SampledSurface, missed_components
 
 #: Half-axis of a splat in H. At 1 the seams between the regions of two axes leave 0.025 % of the armadillo uncovered
 #: at resolution 256, single dark specks in a picture; at 1.25 none of 200,000 points on it was uncovered.
@@ -116,21 +116,21 @@ def sample_surface(
     coordinates = grid.coordinates(mesh.positions)
     surface = SampledSurface(len(mesh.positions))
     images = depth_cube(coordinates, mesh.triangles, grid, keeps, surface, stage(progress, 0.0, 0.5))
-    lost = lost_parts(mesh, surface)
+    lost = missed_components(mesh, surface)
 
     total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
-    palette = Palette(mesh.surfaces)
+    sampler = MaterialSampler(mesh.surfaces)
     uv_fields = (*UV_FIELDS, BORDER) if texture_mapped and is_texture_mapped(mesh.surfaces) else ()
     seams = seam_edges(mesh) if uv_fields and mesh.corner_uvs is not None else None
-    layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in (*palette.optional, *uv_fields)}
+    layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in (*sampler.optional, *uv_fields)}
     arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
-    tangents = layered_tangents(mesh) if palette.needs_tangents else None
+    tangents = layered_tangents(mesh) if sampler.needs_tangents else None
     needs_edges = crease_angle is not None or fits_blending
     edges = survey_edges(mesh, DEFAULT_CREASE_ANGLE if crease_angle is None else crease_angle) if needs_edges else None
     if fits_blending:
         arrays["blend_depth"] = np.empty(total, np.float32)
     bends = blending_per_radius(mesh, edges.bends) if fits_blending else None
-    filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, palette, tangents, seams, bends, arrays)
+    filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, sampler, tangents, seams, bends, arrays)
     filled = 1.0 if crease_angle is None else 0.6
     _fill(filler, images, stage(progress, 0.5, filled))
     if chosen.merge is not None:
@@ -140,7 +140,7 @@ def sample_surface(
         report = stage(progress, filled, 1.0)
         clipping = clip(arrays, edges.borders, grid.surfel_origin)
         report(0.7)
-        gaps, gap_triangles = gap_surfels(mesh, edges.borders, arrays, clipping, grid, splat_size, palette, tangents)
+        gaps, gap_triangles = gap_surfels(mesh, edges.borders, arrays, clipping, grid, splat_size, sampler, tangents)
         if bends is not None and gaps:
             gaps["blend_depth"] = blend_depths(bends[gap_triangles], gaps["scales"].max(axis=1))
         arrays |= clipping.fields
@@ -154,7 +154,7 @@ def sample_surface(
         arrays = _appended(arrays, gaps)
     small_parts = int(lost[1].max(initial=-1)) + 1
     if small_parts:
-        extra = part_surfels(mesh, coordinates, grid, lost, splat_size, palette, tangents, bool(uv_fields))
+        extra = component_surfels(mesh, coordinates, grid, lost, splat_size, sampler, tangents, bool(uv_fields))
         arrays = _appended(arrays, extra)
     surfels = Surfels(origin=grid.surfel_origin, **arrays)
     return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error, gap_triangles)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import splat_addon
-from splat_addon.blender.attributes import read_surfels
+from splat_addon.blender.geometry.attributes import read_surfels
 from splat_addon.surfels import Surfels
 
 

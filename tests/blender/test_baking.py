@@ -191,7 +191,9 @@ def test_the_file_is_left_as_it_was(square, convert):
 
 
 def test_what_is_readable_is_not_baked(square, convert, surfels_of, monkeypatch):
-    monkeypatch.setattr("splat_addon.blender.conversion.baked", lambda *_: pytest.fail("nothing is to be baked"))
+    monkeypatch.setattr(
+        "splat_addon.blender.conversion.mesh_conversion.baked", lambda *_: pytest.fail("nothing is to be baked")
+    )
     Nodes(square).inputs["Base Color"].default_value = (0.3, 0.2, 0.1, 1)
     assert np.allclose(surfels_of(convert(resolution=4, bake_materials=True)[0]).colors, (0.3, 0.2, 0.1, 1))
 

@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.mesh_extraction import read_mesh
-from splat_addon.sampling.tangents import corner_tangents
+from splat_addon.blender.geometry.mesh_extraction import read_mesh
+from splat_addon.sampling.attributes.tangents import corner_tangents
 
 TEXELS = 4
 ENCODED = np.random.default_rng(5).integers(0, 256, (TEXELS, TEXELS, 4)) / 255

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.mesh_extraction import evaluated_mesh, read_mesh, read_triangles
+from splat_addon.blender.geometry.mesh_extraction import evaluated_mesh, read_mesh, read_triangles
 
 
 def extract(source, read=read_mesh):

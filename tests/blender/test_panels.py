@@ -15,8 +15,9 @@ import bpy
 import pytest
 
 from splat_addon import blender
-from splat_addon.blender import ids, render_panels
-from splat_addon.blender.camera_export import PANORAMA_PROPERTIES
+from splat_addon.blender import ids
+from splat_addon.blender.export.camera import PANORAMA_PROPERTIES
+from splat_addon.blender.ui import render_panels
 
 #: module -> variable in it -> RNA types that it may be of
 VARIABLES = {
@@ -40,12 +41,19 @@ TABS = {
 
 #: kind of thing -> the modules that read it for a picture
 READERS = {
-    "light": ("shading_export",),
-    "camera": ("camera_export",),
-    "render": ("camera_export", "final_render", "motion_blur", "properties"),
-    "view layer": ("final_render", "motion_blur", "properties", "render_passes", "scene_export", "material_override"),
-    "object": ("scene_export", "live_meshes"),
-    "material": ("shading_export", "material_surfaces"),
+    "light": ("export/shading",),
+    "camera": ("export/camera",),
+    "render": ("export/camera", "engine/final_render", "engine/motion_blur", "properties"),
+    "view layer": (
+        "engine/final_render",
+        "engine/motion_blur",
+        "engine/render_passes",
+        "export/scene",
+        "materials/material_override",
+        "properties",
+    ),
+    "object": ("export/scene", "export/live_meshes"),
+    "material": ("export/shading", "materials/material_surfaces"),
 }
 
 #: What is read but is no setting: names, identities, results, and what stands in the outliner, the timeline or the

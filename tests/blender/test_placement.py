@@ -7,7 +7,7 @@ import pytest
 from mathutils import Matrix
 from mathutils.bvhtree import BVHTree
 
-from splat_addon.blender.placement import without_shear
+from splat_addon.blender.conversion.placement import without_shear
 
 PLACES = {
     "offset": Matrix.Translation((100, -200, 300)),

@@ -4,11 +4,11 @@
 import bpy
 import pytest
 
-from splat_addon.blender import prediction
-from splat_addon.blender.conversion import Choices
-from splat_addon.blender.gathering import gather
-from splat_addon.blender.sidebar import prediction as sidebar_text
-from splat_addon.blender.sidebar import prediction_text
+from splat_addon.blender.conversion import prediction
+from splat_addon.blender.conversion.gathering import gather
+from splat_addon.blender.conversion.mesh_conversion import Choices
+from splat_addon.blender.ui.sidebar import prediction as sidebar_text
+from splat_addon.blender.ui.sidebar import prediction_text
 from splat_addon.sampling import REDUCTIONS, predict_count
 
 PLAIN = Choices({"resolution": 16})
@@ -52,9 +52,9 @@ def test_it_is_the_count_that_sampling_predicts(cube):
     assert count == predict_count(gather([cube], depsgraph, False).mesh, spacing=spacing)
 
 
-@pytest.mark.parametrize("fineness", [{"resolution": 0}, {"spacing": 0.0}])
-def test_a_setting_of_zero_predicts_nothing(known, fineness):
-    assert known.predict(fineness) == (0, 0.0)
+@pytest.mark.parametrize("density", [{"resolution": 0}, {"spacing": 0.0}])
+def test_a_setting_of_zero_predicts_nothing(known, density):
+    assert known.predict(density) == (0, 0.0)
 
 
 def test_a_mesh_without_faces_predicts_nothing(add_mesh):

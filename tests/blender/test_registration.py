@@ -4,7 +4,8 @@
 import bpy
 
 import splat_addon
-from splat_addon.blender import conversion_settings, ids
+from splat_addon.blender import ids
+from splat_addon.blender.conversion import mesh_settings
 
 
 def handlers() -> list:
@@ -28,8 +29,8 @@ def test_unregistering_takes_everything_away_and_registering_brings_it_back():
 def test_the_operator_and_the_sidebar_have_the_same_settings_with_the_same_defaults():
     operator = bpy.ops.object.surfels_from_mesh.get_rna_type().properties
     settings = getattr(bpy.context.scene, ids.CONVERSION_SETTINGS).bl_rna.properties
-    assert len(conversion_settings.PROPERTY_NAMES) == 17
-    for name in conversion_settings.PROPERTY_NAMES:
+    assert len(mesh_settings.PROPERTY_NAMES) == 17
+    for name in mesh_settings.PROPERTY_NAMES:
         assert (operator[name].default, operator[name].description) == (
             settings[name].default,
             settings[name].description,
@@ -45,4 +46,4 @@ def test_the_pass_index_of_a_material_can_be_set():
 
 def test_every_setting_has_a_tooltip():
     settings = getattr(bpy.context.scene, ids.CONVERSION_SETTINGS).bl_rna.properties
-    assert all(len(settings[name].description) > 20 for name in conversion_settings.PROPERTY_NAMES)
+    assert all(len(settings[name].description) > 20 for name in mesh_settings.PROPERTY_NAMES)

@@ -8,16 +8,7 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
-from splat_addon.rendering import (
-    Environment,
-    Lens,
-    Light,
-    Refinement,
-    Renderer,
-    Scene,
-    Settings,
-    plan,
-)
+from splat_addon.rendering import Environment, Lens, Light, Refinement, Renderer, Scene, Settings, plan
 from splat_addon.rendering.plan import executor
 
 SETTINGS = Settings(method="quad", samples=4, outputs=("color",))

@@ -102,7 +102,7 @@ def test_one_vertex_far_off_leaves_few_samples_and_no_error(cube):
 
 
 @pytest.mark.parametrize(
-    "fineness, sentence",
+    "density, sentence",
     [
         ({}, "not none of them"),
         ({"spacing": 0.1, "resolution": 8}, "not spacing and resolution"),
@@ -116,9 +116,9 @@ def test_one_vertex_far_off_leaves_few_samples_and_no_error(cube):
         ({"resolution": 600_000}, "exact up to 524,288"),
     ],
 )
-def test_an_unusable_fineness_is_refused_in_a_sentence(cube, fineness, sentence):
+def test_an_unusable_fineness_is_refused_in_a_sentence(cube, density, sentence):
     with pytest.raises(ValueError, match=sentence):
-        sample_mesh(cube(), **fineness)
+        sample_mesh(cube(), **density)
 
 
 @pytest.mark.parametrize("what", ["resolution", "count"])

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from splat_addon.sampling import Channel, Image, Surface, Texture, Tolerance, VertexColors, sample_mesh, sample_surface
-from splat_addon.sampling.surfaces import ALPHA, BLUE, GREEN, LUMINANCE, RED
+from splat_addon.sampling.attributes.surfaces import ALPHA, BLUE, GREEN, LUMINANCE, RED
 
 UVS = np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]], float)
 

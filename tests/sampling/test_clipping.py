@@ -8,10 +8,10 @@ import trimesh
 from splat_addon.clip_lines import kept
 from splat_addon.sampling import (
     Channel,
+    DeformingSurfels,
     SamplingCancelled,
     Surface,
     Tolerance,
-    TrackedSurfels,
     TriangleMesh,
     VertexColors,
     sample_mesh,
@@ -213,9 +213,9 @@ def test_merged_surfels_leave_the_lines_of_others(cube):
 
 
 def test_lines_go_with_a_mesh_that_deforms(cube):
-    tracked = TrackedSurfels(cube(), resolution=9, crease_angle=ANGLE)
+    deforming = DeformingSurfels(cube(), resolution=9, crease_angle=ANGLE)
     move = np.array([(1.2, 0.5, 0), (0, 0.8, 0.3), (0.1, 0, 1)])
-    surfels, _ = tracked.at(TriangleMesh(cube().positions @ move.T, cube().triangles))
+    surfels, _ = deforming.at(TriangleMesh(cube().positions @ move.T, cube().triangles))
     inside = shown(surfels)[0] @ np.linalg.inv(move).T
     assert inside.min() > -3e-3 and inside.max() < 1 + 3e-3
 
@@ -223,7 +223,7 @@ def test_lines_go_with_a_mesh_that_deforms(cube):
 def test_surfels_that_fill_gaps_follow_a_mesh_too():
     strip = TriangleMesh(np.array([(0, 0, 0), (1, 0, 0), (1, 0.004, 0), (0, 0.004, 0.0)]) + 0.0013,
                          np.array([(0, 1, 2), (0, 2, 3)]))  # fmt: skip
-    tracked = TrackedSurfels(strip, spacing=0.05, crease_angle=ANGLE)
-    assert len(tracked.sampling.gap_triangles)
-    surfels, _ = tracked.at(TriangleMesh(strip.positions + np.array([0, 0, 2]), strip.triangles))
+    deforming = DeformingSurfels(strip, spacing=0.05, crease_angle=ANGLE)
+    assert len(deforming.sampling.gap_triangles)
+    surfels, _ = deforming.at(TriangleMesh(strip.positions + np.array([0, 0, 2]), strip.triangles))
     assert np.allclose(surfels.positions[:, 2] + surfels.origin[2], 2.0013)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from splat_addon.sampling import TriangleMesh, predict_count, projected_area, sample_mesh
-from splat_addon.sampling.depth_cube import depth_cube
-from splat_addon.sampling.grid import Grid
-from splat_addon.sampling.lost_parts import SampledSurface
-from splat_addon.sampling.reductions import keep_dominant
+from splat_addon.sampling.ldc.depth_cube import depth_cube
+from splat_addon.sampling.ldc.grid import Grid
+from splat_addon.sampling.ldc.reductions import keep_dominant
+from splat_addon.sampling.refine.missed_components import SampledSurface
 
 
 @pytest.mark.parametrize("shift", [0, 0.25, 0.5])

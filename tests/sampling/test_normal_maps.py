@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from splat_addon.sampling import Channel, Image, NormalMap, Surface, Texture, TriangleMesh, sample_mesh
-from splat_addon.sampling.tangents import corner_tangents
+from splat_addon.sampling.attributes.tangents import corner_tangents
 
 UVS = np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]], float)
 TILTED = np.array((0.6, 0.0, 0.8))

@@ -4,9 +4,10 @@
 import numpy as np
 import pytest
 
-from splat_addon.sampling import Channel, Surface, TriangleMesh, VertexColors, sample_mesh, scan_conversion
-from splat_addon.sampling import mesh as mesh_module
+from splat_addon.sampling import Channel, Surface, TriangleMesh, VertexColors, sample_mesh
 from splat_addon.sampling import sample as sample_module
+from splat_addon.sampling.ldc import scan_conversion
+from splat_addon.sampling.mesh import triangle_mesh as mesh_module
 
 
 def test_surfels_lie_on_the_faceted_sphere(sphere):

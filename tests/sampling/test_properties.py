@@ -17,10 +17,10 @@ from splat_addon.sampling import (
     grid_spacing,
     sample_mesh,
     sample_surface,
-    scan_conversion,
 )
-from splat_addon.sampling import mesh as mesh_module
 from splat_addon.sampling import sample as sample_module
+from splat_addon.sampling.ldc import scan_conversion
+from splat_addon.sampling.mesh import triangle_mesh as mesh_module
 from tests.sampling.distances import distances
 
 RESOLUTION = 64

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from splat_addon.sampling.scan_conversion import Spans, batches, expand, scan_convert
+from splat_addon.sampling.ldc.scan_conversion import Spans, batches, expand, scan_convert
 
 LARGEST = 2**25
 

@@ -8,7 +8,7 @@ import pytest
 import trimesh
 
 from splat_addon.sampling import TriangleMesh
-from splat_addon.sampling.solid import is_solid
+from splat_addon.sampling.mesh.solid import is_solid
 
 
 def of(shape):

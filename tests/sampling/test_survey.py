@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from splat_addon.sampling import TriangleMesh
-from splat_addon.sampling.mesh import triangle_chunks
-from splat_addon.sampling.survey import signed_volumes, survey
+from splat_addon.sampling.mesh.survey import signed_volumes, survey
+from splat_addon.sampling.mesh.triangle_mesh import triangle_chunks
 
 #: Few places, so that triangles collapse, repeat and close by accident.
 TRIANGLES = st.lists(st.tuples(*[st.integers(0, 5)] * 3), min_size=1, max_size=30)

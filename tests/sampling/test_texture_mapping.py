@@ -6,7 +6,7 @@ import pytest
 
 from splat_addon.images import Image
 from splat_addon.sampling import Channel, Surface, Texture, Tolerance, TriangleMesh, VertexColors, sample_surface
-from splat_addon.sampling.texture_mapping import UV_FIELDS
+from splat_addon.sampling.attributes.texture_mapping import UV_FIELDS
 
 IMAGE = Image(np.dstack([np.random.default_rng(1).uniform(0, 1, (32, 32, 3)), np.ones((32, 32))]))
 TEXTURED = Surface(Channel((1.0, 0.5, 1.0, 1.0), Texture(IMAGE)))

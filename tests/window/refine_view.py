@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 import splat_addon  # noqa: E402
-from splat_addon.blender import viewport  # noqa: E402
+from splat_addon.blender.engine import viewport  # noqa: E402
 
 REPORT = Path(sys.argv[sys.argv.index("--") + 1])
 SAMPLES = 6

@@ -12,9 +12,9 @@ from bpy_extras.io_utils import ExportHelper
 
 from ...interchange import joined, transformed, write_gaussian_ply, write_ply
 from ...surfels import Surfels
-from ..attributes import has_surfels, read_surfels
+from ..geometry.attributes import has_surfels, read_surfels
+from ..geometry.mesh_extraction import evaluated_mesh
 from ..ids import EXPORT_PLY
-from ..mesh_extraction import evaluated_mesh
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 

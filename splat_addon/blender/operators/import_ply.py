@@ -13,9 +13,9 @@ from mathutils import Matrix
 from ...interchange import DEFAULT_FLATNESS, Gaussians, Points, StoredSurfels, read_contents
 from ...sampling import surfels_from_points
 from ...surfels import Surfels
+from ..conversion.points_settings import PointsProperties, draw_points_properties, keywords, viewpoint
+from ..conversion.surfel_objects import add_surfel_object, select_only
 from ..ids import IMPORT_PLY
-from ..points_settings import PointsProperties, draw_points_properties, keywords, viewpoint
-from ..surfel_objects import add_surfel_object, select_only
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 

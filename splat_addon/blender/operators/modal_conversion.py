@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import bpy
 
-from ..conversion_batch import Batch
+from ..conversion.batch import Batch
 from ..ids import ENGINE, ENGINE_LABEL
 
 _TIMER_SECONDS = 0.05

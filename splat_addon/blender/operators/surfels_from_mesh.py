@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import bpy
 
-from ..conversion_batch import ConversionBatch
-from ..conversion_settings import ConversionProperties, choices, draw_properties
+from ..conversion.batch import ConversionBatch
+from ..conversion.mesh_settings import ConversionProperties, choices, draw_properties
+from ..geometry.sources import has_surfaces
 from ..ids import SURFELS_FROM_MESH
 from ..mesh_sampling_settings import leave_to_surfels
-from ..sources import has_surfaces
 from .menu_entry import with_menu_entry
 from .modal_conversion import ModalConversion
 

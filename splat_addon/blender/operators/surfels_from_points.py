@@ -6,10 +6,10 @@ from __future__ import annotations
 import bpy
 from bpy.props import EnumProperty
 
+from ..conversion.points_conversion import PointsBatch
+from ..conversion.points_settings import PointsProperties, draw_points_properties, keywords, viewpoint
+from ..geometry.points_extraction import has_points
 from ..ids import SURFELS_FROM_POINTS
-from ..points_conversion import PointsBatch
-from ..points_extraction import has_points
-from ..points_settings import PointsProperties, draw_points_properties, keywords, viewpoint
 from .menu_entry import with_menu_entry
 from .modal_conversion import ModalConversion
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is to be rendered: surfel objects and their instances, materials, lights and the world.
 
-Plain values, no Blender: `blender/scene_export.py` makes a `Scene` from a depsgraph, tests make one by hand.
+Plain values, no Blender: `blender/export/scene.py` makes a `Scene` from a depsgraph, tests make one by hand.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..cleaning import MAX_COORDINATE
+from ..mesh.cleaning import MAX_COORDINATE
 
 #: A point is isolated if its neighbours are this many times as far from it as theirs are from them. On scans of even
 #: density the ratio stays below 2, at a step to a quarter of the density it is 2.

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.attributes import write_surfels
+from splat_addon.blender.geometry.attributes import write_surfels
 from splat_addon.surfels import Surfels, axes_quaternions
 
 IMAGE_FORMATS = {"OPEN_EXR": "IMAGE", "OPEN_EXR_MULTILAYER": "MULTI_LAYER_IMAGE"}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mathutils import Vector
 
-from splat_addon.blender.attributes import write_surfels
+from splat_addon.blender.geometry.attributes import write_surfels
 from splat_addon.blender.properties import final_settings, viewport_settings
 from splat_addon.reference.metrics import psnr
 from splat_addon.sampling import TriangleMesh, sample_mesh

@@ -157,7 +157,7 @@ def test_what_was_moved_one_by_one_is_named(discs, picture, said):
 
 
 def test_frames_are_moved_once_for_an_animation(discs, scene, tmp_path, monkeypatch):
-    from splat_addon.blender import attributes
+    from splat_addon.blender.geometry import attributes
 
     calls, followed = [], attributes.followed
     monkeypatch.setattr(attributes, "followed", lambda *given: calls.append(given) or followed(*given))

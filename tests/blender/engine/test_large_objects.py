@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender import scene_export
-from splat_addon.blender.live_meshes import LiveMeshes
+from splat_addon.blender.export import scene
+from splat_addon.blender.export.live_meshes import LiveMeshes
 from splat_addon.surfels import split
 
 
@@ -22,19 +22,19 @@ def sheet(add_camera, add_surfels):
 
 def test_the_picture_of_several_sets_is_that_of_one(sheet, picture, monkeypatch):
     whole = picture()
-    monkeypatch.setattr(scene_export, "MAX_SPLATS", 150)
+    monkeypatch.setattr(scene, "MAX_SPLATS", 150)
     assert whole[..., 3].max() == 1 and np.abs(picture() - whole).max() < 1e-5
 
 
 def test_the_sets_stay_the_same_from_frame_to_frame(sheet, monkeypatch):
     """What lies on the device is known by identity."""
-    monkeypatch.setattr(scene_export, "MAX_SPLATS", 150)
-    store, live = scene_export.SurfelStore(), LiveMeshes()
+    monkeypatch.setattr(scene, "MAX_SPLATS", 150)
+    store, live = scene.SurfelStore(), LiveMeshes()
     frames = []
     for _ in range(2):
         store.begin_frame()
-        scene, _ = scene_export.export_scene(bpy.context.evaluated_depsgraph_get(), store, live)
-        frames.append([instance.surfels for instance in scene.surfels])
+        exported, _ = scene.export_scene(bpy.context.evaluated_depsgraph_get(), store, live)
+        frames.append([instance.surfels for instance in exported.surfels])
     assert [len(surfels) for surfels in frames[0]] == [150, 150, 100]
     assert all(a is b for a, b in zip(*frames, strict=True))
 

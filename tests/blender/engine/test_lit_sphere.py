@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.attributes import write_surfels
+from splat_addon.blender.geometry.attributes import write_surfels
 from splat_addon.sampling import TriangleMesh, sample_mesh
 
 #: name: type, energy, location, rotation, properties

@@ -7,7 +7,8 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender import final_render, live_meshes
+from splat_addon.blender.engine import final_render
+from splat_addon.blender.export import live_meshes
 from splat_addon.rendering.upload import storages
 
 

@@ -5,10 +5,10 @@ Principled BSDF is either read or named."""
 import bpy
 import pytest
 
-from splat_addon.blender import passed_over
-from splat_addon.blender.material_surfaces import SHADERS
-from splat_addon.blender.scene_export import Notes
-from splat_addon.blender.shading_export import shading_material
+from splat_addon.blender.export import passed_over
+from splat_addon.blender.export.scene import Notes
+from splat_addon.blender.export.shading import shading_material
+from splat_addon.blender.materials.material_surfaces import SHADERS
 
 #: Sockets that mean something only where another is above 0: prefix -> that one.
 LEADERS = {
@@ -135,7 +135,7 @@ def ordinary(scene, add_camera, add_square):
 @pytest.fixture
 def warned(scene):
     """warned() -> what a render of one pixel warned of, as Blender's list of reports has it."""
-    from splat_addon.blender import final_render
+    from splat_addon.blender.engine import final_render
 
     scene.render.resolution_x = scene.render.resolution_y = 4
 

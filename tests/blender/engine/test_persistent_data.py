@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender import final_render
+from splat_addon.blender.engine import final_render
 from splat_addon.rendering.upload import storages
 
 

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.matcap_images import matcap_of
+from splat_addon.blender.materials.matcap_images import matcap_of
 from splat_addon.rendering.shading_models import SHADING_MODELS
 
 

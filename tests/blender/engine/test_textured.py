@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender import final_render
+from splat_addon.blender.engine import final_render
 
 TEXELS, SIZE = 8, 32
 #: The pixels in the middles of the texels.
@@ -177,7 +177,7 @@ def test_an_animation_reads_an_unchanged_image_once(scene, add_textured, tmp_pat
     image.filepath_raw, image.file_format = str(path), "OPEN_EXR"
     image.save()
     add_textured(textured_material(bpy.data.images.load(str(path))))
-    from splat_addon.blender import material_surfaces
+    from splat_addon.blender.materials import material_surfaces
 
     reads, original = [], material_surfaces.linear_pixels
     monkeypatch.setattr(material_surfaces, "linear_pixels", lambda *a: reads.append(a[0].name) or original(*a))
@@ -235,8 +235,8 @@ def test_the_texture_follows_a_mesh_that_deforms(live_square, scene, image, tmp_
 
 def test_a_viewport_reads_an_image_again_only_where_it_is_told(image):
     """A painted image stays dirty until it is saved, and every move of an object updates the view."""
-    from splat_addon.blender.scene_export import Notes
-    from splat_addon.blender.surface_textures import TextureStore
+    from splat_addon.blender.export.scene import Notes
+    from splat_addon.blender.materials.surface_textures import TextureStore
 
     material, store, seen = textured_material(image), TextureStore(), []
     for is_edited in (False, False, True, True):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mathutils import Euler, Matrix
 
-from splat_addon.blender.attributes import read_surfels, write_surfels
+from splat_addon.blender.geometry.attributes import read_surfels, write_surfels
 from splat_addon.surfels import Surfels, axes_quaternions
 
 TURN = Euler((0.5, 0.7, -0.4)).to_matrix().to_4x4()

@@ -75,7 +75,7 @@ def mesh_square(add_object, side, location):
 
 
 def test_a_sprite_method_says_that_it_draws_what_is_transparent_opaque(scene, add_camera, add_sheet, picture):
-    from splat_addon.blender.final_render import last_frame_stats
+    from splat_addon.blender.engine.final_render import last_frame_stats
 
     add_camera()
     add_sheet(side=8, count=30, colors=WHITE_GLASS)

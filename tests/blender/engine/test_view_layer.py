@@ -79,7 +79,7 @@ def test_without_its_surfaces_a_layer_is_empty(things, picture):
 
 
 def test_a_layer_s_samples_come_before_the_scene_s(things, picture):
-    from splat_addon.blender import final_render
+    from splat_addon.blender.engine import final_render
 
     bpy.context.view_layer.samples = 3
     picture()

@@ -7,7 +7,7 @@ from importlib import import_module
 import numpy as np
 import pytest
 
-from splat_addon.blender import viewport
+from splat_addon.blender.engine import viewport
 from splat_addon.reference import scenes
 from splat_addon.rendering import Refinement, Renderer, Settings
 

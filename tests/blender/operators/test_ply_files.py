@@ -9,7 +9,7 @@ import pytest
 
 import splat_addon
 from splat_addon.blender import ids
-from splat_addon.blender.attributes import write_surfels
+from splat_addon.blender.geometry.attributes import write_surfels
 from splat_addon.interchange import read_ply, write_ply
 from splat_addon.surfels import LAYOUT
 

@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.conversion import Choices
-from splat_addon.blender.conversion_batch import ConversionBatch
+from splat_addon.blender.conversion.batch import ConversionBatch
+from splat_addon.blender.conversion.mesh_conversion import Choices
 
 
 @pytest.fixture

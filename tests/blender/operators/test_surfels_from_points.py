@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.attributes import has_surfels
-from splat_addon.blender.points_conversion import PointsBatch
+from splat_addon.blender.conversion.points_conversion import PointsBatch
+from splat_addon.blender.geometry.attributes import has_surfels
 
 
 def sphere(count=2000):

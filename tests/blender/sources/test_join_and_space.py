@@ -5,9 +5,9 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender import prediction
-from splat_addon.blender.conversion import Choices
-from splat_addon.blender.sidebar import prediction as sidebar_text
+from splat_addon.blender.conversion import prediction
+from splat_addon.blender.conversion.mesh_conversion import Choices
+from splat_addon.blender.ui.sidebar import prediction as sidebar_text
 
 
 def add_cube(name, location=(0, 0, 0), scale=(1, 1, 1), rotation=(0, 0, 0), color=None):
@@ -122,13 +122,13 @@ def predicted(sources, asked):
 
 
 @pytest.mark.parametrize("choices", [{"join": True}, {"space": "world"}, {"space": "object"}], ids=str)
-@pytest.mark.parametrize("fineness", [{"spacing": 0.125}, {"resolution": 48}, {"count": 5000}], ids=str)
-def test_the_count_before_is_the_count_after(red_and_mirrored_blue, convert, choices, fineness):
+@pytest.mark.parametrize("density", [{"spacing": 0.125}, {"resolution": 48}, {"count": 5000}], ids=str)
+def test_the_count_before_is_the_count_after(red_and_mirrored_blue, convert, choices, density):
     sources = list(red_and_mirrored_blue)
-    ((density, value),) = fineness.items()
+    ((kind, value),) = density.items()
     settings = {name: value.upper() if name == "space" else value for name, value in choices.items()}
-    before = predicted(sources, Choices(fineness, **choices))
-    made = convert(density=density.upper(), **{density: value}, **settings)
+    before = predicted(sources, Choices(density, **choices))
+    made = convert(density=kind.upper(), **{kind: value}, **settings)
     assert sum(len(m.data.vertices) for m in made) == pytest.approx(before, rel=0.02)
 
 

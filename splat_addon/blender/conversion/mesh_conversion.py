@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One object, or several joined, becomes one surfel object, in four steps: prepare, sample, bake, place.
+
+Only `sample` leaves Blender's data alone, so it may run in a thread of its own while the window lives.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import bpy
+from mathutils import Matrix
+
+from ...sampling import (
+    DEFAULT_GRAZING_ANGLE,
+    DEFAULT_SPLAT_SIZE,
+    REDUCTIONS,
+    Sampling,
+    Tolerance,
+    TriangleMesh,
+    drop_unusable,
+    grid_spacing,
+    is_solid,
+    outline,
+    predict_count,
+    sample_surface,
+)
+from ...surfels import Surfels
+from ..export.object_detail import detail_of, finer
+from ..geometry.mesh_extraction import read_mesh, unread_sentences
+from ..materials.baking import Bakeable, baked
+from ..materials.material_surfaces import Unread
+from .camera_density import without_camera
+from .gathering import gather
+from .surfel_objects import add_surfel_object, collections_of
+
+#: How far a surfel's surface may be above or below it, in spacings: a bend within its cell, or a move to a lattice.
+_REACH, _LATTICE_REACH = 0.25, 1.0
+
+#: About 20 GB while converting; a slip in the resolution must not freeze the machine.
+MAX_SURFELS = 100_000_000
+
+
+@dataclass(frozen=True)
+class Choices:
+    """density: one keyword and value: "resolution", "spacing" or "count" as sampling takes them, or "pixels" that a
+    surfel may cover for the scene's camera. reduction, grazing_angle: as sampling takes them. splat_size: half-axis of
+    a splat, in spacings. tolerance: how far from flat, object units, where surfels may become larger, or None.
+    texture_mapped: colours that are one image are looked up in it when rendered. crease_angle: radians, beyond which
+    splats end at edges and blend as deep as the surface asks for, or None.
+    space: "object" or "world", whose units lengths are in and which the surfels are even in. join: all sources become
+    one, in world units. bake: what materials cannot be read for comes from Blender's own bake."""
+
+    density: dict[str, float]
+    splat_size: float = DEFAULT_SPLAT_SIZE
+    reduction: str = "normal"
+    grazing_angle: float = DEFAULT_GRAZING_ANGLE
+    tolerance: float | None = None
+    texture_mapped: bool = False
+    crease_angle: float | None = None
+    space: str = "object"
+    join: bool = False
+    bake: bool = False
+
+    @property
+    def in_world_units(self) -> bool:
+        return self.join or self.space == "world"
+
+
+@dataclass(eq=False)
+class Conversion:
+    """The sources of one surfel object on their way, and what there is to tell about them.
+
+    sources: the first gives the place. whole: as it was read; mesh: without its unusable triangles.
+    unread: inputs of materials that are to be baked.
+    """
+
+    sources: list[bpy.types.Object]
+    whole: TriangleMesh
+    mesh: TriangleMesh
+    matrix_world: Matrix
+    materials: tuple[bpy.types.Material | None, ...]
+    unread: tuple[tuple[bpy.types.Material, Unread], ...]
+    choices: Choices
+    spacing: float
+    triangles: int
+    notes: list[str]
+    seconds: float
+    surfels: Surfels | None = None
+    sampling: Sampling | None = None
+
+    @property
+    def name(self) -> str:
+        return self.sources[0].name
+
+    def summary(self) -> str:
+        """What was made, in one line."""
+        parts, saved = self.sampling.small_parts, self.sampling.saved
+        objects = f"{len(self.sources)} objects, " if len(self.sources) > 1 else ""
+        details = [f"{parts:,} small part{'s' * (parts > 1)} got one surfel each"] if parts else []
+        if self.choices.tolerance is not None:
+            details.append(f"flat places saved {saved:,} surfels and are off by {self.sampling.error:.2g} at most")
+        return "; ".join(
+            [
+                f"{objects}{self.triangles:,} triangles -> {len(self.surfels):,} surfels "
+                f"in {self.seconds:.1f} s, spacing {self.spacing:.4g}",
+                *details,
+            ]
+        )
+
+
+def prepare(
+    sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, choices: Choices, images: dict | None = None
+) -> Conversion:
+    """Read the sources, evaluated with their modifiers, with the instances that they make.
+
+    images: keeps the textures' pixels for the next call.
+    Raises ValueError with a sentence: no faces, nothing usable, an impossible density or transform.
+    """
+    start = time.perf_counter()
+    images = {} if images is None else images
+    read = partial(read_mesh, images=images)
+    gathered = gather(sources, depsgraph, choices.in_world_units, read)
+    whole, matrix_world = gathered.mesh, gathered.matrix_world
+    mesh, dropped = drop_unusable(whole)
+    skipped = [f"{count:,} triangle{'s' * (count > 1)} {reason}" for reason, count in dropped.items()]
+    if not len(mesh):
+        raise ValueError(f"The mesh has no usable faces, only {', '.join(skipped)}; repair it first.")
+    how = {"reduction": choices.reduction, "grazing_angle": choices.grazing_angle}
+    asked = finer(choices.density, detail_of(sources[0]))
+    density = without_camera(asked, lambda: outline(mesh), matrix_world, depsgraph)
+    spacing = grid_spacing(mesh, **density, **how)
+    predicted = predict_count(mesh, spacing=spacing, **how)
+    if predicted > MAX_SURFELS:
+        raise ValueError(f"It would become {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
+    notes = [f"Skipped {', '.join(skipped)}"] if skipped else []
+    unread = gathered.unread if choices.bake else ()
+    if not choices.bake:
+        notes += unread_sentences(gathered.unread)
+    if unread and choices.tolerance is not None:
+        choices = replace(choices, tolerance=None)
+        notes.append("Adaptive is left off: what is baked is known only once the surfels are there")
+    seconds = time.perf_counter() - start
+    return Conversion(
+        sources,
+        whole,
+        mesh,
+        matrix_world,
+        gathered.materials,
+        unread,
+        choices,
+        spacing,
+        len(whole),
+        [*notes, *gathered.notes],
+        seconds,
+    )
+
+
+def sample(conversion: Conversion, progress: Callable[[float], bool | None] | None = None) -> None:
+    """Make the surfels; touches nothing of Blender's.
+
+    Raises SamplingCancelled where `progress` returned False, ValueError for a choice that sampling cannot meet.
+    """
+    start = time.perf_counter()
+    choices = conversion.choices
+    sampling = sample_surface(
+        conversion.mesh,
+        spacing=conversion.spacing,
+        reduction=choices.reduction,
+        grazing_angle=choices.grazing_angle,
+        splat_size=choices.splat_size,
+        tolerance=None if choices.tolerance is None else Tolerance(choices.tolerance),
+        texture_mapped=choices.texture_mapped,
+        crease_angle=choices.crease_angle,
+        fits_blending=choices.crease_angle is not None,
+        progress=progress,
+    )
+    solid = sampling.keeps_both_sides and is_solid(conversion.whole)
+    conversion.surfels = sampling.surfels.as_solid() if solid else sampling.surfels
+    conversion.sampling = sampling
+    if choices.texture_mapped and not sampling.surfels.has_uvs:
+        conversion.notes.append("No base colour is one image times a constant, so no surfel is texture-mapped")
+    conversion.seconds += time.perf_counter() - start
+
+
+def bake(conversion: Conversion, depsgraph: bpy.types.Depsgraph) -> None:
+    """Give the surfels what their materials could not be read for, where that is chosen. Raises ValueError."""
+    if not conversion.unread:
+        return
+    start, choices = time.perf_counter(), conversion.choices
+    what = Bakeable(
+        conversion.sources,
+        conversion.matrix_world,
+        conversion.unread,
+        conversion.materials,
+        conversion.mesh.surfaces,
+        conversion.spacing,
+        choices.splat_size,
+        _REACH if REDUCTIONS[choices.reduction].merge is None else _LATTICE_REACH,
+    )
+    conversion.surfels, missed = baked(conversion.surfels, what, depsgraph)
+    if missed:
+        conversion.notes.append(f"The bake did not meet {missed:,} values; the plain values of their sockets are used")
+    conversion.seconds += time.perf_counter() - start
+
+
+def place(conversion: Conversion, fallback: bpy.types.Collection) -> bpy.types.Object:
+    """The new object "<name> surfels" over its sources, in the collections of the first and with its pass index, with
+    their materials.
+
+    fallback: where it goes when every collection of that source belongs to a linked library.
+    """
+    start = time.perf_counter()
+    collections = collections_of(conversion.sources[0], fallback)
+    name, matrix_world = f"{conversion.name} surfels", conversion.matrix_world
+    made = add_surfel_object(name, conversion.surfels, matrix_world, collections, conversion.materials)
+    made.pass_index = conversion.sources[0].pass_index
+    conversion.seconds += time.perf_counter() - start
+    return made

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The points of an object on their way to a surfel object: the twin of `conversion` for what has no surface."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+from ...sampling import PointsReport, surfels_from_points
+from ...surfels import Surfels
+from ..geometry.points_extraction import ExtractedPoints, extract_points, sheared
+from .batch import Batch
+from .placement import without_shear
+from .surfel_objects import add_surfel_object, collections_of
+
+
+@dataclass(eq=False)
+class PointsConversion:
+    """One source, what was read of it, and what there is to tell about it in the end.
+
+    viewpoint: (3,) which normals face, in the space of the points, or None.
+    """
+
+    source: bpy.types.Object
+    points: ExtractedPoints
+    matrix_world: Matrix
+    viewpoint: np.ndarray | None
+    seconds: float
+    surfels: Surfels | None = None
+    report: PointsReport | None = None
+
+    @property
+    def name(self) -> str:
+        return self.source.name
+
+    def summary(self) -> str:
+        """What was made, in one line."""
+        return f"{self.report.points:,} points -> {len(self.surfels):,} surfels in {self.seconds:.1f} s"
+
+
+class PointsBatch(Batch):
+    """options: of `surfels_from_points`, but the viewpoint. viewpoint: gives that in the world, or None, or raises a
+    ValueError."""
+
+    def __init__(self, sources: list[bpy.types.Object], options: dict, viewpoint: Callable[[], Vector | None]):
+        super().__init__([[source] for source in sources])
+        self._options, self._viewpoint = options, viewpoint
+
+    def _prepare(self, sources, depsgraph) -> PointsConversion:
+        start, [source] = time.perf_counter(), sources
+        matrix_world, shear = without_shear(source.evaluated_get(depsgraph).matrix_world)
+        points = extract_points(source, depsgraph)
+        if not len(points.positions):
+            raise ValueError("It has no points.")
+        points = points if shear is None else sheared(points, shear)
+        eye = self._viewpoint()
+        eye = None if eye is None else np.array(matrix_world.inverted() @ eye)
+        return PointsConversion(source, points, matrix_world, eye, time.perf_counter() - start)
+
+    def _sample(self, conversion: PointsConversion, progress) -> None:
+        start, points = time.perf_counter(), conversion.points
+        conversion.surfels, conversion.report = surfels_from_points(
+            points.positions,
+            points.normals,
+            points.radii,
+            points.colors,
+            viewpoint=conversion.viewpoint,
+            progress=progress,
+            **self._options,
+        )
+        conversion.seconds += time.perf_counter() - start
+
+    def _place(self, conversion: PointsConversion, context) -> bpy.types.Object:
+        start, source = time.perf_counter(), conversion.source
+        collections = collections_of(source, context.collection)
+        name, materials = f"{source.name} surfels", conversion.points.materials
+        made = add_surfel_object(name, conversion.surfels, conversion.matrix_world, collections, materials)
+        made.pass_index = source.pass_index
+        conversion.seconds += time.perf_counter() - start
+        return made

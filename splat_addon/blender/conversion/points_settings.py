@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings with which bare points become surfels: on the operator that converts them and on the PLY import."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty, IntProperty
+from mathutils import Vector
+
+from ...sampling import DEFAULT_SPLAT_SIZE
+from ...sampling.points import DEFAULT_NEIGHBOURS, ISOLATED_CHOICES, MAX_NEIGHBOURS
+
+
+class PointsProperties:
+    """A mix-in; Blender collects the annotations of all bases."""
+
+    neighbours: IntProperty(
+        name="Neighbours",
+        description=(
+            "How many neighbours of a point tell its normal and size. "
+            "More even out noise, and bridge scan lines far apart; fewer keep small details"
+        ),
+        default=DEFAULT_NEIGHBOURS,
+        min=0,
+        max=MAX_NEIGHBOURS,
+        soft_min=6,
+        soft_max=64,
+    )
+    splat_size: FloatProperty(
+        name="Splat Size",
+        description="Half-axis of a splat, in distances between points. A splat too small to close a hole is enlarged",
+        default=DEFAULT_SPLAT_SIZE,
+        min=0.0,
+        soft_min=0.5,
+        soft_max=3.0,
+    )
+    isolated: EnumProperty(
+        name="Stray Points",
+        description="What happens to points far from all others",
+        items=[(name.upper(), name.title(), description) for name, description in ISOLATED_CHOICES.items()],
+        default="DROP",
+    )
+    facing: EnumProperty(
+        name="Normals Face",
+        description="To which side estimated normals point; normals that the points have are kept",
+        items=(
+            ("OUTWARD", "Outward", "Away from the middle of each connected part, for scans of whole objects"),
+            ("CAMERA", "Camera", "Towards the scene's camera, for scans from one place"),
+            ("CURSOR", "3D Cursor", "Towards the 3D cursor, for scans from one place"),
+        ),
+        default="OUTWARD",
+    )
+
+
+#: What `surfels_from_points` takes, by the properties' own names.
+_KEYWORDS = {"neighbours": int, "splat_size": float, "isolated": str.lower}
+
+
+def keywords(properties: PointsProperties) -> dict:
+    """The keyword arguments for `surfels_from_points`, but the viewpoint."""
+    return {name: kind(getattr(properties, name)) for name, kind in _KEYWORDS.items()}
+
+
+def viewpoint(properties: PointsProperties, context: bpy.types.Context) -> Vector | None:
+    """Where normals shall face, in the world; None: outward. Raises ValueError where the scene has no camera."""
+    if properties.facing == "CURSOR":
+        return context.scene.cursor.location.copy()
+    if properties.facing == "CAMERA":
+        if context.scene.camera is None:
+            raise ValueError("The scene has no camera that the normals could face; add one or choose another side.")
+        return context.scene.camera.matrix_world.translation.copy()
+    return None
+
+
+def draw_points_properties(layout: bpy.types.UILayout, properties: PointsProperties) -> None:
+    """The settings in Blender's own style."""
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    for name in PointsProperties.__annotations__:
+        layout.prop(properties, name)

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How many surfels something will become, known before the conversion and cheap enough for the sidebar.
+
+The count is a projected area over the spacing squared, so only the area and the longest edge of each evaluated mesh
+are kept, and a coarse outline where a camera is to decide. They are measured by a timer shortly after they are first
+asked for, never while drawing, and forgotten when the depsgraph tells that the geometry changed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from bpy.app.handlers import persistent
+
+from ...sampling import Outline, drop_unusable, grid_spacing, outline, projected_area
+from ..geometry.mesh_extraction import read_triangles
+from ..geometry.sources import has_surfaces
+from .gathering import frame_of, gather
+from .mesh_conversion import Choices
+from .placement import relative
+
+#: Waiting this long gathers the changes of a stroke or a drag into one measurement.
+_DELAY_SECONDS = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class Extent:
+    """area: projected area. longest_edge: of the bounding box. In units of the result, both 0 for nothing usable.
+    surface: its outline, where the choices need it. others: session_uids of objects that are part of it besides."""
+
+    area: float
+    longest_edge: float
+    surface: Outline | None = None
+    others: frozenset[int] = frozenset()
+
+    def predict(self, density: dict[str, float]) -> tuple[int, float]:
+        """(surfels, spacing) for a resolution, spacing or count; both 0 where that is 0 or nothing is usable."""
+        ((kind, value),) = density.items()
+        spacing = _SPACINGS[kind](self, value) if value > 0 else 0.0
+        return (round(self.area / spacing**2), spacing) if spacing > 0 else (0, 0.0)
+
+
+#: The extent of what cannot be converted.
+NOTHING = Extent(0.0, 0.0, Outline(np.zeros((0, 3)), 0.0))
+
+#: kind of density -> spacing from the extent and a value above 0
+_SPACINGS = {
+    "resolution": lambda extent, value: extent.longest_edge / value,
+    "spacing": lambda extent, value: value,
+    "count": lambda extent, value: math.sqrt(extent.area / value),
+}
+
+
+def measure(sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, choices: Choices) -> Extent:
+    """The extent of what the sources become together; not fast: 0.3 s for a million triangles."""
+    try:
+        gathered = gather(sources, depsgraph, choices.in_world_units, read_triangles)
+    except ValueError:
+        return NOTHING
+    mesh, _ = drop_unusable(gathered.mesh)
+    if not len(mesh):
+        return NOTHING
+    surface = outline(mesh) if "pixels" in choices.density else None
+    area = projected_area(mesh, choices.reduction, choices.grazing_angle)
+    return Extent(area, grid_spacing(mesh, resolution=1), surface, gathered.others)
+
+
+def known_extents(groups: list[list[bpy.types.Object]], choices: Choices) -> list[Extent] | None:
+    """Those of all groups of sources, or None while some are still to be measured, for which the timer is started."""
+    keys = [_key(sources, choices) for sources in groups]
+    missing = [key for key in keys if key not in _extents]
+    if not missing:
+        return [_extents[key] for key in keys]
+    _wanted.update({key: choices for key in missing})
+    if not bpy.app.timers.is_registered(_measure_wanted):
+        bpy.app.timers.register(_measure_wanted, first_interval=_DELAY_SECONDS)
+    return None
+
+
+def _key(sources: list[bpy.types.Object], choices: Choices) -> tuple:
+    """The sources' session_uids, and what of their transforms and of the choices makes a difference to the extent."""
+    try:
+        frame = frame_of(sources[0], choices.in_world_units)
+        maps = (relative(np.array(source.matrix_world, np.float64), frame) for source in sources)
+        places = tuple(float(f"{value:.4g}") for matrix in maps for value in matrix.ravel())
+    except ValueError:
+        places = ()
+    uids = tuple(source.session_uid for source in sources)
+    how = choices.reduction, choices.grazing_angle, "pixels" in choices.density, choices.in_world_units
+    return uids, places, *how
+
+
+#: key of sources and choices -> their extent, as long as that is true
+_extents: dict[tuple, Extent] = {}
+
+#: keys that the sidebar asked for, and the choices that they were made of
+_wanted: dict[tuple, Choices] = {}
+
+
+def _measure_wanted() -> None:
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    objects = {object_.session_uid: object_ for object_ in bpy.context.view_layer.objects}
+    for key, choices in _wanted.items():
+        sources = [objects.get(uid) for uid in key[0]]
+        if all(source is not None and has_surfaces(source) and source.mode == "OBJECT" for source in sources):
+            _extents[key] = measure(sources, depsgraph, choices)
+    _wanted.clear()
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
+
+
+@persistent
+def forget_changed(scene, depsgraph):
+    """Drop what a depsgraph update made untrue."""
+    updates = [update for update in depsgraph.updates if isinstance(update.id, bpy.types.Object)]
+    changed = {update.id.original.session_uid for update in updates if update.is_updated_geometry}
+    touched = changed | {update.id.original.session_uid for update in updates if update.is_updated_transform}
+    # what a collection instance shows changes with the collection's members too
+    is_regrouped = any(isinstance(update.id, bpy.types.Collection) for update in depsgraph.updates)
+    for key, extent in list(_extents.items()):
+        if changed & set(key[0]) or touched & extent.others or (is_regrouped and extent.others):
+            del _extents[key]
+
+
+@persistent
+def forget_all(*_):
+    """Drop everything: another file, or another point in its history."""
+    _extents.clear()
+
+
+_HANDLERS = (
+    (bpy.app.handlers.depsgraph_update_post, forget_changed),
+    (bpy.app.handlers.frame_change_post, forget_changed),
+    (bpy.app.handlers.undo_post, forget_all),
+    (bpy.app.handlers.redo_post, forget_all),
+    (bpy.app.handlers.load_post, forget_all),
+)
+
+
+def register():
+    for handlers, function in _HANDLERS:
+        handlers.append(function)
+
+
+def unregister():
+    for handlers, function in _HANDLERS:
+        handlers.remove(function)
+    if bpy.app.timers.is_registered(_measure_wanted):
+        bpy.app.timers.unregister(_measure_wanted)
+    forget_all()

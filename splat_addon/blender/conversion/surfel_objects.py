@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A new object that stores surfels, wherever they come from: a mesh, bare points or a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import bpy
+from mathutils import Matrix
+
+from ...surfels import Surfels
+from ..geometry.attributes import write_surfels
+
+
+def add_surfel_object(
+    name: str,
+    surfels: Surfels,
+    matrix_world: Matrix,
+    collections: Iterable[bpy.types.Collection],
+    materials: Iterable[bpy.types.Material | None] = (),
+) -> bpy.types.Object:
+    """The new object in `collections`; matrix_world: of the space in which `surfels.origin` is given."""
+    mesh = write_surfels(name, surfels)
+    for material in materials:
+        mesh.materials.append(material)
+    made = bpy.data.objects.new(mesh.name, mesh)
+    # a mesh of loose points would be covered by Blender's black vertex overlay, in the rendered view too
+    made.display_type = "BOUNDS"
+    for collection in collections:
+        collection.objects.link(made)
+    made.matrix_world = matrix_world @ Matrix.Translation(surfels.origin)
+    return made
+
+
+def collections_of(source: bpy.types.Object, fallback: bpy.types.Collection) -> list[bpy.types.Collection]:
+    """Those that `source` is in and that can be changed; `fallback` where all belong to a linked library."""
+    return [collection for collection in source.users_collection if collection.library is None] or [fallback]
+
+
+def select_only(context: bpy.types.Context, made: list[bpy.types.Object]) -> None:
+    """Select the new objects and nothing else; the last is active."""
+    for selected in context.selected_objects:
+        selected.select_set(False)
+    for new in made:
+        new.select_set(True)
+        context.view_layer.objects.active = new

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""F12, animations and `blender --background`: a depsgraph becomes a RenderResult."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+
+import bpy
+
+from ...rendering import Frame, RenderCancelled, Renderer, open_device
+from ..export.camera import depth_of_field_notes, view_camera
+from ..export.live_meshes import LiveMeshes
+from ..export.scene import Notes, SurfelStore, export_scene
+from ..properties import final_settings, stops_where_broken
+from .motion_blur import motion_blur_notes, moving_time, shutter_times
+from .render_passes import hand_over, outputs_of
+
+#: Statistics of the last frame that was rendered, for scripts: see `Renderer`, plus `notes`, and as `live_meshes` the
+#: counts of `LiveMeshes`.
+last_frame_stats: dict = {}
+
+
+def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
+    """Render one view layer. Raises ValueError or RuntimeError with a sentence for the user."""
+    settings = final_settings(depsgraph.view_layer, depsgraph.scene, outputs_of(depsgraph.view_layer))
+    engine.update_stats("", "Reading surfels")
+    resources = _acquire_resources()
+    is_cancelled = False
+    try:
+        views = [view.name for view in engine.get_result().views]
+        for number, view in enumerate(views):
+            engine.active_view_set(view)
+            frame, notes = _picture(engine, depsgraph, resources, settings, (number, len(views)))
+            _tell(engine, frame, notes, resources)
+            hand_over(engine, depsgraph.view_layer, view, frame)
+    except RenderCancelled:
+        is_cancelled = True
+    finally:
+        if (is_cancelled or _is_last_of_render(engine, depsgraph)) and not depsgraph.scene.render.use_persistent_data:
+            _release_resources()
+
+
+def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int, int]) -> tuple[Frame, Notes]:
+    """Of the engine's active view, the `turn[0]`th of `turn[1]`."""
+    scene, notes = depsgraph.scene, Notes()
+    times = shutter_times(scene, depsgraph.view_layer, settings.samples)
+
+    def moments(go):
+        for time in times or [None]:
+            if time is not None:
+                go(time)
+            exported, said = _read(depsgraph, resources)
+            if said.left_out and stops_where_broken(scene):
+                raise ValueError(_left_out_sentence(said.left_out))
+            notes.counts |= said.counts
+            yield exported, view_camera(engine, depsgraph)
+
+    with moving_time(engine, depsgraph) as go:
+        frame = resources.renderer.render_moments(
+            moments(go), max(len(times), 1), settings, progress=lambda *step: _progress(engine, turn, *step)
+        )
+    camera_object = engine.camera_override or scene.camera
+    for sentence in depth_of_field_notes(camera_object, settings.samples):
+        notes.add(sentence)
+    for sentence in motion_blur_notes(scene, depsgraph.view_layer, settings.samples):
+        notes.add(sentence)
+    return frame, notes
+
+
+def _left_out_sentence(left_out: list[str]) -> str:
+    more = f" (and {len(left_out) - 1:,} more)" if len(left_out) > 1 else ""
+    return f"{left_out[0]}{more} Mend that, or set Broken Objects in the render properties to Warn."
+
+
+def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
+    """What the user and scripts are told of a picture."""
+    notes.add(_FLATTENED, frame.stats["instances_degenerate"])
+    notes.add(_COARSE, frame.stats["surfels_coarse"])
+    if why := dict(frame.stats["plan"].skipped).get("transparency"):
+        notes.add(why[0].upper() + why[1:])
+    for sentence in notes.sentences():
+        engine.report({"WARNING"}, sentence)
+    last_frame_stats.clear()
+    last_frame_stats.update(frame.stats, notes=notes.sentences(), live_meshes=dict(resources.live_meshes.counts))
+    drawn = " and ".join(f"{frame.stats[name]:,} {name}" for name in ("splats", "polygons") if frame.stats[name])
+    engine.update_stats("", f"{drawn or 'Nothing'} in {frame.stats['milliseconds']:.0f} ms")
+
+
+_COARSE = "16-bit storage moves surfels visibly where they lie far apart; choose Float 32 as their storage"
+_FLATTENED = "Objects with a scale of 0 on some axis are left out; give every axis a scale"
+
+
+def _read(depsgraph, resources: _Resources):
+    resources.store.begin_frame()
+    resources.live_meshes.begin_frame()
+    scene, notes = export_scene(depsgraph, resources.store, resources.live_meshes)
+    resources.store.forget_unused()
+    return scene, notes
+
+
+def report_failure(engine: bpy.types.RenderEngine, error: Exception) -> None:
+    """Tell Blender, which then writes no file, renders no further frame and exits with 1 in background mode."""
+    _release_resources()
+    engine.report({"ERROR"}, f"Surfel render failed: {sentence_of(error)}")
+
+
+def sentence_of(error: Exception) -> str:
+    """What is said of an error. One that is not meant for users goes to the console too, with where it happened."""
+    if isinstance(error, ValueError | RuntimeError):
+        return str(error)
+    traceback.print_exception(error)
+    if isinstance(error, MemoryError):
+        return "The memory does not suffice; render fewer surfels, or a smaller picture."
+    return f"This is a fault of the extension ({type(error).__name__}: {error}); the console says where it happened."
+
+
+class _Resources:
+    """What the frames and view layers of one render share.
+
+    It belongs to this module and not to the engine's instance, which Blender frees without a graphics context, as it
+    calls its handlers. Textures that go then abort Blender 4.5, and spoil the next render on 5.2's OpenGL; so they go
+    in `render`, with the last picture, unless the scene's Persistent Data keeps them for the next render. A render that
+    ends before its scene's last frame, by Esc between two frames or because the operator was given a shorter range,
+    leaves them to the next one too.
+    """
+
+    def __init__(self):
+        self.store = SurfelStore()
+        self.live_meshes = LiveMeshes()
+        self.renderer = Renderer(open_device("blender"))
+
+
+_resources: _Resources | None = None
+
+
+def _acquire_resources() -> _Resources:
+    global _resources
+    _resources = _resources or _Resources()
+    return _resources
+
+
+def _release_resources() -> None:
+    global _resources
+    if _resources:
+        _resources.renderer.release()
+    _resources = None
+
+
+def _is_last_of_render(engine, depsgraph) -> bool:
+    scene = depsgraph.scene
+    later_frames = engine.is_animation and scene.frame_current + scene.frame_step <= scene.frame_end
+    if later_frames and not _ARE_FRAMES_NAMED:
+        return False
+    layers = [layer.name for layer in scene.view_layers if layer.use]
+    return scene.render.use_single_layer or depsgraph.view_layer.name in layers[-1:]
+
+
+#: `blender --background -f 1,5` calls each of its frames an animation, and none of them the last.
+_ARE_FRAMES_NAMED = bool({"-f", "--render-frame"} & set(sys.argv))
+
+
+def _progress(engine, turn: tuple[int, int], done: float, step: str) -> bool:
+    engine.update_progress((turn[0] + done) / turn[1])
+    engine.update_stats("", step.title())
+    return not engine.test_break()

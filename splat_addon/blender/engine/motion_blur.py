@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motion blur: the moments of an open shutter at which a final render evaluates the scene anew."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bpy
+import numpy as np
+
+from ...rendering.accumulation import moment_places
+from ..ids import RENDER_SETTINGS
+
+#: position -> when the shutter opens, as a share of the time that it is open
+_OPENS = {"START": 0.0, "CENTER": -0.5, "END": -1.0}
+
+_CURVE_STEPS = 256
+
+
+def shutter_times(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, samples: int) -> list[float]:
+    """Frames, with fractions, at which a final render of so many samples sees the scene; empty without motion blur.
+
+    They lie as close as the shutter's curve is high (importance sampling, as Cycles'), so that each counts the same.
+    """
+    render = scene.render
+    if not (render.use_motion_blur and view_layer.use_motion_blur) or samples == 1:
+        return []
+    moments = min(samples, getattr(scene, RENDER_SETTINGS).motion_blur_steps)
+    now = scene.frame_current + scene.frame_subframe
+    opens, length = _OPENS[render.motion_blur_position], render.motion_blur_shutter
+    places = _under_curve(render.motion_blur_shutter_curve, moment_places(samples, moments))
+    return [now + (opens + float(place)) * length for place in places]
+
+
+@contextmanager
+def moving_time(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> Iterator:
+    """go(time) evaluates the depsgraph at a frame with a fraction; the frame is restored in the end."""
+    scene = depsgraph.scene
+    now = scene.frame_current + scene.frame_subframe
+    moved = False
+
+    def go(time: float) -> None:
+        nonlocal moved
+        moved = True
+        engine.frame_set(math.floor(time), time - math.floor(time))
+
+    try:
+        yield go
+    finally:
+        if moved:
+            go(now)
+
+
+def motion_blur_notes(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, samples: int) -> Iterator[str]:
+    """Why a scene that asks for motion blur will not show any."""
+    if scene.render.use_motion_blur and view_layer.use_motion_blur and samples == 1:
+        yield "Motion blur needs more than one of the render properties' Samples: this picture is sharp all over"
+
+
+def _under_curve(curve: bpy.types.CurveMapping, places: list[float]) -> np.ndarray:
+    """Shares of the area under the curve -> shares of its length; a curve of nothing counts as even."""
+    curve.initialize()
+    steps = (np.arange(_CURVE_STEPS) + 0.5) / _CURVE_STEPS
+    heights = np.array([max(curve.evaluate(curve.curves[0], step), 0.0) for step in steps])
+    if not heights.any():
+        heights[:] = 1.0
+    area = np.concatenate([[0.0], np.cumsum(heights)])
+    return np.interp(places, area / area[-1], np.linspace(0, 1, _CURVE_STEPS + 1))

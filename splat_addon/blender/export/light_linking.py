@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's light linking -> sets of objects that share their lights: `Instance.light_set`, `Light.receivers`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import bpy
+
+from ...rendering.scene.light import MAX_LIGHT_SETS
+
+
+class Receivers(NamedTuple):
+    """included: names of the objects that a light lights, or None for all. excluded: of those that it does not."""
+
+    included: frozenset[str] | None
+    excluded: frozenset[str]
+
+    def has(self, names: tuple[str, ...]) -> bool:
+        """names: of an object, and of what makes an instance of it."""
+        if self.excluded.intersection(names):
+            return False
+        return self.included is None or bool(self.included.intersection(names))
+
+
+EVERYTHING = Receivers(None, frozenset())
+
+
+def receivers_of(light: bpy.types.Object) -> Receivers:
+    """What a light object's receiver collection says; an empty one says nothing."""
+    collection = light.light_linking.receiver_collection if light.light_linking else None
+    if collection is None:
+        return EVERYTHING
+    states: dict[str, set[str]] = {"INCLUDE": set(), "EXCLUDE": set()}
+    for object_, member in zip(collection.objects, collection.collection_objects, strict=True):
+        states[member.light_linking.link_state].add(object_.name)
+    for child, member in zip(collection.children, collection.collection_children, strict=True):
+        states[member.light_linking.link_state].update(o.name for o in child.all_objects)
+    return Receivers(frozenset(states["INCLUDE"]) or None, frozenset(states["EXCLUDE"]))
+
+
+class LightSets:
+    """Numbers the sets of lights that objects receive, as far as the renderer can tell them apart."""
+
+    def __init__(self, lights: Iterable[bpy.types.Object], notes):
+        self._receivers = [receivers_of(light) for light in lights]
+        self._numbers: dict[tuple[bool, ...], int] = {}
+        self._notes = notes
+
+    def of_instance(self, entry: bpy.types.DepsgraphObjectInstance) -> int:
+        """The number of what an entry of the depsgraph receives."""
+        names = (entry.object.original.name, *((entry.parent.original.name,) if entry.is_instance else ()))
+        lit_by = tuple(receivers.has(names) for receivers in self._receivers)
+        if lit_by not in self._numbers and len(self._numbers) == MAX_LIGHT_SETS:
+            self._notes.add(f"More than {MAX_LIGHT_SETS} sets of objects by light linking; others are lit as the first")
+            return 0
+        return self._numbers.setdefault(lit_by, len(self._numbers))
+
+    def lit_by(self, light: int) -> tuple[int, ...] | None:
+        """Numbers of the sets that the light of that index lights; None for all."""
+        lit = tuple(number for lit_by, number in self._numbers.items() if lit_by[light])
+        return None if len(lit) == len(self._numbers) else lit

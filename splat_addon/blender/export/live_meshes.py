@@ -1,0 +1,303 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes that are rendered without a conversion: as polygons, or sampled when they are first seen, and then followed
+from frame to frame.
+
+A mesh is read anew in every frame of a final render, which tells of no change, and in the viewport when it changed.
+Unchanged values give the same `Surfels` or `Polygons`, by which the renderer knows what lies on the device already.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ...rendering import Instance, Material, PolygonInstance, Polygons, SurfaceTexture
+from ...rendering.upload.packing import MAX_SPLATS
+from ...sampling import (
+    STRETCHED_SHARE,
+    DeformingSurfels,
+    NotSeenError,
+    Outline,
+    TriangleMesh,
+    grid_spacing,
+    have_same_values,
+    outline,
+    predict_count,
+)
+from ...surfels import OPTIONAL_LAYOUT, Surfels, split
+from ..conversion.camera_density import without_camera
+from ..conversion.mesh_conversion import MAX_SURFELS
+from ..geometry.mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
+from ..geometry.mesh_polygons import is_transparent, left_out_of_polygons, mesh_polygons
+from ..geometry.sources import mesh_key, readable_mesh
+from ..geometry.split_meshes import MeshParts, parts_by_group, with_edge_samples
+from ..materials.surface_textures import kept_textures
+from ..mesh_sampling_settings import Form
+from . import passed_over
+from .object_detail import finer
+from .shading import shading_material
+
+#: A sampling is kept until it is coarser or finer than asked for by more than this.
+_TOO_COARSE, _TOO_FINE = 1.26, 2.5
+
+#: For an object that the camera does not see, but its light or its shadow may.
+_UNSEEN_RESOLUTION = 64
+
+
+class Place(NamedTuple):
+    """Where a mesh stands. fields: of its instance, by name. form: as what it is rendered, of `form_of`. detail: of the
+    object that it belongs to."""
+
+    matrix: np.ndarray
+    fields: dict
+    form: Form
+    detail: float
+
+
+@dataclass(eq=False)
+class _LiveMesh:
+    """One evaluated mesh, wherever it stands. said: sentences on its materials and its object.
+
+    key: of `mesh_key`, of the evaluation that was read. shown: a sampling, and the sets that it is drawn in.
+    """
+
+    key: tuple = ()
+    topology: Topology | None = None
+    content: ExtractedMesh | None = None
+    materials: tuple[Material, ...] = ()
+    textures: tuple[SurfaceTexture | None, ...] = ()
+    texture_mapped: bool = False
+    places: list[Place] = field(default_factory=list)
+    owner: str = ""
+    said: list[str] = field(default_factory=list)
+    deforming: DeformingSurfels | None = None
+    density: dict[str, float] = field(default_factory=dict)
+    spacing: float = 0.0
+    surface: tuple[TriangleMesh, Outline] | None = None
+    drawn: tuple[TriangleMesh, tuple[Polygons, ...]] | None = None
+    parts: MeshParts | None = None
+    shown: tuple[Surfels, tuple[Surfels, ...]] | None = None
+
+    @property
+    def sampled_at(self) -> list[Place]:
+        return [place for place in self.places if place.form.has_surfels]
+
+    @property
+    def drawn_at(self) -> list[Place]:
+        return [place for place in self.places if place.form.has_polygons]
+
+    @property
+    def sampled_part(self) -> TriangleMesh:
+        return self.parts.far if self.parts else self.content.triangles
+
+    @property
+    def drawn_part(self) -> TriangleMesh:
+        return self.parts.near if self.parts else self.content.triangles
+
+    @property
+    def matrices(self) -> list[np.ndarray]:
+        """Of the places where it is sampled."""
+        return [place.matrix for place in self.sampled_at]
+
+    @property
+    def detail(self) -> float:
+        """As its neediest place asks."""
+        return max(place.detail for place in self.sampled_at)
+
+    def kept_textures(self) -> tuple[SurfaceTexture | None, ...]:
+        self.textures = kept_textures(self.textures, self.content.triangles.surfaces)
+        return self.textures
+
+    def spacing_for(self, density: dict[str, float], depsgraph: bpy.types.Depsgraph) -> float:
+        """In the mesh's own units: as fine as its neediest place asks, or as it is where that is near enough."""
+        if density != self.density:
+            self.deforming = None
+        ((kind, value),) = density.items()
+        return _SPACINGS[kind](self, value, depsgraph)
+
+    def kept_if_near(self, spacing: float) -> float:
+        is_near = self.deforming and spacing / _TOO_FINE <= self.spacing <= spacing * _TOO_COARSE
+        return self.spacing if is_near else spacing
+
+
+class LiveMeshes:
+    """The meshes of one render or one 3D view.
+
+    counts: what the last frame did: "polygon_meshes" that were drawn as such, and their "triangles"; "meshes" that were
+    sampled, and their "surfels"; of the latter, how many were "sampled", how many
+    "followed" an earlier sampling, and how many of the former because they had "stretched" too far.
+    """
+
+    def __init__(self):
+        self._kept: dict[tuple, _LiveMesh] = {}
+        self._names: dict[tuple, tuple] = {}
+        self._frame: dict[tuple, _LiveMesh] = {}
+        self._changed: set[str] | None = None
+        self._images: dict = {}
+        self.counts: Counter = Counter()
+
+    def begin_frame(self, changed: set[str] | None = None) -> None:
+        """Meshes named in `changed` (None: all), and those that were evaluated anew, are read when they are added."""
+        self._changed, self._frame, self._names, self.counts = changed, {}, {}, Counter()
+
+    def forget_images(self) -> None:
+        """Read the pixels of textures again: an image or a material was edited."""
+        self._images.clear()
+
+    def add(
+        self,
+        evaluated: bpy.types.Object,
+        owner: bpy.types.Object,
+        place: Place,
+        notes,
+        override: bpy.types.Material | None = None,
+    ) -> None:
+        """An entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry lives.
+
+        override: the material that it has in this view layer, whatever its own are.
+        """
+        key = *mesh_key(evaluated), override and override.session_uid, place.form.group
+        if key not in self._frame:
+            live = self._kept.setdefault(self._lasting_key(evaluated, place.form.group), _LiveMesh())
+            live.places, live.owner = [], owner.name
+            if live.key != key or self._changed is None or evaluated.data.name_full in self._changed:
+                self._read(live, evaluated, place.form.group, override)
+                live.key = key
+            self._frame[key] = live
+        self._frame[key].places.append(place)
+
+    def instances(
+        self, depsgraph: bpy.types.Depsgraph, density: dict[str, float], texture_mapped: bool, notes
+    ) -> tuple[list[Instance], list[PolygonInstance]]:
+        """All that were added to this frame; the places of one mesh share its surfels or polygons."""
+        sampled, drawn = [], []
+        for live in self._frame.values():
+            for sentence in (*live.content.notes, *live.said):
+                notes.add(sentence)
+            if is_transparent(live.content.triangles):
+                live.places = [place._replace(form=place.form.of_transparent) for place in live.places]
+            try:
+                if live.sampled_at and len(live.sampled_part):
+                    sampled += self._sampled_instances(live, depsgraph, density, texture_mapped)
+                if live.drawn_at and len(live.drawn_part):
+                    drawn += self._polygon_instances(live, notes)
+            except ValueError as error:
+                notes.leave_out(live.owner, error)
+        self._kept = {name: live for name, live in self._kept.items() if name in self._names}
+        return sampled, drawn
+
+    def _sampled_instances(self, live: _LiveMesh, depsgraph, density, texture_mapped: bool) -> list[Instance]:
+        sampled = self._sampled(live, depsgraph, finer(density, live.detail), texture_mapped)
+        if live.shown is None or live.shown[0] is not sampled:
+            whole = with_edge_samples(sampled, live.parts, live.spacing) if live.parts else sampled
+            live.shown = sampled, split(whole, MAX_SPLATS)
+        textures = live.kept_textures() if sampled.has_uvs else ()
+        self.counts["meshes"] += 1
+        self.counts["surfels"] += sum(map(len, live.shown[1]))
+        return [
+            Instance(part, place.matrix, live.materials, split=place.form.split, textures=textures, **place.fields)
+            for part in live.shown[1]
+            for place in live.sampled_at
+        ]
+
+    def _polygon_instances(self, live: _LiveMesh, notes) -> list[PolygonInstance]:
+        mesh = live.drawn_part
+        if live.drawn is None or not have_same_values(live.drawn[0], mesh):
+            live.drawn = mesh, mesh_polygons(mesh)
+        self.counts["polygon_meshes"] += 1
+        self.counts["triangles"] += len(mesh)
+        for sentence in left_out_of_polygons(live.owner, mesh):
+            notes.add(sentence)
+        textures = live.kept_textures()
+        return [
+            PolygonInstance(
+                part, place.matrix, live.materials, split=place.form.split, textures=textures, **place.fields
+            )
+            for part in live.drawn[1]
+            for place in live.drawn_at
+        ]
+
+    def _lasting_key(self, evaluated: bpy.types.Object, group: str) -> tuple:
+        """By which the same mesh is known in the next frame, when it has been evaluated anew.
+
+        Geometry Nodes may put several meshes of one name into an object; they are told apart by their order.
+        """
+        name = evaluated.original.session_uid, evaluated.data.name_full, group
+        number = 0
+        while (*name, number) in self._names:
+            number += 1
+        self._names[(*name, number)] = name
+        return (*name, number)
+
+    def _read(self, live: _LiveMesh, evaluated: bpy.types.Object, group: str, override) -> None:
+        # said anew each frame, as the mesh is not read anew each frame
+        live.said = list(passed_over.of_object(evaluated.original))
+        notes = SimpleNamespace(add=live.said.append)
+        with readable_mesh(evaluated) as mesh:
+            slots = slot_materials(evaluated, mesh)
+            if override is not None:
+                slots = [override] * max(len(slots), 1)
+            live.topology = read_topology(mesh, live.topology)
+            live.content = read_mesh(evaluated, mesh, live.topology, self._images, slots)
+            live.parts = parts_by_group(evaluated, mesh, live.content.triangles, group) if group else None
+            live.materials = tuple(shading_material(material, notes, OPTIONAL_LAYOUT) for material in slots)
+
+    def _sampled(
+        self, live: _LiveMesh, depsgraph: bpy.types.Depsgraph, density: dict[str, float], texture_mapped: bool
+    ) -> Surfels:
+        """Raises ValueError with a sentence where nothing can be sampled."""
+        if texture_mapped != live.texture_mapped:
+            live.deforming, live.texture_mapped = None, texture_mapped
+        mesh, spacing = live.sampled_part, live.spacing_for(density, depsgraph)
+        if live.deforming is not None and spacing == live.spacing and live.deforming.has_triangles_of(mesh):
+            surfels, stretched = live.deforming.at(mesh)
+            if stretched <= STRETCHED_SHARE:
+                self.counts["followed"] += 1
+                return surfels
+            self.counts["stretched"] += 1
+            live.deforming = None
+            spacing = live.spacing_for(density, depsgraph)
+        predicted = predict_count(mesh, spacing=spacing)
+        if predicted > MAX_SURFELS:
+            raise ValueError(f"It would be {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
+        live.deforming, live.density, live.spacing = _deforming(mesh, spacing, texture_mapped), density, spacing
+        self.counts["sampled"] += 1
+        return live.deforming.at(mesh)[0]
+
+
+def _deforming(mesh: TriangleMesh, spacing: float, texture_mapped: bool) -> DeformingSurfels:
+    return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped)
+
+
+def _by_resolution(live: _LiveMesh, resolution: float, depsgraph) -> float:
+    # what is bent or grows keeps its surfels, unless they are stretched too far
+    return live.spacing if live.deforming else grid_spacing(live.content.triangles, resolution=resolution)
+
+
+def _by_spacing(live: _LiveMesh, spacing: float, depsgraph) -> float:
+    stretch = max(float(np.linalg.norm(matrix[:3, :3], 2)) for matrix in live.matrices)
+    return live.kept_if_near(spacing / stretch if stretch > 0 else math.inf)
+
+
+def _by_camera(live: _LiveMesh, pixels: float, depsgraph) -> float:
+    mesh, spacings = live.content.triangles, []
+    if live.surface is None or live.surface[0] is not mesh:
+        live.surface = mesh, outline(mesh)
+    for matrix in live.matrices:
+        try:
+            spacings.append(without_camera({"pixels": pixels}, lambda: live.surface[1], matrix, depsgraph)["spacing"])
+        except NotSeenError:
+            continue
+    if spacings:
+        return live.kept_if_near(min(spacings))
+    return live.spacing if live.deforming else grid_spacing(mesh, resolution=_UNSEEN_RESOLUTION)
+
+
+#: kind of density -> function of a mesh, the number and the depsgraph
+_SPACINGS = {"resolution": _by_resolution, "spacing": _by_spacing, "pixels": _by_camera}

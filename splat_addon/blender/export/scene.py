@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A depsgraph -> `rendering.Scene`: surfels, meshes, instances, lights, world; what cannot be drawn is counted."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ...rendering import Instance, Light, Scene
+from ...rendering.upload.packing import MAX_SPLATS
+from ...surfels import Surfels, split
+from ..geometry.attributes import has_surfels, has_surfels_beside_faces, have_same_values, read_stored
+from ..geometry.sources import owner_of
+from ..materials.material_override import Overridden, override_of
+from ..materials.surface_textures import TextureStore
+from ..mesh_sampling_settings import are_meshes_texture_mapped, form_of, mesh_fineness
+from . import passed_over
+from .light_linking import LightSets
+from .live_meshes import LiveMeshes, Place
+from .object_detail import detail_of
+from .shading import light_of, shading_material
+from .world import WorldStore
+
+
+@dataclass
+class Notes:
+    """What the user should hear about a scene: sentence -> how often. left_out: those that name an object or a light
+    that should be seen and is not."""
+
+    counts: Counter = field(default_factory=Counter)
+    left_out: list[str] = field(default_factory=list)
+
+    def add(self, sentence: str, count: int = 1) -> None:
+        if count:
+            self.counts[sentence] += count
+
+    def leave_out(self, name: str, error: ValueError) -> None:
+        """An object or a light of this name cannot be drawn."""
+        self.left_out.append(f"{name} is left out: {error}")
+        self.add(self.left_out[-1])
+
+    def sentences(self) -> list[str]:
+        """One sentence each, with its count where it happened more than once."""
+        return [text if count == 1 else f"{text} ({count} times)" for text, count in self.counts.items()]
+
+
+class _Kept(NamedTuple):
+    name: str
+    surfels: Surfels
+    parts: tuple[Surfels, ...]
+    skipped: int
+    strayed: int
+
+
+class SurfelStore:
+    """Keeps the `Surfels` of meshes between frames, the same object as long as the values are the same.
+
+    What is drawn from is cached by that identity. The values are compared, since a final render tells of no
+    change: reading and comparing a million surfels takes a tenth of packing and uploading them again.
+
+    A mesh is known by its session_uid: objects that share a mesh and differ in modifiers have evaluated meshes of
+    one name, and a new evaluation by modifiers is a new mesh of the old name.
+    """
+
+    def __init__(self):
+        self.world = WorldStore()
+        self.textures = TextureStore()
+        self.overridden = Overridden()
+        self._kept: dict[int, _Kept] = {}
+        self._current: set[int] = set()
+        self._followed: dict = {}
+
+    def get(self, mesh: bpy.types.Mesh) -> tuple[tuple[Surfels, ...], int, int]:
+        """As `attributes.read_stored`, in parts that the renderer can hold; once a mesh and frame."""
+        key = mesh.session_uid
+        if key not in self._current:
+            surfels, skipped, strayed = read_stored(mesh, self._followed)
+            known = (
+                k for k in self._kept.values() if k.name == mesh.name_full and have_same_values(k.surfels, surfels)
+            )
+            kept = next(known, None) or _Kept(mesh.name_full, surfels, split(surfels, MAX_SPLATS), 0, 0)
+            self._kept[key] = kept._replace(skipped=skipped, strayed=strayed)
+            self._current.add(key)
+        kept = self._kept[key]
+        return kept.parts, kept.skipped, kept.strayed
+
+    def begin_frame(self, changed: set[str] | None = None, are_materials_edited: bool = False) -> None:
+        """Meshes named in `changed` (None: all) are read again the next time they are asked for."""
+        self.overridden.begin_frame()
+        self.textures.begin_frame(are_materials_edited, is_told=changed is not None)
+        self._current = {k for k in self._current if changed is not None and self._kept[k].name not in changed}
+
+    def forget_unused(self) -> None:
+        """Let go of meshes that this frame did not ask for."""
+        self._kept = {key: kept for key, kept in self._kept.items() if key in self._current}
+        names = {kept.name for kept in self._kept.values()}
+        self._followed = {name: before for name, before in self._followed.items() if name in names}
+
+
+def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes: LiveMeshes) -> tuple[Scene, Notes]:
+    """Everything in the depsgraph that the renderer knows how to draw, and notes on what it does not.
+
+    live_meshes: keeps the meshes that are no surfels.
+    """
+    notes, bpy_scene, view_layer = Notes(), depsgraph.scene, depsgraph.view_layer_eval
+    override = override_of(depsgraph)
+    for sentence in passed_over.of_scene(bpy_scene):
+        notes.add(sentence)
+    surfels, (lights, light_sets) = [], _lights(depsgraph, notes)
+    for entry in depsgraph.object_instances:
+        object_, matrix = entry.object, np.array(entry.matrix_world, np.float64)
+        if not entry.show_self or not (view_layer.use_solid and _is_seen(entry, depsgraph, notes)):
+            continue
+        try:
+            if object_.type == "MESH":
+                fields = {
+                    "light_set": light_sets.of_instance(entry),
+                    "casts_shadow": object_.visible_shadow,
+                    "name": object_.name,
+                    "index": object_.pass_index,
+                    "is_holdout": owner_of(entry).holdout_get(view_layer=depsgraph.view_layer),
+                }
+                what = _content(object_)
+                if "surfels" in what:
+                    surfels += _instances(object_, matrix, fields, store, notes, override)
+                if "faces" in what and (form := form_of(entry, bpy_scene)).kind != "HIDDEN":
+                    owner = owner_of(entry)
+                    live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), notes, override)
+                if "points" in what:
+                    notes.add(_BARE_POINTS)
+            elif object_.type in _NOT_DRAWN:
+                notes.add(f"Objects of type {_NOT_DRAWN[object_.type]} are not drawn; convert them to meshes first")
+        except ValueError as error:
+            notes.leave_out(object_.name, error)
+    sampled, polygons = live_meshes.instances(
+        depsgraph, mesh_fineness(bpy_scene), are_meshes_texture_mapped(bpy_scene), notes
+    )
+    world, environment = store.world.read(_world_of(depsgraph), notes)
+    lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
+    return Scene((*surfels, *sampled), tuple(lights), world, environment, tuple(polygons)), notes
+
+
+def _world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
+    """That of the view layer, which from Blender 5.0 on may have one of its own, or none to see at all."""
+    view_layer = depsgraph.view_layer_eval
+    if not view_layer.use_sky:
+        return None
+    return getattr(view_layer, "world_override", None) or depsgraph.scene.world
+
+
+def _is_seen(entry: bpy.types.DepsgraphObjectInstance, depsgraph: bpy.types.Depsgraph, notes: Notes) -> bool:
+    """Whether the camera sees it. What it does not see casts no shadow here either, which is said."""
+    owner = owner_of(entry)
+    is_indirect = owner.indirect_only_get(view_layer=depsgraph.view_layer)
+    if entry.object.visible_camera and owner.visible_camera and not is_indirect:
+        return True
+    if entry.object.type in {"MESH", *_NOT_DRAWN} and entry.object.visible_shadow:
+        notes.add(f"{owner.name} is hidden from the camera, and in this engine its shadow with it")
+    return False
+
+
+def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], LightSets]:
+    """All that give light, and what they light."""
+    lights, objects = [], []
+    for entry in depsgraph.object_instances:
+        if entry.object.type == "LIGHT" and entry.show_self:
+            try:
+                light = light_of(entry.object.data, np.array(entry.matrix_world, np.float64), notes)
+            except ValueError as error:
+                notes.leave_out(entry.object.name, error)
+                continue
+            if light:
+                for sentence in passed_over.of_light(entry.object.original):
+                    notes.add(sentence)
+                lights.append(light)
+                objects.append(entry.object.original)
+    return lights, LightSets(objects, notes)
+
+
+#: Blender's type -> its name, of what could be seen but is no mesh. Curves and texts come as meshes.
+_NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "volume", "GREASEPENCIL": "grease pencil"}
+
+
+_BARE_POINTS = "Meshes of points without faces are not drawn; convert them with Object > Convert Points to Surfels"
+
+
+def _content(object_: bpy.types.Object) -> tuple[str, ...]:
+    """What a mesh object has of "surfels", "faces" and "points"."""
+    with _attributes_of(object_) as mesh:
+        if not len(mesh.vertices):
+            return ()
+        if mesh.polygons:
+            return ("surfels", "faces") if has_surfels_beside_faces(mesh) else ("faces",)
+        return ("surfels",) if has_surfels(mesh) else ("points",)
+
+
+def _instances(
+    object_, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes: Notes, override
+) -> list[Instance]:
+    """Of an object that has surfels; one, unless it has more than the renderer holds in one.
+
+    Raises ValueError for broken attributes or an unusable matrix.
+    """
+    with _attributes_of(object_) as mesh:
+        parts, skipped, strayed = store.get(mesh)
+    if skipped:
+        notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
+    if strayed:
+        notes.add(
+            f"{object_.name}: {strayed:,} surfels were moved one by one, and lie as they did before; convert the "
+            "source again if it was bent"
+        )
+    for sentence in passed_over.of_object(object_.original):
+        notes.add(sentence)
+    if override is not None:
+        materials = (shading_material(override, notes),)
+        parts = tuple(store.overridden.get(part, override, notes) for part in parts)
+        return [Instance(part, matrix_world, materials, **fields) for part in parts]
+    own = parts[0].arrays().keys()
+    materials = tuple(shading_material(slot.material, notes, own) for slot in object_.material_slots)
+    slots = object_.material_slots if parts[0].has_uvs else ()
+    textures = tuple(store.textures.get(slot.material, notes) for slot in slots)
+    return [Instance(part, matrix_world, materials, textures=textures, **fields) for part in parts]
+
+
+@contextmanager
+def _attributes_of(object_: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
+    """An evaluated object's mesh, in edit mode too, where its data is empty."""
+    try:
+        yield object_.to_mesh() if object_.data.is_editmode else object_.data
+    finally:
+        object_.to_mesh_clear()

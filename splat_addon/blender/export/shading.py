@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's lights and materials -> the renderer's, as far as it models them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import replace
+
+import bpy
+import numpy as np
+
+from ...rendering import Light, Material
+from ...rendering.upload.packing import reflectance
+from ..materials.node_products import linked
+from . import passed_over
+
+#: Blender's light type -> its emitting area, which multiplies the energy of a light that is not normalised (as
+#: Cycles measures it: a sun's disc at distance 1, a point's sphere, or 4 for one without size).
+_AREAS = {
+    "SUN": lambda light: math.pi * math.sin(light.angle / 2) ** 2,
+    "POINT": lambda light: 4 * (math.pi * light.shadow_soft_size**2 or 1),
+    "SPOT": lambda light: 4 * (math.pi * light.shadow_soft_size**2 or 1),
+}
+
+
+def light_of(light: bpy.types.Light, matrix_world: np.ndarray, notes) -> Light | None:
+    """None for a lamp without extent. matrix_world: (4, 4), of the light's object."""
+    color = np.array(light.color, np.float64) * _emission(light, notes)
+    if light.use_temperature:
+        color = color * np.array(light.temperature_color, np.float64)
+    shape = _SHAPES[light.type](light, matrix_world)
+    if light.type == "AREA" and np.linalg.norm(np.cross(*shape["half_axes"])) == 0:
+        notes.add(f"The area light {light.name!r} has no area and gives no light; give it a size and a scale above 0")
+        return None
+    made = Light(
+        light.type.lower(),
+        tuple(color),
+        light.energy * 2.0**light.exposure,
+        position=tuple(matrix_world[:3, 3]),
+        direction=tuple(-matrix_world[:3, 2]),
+        casts_shadow=light.use_shadow,
+        **shape,
+    )
+    if light.normalize:
+        return made
+    area = made.area if light.type == "AREA" else _AREAS[light.type](light)
+    return replace(made, energy=made.energy * area)
+
+
+def _area_shape(light: bpy.types.AreaLight, matrix_world: np.ndarray) -> dict:
+    sizes = light.size, light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
+    half_axes = tuple(tuple(matrix_world[:3, k] * size / 2) for k, size in enumerate(sizes))
+    return {"half_axes": half_axes, "is_round": light.shape in {"DISK", "ELLIPSE"}}
+
+
+_SHAPES = {
+    "SUN": lambda light, _: {"size": light.angle},
+    "POINT": lambda light, _: {"size": light.shadow_soft_size},
+    "SPOT": lambda light, _: {
+        "size": light.shadow_soft_size,
+        "spot_angle": light.spot_size,
+        "spot_blend": light.spot_blend,
+    },
+    "AREA": _area_shape,
+}
+
+
+def _emission(light: bpy.types.Light, notes) -> np.ndarray:
+    """(3,) colour times strength of the light's Emission node, which scales the light's own; 1 without nodes."""
+    if not light.use_nodes:
+        return np.ones(3)
+    node = output_source(light.node_tree, "OUTPUT_LIGHT", "EMISSION")
+    if node is None:
+        notes.add(f"The light {light.name!r} has no Emission node at its output; its nodes are passed over")
+        return np.ones(3)
+    return np.array(color_times_strength(node, f"The light {light.name!r}", notes))
+
+
+def color_times_strength(node: bpy.types.Node, owner: str, notes) -> tuple[float, float, float]:
+    """Of a Background or an Emission node. owner: the subject of a sentence."""
+    color, strength = node.inputs["Color"], node.inputs["Strength"]
+    if color.is_linked or strength.is_linked:
+        notes.add(f"{owner} is textured; its {node.bl_label} node's plain colour and strength are used")
+    return tuple(c * strength.default_value for c in color.default_value[:3])
+
+
+#: What a world or a material sends out at most, in a channel: more would leave float32 once it falls on something.
+MAX_RADIANCE = 1e30
+
+
+def finite_radiance(radiance: tuple[float, float, float], owner: str, notes) -> tuple[float, float, float]:
+    """The radiance itself; where pictures cannot hold it, black, and a note. owner: the subject of a sentence."""
+    if all(abs(channel) <= MAX_RADIANCE for channel in radiance):
+        return radiance
+    red, green, blue = radiance
+    notes.add(f"{owner} sends out {red:g}, {green:g}, {blue:g}, which no picture holds; it is black")
+    return 0.0, 0.0, 0.0
+
+
+def shading_material(material: bpy.types.Material | None, notes, own: Collection[str] = ()) -> Material:
+    """How the shader at the material's output answers light, and what it sends out; the default one without a material.
+
+    own: fields that the surfels have themselves, whose textures are not missed here.
+    """
+    if material is None or not material.use_nodes:
+        return Material(index=material.pass_index if material else 0)
+    node = output_source(material.node_tree, "OUTPUT_MATERIAL", *_SHADERS)
+    if node is None:
+        notes.add(f"The material {material.name!r} has no Principled BSDF at its output; it is shaded as a default one")
+        return Material(index=material.pass_index)
+    for sentence in passed_over.of_material(material, node):
+        notes.add(sentence)
+    fields, make = _SHADERS[node.type]
+    plain = {name: node.inputs[name].default_value for name in fields}
+    if emission := [name for name, field in fields.items() if field == "emission"]:
+        sent = finite_radiance(_sent(plain, *emission), f"The material {material.name!r}", notes)
+        plain |= dict(zip(emission, (sent, 1.0), strict=True))
+    made = make(plain)
+    linked = [name for name, field in fields.items() if node.inputs[name].is_linked and field not in own]
+    if not any(made.emission):
+        linked = [name for name in linked if fields[name] != "emission" or "Strength" in name]
+    if linked:
+        notes.add(
+            f"The material {material.name!r} textures {', '.join(linked)}, which the surfels do not have; the sockets' "
+            "plain values are used. Convert the mesh again to sample them"
+        )
+    return replace(made, index=material.pass_index)
+
+
+def _principled(plain: dict) -> Material:
+    ior = _levelled(plain["IOR"], plain["Specular IOR Level"])
+    return Material(plain["Roughness"], plain["Metallic"], ior, _sent(plain, "Emission Color", "Emission Strength"))
+
+
+def _sent(plain: dict, color: str, strength: str) -> tuple[float, float, float]:
+    return tuple(c * plain[strength] for c in plain[color][:3])
+
+
+#: type of a shader node -> its sockets and the field of surfels that takes the place of each, or "", and a function
+#: from their plain values to a `Material`
+_SHADERS = {
+    "BSDF_PRINCIPLED": (
+        {
+            "Roughness": "roughness",
+            "Metallic": "metallic",
+            "IOR": "",
+            "Specular IOR Level": "",
+            "Emission Color": "emission",
+            "Emission Strength": "emission",
+        },
+        _principled,
+    ),
+    # without a coat
+    "BSDF_DIFFUSE": ({}, lambda plain: Material(roughness=1.0, ior=1.0)),
+    "EMISSION": (
+        {"Color": "emission", "Strength": "emission"},
+        lambda plain: Material(roughness=1.0, ior=1.0, emission=_sent(plain, "Color", "Strength")),
+    ),
+}
+
+
+def _levelled(ior: float, level: float) -> float:
+    """The index whose reflectance at normal incidence is that of `ior` times 2 `level`, as Cycles takes it."""
+    root = min(2 * level * reflectance(ior), 0.999) ** 0.5
+    return (1 + root) / (1 - root)
+
+
+def output_source(tree: bpy.types.NodeTree, output_type: str, *wanted: str) -> bpy.types.Node | None:
+    """The node of one of the types `wanted` that feeds the tree's active output, or None."""
+    for node in tree.nodes:
+        if node.type == output_type and node.is_active_output and (found := linked(node.inputs["Surface"])):
+            source = found[0]
+            return source if source.type in wanted and not source.mute else None
+    return None

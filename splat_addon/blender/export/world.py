@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's world -> the renderer's even radiance and, where its background is a picture, its environment."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+from mathutils import Euler
+
+from ...rendering import Environment
+from ...rendering.upload.atlas import MAX_EDGE
+from ..materials.texture_images import UnreadableError, linear_pixels
+from . import passed_over
+from .shading import MAX_RADIANCE, color_times_strength, finite_radiance, output_source
+
+Color = tuple[float, float, float]
+BLACK = (0.0, 0.0, 0.0)
+
+
+class WorldStore:
+    """Keeps the `Environment` of a world between frames, the same object while picture and rotation are the same."""
+
+    def __init__(self):
+        self._kept: tuple[tuple, Environment] | None = None
+
+    def read(self, world: bpy.types.World | None, notes) -> tuple[Color, Environment | None]:
+        """What the radiance of every direction is, and a picture that it then multiplies; black without a world."""
+        if world is None:
+            return BLACK, None
+        node = output_source(world.node_tree, "OUTPUT_WORLD", "BACKGROUND") if world.use_nodes else None
+        for sentence in passed_over.of_world(world):
+            notes.add(sentence)
+        owner = f"The world {world.name!r}"
+        if node is None:
+            return (BLACK if world.use_nodes else tuple(world.color)), None
+        picture = _picture(node.inputs["Color"], world, notes)
+        if picture is None:
+            return finite_radiance(color_times_strength(node, owner, notes), owner, notes), None
+        strength = node.inputs["Strength"]
+        if strength.is_linked:
+            notes.add(f"{owner} has a textured strength; the socket's plain value is used")
+        even = finite_radiance((float(strength.default_value),) * 3, owner, notes)
+        return even, self._environment(picture, notes)
+
+    def _environment(self, picture: _Picture, notes) -> Environment | None:
+        image = picture.image
+        # No user may change pixels between two frames of one render without the image being marked dirty.
+        key = image.session_uid, tuple(image.size), image.is_dirty, picture.rotation.tobytes()
+        if self._kept is None or self._kept[0] != key or image.is_dirty:
+            try:
+                pixels = linear_pixels(image, keep_alpha=False)[..., :3]
+            except UnreadableError as reason:
+                notes.add(f"The world's picture cannot be read and counts as white: {reason}")
+                return None
+            bad = ~(np.abs(pixels) <= MAX_RADIANCE)
+            if bad.any():
+                notes.add(f"The world's picture {image.name!r} has numbers that no picture holds; they count as 0")
+                pixels = np.where(bad, 0, pixels)
+            steps = [-(-edge // MAX_EDGE) for edge in pixels.shape[:2]]
+            if max(steps) > 1:
+                pixels = _reduced(pixels, *steps)
+                notes.add(
+                    f"The world's picture {image.name!r} is larger than {MAX_EDGE:,} pixels, which graphics devices "
+                    f"hold along an edge; it is shown at {pixels.shape[1]:,} x {pixels.shape[0]:,}"
+                )
+            self._kept = key, Environment(pixels, picture.rotation)
+        return self._kept[1]
+
+
+def _reduced(pixels: np.ndarray, down: int, across: int) -> np.ndarray:
+    """The means over blocks of so many rows and columns; what fills no block is left out."""
+    rows, columns = pixels.shape[0] // down, pixels.shape[1] // across
+    whole = pixels[: rows * down, : columns * across]
+    return whole.reshape(rows, down, columns, across, 3).mean(axis=(1, 3))
+
+
+class _Picture(NamedTuple):
+    """rotation: (3, 3), from the world's directions to the picture's."""
+
+    image: bpy.types.Image
+    rotation: np.ndarray
+
+
+def _picture(socket: bpy.types.NodeSocket, world: bpy.types.World, notes) -> _Picture | None:
+    """The equirectangular image that feeds a colour, turned by a Mapping node at most."""
+    node = socket.links[0].from_node if socket.is_linked else None
+    if node is None or node.type != "TEX_ENVIRONMENT" or node.image is None:
+        return None
+    if node.projection != "EQUIRECTANGULAR":
+        notes.add(f"The world {world.name!r} has a picture in {node.projection.title()} projection, read as none")
+        return None
+    rotation = np.eye(3)
+    links = node.inputs["Vector"].links
+    if links and links[0].from_node.type == "MAPPING":
+        mapping = links[0].from_node
+        rotation = np.array(Euler(mapping.inputs["Rotation"].default_value).to_matrix())
+        if mapping.vector_type == "TEXTURE":
+            rotation = rotation.T
+        links = mapping.inputs["Vector"].links
+        _note_unused(mapping, world, notes)
+    if links and not (links[0].from_node.type == "TEX_COORD" and links[0].from_socket.name == "Generated"):
+        notes.add(f"The world {world.name!r} places its picture by more than generated coordinates and a Mapping node")
+    return _Picture(node.image, rotation)
+
+
+def _note_unused(mapping: bpy.types.Node, world: bpy.types.World, notes) -> None:
+    moved = "Location" in mapping.inputs and any(mapping.inputs["Location"].default_value)
+    scale = tuple(mapping.inputs["Scale"].default_value)
+    if moved or scale != (1, 1, 1) or mapping.inputs["Rotation"].is_linked:
+        notes.add(f"The Mapping node of the world {world.name!r} does more than rotate; only its rotation is used")

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfels as ordinary point attributes of a vertex-only mesh, and back.
+
+The store that works in every supported version, that Geometry Nodes, Cycles, EEVEE and the exporters read, and
+that a .blend keeps bit for bit. The conversion operator writes it; the engine reads it, evaluated with modifiers.
+
+Everything goes through `attributes[name].data.foreach_set` and `foreach_get` on flat arrays of the exact type:
+`vertices.foreach_set("co")` takes a hundred times as long.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ...interchange import followed
+from ...surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
+from ..ids import POINT_ATTRIBUTES, REST, SOLID, PointAttribute
+
+#: An attribute by either name on a mesh without faces says "these points are surfels".
+MARKS = tuple(POINT_ATTRIBUTES[field].name for field in ("rotations", "scales"))
+
+
+#: Of the attributes that hold no floats.
+_TYPES = {"INT": np.int32, "INT16_2D": np.int16}
+
+
+def has_surfels(mesh: bpy.types.Mesh) -> bool:
+    """Whether `mesh` is meant as surfels: no faces, and at least one of the attributes `rotation` and `scale`.
+
+    One of them is enough, so that surfels which lost the other are met with the sentence of `read_surfels`
+    and not passed over in silence.
+    """
+    return not mesh.polygons and any(name in mesh.attributes for name in MARKS)
+
+
+def has_surfels_beside_faces(mesh: bpy.types.Mesh) -> bool:
+    """Whether surfels and an ordinary mesh were joined to `mesh`; only surfels that this extension wrote are told."""
+    return bool(mesh.polygons) and REST.name in mesh.attributes
+
+
+def write_surfels(name: str, surfels: Surfels) -> bpy.types.Mesh:
+    """A new vertex-only mesh that stores `surfels`; `surfels.origin` is left to the object's location."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.vertices.add(len(surfels))
+    for field, layout in POINT_ATTRIBUTES.items():
+        values = getattr(surfels, field)
+        if values is None:
+            continue
+        _write(mesh, layout, values)
+    _write(mesh, REST, surfels.positions)
+    if surfels.is_solid:
+        mesh[SOLID] = True
+    mesh.update()
+    return mesh
+
+
+def _write(mesh: bpy.types.Mesh, layout: PointAttribute, values: np.ndarray) -> None:
+    # "position" is there as soon as there are vertices, and its name is reserved.
+    attribute = mesh.attributes.get(layout.name) or mesh.attributes.new(layout.name, layout.data_type, "POINT")
+    attribute.data.foreach_set(layout.property, _padded(values, layout.columns))
+
+
+def read_surfels(mesh: bpy.types.Mesh) -> tuple[Surfels, int]:
+    """The surfels that `mesh` stores, and how many unusable points were left out, as `read_stored` has them."""
+    return read_stored(mesh)[:2]
+
+
+class Stored(NamedTuple):
+    """skipped: unusable points, which were left out. strayed: surfels that were moved one by one, so that it is not
+    known how their frames should lie."""
+
+    surfels: Surfels
+    skipped: int
+    strayed: int
+
+
+def read_stored(mesh: bpy.types.Mesh, known: dict[str, tuple[Surfels, np.ndarray, Stored]] | None = None) -> Stored:
+    """The surfels that `mesh` stores, with origin (0, 0, 0); beside faces, the points that belong to none.
+
+    Where their centres have been moved together since they were written, their frames are moved along
+    (`interchange.followed`), which takes seconds a million: known keeps what came of it, by the name of the mesh, for
+    as long as the values are the same.
+
+    Attributes are found by name; optional ones need not be there. Raises ValueError where another is missing or one is
+    not of the stored type, and for a mesh in edit mode, whose points are not in its attributes then
+    (`Object.to_mesh()` has them); NaN, zero and negative sizes and the like only cost their own point (see
+    `valid_surfels`).
+    """
+    if mesh.is_editmode:
+        raise ValueError(
+            f"The surfel mesh {mesh.name!r} is in edit mode, where its points cannot be read; leave edit mode."
+        )
+    there = [field for field in OPTIONAL_LAYOUT if POINT_ATTRIBUTES[field].name in mesh.attributes]
+    arrays = {field: _read(mesh, POINT_ATTRIBUTES[field]) for field in (*LAYOUT, *there)}
+    arrays["scales"] = arrays["scales"][:, :2]
+    loose = _loose_points(mesh)
+    arrays = arrays if loose is None else {name: values[loose] for name, values in arrays.items()}
+    surfels, skipped = valid_surfels(is_solid=bool(mesh.get(SOLID)), **arrays)
+    rest = mesh.attributes.get(REST.name)
+    if rest is None or (rest.data_type, rest.domain) != (REST.data_type, "POINT"):
+        return Stored(surfels, skipped, 0)
+    rest = _read(mesh, REST)
+    rest = rest if loose is None else rest[loose]
+    if skipped:
+        # their numbers take the materials' way
+        numbers = np.where(arrays["materials"] < 0, -1, np.arange(len(rest)))
+        rest = rest[valid_surfels(**(arrays | {"materials": numbers}))[0].materials]
+    if np.array_equal(surfels.positions, rest):
+        return Stored(surfels, skipped, 0)
+    known = {} if known is None else known
+    before = known.get(mesh.name_full)
+    if before is not None and np.array_equal(before[1], rest) and have_same_values(before[0], surfels):
+        return before[2]._replace(skipped=skipped)
+    moved, strayed = followed(surfels, rest)
+    known[mesh.name_full] = surfels, rest, Stored(moved, skipped, strayed)
+    return known[mesh.name_full][2]
+
+
+def _loose_points(mesh: bpy.types.Mesh) -> np.ndarray | None:
+    """(n,) the points that belong to no face, of a mesh with faces; None: all points are surfels."""
+    if not mesh.polygons:
+        return None
+    is_loose = np.ones(len(mesh.vertices), bool)
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
+    is_loose[corners] = False
+    return np.flatnonzero(is_loose)
+
+
+def have_same_values(a: Surfels, b: Surfels) -> bool:
+    """Whether two sets have the same fields with the same numbers in them."""
+    mine, other = a.arrays(), b.arrays()
+    same_fields = a.is_solid == b.is_solid and mine.keys() == other.keys()
+    return same_fields and all(np.array_equal(mine[name], other[name]) for name in mine)
+
+
+def _padded(values: np.ndarray, columns: int) -> np.ndarray:
+    """`values` flat, each row filled up to `columns` with zeros."""
+    rows = values if values.ndim == 2 else values[:, None]
+    if rows.shape[1] < columns:
+        rows = np.pad(rows, ((0, 0), (0, columns - rows.shape[1])))
+    return rows.ravel()
+
+
+def _read(mesh: bpy.types.Mesh, layout: PointAttribute) -> np.ndarray:
+    """(N,) or (N, columns) values of one attribute."""
+    shape = (len(mesh.vertices), layout.columns) if layout.columns > 1 else len(mesh.vertices)
+    values = np.empty(shape, _TYPES.get(layout.data_type, np.float32))
+    if len(values):
+        _find(mesh, layout).data.foreach_get(layout.property, values.ravel())
+    return values
+
+
+def _find(mesh: bpy.types.Mesh, layout: PointAttribute) -> bpy.types.Attribute:
+    wanted = f"{layout.data_type} on POINT"
+    attribute = mesh.attributes.get(layout.name)
+    if attribute is None:
+        raise ValueError(
+            f"The surfel mesh {mesh.name!r} has no attribute {layout.name!r}; "
+            f"add it ({wanted}) or convert the source mesh again."
+        )
+    if (attribute.data_type, attribute.domain) != (layout.data_type, "POINT"):
+        raise ValueError(
+            f"The attribute {layout.name!r} of the surfel mesh {mesh.name!r} is {attribute.data_type} on "
+            f"{attribute.domain}; convert it to {wanted}."
+        )
+    return attribute

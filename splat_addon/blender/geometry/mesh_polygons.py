@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mesh as Blender has it -> `rendering.Polygons`, and what of its materials polygons do not show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ...rendering import Polygons
+from ...rendering.scene.polygons import MAX_TRIANGLES
+from ...sampling import Surface, TriangleMesh, corner_values
+from ...surfels import OPAQUE
+
+
+def mesh_polygons(mesh: TriangleMesh) -> tuple[Polygons, ...]:
+    """Its triangles, in parts that the renderer can hold; without those whose numbers are not finite."""
+    good = np.isfinite(mesh.positions).all(axis=1)[mesh.triangles].all(axis=1)
+    if not good.all():
+        mesh = taken(mesh, np.flatnonzero(good))
+    runs = (slice(start, start + MAX_TRIANGLES) for start in range(0, len(mesh), MAX_TRIANGLES))
+    return tuple(_part(taken(mesh, run) if len(mesh) > MAX_TRIANGLES else mesh) for run in runs)
+
+
+def taken(mesh: TriangleMesh, rows) -> TriangleMesh:
+    """Those of its triangles, over the same vertices."""
+    return replace(mesh, **{name: values[rows] for name, values in mesh.per_triangle().items()})
+
+
+def _part(mesh: TriangleMesh) -> Polygons:
+    corners = mesh.triangles.ravel()
+    low, high = (end(mesh.positions[corners], axis=0) for end in (np.min, np.max))
+    origin = (low + high) / 2
+    normals = np.zeros((len(corners), 3), np.float32)
+    if mesh.corner_normals is not None:
+        normals = np.nan_to_num(mesh.corner_normals.reshape(-1, 3), nan=0.0, posinf=0.0, neginf=0.0)
+    materials = np.zeros(len(corners), np.int32) if mesh.materials is None else np.repeat(mesh.materials, 3)
+    return Polygons(
+        (mesh.positions - origin)[corners], normals, materials=materials, origin=origin, **corner_values(mesh)
+    )
+
+
+def left_out_of_polygons(owner: str, mesh: TriangleMesh) -> Iterator[str]:
+    """A sentence for each thing of its materials that polygons do not have."""
+    if any(surface.normal_map is not None for surface in _used(mesh)):
+        yield f"{owner} has a normal map, which polygons do not show; render it as surfels to see it"
+    if is_transparent(mesh):
+        yield f"{owner} is transparent in places, which polygons are not; render it as surfels to see through it"
+
+
+def is_transparent(mesh: TriangleMesh) -> bool:
+    """Whether some of its triangles may be seen through."""
+    return any(surface.opacity is not None or surface.color.value[3] < OPAQUE for surface in _used(mesh))
+
+
+def _used(mesh: TriangleMesh) -> list[Surface]:
+    """The surfaces that some triangle has."""
+    if mesh.materials is None:
+        return [mesh.surfaces[0]]
+    return [mesh.surfaces[k] for k in np.unique(np.minimum(mesh.materials, len(mesh.surfaces) - 1))]

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A scene of its own, in which Cycles bakes copies of what is converted onto one small square for each surfel.
+
+Baking from the copies to the squares ("selected to active") evaluates the materials at the surfels themselves: no UV
+map is needed, no image size chosen, and nothing of the user's scene is touched. Each square covers a surfel's cell
+and four pixels of an image, whose mean is the surfel's. (Vertex colours would do, but their bake gives bump nodes
+nothing to differentiate.)
+"""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ..geometry.mesh_extraction import slot_materials
+from ..geometry.sources import shown_by
+from .material_surfaces import SHADERS, surface_shader, uses_nodes
+from .node_products import linked
+
+#: Pixels along a square.
+SIDE = 2
+
+#: What a pixel holds that no ray from it met.
+_MISSED = -1.0
+
+#: How `bpy.ops.object.bake` is asked, by kind.
+_KINDS = {
+    "EMIT": {},
+    "DIFFUSE": {"pass_filter": {"COLOR"}},
+    "NORMAL": {"normal_space": "OBJECT", "normal_r": "POS_X", "normal_g": "POS_Y", "normal_b": "POS_Z"},
+}
+
+
+class BakeScene:
+    """Use it as a context: what it made is gone at the end.
+
+    sources: the objects that are converted. Raises ValueError where Blender has no Cycles.
+    """
+
+    def __init__(self, sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph):
+        self._made: list[bpy.types.ID] = []
+        self._copies: dict[bpy.types.Material, bpy.types.Material] = {}
+        self._objects: list[bpy.types.Object] = []
+        try:
+            self._scene = self._keep(bpy.data.scenes.new("surfels baking"))
+            self._use_cycles()
+            for source in sources:
+                for piece in shown_by(source, depsgraph, self._copied).pieces:
+                    self._objects += [self._object(piece.content, matrix) for matrix in piece.matrices]
+        except BaseException:
+            self.__exit__()
+            raise
+
+    def __enter__(self) -> BakeScene:
+        return self
+
+    def __exit__(self, *_) -> None:
+        bpy.data.batch_remove(self._made)
+
+    def bake(
+        self, kind: str, channel: str, materials: set[bpy.types.Material], corners: np.ndarray, reach: float
+    ) -> np.ndarray:
+        """(n, 4, 3) float32 values in the four pixels of n squares; NaN where nothing was met.
+
+        kind: "EMIT", "DIFFUSE" (colour) or "NORMAL" (of world space, 0 to 1). channel: the field of `Surface` whose
+        input becomes the emission of these materials. corners: (n, 4, 3) of the squares, world space. reach: world
+        units above and below a square within which a surface is looked for.
+        """
+        for material in materials:
+            if kind == "EMIT":
+                _emit(self._copies[material], SHADERS[surface_shader(material).bl_idname][channel])
+        made = len(self._made)
+        try:
+            image, squares = self._squares(corners)
+            objects = [*self._objects, squares]
+            with bpy.context.temp_override(
+                scene=self._scene,
+                view_layer=self._scene.view_layers[0],
+                selected_objects=objects,
+                selected_editable_objects=objects,
+                active_object=squares,
+                object=squares,
+            ):
+                bpy.ops.object.bake(
+                    type=kind,
+                    target="IMAGE_TEXTURES",
+                    use_selected_to_active=True,
+                    cage_extrusion=reach,
+                    max_ray_distance=2 * reach,
+                    margin=0,
+                    use_clear=False,
+                    **_KINDS[kind],
+                )
+            return _cells(image, len(corners))
+        finally:
+            bpy.data.batch_remove(self._made[made:])
+            del self._made[made:]
+            for copy, original in ((self._copies[material], material) for material in materials):
+                if kind == "EMIT":
+                    _restore(copy, surface_shader(original).name)
+
+    def _keep(self, made):
+        self._made.append(made)
+        return made
+
+    def _use_cycles(self) -> None:
+        try:
+            self._scene.render.engine = "CYCLES"
+        except TypeError:
+            raise ValueError(
+                "Materials are baked by Cycles, which this Blender does not have; enable its add-on."
+            ) from None
+        self._scene.cycles.samples = 1
+        self._scene.cycles.use_denoising = False
+        self._scene.cycles.device = "CPU"
+
+    def _copied(self, evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> bpy.types.Mesh:
+        """A copy of an evaluated mesh, with copies of the materials that it shows there."""
+        copy = self._keep(mesh.copy())
+        # Generated coordinates go by the box of the mesh before its modifiers.
+        plain = evaluated.original.data
+        if hasattr(plain, "texspace_size"):
+            copy.use_auto_texspace = False
+            copy.texspace_location, copy.texspace_size = plain.texspace_location, plain.texspace_size
+        for index, material in enumerate(slot_materials(evaluated, mesh)):
+            own = self._material(material.original) if material else None
+            if index < len(copy.materials):
+                copy.materials[index] = own
+            else:
+                copy.materials.append(own)
+        return copy
+
+    def _material(self, original: bpy.types.Material) -> bpy.types.Material:
+        if original not in self._copies:
+            self._copies[original] = self._keep(original.copy())
+        return self._copies[original]
+
+    def _object(self, mesh: bpy.types.Mesh, matrix: np.ndarray) -> bpy.types.Object:
+        made = self._keep(bpy.data.objects.new(mesh.name, mesh))
+        self._scene.collection.objects.link(made)
+        made.matrix_world = Matrix(matrix)
+        return made
+
+    def _squares(self, corners: np.ndarray) -> tuple[bpy.types.Image, bpy.types.Object]:
+        """The object of the squares, each on its own pixels of the image."""
+        count = len(corners)
+        columns = math.ceil(math.sqrt(count))
+        rows = -(-count // columns)
+        mesh = self._keep(bpy.data.meshes.new("surfels baking"))
+        mesh.vertices.add(4 * count)
+        mesh.attributes["position"].data.foreach_set("vector", corners.astype(np.float32).ravel())
+        mesh.loops.add(4 * count)
+        mesh.polygons.add(count)
+        mesh.polygons.foreach_set("loop_start", np.arange(0, 4 * count, 4, dtype=np.int32))
+        corner_vertices = mesh.attributes.get(".corner_vert") or mesh.attributes.new(".corner_vert", "INT", "CORNER")
+        corner_vertices.data.foreach_set("value", np.arange(4 * count, dtype=np.int32))
+        cell = np.stack([np.arange(count) % columns, np.arange(count) // columns], axis=1)
+        uvs = (cell[:, None] + np.array([(0, 0), (1, 0), (1, 1), (0, 1)])) / (columns, rows)
+        mesh.uv_layers.new(name="cells").uv.foreach_set("vector", uvs.astype(np.float32).ravel())
+        mesh.update(calc_edges=True)
+
+        size = SIDE * columns, SIDE * rows
+        image = self._keep(bpy.data.images.new("surfels baking", *size, alpha=True, float_buffer=True))
+        image.colorspace_settings.name = "Non-Color"
+        image.pixels.foreach_set(np.full(4 * size[0] * size[1], _MISSED, np.float32))
+        material = self._keep(bpy.data.materials.new("surfels baking"))
+        if not uses_nodes(material):
+            material.use_nodes = True
+        node = material.node_tree.nodes.new("ShaderNodeTexImage")
+        node.image, material.node_tree.nodes.active = image, node
+        mesh.materials.append(material)
+        return image, self._object(mesh, np.eye(4))
+
+
+def _emit(material: bpy.types.Material, sockets: tuple[str, ...]) -> None:
+    """Let the surface send out what feeds these sockets of its shader: a colour or a number, and a strength."""
+    tree, shader = material.node_tree, surface_shader(material)
+    emission = tree.nodes.new("ShaderNodeEmission")
+    for socket, into in zip(sockets, ("Color", "Strength"), strict=False):
+        source, target = shader.inputs[socket], emission.inputs[into]
+        if linked(source) is not None:
+            tree.links.new(source.links[0].from_socket, target)
+        elif source.type == "VALUE" and target.type == "RGBA":
+            target.default_value = (*[source.default_value] * 3, 1.0)
+        else:
+            target.default_value = source.default_value
+    tree.links.new(emission.outputs["Emission"], tree.get_output_node("ALL").inputs["Surface"])
+
+
+def _restore(material: bpy.types.Material, shader: str) -> None:
+    """Undo `_emit`."""
+    tree = material.node_tree
+    output = tree.get_output_node("ALL").inputs["Surface"]
+    emission = output.links[0].from_node
+    tree.links.new(tree.nodes[shader].outputs[0], output)
+    tree.nodes.remove(emission)
+
+
+def _cells(image: bpy.types.Image, count: int) -> np.ndarray:
+    """(n, 4, 3) pixels of each square."""
+    width, height = image.size
+    pixels = np.empty(4 * width * height, np.float32)
+    image.pixels.foreach_get(pixels)
+    cells = pixels.reshape(height // SIDE, SIDE, width // SIDE, SIDE, 4).swapaxes(1, 2).reshape(-1, SIDE * SIDE, 4)
+    cells = cells[:count]
+    return np.where(cells[..., 3:] == _MISSED, np.nan, cells[..., :3])

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A view layer's Material Override: everything is drawn as if it were made of that one material."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+
+from ...surfels import OPTIONAL_LAYOUT, Surfels
+from .material_surfaces import plain_color
+
+
+def override_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.Material | None:
+    """The material that the view layer has instead of all others."""
+    return depsgraph.view_layer_eval.material_override
+
+
+class Overridden:
+    """Surfels as the override paints them, the same object for the same surfels and colour: known by it, they stay on
+    the device."""
+
+    def __init__(self):
+        self._made: dict[int, tuple[Surfels, tuple[float, ...], Surfels]] = {}
+        self._used: set[int] = set()
+
+    def get(self, surfels: Surfels, material: bpy.types.Material, notes) -> Surfels:
+        """In the plain colour and opacity of the material, and without fields of their own for the rest."""
+        color, is_textured = plain_color(material)
+        if is_textured:
+            notes.add(f"The overriding material {material.name!r} is textured; surfels have its socket's plain colour")
+        key = id(surfels)
+        self._used.add(key)
+        if key not in self._made or self._made[key][:2] != (surfels, color):
+            bare = dict.fromkeys(OPTIONAL_LAYOUT)
+            colors = np.tile(np.float32(color), (len(surfels), 1))
+            self._made[key] = surfels, color, replace(surfels, colors=colors, **bare)
+        return self._made[key][2]
+
+    def begin_frame(self) -> None:
+        """Let go of what the last frame did not ask for."""
+        self._made = {key: made for key, made in self._made.items() if key in self._used}
+        self._used.clear()

@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What Blender's materials are made of on a mesh -> `sampling.Surface`, with the mesh layers that it is looked up by.
+
+Each input of the shader at the output is read as a product (`node_products`). One that cannot be is given the value of
+its socket, and is named, so that it can be said or baked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import bpy
+import numpy as np
+
+from ...sampling import Channel, Image, NormalMap, Surface, Texture, VertexColors
+from ...sampling.attributes.surfaces import ALPHA, RED
+from ..geometry.attributes import has_surfels_beside_faces
+from . import node_products
+from .node_products import AttributeSource, ImageSource, Product, constant, linked, product
+from .texture_images import UnreadableError, linear_pixels
+from .texture_placement import placement, uv_layer
+
+
+@dataclass(frozen=True)
+class Unread:
+    """An input that could not be read. channel: a field of `Surface`. reason: the end of "it comes from ..."."""
+
+    channel: str
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{CHANNEL_NAMES[self.channel]} comes from {self.reason}"
+
+
+#: field of `Surface` -> how a person calls it
+CHANNEL_NAMES = {
+    "color": "base colour",
+    "opacity": "alpha",
+    "roughness": "roughness",
+    "metallic": "metallic",
+    "emission": "emission",
+    "normal_map": "normal",
+}
+
+#: shader node -> field of `Surface` -> its sockets, whose product is meant
+SHADERS = {
+    "ShaderNodeBsdfPrincipled": {
+        "color": ("Base Color",),
+        "opacity": ("Alpha",),
+        "roughness": ("Roughness",),
+        "metallic": ("Metallic",),
+        "emission": ("Emission Color", "Emission Strength"),
+        "normal_map": ("Normal",),
+    },
+    "ShaderNodeBsdfDiffuse": {"color": ("Color",), "normal_map": ("Normal",)},
+    "ShaderNodeEmission": {"emission": ("Color", "Strength")},
+}
+
+
+#: data type of an attribute that can be looked up as a colour -> its property, and how many numbers it is.
+ATTRIBUTE_TYPES = {
+    "FLOAT_COLOR": ("color", 4),
+    "BYTE_COLOR": ("color", 4),  # scene-linear, this one too
+    "FLOAT_VECTOR": ("vector", 3),
+    "FLOAT2": ("vector", 2),
+    "FLOAT": ("value", 1),
+}
+ATTRIBUTE_DOMAINS = ("POINT", "CORNER", "FACE")
+
+
+@dataclass
+class MeshLayers:
+    """The layers of a mesh that its materials are looked up by, each once, in the order in which they were met."""
+
+    mesh: bpy.types.Mesh
+    uvs: list[str] = field(default_factory=list)
+    colors: list[str] = field(default_factory=list)
+    _images: dict = field(default_factory=dict)
+
+    def uv(self, name: str) -> int:
+        return _index(self.uvs, name)
+
+    def color(self, name: str) -> int:
+        name = name or default_color_layer(self.mesh) or ""
+        attribute = self.mesh.attributes.get(name)
+        if attribute is None:
+            raise UnreadableError(f"the attribute {name!r}, which the mesh does not have")
+        if attribute.data_type not in ATTRIBUTE_TYPES or attribute.domain not in ATTRIBUTE_DOMAINS:
+            raise UnreadableError(f"the attribute {name!r}, which is {attribute.data_type} on {attribute.domain}")
+        return _index(self.colors, name)
+
+    def image(self, source: ImageSource, keep_alpha: bool) -> Image:
+        """The pixels of an Image Texture node; the same object for the same pixels."""
+        node = source.node
+        if node.image is None:
+            raise UnreadableError("an Image Texture node without an image")
+        if node.projection != "FLAT":
+            raise UnreadableError(f"an image texture in {node.projection.lower()} projection")
+        # Blender's Cubic and Smart are Linear where a texture is not magnified.
+        interpolation = "Closest" if node.interpolation == "Closest" else "Linear"
+        key = node.image.session_uid, keep_alpha, node.extension, interpolation
+        if key not in self._images:
+            self._images[key] = Image(linear_pixels(node.image, keep_alpha), node.extension, interpolation)
+        return _mapped(self._images[key], source) if source.functions else self._images[key]
+
+
+def _index(names: list[str], name: str) -> int:
+    if name not in names:
+        names.append(name)
+    return names.index(name)
+
+
+def _mapped(image: Image, source: ImageSource) -> Image:
+    """The image with the source's functions applied to its pixels; its number, if it is one, becomes the red."""
+    pixels = image.pixels.copy()
+    values = pixels[..., :3] if source.weights is None else (pixels @ np.float32(source.weights))[..., None]
+    for function in source.functions:
+        values = function(values)
+    pixels[..., :3] = values
+    if source.weights is not None:
+        pixels[..., 3] = 1
+    return replace(image, pixels=pixels)
+
+
+def material_surface(material: bpy.types.Material | None, layers: MeshLayers) -> tuple[Surface, list[Unread]]:
+    """What `material` is made of on the mesh of `layers`, and what could not be read.
+
+    Without a material: the mesh's colour attribute where it has one, else Blender's grey.
+    """
+    if material is None:
+        return _bare_surface(layers), []
+    plain = Surface(Channel(tuple(material.diffuse_color)))
+    if not uses_nodes(material):
+        return plain, []
+    shader = surface_shader(material)
+    if shader is None or shader.bl_idname not in SHADERS:
+        name = f"a {shader.bl_label} node" if shader else "no shader at its output"
+        return plain, [Unread("color", name)]
+    return _Reader(shader, layers).surface()
+
+
+def plain_color(material: bpy.types.Material) -> tuple[tuple[float, float, float, float], bool]:
+    """The colour and opacity that a material has without its textures, and whether it has some."""
+    shader = surface_shader(material) if uses_nodes(material) else None
+    sockets = SHADERS.get(shader.bl_idname) if shader is not None else None
+    if sockets is None:
+        return tuple(material.diffuse_color), False
+    if "color" not in sockets:
+        return (0.0, 0.0, 0.0, 1.0), False
+    used = [shader.inputs[sockets[name][0]] for name in ("color", "opacity") if name in sockets]
+    color, *opacity = (constant(socket).value for socket in used)
+    return (*color, *(opacity[0] if opacity else (1.0,))), any(linked(socket) is not None for socket in used)
+
+
+def _bare_surface(layers: MeshLayers) -> Surface:
+    if not default_color_layer(layers.mesh):
+        return Surface()
+    return Surface(Channel((1.0, 1.0, 1.0, 1.0), VertexColors(layers.color(""))))
+
+
+class _Reader:
+    """Reads one shader node."""
+
+    def __init__(self, shader: bpy.types.ShaderNode, layers: MeshLayers):
+        self._shader, self._layers = shader, layers
+        self._sockets = SHADERS[shader.bl_idname]
+        self._unread: list[Unread] = []
+
+    def surface(self) -> tuple[Surface, list[Unread]]:
+        alpha = self._product("opacity") if "opacity" in self._sockets else Product((1.0,))
+        color, opacity = self._color(alpha) if "color" in self._sockets else (Channel((0.0, 0.0, 0.0, 1.0)), None)
+        rest = {name: self._channel(name) for name in ("roughness", "metallic", "emission") if name in self._sockets}
+        return Surface(color, opacity, normal_map=self._normal_map(), **rest), self._unread
+
+    def _color(self, alpha: Product) -> tuple[Channel, Channel | None]:
+        """The colour, with the alpha where that comes from the same image, and what of the alpha is left."""
+        read = self._product("color")
+        own = [s for s in alpha.sources if isinstance(s, ImageSource) and s.weights == ALPHA and not s.functions]
+        images = [s.node for s in read.sources if isinstance(s, ImageSource) and s.weights is None]
+        joint = [s for s in own if s.node in images]
+        rest = Product(alpha.value, tuple(s for s in alpha.sources if s not in joint))
+        try:
+            factors = tuple(self._factor(source, bool(joint)) for source in read.sources)
+        except UnreadableError as error:
+            read, factors, rest = self._plain("color", error), (), alpha
+        opacity = self._made("opacity", rest)
+        value = read.value if len(read.value) == 3 else read.value * 3
+        if opacity is None or opacity.factors:
+            return Channel((*value, 1.0), factors), opacity
+        return Channel((*value, opacity.value[0]), factors), None
+
+    def _channel(self, name: str) -> Channel:
+        return self._made(name, self._product(name))
+
+    def _made(self, name: str, read: Product) -> Channel | None:
+        """The channel of a product; that of its plain socket where an image or a layer cannot be read."""
+        try:
+            factors = tuple(self._factor(source, _is_alpha(source)) for source in read.sources)
+        except UnreadableError as error:
+            read, factors = self._plain(name, error), ()
+        return Channel(read.value * (3 // len(read.value)) if name == "emission" else read.value, factors)
+
+    def _product(self, name: str) -> Product:
+        sockets = [self._shader.inputs[socket] for socket in self._sockets[name]]
+        try:
+            read = product(sockets[0])
+            for socket in sockets[1:]:
+                read = read * product(socket)
+        except UnreadableError as error:
+            return self._plain(name, error)
+        return read
+
+    def _plain(self, name: str, error: UnreadableError) -> Product:
+        self._unread.append(Unread(name, str(error)))
+        read = Product((1.0,))
+        for socket in self._sockets[name]:
+            read = read * constant(self._shader.inputs[socket])
+        return read
+
+    def _factor(self, source: ImageSource | AttributeSource, uses_alpha: bool) -> Texture | VertexColors:
+        if isinstance(source, AttributeSource):
+            return VertexColors(self._layers.color(source.name), source.weights, uses_alpha=False)
+        image = self._layers.image(source, uses_alpha)
+        name, matrix, wraps = placement(source.node, self._layers.mesh)
+        weights = RED if source.weights is not None and source.functions else source.weights
+        return Texture(image, self._layers.uv(name), matrix, weights, uses_alpha, wraps)
+
+    def _normal_map(self) -> NormalMap | None:
+        sockets = self._sockets.get("normal_map")
+        source = linked(self._shader.inputs[sockets[0]]) if sockets else None
+        if source is None:
+            return None
+        try:
+            return self._read_normal_map(source[0])
+        except UnreadableError as error:
+            self._unread.append(Unread("normal_map", str(error)))
+            return None
+
+    def _read_normal_map(self, node: bpy.types.Node) -> NormalMap | None:
+        if node.bl_idname != "ShaderNodeNormalMap" or node.mute:
+            raise UnreadableError(f"a {'muted ' if node.mute else ''}{node.bl_label} node")
+        if node.space not in _SPACES or getattr(node, "convention", "OPENGL") != "OPENGL":
+            raise UnreadableError(f"a normal map in {node.space.replace('_', ' ').lower()} space, or of DirectX")
+        strength = node.inputs["Strength"]
+        if linked(strength) is not None:
+            raise UnreadableError("a normal map whose strength is linked")
+        if linked(node.inputs["Color"]) is None:
+            return None
+        read = product(node.inputs["Color"])
+        color = Channel(read.value, tuple(self._factor(source, False) for source in read.sources))
+        layer = self._layers.uv(uv_layer(node.uv_map, self._layers.mesh)) if node.space == "TANGENT" else 0
+        return NormalMap(color, max(strength.default_value, 0.0), layer, node.space)
+
+
+#: Spaces of a Normal Map node that `NormalMap` has.
+_SPACES = ("TANGENT", "OBJECT")
+
+
+def _is_alpha(source) -> bool:
+    return source.weights == ALPHA
+
+
+def default_color_layer(mesh: bpy.types.Mesh) -> str | None:
+    """The colour attribute that renders, or None. That of surfels that were joined to the mesh says nothing of it."""
+    if has_surfels_beside_faces(mesh):
+        return None
+    name = mesh.attributes.default_color_name or mesh.attributes.active_color_name
+    return name if name in mesh.color_attributes else None
+
+
+def uses_nodes(material: bpy.types.Material) -> bool:
+    """Whether the material's node tree is looked at."""
+    # From 5.0 every material does, and asking is deprecated.
+    return bpy.app.version >= (5, 0, 0) or (material.use_nodes and material.node_tree is not None)
+
+
+def surface_shader(material: bpy.types.Material) -> bpy.types.Node | None:
+    """The node at the surface of the active output."""
+    output = material.node_tree.get_output_node("ALL")
+    source = node_products.linked(output.inputs["Surface"]) if output else None
+    return source[0] if source else None

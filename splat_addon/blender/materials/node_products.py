@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a socket of a shader's node tree is the product of: constants, image textures and attributes.
+
+That is what importers and painters make. A Math or Invert node over one image is read too: it is applied to the image's
+pixels. Anything else raises `UnreadableError`, whose text ends the sentence "it comes from ...".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import bpy
+import numpy as np
+
+from ...sampling.attributes.surfaces import ALPHA, BLUE, GREEN, LUMINANCE, RED
+from .texture_images import UnreadableError
+
+Socket = bpy.types.NodeSocket
+Node = bpy.types.Node
+
+
+@dataclass(frozen=True)
+class ImageSource:
+    """An Image Texture node. weights: of its r, g, b, a that make one number, None: the colour. functions: of pixels,
+    applied one after another to the colour or that number."""
+
+    node: bpy.types.ShaderNodeTexImage
+    weights: tuple[float, ...] | None = None
+    functions: tuple[Callable[[np.ndarray], np.ndarray], ...] = ()
+
+
+@dataclass(frozen=True)
+class AttributeSource:
+    """A named attribute of the mesh, "" for the one that renders. weights: as of an `ImageSource`."""
+
+    name: str
+    weights: tuple[float, ...] | None = None
+
+
+@dataclass(frozen=True)
+class Product:
+    """value: 3 numbers of a colour, or 1. sources: what multiplies it."""
+
+    value: tuple[float, ...]
+    sources: tuple[ImageSource | AttributeSource, ...] = ()
+
+    def __mul__(self, other: Product) -> Product:
+        value = np.multiply(self.value, other.value)
+        if not value.any():
+            return Product(tuple(value.tolist()))
+        product = Product(tuple(value.tolist()), self.sources + other.sources)
+        for kind in (ImageSource, AttributeSource):
+            if sum(isinstance(source, kind) for source in product.sources) > 1:
+                raise UnreadableError("a product of two textures or two attributes")
+        return product
+
+    def weighted(self, weights: tuple[float, ...]) -> Product:
+        """One number of a colour."""
+        if len(self.value) == 1:
+            return self
+        if not self.sources:
+            return Product((float(np.dot(self.value, weights[:3])),))
+        kept = [k for k in range(3) if weights[k]]
+        # What multiplies the colour must multiply its parts alike, if the sum is to be a product again.
+        if len(self.sources) > 1 or self.sources[0].weights or len({self.value[k] for k in kept}) > 1:
+            raise UnreadableError("one number of a product of colours")
+        return Product((self.value[kept[0]],), (replace(self.sources[0], weights=weights),))
+
+    def mapped(self, function: Callable[[np.ndarray], np.ndarray], name: str) -> Product:
+        """A function of each component; name: of the node that asks."""
+        if not self.sources:
+            return Product(tuple(function(np.array(self.value)).tolist()))
+        if len(self.sources) > 1 or not isinstance(self.sources[0], ImageSource):
+            raise UnreadableError(f"a {name} node over more than one image")
+        scale, source = np.float32(self.value if len(set(self.value)) > 1 else self.value[0]), self.sources[0]
+        if scale.ndim and source.weights:
+            raise UnreadableError(f"a {name} node over a tinted number")
+        functions = (*source.functions, lambda pixels: function(pixels * scale))
+        return Product((1.0,) * len(self.value), (replace(source, functions=functions),))
+
+
+def product(socket: Socket) -> Product:
+    """What a colour or number socket is the product of. Raises UnreadableError."""
+    return _Reading().product(socket)
+
+
+#: The most nodes that are followed one behind another: far more than anyone places, and within Python's own limit.
+MAX_CHAIN = 100
+
+
+class _Reading:
+    """One walk up a node tree. Each node's output is read once, however many sockets it feeds: in a chain of nodes that
+    take their predecessor twice, the number of paths doubles with each."""
+
+    def __init__(self):
+        self._read: dict[tuple[Node, str], Product] = {}
+        self._followed: list[tuple[Node, str]] = []
+
+    def product(self, socket: Socket) -> Product:
+        source = linked(socket)
+        if source is None:
+            return constant(socket)
+        read = self._read[source] if source in self._read else self._output(source)
+        return read.weighted(LUMINANCE) if socket.type == "VALUE" else read
+
+    def _output(self, source: tuple[Node, str]) -> Product:
+        node, output = source
+        reader = _READERS.get((node.bl_idname, output))
+        if reader is None or node.mute:
+            raise UnreadableError(f"a {'muted ' if node.mute else ''}{node.bl_label} node")
+        if source in self._followed:
+            raise UnreadableError(f"a {node.bl_label} node in a ring of nodes")
+        if len(self._followed) == MAX_CHAIN:
+            raise UnreadableError(f"a chain of more than {MAX_CHAIN} nodes")
+        self._followed.append(source)
+        self._read[source] = reader(node, self.product)
+        self._followed.pop()
+        return self._read[source]
+
+
+def constant(socket: Socket) -> Product:
+    """The socket's own value."""
+    value = socket.default_value
+    return Product((float(value),)) if socket.type == "VALUE" else Product(tuple(float(c) for c in value[:3]))
+
+
+def linked(socket: Socket) -> tuple[Node, str] | None:
+    """The node that feeds a socket, past any reroutes, and the identifier of its output; None where nothing does, which
+    is also so for reroutes that are linked in a ring."""
+    passed = set()
+    while socket.links and not socket.links[0].is_muted:
+        link = socket.links[0]
+        if link.from_node.bl_idname != "NodeReroute":
+            return link.from_node, link.from_socket.identifier
+        if link.from_node in passed:
+            return None
+        passed.add(link.from_node)
+        socket = link.from_node.inputs[0]
+    return None
+
+
+#: Reads a socket further up the tree.
+Read = Callable[[Socket], Product]
+#: Reads what a node puts out.
+Reader = Callable[[Node, Read], Product]
+
+
+def _output(node: Node, read: Read) -> Product:
+    """The constant of an RGB or Value node."""
+    return constant(node.outputs[0])
+
+
+def _color(node: Node, read: Read) -> Product:
+    return Product((1.0, 1.0, 1.0), (ImageSource(node),))
+
+
+def _alpha(node: Node, read: Read) -> Product:
+    return Product((1.0,), (ImageSource(node, ALPHA),))
+
+
+def _attribute_name(node: Node) -> str:
+    if node.bl_idname == "ShaderNodeVertexColor":
+        return node.layer_name
+    if node.attribute_type != "GEOMETRY":
+        raise UnreadableError(f"an attribute of the {node.attribute_type.lower()}")
+    return node.attribute_name
+
+
+def _attribute_color(node: Node, read: Read) -> Product:
+    return Product((1.0, 1.0, 1.0), (AttributeSource(_attribute_name(node)),))
+
+
+def _attribute_number(weights: tuple[float, ...]) -> Reader:
+    return lambda node, read: Product((1.0,), (AttributeSource(_attribute_name(node), weights),))
+
+
+#: What the Attribute node's Factor is of a colour or vector; linked to a number, its Color is the luminance.
+_MEAN = (1 / 3, 1 / 3, 1 / 3, 0.0)
+
+
+def _component(weights: tuple[float, ...]) -> Reader:
+    def component(node: Node, read: Read) -> Product:
+        if getattr(node, "mode", "RGB") != "RGB":
+            raise UnreadableError(f"a {node.bl_label} node in {node.mode}")
+        return read(node.inputs[0]).weighted(weights)
+
+    return component
+
+
+def _mix(node: Node, read: Read) -> Product:
+    factor, a, b = (_input(node, name) for name in _MIX_INPUTS[node.bl_idname])
+    is_product = getattr(node, "data_type", "RGBA") == "RGBA" and node.blend_type == "MULTIPLY"
+    if not is_product or linked(factor) is not None or not np.isclose(factor.default_value, 1.0):
+        raise UnreadableError(f"a {node.bl_label} node other than a full Multiply")
+    return read(a) * read(b)
+
+
+def _input(node: Node, identifier: str) -> Socket:
+    return next(socket for socket in node.inputs if socket.identifier == identifier)
+
+
+#: mix node -> identifiers of its factor and two colours
+_MIX_INPUTS = {
+    "ShaderNodeMix": ("Factor_Float", "A_Color", "B_Color"),
+    "ShaderNodeMixRGB": ("Fac", "Color1", "Color2"),
+}
+
+
+def _safe(function: Callable) -> Callable:
+    """As shaders have it: what is not finite is 0."""
+
+    @np.errstate(divide="ignore", invalid="ignore", over="ignore")
+    def safe(a, b):
+        return np.nan_to_num(function(a, b), nan=0.0, posinf=0.0, neginf=0.0)
+
+    return safe
+
+
+_OPERATIONS = {
+    "ADD": np.add,
+    "SUBTRACT": np.subtract,
+    "MULTIPLY": np.multiply,
+    "DIVIDE": _safe(np.divide),
+    "POWER": _safe(np.power),
+    "MINIMUM": np.minimum,
+    "MAXIMUM": np.maximum,
+    "LESS_THAN": np.less,
+    "GREATER_THAN": np.greater,
+}
+
+
+def _math(node: Node, read: Read) -> Product:
+    operation = _OPERATIONS.get(node.operation)
+    if operation is None:
+        raise UnreadableError(f"a Math node that does {node.operation.replace('_', ' ').title()}")
+    a, b = read(node.inputs[0]), read(node.inputs[1])
+    if node.operation == "MULTIPLY" and not node.use_clamp:
+        return a * b
+    if a.sources and b.sources:
+        raise UnreadableError(f"a Math node over two sources that does {node.operation.replace('_', ' ').title()}")
+    top = (lambda x: np.clip(x, 0, 1)) if node.use_clamp else (lambda x: x)
+    if a.sources:
+        return a.mapped(lambda x: top(operation(x, b.value[0]) * 1.0), "Math")
+    return b.mapped(lambda x: top(operation(a.value[0], x) * 1.0), "Math")
+
+
+def _invert(node: Node, read: Read) -> Product:
+    factor = node.inputs[0]
+    if linked(factor) is not None:
+        raise UnreadableError("an Invert Color node with a linked factor")
+    share = factor.default_value
+    return read(node.inputs[1]).mapped(lambda x: x + share * (1 - 2 * x), "Invert Color")
+
+
+#: (node, output) -> function of the node, and of what reads the sockets that it depends on, giving its `Product`
+_READERS: dict[tuple[str, str], Reader] = {
+    ("ShaderNodeRGB", "Color"): _output,
+    ("ShaderNodeValue", "Value"): _output,
+    ("ShaderNodeTexImage", "Color"): _color,
+    ("ShaderNodeTexImage", "Alpha"): _alpha,
+    ("ShaderNodeVertexColor", "Color"): _attribute_color,
+    ("ShaderNodeVertexColor", "Alpha"): _attribute_number(ALPHA),
+    ("ShaderNodeAttribute", "Color"): _attribute_color,
+    ("ShaderNodeAttribute", "Fac"): _attribute_number(_MEAN),
+    ("ShaderNodeAttribute", "Alpha"): _attribute_number(ALPHA),
+    ("ShaderNodeSeparateColor", "Red"): _component(RED),
+    ("ShaderNodeSeparateColor", "Green"): _component(GREEN),
+    ("ShaderNodeSeparateColor", "Blue"): _component(BLUE),
+    ("ShaderNodeSeparateRGB", "R"): _component(RED),
+    ("ShaderNodeSeparateRGB", "G"): _component(GREEN),
+    ("ShaderNodeSeparateRGB", "B"): _component(BLUE),
+    ("ShaderNodeRGBToBW", "Val"): _component(LUMINANCE),
+    ("ShaderNodeMix", "Result_Color"): _mix,
+    ("ShaderNodeMixRGB", "Color"): _mix,
+    ("ShaderNodeMath", "Value"): _math,
+    ("ShaderNodeInvert", "Color"): _invert,
+}

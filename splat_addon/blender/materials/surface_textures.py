@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The image that a material's base colour is, for texture-mapped surfels: found through the object's slots when they
+are rendered, so that a repainted or exchanged image shows at once.
+
+Where the image lies on the surface is in the surfels' own coordinates, as the material had it when they were made.
+"""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from ...rendering import SurfaceTexture
+from ...sampling import Image, Surface
+from .material_surfaces import SHADERS, MeshLayers, surface_shader, uses_nodes
+from .node_products import ImageSource, linked, product
+from .texture_images import UnreadableError
+
+
+def texture_of(surface: Surface) -> SurfaceTexture | None:
+    """Of a surface as sampling has it; None where its colour is not one image times a constant."""
+    texture = surface.color_texture
+    return None if texture is None else SurfaceTexture(texture.image, surface.color.value[:3])
+
+
+def kept_textures(
+    kept: tuple[SurfaceTexture | None, ...], surfaces: tuple[Surface, ...]
+) -> tuple[SurfaceTexture | None, ...]:
+    """Those of a mesh's surfaces; the same tuple as `kept`, by which the device knows it, while nothing changed."""
+    found = tuple(texture_of(surface) for surface in surfaces)
+    is_same = len(kept) == len(found) and all(map(_are_same, kept, found))
+    return kept if is_same else found
+
+
+class TextureStore:
+    """Keeps the textures of materials between frames, the same object while image and constant are the same: what lies
+    on the device is known by that.
+    """
+
+    def __init__(self):
+        self._images: dict = {}
+        self._kept: dict[int, SurfaceTexture] = {}
+        self._is_read: set[int] = set()
+        self._doubted = True
+
+    def begin_frame(self, is_edited: bool, is_told: bool) -> None:
+        """is_edited: an image or a material was, and all are read again. is_told: edits are told of, as in a viewport;
+        in a final render they are not, and images with unsaved changes are read again."""
+        if is_edited:
+            self._images.clear()
+        self._doubted = not is_told
+        self._is_read.clear()
+
+    def get(self, material: bpy.types.Material | None, notes) -> SurfaceTexture | None:
+        """None where the base colour is not one image times a constant, or the image cannot be read, which is noted."""
+        try:
+            found = self._read(material)
+        except UnreadableError as error:
+            notes.add(
+                f"The material {material.name!r}'s base colour comes from {error}; its texture-mapped surfels show "
+                "the colours that they were converted with"
+            )
+            found = None
+        if found is None:
+            return None
+        kept = self._kept.get(material.session_uid)
+        if kept is None or not _same(kept, found):
+            self._kept[material.session_uid] = kept = found
+        return kept
+
+    def _read(self, material: bpy.types.Material | None) -> SurfaceTexture | None:
+        shader = surface_shader(material) if material is not None and uses_nodes(material) else None
+        sockets = SHADERS.get(shader.bl_idname, {}).get("color") if shader is not None else None
+        if sockets is None:
+            return None
+        read = product(shader.inputs[sockets[0]])
+        if (
+            len(read.sources) != 1
+            or not isinstance(read.sources[0], ImageSource)
+            or read.sources[0].weights is not None
+        ):
+            return None
+        (source,) = read.sources
+        self._forget_if_painted(source.node.image)
+        alpha = shader.inputs.get("Alpha")
+        uses_alpha = alpha is not None and linked(alpha) == (source.node, "Alpha")
+        return SurfaceTexture(MeshLayers(None, _images=self._images).image(source, uses_alpha), tuple(read.value))
+
+    def _forget_if_painted(self, image: bpy.types.Image | None) -> None:
+        if image is None or not self._doubted:
+            return
+        if image.is_dirty and image.session_uid not in self._is_read:
+            self._images = {key: kept for key, kept in self._images.items() if key[0] != image.session_uid}
+            self._is_read.add(image.session_uid)
+
+
+def _are_same(a: SurfaceTexture | None, b: SurfaceTexture | None) -> bool:
+    return a is b or (a is not None and b is not None and _same(a, b))
+
+
+def _same(a: SurfaceTexture, b: SurfaceTexture) -> bool:
+    return a.factor == b.factor and (a.image is b.image or _same_image(a.image, b.image))
+
+
+def _same_image(a: Image, b: Image) -> bool:
+    return (a.extension, a.interpolation) == (b.extension, b.interpolation) and np.array_equal(a.pixels, b.pixels)

@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the panels of this engine in the properties editor have in common."""
+
+from __future__ import annotations
+
+from ..ids import ENGINE
+
+
+class EnginePanel:
+    """A base beside `bpy.types.Panel`; `bl_context` says in which of the properties it is."""
+
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine == ENGINE
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The second panel of the Surfels tab: surfels from bare points, and from and to files."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..ids import EXPORT_PLY, IMPORT_PLY, POINTS_PANEL, SIDEBAR_TAB, SURFELS_FROM_POINTS
+
+
+class VIEW3D_PT_surfels_from_points(bpy.types.Panel):
+    bl_idname = POINTS_PANEL
+    bl_label = "From Points and Files"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = SIDEBAR_TAB
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 - Blender reads a set
+
+    def draw(self, context):
+        self.layout.operator(SURFELS_FROM_POINTS, icon="POINTCLOUD_POINT")
+        row = self.layout.row(align=True)
+        # "Invoke" asks for the file; a sidebar's own way would run at once.
+        row.operator_context = "INVOKE_DEFAULT"
+        row.operator(IMPORT_PLY, icon="IMPORT")
+        row.operator(EXPORT_PLY, icon="EXPORT")
+
+
+register, unregister = bpy.utils.register_classes_factory((VIEW3D_PT_surfels_from_points,))

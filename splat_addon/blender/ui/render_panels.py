@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The engine's settings in the render properties, and Blender's own panels that it joins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import bpy
+
+from ...rendering.methods import get_method
+from ..ids import ENGINE, RENDER_SETTINGS
+from ..operators.render_preset import draw_presets
+from .engine_panel import EnginePanel
+
+
+class _RenderPanel(EnginePanel):
+    bl_context = "render"
+
+    def draw(self, context):
+        super().draw(context)
+        for name in self.properties:
+            self.layout.prop(getattr(context.scene, RENDER_SETTINGS), name)
+
+
+class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
+    bl_label = "Sampling"
+    properties = ("method",)
+
+    def draw(self, context):
+        properties = getattr(context.scene, RENDER_SETTINGS)
+        draw_presets(self.layout, properties)
+        super().draw(context)
+        for name, label in (("supersampling", "Supersampling Render"), ("samples", "Samples Render")):
+            column = self.layout.column(align=True)
+            column.prop(properties, name, text=label)
+            column.prop(properties, f"viewport_{name}", text="Viewport")
+        for blur in blurs_that_need_samples(context.scene, context.view_layer):
+            self.layout.label(text=f"{blur} needs more samples", icon="INFO")
+
+
+def blurs_that_need_samples(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> Iterator[str]:
+    """What is switched on and would not be seen in a final render of one sample."""
+    if (view_layer.samples or getattr(scene, RENDER_SETTINGS).samples) > 1:
+        return
+    camera = scene.camera
+    if camera is not None and camera.type == "CAMERA" and camera.data.type == "PERSP" and camera.data.dof.use_dof:
+        yield "Depth of Field"
+    if scene.render.use_motion_blur and view_layer.use_motion_blur:
+        yield "Motion Blur"
+
+
+class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):
+    bl_label = "Surface"
+    properties = ("shading", "epsilon")
+
+    def draw(self, context):
+        super().draw(context)
+        properties = getattr(context.scene, RENDER_SETTINGS)
+        row = self.layout.row()
+        row.active = get_method(properties.method).works_in == "space"
+        row.prop(properties, "edge_threshold")
+
+
+class RENDER_PT_surfel_toon(_RenderPanel, bpy.types.Panel):
+    bl_label = "Toon"
+    bl_parent_id = "RENDER_PT_surfel_surface"
+    properties = ("toon_steps", "toon_softness")
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and getattr(context.scene, RENDER_SETTINGS).shading == "toon"
+
+
+class RENDER_PT_surfel_matcap(_RenderPanel, bpy.types.Panel):
+    bl_label = "Matcap"
+    bl_parent_id = "RENDER_PT_surfel_surface"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and getattr(context.scene, RENDER_SETTINGS).shading == "matcap"
+
+    def draw(self, context):
+        properties = getattr(context.scene, RENDER_SETTINGS)
+        self.layout.template_ID(properties, "matcap", open="image.open")
+        if properties.matcap and properties.matcap.type == "MULTILAYER":
+            self.layout.label(text="Its first layer, without Specular Highlights", icon="INFO")
+
+
+class RENDER_PT_surfel_lines(_RenderPanel, bpy.types.Panel):
+    bl_label = "Lines"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("line_width", "line_color", "line_crease_angle", "line_depth_threshold")
+
+    def draw_header(self, context):
+        self.layout.prop(getattr(context.scene, RENDER_SETTINGS), "use_lines", text="")
+
+    def draw(self, context):
+        self.layout.active = getattr(context.scene, RENDER_SETTINGS).use_lines
+        super().draw(context)
+
+
+class RENDER_PT_surfel_motion_blur(_RenderPanel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("motion_blur_steps",)
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        render = context.scene.render
+        self.layout.use_property_split = True
+        self.layout.active = render.use_motion_blur
+        self.layout.prop(render, "motion_blur_position", text="Position")
+        self.layout.prop(render, "motion_blur_shutter")
+        super().draw(context)
+        self.layout.template_curve_mapping(render, "motion_blur_shutter_curve")
+
+
+class RENDER_PT_surfel_film(_RenderPanel, bpy.types.Panel):
+    bl_label = "Film"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.prop(context.scene.render, "film_transparent", text="Transparent")
+
+
+class RENDER_PT_surfel_shadows(_RenderPanel, bpy.types.Panel):
+    bl_label = "Shadows"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("shadow_resolution",)
+
+
+class RENDER_PT_surfel_ambient_occlusion(_RenderPanel, bpy.types.Panel):
+    bl_label = "Ambient Occlusion"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("ambient_occlusion_distance",)
+
+    def draw_header(self, context):
+        self.layout.prop(getattr(context.scene, RENDER_SETTINGS), "use_ambient_occlusion", text="")
+
+    def draw(self, context):
+        self.layout.active = getattr(context.scene, RENDER_SETTINGS).use_ambient_occlusion
+        super().draw(context)
+
+
+class RENDER_PT_surfel_transparency(_RenderPanel, bpy.types.Panel):
+    bl_label = "Transparency"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("layers", "blends_rest")
+
+
+class RENDER_PT_surfel_performance(_RenderPanel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("storage", "accumulation", "profile", "broken_objects")
+
+    def draw(self, context):
+        super().draw(context)
+        self.layout.prop(context.scene.render, "use_persistent_data", text="Persistent Data")
+
+
+#: Blender's panels whose settings this engine does not have, or replaces with its own; so are all of Freestyle's.
+_NOT_JOINED = frozenset(
+    {
+        "VIEWLAYER_PT_filter",
+        "VIEWLAYER_PT_layer_passes",
+        "RENDER_PT_simplify_greasepencil",
+        "DATA_PT_light",
+        "DATA_PT_spot",
+        "DATA_PT_preview",
+    }
+)
+#: EEVEE's panels that edit what this engine reads too: nodes, pass indices, depth of field, overrides. 4.5 has one of
+#: them under a name of its own.
+_JOINED_FROM_EEVEE = frozenset(
+    {
+        "DATA_PT_camera_dof",
+        "DATA_PT_camera_dof_aperture",
+        "VIEWLAYER_PT_override",
+        "EEVEE_MATERIAL_PT_context_material",
+        "EEVEE_MATERIAL_PT_surface",
+        "EEVEE_MATERIAL_PT_settings",
+        "EEVEE_NEXT_MATERIAL_PT_settings",
+        "EEVEE_WORLD_PT_surface",
+    }
+)
+
+
+def stock_panels() -> Iterator[type]:
+    """Blender's panels that show settings which this engine honours."""
+    for panel in bpy.types.Panel.__subclasses__():
+        engines = getattr(panel, "COMPAT_ENGINES", ())
+        # of a panel that the shader editor shows too there is a second class, with the same set of engines
+        name = panel.__name__.removeprefix("NODE_")
+        is_ignored = name in _NOT_JOINED or "freestyle" in name
+        if "BLENDER_RENDER" in engines and not is_ignored:
+            yield panel
+        elif panel.__name__ in _JOINED_FROM_EEVEE:
+            yield panel
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (
+        RENDER_PT_surfel_sampling,
+        RENDER_PT_surfel_surface,
+        RENDER_PT_surfel_toon,
+        RENDER_PT_surfel_matcap,
+        RENDER_PT_surfel_lines,
+        RENDER_PT_surfel_motion_blur,
+        RENDER_PT_surfel_shadows,
+        RENDER_PT_surfel_ambient_occlusion,
+        RENDER_PT_surfel_transparency,
+        RENDER_PT_surfel_film,
+        RENDER_PT_surfel_performance,
+    )
+)
+
+
+def register():
+    _register_classes()
+    for panel in stock_panels():
+        panel.COMPAT_ENGINES.add(ENGINE)
+
+
+def unregister():
+    for panel in stock_panels():
+        panel.COMPAT_ENGINES.discard(ENGINE)
+    _unregister_classes()

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The Surfels tab in the 3D view's sidebar: the conversion, and what it will make before it is pressed."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..conversion.camera_density import without_camera
+from ..conversion.gathering import frame_of, groups
+from ..conversion.mesh_conversion import Choices
+from ..conversion.mesh_settings import PROPERTY_NAMES, choices, draw_properties
+from ..conversion.prediction import known_extents
+from ..export.object_detail import detail_of, finer
+from ..geometry.sources import is_surfel_object
+from ..ids import CONVERSION_SETTINGS, OBJECT_SETTINGS, SHOW_SURFELS, SIDEBAR_PANEL, SIDEBAR_TAB, SURFELS_FROM_MESH
+from ..operators.show_surfels import shows_surfels
+from ..operators.surfels_from_mesh import selected_sources
+
+
+class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
+    bl_idname = SIDEBAR_PANEL
+    bl_label = "From Meshes"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = SIDEBAR_TAB
+
+    def draw(self, context):
+        settings = getattr(context.scene, CONVERSION_SETTINGS)
+        draw_properties(self.layout, settings)
+        sources = selected_sources(context)
+        if context.active_object in sources:
+            self.layout.prop(getattr(context.active_object, OBJECT_SETTINGS), "detail")
+        if sources and context.mode == "OBJECT":
+            text = prediction(context, sources, choices(settings))
+        else:
+            text = "Select surfaces, in Object Mode"
+        self.layout.label(text=text, icon="INFO")
+        button = self.layout.operator(SURFELS_FROM_MESH, icon="OUTLINER_OB_POINTCLOUD")
+        for name in PROPERTY_NAMES:
+            setattr(button, name, getattr(settings, name))
+        # Another engine shows of a surfel object the outline of a box.
+        if context.active_object is not None and is_surfel_object(context.active_object) and not shows_surfels(context):
+            self.layout.operator(SHOW_SURFELS, icon="SHADING_RENDERED")
+
+
+def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], asked: Choices) -> str:
+    """One line on what the sources will become, or why they cannot."""
+    parts = groups(sources, context.active_object, asked.join)
+    extents = known_extents(parts, asked)
+    if extents is None:
+        return "Counting …"
+    depsgraph = context.view_layer.depsgraph
+    try:
+        finenesses = [
+            without_camera(
+                finer(asked.density, detail_of(part[0])),
+                lambda e=extent: e.surface,
+                frame_of(part[0], asked.in_world_units),
+                depsgraph,
+            )
+            for part, extent in zip(parts, extents, strict=True)
+        ]
+    except ValueError as error:
+        return str(error)
+    text = prediction_text([extent.predict(f) for extent, f in zip(extents, finenesses, strict=True)])
+    return text if asked.tolerance is None else f"{text}, less where flat"
+
+
+def prediction_text(predictions: list[tuple[int, float]]) -> str:
+    """The number of surfels that the sources will become together, and how far apart those will lie."""
+    counts, spacings = zip(*predictions, strict=True)
+    if not sum(counts):
+        return "Nothing to sample: no faces, or a density of 0"
+    low, high = (f"{bound(spacings):.3g}" for bound in (min, max))
+    return f"≈ {sum(counts):,} surfels, spacing {low if low == high else f'{low} to {high}'}"
+
+
+register, unregister = bpy.utils.register_classes_factory((VIEW3D_PT_surfels_from_mesh,))

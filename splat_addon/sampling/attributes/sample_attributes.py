@@ -1,0 +1,327 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Gives the samples of one layered depth image their position, ellipse, normal, material and what it is made of.
+
+Everything that varies is linear along a span. So the barycentric weights are worked out at a span's two ends, in
+float64 and clamped into the triangle, and a sample costs one multiply and add a component, in float32; its height in
+float64, rounded once.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..ldc.grid import Grid
+from ..ldc.scan_conversion import Spans, expand
+from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, crossed, doubled_areas
+from .blend_depths import blend_depths
+from .ellipses import MAX_STRETCH, ellipse_rotations, ellipse_scales
+from .material_sampler import MaterialSampler, Samples
+from .texture_mapping import BORDER, axis_steps, fill_uvs
+from .texture_seams import border_lines
+
+#: A projected triangle this much smaller than its snapped twin, or turned over, has no usable barycentrics of its own.
+_LEAST_AREA_RATIO = 1e-6
+
+#: Squared lengths between these are safe to divide by in float32.
+_USABLE_SQUARES = (1e-30, 1e30)
+
+
+#: Up to so many spans a triangle, working out a triangle for each of its spans costs less than handing on what it is.
+_FEW_SPANS = 1.3
+
+#: What a mesh stores at its corners may be infinite or NaN; the result is looked at, so the way there need not warn.
+_quietly = np.errstate(over="ignore", invalid="ignore")
+
+
+class SampleFiller:
+    """Fills the rows of preallocated arrays, span after span.
+
+    mesh: usable. coordinates: (3, V) float64, of its vertices on the grid. half_size: of a splat, object units.
+    sampler: of the mesh. bends: (T, 2), as `blend_depths` takes them, or None.
+    tangents: (T, 3, 4 layers) at its corners, as `Samples` has them, or None.
+    arrays: field of `Surfels` -> array to fill.
+    """
+
+    def __init__(
+        self,
+        mesh: TriangleMesh,
+        coordinates: np.ndarray,
+        grid: Grid,
+        half_size: float,
+        sampler: MaterialSampler,
+        tangents: np.ndarray | None,
+        seams: np.ndarray | None,
+        bends: np.ndarray | None,
+        arrays: dict[str, np.ndarray],
+    ):
+        self._mesh, self._coordinates, self._grid = mesh, coordinates, grid
+        self._half_size, self._sampler, self._tangents, self._arrays = half_size, sampler, tangents, arrays
+        self._seams, self._bends = seams, bends
+        self._centres = [grid.centres(axis) for axis in range(3)]
+
+    def fill(self, spans: Spans, axis: int, rows: slice):
+        """Writes the samples of these spans of the image along `axis` to `rows` of the arrays."""
+        out = {name: array[rows] for name, array in self._arrays.items()}
+        triangles, of_span = _grouped(spans.triangles)
+        first, edges, normals = self._sound_triangles(triangles, axis)
+        weights = _SpanWeights(first, edges, normals[axis], axis, of_span, spans)
+        span, step = expand(spans.counts)
+        line = _Lines(span, step)
+        triangle = span if of_span is None else of_span.take(span)
+
+        column = spans.columns.take(span)
+        column += step
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        out["positions"][:, u] = self._centres[u].take(column)
+        out["positions"][:, v] = self._centres[v].take(spans.rows).take(span)
+        spacing = self._grid.spacing
+        ends = weights.interpolate(self._grid.places(first[axis], axis), *(edges[axis] * spacing))
+        out["positions"][:, axis] = line.samples(*ends)
+
+        normals *= 1 / np.sqrt(_squares(normals))
+        _write_rows(ellipse_rotations(normals, axis), triangle, out["rotations"])
+        _write_rows(ellipse_scales(normals[axis], self._half_size), triangle, out["scales"])
+        if self._bends is not None:
+            longest = self._half_size / np.abs(normals[axis]).clip(1 / MAX_STRETCH)
+            _write_rows(blend_depths(self._bends.take(triangles, axis=0), longest), triangle, out["blend_depth"])
+        if self._mesh.corner_normals is None:
+            _write_rows(np.ascontiguousarray(normals.T, np.float32), triangle, out["normals"])
+        else:
+            vectors = self._samples(self._mesh.corner_normals, triangles, weights, line)
+            _write_unit(vectors, normals, triangle, out["normals"])
+        samples = self._paint(out, triangles, triangle, weights, line)
+        if "uvs" in out:
+            steps = axis_steps(out, axis, spacing)
+            fill_uvs(out, self._mesh.surfaces, samples, steps)
+            out[BORDER][...] = 0
+            if self._seams is not None:
+                at_samples = weights.at_samples(line), weights.changes(steps, triangle)
+                out[BORDER][...] = border_lines(self._seams.take(triangles, axis=0).take(triangle, axis=0), *at_samples)
+
+    @_quietly
+    def _paint(
+        self, out: dict, triangles: np.ndarray, triangle: np.ndarray, weights: _SpanWeights, line: _Lines
+    ) -> Samples:
+        mesh, sampler = self._mesh, self._sampler
+        if mesh.materials is None:
+            out["materials"][...] = 0
+        else:
+            out["materials"][...] = mesh.materials.take(triangles).take(triangle)
+        colors = uvs = uv_steps = tangents = None
+        if sampler.needs_colors and mesh.corner_colors is not None:
+            colors = self._samples(mesh.corner_colors, triangles, weights, line)
+        if sampler.needs_uvs and mesh.corner_uvs is not None:
+            uvs = self._samples(mesh.corner_uvs, triangles, weights, line)
+            corner_uvs = _at_corners(mesh.corner_uvs, triangles)
+            uv_steps = weights.gradients(corner_uvs.swapaxes(0, 1)).take(triangle, axis=2)
+        if self._tangents is not None:
+            tangents = self._samples(self._tangents, triangles, weights, line)
+        samples = Samples(out["materials"], colors, uvs, uv_steps, tangents)
+        sampler.fill(out, samples)
+        return samples
+
+    @_quietly
+    def _samples(
+        self, corner_values: np.ndarray, triangles: np.ndarray, weights: _SpanWeights, line: _Lines
+    ) -> np.ndarray:
+        """(c, n) float32 interpolated values of (T, 3, c) ones at the corners."""
+        components = _at_corners(corner_values, triangles)
+        result = np.empty((len(components), line.count), np.float32)
+        for (a, b, c), row in zip(components, result, strict=True):
+            line.samples(*weights.interpolate(a, b - a, c - a), out=row)
+        return result
+
+    def _sound_triangles(self, triangles: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(3, t) first corners on the grid, (3, 2, t) edges from there to the others and (3, t) normals of any length.
+
+        A triangle that projects to (nearly) nothing can open up once its corners are snapped; its own barycentrics
+        would be infinite (facts/sampling.md section 1, the trap). There all is of the snapped corners.
+        """
+        corners = corners_at(self._coordinates, corner_indices(self._mesh.triangles.take(triangles, axis=0)))
+        edges = corners[:, 1:] - corners[:, :1]
+        normals = crossed(edges)
+        poor = self._poor(corners, edges, normals[axis], axis)
+        if len(poor):
+            corners[:, :, poor] = self._grid.snapped(corners[:, :, poor]) / self._grid.subcells
+            edges[:, :, poor] = corners[:, 1:, poor] - corners[:, :1, poor]
+            normals[:, poor] = crossed(edges[:, :, poor])
+        return corners[:, 0], edges, normals
+
+    def _poor(self, corners: np.ndarray, edges: np.ndarray, areas: np.ndarray, axis: int) -> np.ndarray:
+        """The triangles whose (t,) area in the image is lost beside what snapping does to it, or turned over by it."""
+        # No component of an edge changes by more than 1 / subcells, so most are seen to be sound from afar.
+        longest = max(np.abs(edges[(axis + k) % 3]).max(initial=0) for k in (1, 2))
+        poor = np.flatnonzero(~(np.abs(areas) * (self._grid.subcells / 2) > 4 * longest + 1))
+        if not len(poor):
+            return poor
+        snapped = self._grid.snapped(corners.take(poor, axis=2))
+        snapped_areas = doubled_areas(snapped)[axis]
+        least = np.abs(snapped_areas) * (_LEAST_AREA_RATIO / self._grid.subcells**2)
+        return poor[~(areas.take(poor) * np.sign(snapped_areas) > least)]
+
+
+class _SpanWeights:
+    """Barycentric weights of corners 1 and 2 at each span's first sample, and their change from one sample to the next.
+
+    first, edges, areas: of t triangles, as `_sound_triangles` gives them; the last is the normals' component along the
+    axis. of_span: (n,) each span's triangle among the t, as `_grouped` has it.
+    Both ends are moved into the triangle, to where it is nearest: on the snapped outline a sample can lie 0.71 of a
+    sub-cell outside the real one. Clamping the weights themselves would move it any distance along a sliver.
+    """
+
+    def __init__(
+        self,
+        first: np.ndarray,
+        edges: np.ndarray,
+        areas: np.ndarray,
+        axis: int,
+        of_span: np.ndarray | None,
+        spans: Spans,
+    ):
+        self._of_span = of_span
+        (u, v), ((u1, u2), (v1, v2)) = ([rows[(axis + k) % 3] for k in (1, 2)] for rows in (first, edges))
+        inverse = 1 / areas
+        negative = -inverse
+        #: Change of the two weights per column and per row: (2, t) each.
+        self._per_column, self._per_row = np.empty_like(edges[0]), np.empty_like(edges[0])
+        parts = (*self._per_column, *self._per_row)
+        for part, (edge, factor) in zip(
+            parts, ((v2, inverse), (v1, negative), (u2, negative), (u1, inverse)), strict=True
+        ):
+            np.multiply(edge, factor, out=part)
+        column, row = spans.columns - _spread(u, of_span), spans.rows - _spread(v, of_span)
+        along = _spread(self._per_column, of_span)
+        start = _spread(self._per_row, of_span) * row
+        start += along * column
+        steps = spans.counts - 1.0
+        end = along * steps
+        end += start
+        sides = u1, v1, u2, v2
+        self._first = _moved_inside(start, column, row, sides, of_span)
+        self._step = _moved_inside(end, column + steps, row, sides, of_span)
+        self._step -= self._first
+        self._step /= np.maximum(steps, 1)
+        self._rounded = self._first.astype(np.float32), self._step.astype(np.float32)
+
+    def interpolate(self, value: np.ndarray, *rises: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) first value and (n,) step along each span, in the type of the values.
+
+        value: (t,) float32 or float64, at corner 0. rises: (t,) twice, from there to the corners 1 and 2.
+        """
+        firsts, steps = (self._first, self._step) if value.dtype == np.float64 else self._rounded
+        value, second, third = (_spread(row, self._of_span) for row in (value, *rises))
+        start, step = value + second * firsts[0], second * steps[0]
+        start += third * firsts[1]
+        step += third * steps[1]
+        return start, step
+
+    def at_samples(self, line: _Lines) -> np.ndarray:
+        """(3, n) float32 weights of the corners."""
+        zero, one = (np.full(self._per_column.shape[1], value, np.float32) for value in (0, 1))
+        second, third = (line.samples(*self.interpolate(zero, *rises)) for rises in ((one, zero), (zero, one)))
+        return np.stack([1 - second - third, second, third])
+
+    def changes(self, steps: np.ndarray, triangle: np.ndarray) -> np.ndarray:
+        """(3, 2, n) change of the weights along the half-axes, which are (2, 2, n) `steps` of columns and rows."""
+        per_step = np.stack([self._per_column, self._per_row]).take(triangle, axis=2)
+        rest = np.einsum("akn,kwn->wan", steps, per_step)
+        return np.concatenate([-rest.sum(axis=0, keepdims=True), rest])
+
+    def gradients(self, corners: np.ndarray) -> np.ndarray:
+        """(2, c, t) change of (3, c, t) corner values from one column, and from one row, to the next."""
+        first, second = corners[1] - corners[0], corners[2] - corners[0]
+        return np.stack([first * w[0] + second * w[1] for w in (self._per_column, self._per_row)])
+
+
+class _Lines:
+    """The samples of spans: which span each belongs to, and its place along it."""
+
+    def __init__(self, span: np.ndarray, step: np.ndarray):
+        self.count = len(span)
+        self._span = span
+        self._steps = {np.dtype(kind): step.astype(kind) for kind in (np.float32, np.float64)}
+
+    def samples(self, first: np.ndarray, step: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
+        """(count,) values that start at (n,) `first` and change by (n,) `step`, float32 or float64."""
+        values = step.take(self._span, out=out, mode="clip")
+        values *= self._steps[step.dtype]
+        values += first.take(self._span)
+        return values
+
+
+def _grouped(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+    """The distinct values of an ascending array, and which of them each entry is; where few repeat, the array itself
+    and None: each its own."""
+    is_new = np.empty(len(ordered), bool)
+    is_new[:1] = True
+    np.not_equal(ordered[1:], ordered[:-1], out=is_new[1:])
+    if len(ordered) <= _FEW_SPANS * np.count_nonzero(is_new):
+        return ordered, None
+    place = np.cumsum(is_new)
+    place -= 1
+    return ordered.take(np.flatnonzero(is_new)), place
+
+
+def _spread(values: np.ndarray, owner: np.ndarray | None) -> np.ndarray:
+    """(..., n) of (..., t) values, as `_grouped` has their owners; not to be changed."""
+    return values if owner is None else values.take(owner, axis=-1)
+
+
+def _at_corners(values: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(c, 3, t) float32: of (T, 3, c) values at corners those of t triangles, each component contiguous."""
+    rows = values.reshape(len(values), -1).take(triangles, axis=0)
+    return np.ascontiguousarray(rows.T.reshape(3, -1, len(triangles)).swapaxes(0, 1), np.float32)
+
+
+def _moved_inside(
+    weights: np.ndarray, column: np.ndarray, row: np.ndarray, sides: tuple[np.ndarray, ...], owner: np.ndarray | None
+) -> np.ndarray:
+    """(2, n) barycentric weights, in place: of the nearest point of the triangle where they lie outside.
+
+    column, row: (n,) where in the image, from corner 0. sides: (t,) each, u and v of the edges from there to the other
+    two corners. owner: (n,) each one's triangle, as `_grouped` has it.
+    """
+    w1, w2 = weights
+    outside = np.flatnonzero((w1 < 0) | (w2 < 0) | (w1 + w2 > 1))
+    if not len(outside):
+        return weights
+    u1, v1, u2, v2 = (_spread(side, owner).take(outside) for side in sides)
+    x, y = column.take(outside), row.take(outside)
+    along1, off1 = _nearest_on_segment(x, y, u1, v1)
+    along2, off2 = _nearest_on_segment(x, y, u2, v2)
+    between, off = _nearest_on_segment(x - u1, y - v1, u2 - u1, v2 - v1)
+    on1, on2 = (off1 <= off2) & (off1 <= off), off2 <= off
+    w1[outside] = np.where(on1, along1, np.where(on2, 0, 1 - between))
+    w2[outside] = np.where(on1, 0, np.where(on2, along2, between))
+    return weights
+
+
+def _nearest_on_segment(x: np.ndarray, y: np.ndarray, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Share of the way from (0, 0) to (u, v) at which (x, y) is nearest, and its squared distance from there."""
+    share = np.clip((x * u + y * v) / np.maximum(u * u + v * v, np.finfo(np.float64).tiny), 0, 1)
+    return share, (x - share * u) ** 2 + (y - share * v) ** 2
+
+
+def _squares(vectors: np.ndarray) -> np.ndarray:
+    """(n,) squared lengths of (3, n) vectors."""
+    squares = vectors[0] * vectors[0]
+    squares += vectors[1] * vectors[1]
+    squares += vectors[2] * vectors[2]
+    return squares
+
+
+def _write_rows(rows: np.ndarray, owner: np.ndarray, out: np.ndarray):
+    np.take(rows, owner, axis=0, out=out, mode="clip")
+
+
+def _write_unit(vectors: np.ndarray, fallbacks: np.ndarray, owner: np.ndarray, out: np.ndarray):
+    """Normalises (3, n) vectors into (n, 3) `out`; one of no usable length becomes its owner's of (3, t) fallbacks."""
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        squares = _squares(vectors)
+        inverse = 1 / np.sqrt(squares)
+        for column, component in zip(out.T, vectors, strict=True):
+            np.multiply(component, inverse, out=column)
+    low, high = _USABLE_SQUARES
+    if not (squares.min() > low and squares.max() < high):
+        poor = np.flatnonzero(~((squares > low) & (squares < high)))
+        out[poor] = fallbacks.T[owner[poor]]

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The spacing for one camera and resolution: from where the surface comes closest to the camera, inside its view.
+
+The surface is stood for by a coarse sampling of itself, so a floor under the camera or a room around it has its true
+distance, and the answer is cheap enough for every redraw of a panel.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .density import grid_spacing
+from .mesh.cleaning import drop_unusable
+from .mesh.triangle_mesh import TriangleMesh
+from .sample import sample_mesh
+
+#: Cells along the longest edge for the outline, and how far from an outline point, in cells, the surface may be
+#: (up to 1.4 on the armadillo, facts/sampling.md section 5).
+_OUTLINE_RESOLUTION = 96
+_OUTLINE_REACH = 1.5
+
+
+class NotSeenError(ValueError):
+    """Nothing of the surface lies in the camera's view."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """(n, 3) points, object units, such that each point of a surface lies within `reach` of one."""
+
+    points: np.ndarray
+    reach: float
+
+
+def outline(mesh: TriangleMesh) -> Outline:
+    """Of the usable triangles; without points where there are none."""
+    mesh, _ = drop_unusable(mesh)
+    if not len(mesh):
+        return Outline(np.zeros((0, 3)), 0.0)
+    spacing = grid_spacing(mesh, resolution=_OUTLINE_RESOLUTION)
+    surfels = sample_mesh(mesh, spacing=spacing)
+    return Outline(surfels.origin + surfels.positions, _OUTLINE_REACH * spacing)
+
+
+def camera_spacing(
+    surface: Outline,
+    pixels: float,
+    *,
+    object_to_view: np.ndarray,
+    window: tuple[float, float, float, float],
+    size: tuple[int, int],
+    near: float,
+    is_orthographic: bool,
+) -> float:
+    """Spacing, object units, at which surfels lie `pixels` apart where the surface is closest, and less elsewhere.
+
+    object_to_view: (4, 4), the camera looks along -z. window: left, right, bottom, top on the plane at distance 1, or
+    in view units for an orthographic camera. size: width, height in pixels. near: clip distance, view units.
+    The longest stretch of the object decides: no surfel covers more than `pixels`, across any direction.
+    Raises ValueError with one sentence for an unusable `pixels`, NotSeenError for what the camera does not see.
+    """
+    if not (np.isfinite(pixels) and pixels > 0):
+        raise ValueError(f"The pixels a surfel covers must be a finite number above 0, not {pixels}.")
+    linear, translation = object_to_view[:3, :3], object_to_view[:3, 3]
+    stretch = float(np.linalg.norm(linear, 2))
+    reach = surface.reach * stretch
+    x, y, z = linear @ surface.points.T + translation[:, None]
+    depth = -z
+    seen = depth > near - reach
+    left, right, bottom, top = window
+    for across, low, high in ((x, left, right), (y, bottom, top)):
+        seen &= _beside(across, depth, low, is_orthographic) > -reach
+        seen &= _beside(across, depth, high, is_orthographic) < reach
+    if not seen.any():
+        raise NotSeenError("The camera does not see the object; turn it there, or choose another density.")
+    pixel = min((right - left) / size[0], (top - bottom) / size[1])
+    distance = 1.0 if is_orthographic else max(float(depth[seen].min()) - reach, near)
+    return pixels * pixel * distance / stretch
+
+
+def _beside(across: np.ndarray, depth: np.ndarray, edge: float, is_orthographic: bool) -> np.ndarray:
+    """(n,) signed distance from the side of the view that goes through `edge` of the window."""
+    return across - edge if is_orthographic else (across - edge * depth) / np.hypot(1, edge)

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfels that follow a deforming mesh: the same ones in the same order as long as it has the same triangles.
+
+The mesh is sampled once; then each surfel goes with its triangle (`binding`). What was covered stays covered: only at
+the edges between triangles that stretch differently can the cover thin out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...surfels import Surfels
+from ..mesh.joining import have_same_values
+from ..mesh.solid import SolidShape
+from ..mesh.triangle_mesh import TriangleMesh
+from ..sample import sample_surface
+from .binding import Binding
+
+#: Where more than this share of the surfels is stretched too far, the mesh should be sampled anew.
+STRETCHED_SHARE = 0.01
+
+
+class DeformingSurfels:
+    """The surfels of one sampling, and where they go.
+
+    mesh: as it is sampled; options: of `sample_surface`. What it holds of this moment: `mesh`, `sampling`.
+    """
+
+    def __init__(self, mesh: TriangleMesh, **options):
+        self.mesh, self._options = mesh, options
+        self.sampling = sample_surface(mesh, **options)
+        self._shape = SolidShape(mesh) if self.sampling.keeps_both_sides else None
+        self._surfels = self._as_solid_as(mesh, self.sampling.surfels)
+        self._last = mesh, (self._surfels, 0.0)
+        self._binding = None
+
+    def has_triangles_of(self, mesh: TriangleMesh) -> bool:
+        """Whether the mesh has as many vertices and the same triangles over them."""
+        has_as_many = len(mesh.positions) == len(self.mesh.positions)
+        return has_as_many and np.array_equal(mesh.triangles, self.mesh.triangles)
+
+    def at(self, mesh: TriangleMesh) -> tuple[Surfels, float]:
+        """The surfels on the mesh as it is now, and the share of them or of its area that grew too far (`binding`).
+
+        mesh: the same triangles over as many vertices. Its colours and other values at corners may have changed, which
+        costs a second sampling. Raises ValueError for another topology; non-finite vertices leave their surfels where
+        they were, as dots.
+        """
+        if not self.has_triangles_of(mesh):
+            raise ValueError("The mesh has other triangles than the one that was sampled; sample it anew.")
+        if not have_same_values(_appearance(mesh), _appearance(self.mesh)):
+            self._repaint(mesh)
+        elif have_same_values(_shape(mesh), _shape(self._last[0])):
+            return self._last[1]
+        if have_same_values(_shape(mesh), _shape(self.mesh)):
+            self._last = mesh, (self._surfels, 0.0)
+            return self._last[1]
+        if self._binding is None:
+            self._binding = Binding(self.mesh, self.sampling, self._options)
+        arrays, origin, stretched = self._binding.arrays_on(mesh)
+        surfels = Surfels(origin=origin, **(self.sampling.surfels.arrays() | arrays))
+        self._last = mesh, (self._as_solid_as(mesh, surfels), stretched)
+        return self._last[1]
+
+    def _repaint(self, mesh: TriangleMesh):
+        """The same samples with the values that `mesh` has at its corners; the shape alone decides where they are."""
+        self.mesh = replace(mesh, positions=self.mesh.positions, corner_normals=self.mesh.corner_normals)
+        self.sampling = sample_surface(self.mesh, **self._options)
+        self._surfels = replace(self.sampling.surfels, is_solid=self._surfels.is_solid)
+        if self._binding is not None and len(self.sampling.surfels) != self._binding.count:
+            self._binding = None  # other colours have other borders, and gaps beside them
+        if self._binding is not None:
+            self._binding.repaint(self.mesh, self.sampling.surfels)
+
+    def _as_solid_as(self, mesh: TriangleMesh, surfels: Surfels) -> Surfels:
+        is_solid = self._shape is not None and self._shape.is_solid_at(mesh.positions)
+        return surfels.as_solid() if is_solid else surfels
+
+
+def _shape(mesh: TriangleMesh) -> tuple:
+    return mesh.positions, mesh.corner_normals
+
+
+def _appearance(mesh: TriangleMesh) -> tuple:
+    return mesh.corner_colors, mesh.corner_uvs, mesh.materials, mesh.surfaces

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfels along the edges where one part of a mesh is drawn as polygons and the other as splats.
+
+Source: Guennebaud, Barthe, Paulin 2006, section 5.1: the sum of weights must be 1 where polygons end, which is so where
+the edges of the transition are sampled evenly by splats that have their centres on them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...surfels import OPTIONAL_LAYOUT, Surfels, axes_quaternions
+from ..attributes.material_sampler import MaterialSampler, Samples
+from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
+
+
+def transition_edges(near: TriangleMesh, far: TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
+    """(E,) triangles of `far` and (E,) numbers k of their edges, from corner k to the next, that `near` has too.
+
+    Both index the same vertices.
+    """
+    of_far = far.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    of_near = near.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    count = len(far.positions)
+    keys, others = (edges.min(axis=1).astype(np.int64) * count + edges.max(axis=1) for edges in (of_far, of_near))
+    _, first = np.unique(keys, return_index=True)
+    shared = first[np.isin(keys[first], others)]
+    return shared // 3, shared % 3
+
+
+def edge_samples(
+    near: TriangleMesh, far: TriangleMesh, spacing: float, half_size: float, origin=(0.0, 0.0, 0.0)
+) -> Surfels:
+    """Discs along the edges that both parts have, no further apart than `spacing`, with a half-axis of `half_size`.
+
+    They lie between the two parts' planes and have the attributes of `far`, from whose corners they are interpolated.
+    Raises ValueError where the parts have no edge in common.
+    """
+    triangles, number = transition_edges(near, far)
+    if not len(triangles):
+        raise ValueError("The two parts of the mesh have no edge in common.")
+    rows = np.arange(len(triangles))
+    start, end = far.triangles[triangles, number], far.triangles[triangles, (number + 1) % 3]
+    along = far.positions[end] - far.positions[start]
+    length = np.linalg.norm(along, axis=1)
+    counts = np.maximum(np.ceil(length / spacing), 1).astype(int)
+    edge = np.repeat(rows, counts)
+    place = (np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts) + 0.5) / counts[edge]
+    shares = np.zeros((len(edge), 3))
+    at = np.arange(len(edge))
+    shares[at, number[edge]], shares[at, (number[edge] + 1) % 3] = 1 - place, place
+    triangle = triangles[edge]
+    normals = _unit(_plane_normals(far)[triangle] + _beside(near, far, start, end)[edge])
+    x = _unit(along[edge] - normals * np.einsum("nk,nk->n", along[edge], normals)[:, None])
+    positions = far.positions[start[edge]] + along[edge] * place[:, None]
+    origin = np.asarray(origin, np.float64)
+    shading = normals if far.corner_normals is None else _unit(_mean(far.corner_normals[triangle], shares), normals)
+    sampler = MaterialSampler(far.surfaces)
+    materials = np.zeros(len(edge), np.int32) if far.materials is None else far.materials[triangle].astype(np.int32)
+    out = {"colors": np.empty((len(edge), 4), np.float32), "normals": shading.astype(np.float32)}
+    for name in sampler.optional:
+        columns, dtype, _ = OPTIONAL_LAYOUT[name]
+        out[name] = np.empty((len(edge), columns) if columns > 1 else len(edge), dtype)
+    sampler.fill(
+        out, _samples(far, triangle, shares, materials, spacing / np.maximum(length[edge], 1e-300), number[edge])
+    )
+    return Surfels(
+        positions=positions - origin,
+        rotations=axes_quaternions(x, np.cross(normals, x), normals),
+        scales=np.full((len(edge), 2), half_size),
+        materials=materials,
+        origin=origin,
+        **out,
+    )
+
+
+def _samples(far: TriangleMesh, triangle, shares, materials, step, number) -> Samples:
+    """What is known of the samples. step: their distance, in lengths of their edge."""
+    colors = None if far.corner_colors is None else _mean(far.corner_colors[triangle], shares).T
+    if far.corner_uvs is None:
+        return Samples(materials, colors)
+    corners, at = far.corner_uvs[triangle], np.arange(len(triangle))
+    along = (corners[at, (number + 1) % 3] - corners[at, number]) * step[:, None]
+    return Samples(materials, colors, _mean(corners, shares).T, np.stack([along.T, along.T]))
+
+
+def _mean(corners: np.ndarray, shares: np.ndarray) -> np.ndarray:
+    return np.einsum("nkc,nk->nc", corners.astype(np.float64), shares)
+
+
+def _plane_normals(mesh: TriangleMesh) -> np.ndarray:
+    """(T, 3) unit normals of the triangles' planes, 0 of those without area."""
+    return _unit(doubled_areas(gather_corners(np.ascontiguousarray(mesh.positions.T), mesh.triangles)).T)
+
+
+def _beside(near: TriangleMesh, far: TriangleMesh, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """(E, 3) normals of the polygons at the edges."""
+    count = len(far.positions)
+    edges = near.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    keys = edges.min(axis=1).astype(np.int64) * count + edges.max(axis=1)
+    order = np.argsort(keys, kind="stable")
+    wanted = np.minimum(start, end).astype(np.int64) * count + np.maximum(start, end)
+    return _plane_normals(near)[order[np.searchsorted(keys[order], wanted)] // 3]
+
+
+def _unit(vectors: np.ndarray, otherwise=(0.0, 0.0, 1.0)) -> np.ndarray:
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.where(length > 1e-12, vectors / np.where(length > 1e-12, length, 1), otherwise)

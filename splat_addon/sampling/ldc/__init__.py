@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The layered depth cube: an exact grid, scan conversion onto it, and which samples a reduction keeps."""

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The layered depth cube: the spans of samples that each of three orthogonal layered depth images keeps.
+
+Only spans are held here, 16 bytes for a whole run of samples; `attributes` gives the samples their values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ..mesh.triangle_mesh import corner_indices, corners_at, doubled_areas, triangle_chunks
+from ..refine.missed_components import SampledSurface
+from .grid import Grid
+from .scan_conversion import Spans, scan_convert
+
+#: Rows of an array index surfels with 32 bits elsewhere; nobody means to make more.
+MAX_SAMPLES = 2**31 - 1
+
+#: Triangles at a time: more than elsewhere, as few come through to where most is done with each.
+_CHUNK = 24576
+
+#: Bits of a packed cell for each component: more than the cells along an edge, 2^19, and a sign.
+_CELL_BITS = 21
+
+
+def depth_cube(
+    coordinates: np.ndarray,
+    triangles: np.ndarray,
+    grid: Grid,
+    keeps: Callable[[np.ndarray], np.ndarray],
+    surface: SampledSurface,
+    report: Callable[[float], None],
+) -> tuple[Spans, Spans, Spans]:
+    """One `Spans` for the image along each of x, y, z.
+
+    coordinates: (3, V) float64, of the vertices on the grid. triangles: (T, 3).
+    keeps: (3, t) absolute normal components -> the (3, t) images that sample a triangle.
+    surface: of the same vertices; is told which triangles are sampled.
+    report: called with the finished share, 0 to 1. The axis is chosen from the snapped corners, whose normal is exact.
+    Raises ValueError with one sentence where there would be more samples than `MAX_SAMPLES`.
+    """
+    snapped, cells = np.empty_like(coordinates), np.empty(coordinates.shape[1], np.int64)
+    for chunk in triangle_chunks(len(cells)):
+        grid.snapped(coordinates[:, chunk], out=snapped[:, chunk])
+        cells[chunk] = _packed_cells(snapped[:, chunk], grid.subcells)
+    images: tuple[list, list, list] = ([], [], [])
+    total = 0
+    for chunk in triangle_chunks(len(triangles), _CHUNK):
+        indices = corner_indices(triangles[chunk])
+        hits = _images_with_samples(*cells.take(indices))
+        candidates = np.flatnonzero(hits.any(axis=0))
+        corners = corners_at(snapped, indices.take(candidates, axis=1))
+        normals = doubled_areas(corners)
+        np.abs(normals, out=normals)
+        kept = keeps(normals)
+        kept &= hits.take(candidates, axis=1)
+        kept &= normals > 0
+        picked = [np.flatnonzero(row) for row in kept]
+        places = candidates.take(np.concatenate(picked))
+        ends = np.cumsum([len(part) for part in picked])
+        # All images at once: numpy is slow on small arrays.
+        for found in scan_convert(*(_seen(corners, picked, k) for k in (1, 2)), grid.subcells):
+            stops = np.searchsorted(found.triangles, ends)
+            sampled = places.take(found.triangles)
+            found = replace(found, triangles=(sampled + chunk.start).astype(np.int32))
+            for spans, start, stop in zip(images, (0, *stops), stops, strict=False):
+                spans.append(found[start:stop])
+            surface.add(indices, sampled)
+            total += int(found.counts.sum(dtype=np.int64))
+            if total > MAX_SAMPLES:
+                raise ValueError(f"More than {MAX_SAMPLES:,} surfels would be made; use a larger spacing.")
+        surface.grow(indices, chunk.start)
+        report(chunk.stop / len(triangles))
+    return tuple(Spans.joined(spans) for spans in images)
+
+
+def _seen(corners: np.ndarray, picked: list[np.ndarray], k: int) -> np.ndarray:
+    """(3, n) component axis + k of the corners of the triangles that are picked for each image, one after another."""
+    seen, start = np.empty((3, sum(map(len, picked)))), 0
+    for axis, triangles in enumerate(picked):
+        for values, row in zip(corners[(axis + k) % 3], seen, strict=True):
+            values.take(triangles, out=row[start : start + len(triangles)], mode="clip")
+        start += len(triangles)
+    return seen
+
+
+def _packed_cells(snapped: np.ndarray, subcells: int) -> np.ndarray:
+    """(V,) int64 that hold, for each component of (3, V) snapped coordinates, the first cell centre at or after it."""
+    packed = np.zeros(snapped.shape[1], np.int64)
+    for component in snapped:
+        packed <<= _CELL_BITS
+        packed |= np.ceil(component * (1 / subcells)).astype(np.int64)
+    return packed
+
+
+def _images_with_samples(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """(3, t) bool, for each image and triangle with its corners in these cells: whether any of the image's rays goes
+    through the triangle's box.
+
+    Between corners with the same first cell centre lies none, half-open as in the scan conversion.
+    """
+    differ = a ^ b
+    differ |= a ^ c
+    mask = (1 << _CELL_BITS) - 1
+    x, y, z = ((differ & (mask << shift)) != 0 for shift in (2 * _CELL_BITS, _CELL_BITS, 0))
+    hits = np.empty((3, len(differ)), bool)
+    for row, (first, second) in zip(hits, ((y, z), (z, x), (x, y)), strict=True):
+        np.logical_and(first, second, out=row)
+    return hits

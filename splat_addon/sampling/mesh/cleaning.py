@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Leaves out the triangles that cannot be sampled, and counts them by reason; the first step of sampling."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from .survey import survey
+from .triangle_mesh import TriangleMesh
+
+#: Beyond this the square of an area leaves float32's range; no scene is that large, but broken files are.
+MAX_COORDINATE = 1e18
+
+
+def drop_unusable(mesh: TriangleMesh) -> tuple[TriangleMesh, dict[str, int]]:
+    """The mesh without its unusable triangles and unused vertices, and how many triangles went, by reason.
+
+    Each triangle is counted once, under the first reason that applies. Triangles that share the positions
+    of all three corners with an earlier one, in either orientation, are dropped: they would double every sample.
+    A mesh in which all is usable is returned as it is.
+    """
+    if mesh.known_usable:
+        return mesh, {}
+    dropped: dict[str, int] = {}
+    low, high = mesh.bounds() if len(mesh) else (0, 0)
+    if not (np.all(low >= -MAX_COORDINATE) and np.all(high <= MAX_COORDINATE)):
+        for reason, is_bad_value in _BAD_VERTICES.items():
+            is_bad = is_bad_value(mesh.positions).any(axis=1)
+            mesh = _without({reason: np.flatnonzero(is_bad[mesh.triangles].any(axis=1))}, mesh, dropped)
+    found = survey(mesh)
+    pinched = found.flat[_repeats_index(mesh.triangles.take(found.flat, axis=0))]
+    repeating = _repeating(mesh, np.setdiff1d(found.suspects, pinched))
+    collinear = np.setdiff1d(found.flat, np.concatenate([pinched, repeating]))
+    bad = {"with a repeated vertex": pinched, "that repeat another": repeating, "of zero area": collinear}
+    mesh = _without(bad, mesh, dropped)
+    if len(np.setdiff1d(repeating, found.flat)):
+        found = survey(mesh)
+    if not found.is_used.all():
+        new_index = np.cumsum(found.is_used) - 1
+        mesh = replace(mesh, positions=mesh.positions[found.is_used], triangles=new_index[mesh.triangles])
+    object.__setattr__(mesh, "known_usable", True)
+    object.__setattr__(mesh, "facing_area", found.facing_area)
+    return mesh, dropped
+
+
+def _without(bad: dict[str, np.ndarray], mesh: TriangleMesh, dropped: dict[str, int]) -> TriangleMesh:
+    """The mesh without the triangles of each reason, which are counted in `dropped`; itself where there are none."""
+    dropped |= {reason: len(rows) for reason, rows in bad.items() if len(rows)}
+    rows = np.concatenate(list(bad.values()))
+    if not len(rows):
+        return mesh
+    is_kept = np.ones(len(mesh), bool)
+    is_kept[rows] = False
+    kept = np.flatnonzero(is_kept)
+    left = replace(mesh, **{name: array.take(kept, axis=0) for name, array in mesh.per_triangle().items()})
+    left.share_places_with(mesh)
+    return left
+
+
+def _repeats_index(triangles: np.ndarray) -> np.ndarray:
+    a, b, c = triangles.T
+    return (a == b) | (b == c) | (c == a)
+
+
+def _repeating(mesh: TriangleMesh, suspects: np.ndarray) -> np.ndarray:
+    """All but the first of the triangles with the same three corner positions in any order.
+
+    suspects: (k,) the triangles to compare, ascending.
+    """
+    vertices, corners = np.unique(mesh.triangles[suspects], return_inverse=True)
+    place = _equal_rows(mesh.positions[vertices])
+    corners = np.sort(place[corners.reshape(-1, 3)], axis=1)
+    _, first = np.unique(_equal_rows(corners), return_index=True)
+    return np.delete(suspects, first)
+
+
+def _equal_rows(rows: np.ndarray) -> np.ndarray:
+    """(n,) integers that are equal exactly where two rows of (n, 3) are."""
+    order = np.lexsort(rows.T)
+    differs = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
+    label = np.empty(len(rows), np.intp)
+    label[order] = np.concatenate([[0], np.cumsum(differs)])
+    return label
+
+
+#: reason -> function of (V, 3) positions giving the bad values.
+_BAD_VERTICES = {
+    "with a non-finite vertex": lambda p: ~np.isfinite(p),
+    f"with a vertex beyond {MAX_COORDINATE:g}": lambda p: np.isfinite(p) & (np.abs(p) > MAX_COORDINATE),
+}

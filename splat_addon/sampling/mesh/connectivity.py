@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which triangles hang together: vertices at one place become one, and each connected part gets a number."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .triangle_mesh import corner_indices, triangle_chunks
+
+#: Bits of a hash that sort out the few that others may equal.
+_SIEVE_BITS = 16
+
+
+def twins(keys: np.ndarray) -> np.ndarray | None:
+    """(V,) intp: for each vertex the first at its place; None where each is alone.
+
+    keys: (V,) of the places, by `vertex_hashes`, so right but by an accident of 2^-64.
+    """
+    ordered = np.sort(keys)
+    shared = ordered[1:][ordered[1:] == ordered[:-1]]
+    if not len(shared):
+        return None
+    at = among(keys, shared)
+    _, index, place = np.unique(keys[at], return_index=True, return_inverse=True)
+    first = np.arange(len(keys))
+    first[at] = at[index][place.reshape(-1)]
+    return first
+
+
+def among(keys: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Where in (n,) hashes those are that are among the (m,) wanted ones, both uint64; fast where these are few."""
+    mask = np.uint64((1 << _SIEVE_BITS) - 1)
+    is_wanted = np.zeros(1 << _SIEVE_BITS, bool)
+    is_wanted[(wanted & mask).view(np.intp)] = True
+    at = np.flatnonzero(is_wanted.take((keys & mask).view(np.intp)))
+    return at[np.isin(keys.take(at), wanted)]
+
+
+def part_labels(corners: np.ndarray, labels: np.ndarray | None = None) -> np.ndarray:
+    """(V,) intp: for each vertex the lowest vertex of its part, where the (t, 3) corners of triangles connect them.
+
+    labels: (V,) intp, of vertices that are one beforehand, as `twins` gives them; None: of none.
+    Roots are hooked onto lower ones along two edges of each triangle, and the paths halved (Shiloach & Vishkin 1982).
+    Of several lower ones any will do, so the last one written stays; what that leaves apart is joined in the same way,
+    as triangles between the few roots.
+    """
+    labels = np.arange(int(corners.max(initial=-1)) + 1) if labels is None else labels.copy()
+    for chunk in triangle_chunks(len(corners)):
+        first, second, third = corner_indices(corners[chunk])
+        for edge in ((first, second), (second, third)):
+            a, b = (labels.take(end) for end in edge)
+            at = np.flatnonzero(a != b)
+            a, b = a.take(at), b.take(at)
+            labels[np.maximum(a, b)] = np.minimum(a, b)
+    labels = _shortened(labels)
+    apart = []
+    for chunk in triangle_chunks(len(corners)):
+        a, b, c = ends = labels.take(corner_indices(corners[chunk]))
+        apart.append(ends.take(np.flatnonzero((a != b) | (a != c)), axis=1))
+    apart = np.concatenate(apart, axis=1).T if apart else corners
+    if len(apart):
+        roots = np.flatnonzero(labels == np.arange(len(labels)))
+        number = np.empty_like(labels)
+        number[roots] = np.arange(len(roots))
+        labels[roots] = roots.take(part_labels(number.take(apart), np.arange(len(roots))))
+        labels = labels.take(labels)
+    return labels
+
+
+def _shortened(labels: np.ndarray) -> np.ndarray:
+    """Every vertex with the root of its path."""
+    while True:
+        shorter = labels.take(labels)
+        if np.array_equal(shorter, labels):
+            return labels
+        labels = shorter

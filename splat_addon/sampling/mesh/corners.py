@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a mesh is made of at the corners of its triangles: for a mesh that is drawn as polygons and not sampled."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...surfels import OPTIONAL_LAYOUT
+from ..attributes.material_sampler import MaterialSampler, Samples, placed
+from ..attributes.surfaces import Channel, Surface, Texture
+from .triangle_mesh import TriangleMesh
+
+
+def corner_values(mesh: TriangleMesh) -> dict[str, np.ndarray]:
+    """field -> (3 T, columns) or (3 T,) float32: colors, and roughness, metallic and emission where they vary.
+
+    Textures are averaged over about the triangle. Where a surface's color is one image, it is only its constant, and
+    "uvs", (3 T, 2), say where the image is to be looked up. Normal maps, which need more than corners, are left out.
+    """
+    count = 3 * len(mesh)
+    materials = np.zeros(count, int) if mesh.materials is None else np.repeat(mesh.materials, 3)
+    uvs = _rows(mesh.corner_uvs)
+    samples = Samples(materials, _rows(mesh.corner_colors), uvs, None if uvs is None else _across(uvs))
+    sampler = MaterialSampler(tuple(_looked_up_later(surface) for surface in mesh.surfaces))
+    values = {"colors": np.empty((count, 4), np.float32)}
+    for name in sampler.optional:
+        columns = OPTIONAL_LAYOUT[name][0]
+        values[name] = np.empty((count, columns) if columns > 1 else count, np.float32)
+    sampler.fill(values, samples)
+    if any(surface.color_texture is not None for surface in mesh.surfaces):
+        values["uvs"] = _texture_coordinates(mesh.surfaces, samples)
+    return values
+
+
+def _rows(layers: np.ndarray | None) -> np.ndarray | None:
+    """(columns, 3 T) of (T, 3, columns)."""
+    return None if layers is None else layers.reshape(-1, layers.shape[2]).T
+
+
+def _across(uvs: np.ndarray) -> np.ndarray:
+    """(2, rows, 3 T) half of the change from each corner to the triangle's two others."""
+    corners = uvs.reshape(len(uvs), -1, 3)
+    return np.stack([(np.roll(corners, k, axis=2) - corners).reshape(uvs.shape) / 2 for k in (1, 2)])
+
+
+def _looked_up_later(surface: Surface) -> Surface:
+    """Without what is not looked up at corners."""
+    color = surface.color if surface.color_texture is None else Channel(surface.color.value)
+    return replace(surface, color=color, normal_map=None)
+
+
+def _texture_coordinates(surfaces: tuple[Surface, ...], samples: Samples) -> np.ndarray:
+    """(3 T, 2) float32; 0 where nothing is looked up, or the coordinates are not finite."""
+    found = np.zeros((len(samples.materials), 2), np.float32)
+    indices = np.minimum(samples.materials, len(surfaces) - 1)
+    for index in np.unique(indices):
+        texture = surfaces[index].color_texture
+        if texture is None:
+            continue
+        at = np.flatnonzero(indices == index)
+        uvs, _ = placed(replace(texture, wraps=None), samples.take(at))
+        if uvs is not None:
+            found[at] = np.nan_to_num(_wrapped(texture, uvs).T, nan=0.0, posinf=0.0, neginf=0.0)
+    return found
+
+
+def _wrapped(texture: Texture, uvs: np.ndarray) -> np.ndarray:
+    """(2, n) with each triangle as a whole brought to where its middle's coordinates are wrapped to.
+
+    A triangle that lies across a border of the image goes on beyond it, where the image's extension is seen.
+    """
+    if texture.wraps is None:
+        return uvs
+    rows = []
+    for wrap, row in zip(texture.wraps, uvs, strict=True):
+        middle = np.repeat(row.reshape(-1, 3).mean(axis=1), 3)
+        if wrap == "REPEAT":
+            row = row - np.floor(middle)
+        elif wrap == "MIRROR":
+            shift = 2 * np.floor(middle / 2)
+            row = np.where(middle - shift > 1, 2 - (row - shift), row - shift)
+        rows.append(row)
+    return np.stack(rows)

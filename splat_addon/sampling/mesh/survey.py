@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One look at all triangles of a mesh: what leaving out the unusable ones and telling solids both ask of each.
+
+The corners are fetched once for all of it, which costs more than the questions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_areas, triangle_chunks
+
+
+@dataclass(frozen=True, eq=False)
+class Survey:
+    """flat: (k,) intp, ascending: the triangles of no area. facing_area: of all, as `TriangleMesh` has it.
+    suspects: (m,) intp, ascending: all triangles that may have the three places of another, in any order.
+    is_used: (V,) bool, by a triangle with an area.
+    is_closed: whether the triangles' boundary vanishes, with vertices at one place taken as one. volumes: (T,) float64,
+    those that `signed_volumes` would give, None where it is open.
+    """
+
+    flat: np.ndarray
+    suspects: np.ndarray
+    facing_area: float
+    is_used: np.ndarray
+    is_closed: bool
+    volumes: np.ndarray | None
+
+
+def survey(mesh: TriangleMesh) -> Survey:
+    """That of the mesh, made once; vertices that are not finite make no sense of it."""
+    if mesh.surveyed is None:
+        object.__setattr__(mesh, "surveyed", _survey(mesh))
+    return mesh.surveyed
+
+
+def _survey(mesh: TriangleMesh) -> Survey:
+    """The fields one after another, from the corners of a chunk at a time.
+
+    is_closed: directed edges are added up under an antisymmetric weight of the hashes f of their ends' places, modulo
+    2^64: f g (g - f), which for the three edges of a triangle is the product of the differences. The sum of a chain
+    with a boundary is 0 but for an accident of some 2^-50, and degenerate triangles cancel by themselves.
+    """
+    keys, count = mesh.places, len(mesh)
+    flat, sums, volumes = [np.empty(0, np.intp)], np.empty(count, np.uint64), np.empty(count)
+    is_used = np.zeros(len(mesh.positions), bool)
+    facing_area, boundary = 0.0, np.uint64(0)
+    with np.errstate(over="ignore", invalid="ignore"):
+        for chunk in triangle_chunks(count):
+            indices = corner_indices(mesh.triangles[chunk])
+            a, b, c = keys.take(indices)
+            np.add(a, b, out=sums[chunk])
+            sums[chunk] += c
+            weights = a - b
+            weights *= b - c
+            weights *= c - a
+            boundary += weights.sum(dtype=np.uint64)
+
+            corners = corners_at(mesh.positions.T, indices)
+            normals = doubled_areas(corners)
+            _volumes(corners[:, 0], normals, out=volumes[chunk])
+            sizes = np.abs(normals, out=normals)
+            largest = np.maximum(sizes[0], sizes[1])
+            np.maximum(largest, sizes[2], out=largest)
+            facing_area += float(largest.sum()) / 2
+            empty = np.flatnonzero(largest == 0)
+            if len(empty):
+                flat.append(empty + chunk.start)
+                widest = largest.argmax()
+                if largest[widest] == 0:
+                    continue
+                indices[:, empty] = indices[:, widest, None]
+            is_used[indices] = True
+    is_closed = bool(boundary == 0)
+    suspects = _suspects(sums, mesh)
+    return Survey(np.concatenate(flat), suspects, facing_area, is_used, is_closed, volumes if is_closed else None)
+
+
+def signed_volumes(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(T,) float64: six times what lies between each triangle and (0, 0, 0), above 0 where the triangle turns away from
+    there. Of a closed surface they add up to six times its volume. positions: (V, 3)."""
+    components, volumes = np.ascontiguousarray(positions.T), np.empty(len(triangles))
+    for chunk in triangle_chunks(len(triangles)):
+        corners = corners_at(components, corner_indices(triangles[chunk]))
+        _volumes(corners[:, 0], doubled_areas(corners), out=volumes[chunk])
+    return volumes
+
+
+def _volumes(first: np.ndarray, normals: np.ndarray, out: np.ndarray):
+    """first: (3, t) a corner of each triangle. normals: (3, t), as long as twice the area."""
+    np.multiply(first[0], normals[0], out=out)
+    out += first[1] * normals[1]
+    out += first[2] * normals[2]
+
+
+def _suspects(sums: np.ndarray, mesh: TriangleMesh) -> np.ndarray:
+    """The triangles that share their sum of places with another. sums: (T,), which are put in order."""
+    sums.sort()
+    shared = sums[1:][sums[1:] == sums[:-1]]
+    if not len(shared):
+        return np.empty(0, np.intp)
+    return np.flatnonzero(np.isin(mesh.places[mesh.triangles].sum(axis=1, dtype=np.uint64), shared))

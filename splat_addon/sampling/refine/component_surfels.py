@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One surfel for each part that no ray meets: a disc at its centroid, as large as the part is seen from there."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ...surfels import OPTIONAL_LAYOUT, quaternion_axes
+from ..attributes.ellipses import ellipse_rotations
+from ..attributes.material_sampler import MaterialSampler, Samples
+from ..attributes.texture_mapping import BORDER, UV_FIELDS, fill_uvs
+from ..ldc.grid import Grid
+from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
+
+#: Half-axis of the smallest disc, in spacings: dust of no measurable area is still a surfel.
+_LEAST_RADIUS = 1e-3
+
+#: Added to all areas, cells squared, so that a part without measurable area has a centroid too.
+_TINY_AREA = 1e-100
+
+
+def component_surfels(
+    mesh: TriangleMesh,
+    coordinates: np.ndarray,
+    grid: Grid,
+    lost: tuple[np.ndarray, np.ndarray],
+    largest_radius: float,
+    sampler: MaterialSampler,
+    tangents: np.ndarray | None,
+    texture_mapped: bool,
+) -> dict[str, np.ndarray]:
+    """The arrays of `Surfels` of p parts, positions relative to the grid's middle.
+
+    coordinates: (3, V) float64, of the mesh's vertices on the grid. lost: what `missed_components` found.
+    largest_radius: of a disc, in spacings. sampler, tangents: as a `SampleFiller` has them.
+    texture_mapped: the surfels get texture coordinates too.
+    The disc lies at the area-weighted centroid, faces the way that most of the area faces, and has the area that is
+    seen from there. The shading normal is the mean over the triangles on its front; the material and what it is made of
+    are those of the largest triangle.
+    """
+    triangles, part = lost
+    corners = gather_corners(coordinates, mesh.triangles[triangles])
+    vectors = doubled_areas(corners) / 2
+    areas = np.sqrt((vectors**2).sum(axis=0)) + _TINY_AREA
+    total = np.bincount(part, areas)
+    centroids = _sums(part, corners.mean(axis=1) * areas) / total
+
+    normals = _main_normals(part, vectors, areas)
+    facing = (vectors * normals[:, part]).sum(axis=0)
+    seen = np.bincount(part, np.maximum(facing, 0))
+    radius = np.clip(np.sqrt(seen / math.pi), min(_LEAST_RADIUS, largest_radius), largest_radius) * grid.spacing
+
+    largest = np.lexsort((areas, part))[np.cumsum(np.bincount(part)) - 1]
+    materials = np.zeros(len(total), np.int32) if mesh.materials is None else mesh.materials[triangles[largest]]
+    count = len(total)
+    arrays = {
+        "positions": ((centroids.T + 0.5 - grid.middle) * grid.spacing).astype(np.float32),
+        "rotations": ellipse_rotations(normals, 2),
+        "scales": np.stack([radius, radius], axis=1).astype(np.float32),
+        "normals": _shading_normals(mesh, triangles, part, np.where(facing > 0, areas, 0), normals),
+        "colors": np.empty((count, 4), np.float32),
+        "materials": materials.astype(np.int32),
+    }
+    for name in sampler.optional:
+        columns, dtype, _ = OPTIONAL_LAYOUT[name]
+        arrays[name] = np.empty((count, columns) if columns > 1 else count, dtype)
+    samples = _samples(mesh, sampler, tangents, triangles[largest], materials)
+    sampler.fill(arrays, samples)
+    if texture_mapped:
+        arrays |= {name: np.zeros((count, 2), np.float32) for name in (*UV_FIELDS, BORDER)}
+        fill_uvs(arrays, mesh.surfaces, samples, axis_steps_of(corners[:, :, largest] * grid.spacing, arrays))
+    return arrays
+
+
+def axis_steps_of(corners: np.ndarray, arrays: dict[str, np.ndarray]) -> np.ndarray:
+    """(2, 2, p) how many of the two edges from a triangle's first corner the discs' half-axes are, in its plane.
+
+    corners: (3, 3, p), object units. By the dual basis of the edges; not finite for a triangle without area.
+    """
+    first, second = (np.moveaxis(corners[:, k] - corners[:, 0], 0, 1) for k in (1, 2))
+    normal = np.cross(first, second)
+    square = np.einsum("ij,ij->i", normal, normal)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        duals = np.cross(second, normal) / square, np.cross(normal, first) / square
+    axes = (
+        a * size[:, None] for a, size in zip(quaternion_axes(arrays["rotations"], 2), arrays["scales"].T, strict=False)
+    )
+    return np.stack([[np.einsum("ij,ij->i", axis, dual) for dual in duals] for axis in axes])
+
+
+def _sums(part: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """(c, p) sums over each part of (c, m) values."""
+    return np.stack([np.bincount(part, row) for row in values])
+
+
+def _main_normals(part: np.ndarray, vectors: np.ndarray, areas: np.ndarray) -> np.ndarray:
+    """(3, p) unit normals of the planes that see most of each part's area, turned to the side that has more of it.
+
+    The largest eigenvector of sum n n^T A: on a closed part the mean normal is 0, but this is not.
+    """
+    outer = (vectors[:, None] * vectors[None] / areas).reshape(9, -1)
+    _, axes = np.linalg.eigh(_sums(part, outer).T.reshape(-1, 3, 3))
+    normals = np.ascontiguousarray(axes[:, :, 2].T)
+    side = (normals * _sums(part, vectors)).sum(axis=0)
+    return np.where(side < 0, -normals, normals)
+
+
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")
+def _shading_normals(mesh, triangles, part, weights, normals) -> np.ndarray:
+    """(p, 3) float32: the weighted mean of the corners' shading normals; the disc's own where that has no length."""
+    result = normals.T.astype(np.float32)
+    if mesh.corner_normals is None:
+        return result
+    means = np.asarray(mesh.corner_normals[triangles], np.float64).mean(axis=1).T
+    vectors = _sums(part, means * weights).T
+    lengths = np.linalg.norm(vectors, axis=1)
+    usable = np.isfinite(lengths) & (lengths > _TINY_AREA)
+    result[usable] = vectors[usable] / lengths[usable, None]
+    return result
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def _samples(
+    mesh: TriangleMesh, sampler: MaterialSampler, tangents, triangles: np.ndarray, materials: np.ndarray
+) -> Samples:
+    """The middle of these triangles; a texture is averaged over the triangle's own edges."""
+    colors = uvs = uv_steps = None
+    if sampler.needs_colors and mesh.corner_colors is not None:
+        colors = np.asarray(mesh.corner_colors[triangles], np.float32).mean(axis=1).T
+    if sampler.needs_uvs and mesh.corner_uvs is not None:
+        a, b, c = np.moveaxis(np.asarray(mesh.corner_uvs[triangles], np.float32), 1, 0)
+        uvs, uv_steps = ((a + b + c) / 3).T, np.stack([(b - a).T, (c - a).T])
+    if tangents is not None:
+        tangents = tangents[triangles].mean(axis=1).T
+    return Samples(materials, colors, uvs, uv_steps, tangents)

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The 3-to-1 reduction: surfels of all three images move to a common lattice, and one stays on each node.
+
+After Pfister et al. 2000, who resample the three images of a cube into one with the nearest surfel's attributes. The
+lattice is that of the cell centres, where the rays of all three images cross. Two sheets that lie closer than a cell
+share their nodes and become one: that is the reduction's known failure (docs/conversion.md).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...surfels import quaternion_axes
+from ..attributes.texture_mapping import moved
+
+
+def nearest_to_lattice(arrays: dict[str, np.ndarray], spacing: float) -> dict[str, np.ndarray]:
+    """Of the surfels around each lattice node the nearest, standing on the node; in the order that they had.
+
+    arrays: by field of `Surfels`, positions relative to a corner of a cell. spacing: of the grid, object units.
+    """
+    cells = np.floor(arrays["positions"].T / np.float32(spacing)).astype(np.int64)
+    centres = (cells + 0.5) * spacing
+    distances = np.abs(arrays["positions"].T - centres).max(axis=0)
+    nodes = _numbered(cells)
+    # The first of each run of equal nodes is the nearest; a stable sort leaves ties to the lower index.
+    order = np.lexsort((distances, nodes))
+    nodes = nodes[order]
+    is_first = np.ones(len(order), bool)
+    is_first[1:] = nodes[1:] != nodes[:-1]
+    stay = np.sort(order[is_first])
+    kept = {name: array[stay] for name, array in arrays.items()}
+    positions = np.ascontiguousarray(centres.T[stay], np.float32)
+    if "uvs" in kept:
+        x, y, _ = quaternion_axes(kept["rotations"], 2)
+        half_axes = x * kept["scales"][:, :1], y * kept["scales"][:, 1:]
+        kept |= moved(kept, half_axes, positions - kept["positions"])
+    kept["positions"] = positions
+    return kept
+
+
+def _numbered(cells: np.ndarray) -> np.ndarray:
+    """(n,) int64 that are equal exactly where (3, n) cells are; 2^20 cells an edge fit, twice what a grid may have."""
+    x, y, z = cells - cells.min(axis=1, keepdims=True) if cells.shape[1] else cells
+    return (x << 42) | (y << 21) | z
