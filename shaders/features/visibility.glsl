@@ -1,4 +1,4 @@
-// References: Botsch et al. 2005, section 3 (visibility splatting).
+// References: Botsch et al. 2005, section 4.1 (visibility splatting).
 // Summary: what methods that work in the picture compare depths with.
 
 #part screen_space.frag, depth_bounds

@@ -1,4 +1,4 @@
-// References: Botsch et al. 2005, section 4; Guennebaud et al. 2006, section 3.3 (the exact bounds of a splat).
+// References: Botsch et al. 2005, section 4; Guennebaud et al. 2006, section 3.2 (the bounds of a splat).
 // Summary: for methods that work in the picture: a triangle around the splat's footprint, and its attributes.
 //          Hooks: `clip` before the method adjusts the splat, `clipped` after that, `place` for what is not drawn in the
 //          picture; `replaced` where the method has replaced axes, `cull` what need not be drawn.

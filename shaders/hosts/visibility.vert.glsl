@@ -1,4 +1,4 @@
-// References: Botsch, Hornung, Zwicker, Kobbelt, "High-Quality Surface Splatting on Today's GPUs", 2005, section 3
+// References: Botsch, Hornung, Zwicker, Kobbelt, "High-Quality Surface Splatting on Today's GPUs", 2005, section 4.1
 //             (visibility splatting); the view-independent paper, section 5 (the offset along the view ray).
 // Summary: every splat moved away from the eye by its own epsilon, so that what lies within epsilon blends; by no less
 //          than the depth can resolve, or rounding would let a splat hide itself.

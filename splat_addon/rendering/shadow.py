@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shadow maps: the cameras through which lights see what casts shadows, and how shaders find places in them.
 
-Sources: Williams 1978, "Casting Curved Shadows on Curved Surfaces"; Botsch et al. 2005, section 5 (splats
+Sources: Williams 1978, "Casting Curved Shadows on Curved Surfaces"; Botsch et al. 2005, section 6 (splats
 seen by a light are a visibility pass from there).
 """
 

@@ -50,29 +50,31 @@ _OFF_AXIS = (60, 61, 62, 64, 65, 67, 68, 71, 72, 78, 79)
 #: why -> the cases that fail for it, each with its method. Strict: one that passes must leave the table.
 KNOWN_FAILURES = {
     "Botsch and Kobbelt 2003 project in parallel: off the axis a tilted disc is too small, and gaps open": (
-        *(case for method in ("affine", "affine_unfiltered") for case in _cases(_GRAZING, method, *_OFF_AXIS)),
-        *_cases(_FLOOR, "affine", 0.3, 0.1),
-        *_cases(_FLOOR, "affine_unfiltered", 0.3, 0.1, 0.03, 0.01),
-        *_cases(_GIANT, "affine", "1.0-floor", "1.0-both"),
-        *_cases(_GIANT, "affine_unfiltered", "1.0-floor", "1.0-both", "10.0-floor"),
-        *_cases(_WINDOW, "affine", 2, 5, 20, 100),
-        *_cases(_WINDOW, "affine_unfiltered", 5, 20, 100),
-        *_cases("test_any_epsilon_gives_its_true_picture", "affine", "0-40", "1e-07-40", "0.0001-45", "0.01-60"),
-        *(f"{_POSES}[{method}]" for method in ("affine", "affine_unfiltered")),
-        *_cases("test_no_splat_hides_itself", "affine", "60-0", "60-1e-07", "60-1e-06", "85-0", "85-1e-07", "85-1e-06"),
-        *_cases("test_no_splat_hides_itself", "affine_unfiltered", "60-0", "60-1e-07", "60-1e-06"),
-        *_cases("test_no_splat_hides_itself_in_linear_depth", "affine", 60, 85),
-        *_cases("test_no_splat_hides_itself_in_linear_depth", "affine_unfiltered", 60),
+        *(case for method in ("sprites", "sprites_unfiltered") for case in _cases(_GRAZING, method, *_OFF_AXIS)),
+        *_cases(_FLOOR, "sprites", 0.3, 0.1),
+        *_cases(_FLOOR, "sprites_unfiltered", 0.3, 0.1, 0.03, 0.01),
+        *_cases(_GIANT, "sprites", "1.0-floor", "1.0-both"),
+        *_cases(_GIANT, "sprites_unfiltered", "1.0-floor", "1.0-both", "10.0-floor"),
+        *_cases(_WINDOW, "sprites", 2, 5, 20, 100),
+        *_cases(_WINDOW, "sprites_unfiltered", 5, 20, 100),
+        *_cases("test_any_epsilon_gives_its_true_picture", "sprites", "0-40", "1e-07-40", "0.0001-45", "0.01-60"),
+        *(f"{_POSES}[{method}]" for method in ("sprites", "sprites_unfiltered")),
+        *_cases(
+            "test_no_splat_hides_itself", "sprites", "60-0", "60-1e-07", "60-1e-06", "85-0", "85-1e-07", "85-1e-06"
+        ),
+        *_cases("test_no_splat_hides_itself", "sprites_unfiltered", "60-0", "60-1e-07", "60-1e-06"),
+        *_cases("test_no_splat_hides_itself_in_linear_depth", "sprites", 60, 85),
+        *_cases("test_no_splat_hides_itself_in_linear_depth", "sprites_unfiltered", 60),
     ),
     "Botsch and Kobbelt 2003, unfiltered: a splat lies at its centre, is there where that is and has its depth": (
-        *_cases(_EYE, "affine_unfiltered", "through the eye's plane", "centre behind the camera", "centre far behind"),
-        *_cases(_RIM, "affine_unfiltered", 0, 20, 40, 60, 80, 100),
-        "test_a_depth_beyond_that_of_nothing_is_kept[affine_unfiltered]",
+        *_cases(_EYE, "sprites_unfiltered", "through the eye's plane", "centre behind the camera", "centre far behind"),
+        *_cases(_RIM, "sprites_unfiltered", 0, 20, 40, 60, 80, 100),
+        "test_a_depth_beyond_that_of_nothing_is_kept[sprites_unfiltered]",
     ),
     "Botsch and Kobbelt 2003, unfiltered: the nearest splat wins, and nothing blends": (
-        *_cases(_CANCELLED, "affine_unfiltered", 3, 7, 40),
-        *(f"{test}[affine_unfiltered]" for test in (_FACING, "test_coincident_sheets_mix_evenly")),
-        *_cases(_ALMOST, "affine_unfiltered", "0.0001", "3e-06"),
+        *_cases(_CANCELLED, "sprites_unfiltered", 3, 7, 40),
+        *(f"{test}[sprites_unfiltered]" for test in (_FACING, "test_coincident_sheets_mix_evenly")),
+        *_cases(_ALMOST, "sprites_unfiltered", "0.0001", "3e-06"),
     ),
     "Guennebaud et al. 2006 as printed: the tangents of a disc that faces the ray are 0 / 0, and it is not drawn": (
         *_cases(_DEPTH, "homogeneous_printed", *(10.0**k for k in range(-6, 7))),
@@ -96,7 +98,7 @@ KNOWN_FAILURES = {
     "a filter in the picture, or a least angle, keeps an edge-on splat a pixel wide": (
         *(
             f"test_edge_on_nothing_is_drawn[{method}]"
-            for method in ("ewa", "raycast", "homogeneous", "homogeneous_printed", "affine", "affine_unfiltered")
+            for method in ("ewa", "raycast", "homogeneous", "homogeneous_printed", "sprites", "sprites_unfiltered")
         ),
     ),
 }

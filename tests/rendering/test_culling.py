@@ -118,7 +118,7 @@ def solids():
     ), camera
 
 
-@pytest.mark.parametrize("method", ["quad", "mip", "raycast", "affine_unfiltered"])
+@pytest.mark.parametrize("method", ["quad", "mip", "raycast", "sprites_unfiltered"])
 def test_backs_of_solids_may_collapse_in_the_view_or_before_it(method, render, monkeypatch):
     """In it where the camera sees the whole object; either way the picture is the same."""
     scene, camera = solids()

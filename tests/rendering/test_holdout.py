@@ -105,5 +105,5 @@ def test_the_plan_names_what_cuts_and_what_cannot():
     scene = Scene([sheet(0, is_holdout=True), sheet(-1)])
     assert dict(plan(scene, CAMERA, flat()).features)["HOLDOUT"] == "1 of 2 instances cut holes"
     assert "HOLDOUT" not in dict(plan(Scene([sheet(0)]), CAMERA, flat()).features)
-    made = plan(scene, CAMERA, flat(method="affine_unfiltered"))
+    made = plan(scene, CAMERA, flat(method="sprites_unfiltered"))
     assert "drawn as others are" in dict(made.skipped)["holdout"]

@@ -32,7 +32,7 @@ CAMERA = Camera.perspective(np.eye(4), 0.9, SIZE)
 OUTPUTS = ("color", "coverage", *NUMBERED)
 #: Pixels that a method may see nothing in where something is visible: what these print leaves holes (docs/methods.md);
 #: of others one splat's rim may tie.
-TIES = {"homogeneous_printed": 8, "affine": 4}
+TIES = {"homogeneous_printed": 8, "sprites": 4}
 
 
 def moved(x, y, z) -> np.ndarray:

@@ -35,7 +35,7 @@ WALL = replace(sheet(60, 3.0, 0.0, 4.0), colors=np.tile((*GREY, 1.0), (3600, 1))
 LEFT = np.eye(4)
 LEFT[0, 3] = -3.0
 #: Over a sample of the wall: pi r^2 over a cell is 2.26, as the corners are reached 1.2 times; filters reach farther.
-SPLATS = {"quad": (2.1, 2.4), "mip": (5, 30), "raycast": (2.3, 10), "affine_unfiltered": (0.999, 1.001)}
+SPLATS = {"quad": (2.1, 2.4), "mip": (5, 30), "raycast": (2.3, 10), "sprites_unfiltered": (0.999, 1.001)}
 METHODS = tuple(SPLATS)
 
 

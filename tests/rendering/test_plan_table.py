@@ -192,7 +192,7 @@ TABLE = {
         "row_depth row_holdout_depth depth_bounds shaded surface", "", ("HOLDOUT",),
     ),
     "one pass": (
-        PLAIN, {"method": "affine_unfiltered"}, ("attributes", "shading"), "-visibility_depth seen_depth", "", (),
+        PLAIN, {"method": "sprites_unfiltered"}, ("attributes", "shading"), "-visibility_depth seen_depth", "", (),
     ),
 }  # fmt: skip
 
@@ -238,7 +238,7 @@ def test_the_plan_prints_each_pass_with_its_reason(name):
         assert f"without {what}: {why}" in printed
 
 
-@pytest.mark.parametrize("method", ["quad", "mip", "affine_unfiltered"])
+@pytest.mark.parametrize("method", ["quad", "mip", "sprites_unfiltered"])
 @pytest.mark.parametrize(
     ("name", "scene", "settings"),
     [

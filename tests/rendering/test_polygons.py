@@ -47,7 +47,7 @@ def square_surfels(spacing: float, color, keep=lambda x, y: x > -9):
 
 
 #: Their splats lie away from the surface: the whole disc, or at flat angles.
-IN_FRONT = {"affine_unfiltered", "homogeneous_printed", "raycast"}
+IN_FRONT = {"sprites_unfiltered", "homogeneous_printed", "raycast"}
 
 
 @pytest.mark.parametrize("method", METHODS)

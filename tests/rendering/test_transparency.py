@@ -256,7 +256,7 @@ def test_multisampling_is_refused():
         plan(scene, camera, Settings(method="quad", multisampling=4))
 
 
-@pytest.mark.parametrize("settings", [{"method": "affine_unfiltered"}, {"shading": "overdraw"}])
+@pytest.mark.parametrize("settings", [{"method": "sprites_unfiltered"}, {"shading": "overdraw"}])
 def test_what_cannot_peel_says_so(settings):
     scene, camera = spheres(16)
     made = plan(scene, camera, Settings(**settings))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The numpy twin of shaders/methods/ewa.glsl: screen-space affine EWA with amplitude compensation."""
+"""The numpy twin of shaders/methods/ewa.glsl: EWA in the picture with amplitude compensation."""
 
 from __future__ import annotations
 

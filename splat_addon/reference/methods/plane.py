@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The numpy twin of shaders/screen/plane.glsl and place.glsl: one splat's plane as the picture shows it.
+"""The numpy twin of shaders/lib/plane.glsl and place.glsl: one splat's plane as the picture shows it.
 
 Positions and axes are in view space (looking down -Z); depth counts forwards. A picture point is x / z, y / z
 (perspective) or x, y (parallel cameras).
@@ -110,7 +110,8 @@ def plane_depth(plane: Plane, at: Places, pixel: np.ndarray, filter_pixels: floa
 def straddling_samples(position, axis_u, axis_v, points: np.ndarray, is_orthographic: bool):
     """(M,) weights, unfiltered, and (M,) depths of a splat that reaches the near plane, wherever its centre lies.
 
-    Guennebaud et al. 2006, equation 5: (u w, v w, w) = adj(M) direction. The twin of screen/attributes.frag.glsl.
+    Guennebaud et al. 2006, equation 5: (u w, v w, w) = adj(M) direction. The twin of
+    shaders/features/near_clipped.glsl.
     """
     forward = np.array((1.0, 1.0, -1.0))
     p, s, t = (np.asarray(a, np.float64) * forward for a in (position, axis_u, axis_v))

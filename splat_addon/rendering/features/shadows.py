@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shadow maps: what each light sees first, one map beside the other in an atlas (Botsch et al. 2005, section 5)."""
+"""Shadow maps: what each light sees first, one map beside the other in an atlas (Botsch et al. 2005, section 6)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The visibility pass: depth, every splat moved back by its epsilon (Botsch et al. 2005, section 3)."""
+"""The visibility pass: depth, every splat moved back by its epsilon (Botsch et al. 2005, section 4.1)."""
 
 from __future__ import annotations
 

@@ -337,7 +337,7 @@ def test_opacity_below_one_is_no_mishap(add_surfels, assert_good_is_drawn, said)
 
 
 def test_opacity_that_the_method_cannot_draw_is_said_to_be_ignored(scene, add_surfels, assert_good_is_drawn, said):
-    scene.surfel_splatting.method = "affine_unfiltered"
+    scene.surfel_splatting.method = "sprites_unfiltered"
     add_surfels([(-1, 0, 0)], colors=(1, 1, 1, 0.5))
     assert_good_is_drawn()
     assert "drawn opaque" in said()

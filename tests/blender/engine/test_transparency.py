@@ -79,6 +79,6 @@ def test_a_sprite_method_says_that_it_draws_what_is_transparent_opaque(scene, ad
 
     add_camera()
     add_sheet(side=8, count=30, colors=WHITE_GLASS)
-    scene.surfel_splatting.method = "affine_unfiltered"
+    scene.surfel_splatting.method = "sprites_unfiltered"
     assert picture()[16, 16, 3] == 1
     assert any("drawn opaque" in note for note in last_frame_stats["notes"])

@@ -14,7 +14,7 @@ from splat_addon.rendering import Camera, Scene, Settings, plan
 SIZE = (128, 128)
 FLAT = Settings(shading="flat", supersampling=1)
 ONE_PASS, PRINTED, REPAIRED = (
-    replace(FLAT, method=name) for name in ("affine_unfiltered", "homogeneous_printed", "homogeneous")
+    replace(FLAT, method=name) for name in ("sprites_unfiltered", "homogeneous_printed", "homogeneous")
 )
 AHEAD = Camera.perspective(np.eye(4), 1.0, SIZE, 0.01, 100)
 

@@ -1,7 +1,7 @@
-// References: Botsch, Kobbelt, "High-Quality Point-Based Rendering on Modern GPUs", 2003, section 4 (a disc in a point
-//             sprite: the depth offset of its plane bounds the ellipse, the affine approximation of its shape).
+// References: Botsch, Kobbelt, "High-Quality Point-Based Rendering on Modern GPUs", 2003, sections 3.1 (the size of the
+//             sprite), 3.2 (the depth offset of the disc's plane bounds its ellipse) and 3.3 (the kernel, the corrected depth).
 // Summary: discs only; the offset in the picture, in radii, and the depth offset of the plane there make the place.
-//          The twin of reference/methods/affine.py.
+//          The twin of reference/methods/sprites.py.
 
 const float LEAST_COSINE = 0.1;  // a disc seen flatter is drawn as one seen at this angle
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The numpy twin of shaders/methods/affine.glsl: discs in point sprites."""
+"""The numpy twin of shaders/methods/sprites.glsl: discs in point sprites."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ LEAST_COSINE = 0.1
 
 
 def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(M,) weights and (M,) depths at (M, 2) picture points (Botsch and Kobbelt 2003, section 4)."""
+    """(M,) weights and (M,) depths at (M, 2) picture points (Botsch and Kobbelt 2003, equations 1 to 3)."""
     normal = plane.normal / np.linalg.norm(plane.normal)
     normal = normal if normal[2] >= 0 else -normal
     q = (points - plane.center) / (plane.radius * plane.scale)
