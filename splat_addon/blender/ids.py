@@ -27,6 +27,10 @@ POINTS_PANEL = "VIEW3D_PT_surfels_from_points"
 #: Nodes drop it, which is right: what they make may be open.
 SOLID = "surfels_solid"
 
+#: The node group by which other engines and shadings see a surfel object, and the material that it has there.
+POINTS_GROUP = "Surfels as Points"
+POINTS_MATERIAL = "Surfels as Points"
+
 #: How a picture is rendered: `scene.surfel_splatting`.
 RENDER_SETTINGS = "surfel_splatting"
 

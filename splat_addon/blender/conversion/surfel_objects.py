@@ -10,6 +10,7 @@ from mathutils import Matrix
 
 from ...surfels import Surfels
 from ..geometry.attributes import write_surfels
+from ..geometry.points_proxy import show_as_points
 
 
 def add_surfel_object(
@@ -24,8 +25,7 @@ def add_surfel_object(
     for material in materials:
         mesh.materials.append(material)
     made = bpy.data.objects.new(mesh.name, mesh)
-    # a mesh of loose points would be covered by Blender's black vertex overlay, in the rendered view too
-    made.display_type = "BOUNDS"
+    show_as_points(made)
     for collection in collections:
         collection.objects.link(made)
     made.matrix_world = matrix_world @ Matrix.Translation(surfels.origin)

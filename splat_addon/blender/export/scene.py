@@ -15,7 +15,8 @@ import numpy as np
 from ...rendering import Instance, Light, Scene
 from ...rendering.upload.packing import MAX_SPLATS
 from ...surfels import Surfels, split
-from ..geometry.attributes import has_surfels, has_surfels_beside_faces, have_same_values, read_stored
+from ..geometry.attributes import Points, has_surfels, has_surfels_beside_faces, have_same_values, read_stored
+from ..geometry.points_proxy import is_solid, shown_points, shows_as_points
 from ..geometry.sources import owner_of
 from ..materials.material_override import Overridden, override_of
 from ..materials.surface_textures import TextureStore
@@ -76,15 +77,16 @@ class SurfelStore:
         self._current: set[int] = set()
         self._followed: dict = {}
 
-    def get(self, mesh: bpy.types.Mesh) -> tuple[tuple[Surfels, ...], int, int]:
-        """As `attributes.read_stored`, in parts that the renderer can hold; once a mesh and frame."""
-        key = mesh.session_uid
+    def get(self, points: Points, key: int, name: str, is_solid: bool = False) -> tuple[tuple[Surfels, ...], int, int]:
+        """As `attributes.read_stored`, in parts that the renderer can hold; once a mesh and frame.
+
+        key: session_uid of the mesh, or of that which the points were made beside. name: by which it is known in the
+        next evaluation.
+        """
         if key not in self._current:
-            surfels, skipped, strayed = read_stored(mesh, self._followed)
-            known = (
-                k for k in self._kept.values() if k.name == mesh.name_full and have_same_values(k.surfels, surfels)
-            )
-            kept = next(known, None) or _Kept(mesh.name_full, surfels, split(surfels, MAX_SPLATS), 0, 0)
+            surfels, skipped, strayed = read_stored(points, self._followed, name, is_solid)
+            known = (k for k in self._kept.values() if k.name == name and have_same_values(k.surfels, surfels))
+            kept = next(known, None) or _Kept(name, surfels, split(surfels, MAX_SPLATS), 0, 0)
             self._kept[key] = kept._replace(skipped=skipped, strayed=strayed)
             self._current.add(key)
         kept = self._kept[key]
@@ -118,7 +120,8 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
         if not entry.show_self or not (view_layer.use_solid and _is_seen(entry, depsgraph, notes)):
             continue
         try:
-            if object_.type == "MESH":
+            what = _content(entry)
+            if what:
                 fields = {
                     "light_set": light_sets.of_instance(entry),
                     "casts_shadow": object_.visible_shadow,
@@ -126,15 +129,21 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                     "index": object_.pass_index,
                     "is_holdout": owner_of(entry).holdout_get(view_layer=depsgraph.view_layer),
                 }
-                what = _content(object_)
                 if "surfels" in what:
-                    surfels += _instances(object_, matrix, fields, store, notes, override)
+                    with _attributes_of(object_) as points:
+                        kept = store.get(points, points.session_uid, points.name_full)
+                    surfels += _instances(object_, kept, depsgraph, matrix, fields, store, notes, override)
+                if "shown" in what:
+                    source, owner = entry.instance_object or object_, object_.original
+                    with shown_points(source) as points:
+                        kept = store.get(points, object_.data.session_uid, owner.name_full, is_solid(owner))
+                    surfels += _instances(object_, kept, depsgraph, matrix, fields, store, notes, override)
                 if "faces" in what and (form := form_of(entry, bpy_scene)).kind != "HIDDEN":
                     owner = owner_of(entry)
                     live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), notes, override)
                 if "points" in what:
                     notes.add(_BARE_POINTS)
-            elif object_.type in _NOT_DRAWN:
+            elif object_.type in _NOT_DRAWN and not shows_as_points(object_.original):
                 notes.add(f"Objects of type {_NOT_DRAWN[object_.type]} are not drawn; convert them to meshes first")
         except ValueError as error:
             notes.leave_out(object_.name, error)
@@ -190,25 +199,39 @@ _NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "v
 _BARE_POINTS = "Meshes of points without faces are not drawn; convert them with Object > Convert Points to Surfels"
 
 
-def _content(object_: bpy.types.Object) -> tuple[str, ...]:
-    """What a mesh object has of "surfels", "faces" and "points"."""
+def _content(entry: bpy.types.DepsgraphObjectInstance) -> tuple[str, ...]:
+    """What an entry has of "surfels", "faces" and "points", and of surfels that are "shown" as points."""
+    object_ = entry.object
+    if object_.type == "POINTCLOUD":
+        # those of a surfel object are met with its mesh
+        return () if shows_as_points(object_.original) or not has_surfels(object_.data) else ("surfels",)
+    if object_.type != "MESH":
+        return ()
     with _attributes_of(object_) as mesh:
-        if not len(mesh.vertices):
-            return ()
         if mesh.polygons:
-            return ("surfels", "faces") if has_surfels_beside_faces(mesh) else ("faces",)
-        return ("surfels",) if has_surfels(mesh) else ("points",)
+            own = ("surfels", "faces") if has_surfels_beside_faces(mesh) else ("faces",)
+        elif has_surfels(mesh):
+            own = ("surfels",)
+        else:
+            own = ("points",) if len(mesh.vertices) else ()
+    source = entry.instance_object or object_
+    if not shows_as_points(object_.original) or source.type != "MESH" or source.data != object_.data:
+        return own
+    with shown_points(source) as points:
+        if points is None or not has_surfels(points):
+            return own
+    # the points are all that was not part of a face
+    return (*(kind for kind in own if kind == "faces"), "shown")
 
 
 def _instances(
-    object_, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes: Notes, override
+    object_, kept, depsgraph, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes: Notes, override
 ) -> list[Instance]:
     """Of an object that has surfels; one, unless it has more than the renderer holds in one.
 
-    Raises ValueError for broken attributes or an unusable matrix.
+    kept: of the store. Raises ValueError for broken attributes or an unusable matrix.
     """
-    with _attributes_of(object_) as mesh:
-        parts, skipped, strayed = store.get(mesh)
+    parts, skipped, strayed = kept
     if skipped:
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
     if strayed:
@@ -223,15 +246,19 @@ def _instances(
         parts = tuple(store.overridden.get(part, override, notes) for part in parts)
         return [Instance(part, matrix_world, materials, **fields) for part in parts]
     own = parts[0].arrays().keys()
-    materials = tuple(shading_material(slot.material, notes, own) for slot in object_.material_slots)
-    slots = object_.material_slots if parts[0].has_uvs else ()
-    textures = tuple(store.textures.get(slot.material, notes) for slot in slots)
+    # a point cloud that modifiers made has no slots of its own
+    slots = object_.original.evaluated_get(depsgraph).material_slots
+    materials = tuple(shading_material(slot.material, notes, own) for slot in slots)
+    textures = tuple(store.textures.get(slot.material, notes) for slot in slots) if parts[0].has_uvs else ()
     return [Instance(part, matrix_world, materials, textures=textures, **fields) for part in parts]
 
 
 @contextmanager
-def _attributes_of(object_: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
-    """An evaluated object's mesh, in edit mode too, where its data is empty."""
+def _attributes_of(object_: bpy.types.Object) -> Iterator[Points]:
+    """An evaluated object's mesh, in edit mode too, where its data is empty, or its point cloud."""
+    if object_.type == "POINTCLOUD":
+        yield object_.data
+        return
     try:
         yield object_.to_mesh() if object_.data.is_editmode else object_.data
     finally:

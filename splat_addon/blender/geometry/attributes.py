@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels as ordinary point attributes of a vertex-only mesh, and back.
+"""Surfels as ordinary point attributes of a vertex-only mesh, and back; also from a point cloud, which modifiers make
+of such a mesh.
 
 The store that works in every supported version, that Geometry Nodes, Cycles, EEVEE and the exporters read, and
 that a .blend keeps bit for bit. The conversion operator writes it; the engine reads it, evaluated with modifiers.
@@ -19,6 +20,9 @@ from ...interchange import followed
 from ...surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
 from ..ids import POINT_ATTRIBUTES, REST, SOLID, PointAttribute
 
+#: What can hold points that are surfels.
+Points = bpy.types.Mesh | bpy.types.PointCloud
+
 #: An attribute by either name on a mesh without faces says "these points are surfels".
 MARKS = tuple(POINT_ATTRIBUTES[field].name for field in ("rotations", "scales"))
 
@@ -27,12 +31,15 @@ MARKS = tuple(POINT_ATTRIBUTES[field].name for field in ("rotations", "scales"))
 _TYPES = {"INT": np.int32, "INT16_2D": np.int16}
 
 
-def has_surfels(mesh: bpy.types.Mesh) -> bool:
+def has_surfels(mesh: Points) -> bool:
     """Whether `mesh` is meant as surfels: no faces, and at least one of the attributes `rotation` and `scale`.
 
     One of them is enough, so that surfels which lost the other are met with the sentence of `read_surfels`
-    and not passed over in silence.
+    and not passed over in silence. A point cloud that this extension did not make needs both: others use one of these
+    names for purposes of their own.
     """
+    if isinstance(mesh, bpy.types.PointCloud):
+        return REST.name in mesh.attributes or all(name in mesh.attributes for name in MARKS)
     return not mesh.polygons and any(name in mesh.attributes for name in MARKS)
 
 
@@ -63,7 +70,7 @@ def _write(mesh: bpy.types.Mesh, layout: PointAttribute, values: np.ndarray) -> 
     attribute.data.foreach_set(layout.property, _padded(values, layout.columns))
 
 
-def read_surfels(mesh: bpy.types.Mesh) -> tuple[Surfels, int]:
+def read_surfels(mesh: Points) -> tuple[Surfels, int]:
     """The surfels that `mesh` stores, and how many unusable points were left out, as `read_stored` has them."""
     return read_stored(mesh)[:2]
 
@@ -77,32 +84,39 @@ class Stored(NamedTuple):
     strayed: int
 
 
-def read_stored(mesh: bpy.types.Mesh, known: dict[str, tuple[Surfels, np.ndarray, Stored]] | None = None) -> Stored:
+def read_stored(
+    mesh: Points,
+    known: dict[str, tuple[Surfels, np.ndarray, Stored]] | None = None,
+    name: str = "",
+    is_solid: bool = False,
+) -> Stored:
     """The surfels that `mesh` stores, with origin (0, 0, 0); beside faces, the points that belong to none.
 
     Where their centres have been moved together since they were written, their frames are moved along
-    (`interchange.followed`), which takes seconds a million: known keeps what came of it, by the name of the mesh, for
-    as long as the values are the same.
+    (`interchange.followed`), which takes seconds a million: known keeps what came of it, by the name given (the mesh's
+    own, if none is), for as long as the values are the same.
+    is_solid: true where the mesh does not say so itself, but what it was made of does.
 
     Attributes are found by name; optional ones need not be there. Raises ValueError where another is missing or one is
     not of the stored type, and for a mesh in edit mode, whose points are not in its attributes then
     (`Object.to_mesh()` has them); NaN, zero and negative sizes and the like only cost their own point (see
     `valid_surfels`).
     """
-    if mesh.is_editmode:
+    if getattr(mesh, "is_editmode", False):
         raise ValueError(
             f"The surfel mesh {mesh.name!r} is in edit mode, where its points cannot be read; leave edit mode."
         )
+    name = name or mesh.name_full
     there = [field for field in OPTIONAL_LAYOUT if POINT_ATTRIBUTES[field].name in mesh.attributes]
-    arrays = {field: _read(mesh, POINT_ATTRIBUTES[field]) for field in (*LAYOUT, *there)}
+    arrays = {field: _read(mesh, POINT_ATTRIBUTES[field], name) for field in (*LAYOUT, *there)}
     arrays["scales"] = arrays["scales"][:, :2]
     loose = _loose_points(mesh)
     arrays = arrays if loose is None else {name: values[loose] for name, values in arrays.items()}
-    surfels, skipped = valid_surfels(is_solid=bool(mesh.get(SOLID)), **arrays)
+    surfels, skipped = valid_surfels(is_solid=is_solid or bool(mesh.get(SOLID)), **arrays)
     rest = mesh.attributes.get(REST.name)
     if rest is None or (rest.data_type, rest.domain) != (REST.data_type, "POINT"):
         return Stored(surfels, skipped, 0)
-    rest = _read(mesh, REST)
+    rest = _read(mesh, REST, name)
     rest = rest if loose is None else rest[loose]
     if skipped:
         # their numbers take the materials' way
@@ -111,17 +125,21 @@ def read_stored(mesh: bpy.types.Mesh, known: dict[str, tuple[Surfels, np.ndarray
     if np.array_equal(surfels.positions, rest):
         return Stored(surfels, skipped, 0)
     known = {} if known is None else known
-    before = known.get(mesh.name_full)
+    before = known.get(name)
     if before is not None and np.array_equal(before[1], rest) and have_same_values(before[0], surfels):
         return before[2]._replace(skipped=skipped)
     moved, strayed = followed(surfels, rest)
-    known[mesh.name_full] = surfels, rest, Stored(moved, skipped, strayed)
-    return known[mesh.name_full][2]
+    known[name] = surfels, rest, Stored(moved, skipped, strayed)
+    return known[name][2]
 
 
-def _loose_points(mesh: bpy.types.Mesh) -> np.ndarray | None:
+def _count(mesh: Points) -> int:
+    return len(mesh.points if isinstance(mesh, bpy.types.PointCloud) else mesh.vertices)
+
+
+def _loose_points(mesh: Points) -> np.ndarray | None:
     """(n,) the points that belong to no face, of a mesh with faces; None: all points are surfels."""
-    if not mesh.polygons:
+    if isinstance(mesh, bpy.types.PointCloud) or not mesh.polygons:
         return None
     is_loose = np.ones(len(mesh.vertices), bool)
     corners = np.empty(len(mesh.loops), np.int32)
@@ -145,26 +163,26 @@ def _padded(values: np.ndarray, columns: int) -> np.ndarray:
     return rows.ravel()
 
 
-def _read(mesh: bpy.types.Mesh, layout: PointAttribute) -> np.ndarray:
+def _read(mesh: Points, layout: PointAttribute, name: str) -> np.ndarray:
     """(N,) or (N, columns) values of one attribute."""
-    shape = (len(mesh.vertices), layout.columns) if layout.columns > 1 else len(mesh.vertices)
+    shape = (_count(mesh), layout.columns) if layout.columns > 1 else _count(mesh)
     values = np.empty(shape, _TYPES.get(layout.data_type, np.float32))
     if len(values):
-        _find(mesh, layout).data.foreach_get(layout.property, values.ravel())
+        _find(mesh, layout, name).data.foreach_get(layout.property, values.ravel())
     return values
 
 
-def _find(mesh: bpy.types.Mesh, layout: PointAttribute) -> bpy.types.Attribute:
+def _find(mesh: Points, layout: PointAttribute, name: str) -> bpy.types.Attribute:
     wanted = f"{layout.data_type} on POINT"
     attribute = mesh.attributes.get(layout.name)
     if attribute is None:
         raise ValueError(
-            f"The surfel mesh {mesh.name!r} has no attribute {layout.name!r}; "
+            f"The surfel mesh {name!r} has no attribute {layout.name!r}; "
             f"add it ({wanted}) or convert the source mesh again."
         )
     if (attribute.data_type, attribute.domain) != (layout.data_type, "POINT"):
         raise ValueError(
-            f"The attribute {layout.name!r} of the surfel mesh {mesh.name!r} is {attribute.data_type} on "
+            f"The attribute {layout.name!r} of the surfel mesh {name!r} is {attribute.data_type} on "
             f"{attribute.domain}; convert it to {wanted}."
         )
     return attribute

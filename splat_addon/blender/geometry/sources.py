@@ -17,6 +17,7 @@ import bpy
 import numpy as np
 
 from .attributes import has_surfels
+from .points_proxy import shows_as_points
 
 #: Types whose evaluated geometry is, or may be, a mesh; of the latter, only with modifiers that could make one.
 _SURFACES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
@@ -82,6 +83,10 @@ def shown_by(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, read: Rea
         object_ = entry.object
         if object_.original != source:
             shown.others.add(object_.original.session_uid)
+        if object_.type == "POINTCLOUD" and has_surfels(object_.data):
+            if not shows_as_points(object_.original):
+                shown.skip(_SURFELS)
+            continue
         if object_.type != "MESH":
             if entry.is_instance:
                 shown.types.add(object_.type)
@@ -93,7 +98,8 @@ def shown_by(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, read: Rea
         key = mesh_key(object_)
         if key not in pieces:
             with readable_mesh(object_) as mesh:
-                pieces[key] = None if has_surfels(mesh) else Piece(read(object_, mesh))
+                is_surfels = has_surfels(mesh) or (not mesh.polygons and shows_as_points(object_.original))
+                pieces[key] = None if is_surfels else Piece(read(object_, mesh))
         if pieces[key] is None:
             shown.skip(_SURFELS)
         else:

@@ -13,7 +13,7 @@ from bpy_extras.io_utils import ExportHelper
 from ...interchange import joined, transformed, write_gaussian_ply, write_ply
 from ...surfels import Surfels
 from ..geometry.attributes import has_surfels, read_surfels
-from ..geometry.mesh_extraction import evaluated_mesh
+from ..geometry.points_proxy import points_of
 from ..ids import EXPORT_PLY
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
@@ -89,16 +89,14 @@ def _world_surfels(candidates: list[bpy.types.Object], depsgraph: bpy.types.Deps
     """The surfels of those objects that are surfels, in the world, each with materials of its own, and the unusable."""
     parts, unusable, slots = [], 0, 0
     for candidate in candidates:
-        if candidate.type != "MESH":
-            continue
-        with evaluated_mesh(candidate, depsgraph) as (evaluated, mesh):
-            if not has_surfels(mesh):
-                continue
-            surfels, skipped = read_surfels(mesh)
-            surfels = replace(surfels, materials=surfels.materials + np.int32(slots))
-            parts.append(transformed(surfels, np.array(evaluated.matrix_world, np.float64)))
-        unusable += skipped
-        slots += max(len(candidate.material_slots), 1)
+        evaluated = candidate.evaluated_get(depsgraph)
+        with points_of(evaluated) as holders:
+            for points in filter(has_surfels, holders):
+                surfels, skipped = read_surfels(points)
+                surfels = replace(surfels, materials=surfels.materials + np.int32(slots))
+                parts.append(transformed(surfels, np.array(evaluated.matrix_world, np.float64)))
+                unusable += skipped
+                slots += max(len(candidate.material_slots), 1)
     return parts, unusable
 
 

@@ -38,7 +38,7 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         button = self.layout.operator(SURFELS_FROM_MESH, icon="OUTLINER_OB_POINTCLOUD")
         for name in PROPERTY_NAMES:
             setattr(button, name, getattr(settings, name))
-        # Another engine shows of a surfel object the outline of a box.
+        # Another engine shows points in place of a surfel object.
         if context.active_object is not None and is_surfel_object(context.active_object) and not shows_surfels(context):
             self.layout.operator(SHOW_SURFELS, icon="SHADING_RENDERED")
 

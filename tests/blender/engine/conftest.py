@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.geometry.attributes import write_surfels
+from splat_addon.blender.geometry.points_proxy import show_as_points
 from splat_addon.surfels import Surfels, axes_quaternions
 
 IMAGE_FORMATS = {"OPEN_EXR": "IMAGE", "OPEN_EXR_MULTILAYER": "MULTI_LAYER_IMAGE"}
@@ -56,10 +57,18 @@ def add_camera(scene):
 
 @pytest.fixture
 def add_surfels(add_object):
-    """add_surfels(positions, normals, size, colors) -> an object of surfels; one normal, size or colour serves all."""
+    """add_surfels(positions, normals, size, colors) -> an object of surfels; one normal, size or colour serves all.
 
-    def add(positions, normals=(0, 0, 1), size=0.1, colors=(1, 1, 1, 1), name="surfels") -> bpy.types.Object:
-        return add_object(write_surfels(name, make_surfels(positions, normals, size, colors)))
+    is_shown: it has the modifier that converted objects have.
+    """
+
+    def add(
+        positions, normals=(0, 0, 1), size=0.1, colors=(1, 1, 1, 1), name="surfels", is_shown=True
+    ) -> bpy.types.Object:
+        made = add_object(write_surfels(name, make_surfels(positions, normals, size, colors)))
+        if is_shown:
+            show_as_points(made)
+        return made
 
     return add
 

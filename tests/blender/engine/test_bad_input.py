@@ -186,13 +186,13 @@ def test_meshes_without_faces_are_counted(good, add_mesh, assert_good_is_drawn, 
     assert "(2 times)" in text
 
 
-def test_point_clouds_are_said_to_be_left_out(good, add_surfels, add_nodes, picture, said):
+def test_point_clouds_are_said_to_be_left_out(good, add_mesh, add_nodes, picture, said):
     def to_points(tree, start, end):
         convert = tree.nodes.new("GeometryNodeMeshToPoints")
         tree.links.new(start, convert.inputs[0])
         tree.links.new(convert.outputs[0], end)
 
-    add_nodes(add_surfels([(0, 0, 1)]), to_points)
+    add_nodes(add_mesh("points", [(0, 0, 1)], []), to_points)
     assert np.array_equal(picture()[16, 16], (0, 1, 0, 1))
     assert "Objects of type point cloud are not drawn; convert them to meshes first" in said()
 

@@ -12,7 +12,9 @@ def motif(add_camera, add_surfels):
     add_camera()
     random = np.random.default_rng(4)
     colors = np.concatenate([random.uniform(size=(12, 3)), np.ones((12, 1))], axis=1)
-    return add_surfels(random.uniform(-0.5, 0.5, (12, 3)), random.normal(size=(12, 3)), 0.3, colors)
+    # points that a modifier shows would be made real a second time, as objects of their own
+    place, normals = random.uniform(-0.5, 0.5, (12, 3)), random.normal(size=(12, 3))
+    return add_surfels(place, normals, 0.3, colors, is_shown=False)
 
 
 @pytest.fixture
@@ -118,7 +120,7 @@ def moved_by_five(tree, start, end):
 
 def test_an_instancer_that_hides_itself_shows_only_its_instances(motif, add_surfels, picture, assert_same_picture):
     alone = picture()
-    instancer = add_surfels([(0, 0, 0)], size=2)
+    instancer = add_surfels([(0, 0, 0)], size=2, is_shown=False)
     instancer.instance_type, instancer.show_instancer_for_render = "VERTS", False
     motif.parent = instancer
     assert_same_picture(alone, picture())

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A surfel object as everybody else sees it: a modifier makes points of its surfels, with their size and colour.
+
+So it is seen, and can be clicked on, in Solid, Material Preview, EEVEE and Cycles, where a mesh of vertices alone is
+nothing but Blender's black dots. The points share the mesh's attributes, so they cost no memory, and the engine reads
+the surfels from them. Faces that were joined to the surfels stay as they are, and other kinds of geometry too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bpy
+
+from ..ids import POINT_ATTRIBUTES, POINTS_GROUP, POINTS_MATERIAL, SOLID
+
+#: Custom property of the node group, by which a group of this make is told from others of its name.
+_MAKE, _VERSION = "surfels_points", 1
+
+
+def show_as_points(made: bpy.types.Object) -> bpy.types.Modifier:
+    """Give a surfel object the modifier, which stays behind all that are added later."""
+    modifier = made.modifiers.new(POINTS_GROUP, "NODES")
+    modifier.node_group = _group()
+    # In edit mode the vertices themselves are to be seen.
+    modifier.show_in_editmode = False
+    modifier.use_pin_to_last = True
+    modifier.show_expanded = False
+    return modifier
+
+
+def shows_as_points(owner: bpy.types.Object) -> bool:
+    """Whether an object in the file has the modifier."""
+    return owner.type == "MESH" and any(map(is_points_modifier, owner.modifiers))
+
+
+@contextmanager
+def points_of(evaluated: bpy.types.Object) -> Iterator[list[bpy.types.Mesh | bpy.types.PointCloud]]:
+    """Everything of an evaluated object whose points may be surfels, for as long as the context lives."""
+    if evaluated.type == "POINTCLOUD":
+        yield [evaluated.data]
+    elif evaluated.type == "MESH":
+        with shown_points(evaluated) as cloud:
+            try:
+                mesh = evaluated.to_mesh()
+                yield [mesh] if cloud is None else [mesh, cloud]
+            finally:
+                evaluated.to_mesh_clear()
+    else:
+        yield []
+
+
+@contextmanager
+def shown_points(evaluated: bpy.types.Object) -> Iterator[bpy.types.PointCloud | None]:
+    """What the modifiers of an evaluated mesh object made points of, for as long as the context lives.
+
+    It is asked for here, and not waited for among the depsgraph's instances: there it is missing in a render, where the
+    object is hidden and seen only as an instance.
+    """
+    geometry = evaluated.evaluated_geometry()
+    yield geometry.pointcloud
+
+
+def is_solid(owner: bpy.types.Object) -> bool:
+    """Whether the points of an object in the file are as solid as its mesh says: nothing else has changed them."""
+    return bool(owner.data.get(SOLID)) and all(map(is_points_modifier, owner.modifiers))
+
+
+def is_points_modifier(modifier: bpy.types.Modifier) -> bool:
+    """Whether a modifier is one of `show_as_points`."""
+    return modifier.type == "NODES" and modifier.node_group is not None and _MAKE in modifier.node_group
+
+
+def _group() -> bpy.types.NodeTree:
+    known = (group for group in bpy.data.node_groups if group.get(_MAKE) == _VERSION and group.library is None)
+    return next(known, None) or _new_group()
+
+
+def _new_group() -> bpy.types.NodeTree:
+    group = bpy.data.node_groups.new(POINTS_GROUP, "GeometryNodeTree")
+    group[_MAKE] = _VERSION
+    group.is_modifier = True
+    for way in ("INPUT", "OUTPUT"):
+        group.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    material = group.interface.new_socket("Material", in_out="INPUT", socket_type="NodeSocketMaterial")
+    material.default_value = _material()
+    new, link = group.nodes.new, group.links.new
+    given, result = new("NodeGroupInput"), new("NodeGroupOutput")
+    kinds, everything = new("GeometryNodeSeparateComponents"), new("GeometryNodeJoinGeometry")
+    link(given.outputs["Geometry"], kinds.inputs[0])
+
+    neighbours, is_loose = new("GeometryNodeInputMeshVertexNeighbors"), new("FunctionNodeCompare")
+    is_loose.data_type, is_loose.operation = "INT", "EQUAL"
+    link(neighbours.outputs["Face Count"], _enabled(is_loose.inputs, "A"))
+    _enabled(is_loose.inputs, "B").default_value = 0
+
+    radius, points = new("GeometryNodeInputNamedAttribute"), new("GeometryNodeMeshToPoints")
+    radius.data_type = "FLOAT"
+    radius.inputs["Name"].default_value = POINT_ATTRIBUTES["radius"].name
+    link(kinds.outputs["Mesh"], points.inputs["Mesh"])
+    link(is_loose.outputs[0], points.inputs["Selection"])
+    link(_enabled(radius.outputs, "Attribute"), points.inputs["Radius"])
+    painted = new("GeometryNodeSetMaterial")
+    link(points.outputs[0], painted.inputs["Geometry"])
+    link(given.outputs["Material"], painted.inputs["Material"])
+
+    faces = new("GeometryNodeDeleteGeometry")
+    faces.domain = "POINT"
+    link(kinds.outputs["Mesh"], faces.inputs["Geometry"])
+    link(is_loose.outputs[0], faces.inputs["Selection"])
+
+    others = [output for output in kinds.outputs if output.enabled and output.name != "Mesh"]
+    for output in (painted.outputs[0], faces.outputs[0], *others):
+        link(output, everything.inputs[0])
+    link(everything.outputs[0], result.inputs[0])
+    return group
+
+
+def _enabled(sockets, name: str) -> bpy.types.NodeSocket:
+    """Of sockets of one name, a kind of value each, the one that the node uses."""
+    return next(socket for socket in sockets if socket.enabled and socket.name == name)
+
+
+def _material() -> bpy.types.Material:
+    """Shows the surfels' own colours, opacities and emission."""
+    known = bpy.data.materials.get(POINTS_MATERIAL)
+    if known is not None and known.get(_MAKE) == _VERSION:
+        return known
+    made = bpy.data.materials.new(POINTS_MATERIAL)
+    made[_MAKE] = _VERSION
+    if made.node_tree is None:
+        made.use_nodes = True
+    nodes, link = made.node_tree.nodes, made.node_tree.links.new
+    shader = next(node for node in nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
+    color, emission = (nodes.new("ShaderNodeAttribute") for _ in range(2))
+    color.attribute_name = POINT_ATTRIBUTES["colors"].name
+    emission.attribute_name = POINT_ATTRIBUTES["emission"].name
+    link(color.outputs["Color"], shader.inputs["Base Color"])
+    link(color.outputs["Alpha"], shader.inputs["Alpha"])
+    link(emission.outputs["Color"], shader.inputs["Emission Color"])
+    shader.inputs["Emission Strength"].default_value = 1.0
+    return made
