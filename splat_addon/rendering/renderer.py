@@ -64,12 +64,15 @@ class Renderer:
         camera: Camera | Panorama,
         settings: Settings | None = None,
         progress: Progress | None = None,
+        part: Tile | None = None,
     ) -> Frame:
-        """The whole picture in numpy arrays.
+        """The whole picture in numpy arrays, or a part of it.
 
+        part: x, y, width, height in pixels. What all of the picture shares is as if it were drawn whole; where the
+        part's tiles are tiles of the whole picture too, its pixels are the same bit by bit.
         Raises ValueError for settings that do not fit, RuntimeError where the device fails, RenderCancelled.
         """
-        return self.render_moments([(scene, camera)], 1, settings, progress)
+        return self.render_moments([(scene, camera)], 1, settings, progress, part)
 
     def render_moments(
         self,
@@ -77,10 +80,12 @@ class Renderer:
         count: int,
         settings: Settings | None = None,
         progress: Progress | None = None,
+        part: Tile | None = None,
     ) -> Frame:
         """The mean over the time that a shutter is open: of `count` moments, each with its share of the samples.
 
         moments: each is asked for when the one before is drawn; `accumulation.moment_places` says when they are.
+        part: as in `render`.
         Raises as `render`, and ValueError for more moments than samples.
         """
         settings = settings or Settings()
@@ -93,48 +98,55 @@ class Renderer:
         frames = (
             frame
             for block, (scene, camera) in zip(blocks, moments, strict=True)
-            for frame in self._samples(scene, camera, settings, block, turns)
+            for frame in self._samples(scene, camera, settings, block, turns, part)
         )
         return mean_frame(frames) if settings.samples > 1 else next(frames)
 
-    def _samples(self, scene, camera, settings, numbers: list[int], turns: Iterator) -> Iterator[Frame]:
+    def _samples(
+        self, scene, camera, settings, numbers: list[int], turns: Iterator, part: Tile | None
+    ) -> Iterator[Frame]:
         """The pictures of these samples; those that would draw the same shadow maps share them.
 
         Maps are fitted to what the camera sees through its pixels' centres, unless a lens moves the eye.
         """
         maps = None
 
-        def draw(moved: Camera, fitted: Camera, settings: Settings, told: Progress | None) -> Frame:
+        def draw(moved: Camera, fitted: Camera, settings: Settings, told: Progress | None, part=None) -> Frame:
             nonlocal maps
-            frame_plan = plan(scene, moved, settings, shadow_camera=fitted)
+            frame_plan = plan(scene, moved, settings, shadow_camera=fitted, part=part)
             are_shared_done = maps is not None and same_maps(maps, frame_plan.facts["shadow_maps"])
             maps = frame_plan.facts["shadow_maps"]
-            return self._frame(scene, moved, settings, told, frame_plan, are_shared_done)
+            return self._frame(scene, moved, settings, told, frame_plan, are_shared_done, part)
 
         for number in numbers:
             if isinstance(camera, Panorama):
-                yield panorama_frame(camera, number, settings, draw, next(turns))
+                seen = camera.cropped(*part) if part else camera
+                yield panorama_frame(seen, number, settings, draw, next(turns))
             else:
                 moved = sample_camera(camera, number)
-                yield draw(moved, moved if camera.lens else camera, settings, next(turns))
+                yield draw(moved, moved if camera.lens else camera, settings, next(turns), part)
 
-    def _frame(self, scene, camera: Camera, settings, progress, frame_plan: FramePlan, are_shared_done: bool) -> Frame:
+    def _frame(
+        self, scene, camera: Camera, settings, progress, frame_plan: FramePlan, are_shared_done: bool, part: Tile | None
+    ) -> Frame:
         """The picture of one sample. are_shared_done: what all tiles share is still there, of the sample before."""
+        left, bottom, *size = part or (0, 0, *camera.size)
         stats = self._new_stats(frame_plan)
         started = perf_counter()
         try:
-            tiles, identified = [], Identified(scene, camera.size, settings.outputs)
+            tiles, identified = [], Identified(scene, tuple(size), settings.outputs)
             for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress, are_shared_done):
-                tiles.append((tile, _read(target, frame_plan, settings.outputs)))
+                place = (tile[0] - left, tile[1] - bottom, *tile[2:])
+                tiles.append((place, _read(target, frame_plan, settings.outputs)))
                 if seen := [self._read_whole(t, tile, frame_plan) for t in frame_plan.facts.get("identity", ())]:
-                    identified.add(tile, nearer(*seen), frame_plan)
+                    identified.add(place, nearer(*seen), frame_plan)
         finally:
             self.device.restore()
-        arrays = _assembled(tiles, camera.size) if tiles else _background(scene, camera.size, settings)
+        arrays = _assembled(tiles, size) if tiles else _background(scene, size, settings)
         arrays |= identified.arrays
         stats["milliseconds"] = 1e3 * (perf_counter() - started)
         if "position" in settings.outputs:
-            arrays["position"] = _positions(camera, arrays["depth"])
+            arrays["position"] = _positions(camera, arrays["depth"], (left, bottom))
         return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)
 
     def _read_whole(self, texture: Texture, tile: Tile, frame_plan: FramePlan) -> np.ndarray:
@@ -235,7 +247,7 @@ class Renderer:
             build_view(casters, made.camera, settings.epsilon) for made in frame_plan.facts["shadow_maps"]
         )
         whole = None
-        if len(frame_plan.tiles) > 1:
+        if frame_plan.tiles != ((0, 0, *camera.size),):
             drawn = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan))
             whole = clip_range(scene, drawn, settings.epsilon)
         execution = Execution(are_shared_done, *self._watching(settings, frame_plan, stats, progress))
@@ -324,10 +336,11 @@ def _read(target, frame_plan: FramePlan, outputs: tuple[str, ...]) -> dict[str, 
     return arrays
 
 
-def _positions(camera: Camera, depth: np.ndarray) -> np.ndarray:
-    """(h, w, 3) float32, 0 where nothing was hit."""
+def _positions(camera: Camera, depth: np.ndarray, corner: tuple[int, int]) -> np.ndarray:
+    """(h, w, 3) float32, 0 where nothing was hit. corner: the pixel of the picture that the depths begin with."""
     is_hit = depth < EMPTY_DEPTH
-    return np.where(is_hit[..., None], camera.points_at(np.where(is_hit, depth, 0.0)), 0.0).astype(np.float32)
+    points = camera.points_at(np.where(is_hit, depth, 0.0), corner)
+    return np.where(is_hit[..., None], points, 0.0).astype(np.float32)
 
 
 def _assembled(tiles, size) -> dict[str, np.ndarray]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A picture larger than the largest target is made of tiles, and nothing shows it."""
+"""A picture larger than the largest target is made of tiles, and nothing shows it; nor where it is drawn in parts."""
 
 from importlib import import_module
 
@@ -8,6 +8,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.reference.metrics import psnr
+from splat_addon.rendering import Settings
 
 
 @pytest.mark.parametrize("edge", [40, 100])
@@ -19,3 +20,18 @@ def test_a_tiled_picture_equals_the_whole(edge, render_all, monkeypatch):
     assert len(whole.stats["plan"].tiles) == 1 < len(tiled.stats["plan"].tiles)
     assert psnr(tiled.color, whole.color) > 60
     assert np.count_nonzero(tiled.coverage != whole.coverage) <= 1
+
+
+def test_parts_are_the_whole_picture_bit_by_bit_where_their_tiles_are(render, monkeypatch):
+    """Each with the shadow maps and the depths of the whole picture."""
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", 80)
+    scene, camera = scenes.torus(3000, (93, 61))
+    settings = Settings(outputs=("color", "depth", "position", "object_index", "cryptomatte"))
+    whole = render(scene, camera, settings)
+    for part in ((0, 0, 93, 40), (40, 0, 53, 61), (40, 40, 40, 21)):
+        x, y, width, height = part
+        drawn = render(scene, camera, settings, part=part)
+        for name in ("color", "depth", "position", "object_index"):
+            assert np.array_equal(getattr(drawn, name), getattr(whole, name)[y : y + height, x : x + width]), name
+        shares = whole.cryptomatte.ranks(2)[y : y + height, x : x + width]
+        assert np.array_equal(drawn.cryptomatte.ranks(2), shares) and shares.any()

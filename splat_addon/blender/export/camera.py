@@ -33,8 +33,23 @@ def border(render: bpy.types.RenderSettings) -> tuple[int, int, int, int]:
 def final_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object | None) -> Camera | Panorama:
     """The camera of a final render, looking through the border if there is one.
 
-    Raises ValueError where the scene has no camera, or one of a kind that cannot be rendered.
+    Raises ValueError where the scene has no camera, or one of a kind that cannot be rendered, or no border to speak of.
     """
+    part = rendered_part(depsgraph.scene.render)
+    whole = _whole_camera(depsgraph, camera_object)
+    return whole.cropped(*part) if part else whole
+
+
+def rendered_part(render: bpy.types.RenderSettings) -> tuple[int, int, int, int] | None:
+    """The border, x, y, width, height in pixels; None for the whole frame. Raises ValueError for one of no pixel."""
+    x, y, width, height = border(render)
+    if width < 1 or height < 1:
+        raise ValueError("The render border is less than a pixel; draw a larger one or switch it off.")
+    return (x, y, width, height) if render.use_border else None
+
+
+def _whole_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object | None) -> Camera | Panorama:
+    """The camera of a final render, whatever its border. Raises ValueError as `final_camera`."""
     scene = depsgraph.scene
     if camera_object is None:
         raise ValueError(f"The scene {scene.name!r} has no camera; add one, or make one the active camera.")
@@ -43,10 +58,7 @@ def final_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object
         raise ValueError(
             f"The camera {camera_object.name!r} is {kind}; make it perspective, orthographic or panoramic."
         )
-    x, y, width, height = border(scene.render)
-    if width < 1 or height < 1:
-        raise ValueError("The render border is less than a pixel; draw a larger one or switch it off.")
-    return _KINDS[camera_object.data.type](camera_object, depsgraph).cropped(x, y, width, height)
+    return _KINDS[camera_object.data.type](camera_object, depsgraph)
 
 
 def _flat_camera(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Camera:
@@ -111,12 +123,13 @@ _KINDS = {"PERSP": _flat_camera, "ORTHO": _flat_camera, "PANO": _panorama}
 
 
 def view_camera(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> Camera | Panorama:
-    """The camera of a final render's active view: each eye's of a stereo camera, in its place and with its shift.
+    """The camera of a final render's active view, of the whole frame: each eye's of a stereo camera, in its place and
+    with its shift.
 
-    Raises as `final_camera`.
+    Raises ValueError as `final_camera`.
     """
     scene, camera_object = depsgraph.scene, engine.camera_override or depsgraph.scene.camera
-    camera = final_camera(depsgraph, camera_object)
+    camera = _whole_camera(depsgraph, camera_object)
     if not scene.render.use_multiview:
         return camera
     matrix_world = np.array(engine.camera_model_matrix(camera_object), np.float64)

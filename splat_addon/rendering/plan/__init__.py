@@ -23,12 +23,18 @@ MAX_TARGET_EDGE = 4096
 
 
 def plan(
-    scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera | None = None, is_added_up: bool = False
+    scene: Scene,
+    camera: Camera,
+    settings: Settings,
+    shadow_camera: Camera | None = None,
+    is_added_up: bool = False,
+    part: tuple[int, int, int, int] | None = None,
 ) -> FramePlan:
     """The passes that this picture needs.
 
     shadow_camera: to whose view shadow maps are fitted, if it is another, so that cameras which differ little share
-    them. is_added_up: the picture is one of the samples of a view that refines. Raises ValueError for an unknown method
+    them. is_added_up: the picture is one of the samples of a view that refines. part: x, y, width, height in pixels, of
+    a picture that is not drawn whole. Raises ValueError for an unknown method
     or storage, for multisampling with a method that does not work in space, and for a picture that devices have no room
     for.
     """
@@ -50,7 +56,7 @@ def plan(
     is_linear = planning.find(depth_format.linear)[0]
     each = settings.multisampling and not settings.sample_shading
     made = FramePlan(
-        tiles=_tiles(camera.size, tile_edge(planning)),
+        tiles=_tiles(part or (0, 0, *camera.size), tile_edge(planning)),
         samples=settings.supersampling,
         multisamples=settings.multisampling,
         sample_shading=bool(settings.multisampling and settings.sample_shading),
@@ -151,10 +157,10 @@ def tile_edge(planning: Planning) -> int:
     return max(MAX_TARGET_EDGE // across, 1)
 
 
-def _tiles(size: tuple[int, int], edge: int) -> tuple[tuple[int, int, int, int], ...]:
-    width, height = size
+def _tiles(part: tuple[int, int, int, int], edge: int) -> tuple[tuple[int, int, int, int], ...]:
+    left, bottom, width, height = part
     return tuple(
-        (x, y, min(edge, width - x), min(edge, height - y))
+        (left + x, bottom + y, min(edge, width - x), min(edge, height - y))
         for y in range(0, height, edge)
         for x in range(0, width, edge)
     )

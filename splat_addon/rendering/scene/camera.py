@@ -100,13 +100,16 @@ class Camera:
         inverse[:3, 3] = -inverse[:3, :3] @ self.matrix_world[:3, 3]
         return inverse
 
-    def points_at(self, depths: np.ndarray) -> np.ndarray:
-        """(h, w, 3) float64 points of the world that the centres of the pixels see, at (h, w) distances along -Z."""
+    def points_at(self, depths: np.ndarray, corner: tuple[int, int] = (0, 0)) -> np.ndarray:
+        """(h, w, 3) float64 points of the world that the centres of the pixels from `corner` on see, at (h, w)
+        distances along -Z.
+        """
         left, right, bottom, top = self.window
         width, height = self.size
-        x = left + (np.arange(width) + 0.5) * (right - left) / width
-        y = bottom + (np.arange(height) + 0.5) * (top - bottom) / height
         depths = np.asarray(depths, np.float64)
+        x, y = (first + np.arange(count) + 0.5 for first, count in zip(corner, depths.shape[::-1], strict=True))
+        x = left + x * (right - left) / width
+        y = bottom + y * (top - bottom) / height
         spread = 1.0 if self.is_orthographic else depths
         eye = np.stack([x * spread + 0 * depths, y[:, None] * spread + 0 * depths, -depths], axis=-1)
         return eye @ self.matrix_world[:3, :3].T + self.matrix_world[:3, 3]
