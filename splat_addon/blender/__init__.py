@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from . import mesh_sampling_settings, operators, properties
+from . import commands, mesh_sampling_settings, operators, properties
 from .conversion import mesh_settings, prediction
 from .engine import render_engine, render_passes
 from .ui import (
@@ -35,6 +35,7 @@ MODULES = (
     prediction,
     sidebar,
     points_panel,
+    commands,
 )
 
 

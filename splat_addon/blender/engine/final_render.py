@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import sys
 import traceback
+from collections.abc import Callable
 
 import bpy
 
 from ...rendering import Frame, RenderCancelled, Renderer, open_device
-from ..export.camera import depth_of_field_notes, view_camera
+from ..export.camera import depth_of_field_notes, rendered_part, view_camera
 from ..export.live_meshes import LiveMeshes
 from ..export.scene import Notes, SurfelStore, export_scene
 from ..properties import final_settings, stops_where_broken
@@ -20,9 +21,18 @@ from .render_passes import hand_over, outputs_of
 #: counts of `LiveMeshes`.
 last_frame_stats: dict = {}
 
+#: Told of each frame that is drawn, by the names of its view layer and view: a tile is kept as it is.
+kept: Callable[[str, str, Frame], None] | None = None
+
+#: Gives the frame of a view layer and view that others have drawn, instead of drawing it: tiles that were joined.
+given: Callable[[str, str], Frame | None] | None = None
+
 
 def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
     """Render one view layer. Raises ValueError or RuntimeError with a sentence for the user."""
+    if given is not None:
+        _hand_over_given(engine, depsgraph)
+        return
     settings = final_settings(depsgraph.view_layer, depsgraph.scene, outputs_of(depsgraph.view_layer))
     engine.update_stats("", "Reading surfels")
     resources = _acquire_resources()
@@ -33,12 +43,26 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
             engine.active_view_set(view)
             frame, notes = _picture(engine, depsgraph, resources, settings, (number, len(views)))
             _tell(engine, frame, notes, resources)
+            if kept is not None:
+                kept(depsgraph.view_layer.name, view, frame)
             hand_over(engine, depsgraph.view_layer, view, frame)
     except RenderCancelled:
         is_cancelled = True
     finally:
         if (is_cancelled or _is_last_of_render(engine, depsgraph)) and not depsgraph.scene.render.use_persistent_data:
             _release_resources()
+
+
+def _hand_over_given(engine, depsgraph) -> None:
+    """Raises ValueError where what was drawn is not what the view layer asks for."""
+    layer = depsgraph.view_layer
+    for view in [view.name for view in engine.get_result().views]:
+        frame = given(layer.name, view)
+        absent = [name for name in outputs_of(layer) if frame is None or getattr(frame, name) is None]
+        if absent:
+            raise ValueError(f"The tiles have no {absent[0]} of the view layer {layer.name!r}; draw them again.")
+        engine.active_view_set(view)
+        hand_over(engine, layer, view, frame)
 
 
 def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int, int]) -> tuple[Frame, Notes]:
@@ -58,7 +82,11 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
 
     with moving_time(engine, depsgraph) as go:
         frame = resources.renderer.render_moments(
-            moments(go), max(len(times), 1), settings, progress=lambda *step: _progress(engine, turn, *step)
+            moments(go),
+            max(len(times), 1),
+            settings,
+            progress=lambda *step: _progress(engine, turn, *step),
+            part=rendered_part(scene.render),
         )
     camera_object = engine.camera_override or scene.camera
     for sentence in depth_of_field_notes(camera_object, settings.samples):

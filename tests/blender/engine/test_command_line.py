@@ -108,3 +108,15 @@ def test_surfels_that_lost_an_attribute_end_it_with_exit_code_1(render_file, sce
     result = render_file("-f", "1")
     assert result.returncode == 1 and "surfels is left out: The surfel mesh" in result.stdout
     assert not list(tmp_path.glob("frame_*"))
+
+
+def test_the_surfels_command_tells_by_its_exit_code(user_folder, scene, surfels, add_camera, tmp_path, read_picture):
+    add_camera()
+    path = tmp_path / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    drawn = blender(user_folder, path, "--command", "surfels", "render", "--frames", "1-2", "--out", "//frame_")
+    assert drawn.returncode == 0 and f"wrote {tmp_path / 'frame_0002.exr'}" in drawn.stdout, drawn.stdout
+    assert tuple(read_picture(tmp_path / "frame_0001.exr")[16, 16]) == (1, 1, 1, 1)
+    missing = blender(user_folder, path, "--command", "surfels", "merge", "--frames", "1-3", "--out", "//frame_")
+    assert missing.returncode == 1 and "1 of 3 frames are missing: 3" in missing.stdout
+    assert blender(user_folder, "--command", "surfels", "render", "--nonsense").returncode == 2

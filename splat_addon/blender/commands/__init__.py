@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`blender FILE.blend --command surfels convert|render|merge|info`: for farms, pipelines and scripts.
+
+Each command may be stopped at any moment and given again: what is there stays, what is missing is made, and a file
+has its name only when it is whole. Exit codes: 0 done, 1 failed, after one sentence, 2 wrong arguments.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+import bpy
+
+from ..engine.final_render import sentence_of
+from . import convert, info, merge, render
+
+NAME = "surfels"
+
+_COMMANDS = {"convert": convert, "render": render, "merge": merge, "info": info}
+
+
+def run(arguments: list[str]) -> int:
+    """The exit code of the command line after the name."""
+    try:
+        options = _parser().parse_args(arguments)
+    except SystemExit as leaving:  # argparse leaves after --help and after wrong arguments
+        return int(leaving.code or 0)
+    try:
+        for path in _COMMANDS[options.command].run(options):
+            print(f"wrote {path}", flush=True)
+    except Exception as error:
+        sentence = f"{error.filename}: {error.strerror}." if isinstance(error, OSError) else sentence_of(error)
+        print(f"surfels {options.command}: error: {sentence.strip()}", file=sys.stderr, flush=True)
+        return 1
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=f"blender FILE.blend --command {NAME}",
+        description="Surfels without a window. Exit codes: 0 done, 1 failed, 2 wrong arguments.",
+    )
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, module in _COMMANDS.items():
+        module.add_arguments(commands.add_parser(name, help=module.HELP, description=module.DESCRIPTION))
+    return parser
+
+
+_handle = None
+
+
+def register():
+    global _handle
+    _handle = bpy.utils.register_cli_command(NAME, run)
+
+
+def unregister():
+    bpy.utils.unregister_cli_command(_handle)

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`surfels convert`: objects of the file become surfels, in a new file."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+import bpy
+
+from ..conversion.batch import ConversionBatch
+from ..conversion.mesh_settings import DENSITIES, choices
+from ..geometry.sources import has_surfaces
+from ..ids import CONVERSION_SETTINGS
+from ..mesh_sampling_settings import leave_to_surfels
+from .whole_results import unfinished
+
+HELP = "make surfels of objects, in a new file"
+DESCRIPTION = (
+    "Converts objects with the settings of the file's sidebar, or those that are given here, and saves the result as a "
+    "new file. The sources are left out of its renders."
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--out", required=True, help="the new .blend")
+    parser.add_argument("--objects", nargs="+", help="names; without them everything visible that has surfaces")
+    parser.add_argument("--again", action="store_true", help="convert even where the file is there already")
+    density = parser.add_mutually_exclusive_group()
+    for name, kind in (("resolution", int), ("spacing", float), ("count", int)):
+        density.add_argument(f"--{name}", type=kind, help=DENSITIES[name.upper()].description)
+
+
+def run(options: argparse.Namespace) -> Iterator[Path]:
+    """Yields the file. Raises ValueError or OSError; nothing is saved where one object cannot be converted."""
+    out = Path(options.out).absolute()
+    if out.suffix != ".blend":
+        raise ValueError(f"The result is a .blend, not {out.name!r}.")
+    if out.is_file() and not options.again:
+        print(f"there already: {out}", flush=True)
+        return
+    settings = settings_of(options)
+    batch = ConversionBatch(sources_of(options.objects), choices(settings), bpy.context.active_object)
+    for conversion in batch.prepared(bpy.context):
+        batch.sample(conversion)
+    place(batch)
+    save(out)
+    yield out
+
+
+def settings_of(options: argparse.Namespace):
+    """The file's own, with what is asked for here."""
+    settings = getattr(bpy.context.scene, CONVERSION_SETTINGS)
+    for name in ("resolution", "spacing", "count"):
+        if getattr(options, name) is not None:
+            settings.density = name.upper()
+            setattr(settings, name, getattr(options, name))
+    return settings
+
+
+def sources_of(names: list[str] | None) -> list[bpy.types.Object]:
+    """Raises ValueError for a name that is not there, or has no surface."""
+    if not names:
+        found = [each for each in bpy.context.visible_objects if has_surfaces(each)]
+        if not found:
+            raise ValueError("Nothing visible has surfaces to convert; name objects with --objects.")
+        return found
+    missing = [name for name in names if name not in bpy.context.scene.objects]
+    if missing:
+        raise ValueError(f"The scene has no object {missing[0]!r}.")
+    found = [bpy.context.scene.objects[name] for name in names]
+    if bare := [each.name for each in found if not has_surfaces(each)]:
+        raise ValueError(f"The object {bare[0]!r} has no surface to convert, or is surfels already.")
+    return found
+
+
+def place(batch: ConversionBatch) -> None:
+    """The surfel objects, with their sources out of the way. Raises ValueError where something was refused."""
+    if batch.refused:
+        raise ValueError("; ".join(f"{name}: {sentence}" for name, sentence in batch.refused))
+    for conversion, _ in batch.place_all(bpy.context):
+        print(f"{conversion.name}: {conversion.summary()}", flush=True)
+        for note in conversion.notes:
+            print(f"{conversion.name}: {note}", flush=True)
+        for source in conversion.sources:
+            leave_to_surfels(source)
+            source.hide_render = True
+
+
+def save(out: Path) -> None:
+    """Save the file under a new name."""
+    with unfinished(out) as folder:
+        bpy.ops.wm.save_as_mainfile(filepath=str(folder / out.name), copy=True, check_existing=False)

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`surfels info`: what a file holds, for people, or as JSON for programs."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import bpy
+
+from ..export.camera import picture_size
+from ..geometry.attributes import has_surfels
+from ..geometry.sources import has_surfaces
+from ..ids import ENGINE
+
+HELP = "tell what the file holds"
+DESCRIPTION = "Tells what the file holds: its engine, frames, size, surfel objects, and what could be converted."
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="one line of JSON for programs")
+
+
+def run(options: argparse.Namespace) -> Iterator[Path]:
+    """Writes no file."""
+    facts = _facts(bpy.context.scene)
+    if options.json:
+        print(json.dumps(facts), flush=True)
+    else:
+        for name, value in facts.items():
+            shown = ", ".join(map(str, value)) if isinstance(value, list) else value
+            print(f"{name.replace('_', ' ')}: {shown}", flush=True)
+    return iter(())
+
+
+def _facts(scene: bpy.types.Scene) -> dict:
+    objects = [each for each in scene.objects if each.type == "MESH" and has_surfels(each.data)]
+    return {
+        "blender": bpy.app.version_string,
+        "file": bpy.data.filepath,
+        "scene": scene.name,
+        "engine": scene.render.engine,
+        "is_surfel_engine": scene.render.engine == ENGINE,
+        "camera": scene.camera.name if scene.camera else "",
+        "frames": f"{scene.frame_start}-{scene.frame_end}:{scene.frame_step}",
+        "size": "{} x {}".format(*picture_size(scene.render)),
+        "output": scene.render.filepath,
+        "surfel_objects": [each.name for each in objects],
+        "surfels": sum(len(each.data.vertices) for each in objects),
+        "convertible": [each.name for each in scene.objects if has_surfaces(each)],
+    }

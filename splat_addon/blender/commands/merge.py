@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`surfels merge`: what several workers made becomes the result, or it is said what is missing."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+import bpy
+
+from ...rendering.frame_parts import joined_parts
+from ..engine import final_render
+from ..export.camera import picture_size
+from .pictures import (
+    add_picture_arguments,
+    files_of,
+    frames_of,
+    is_there,
+    picture_file,
+    prepare_scene,
+    tile_file,
+    tile_place,
+)
+from .render import write_picture
+from .whole_results import remove_leftovers
+
+HELP = "put tiles or blocks together; or see that all frames are there"
+DESCRIPTION = (
+    "With --tiles, puts the tiles of each frame together, lets the compositor and the file format have the whole "
+    "picture, and removes the tiles. Without, sees that all frames are there, names those that are not, and removes "
+    "what killed workers left."
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_picture_arguments(parser)
+
+
+def run(options: argparse.Namespace) -> Iterator[Path]:
+    """Yields the files as they are written. Raises ValueError, RuntimeError or OSError."""
+    scene, frames = prepare_scene(options.out), frames_of(options)
+    if options.tiles:
+        yield from _tiles(scene, frames, options.tiles)
+    for frame in frames:
+        remove_leftovers(picture_file(scene, frame))
+    if missing := [frame for frame in frames if not is_there(scene, frame)]:
+        raise ValueError(f"{len(missing):,} of {len(frames):,} frames are missing: {_shortened(missing)}; render them.")
+    if not options.tiles:
+        print(f"{len(frames):,} frames are there", flush=True)
+
+
+def _tiles(scene: bpy.types.Scene, frames: list[int], tiles: tuple[int, int]) -> Iterator[Path]:
+    for frame in frames:
+        parts = list(_tile_files(scene, frame, tiles))
+        if is_there(scene, frame):
+            print(f"there already: {picture_file(scene, frame)}", flush=True)
+        else:
+            if missing := [part for part in parts if not part.is_file()]:
+                raise ValueError(f"{len(missing)} of {len(parts)} tiles are missing, first {missing[0]}; render them.")
+            _merge(scene, frame, parts)
+            yield from files_of(scene, frame)
+        for part in parts:
+            part.unlink(missing_ok=True)
+            remove_leftovers(part)
+
+
+def _tile_files(scene: bpy.types.Scene, frame: int, tiles: tuple[int, int]) -> Iterator[Path]:
+    columns, rows = tiles
+    for row in range(1, rows + 1):
+        for column in range(1, columns + 1):
+            tile_place(scene, (column, row), tiles)
+            yield tile_file(picture_file(scene, frame), (column, row), tiles)
+
+
+def _merge(scene: bpy.types.Scene, frame: int, parts: list[Path]) -> None:
+    wholes = joined_parts(parts, picture_size(scene.render), frame)
+    final_render.given = lambda layer, view: wholes.pop((layer, view), None)
+    try:
+        write_picture(scene, frame)
+    finally:
+        final_render.given = None
+
+
+def _shortened(frames: list[int]) -> str:
+    return ", ".join(map(str, frames[:10])) + (" ..." if len(frames) > 10 else "")

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What commands about frames have in common: which frames, which tiles, and where their files lie."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import bpy
+
+from ..export.camera import picture_size, rendered_part
+from ..ids import ENGINE
+from ..operators.file_paths import absolute
+
+#: A to B in steps of C, as Blender writes it (1..9), as farms do (1-9), and as Open Job Description does (1-9:2).
+_RANGE = re.compile(r"(-?\d+)(?:(?:-|\.\.)(-?\d+)(?::(\d+))?)?")
+
+
+def frame_list(text: str) -> list[int]:
+    """ "1-3,7..9,20-30:5" -> the frames, in that order, each once."""
+    frames: dict[int, None] = {}
+    for part in text.split(","):
+        match = _RANGE.fullmatch(part.strip())
+        if not match:
+            raise argparse.ArgumentTypeError(f"frames are like 1-10,15,20..30, not {text!r}")
+        first, last, step = match.groups()
+        frames |= dict.fromkeys(range(int(first), int(last or first) + 1, int(step or 1) or 1))
+    if not frames:
+        raise argparse.ArgumentTypeError(f"{text!r} names no frame")
+    return list(frames)
+
+
+def pair(text: str) -> tuple[int, int]:
+    """ "4x3" or "4,3" -> (4, 3)."""
+    match = re.fullmatch(r"([1-9]\d{0,3})[x,]([1-9]\d{0,3})", text)
+    if not match:
+        raise argparse.ArgumentTypeError(f"columns and rows are like 4x4, not {text!r}")
+    return int(match[1]), int(match[2])
+
+
+def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--frames", type=frame_list, help="like 1-10,15,20..30; without it the scene's current frame")
+    parser.add_argument("--first", type=int, help="the first frame of a chunk, with --count")
+    parser.add_argument("--count", type=int, help="how many frames the chunk has")
+    parser.add_argument("--last", type=int, help="no frame of the chunk lies after this one")
+    parser.add_argument("--out", help="path of the pictures, with # where the number goes; without it the scene's own")
+    parser.add_argument("--tiles", type=pair, help="columns and rows of each frame's tiles, like 4x4")
+
+
+def frames_of(options: argparse.Namespace) -> list[int]:
+    """Raises ValueError where it is not clear which are meant."""
+    if options.first is None:
+        return options.frames or [bpy.context.scene.frame_current]
+    if options.frames or not (options.count and options.count > 0):
+        raise ValueError("A chunk needs --first and --count above 0, and no --frames.")
+    last = options.first + options.count - 1
+    last = last if options.last is None else min(last, options.last)
+    if last < options.first:
+        raise ValueError(f"The chunk begins at {options.first}, after the last frame, {options.last}.")
+    return list(range(options.first, last + 1))
+
+
+def prepare_scene(out: str | None) -> bpy.types.Scene:
+    """The scene of the file, for this engine. Raises ValueError for a file without a path, and for a film."""
+    scene = bpy.context.scene
+    scene.render.engine = ENGINE
+    if out:
+        scene.render.filepath = out if out.startswith("//") else str(Path(out).absolute())
+    scene.render.filepath = absolute(scene.render.filepath)
+    if scene.render.is_movie_format:
+        raise ValueError("A film cannot be written by several machines; choose a format of single pictures.")
+    return scene
+
+
+def files_of(scene: bpy.types.Scene, frame: int) -> list[Path]:
+    """Of the picture: one, or one for each view. The first has no view's name, or none of the others'."""
+    render = scene.render
+    views = [view.name for view in render.views if view.use] if render.use_multiview else []
+    if render.image_settings.views_format != "INDIVIDUAL":
+        views = []
+    return [Path(render.frame_path(frame=frame, view=view)) for view in views or [""]]
+
+
+def picture_file(scene: bpy.types.Scene, frame: int) -> Path:
+    """What Blender is told to write, to whose name it adds those of views."""
+    return Path(scene.render.frame_path(frame=frame))
+
+
+def is_there(scene: bpy.types.Scene, frame: int) -> bool:
+    return all(file.is_file() for file in files_of(scene, frame))
+
+
+def tile_file(picture: Path, tile: tuple[int, int], tiles: tuple[int, int]) -> Path:
+    """tile: column and row, from 1, from the bottom left."""
+    (column, row), (columns, rows) = tile, tiles
+    return picture.with_name(f"{picture.name}.tile-{column}-{row}-of-{columns}x{rows}.npz")
+
+
+def tile_place(scene: bpy.types.Scene, tile: tuple[int, int], tiles: tuple[int, int]) -> tuple[int, int, int, int]:
+    """x, y, width, height in pixels: half-open parts of the whole frame. Raises ValueError for a tile of no pixel."""
+    if scene.render.use_border:
+        raise ValueError("The scene has a render border, which tiles take the place of; switch it off.")
+    ends = []
+    for size, number, count in zip(picture_size(scene.render), tile, tiles, strict=True):
+        if not 1 <= number <= count:
+            raise ValueError(f"There is no tile {tile[0]},{tile[1]} among {tiles[0]} x {tiles[1]}.")
+        ends.append((size * (number - 1) // count, size * number // count))
+    (left, right), (bottom, top) = ends
+    if left == right or bottom == top:
+        raise ValueError(f"{tiles[0]} x {tiles[1]} tiles are more than the picture has pixels; use fewer.")
+    return left, bottom, right - left, top - bottom
+
+
+@contextmanager
+def look_through(scene: bpy.types.Scene, place: tuple[int, int, int, int]) -> Iterator[None]:
+    """Let Blender render that part of the picture alone, as it is drawn: no compositor, no sequencer."""
+    render = scene.render
+    (width, height), (x, y, across, up) = picture_size(render), place
+    before = {name: getattr(render, name) for name in _OF_A_TILE}
+    # in the middle of a pixel, so that Blender's float32 is cut off to that pixel
+    render.border_min_x = (x + 0.5) / width if x else 0.0
+    render.border_min_y = (y + 0.5) / height if y else 0.0
+    render.border_max_x = (x + across + 0.5) / width if x + across < width else 1.0
+    render.border_max_y = (y + up + 0.5) / height if y + up < height else 1.0
+    render.use_border = render.use_crop_to_border = True
+    render.use_compositing = render.use_sequencer = False
+    try:
+        if rendered_part(render) != tuple(place):
+            raise RuntimeError(f"Blender's border cannot be {place}, but {rendered_part(render)}.")
+        yield
+    finally:
+        for name, value in before.items():
+            setattr(render, name, value)
+
+
+#: What is another thing while a tile is drawn.
+_OF_A_TILE = ("use_border", "use_crop_to_border", "use_compositing", "use_sequencer")

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`surfels render`: frames, or one tile of each, that are not there yet."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+import bpy
+
+from ...rendering import Frame
+from ...rendering.frame_parts import Part, write_part
+from ..engine import final_render
+from ..export.camera import picture_size
+from .pictures import (
+    add_picture_arguments,
+    files_of,
+    frames_of,
+    is_there,
+    look_through,
+    pair,
+    picture_file,
+    prepare_scene,
+    tile_file,
+    tile_place,
+)
+from .whole_results import unfinished
+
+HELP = "draw frames, or a tile of each"
+DESCRIPTION = (
+    "Draws the frames whose pictures are not there yet, with this engine. With --tile, draws that tile alone and "
+    "leaves it beside the picture's place for `merge`."
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_picture_arguments(parser)
+    parser.add_argument(
+        "--tile", type=pair, help="column and row of the tile, from 1,1 at the bottom left; with --tiles"
+    )
+    parser.add_argument("--again", action="store_true", help="draw what is there already too")
+
+
+def run(options: argparse.Namespace) -> Iterator[Path]:
+    """Yields the files as they are written. Raises ValueError, RuntimeError or OSError."""
+    if bool(options.tile) != bool(options.tiles):
+        raise ValueError("A tile needs both --tile and --tiles.")
+    scene, frames = prepare_scene(options.out), frames_of(options)
+    return _tiles(scene, frames, options) if options.tile else _frames(scene, frames, options.again)
+
+
+def _frames(scene: bpy.types.Scene, frames: list[int], again: bool) -> Iterator[Path]:
+    missing = [frame for frame in frames if again or not is_there(scene, frame)]
+    for frame in frames:
+        if frame not in missing:
+            print(f"there already: {', '.join(map(str, files_of(scene, frame)))}", flush=True)
+            continue
+        # What lies on the device serves the next frame; the last lets it go, for it must not be left to Blender's end.
+        scene.render.use_persistent_data = frame != missing[-1]
+        write_picture(scene, frame)
+        yield from files_of(scene, frame)
+
+
+def write_picture(scene: bpy.types.Scene, frame: int) -> None:
+    """The frame's files, all whole or none. Raises RuntimeError with Blender's words."""
+    place, pattern = picture_file(scene, frame), scene.render.filepath
+    scene.frame_set(frame)
+    try:
+        with unfinished(place) as folder:
+            scene.render.filepath = str(folder / place.name)
+            _render(write_still=True)
+    finally:
+        scene.render.filepath = pattern
+
+
+def _tiles(scene: bpy.types.Scene, frames: list[int], options: argparse.Namespace) -> Iterator[Path]:
+    place = tile_place(scene, options.tile, options.tiles)
+    for frame in frames:
+        file = tile_file(picture_file(scene, frame), options.tile, options.tiles)
+        if not options.again and (file.is_file() or is_there(scene, frame)):
+            print(f"there already: {file if file.is_file() else picture_file(scene, frame)}", flush=True)
+            continue
+        scene.frame_set(frame)
+        with look_through(scene, place):
+            drawn = _drawn()
+        with unfinished(file) as folder:
+            write_part(folder / file.name, Part(picture_size(scene.render), place, frame), drawn)
+        yield file
+
+
+def _drawn() -> dict[tuple[str, str], Frame]:
+    """What the engine draws now, by the names of view layer and view."""
+    drawn = {}
+    final_render.kept = lambda layer, view, frame: drawn.update({(layer, view): frame})
+    try:
+        _render()
+    finally:
+        final_render.kept = None
+    return drawn
+
+
+def _render(**options) -> None:
+    """Raises RuntimeError with Blender's words, without the word that it puts before them."""
+    try:
+        bpy.ops.render.render(**options)
+    except RuntimeError as error:
+        raise RuntimeError(str(error).removeprefix("Error: ").strip()) from error

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parts of one picture that several machines drew: each is a file of its exact numbers, and all become one `Frame`.
+
+A file is numpy's .npz: an array for each output of each frame (a picture has several, by view layer and view), and
+`about`, JSON in UTF-8. Nothing in it is run when it is read.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .cryptomatte import Cryptomatte
+from .frame import Frame
+from .settings import OUTPUTS
+
+_VERSION = 1
+
+
+@dataclass(frozen=True)
+class Part:
+    """size: width and height of the whole picture in pixels. place: x, y, width and height of this part of it.
+    number: of the picture among others of its scene, which parts must agree in.
+    """
+
+    size: tuple[int, int]
+    place: tuple[int, int, int, int]
+    number: int
+
+
+def write_part(path: str | os.PathLike, part: Part, frames: dict[tuple[str, str], Frame]) -> None:
+    """frames: by the names of view layer and view. Raises OSError."""
+    arrays, names = {}, []
+    for number, frame in enumerate(frames.values()):
+        names.append({})
+        for output in OUTPUTS:
+            values = getattr(frame, output)
+            if isinstance(values, Cryptomatte):
+                arrays |= {f"{number}.keys": values.keys, f"{number}.shares": values.shares}
+                names[-1] = values.names
+            elif values is not None:
+                arrays[f"{number}.{output}"] = values
+    about = {
+        "version": _VERSION,
+        "size": part.size,
+        "place": part.place,
+        "number": part.number,
+        "frames": list(frames),
+        "names": names,
+    }
+    with open(path, "wb") as stream:
+        np.savez(stream, about=np.frombuffer(json.dumps(about).encode("utf-8"), np.uint8), **arrays)
+
+
+def joined_parts(paths: Iterable[str | os.PathLike], size: tuple[int, int], number: int) -> dict[tuple, Frame]:
+    """The whole picture, by the names of view layer and view.
+
+    size, number: what it must be. Raises ValueError with one sentence for a file that is damaged or of another picture,
+    and where the parts do not cover each pixel once.
+    """
+    covered = np.zeros(size[::-1], np.uint8)
+    wholes: dict[tuple[str, str], dict] = {}
+    for path in paths:
+        try:
+            with np.load(path, allow_pickle=False) as arrays:
+                about = json.loads(bytes(arrays["about"]))
+                _check(path, about, size, number, wholes)
+                x, y, width, height = about["place"]
+                covered[y : y + height, x : x + width] += 1
+                for turn, (name, names) in enumerate(zip(about["frames"], about["names"], strict=True)):
+                    _put(wholes.setdefault(tuple(name), {}), arrays, turn, about["place"], size, names)
+        except (KeyError, OSError, EOFError, TypeError) as error:
+            raise ValueError(f"{path} is no part of a picture: {error}; draw it again.") from error
+    if not (covered == 1).all():
+        missing, twice = np.count_nonzero(covered == 0), np.count_nonzero(covered > 1)
+        raise ValueError(f"The parts leave {missing:,} pixels out and have {twice:,} twice; draw them again.")
+    return {name: Frame(**{output: whole.get(output) for output in OUTPUTS}) for name, whole in wholes.items()}
+
+
+def _check(path, about: dict, size, number: int, wholes: dict) -> None:
+    if about["version"] != _VERSION:
+        raise ValueError(f"{path} has version {about['version']}, not {_VERSION}; draw it with this extension.")
+    if (tuple(about["size"]), about["number"]) != (tuple(size), number):
+        (width, height), (own_width, own_height) = size, about["size"]
+        raise ValueError(
+            f"{path} is a part of picture {about['number']} of {own_width} x {own_height} pixels, not of {number} of "
+            f"{width} x {height}; draw it again."
+        )
+    if wholes and [tuple(name) for name in about["frames"]] != list(wholes):
+        raise ValueError(f"{path} has other view layers or views than the parts before it; draw it again.")
+
+
+def _put(whole: dict, arrays, turn: int, place, size: tuple[int, int], names: dict[str, int]) -> None:
+    """Copies the part's arrays to their place in those of the whole."""
+    x, y, width, height = place
+    for output in OUTPUTS:
+        if f"{turn}.{output}" in arrays:
+            values = arrays[f"{turn}.{output}"]
+            if output not in whole:
+                whole[output] = np.zeros((*size[::-1], *values.shape[2:]), np.float32)
+            whole[output][y : y + height, x : x + width] = values
+    if f"{turn}.keys" in arrays:
+        matte = Cryptomatte((width, height), arrays[f"{turn}.keys"], arrays[f"{turn}.shares"], names)
+        row, column = np.divmod(np.arange(width * height), width)
+        moved = matte.looked_up(size, (row + y) * size[0] + column + x, row * width + column)
+        whole["cryptomatte"] = whole["cryptomatte"].plus(moved) if "cryptomatte" in whole else moved

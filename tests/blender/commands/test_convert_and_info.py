@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`surfels convert` saves a file of surfels or nothing; `surfels info` tells what a file holds."""
+
+import json
+
+import bpy
+
+
+def test_converted_objects_are_in_a_new_file(animation, surfels_command, tmp_path):
+    code, said = surfels_command("convert", "--objects", "floor", "--resolution", 10, "--out", tmp_path / "out.blend")
+    assert code == 0 and f"wrote {tmp_path / 'out.blend'}" in said
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "out.blend"))
+    assert len(bpy.data.objects["floor surfels"].data.vertices) == 100
+    assert bpy.data.objects["floor"].hide_render
+    assert "there already" in surfels_command("convert", "--out", tmp_path / "out.blend")[1]
+
+
+def test_a_name_that_is_not_there_saves_nothing(animation, surfels_command, tmp_path):
+    code, said = surfels_command("convert", "--objects", "floor", "walls", "--out", tmp_path / "out.blend")
+    assert code == 1 and "no object 'walls'" in said
+    assert [path.name for path in tmp_path.iterdir()] == ["anim.blend"]
+
+
+def test_a_density_that_cannot_be_met_saves_nothing(animation, surfels_command, tmp_path):
+    code, said = surfels_command("convert", "--objects", "floor", "--spacing", 1e-9, "--out", tmp_path / "out.blend")
+    assert code == 1 and "floor: " in said
+    assert [path.name for path in tmp_path.iterdir()] == ["anim.blend"]
+
+
+def test_a_file_is_told_of(animation, surfels_command):
+    code, said = surfels_command("info", "--json")
+    facts = json.loads(said)
+    assert code == 0 and facts["frames"] == "1-4:1" and facts["size"] == "48 x 32" and facts["surfels"] > 1000
+    assert "floor" in facts["convertible"] and facts["surfel_objects"] == ["Sphere surfels"]
+    assert "surfel objects: Sphere surfels" in surfels_command("info")[1]

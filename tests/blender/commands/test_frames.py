@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`surfels render` and `surfels merge` of frames: the pictures of an animation, whole or not there."""
+
+import argparse
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender.commands import pictures, render
+
+
+def test_chunks_give_the_pictures_of_an_animation_bit_by_bit(animation, surfels_command, pixels, tmp_path):
+    for chunk in (("--frames", "3-4"), ("--first", 1, "--count", 2, "--last", 4)):
+        code, said = surfels_command("render", *chunk)
+        assert code == 0 and f"wrote {tmp_path / 'frame_000'}" in said
+    in_chunks = [pixels(tmp_path / f"frame_000{frame}.exr") for frame in range(1, 5)]
+    animation.render.filepath = str(tmp_path / "whole_")
+    bpy.ops.render.render(animation=True)
+    for frame, picture in enumerate(in_chunks, 1):
+        assert picture.any() and np.array_equal(picture, pixels(tmp_path / f"whole_000{frame}.exr"))
+    assert not np.array_equal(in_chunks[0], in_chunks[3])
+    assert surfels_command("merge", "--frames", "1-4", "--out", "//frame_")[0] == 0
+
+
+def test_what_is_there_stays(animation, surfels_command, tmp_path):
+    (tmp_path / "frame_0002.exr").write_bytes(b"kept")
+    code, said = surfels_command("render", "--frames", "2")
+    assert (code, (tmp_path / "frame_0002.exr").read_bytes()) == (0, b"kept") and "there already" in said
+    assert surfels_command("render", "--frames", "2", "--again")[0] == 0
+    assert (tmp_path / "frame_0002.exr").read_bytes() != b"kept"
+
+
+def test_a_frame_that_fails_leaves_nothing_and_says_why(animation, surfels_command, tmp_path):
+    animation.camera = None
+    code, said = surfels_command("render", "--frames", "1-2")
+    assert code == 1 and "no camera" in said
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["anim.blend"]
+
+
+def test_missing_frames_are_named_and_leftovers_go(animation, surfels_command, tmp_path):
+    leftover = tmp_path / ".frame_0001.exr.unfinished-killed"
+    leftover.mkdir()
+    (leftover / "frame_0001.exr").write_bytes(b"half")
+    code, said = surfels_command("merge", "--frames", "1-4")
+    assert code == 1 and "4 of 4 frames are missing: 1, 2, 3, 4" in said and not leftover.exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "frames"), [("1-3,7..8", [1, 2, 3, 7, 8]), ("-2--1,5", [-2, -1, 5]), ("1-7:3,4", [1, 4, 7])]
+)
+def test_frames_are_written_as_farms_write_them(text, frames):
+    assert pictures.frame_list(text) == frames
+
+
+@pytest.mark.parametrize("text", ["", "1-", "a", "5-1", "1;2"])
+def test_other_lists_of_frames_are_refused(text):
+    with pytest.raises(argparse.ArgumentTypeError):
+        pictures.frame_list(text)
+
+
+def test_a_film_is_refused(animation, surfels_command):
+    if hasattr(animation.render.image_settings, "media_type"):
+        animation.render.image_settings.media_type = "VIDEO"
+    animation.render.image_settings.file_format = "FFMPEG"
+    code, said = surfels_command("render", "--frames", "1")
+    assert code == 1 and "A film cannot be written by several machines" in said
+
+
+def test_help_and_wrong_arguments_have_their_exit_codes(surfels_command):
+    code, said = surfels_command("--help")
+    assert code == 0 and all(name in said for name in ("convert", "render", "merge", "info"))
+    for name in ("convert", "render", "merge", "info"):
+        assert surfels_command(name, "--help")[0] == 0
+        assert surfels_command(name, "--nonsense")[0] == 2
+    assert render.HELP in said
