@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blocks: runs of neighbours in one level, of which a view draws all or none.
+
+A level's entries are put in the order of their parents, so that what any run of parents stands for is a run again. A
+block's children are therefore whole blocks of the level below, and one comparison decides between it and them (equal
+blocks: Goswami et al. 2012). Boxes, cones and errors of a block hold those of all blocks below it: what a parent's say
+of a view, its children's never contradict.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+#: Entries of a block, at most.
+BLOCK = 32
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """One level above the surfels, of m entries: parents, then what waits for larger cells.
+
+    numbers: (m,) of surfel or node, nodes after the surfels. children: (n,) entries of the level below, one parent's
+    after the other's. counts: (m,) how many each has, 1 for what waits.
+    """
+
+    numbers: np.ndarray
+    children: np.ndarray
+    counts: np.ndarray
+
+
+class Geometry(NamedTuple):
+    """positions, normals: (3, N + M) float32 of surfels and nodes. radii: (N + M,)."""
+
+    positions: np.ndarray
+    normals: np.ndarray
+    radii: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """B blocks, the coarsest level's first.
+
+    first, last: (B,) runs of `Hierarchy.entries`. first_child, last_child: (B,) runs of blocks, empty at the surfels.
+    low, high: (B, 3) float32, boxes of all ellipses from there on down, relative to the surfels' origin.
+    axes, angles: (B, 3), (B,) float32, cones of their planes' normals, radians.
+    errors: (B, 3) float32, the largest of each; 0 at the surfels.
+    roots: how many have no parent.
+    """
+
+    first: np.ndarray
+    last: np.ndarray
+    first_child: np.ndarray
+    last_child: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    axes: np.ndarray
+    angles: np.ndarray
+    errors: np.ndarray
+    roots: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+
+def ranges(starts: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """start, start + 1 .. of each run, one after the other."""
+    ends = np.cumsum(counts)
+    total = int(ends[-1]) if len(ends) else 0
+    return np.arange(total) + np.repeat(starts - (ends - counts), counts)
+
+
+def depth_first(levels: list[Level], surfels: int) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Numbers of each level's entries in the order of their parents, the surfels' first, and how many children each of
+    those above has."""
+    entries, counts = [], []
+    rows = np.arange(len(levels[-1].numbers) if levels else surfels, dtype=np.int32)
+    for level in reversed(levels):
+        entries.append(level.numbers[rows])
+        counts.append(level.counts[rows])
+        rows = level.children[ranges((np.cumsum(level.counts) - level.counts)[rows], counts[-1])]
+    return [*entries, rows][::-1], counts[::-1]
+
+
+def make_blocks(entries: list[np.ndarray], counts: list[np.ndarray], geometry: Geometry, errors: np.ndarray) -> Blocks:
+    """entries, counts: of `depth_first`. errors: (N + M, 3) of surfels and nodes."""
+    offsets = np.cumsum([0, *map(len, entries)])
+    runs = [_split(np.array([0]), np.array([len(entries[-1])]))]
+    families = []
+    for own in counts[::-1]:
+        first, last, _ = runs[-1]
+        ends = np.concatenate([[0], np.cumsum(own)])
+        runs.append(_split(ends[first], ends[last]))
+        families.append(runs[-1][2])
+    families.append(np.zeros(len(runs[-1][0]), int))  # the surfels are the last
+    numbers = np.cumsum([0, *(len(first) for first, _, _ in runs)])
+    below, parts = None, []
+    for k in range(len(runs) - 1, -1, -1):
+        depth = len(runs) - 1 - k
+        first, last, _ = runs[k]
+        has = families[k]
+        child = numbers[k + 1] + np.cumsum(has) - has
+        below = _bounds(entries[depth], first, geometry, errors, below, np.cumsum(has) - has if below else None)
+        parts.append((first + offsets[depth], last + offsets[depth], child, child + has, *below))
+    columns = (np.concatenate(column[::-1]) for column in zip(*parts, strict=True))
+    types = [np.int32] * 4 + [np.float32] * 5
+    arrays = (np.ascontiguousarray(column, kind) for column, kind in zip(columns, types, strict=True))
+    return Blocks(*arrays, roots=np.array(len(runs[0][0])))
+
+
+def _split(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Runs cut into equal ones of at most `BLOCK`: starts, ends, and into how many each was cut."""
+    size = last - first
+    parts = -(-size // BLOCK)
+    owner = np.repeat(np.arange(len(first)), parts)
+    number = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
+    cuts = [first[owner] + size[owner] * (number + k) // parts[owner] for k in (0, 1)]
+    return cuts[0], cuts[1], parts
+
+
+def _bounds(entries, starts, geometry: Geometry, errors, below, children):
+    """low, high, axes, angles and errors of a level's blocks. below: those of the level below, children: where each
+    block's begin among them."""
+    if not len(entries):
+        return np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3))
+    radii = geometry.radii[entries]
+    low, high, dots = [], [], 0.0
+    normals = geometry.normals[:, entries]
+    sums = np.add.reduceat(normals, starts, axis=1)
+    axes = sums / np.maximum(np.linalg.norm(sums, axis=0), 1e-12)
+    owner = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(entries))))
+    for k, column in enumerate(geometry.positions):
+        values = column[entries]
+        low.append(np.minimum.reduceat(values - radii, starts))
+        high.append(np.maximum.reduceat(values + radii, starts))
+        dots = dots + normals[k] * axes[k, owner]
+    low, high, axes = np.stack(low, 1), np.stack(high, 1), axes.T
+    angles = np.arccos(np.clip(np.minimum.reduceat(dots, starts), -1, 1)) + 1e-3
+    largest = np.maximum.reduceat(errors[entries], starts, axis=0)
+    if below is None:
+        return low, high, axes, angles, largest
+    owner = np.repeat(np.arange(len(starts)), np.diff(np.append(children, len(below[0]))))
+    apart = np.arccos(np.clip(np.einsum("nk,nk->n", axes[owner], below[2]), -1, 1)) + below[3]
+    return (
+        np.minimum(low, np.minimum.reduceat(below[0], children, axis=0)),
+        np.maximum(high, np.maximum.reduceat(below[1], children, axis=0)),
+        axes,
+        np.maximum(angles, np.maximum.reduceat(apart, children)),
+        np.maximum(largest, np.maximum.reduceat(below[4], children, axis=0)),
+    )

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Builds a hierarchy: levels from below, each over cells twice as large, then the order and the blocks from above."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..surfels import Surfels, concatenate, empty_surfels
+from .blocks import Blocks, Geometry, Level, depth_first, make_blocks
+from .clusters import clustered
+from .merging import OVERLAP, as_surfels, merged
+from .nodes import PORTION, Table, leaves
+from .runs import Runs
+
+#: Cells of the first level, in the spacing of the surfels: nine become one, so that all levels together are a sixth of
+#: the surfels. At twice the spacing they would be a third.
+FIRST_CELL = 3.0
+
+#: A level of which less than this share merges is left out: a larger cell merges them.
+_LEAST_MERGED = 0.1
+
+#: A surfel waits for cells of which its larger half-axis is at most this many edges.
+_LARGEST = 1.25 * np.sqrt(3)
+
+#: Doublings between the smallest and the largest cell.
+_MOST_LEVELS = 48
+
+
+@dataclass(frozen=True, eq=False)
+class Hierarchy:
+    """Over N surfels, M merged nodes.
+
+    nodes: the merged surfels, in the order in which they were made.
+    errors: (M, 3) float32 bounds of each, object units, none below a child's: off the plane; uncovered or sticking out;
+        what it shows (its size times the change of colour or normal).
+    entries: (E,) int32, of each level in turn, the surfels' first, numbers of surfels and, from N on, of nodes; blocks
+        are runs of it.
+    """
+
+    surfels: int
+    nodes: Surfels
+    errors: np.ndarray
+    entries: np.ndarray
+    blocks: Blocks
+
+    def __len__(self) -> int:
+        return len(self.nodes)
+
+    @cached_property
+    def nbytes(self) -> int:
+        """What it takes beside the surfels."""
+        arrays = (*self.nodes.arrays().values(), self.errors, self.entries, *vars(self.blocks).values())
+        return sum(array.nbytes for array in arrays)
+
+
+def build_hierarchy(surfels: Surfels) -> Hierarchy:
+    """That of any set of surfels; of none, or too few to merge, it has a single level."""
+    nodes, errors, levels, geometry = build_levels(surfels)
+    entries, counts = depth_first(levels, len(surfels))
+    blocks = make_blocks(entries, counts, geometry, np.concatenate([np.zeros((len(surfels), 3), np.float32), errors]))
+    return Hierarchy(len(surfels), nodes, errors, np.concatenate(entries), blocks)
+
+
+def build_levels(surfels: Surfels) -> tuple[Surfels, np.ndarray, list[Level], Geometry]:
+    """Merged nodes, their (M, 3) errors, the levels from below, and where surfels and nodes lie."""
+    current = leaves(surfels)
+    numbers, worst = np.arange(len(surfels), dtype=np.int32), np.zeros((len(surfels), 3), np.float32)
+    made, errors, levels, places = [empty_surfels(surfels.origin)], [worst[:0]], [], [_geometry(current)]
+    total = len(surfels)
+    for cell in _cells(surfels):
+        merging = _merge(current, cell)
+        if merging is None:
+            continue
+        parents, rows, runs, waiting = merging
+        own = _errors(parents)
+        own = np.maximum(own, runs.largest(worst[rows].T).T)
+        fresh = np.arange(total, total + len(parents), dtype=np.int32)
+        total += len(parents)
+        numbers, worst = np.concatenate([fresh, numbers[waiting]]), np.concatenate([own, worst[waiting]])
+        counts = np.concatenate([runs.counts, np.ones(len(waiting), runs.counts.dtype)]).astype(np.int32)
+        levels.append(Level(numbers, np.concatenate([rows, waiting]).astype(np.int32), counts))
+        made.append(as_surfels(parents, surfels))
+        errors.append(own)
+        places.append(_geometry(parents))
+        current = current.joined([parents], waiting)
+    nodes = concatenate(made[1:]) if levels else made[0]
+    geometry = Geometry(*(np.concatenate(parts, axis=-1) for parts in zip(*places, strict=True)))
+    return nodes, np.concatenate(errors), levels, geometry
+
+
+def _cells(surfels: Surfels) -> Iterator[float]:
+    """Edges of the levels' cells, until one holds everything."""
+    if not len(surfels):
+        return
+    low, high = surfels.local_bounds
+    cell = FIRST_CELL * float(np.median(surfels.scales.min(axis=1))) / OVERLAP
+    for _ in range(_MOST_LEVELS):
+        yield cell
+        if cell > 2 * float((high - low).max()):
+            return
+        cell *= 2
+
+
+def _merge(current: Table, cell: float) -> tuple[Table, np.ndarray, Runs, np.ndarray] | None:
+    """Parents, the rows of their children, the runs that these are, and the rows that wait; None if too few merge."""
+    is_large = current.column("radii") > _LARGEST * cell
+    rows = np.flatnonzero(~is_large)
+    if len(rows) < 2:
+        return None
+    order, counts = clustered(current, rows, cell)
+    several = counts > 1
+    is_merged = np.repeat(several, counts)
+    if np.count_nonzero(is_merged) < _LEAST_MERGED * len(current):
+        return None
+    rows = rows[order]
+    waiting = np.concatenate([rows[~is_merged], np.flatnonzero(is_large)])
+    rows, counts = rows[is_merged], counts[several]
+    runs = Runs(np.cumsum(counts) - counts, counts)
+    parts = [Table.of(merged(current.take(rows[some]), part, cell)) for some, part in runs.portions(PORTION)]
+    return current.joined(parts, waiting[:0]), rows, runs, waiting
+
+
+def _errors(nodes: Table) -> np.ndarray:
+    """(m, 3) float32: see `Hierarchy`."""
+    extent = np.maximum(nodes.column("uncovered"), nodes.column("overhang"))
+    shown = nodes.column("radii") * np.minimum(nodes.column("spread"), 1)
+    return np.stack([nodes.column("off"), extent, shown], axis=1)
+
+
+def _geometry(nodes: Table) -> Geometry:
+    return Geometry(*(nodes.column(name) for name in ("positions", "normals", "radii")))

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The cut through a hierarchy that a view draws: blocks whose error is within a tolerance of pixels, and whose parents'
+is not, without those that lie beside the picture or show their backs alone.
+
+A block is compared by its largest error and its nearest depth, both of which hold all blocks under it: a block that is
+fine enough has no child that is not, so that every place is drawn once, at one level (Dachsbacher et al. 2003).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .blocks import Blocks, ranges
+from .building import Hierarchy
+
+
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """A view of one object, in the object's space, relative to the surfels' origin.
+
+    planes: (k, 4): n . p + d >= 0 inside of the picture. depth: (4,), n . p + d is the distance along the view, in the
+    world. pixels: how many an object unit is at most, at distance 1 of a perspective or anywhere of a parallel view.
+    near: the least distance that counts, world units. eye: (4,) homogeneous, w = 0 for the direction towards a parallel
+    view's. hides_backs: nobody sees a back. tolerance: in pixels; at 0 the surfels themselves.
+    """
+
+    planes: np.ndarray
+    depth: np.ndarray
+    pixels: float
+    near: float
+    eye: np.ndarray
+    hides_backs: bool
+    tolerance: float
+
+    @property
+    def is_parallel(self) -> bool:
+        return self.eye[3] == 0
+
+
+def cut_entries(hierarchy: Hierarchy, sight: Sight) -> np.ndarray | None:
+    """(n,) int32 numbers of the surfels and nodes to draw, neighbours together; None: all surfels, in any order."""
+    blocks = hierarchy.blocks
+    drawn = _cut(blocks, sight)
+    first, last = blocks.first[drawn], blocks.last[drawn]
+    if (last <= hierarchy.surfels).all() and int((last - first).sum()) == hierarchy.surfels:
+        return None
+    return hierarchy.entries[ranges(first, last - first)]
+
+
+def _cut(blocks: Blocks, sight: Sight) -> np.ndarray:
+    """The blocks that are drawn."""
+    front, drawn = np.arange(int(blocks.roots)), []
+    while len(front):
+        front = front[_may_be_seen(blocks, front, sight)]
+        is_fine = _pixels(blocks, front, sight) <= sight.tolerance
+        is_fine |= blocks.first_child[front] == blocks.last_child[front]
+        drawn.append(front[is_fine])
+        coarse = front[~is_fine]
+        front = ranges(blocks.first_child[coarse], blocks.last_child[coarse] - blocks.first_child[coarse])
+    return np.concatenate(drawn) if drawn else np.zeros(0, int)
+
+
+def _middle_half(blocks: Blocks, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    low, high = blocks.low[rows].astype(np.float64), blocks.high[rows].astype(np.float64)
+    return (low + high) / 2, (high - low) / 2
+
+
+def _pixels(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
+    """(n,) the largest error of each block in pixels, seen from its nearest place."""
+    error = blocks.errors[rows].max(axis=1, initial=0.0) * sight.pixels
+    if sight.is_parallel:
+        return error
+    middle, half = _middle_half(blocks, rows)
+    nearest = middle @ sight.depth[:3] + sight.depth[3] - half @ np.abs(sight.depth[:3])
+    return error / np.maximum(nearest, sight.near)
+
+
+def _may_be_seen(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
+    """(n,) bool: whether the box touches the view's volume, and the cone of normals some direction to the eye."""
+    middle, half = _middle_half(blocks, rows)
+    seen = (middle @ sight.planes[:, :3].T + sight.planes[:, 3] + half @ np.abs(sight.planes[:, :3]).T >= 0).all(axis=1)
+    if sight.hides_backs:
+        away = -np.broadcast_to(sight.eye[:3], middle.shape) if sight.is_parallel else middle - sight.eye[:3]
+        distance = np.maximum(np.linalg.norm(away, axis=1), 1e-300)
+        radius = 0.0 if sight.is_parallel else np.linalg.norm(half, axis=1)
+        angle = np.arccos(np.clip(np.einsum("nk,nk->n", away, blocks.axes[rows]) / distance, -1, 1))
+        # from every place of the box every normal of the cone points away
+        angle = angle + blocks.angles[rows]
+        seen &= ~((angle < np.pi / 2) & (distance * np.cos(angle) > radius))
+    return seen

@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One surfel in place of several: where it lies, its ellipse, and what it shows.
+
+The position is the centroid by area, the normal the mean, and the ellipse has the second moments of its children's.
+They overlap as samples of a grid do, by `OVERLAP` of what their own cell would need, and so does it. Colours are means
+in linear light, weighted by what hides the light behind: what is let through is a mean too. What the mean shading
+normal has lost in length is roughness (Toksvig, "Mipmapping Normal Maps", 2005) where surfels have their own; where
+they have not, a pixel that shows many of them has the mean of their normals too, and there is nothing to make up for.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..surfels import Surfels, axes_quaternions
+from .bounds import Frame, bounds
+from .nodes import MEANS, Nodes, Table
+from .runs import Runs
+from .texture_places import along_axes, merged_places
+
+#: Half-axis of the splat of a square cell, in its edge: as conversion lays them.
+OVERLAP = 1.25
+#: Square of a half-axis per variance of position: a cell's is 1 / 12 of its edge's square.
+_PER_VARIANCE = np.float32(12 * OVERLAP**2)
+#: Of a child's half-axes: the ellipse around its own cell, which the parent's must cover.
+_CORE = np.float32(np.sqrt(0.5) / OVERLAP)
+#: More than this it is not widened to do so.
+_MOST_WIDENED = np.float32(1.5)
+#: Of the longer half-axis, the shorter one at least.
+_NARROWEST = np.float32(0.02)
+#: As `sampling.blending` has it for single samples.
+_LEAST_BLENDING = 0.05
+
+
+def merged(children: Nodes, runs: Runs, cell: float) -> Nodes:
+    """The parents of runs of children."""
+    areas = runs.sum(children["areas"])
+    shares = children["areas"] / areas[runs.owner]
+    centre = runs.sum(children["positions"] * shares)
+    offsets = children["positions"] - centre[:, runs.owner]
+    normal = _unit(runs.sum(children["normals"] * shares))
+    frame = _ellipse(children, runs, shares, offsets, normal)
+    shading = runs.sum(children["shading"] * shares)
+    length = np.sqrt(np.einsum("kn,kn->n", shading, shading))
+    shading = np.where(length > 1e-3, shading / np.maximum(length, 1e-12), normal)
+    colors = _colors(children, runs, shares)
+    values = {name: runs.sum(children[name] * shares) for name in MEANS if name in children}
+    if "roughness" in children:
+        values["roughness"] = _roughness(children["roughness"], runs, shares, length)
+    if "uv" in children:
+        values["uv"] = merged_places(children["uv"], shares, offsets, runs, cell)
+    return Nodes(
+        {
+            "positions": centre,
+            "normals": normal,
+            "first_axis": frame.first * frame.longest,
+            "second_axis": frame.second * frame.shortest,
+            "radii": frame.longest,
+            "areas": areas,
+            "materials": children["materials"][runs.starts],
+            "shading": shading,
+            "colors": colors,
+            **bounds(children, runs, offsets, frame, shading, colors),
+            **values,
+        }
+    )
+
+
+def as_surfels(nodes: Table, like: Surfels) -> Surfels:
+    """Merged nodes with the fields that `like` has, and its origin."""
+    axes = [nodes.column(name) for name in ("first_axis", "second_axis")]
+    lengths = np.stack([np.sqrt(np.einsum("kn,kn->n", axis, axis)) for axis in axes])
+    x, y = (axis / length for axis, length in zip(axes, lengths, strict=True))
+    fields = {name: nodes.column(name) for name in (*MEANS, "roughness") if name in nodes.widths}
+    fields = {name: columns[0] if len(columns) == 1 else columns.T for name, columns in fields.items()}
+    if "uv" in nodes.widths:
+        fields |= along_axes(nodes.column("uv"), np.stack(axes))
+    if like.blend_depth is not None:
+        fields["blend_depth"] = np.minimum(_LEAST_BLENDING + 2 * nodes.column("off") / lengths[0], 1)
+    return Surfels(
+        positions=nodes.column("positions").T,
+        rotations=axes_quaternions(x.T, y.T, nodes.column("normals").T),
+        scales=lengths.T,
+        normals=nodes.column("shading").T,
+        colors=nodes.column("colors").T,
+        materials=nodes.column("materials"),
+        origin=like.origin,
+        is_solid=like.is_solid,
+        **fields,
+    )
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    """Of children that face one axis, whose sum cannot vanish."""
+    return vectors / np.sqrt(np.einsum("kn,kn->n", vectors, vectors))
+
+
+def _ellipse(children: Nodes, runs: Runs, shares: np.ndarray, offsets: np.ndarray, normal: np.ndarray) -> Frame:
+    """Of the second moments of the children, on the plane of the normal."""
+    (u, v), d = children.axes, offsets
+    across, along = _tangents(normal)
+    moments = {}
+    for i in range(3):
+        for k in range(i, 3):
+            each = u[i] * u[k] + v[i] * v[k] + _PER_VARIANCE * (d[i] * d[k])
+            moments[i, k] = runs.sum(each * shares)
+
+    def quadratic(a, b):
+        return sum(a[i] * b[k] * moments[min(i, k), max(i, k)] for i in range(3) for k in range(3))
+
+    aa, ab, bb = quadratic(across, across), quadratic(across, along), quadratic(along, along)
+    middle, half = (aa + bb) / 2, np.hypot((aa - bb) / 2, ab)
+    angle = 0.5 * np.arctan2(2 * ab, aa - bb)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    first, second = cosine * across + sine * along, cosine * along - sine * across
+    longest = np.sqrt(middle + half)
+    shortest = np.maximum(np.sqrt(np.maximum(middle - half, 0)), _NARROWEST * longest)
+    frame = Frame(normal, first, second, longest, shortest)
+    wider = np.clip(runs.largest(frame.reach(children, runs, offsets, _CORE)), 1, _MOST_WIDENED)
+    return Frame(normal, first, second, longest * wider, shortest * wider)
+
+
+def _tangents(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Two (3, m) unit vectors that make a right-handed frame with the normals (Duff et al. 2017)."""
+    x, y, z = normal
+    sign = np.where(z < 0, np.float32(-1), np.float32(1))
+    a = -1 / (sign + z)
+    b = x * y * a
+    return np.stack([1 + sign * x * x * a, sign * b, -sign * x]), np.stack([b, sign + y * y * a, -y])
+
+
+def _colors(children: Nodes, runs: Runs, shares: np.ndarray) -> np.ndarray:
+    """(4, m): the mean opacity, and colours weighted by it where there is any."""
+    if (children["colors"][3] == 1).all():
+        result = np.ones((4, len(runs.starts)), np.float32)
+        result[:3] = runs.sum(children["colors"][:3] * shares)
+        return result
+    hiding = children["colors"][3] + np.float32(1e-6)
+    result = runs.sum(np.concatenate([children["colors"][:3] * hiding, hiding[None]]) * shares)
+    result[:3] /= result[3]
+    result[3] -= np.float32(1e-6)
+    return result
+
+
+def _roughness(roughness: np.ndarray, runs: Runs, shares: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """(1, m): alpha = roughness^2; alpha^2 is twice the variance of the slopes, to which that of the normals adds
+    (1 - length) / length (Toksvig 2005)."""
+    variance = (1 - np.minimum(length, 1)) / np.maximum(length, 1e-3)
+    return np.minimum((runs.sum(roughness**4 * shares) + 2 * variance) ** 0.25, 1)

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The surfels of one level while a hierarchy is built."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..clip_lines import CLIP_FIELDS, CUT
+from ..surfels import Surfels, quaternion_axes, split
+from .texture_places import gradients
+
+#: Fields of which a merged surfel has the plain mean. Colours, normals, roughness and texture coordinates have rules.
+MEANS = ("metallic", "emission")
+
+
+#: Nodes that are worked on at a time: what is made of them on the way stays in the processor's cache.
+PORTION = 1 << 14
+
+#: What every node has one number of.
+_SINGLE = {"radii", "areas", "materials", "off", "uncovered", "overhang", "spread"}
+
+
+class Nodes:
+    """n surfels, float32; by name or index each a (n,) or (columns, n) array.
+
+    positions, normals: (3, n), the latter the planes' and unit. first_axis, second_axis: (3, n) half-axis vectors.
+    radii: the longer of their lengths. areas: weights. materials: whole numbers. shading: (3, n) unit. colors: (4, n).
+    off, uncovered, overhang, spread: bounds, see `bounds`. And of the optional fields that are there: `MEANS`,
+    "roughness", and "uv": (8, n), the coordinates and their two gradients per object unit.
+    """
+
+    def __init__(self, arrays: dict[str, np.ndarray]):
+        self.arrays = arrays
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.arrays[name]
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.arrays
+
+    def __len__(self) -> int:
+        return self["positions"].shape[1]
+
+    @property
+    def axes(self) -> tuple[np.ndarray, np.ndarray]:
+        return self["first_axis"], self["second_axis"]
+
+
+class Table:
+    """Nodes row by row, so that those of a cluster, which lie apart, are found with few reaches into memory.
+
+    widths: column -> how many. rows: (n, their sum) float32.
+    """
+
+    def __init__(self, widths: dict[str, int], rows: np.ndarray):
+        self.widths, self.rows = widths, rows
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @classmethod
+    def of(cls, nodes: Nodes) -> Table:
+        widths = {name: len(np.atleast_2d(array)) for name, array in nodes.arrays.items()}
+        table = cls(widths, np.empty((len(nodes), sum(widths.values())), np.float32))
+        for name, array in nodes.arrays.items():
+            table.rows[:, table._place(name)] = np.atleast_2d(array).T
+        return table
+
+    def column(self, name: str) -> np.ndarray:
+        """(n,) or (columns, n)."""
+        array = np.ascontiguousarray(self.rows[:, self._place(name)].T)
+        return array[0] if name in _SINGLE else array
+
+    def take(self, rows: np.ndarray) -> Nodes:
+        """Some of them, column by column."""
+        some = Table(self.widths, self.rows[rows])
+        return Nodes({name: some.column(name) for name in self.widths})
+
+    def joined(self, parts: list[Table], rows: np.ndarray) -> Table:
+        """Other tables, then rows of this one."""
+        return Table(self.widths, np.concatenate([*(part.rows for part in parts), self.rows[rows]]))
+
+    def _place(self, name: str) -> slice:
+        names = list(self.widths)
+        start = sum(self.widths[n] for n in names[: names.index(name)])
+        return slice(start, start + self.widths[name])
+
+
+def leaves(surfels: Surfels) -> Table:
+    """The surfels themselves, exact but for what their clip lines take away of them."""
+    parts = [Table.of(_leaves(part)) for part in split(surfels, PORTION)]
+    return Table(parts[0].widths, np.concatenate([part.rows for part in parts]))
+
+
+def _leaves(surfels: Surfels) -> Nodes:
+    x, y, z = quaternion_axes(surfels.rotations)
+    scales = surfels.scales
+    values = {name: np.atleast_2d(getattr(surfels, name).T) for name in (*MEANS, "roughness") if _has(surfels, name)}
+    if surfels.has_uvs:
+        values["uv"] = np.concatenate([surfels.uvs.T, gradients(surfels, x, y)])
+    zero = np.zeros(len(surfels), np.float32)
+    return Nodes(
+        {
+            "positions": surfels.positions.T,
+            "normals": z.T,
+            "first_axis": (x * scales[:, :1]).T,
+            "second_axis": (y * scales[:, 1:]).T,
+            "radii": surfels.radius,
+            "areas": scales[:, 0] * scales[:, 1],
+            "materials": surfels.materials,
+            "shading": surfels.normals.T,
+            "colors": surfels.colors.T,
+            "off": zero,
+            "uncovered": zero,
+            "overhang": _cut_off(surfels),
+            "spread": zero,
+            **values,
+        }
+    )
+
+
+def _has(surfels: Surfels, name: str) -> bool:
+    return getattr(surfels, name) is not None
+
+
+def _cut_off(surfels: Surfels) -> np.ndarray:
+    """(n,) float32: how far the ellipses stick out beyond what their clip lines keep, object units.
+
+    A line that leaves the centre cuts no deeper than its cut; with two of them, or beyond the centre, what is kept may
+    be anywhere in the ellipse.
+    """
+    if not surfels.is_clipped:
+        return np.zeros(len(surfels), np.float32)
+    cuts = [getattr(surfels, name)[:, 1] / CUT for name in CLIP_FIELDS if _has(surfels, name)]
+    deepest, both = np.max(cuts, axis=0), np.sum([cut > 0 for cut in cuts], axis=0) > 1
+    return (np.where(both | (deepest > 1), 2.0, deepest) * surfels.radius).astype(np.float32)

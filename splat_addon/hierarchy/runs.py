@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs of children, and what is known of each run together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """Children of m parents, one parent's after the other's. starts, counts: (m,) of each."""
+
+    starts: np.ndarray
+    counts: np.ndarray
+
+    @cached_property
+    def owner(self) -> np.ndarray:
+        """(n,) whose each child is."""
+        return np.repeat(np.arange(len(self.starts), dtype=np.int32), self.counts)
+
+    def portions(self, size: int) -> Iterator[tuple[slice, Runs]]:
+        """Whole runs of about `size` children together, and where these are."""
+        first, ends = 0, self.starts + self.counts
+        while first < len(self.starts):
+            start = self.starts[first]
+            last = max(int(np.searchsorted(ends, start + size)), first + 1)
+            some = slice(first, last)
+            yield slice(start, ends[last - 1]), Runs(self.starts[some] - start, self.counts[some])
+            first = last
+
+    def sum(self, columns: np.ndarray) -> np.ndarray:
+        return np.add.reduceat(columns, self.starts, axis=-1)
+
+    def largest(self, values: np.ndarray) -> np.ndarray:
+        return np.maximum.reduceat(values, self.starts, axis=-1)
+
+    def least(self, values: np.ndarray) -> np.ndarray:
+        return np.minimum.reduceat(values, self.starts, axis=-1)

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sets of surfels to build hierarchies over, and what each node of one stands for."""
+
+import numpy as np
+
+from splat_addon.hierarchy.building import build_levels
+from splat_addon.surfels import Surfels, axes_quaternions
+
+
+def make_surfels(positions, normals, half=0.05, **fields):
+    """Discs of half-axes `half` with these normals, grey unless told otherwise."""
+    positions, normals = np.asarray(positions, float), np.asarray(normals, float)
+    normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    other = np.where(np.abs(normals[:, :1]) < 0.9, [[1.0, 0, 0]], [[0, 1.0, 0]])
+    x = np.cross(other, normals)
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    count = len(positions)
+    given = {
+        "scales": np.full((count, 2), half) if np.ndim(half) < 2 else half,
+        "colors": np.full((count, 4), (0.5, 0.5, 0.5, 1.0)),
+        "materials": np.zeros(count, int),
+        "normals": fields.pop("shading", normals),
+    }
+    return Surfels(positions, axes_quaternions(x, np.cross(normals, x), normals), **{**given, **fields})
+
+
+def sheet(count=40, height=0.0, normal=(0, 0, 1), spacing=0.04):
+    """Positions and normals of a square grid of count x count samples."""
+    x, y = np.meshgrid(np.arange(count) * spacing, np.arange(count) * spacing)
+    positions = np.stack([x.ravel(), y.ravel(), np.full(x.size, height)], axis=1)
+    return positions, np.tile(np.asarray(normal, float), (x.size, 1))
+
+
+def ball(count=6000, seed=0):
+    """Positions and normals all over the unit sphere."""
+    k = np.arange(count) + 0.5
+    z, turn = 1 - 2 * k / count, np.pi * (1 + 5**0.5) * k
+    r = np.sqrt(1 - z * z)
+    normals = np.stack([r * np.cos(turn), r * np.sin(turn), z], axis=1)
+    return normals, normals
+
+
+def leaves_of(surfels):
+    """[(number, surfels below it)] of every merged node, and its (M, 3) errors, nodes and levels."""
+    nodes, errors, levels, _ = build_levels(surfels)
+    below = {k: np.array([k]) for k in range(len(surfels))}
+    numbers = np.arange(len(surfels))
+    for level in levels:
+        children = np.split(numbers[level.children], np.cumsum(level.counts)[:-1])
+        for number, own in zip(level.numbers, children, strict=True):
+            if len(own) > 1:
+                below[number] = np.concatenate([below[c] for c in own])
+        numbers = level.numbers
+    return below, nodes, errors, levels

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whatever the view, its cut draws every surfel that it may see once: as itself, or in one of the nodes above it."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from splat_addon.hierarchy import Sight, build_hierarchy, cut_entries
+
+from .conftest import ball, leaves_of, make_surfels
+
+COUNT = 8000
+HALF = 1.25 * (4 * np.pi / COUNT) ** 0.5
+SURFELS = make_surfels(*ball(COUNT), half=HALF)
+HIERARCHY = build_hierarchy(SURFELS)
+HOLLOW = build_hierarchy(make_surfels(SURFELS.positions, -SURFELS.positions, HALF))
+BELOW = leaves_of(SURFELS)[0]
+
+
+def sight(eye, tolerance=1.0, pixels=500.0, hides_backs=False, planes=((0, 0, 0, 1),)):
+    """From a point towards the origin."""
+    eye = np.asarray(eye, float)
+    forward = -eye / np.linalg.norm(eye)
+    depth = np.append(forward, -forward @ eye)
+    return Sight(np.array(planes, float), depth, pixels, 1e-3, np.append(eye, 1), hides_backs, tolerance)
+
+
+def drawn(view):
+    """How often each surfel of the ball is drawn, itself or by a node, and how many are drawn in all."""
+    entries = cut_entries(HIERARCHY, view)
+    entries = np.arange(COUNT) if entries is None else entries
+    return np.bincount(np.concatenate([BELOW[e] for e in entries]), minlength=COUNT), len(entries)
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    st.tuples(*[st.floats(-30, 30)] * 3).filter(lambda p: np.linalg.norm(p) > 0.1),
+    st.floats(0, 20),
+)
+def test_every_surfel_is_drawn_once(eye, tolerance):
+    times, _ = drawn(sight(eye, tolerance))
+    assert (times == 1).all()
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.tuples(*[st.floats(-6, 6)] * 3).filter(lambda p: np.linalg.norm(p) > 1.2), st.floats(0, 10))
+def test_what_faces_the_eye_is_drawn_where_backs_are_hidden(eye, tolerance):
+    times, _ = drawn(sight(eye, tolerance, hides_backs=True))
+    facing = (SURFELS.positions * (np.asarray(eye) - SURFELS.positions)).sum(axis=1) > 0
+    assert (times[facing] == 1).all() and times.max() == 1
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.tuples(*[st.floats(-4, 4)] * 3))
+def test_a_hollow_ball_is_drawn_where_it_faces_the_eye(eye):
+    """Places and normals of one block then turn against one another."""
+    entries = cut_entries(HOLLOW, sight(np.asarray(eye) + 1e-3, 0, hides_backs=True))
+    entries = np.arange(COUNT) if entries is None else entries
+    facing = (SURFELS.positions * (np.asarray(eye) + 1e-3 - SURFELS.positions)).sum(axis=1) < 0
+    assert np.isin(np.flatnonzero(facing), entries).all()
+
+
+def test_most_backs_are_left_out():
+    times, _ = drawn(sight((0, 0, 5), 0, hides_backs=True))
+    facing = SURFELS.positions[:, 2] > 0.2
+    assert (times > 0).sum() < 1.5 * facing.sum()
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda n: np.linalg.norm(n) > 0.1), st.floats(-1, 1))
+def test_what_lies_inside_of_the_picture_is_drawn(normal, distance):
+    normal = np.asarray(normal) / np.linalg.norm(normal)
+    times, _ = drawn(sight((0, 0, 5), 2.0, planes=(np.append(normal, distance),)))
+    inside = SURFELS.positions @ normal + distance > 0
+    assert (times[inside] == 1).all()
+
+
+def test_a_tolerance_of_0_draws_the_surfels_as_they_are():
+    assert cut_entries(HIERARCHY, sight((0, 0, 3), 0.0)) is None
+
+
+def test_no_error_that_is_drawn_is_above_the_tolerance():
+    view = sight((0, 0, 9), 15.0)
+    entries = cut_entries(HIERARCHY, view)
+    nodes = entries[entries >= COUNT] - COUNT
+    depth = 9 - HIERARCHY.nodes.positions[nodes, 2]
+    assert len(nodes) and (HIERARCHY.errors[nodes].max(axis=1) * view.pixels / depth <= view.tolerance).all()
+
+
+@pytest.mark.parametrize(("distance", "most"), [(1e3, 60), (1e4, 6), (1e6, 6)])
+def test_what_is_far_away_is_few_splats(distance, most):
+    _, count = drawn(sight((0, 0, distance)))
+    assert count <= most
+
+
+def test_a_parallel_view_has_one_size_of_pixel():
+    def count(pixels):
+        view = Sight(np.zeros((0, 4)), np.array([0, 0, -1.0, 5]), pixels, 0.0, np.array([0, 0, 1.0, 0]), False, 1.0)
+        entries = cut_entries(HIERARCHY, view)
+        return COUNT if entries is None else len(entries)
+
+    assert count(0.5) < 100 < count(5.0) < count(1e5) == COUNT
