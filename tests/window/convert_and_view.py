@@ -1,34 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run inside a Blender window: convert Suzanne with the sidebar's operator, open its tab, look at the rendered view.
 
-What happened is written as JSON to the file named after `--`; test_window.py reads it beside the screenshot.
+test_window.py reads what happened beside the screenshot.
 """
 
-import json
 import sys
-import traceback
 from pathlib import Path
 
 import bpy
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
+
+from steps import in_view, open_sidebar, play, show_tab, view3d  # noqa: E402
 
 import splat_addon  # noqa: E402
 
-REPORT = Path(sys.argv[sys.argv.index("--") + 1])
 POLL_SECONDS = 0.2
-
-
-def view3d():
-    """The 3D view's area and its window region."""
-    area = next(a for a in bpy.context.window_manager.windows[0].screen.areas if a.type == "VIEW_3D")
-    return area, next(r for r in area.regions if r.type == "WINDOW")
-
-
-def in_view(**more):
-    area, region = view3d()
-    return bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area, region=region, **more)
 
 
 def prepare():
@@ -44,8 +31,7 @@ def prepare():
         material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (0.8, 0.05, 0.03, 1)
         suzanne.data.materials.append(material)
         bpy.ops.view3d.view_selected()
-    area, _ = view3d()
-    area.spaces[0].show_region_ui = True
+    open_sidebar()
 
 
 def convert():
@@ -61,14 +47,11 @@ def look():
     area, _ = view3d()
     area.spaces[0].overlay.show_overlays = False
     area.spaces[0].shading.type = "RENDERED"
-    for region in area.regions:
-        if region.type == "UI":
-            region.active_panel_category = "Surfels"
-    area.tag_redraw()
+    show_tab("Surfels")
 
 
 def steps():
-    """Each yields the seconds to wait before the next."""
+    """Each yields the seconds to wait before the next; the report is the end."""
     prepare()
     yield 1.0
     result = convert()
@@ -78,21 +61,8 @@ def steps():
     look()
     yield 4.0
     source_hidden = bpy.data.objects["Suzanne"].hide_get()
-    report = {"operator": result, "surfels": len(made[0].data.vertices), "source_hidden": source_hidden}
-    REPORT.write_text(json.dumps(report), encoding="utf-8")
+    return {"operator": result, "surfels": len(made[0].data.vertices), "source_hidden": source_hidden}
 
 
-def run():
-    try:
-        return next(RUNNING)
-    except StopIteration:
-        return None
-    except Exception:
-        REPORT.write_text(json.dumps({"error": traceback.format_exc()}), encoding="utf-8")
-        return None
-
-
-RUNNING = steps()
-bpy.context.preferences.view.show_splash = False
 splat_addon.register()
-bpy.app.timers.register(run, first_interval=1.0)
+play(steps())

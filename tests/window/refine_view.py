@@ -1,24 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run inside a Blender window: a view through a camera out of focus, in small tiles, at rest, changed, at rest.
 
-What happened is written as JSON to the file named after `--`; test_refinement.py reads it beside the screenshot.
+test_refinement.py reads what happened.
 """
 
-import json
 import sys
-import traceback
 from importlib import import_module
 from pathlib import Path
 
 import bpy
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
+
+from steps import play, view3d  # noqa: E402
 
 import splat_addon  # noqa: E402
 from splat_addon.blender.engine import viewport  # noqa: E402
 
-REPORT = Path(sys.argv[sys.argv.index("--") + 1])
 SAMPLES = 6
 PATIENCE = 100  # polls of a tenth of a second
 
@@ -31,10 +29,6 @@ def counted(draw):
         draws.append(engine.surfel_state.refinement.samples)
 
     return counting
-
-
-def view3d():
-    return next(a for a in bpy.context.window_manager.windows[0].screen.areas if a.type == "VIEW_3D")
 
 
 def prepare():
@@ -52,7 +46,7 @@ def prepare():
     scene.render.film_transparent = True
     scene.surfel_splatting.render_meshes, scene.surfel_splatting.mesh_resolution = "SURFELS", 24
     scene.surfel_splatting.viewport_samples = SAMPLES
-    area = view3d()
+    area, _ = view3d()
     area.spaces[0].region_3d.view_perspective = "CAMERA"
     area.spaces[0].overlay.show_overlays = False
     area.spaces[0].shading.type = "RENDERED"
@@ -68,7 +62,7 @@ def at_rest():
 
 
 def steps():
-    """Each yields the seconds to wait before the next."""
+    """Each yields the seconds to wait before the next; the report is the end."""
     report = {"samples": SAMPLES}
     prepare()
     yield from at_rest()
@@ -83,22 +77,10 @@ def steps():
     bpy.context.scene.camera.location.x += 0.2
     yield from at_rest()
     report["moved"] = list(draws)
-    REPORT.write_text(json.dumps(report), encoding="utf-8")
+    return report
 
 
-def run():
-    try:
-        return next(RUNNING)
-    except StopIteration:
-        return None
-    except Exception:
-        REPORT.write_text(json.dumps({"error": traceback.format_exc()}), encoding="utf-8")
-        return None
-
-
-RUNNING = steps()
-bpy.context.preferences.view.show_splash = False
 import_module("splat_addon.rendering.plan").MAX_TARGET_EDGE = 400
 viewport.draw = counted(viewport.draw)
 splat_addon.register()
-bpy.app.timers.register(run, first_interval=1.0)
+play(steps())

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the scripts that run inside a Blender window share: the 3D view, and steps between which the window lives on.
+
+It is found beside the scripts, whose folder they put on the path.
+"""
+
+import json
+import sys
+import traceback
+from pathlib import Path
+
+import bpy
+
+ROOT = Path(__file__).resolve().parents[2]
+#: What happened goes to the file named after `--`, as JSON.
+REPORT = Path(sys.argv[sys.argv.index("--") + 1])
+
+
+def view3d():
+    """The 3D view's area and its window region."""
+    area = next(a for a in bpy.context.window_manager.windows[0].screen.areas if a.type == "VIEW_3D")
+    return area, next(r for r in area.regions if r.type == "WINDOW")
+
+
+def in_view():
+    """The context of a mouse over the 3D view."""
+    area, region = view3d()
+    return bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area, region=region)
+
+
+def open_sidebar() -> None:
+    """Its tabs are there once the window was drawn."""
+    view3d()[0].spaces[0].show_region_ui = True
+
+
+def show_tab(category: str) -> None:
+    area, _ = view3d()
+    next(region for region in area.regions if region.type == "UI").active_panel_category = category
+    area.tag_redraw()
+
+
+def play(steps, and_quit: bool = False) -> None:
+    """Runs a generator from a timer. It yields the seconds to wait before the next step, and returns the report."""
+
+    def run():
+        try:
+            return next(steps)
+        except StopIteration as end:
+            report = end.value
+        except Exception:
+            report = {"error": traceback.format_exc()}
+        REPORT.write_text(json.dumps(report), encoding="utf-8")
+        if and_quit or "error" in report:
+            bpy.ops.wm.quit_blender()
+        return None
+
+    bpy.context.preferences.view.show_splash = False
+    bpy.app.timers.register(run, first_interval=1.0, persistent=True)

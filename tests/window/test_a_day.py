@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A day in a real window with the installed extension: convert, look, orbit, edit, undo, F12, save, open, disable."""
+
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+ROOT = Path(__file__).resolve().parents[2]
+SECONDS = 300
+#: Rows and columns of the screen that show Suzanne through the camera, in a window of 1200 x 800 at its foot.
+VIEW = slice(475, 835), slice(250, 600)
+#: The share of pixels that may change between two views of the same: ties at edges. None was seen to.
+SAME = 0.001
+
+
+@pytest.fixture(scope="module")
+def day(in_a_window, tmp_path_factory):
+    """(report, name -> picture of the 3D view (h, w, 3))."""
+    folder = tmp_path_factory.mktemp("user")
+    subprocess.run(["python3", "scripts/build.py"], cwd=ROOT, check=True)
+    [package] = (ROOT / "build").glob("surfel_splatting-*.zip")
+    report, shot = in_a_window(
+        "play_a_day.py",
+        SECONDS,
+        *("--window-geometry", "0", "0", "1200", "800"),
+        BLENDER_USER_RESOURCES=str(folder),
+        SURFEL_PACKAGE=str(package),
+    )
+    return report, lambda name: _read(shot.with_name(f"{shot.stem}_{name}.png"))
+
+
+def _read(file: Path) -> np.ndarray:
+    return np.asarray(Image.open(file).convert("RGB"), np.float32)[VIEW] / 255
+
+
+def difference(one: np.ndarray, other: np.ndarray) -> float:
+    """The share of pixels that differ by more than a value in 85."""
+    return float((np.abs(one - other).max(axis=-1) > 3 / 255).mean())
+
+
+def test_the_view_after_a_conversion_shows_red_surfels_without_holes(day):
+    red = day[1]("shown")[70:130, 200:300]
+    assert ((red[..., 0] > 0.25) & (red[..., 0] > 1.5 * red[..., 1])).all()
+
+
+@pytest.mark.parametrize("change", ["orbited", "edited"])
+def test_a_change_is_seen(day, change):
+    assert difference(day[1]("shown"), day[1](change)) > 0.1
+
+
+def test_an_edit_and_its_undo_reach_the_surfels(day):
+    before, edited, undone = day[0]["x"]
+    assert edited != before == undone
+
+
+@pytest.mark.parametrize("later", ["orbited_and_back", "undone", "after_f12", "opened_again", "enabled_again"])
+def test_the_picture_comes_back(day, later):
+    assert difference(day[1]("shown"), day[1](later)) < SAME
+
+
+def test_disabling_leaves_nothing_and_enabling_finds_the_engine_again(day):
+    assert day[0]["left"] == [] and day[0]["engine"] == "SURFEL_SPLATTING"
