@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
-from .attributes.blend_depths import blend_depths, blending_per_radius
+from .attributes.blend_depths import blend_depths
 from .attributes.material_sampler import MaterialSampler
 from .attributes.sample_attributes import SampleFiller
 from .attributes.tangents import layered_tangents
@@ -24,6 +24,7 @@ from .density import check_fineness, grid_spacing
 from .edges.borders import DEFAULT_CREASE_ANGLE, survey_edges
 from .edges.clipping import clip
 from .edges.gaps import gap_surfels
+from .edges.meetings import by_facing
 from .ldc.depth_cube import depth_cube
 from .ldc.grid import make_grid
 from .ldc.reductions import DEFAULT_GRAZING_ANGLE, check_grazing_angle, find_reduction
@@ -129,7 +130,7 @@ def sample_surface(
     edges = survey_edges(mesh, DEFAULT_CREASE_ANGLE if crease_angle is None else crease_angle) if needs_edges else None
     if fits_blending:
         arrays["blend_depth"] = np.empty(total, np.float32)
-    bends = blending_per_radius(mesh, edges.bends) if fits_blending else None
+    bends = (edges.bends, edges.sizes) if fits_blending else None
     filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, sampler, tangents, seams, bends, arrays)
     filled = 1.0 if crease_angle is None else 0.6
     _fill(filler, images, stage(progress, 0.5, filled))
@@ -138,11 +139,12 @@ def sample_surface(
     gaps, gap_triangles = {}, np.empty(0, np.intp)
     if crease_angle is not None:
         report = stage(progress, filled, 1.0)
-        clipping = clip(arrays, edges.borders, grid.surfel_origin)
+        seen = _rows_of(images) if reduction == "normal" else by_facing(arrays)
+        clipping = clip(arrays, seen, edges.borders, grid)
         report(0.7)
-        gaps, gap_triangles = gap_surfels(mesh, edges.borders, arrays, clipping, grid, splat_size, sampler, tangents)
+        gaps, gap_triangles = gap_surfels(mesh, edges.borders, clipping, grid, splat_size, sampler, tangents)
         if bends is not None and gaps:
-            gaps["blend_depth"] = blend_depths(bends[gap_triangles], gaps["scales"].max(axis=1))
+            gaps["blend_depth"] = blend_depths(*(of[gap_triangles] for of in bends), gaps["scales"].max(axis=1))
         arrays |= clipping.fields
         report(1.0)
     saved, error = 0, 0.0
@@ -158,6 +160,12 @@ def sample_surface(
         arrays = _appended(arrays, extra)
     surfels = Surfels(origin=grid.surfel_origin, **arrays)
     return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error, gap_triangles)
+
+
+def _rows_of(images: tuple[Spans, ...]) -> list[tuple[int, slice]]:
+    """Which samples are of the image along each axis."""
+    ends = np.cumsum([int(spans.counts.sum(dtype=np.int64)) for spans in images]).tolist()
+    return [(axis, slice(start, end)) for axis, (start, end) in enumerate(zip((0, *ends), ends, strict=False))]
 
 
 def _appended(arrays: dict[str, np.ndarray], more: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -11,8 +11,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_areas
-
 #: In radii: below this, rounding would decide which of two splats of one plane is seen.
 LEAST_BLENDING = 0.05
 
@@ -20,18 +18,7 @@ LEAST_BLENDING = 0.05
 _OVER_ONE = 0.25
 
 
-def blending_per_radius(mesh: TriangleMesh, bends: np.ndarray) -> np.ndarray:
-    """(T, 2) what `blend_depths` needs of each triangle: its bend, radians, and its size, object units.
-
-    bends: (T,), as `EdgeSurvey` has them.
-    """
-    corners = corners_at(np.ascontiguousarray(mesh.positions.T), corner_indices(mesh.triangles))
-    areas = np.linalg.norm(doubled_areas(corners), axis=0)
-    return np.stack([bends, np.sqrt(areas)], axis=1)
-
-
-def blend_depths(triangles: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """(t,) float32, in radii. triangles: (t, 2) of `blending_per_radius`. radii: (t,) of their splats."""
-    bends, sizes = triangles.T
-    reach = np.maximum(radii / np.maximum(sizes, 1e-300), _OVER_ONE)
+def blend_depths(bends: np.ndarray, sizes: np.ndarray, radii: np.ndarray) -> np.ndarray:
+    """(t,) float32, in radii. bends, sizes: (t,) of triangles, as `EdgeSurvey` has them. radii: (t,) of splats."""
+    reach = np.maximum(radii / np.maximum(sizes, 1e-37), _OVER_ONE)
     return np.clip(bends * reach, LEAST_BLENDING, 1).astype(np.float32)

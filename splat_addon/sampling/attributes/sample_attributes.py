@@ -37,7 +37,7 @@ class SampleFiller:
     """Fills the rows of preallocated arrays, span after span.
 
     mesh: usable. coordinates: (3, V) float64, of its vertices on the grid. half_size: of a splat, object units.
-    sampler: of the mesh. bends: (T, 2), as `blend_depths` takes them, or None.
+    sampler: of the mesh. bends: two (T,), as `blend_depths` takes them, or None.
     tangents: (T, 3, 4 layers) at its corners, as `Samples` has them, or None.
     arrays: field of `Surfels` -> array to fill.
     """
@@ -51,7 +51,7 @@ class SampleFiller:
         sampler: MaterialSampler,
         tangents: np.ndarray | None,
         seams: np.ndarray | None,
-        bends: np.ndarray | None,
+        bends: tuple[np.ndarray, np.ndarray] | None,
         arrays: dict[str, np.ndarray],
     ):
         self._mesh, self._coordinates, self._grid = mesh, coordinates, grid
@@ -83,7 +83,9 @@ class SampleFiller:
         _write_rows(ellipse_scales(normals[axis], self._half_size), triangle, out["scales"])
         if self._bends is not None:
             longest = self._half_size / np.abs(normals[axis]).clip(1 / MAX_STRETCH)
-            _write_rows(blend_depths(self._bends.take(triangles, axis=0), longest), triangle, out["blend_depth"])
+            _write_rows(
+                blend_depths(*(of.take(triangles) for of in self._bends), longest), triangle, out["blend_depth"]
+            )
         if self._mesh.corner_normals is None:
             _write_rows(np.ascontiguousarray(normals.T, np.float32), triangle, out["normals"])
         else:

@@ -12,14 +12,22 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ..ldc.scan_conversion import expand
+from ..mesh.connectivity import twins
 from ..mesh.joining import have_same_values
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_areas, triangle_chunks
+from .calm_vertices import calm_vertices
 
 #: Radians; planes that differ by more make a crease.
 DEFAULT_CREASE_ANGLE = math.radians(30)
 
 #: Largest difference of a component of colour across an edge where it still goes on.
 COLOR_BREAK = 0.02
+
+#: Of a cosine in float32: planes that differ by just the angle, as those of a regular prism do, make no crease.
+_ROUNDING = 1e-6
+
+#: On a cylinder two neighbours' planes differ twice as much as each does from the direction of a vertex between them.
+_BEND = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,11 +59,13 @@ class Borders:
 
 @dataclass(frozen=True, eq=False)
 class EdgeSurvey:
-    """borders: where the surface breaks off. bends: (T,) radians, by how much each triangle's plane differs from those
-    that it goes on in, at most."""
+    """borders: where the surface breaks off. bends: (T,) float32 radians, by how much each triangle's plane differs
+    from those that it goes on in, at most, or from the directions of its calm vertices (`calm_vertices`). sizes: (T,)
+    float32, the root of twice each one's area, object units."""
 
     borders: Borders
     bends: np.ndarray
+    sizes: np.ndarray
 
 
 def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE) -> EdgeSurvey:
@@ -65,118 +75,164 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE) -> Edg
     more. Vertices at one place are one. An edge of one face, or of more than two, is a border of each. Faces that wind
     differently are compared as if they did not.
     """
-    components = _face_normals(mesh)
-    components /= np.maximum(np.sqrt((components * components).sum(axis=0)), 1e-300)
-    triangles, numbers, edge, bends = _breaking(mesh, components, np.cos(angle))
+    normals, sizes = _unit_normals(mesh)
+    triangles, numbers, edge, bends = _breaking(mesh, normals, angle)
     a, b = mesh.triangles[triangles, numbers], mesh.triangles[triangles, (numbers + 1) % 3]
-    start, end = mesh.positions[a], mesh.positions[b]
-    normals = components.take(triangles, axis=1).T
-    inward = _unit(np.cross(normals, end - start))
+    start, end = mesh.positions.take(a, axis=0), mesh.positions.take(b, axis=0)
+    corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles.take(triangles, axis=0)))
+    planes = _unit(doubled_areas(corners).T)
+    inward = _unit(np.cross(planes, end - start))
     ends = np.stack([numbers, (numbers + 1) % 3], axis=1)
-    shading = normals
+    shading = planes
     if mesh.corner_normals is not None:
-        given = _unit(mesh.corner_normals[triangles[:, None], ends].astype(np.float64).sum(axis=1))
+        rows = mesh.corner_normals.reshape(-1, 3)
+        given = _unit(sum(rows.take(3 * triangles + end, axis=0) for end in ends.T))
         shading = np.where((given != 0).any(axis=1)[:, None], given, shading)
     colors = np.zeros((len(triangles), 4))
     if mesh.corner_colors is not None:
-        colors = mesh.corner_colors[triangles[:, None], ends, :4].mean(axis=1)
+        rows = mesh.corner_colors.reshape(3 * len(mesh), -1)
+        colors = sum(rows.take(3 * triangles + end, axis=0)[:, :4] for end in ends.T) / 2
     materials = np.zeros(len(triangles), int) if mesh.materials is None else mesh.materials[triangles]
-    borders = Borders(start, end, inward, normals, edge, shading, colors, materials, triangles)
-    return EdgeSurvey(borders, bends)
+    borders = Borders(start, end, inward, planes, edge, shading, colors, materials, triangles)
+    return EdgeSurvey(borders, bends, sizes)
 
 
-def _breaking(mesh: TriangleMesh, normals: np.ndarray, least: float):
+def _breaking(mesh: TriangleMesh, normals: np.ndarray, angle: float):
     """(B,) triangles, (B,) corners at which their edge starts, (B,) edges, ascending; and (T,) bends.
 
-    normals: (3, T) unit. A *corner* here is a number k T + t: the k-th of triangle t, at which its k-th edge starts.
+    normals: (3, T) float32, unit. Of an edge with a calm end nothing more needs to be known.
     """
-    count = len(mesh)
-    places = mesh.places.take(corner_indices(mesh.triangles))
-    # The sum of two hashes names an edge alike from both sides.
-    keys = (places + places[[1, 2, 0]]).ravel()
-    order = np.argsort(keys)
-    ordered = keys.take(order)
-    is_first = np.ones(len(order) + 1, bool)
-    np.not_equal(ordered[1:], ordered[:-1], out=is_first[1:-1])
-    starts = np.flatnonzero(is_first)
-    counts = np.diff(starts)
+    one_of = twins(mesh.places)
+    places = corner_indices(mesh.triangles if one_of is None else one_of.take(mesh.triangles))
+    looks = _looks(mesh)
+    calm = calm_vertices(mesh, places, normals, angle, looks)
+    bends = _BEND * np.arccos(np.clip(calm.cosines, -1, 1))
+    triangle, number, ends = _restless_edges(places, ~calm.is_calm)
+    order, starts, counts = _grouped(mesh.places.take(ends[0]) + mesh.places.take(ends[1]))
+    pairs = np.flatnonzero(counts == 2)
+    sides = [order.take(starts.take(pairs) + side) for side in (0, 1)]
+    one, other = (_Corners(triangle.take(side), number.take(side), ends[0].take(side)) for side in sides)
+    breaks, cosine = _breaks(mesh, normals, looks, one, other, np.float32(np.cos(angle) - _ROUNDING))
     is_border = counts != 2
-    pairs = np.flatnonzero(~is_border)
-    one, other = (order.take(starts.take(pairs) + side) for side in (0, 1))
-    breaks, cosine = _breaks(mesh, normals, places.ravel(), one, other, least)
     is_border[pairs] = breaks
-    bends = np.zeros(count)
     goes_on = np.flatnonzero(~breaks & (cosine < 1))
-    bend = np.arccos(np.maximum(cosine.take(goes_on), -1))
+    by_edge, bend = np.zeros((3, len(mesh)), np.float32), np.arccos(np.maximum(cosine.take(goes_on), -1))
     for corners in (one, other):
-        np.maximum.at(bends, corners.take(goes_on) % count, bend)
+        by_edge[corners.number.take(goes_on), corners.triangle.take(goes_on)] = bend
+    for row in by_edge:
+        np.maximum(bends, row, out=bends)
     found = np.flatnonzero(is_border)
     edge, within = expand(counts.take(found))
-    number, triangle = np.divmod(order.take(starts.take(found).take(edge) + within), count)
-    return triangle, number, edge, bends
+    row = order.take(starts.take(found).take(edge) + within)
+    return triangle.take(row), number.take(row), edge, bends
 
 
-def _breaks(mesh: TriangleMesh, normals: np.ndarray, places: np.ndarray, one, other, least: float):
-    """(p,) bool of edges with two sides, which start at a corner each; and (p,) cosines of planes."""
-    count = len(mesh)
-    s, t = one % count, other % count
-    ahead = places.take(one) == places.take(other)
-    cosine = sum(row.take(s) * row.take(t) for row in normals)
+def _restless_edges(places: np.ndarray, is_restless: np.ndarray):
+    """(e,) triangles, (e,) corners at which their edge starts, and (2, e) places of its ends, both of which are."""
+    among = is_restless.take(places)
+    rows = [np.flatnonzero(among[k] & among[(k + 1) % 3]) for k in range(3)]
+    ends = [np.concatenate([places[(k + step) % 3].take(rows[k]) for k in range(3)]) for step in (0, 1)]
+    number = np.repeat(np.arange(3), [len(row) for row in rows])
+    return np.concatenate(rows), number, ends
+
+
+def _grouped(keys: np.ndarray):
+    """(e,) order that brings equal keys together, and the start and count of each group of them.
+
+    keys: (e,) uint64. They are sorted with their numbers in their lowest bits, several times as fast as an order is
+    found; groups that are no pairs are looked at with all bits.
+    """
+    bits = np.uint64(max(len(keys) - 1, 1).bit_length())
+    number = np.arange(len(keys), dtype=np.uint64)
+    ordered = (keys >> bits << bits) | number
+    ordered.sort()
+    order = (ordered & ((np.uint64(1) << bits) - np.uint64(1))).astype(np.intp)
+    ordered >>= bits
+    starts, counts = _runs(ordered)
+    if (counts > 2).any():
+        at = np.flatnonzero((counts > 2)[np.repeat(np.arange(len(counts)), counts)])
+        rows = order.take(at)
+        order[at] = rows.take(np.lexsort((rows, keys.take(rows), ordered.take(at))))
+        starts, counts = _runs(keys.take(order))
+    return order, starts, counts
+
+
+def _runs(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Starts and lengths of runs of equal values."""
+    is_first = np.ones(len(ordered) + 1, bool)
+    np.not_equal(ordered[1:], ordered[:-1], out=is_first[1:-1])
+    starts = np.flatnonzero(is_first)
+    return starts[:-1], np.diff(starts)
+
+
+@dataclass(frozen=True, eq=False)
+class _Corners:
+    """p corners at which an edge starts: their triangle, their number in it, and their place."""
+
+    triangle: np.ndarray
+    number: np.ndarray
+    place: np.ndarray
+
+
+def _breaks(mesh: TriangleMesh, normals: np.ndarray, looks, one: _Corners, other: _Corners, least: float):
+    """(p,) bool of edges with two sides; and (p,) cosines of their planes."""
+    s, t = one.triangle, other.triangle
+    ahead = one.place == other.place
+    cosine = sum(component.take(s) * component.take(t) for component in normals)
     # Two faces that go along their edge in the same direction wind differently.
     np.negative(cosine, out=cosine, where=ahead)
     breaks = cosine < least
-    k, n = one // count, other // count
     has_colors = mesh.corner_colors is not None and any(surface.color.factors for surface in mesh.surfaces)
     for step in (0, 1):
         # The same end of the edge, in both triangles.
-        mine, its = 3 * s + (k + step) % 3, 3 * t + (n + np.where(ahead, step, 1 - step)) % 3
+        mine = 3 * s + (one.number + step) % 3
+        its = 3 * t + (other.number + np.where(ahead, step, 1 - step)) % 3
         if mesh.corner_normals is not None:
-            at, a, b = _differing(mesh.corner_normals, mine, its)
-            side = np.where(ahead.take(at), -1.0, 1.0) * _dots(_unit(a), _unit(b))
-            breaks[at] |= (side < least) & (a != 0).any(axis=1) & (b != 0).any(axis=1)
+            rows = mesh.corner_normals.reshape(-1, 3)
+            a, b = rows.take(mine, axis=0), rows.take(its, axis=0)
+            product, square = _dots(a, b), _dots(a, a) * _dots(b, b)
+            np.negative(product, out=product, where=ahead)
+            breaks |= product < least * np.sqrt(square)
         if has_colors:
-            at, a, b = _differing(mesh.corner_colors, mine, its)
-            breaks[at] |= np.abs(a - b).max(axis=1, initial=0) > COLOR_BREAK
-    if mesh.materials is not None:
-        breaks |= _look_different(mesh, mesh.materials.take(s), mesh.materials.take(t))
+            rows = mesh.corner_colors.reshape(-1, mesh.corner_colors.shape[2])
+            breaks |= np.abs(rows.take(mine, axis=0) - rows.take(its, axis=0)).max(axis=1) > COLOR_BREAK
+    if looks is not None:
+        breaks |= looks.take(s) != looks.take(t)
     return breaks, cosine
 
 
-def _differing(values: np.ndarray, one: np.ndarray, other: np.ndarray):
-    """Which of two (p,) corners, 3 t + k, have different values of (T, 3, c), and these, (d, c) each."""
-    rows = values.reshape(-1, values.shape[2])
-    differs = np.zeros(len(one), bool)
-    for column in rows.T:
-        differs |= column.take(one) != column.take(other)
-    at = np.flatnonzero(differs)
-    return at, rows.take(one.take(at), axis=0), rows.take(other.take(at), axis=0)
-
-
-def _look_different(mesh: TriangleMesh, s: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """(p,) bool: whether two materials' surfaces are not the same."""
-    last = len(mesh.surfaces) - 1
-    s, t = np.minimum(s, last), np.minimum(t, last)
-    names = np.arange(last + 1)
+def _looks(mesh: TriangleMesh) -> np.ndarray | None:
+    """(T,) numbers of the surfaces, the same for those that are the same; None where all triangles look alike."""
+    if mesh.materials is None or len(mesh.surfaces) == 1:
+        return None
+    names = np.arange(len(mesh.surfaces))
     for k, surface in enumerate(mesh.surfaces):
         names[k] = next(i for i in range(k + 1) if have_same_values(mesh.surfaces[i], surface))
-    return names[s] != names[t]
+    return names.take(np.minimum(mesh.materials, len(names) - 1)) if names.any() else None
 
 
-def _face_normals(mesh: TriangleMesh) -> np.ndarray:
-    """(3, T), as long as twice the area."""
-    components, normals = np.ascontiguousarray(mesh.positions.T), np.empty((3, len(mesh)))
+def _unit_normals(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
+    """(3, T) float32: of the triangles' planes; and (T,) float32, the root of twice their areas."""
+    normals, sizes = np.empty((3, len(mesh)), np.float32), np.empty(len(mesh), np.float32)
     for chunk in triangle_chunks(len(mesh)):
-        normals[:, chunk] = doubled_areas(corners_at(components, corner_indices(mesh.triangles[chunk])))
-    return normals
+        vectors = doubled_areas(corners_at(mesh.positions.T, corner_indices(mesh.triangles[chunk])))
+        square = vectors[0] * vectors[0]
+        square += vectors[1] * vectors[1]
+        square += vectors[2] * vectors[2]
+        length = np.sqrt(np.maximum(square, 1e-300, out=square), out=square)
+        np.sqrt(length, out=sizes[chunk], casting="same_kind")
+        np.divide(vectors, length, out=normals[:, chunk], casting="same_kind")
+    return normals, sizes
 
 
 def _dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.einsum("ij,ij->i", a, b)
+    """(n,) of (n, 3)."""
+    return a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
-    """(..., 3) float64 of unit length; 0 where there is none."""
+    """(n, 3) float64 of unit length; 0 where there is none."""
     vectors = np.asarray(vectors, np.float64)
     with np.errstate(invalid="ignore", over="ignore"):
-        length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+        length = np.sqrt(_dots(vectors, vectors))[:, None]
         return np.where((length > 0) & np.isfinite(length), vectors / np.where(length > 0, length, 1), 0.0)

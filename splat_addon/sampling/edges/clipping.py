@@ -1,234 +1,179 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cuts surfels at the borders of their surface: each gets the lines of `clip_lines` that its mesh asks for.
 
-Flow: `borders` -> which surfels lie near which edges (`edge_neighbours`) -> each edge as its surfel's plane sees it,
-with the ellipse as the unit circle -> one line, or the two that keep what lies within the border best.
+Flow: `borders` -> which surfels meet which edges, as the ellipse sees them (`meetings`) -> one line, or the two that
+keep what lies within the border best.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
-from ...clip_lines import CLIP_FIELDS, are_reflex, pack_lines, unpack_lines
-from ...surfels import quaternion_axes
+from ...clip_lines import CLIP_FIELDS, are_reflex, pack_lines
+from ..ldc.grid import Grid
 from .borders import Borders
-from .edge_neighbours import edge_neighbours
-
-#: Least cosine between a surfel's plane and a face that its border belongs to: of one smooth piece of surface.
-_SAME_PIECE = np.cos(np.radians(40))
-
-#: How far off a face's plane a surfel of the same piece of surface may be: this share of its distance from the edge,
-#: and of its size.
-_OFF_PLANE, _OFF_ANYHOW = 0.35, 0.1
+from .meetings import BEYOND, Images, Meetings, meetings
+from .ragged_borders import two_lines
 
 #: A border within this of a line, in half-axes, is that line.
 _SAME_LINE = 0.06
 
-#: Where a corner is judged: rings of places in the unit circle, and how much each weighs.
-_RINGS = ((0.3, 6), (0.6, 10), (0.85, 16), (0.98, 24))
+#: What two lines keep: the first one's side, that of both, that of either, or all.
+_FIRST, _BOTH, _EITHER, _ALL = range(4)
 
+#: Of more edges than this the farther ones of a splat are not looked at for its corner.
+_MOST_EDGES = 6
 
-@dataclass(frozen=True, eq=False)
-class _Sides:
-    """m meetings of a surfel with a side of an edge, ordered by surfel. surfel, side: (m,). start, end: (m, 2) in the
-    unit circle. line: (m, 3) of unit direction. distance: (m,) of the edge from the centre."""
+#: Keeps the whole ellipse.
+_NO_LINE = np.array([[1], [0], [1]], np.float32)
 
-    surfel: np.ndarray
-    side: np.ndarray
-    start: np.ndarray
-    end: np.ndarray
-    line: np.ndarray
-    distance: np.ndarray
-
-    def take(self, rows: np.ndarray) -> _Sides:
-        return _Sides(*(getattr(self, f.name)[rows] for f in fields(self)))
+#: Bits of what meetings of a surfel are ordered by: how near the edge is, and how far its line.
+_DISTANCE_BITS, _LINE_BITS = 18, 8
 
 
 @dataclass(frozen=True, eq=False)
 class Clipping:
-    """fields: `CLIP_FIELDS` of the surfels, those that are needed. surfel, side: (m,) which surfels meet which sides of
-    the borders. lines: (m, 2, 3) at which that surfel ends, of unit direction, and reflex: (m,) bool (`clip_lines`)."""
+    """fields: `CLIP_FIELDS` of the surfels, those that are needed. met: which surfels meet which sides of borders, the
+    nearest first. lines: (2, 3, m) at which that surfel ends, of unit direction, and reflex: (m,) bool (`clip_lines`).
+    """
 
     fields: dict[str, np.ndarray]
-    surfel: np.ndarray
-    side: np.ndarray
+    met: Meetings
     lines: np.ndarray
     reflex: np.ndarray
 
 
-def clip(arrays: dict[str, np.ndarray], borders: Borders, origin: np.ndarray) -> Clipping:
+def clip(
+    arrays: dict[str, np.ndarray], images: Images, borders: Borders, grid: Grid, at_centres: bool = True
+) -> Clipping:
     """Where surfels end.
 
-    arrays: by field of `Surfels`, positions relative to `origin`.
+    arrays: by field of `Surfels`, positions relative to the grid's middle. images: which of them each image sees.
+    at_centres: whether they lie at the centres of cells.
     """
-    count = len(arrays["positions"])
-    sides = _sides(arrays, borders, origin) if len(borders) and count else None
-    if sides is None or not len(sides.surfel):
-        return Clipping({}, *np.zeros((2, 0), np.intp), np.zeros((0, 2, 3)), np.zeros(0, bool))
-    is_first = np.append(True, sides.surfel[1:] != sides.surfel[:-1])
-    first = np.flatnonzero(is_first)
-    surfel, lines = sides.surfel[first], sides.line[first]
-    second = np.zeros((len(first), 3))
-    second[:, 2] = 1
-    owner = np.cumsum(is_first) - 1
-    is_corner = _needs_more(sides, lines[owner])
-    corners = np.unique(owner[is_corner])
-    if len(corners):
-        rows = np.flatnonzero(np.isin(owner, corners))
-        lines[corners], second[corners] = _corners(sides.take(rows), np.searchsorted(corners, owner[rows]))
-    result, both = {}, [pack_lines(values) for values in (lines, second)]
-    for name, packed in zip(CLIP_FIELDS, both, strict=True):
-        packed[packed[:, 1] == 0] = 0
-        if packed.any():
-            result[name] = np.zeros((count, 2), np.int16)
-            result[name][surfel] = packed
-    lines, reflex = np.stack([unpack_lines(packed) for packed in both], axis=1), are_reflex(*both)
-    return Clipping(result, sides.surfel, sides.side, lines[owner], reflex[owner])
+    met = meetings(arrays, images, borders, grid, at_centres)
+    if not len(met):
+        return Clipping({}, met, np.zeros((2, 3, 0), np.float32), np.zeros(0, bool))
+    met = met.take(_one_side_of_each(met, arrays, borders))
+    met, starts, owner = _of_own_surface(met.take(_nearest_first(met)))
+    lines = _lines(met, starts, owner)
+    packed = [pack_lines(line.T) for line in lines]
+    fields, count = {}, len(arrays["positions"])
+    for name, values in zip(CLIP_FIELDS, packed, strict=True):
+        if values[:, 1].any():
+            values[values[:, 1] == 0] = 0
+            fields[name] = np.zeros((count, 2), np.int16)
+            fields[name][met.surfel.take(starts)] = values
+    reflex = are_reflex(*packed)
+    return Clipping(fields, met, lines.take(owner, axis=2), reflex.take(owner))
 
 
-def _sides(arrays: dict[str, np.ndarray], borders: Borders, origin: np.ndarray) -> _Sides:
-    """Of each surfel the sides of edges that reach into its ellipse, the nearest first."""
-    surfel, side = edge_neighbours(arrays["positions"], np.maximum(*arrays["scales"].T), borders, origin)
-    axes = quaternion_axes(arrays["rotations"][surfel])
-    x, y, z = (axis.astype(np.float64) for axis in axes)
-    center = arrays["positions"][surfel] + origin
-    sizes = arrays["scales"][surfel].astype(np.float64)
-    to_start, to_end = borders.start[side] - center, borders.end[side] - center
-    inward, normal = borders.inward[side], borders.normals[side]
-    start, end = (np.stack([_dot(t, x) / sizes[:, 0], _dot(t, y) / sizes[:, 1]], axis=1) for t in (to_start, to_end))
-    nearest, distance = _nearest_on_segment(start, end)
-    line = np.stack([_dot(inward, x) * sizes[:, 0], _dot(inward, y) * sizes[:, 1], -_dot(to_start, inward)], axis=1)
-    length = np.hypot(line[:, 0], line[:, 1])
-    line /= np.maximum(length, 1e-300)[:, None]
-    off = np.abs(_dot(to_start, normal))
-    aside = np.linalg.norm(to_start + (to_end - to_start) * nearest[:, None], axis=1)
-    facing = np.abs(_dot(z, normal))
-    meets = (distance < 1) & (facing >= _SAME_PIECE) & (off <= _OFF_PLANE * aside + _OFF_ANYHOW * sizes.min(axis=1))
-    meets &= length > 0
-    likeness = _unlikeness(arrays, surfel, z, borders, side) + 0.01 * (line[:, 2] < 0)
-    rows = _most_alike(np.flatnonzero(meets), surfel, borders.edges[side], likeness)
-    # At an end that two edges share, the one whose line is farther off says on which side the centre is.
-    order = np.lexsort((-np.abs(line[rows, 2]), np.round(distance[rows], 6), surfel[rows]))
-    rows = rows[order]
-    sides = _Sides(surfel[rows], side[rows], start[rows], end[rows], line[rows], distance[rows])
-    return sides.take(np.flatnonzero(_is_own(sides)))
+def _one_side_of_each(met: Meetings, arrays: dict[str, np.ndarray], borders: Borders) -> np.ndarray:
+    """The meetings without those where another side of the same edge is more like the surfel."""
+    keys = met.surfel * (borders.edges.max() + 1) + borders.edges.take(met.side)
+    order = np.argsort(keys)
+    keys = keys.take(order)
+    is_shared = np.zeros(len(keys), bool)
+    np.equal(keys[1:], keys[:-1], out=is_shared[1:])
+    is_shared[:-1] |= is_shared[1:]
+    if not is_shared.any():
+        return np.arange(len(keys))
+    alone, shared = order.compress(~is_shared), order.compress(is_shared)
+    group, unlike = keys.compress(is_shared), _unlikeness(met.take(shared), arrays, borders)
+    ranked = np.lexsort((unlike, group))
+    is_first = np.append(True, group[ranked][1:] != group[ranked][:-1])
+    return np.concatenate([alone, shared[ranked[is_first]]])
 
 
-def _is_own(sides: _Sides) -> np.ndarray:
-    """(m,) bool: whether the surfel lies within its nearest border; else it is of a piece of surface that only looks
-    like that border's."""
-    is_first = np.append(True, sides.surfel[1:] != sides.surfel[:-1])
-    owner = np.cumsum(is_first) - 1
-    return (sides.line[is_first, 2] >= -0.05)[owner]
-
-
-def _unlikeness(arrays, surfel: np.ndarray, normals: np.ndarray, borders: Borders, side: np.ndarray) -> np.ndarray:
+def _unlikeness(met: Meetings, arrays: dict[str, np.ndarray], borders: Borders) -> np.ndarray:
     """(m,) how much a surfel differs from the face of a side."""
-    facing = _dot(normals, borders.normals[side])
-    result = 2 - 2 * np.abs(facing)
-    result += ((arrays["normals"][surfel] - borders.shading[side]) ** 2).sum(axis=1)
-    result += ((arrays["colors"][surfel] - borders.colors[side]) ** 2).sum(axis=1)
-    result += 4 * (arrays["materials"][surfel] != borders.materials[side])
+    surfel, side = met.surfel, met.side
+    result = 2 - 2 * met.facing + 0.01 * (met.line[2] < 0)
+    for values, of_side in ((arrays["normals"], borders.shading), (arrays["colors"], borders.colors)):
+        difference = values.take(surfel, axis=0) - of_side.take(side, axis=0)
+        for column in difference.T:
+            result += column * column
+    result += 4 * (arrays["materials"].take(surfel) != borders.materials.take(side))
     return result
 
 
-def _most_alike(rows: np.ndarray, surfel: np.ndarray, edge: np.ndarray, unlikeness: np.ndarray) -> np.ndarray:
-    """Of `rows` those whose side is most like the surfel among the sides of the same edge."""
-    order = rows[np.lexsort((unlikeness[rows], edge[rows], surfel[rows]))]
-    is_first = np.ones(len(order), bool)
-    is_first[1:] = (surfel[order][1:] != surfel[order][:-1]) | (edge[order][1:] != edge[order][:-1])
-    return order[is_first]
+def _nearest_first(met: Meetings) -> np.ndarray:
+    """The order of surfels, and of each one's meetings by how near the edge is.
+
+    At an end that two edges share, the one whose line is farther off says on which side the centre is.
+    """
+    near = np.minimum(met.distance * (1 << _DISTANCE_BITS), (1 << _DISTANCE_BITS) - 1).astype(np.int64)
+    line = np.minimum(np.abs(met.line[2]), 1) * ((1 << _LINE_BITS) - 1)
+    near <<= _LINE_BITS
+    near |= ((1 << _LINE_BITS) - 1) - line.astype(np.int64)
+    bits = len(met).bit_length()
+    if int(met.surfel.max()).bit_length() + _DISTANCE_BITS + _LINE_BITS + bits > 63:
+        return np.lexsort((near, met.surfel))
+    # Sorted with their numbers in the lowest bits: an order takes several times as long.
+    keys = met.surfel << (_DISTANCE_BITS + _LINE_BITS)
+    keys |= near
+    keys <<= bits
+    keys |= np.arange(len(met))
+    keys.sort()
+    return keys & ((1 << bits) - 1)
 
 
-def _nearest_on_segment(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(m,) share of the way at which a segment of the plane is nearest to (0, 0), and (m,) its distance there."""
-    along = end - start
-    share = np.clip(-_dot(start, along) / np.maximum(_dot(along, along), 1e-300), 0, 1)
-    place = start + along * share[:, None]
-    return share, np.hypot(*place.T)
+def _of_own_surface(met: Meetings) -> tuple[Meetings, np.ndarray, np.ndarray]:
+    """The meetings of surfels that lie within their nearest border; else it is of a piece of surface that only looks
+    like that border's. Also the first meeting of each surfel, and the (m,) number of each one's surfel among these."""
+    is_first = np.append(True, met.surfel[1:] != met.surfel[:-1])
+    starts = np.flatnonzero(is_first)
+    owner = np.cumsum(is_first) - 1
+    is_own = met.line[2].take(starts) >= BEYOND
+    if is_own.all():
+        return met, starts, owner
+    met = met.take(np.flatnonzero(is_own.take(owner)))
+    is_first = np.append(True, met.surfel[1:] != met.surfel[:-1])[: len(met)]
+    return met, np.flatnonzero(is_first), np.cumsum(is_first) - 1
 
 
-def _needs_more(sides: _Sides, first: np.ndarray) -> np.ndarray:
-    """(m,) bool: whether what lies of an edge in the circle is off its surfel's first line."""
-    along = sides.end - sides.start
-    a, b, c = _dot(along, along), _dot(sides.start, along), _dot(sides.start, sides.start) - 1
+def _lines(met: Meetings, starts: np.ndarray, owner: np.ndarray) -> np.ndarray:
+    """(2, 3, n) lines of n surfels, in the order that says which corner they make; (1, 0, 1) for none.
+
+    The nearest border is the first. Where one other leaves it, that is the second: into what the first keeps, as it
+    does at a convex corner, or out of it, as at a reflex one. Of several the best is looked for.
+    """
+    first = met.line.take(starts, axis=1)
+    second = np.repeat(_NO_LINE, len(starts), axis=1)
+    off, place = _off_line(met, first.take(owner, axis=1))
+    others = np.flatnonzero(off > _SAME_LINE)
+    counts = np.bincount(owner.take(others), minlength=len(starts))
+    single = others.compress(counts.take(owner.take(others)) == 1)
+    kind = np.where(place.take(single) < 0, _EITHER, _BOTH)
+    rank = np.arange(len(met)) - starts.take(owner)
+    several = np.flatnonzero((counts > 1).take(owner) & (rank < _MOST_EDGES))
+    if len(several):
+        few = met.take(several)
+        best, kinds = two_lines(few.start, few.end, few.line, (np.cumsum(counts > 1) - 1).take(owner.take(several)))
+        single, kind = np.append(single, several.take(best)), np.append(kind, kinds)
+    owners = owner.take(single)
+    one, other = first.take(owners, axis=1), met.line.take(single, axis=1)
+    turn = one[0] * other[1] - one[1] * other[0]
+    swap = np.where(kind == _BOTH, turn < 0, turn > 0)
+    for line, there in ((first, np.where(swap, other, one)), (second, np.where(swap, one, other))):
+        there[:, kind == _ALL] = _NO_LINE
+        line[:, owners] = there
+    alone = owners.compress(kind == _FIRST)
+    first[:, alone], second[:, alone] = one.compress(kind == _FIRST, axis=1), _NO_LINE
+    return np.stack([first, second])
+
+
+def _off_line(met: Meetings, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(m,) how far what lies of an edge in the circle is off a line at most, and (m,) on which side of it, signed."""
+    (x, y), (u, v) = met.start, met.end - met.start
+    a, b, c = u * u + v * v, x * u + y * v, x * x + y * y - 1
     root = np.sqrt(np.maximum(b * b - a * c, 0))
-    a = np.maximum(a, 1e-300)
-    off = np.zeros(len(along))
+    a = np.maximum(a, np.float32(1e-30))
+    off = np.zeros(len(met), np.float32)
     for share in ((-b - root) / a, (-b + root) / a):
-        place = sides.start + along * np.clip(share, 0, 1)[:, None]
-        np.maximum(off, np.abs(_dot(place, first[:, :2]) + first[:, 2]), out=off)
-    return off > _SAME_LINE
-
-
-def _corners(sides: _Sides, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Two (n, 3) lines for each of n surfels, the sides of which are given, by their `owner`, ascending.
-
-    A place in the circle belongs to the surface if it is inside of the edge that is nearest to it. One line, or two of
-    which the nearest is one, as a convex or a reflex corner: taken is what is right about most of the places.
-    """
-    places, weights = _places()
-    starts = np.flatnonzero(np.append(True, owner[1:] != owner[:-1]))
-    inside, distance = _inside_of_each(sides, places)
-    nearest = np.minimum.reduceat(distance, starts, axis=0)
-    is_nearest = distance == nearest[owner]
-    belongs = np.logical_and.reduceat(inside | ~is_nearest, starts, axis=0)
-    keeps = inside
-    first = keeps[starts][owner]
-    belongs = belongs[owner]
-    shown = first, first & keeps, first | keeps, np.ones_like(first)
-    wrongs = np.stack([(kind != belongs).astype(np.float32) @ weights for kind in shown], axis=1)
-    # One line where a second gains nothing.
-    wrongs[:, 0] -= 1e-4
-    flat, group = wrongs.reshape(-1), np.repeat(owner, len(shown))
-    order = np.lexsort((flat, group))
-    best = order[np.append(True, group[order][1:] != group[order][:-1])]
-    row, kind = np.divmod(best, len(shown))
-    one, other = sides.line[starts], sides.line[row]
-    turn = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
-    # The order says which corner it is.
-    swap = np.where(kind == 1, turn < 0, turn > 0) & (kind != 0)
-    first, second = (np.where(s[:, None], a, b) for s, a, b in ((swap, other, one), (swap, one, other)))
-    first[kind == 3] = second[(kind == 0) | (kind == 3)] = (1.0, 0.0, 1.0)
-    return first, second
-
-
-def _places() -> tuple[np.ndarray, np.ndarray]:
-    """(p, 2) places in the unit circle, and (p,) how much of the splat is about each."""
-    places, weights = [], []
-    for radius, count in _RINGS:
-        angle = (np.arange(count) + 0.5) * 2 * np.pi / count
-        places.append(np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1))
-        weights.append(np.full(count, radius * np.exp(-2 * radius**2) / count))
-    weights = np.concatenate(weights)
-    return np.concatenate(places), (weights / weights.sum()).astype(np.float32)
-
-
-def _inside_of_each(sides: _Sides, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(m, p) bool, whether each place is inside of each edge's line, and (m, p) how far the edge is from it.
-
-    At an end that two edges share, both are as far, and the one whose line is farther off is right: it counts as a
-    little nearer.
-    """
-    (x, y), (u, v) = (a.T.astype(np.float32)[..., None] for a in (sides.start, sides.end - sides.start))
-    a, b, c = sides.line.T.astype(np.float32)[..., None]
-    px, py = places.T.astype(np.float32)
-    to_x, to_y = px - x, py - y
-    share = to_x * (u / np.maximum(u * u + v * v, np.float32(1e-30)))
-    share += to_y * (v / np.maximum(u * u + v * v, np.float32(1e-30)))
-    np.clip(share, 0, 1, out=share)
-    to_x -= u * share
-    to_y -= v * share
-    across = a * px + b * py + c
-    to_x *= to_x
-    to_y *= to_y
-    to_x += to_y
-    np.sqrt(to_x, out=to_x)
-    to_x -= np.float32(1e-4) * np.abs(across)
-    return across >= 0, to_x
-
-
-def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.einsum("ij,ij->i", a, b)
+        np.clip(share, 0, 1, out=share)
+        value = line[0] * (x + u * share) + line[1] * (y + v * share) + line[2]
+        np.copyto(off, value, where=np.abs(value) > np.abs(off))
+    return np.abs(off), off

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...clip_lines import kept
-from ...surfels import LAYOUT, OPTIONAL_LAYOUT, quaternion_axes
+from ...surfels import LAYOUT, OPTIONAL_LAYOUT
 from ..attributes.ellipses import ellipse_rotations, ellipse_scales
 from ..attributes.material_sampler import MaterialSampler, Samples
 from ..ldc.grid import Grid
@@ -16,6 +15,7 @@ from ..ldc.scan_conversion import expand
 from ..mesh.triangle_mesh import TriangleMesh
 from .borders import Borders
 from .clipping import Clipping, clip
+from .meetings import by_facing
 
 #: Distance of the places along a border that are looked at, and how far inside of it they lie, in spacings.
 _STEP, _INSIDE = 0.5, 0.08
@@ -25,6 +25,9 @@ _ENDS = 0.02
 
 #: Edge of a cell of which one place is enough, in spacings.
 _CELL = 0.6
+
+#: Numbers the cells of a grid: more of them along an edge than a grid has.
+_CELL_NUMBER = np.array((1, 1 << 20, 1 << 40))
 
 #: Inside of a triangle, no farther on the way to its middle than this.
 _TO_MIDDLE = 0.3
@@ -40,7 +43,6 @@ _PLACES, _SIZE = 2, 0.6
 def gap_surfels(
     mesh: TriangleMesh,
     borders: Borders,
-    arrays: dict[str, np.ndarray],
     clipping: Clipping,
     grid: Grid,
     splat_size: float,
@@ -50,67 +52,101 @@ def gap_surfels(
     """The arrays of `Surfels` on what is bare beside the borders, clipped like the others, {} where nothing is; and
     their (k,) triangles.
 
-    arrays, clipping: of all other surfels. sampler, tangents: as a `SampleFiller` has them.
+    clipping: of all other surfels. sampler, tangents: as a `SampleFiller` has them.
     """
     if not len(borders):
         return {}, np.empty(0, np.intp)
-    side, places = _bare(mesh, borders, arrays, clipping, grid)
+    side, places = _bare(mesh, borders, clipping, grid)
     if not len(side):
         return {}, np.empty(0, np.intp)
     triangles = borders.triangles[side]
     made = _surfels(mesh, triangles, places, borders.normals[side], grid, splat_size, sampler, tangents)
-    return made | clip(made, borders, grid.surfel_origin).fields, triangles
+    return made | clip(made, by_facing(made), borders, grid, at_centres=False).fields, triangles
 
 
-def _bare(mesh: TriangleMesh, borders: Borders, arrays, clipping: Clipping, grid: Grid):
+def _bare(mesh: TriangleMesh, borders: Borders, clipping: Clipping, grid: Grid):
     """(k,) sides of borders and (k, 3) places beside them, in their triangles, that no surfel covers."""
-    length = np.linalg.norm(borders.end - borders.start, axis=1)
-    counts = np.ceil(length / (_STEP * grid.spacing)).astype(np.int64) + 1
-    side, number = expand(counts)
-    # From one end of the edge to the other: corners are what is left bare most easily.
-    share = (_ENDS + (1 - 2 * _ENDS) * number / np.maximum(counts[side] - 1, 1))[:, None]
-    on_edge = borders.start[side] + (borders.end - borders.start)[side] * share
-    to_middle = mesh.positions[mesh.triangles[borders.triangles]].mean(axis=1)[side] - on_edge
-    depth = np.einsum("ij,ij->i", to_middle, borders.inward[side])
-    part = np.minimum(_INSIDE * grid.spacing / np.maximum(depth, 1e-300), _TO_MIDDLE)
-    places = on_edge + to_middle * part[:, None]
-    is_covered = np.zeros(len(side), bool)
-    is_covered[_covered(borders, arrays, clipping, grid, counts, places)] = True
+    along = borders.end - borders.start
+    counts = np.ceil(np.linalg.norm(along, axis=1) / (_STEP * grid.spacing)).astype(np.int64) + 1
+    # A straight row of places beside the edge: all are moved by the same share towards the middle.
+    middle = mesh.positions[mesh.triangles[borders.triangles]].mean(axis=1)
+    depth = np.einsum("ij,ij->i", middle - borders.start, borders.inward)
+    part = np.minimum(_INSIDE * grid.spacing / np.maximum(depth, 1e-300), _TO_MIDDLE)[:, None]
+    first, last = (borders.start + along * share for share in (_ENDS, 1 - _ENDS))
+    first, last = (place + (middle - place) * part for place in (first, last))
+    offsets = np.cumsum(counts) - counts
+    is_covered = _covered(clipping, grid, first, last, counts, offsets)
     bare = np.flatnonzero(~is_covered)
+    side = np.searchsorted(offsets, bare, side="right") - 1
+    share = (bare - offsets[side]) / np.maximum(counts[side] - 1, 1)
+    places = first[side] + (last - first)[side] * share[:, None]
     # Of a run of bare places the second, the fourth, ...; of a single one that.
-    starts = np.append(True, (bare[1:] != bare[:-1] + 1) | (side[bare[1:]] != side[bare[:-1]])) if len(bare) else bare
-    first = np.flatnonzero(starts)
-    sizes = np.diff(np.append(first, len(bare)))
-    run, place = expand(sizes)
-    chosen = bare[place % _PLACES == np.minimum(1, sizes[run] - 1)]
+    starts = np.append(True, (bare[1:] != bare[:-1] + 1) | (side[1:] != side[:-1])) if len(bare) else bare
+    runs = np.flatnonzero(starts)
+    sizes = np.diff(np.append(runs, len(bare)))
+    run, number = expand(sizes)
+    chosen = np.flatnonzero(number % _PLACES == np.minimum(1, sizes[run] - 1))
     # Of edges far shorter than a spacing one place for many: those of a cell that face alike.
-    cells = np.floor((places[chosen] - grid.surfel_origin) / (_CELL * grid.spacing))
-    _, first = np.unique(np.column_stack([cells, np.rint(borders.normals[side[chosen]])]), axis=0, return_index=True)
-    chosen = chosen[np.sort(first)]
+    cells = np.floor((places[chosen] - grid.surfel_origin) / (_CELL * grid.spacing)).astype(np.int64)
+    facing = np.rint(borders.normals[side[chosen]]).astype(np.int64) + 1
+    key = (cells @ _CELL_NUMBER) * 27 + facing @ (1, 3, 9)
+    _, kept = np.unique(key, return_index=True)
+    chosen = chosen[np.sort(kept)]
     return side[chosen], places[chosen]
 
 
-def _covered(borders: Borders, arrays, clipping: Clipping, grid: Grid, counts: np.ndarray, places: np.ndarray):
-    """The places, by number, that a surfel which meets their side covers. counts: (B,) how many each side has."""
-    surfel, side = clipping.surfel, clipping.side
-    x, y, _ = quaternion_axes(arrays["rotations"][surfel], 2)
-    sizes = arrays["scales"][surfel].astype(np.float64)
-    center = arrays["positions"][surfel] + grid.surfel_origin
-    # Only the places that the surfel's own size reaches.
-    along = (borders.end - borders.start)[side]
-    length = np.maximum(np.linalg.norm(along, axis=1), 1e-300)
-    foot = np.einsum("ij,ij->i", center - borders.start[side], along) / length**2
-    reach = sizes.max(axis=1) / length
-    last = counts[side] - 1
-    low, high = (np.clip((foot + sign * reach) * last, 0, last) for sign in (-1, 1))
-    low, high = np.floor(low).astype(np.int64), np.ceil(high).astype(np.int64) + 1
-    meeting, number = expand(high - low)
-    number += low.take(meeting)
-    place = (np.cumsum(counts) - counts)[side[meeting]] + number
-    offset = places[place] - center[meeting]
-    q = np.stack([np.einsum("ij,ij->i", offset, axis[meeting]) for axis in (x, y)], axis=1) / sizes[meeting]
-    inside = np.einsum("ij,ij->i", q, q) <= _COVERED
-    return place[inside & kept(q, clipping.lines[meeting], clipping.reflex[meeting])]
+def _covered(clipping: Clipping, grid: Grid, first, last, counts: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """(p,) bool: whether surfels that meet a side cover its places, `counts` from (B, 3) `first` to `last` of each.
+
+    Each surfel covers a stretch of the row, where this lies in its ellipse and on the kept side of its lines; at a
+    reflex corner one of each line.
+    """
+    met, total = clipping.met, int(counts.sum())
+    start, way = _in_circles(met, first, last, grid)
+    a, b, c = (way * way).sum(axis=0), (start * way).sum(axis=0), (start * start).sum(axis=0) - np.float32(_COVERED)
+    root = b * b - a * c
+    a = np.maximum(a, np.float32(1e-20))
+    root = np.sqrt(np.maximum(root, 0, out=root), where=root > 0, out=np.full_like(root, np.nan))
+    low, high = np.maximum((-b - root) / a, 0), np.minimum((-b + root) / a, 1)
+    ends = [_kept_stretch(line, start, way) for line in clipping.lines]
+    reflex = clipping.reflex
+    both = np.maximum(ends[0][0], ends[1][0]), np.minimum(ends[0][1], ends[1][1])
+    lows = np.maximum(low, np.where(reflex, ends[0][0], both[0])), np.maximum(low, ends[1][0])
+    highs = np.minimum(high, np.where(reflex, ends[0][1], both[1])), np.minimum(high, ends[1][1])
+    changes = np.zeros(total + 1, np.int64)
+    for low, high, rows in zip(lows, highs, (slice(None), np.flatnonzero(reflex)), strict=True):
+        steps = (counts - 1).take(met.side[rows])
+        with np.errstate(invalid="ignore"):
+            there = np.flatnonzero(low[rows] <= high[rows])
+        steps, offset = steps.take(there), offsets.take(met.side[rows].take(there))
+        covered = np.ceil(low[rows].take(there) * steps - 1e-3), np.floor(high[rows].take(there) * steps + 1e-3)
+        begin, end = (offset + place.astype(np.int64) for place in covered)
+        some = begin <= end
+        changes += np.bincount(begin.compress(some), minlength=total + 1)
+        changes -= np.bincount(end.compress(some) + 1, minlength=total + 1)
+    return np.cumsum(changes)[:total] > 0
+
+
+def _in_circles(met, first: np.ndarray, last: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """(2, m) where each surfel sees the first place of the side that it meets, and (2, m) the way to the last."""
+    ends = [((place - grid.surfel_origin) / grid.spacing).astype(np.float32).T for place in (first, last)]
+    seen = []
+    for end in ends:
+        u, v = (end.ravel().take((met.axis + k) % 3 * np.intp(len(first)) + met.side) for k in (1, 2))
+        u -= met.place[0]
+        v -= met.place[1]
+        seen.append(np.stack([met.inverse[0] * u + met.inverse[1] * v, met.inverse[2] * u + met.inverse[3] * v]))
+    return seen[0], seen[1] - seen[0]
+
+
+def _kept_stretch(line: np.ndarray, start: np.ndarray, way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(m,) lowest and (m,) highest share of the way at which a place is on the side of its line that is kept."""
+    value = line[0] * start[0] + line[1] * start[1] + line[2]
+    rise = line[0] * way[0] + line[1] * way[1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossing = -value / rise
+    low = np.where(rise > 0, crossing, np.where((rise < 0) | (value >= 0), -np.inf, np.inf))
+    return low, np.where(rise < 0, crossing, np.inf)
 
 
 def _surfels(mesh, triangles, places, normals, grid: Grid, splat_size, sampler: MaterialSampler, tangents):

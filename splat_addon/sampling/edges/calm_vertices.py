@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which vertices of a mesh can have no border edge at them: a look at every corner once, which spares a search of all
+edges for those that `borders` wants.
+
+One direction stands for a vertex: its shading normal in some triangle. What lies within half an angle of it lies within
+that angle of each other. Colours and materials are the same as in that triangle, and the triangles around close a fan.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..mesh.triangle_mesh import TriangleMesh, triangle_chunks
+
+#: Bits of a vertex's hash that tell whether the triangles around another close a fan: sums of them are exact.
+_FAN_BITS = 24
+
+
+@dataclass(frozen=True, eq=False)
+class CalmVertices:
+    """is_calm: (V,) bool, of places. cosines: (T,) float32, of the largest angle between a triangle's plane and the
+    directions of its calm vertices; 1 where it has none."""
+
+    is_calm: np.ndarray
+    cosines: np.ndarray
+
+
+def calm_vertices(mesh: TriangleMesh, places: np.ndarray, normals: np.ndarray, angle: float, looks) -> CalmVertices:
+    """places: (3, T) the vertex that stands for each corner's place. normals: (3, T) float32, unit. angle: radians, of
+    a crease. looks: (T,) of what each triangle is made of, or None where all are of the same."""
+    count, least = len(mesh), np.float32(np.cos(min(angle / 2, np.pi / 2)))
+    some = np.zeros(len(mesh.positions), np.intp)
+    for k in range(3):
+        some[places[k]] = np.arange(k, 3 * count, 3)
+    directions = _directions(mesh, some, normals)
+    labels = _labels(mesh, looks)
+    label_of = None if labels is None else labels.take(some)
+    is_restless = np.zeros(len(mesh.positions), bool)
+    if mesh.surveyed is None or not mesh.surveyed.is_closed:
+        is_restless |= _at_borders(mesh, places)
+    toward = np.empty((3, count), np.float32)
+    for chunk in triangle_chunks(count):
+        given = None
+        if mesh.corner_normals is not None:
+            rows = mesh.corner_normals[chunk].reshape(-1, 9)
+            given = np.ascontiguousarray(rows.T, np.float32).reshape(3, 3, -1)
+        for k in range(3):
+            vertex = places[k, chunk]
+            direction = [component.take(vertex) for component in directions]
+            cosine = toward[k, chunk]
+            cosine[...] = _dot(direction, normals[:, chunk])
+            strange = cosine < least
+            if given is not None:
+                strange |= _dot(direction, given[k]) < least * np.sqrt(_dot(given[k], given[k]))
+            if labels is not None:
+                strange |= labels[chunk.start * 3 + k : chunk.stop * 3 : 3] != label_of.take(vertex)
+            is_restless[vertex.compress(strange)] = True
+    cosines = np.ones(count, np.float32)
+    for row, vertices in zip(toward, places, strict=True):
+        row[is_restless.take(vertices)] = 1
+        np.minimum(cosines, row, out=cosines)
+    return CalmVertices(~is_restless, cosines)
+
+
+def _directions(mesh: TriangleMesh, some: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """(3, V) float32 unit: the shading normal of each vertex at (V,) one of its corners, 3 t + k."""
+    if mesh.corner_normals is None:
+        return normals.take(some // 3, axis=1)
+    rows = mesh.corner_normals.reshape(-1, 3).take(some, axis=0)
+    directions = np.ascontiguousarray(rows.T, np.float32)
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        length = np.sqrt(_dot(directions, directions))
+        directions /= length
+    poor = np.flatnonzero(~(np.isfinite(length) & (length > 1e-15)))
+    directions[:, poor] = normals.take(some.take(poor) // 3, axis=1)
+    return directions
+
+
+def _dot(a, b) -> np.ndarray:
+    """(n,) of (3, n)."""
+    result = a[0] * b[0]
+    result += a[1] * b[1]
+    result += a[2] * b[2]
+    return result
+
+
+def _labels(mesh: TriangleMesh, looks: np.ndarray | None) -> np.ndarray | None:
+    """(3 T,) uint64 of corners that are equal for equal colours and looks; None where all are equal."""
+    labels = None if looks is None else np.repeat(looks.astype(np.uint64), 3)
+    if mesh.corner_colors is not None and any(surface.color.factors for surface in mesh.surfaces):
+        rows = np.ascontiguousarray(mesh.corner_colors, np.float32).view(np.uint32)
+        labels = np.zeros(3 * len(mesh), np.uint64) if labels is None else labels
+        for column in rows.reshape(len(labels), -1).T:
+            labels *= np.uint64(0x9E3779B97F4A7C15)
+            labels ^= column
+    return labels
+
+
+def _at_borders(mesh: TriangleMesh, places: np.ndarray) -> np.ndarray:
+    """(V,) bool, where the triangles around a vertex do not close a fan: over a closed one what is added for one
+    triangle's second neighbour is taken away for the next one's first."""
+    shift = np.uint64(64 - _FAN_BITS)
+    ends = (mesh.places >> shift).astype(np.float64).take(places)
+    rest = np.zeros(len(mesh.positions))
+    for k in range(3):
+        rest += np.bincount(places[k], ends[(k + 1) % 3] - ends[(k + 2) % 3], len(rest))
+    return rest != 0

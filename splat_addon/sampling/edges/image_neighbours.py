@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which surfels may reach which border edges: both are looked up in the layered depth image that the surfels come from.
+
+Samples lie at the centres of its cells, and along its axis a splat is a disc. So an edge is scan-converted into the
+cells that it comes near to, row by row, and a run of cells is a run of the surfels, once these are in the order of
+their cells. What lies in other layers of the same cells, `meetings` tells by its plane.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..ldc.grid import BLOCK, Grid
+from ..ldc.scan_conversion import expand
+
+#: Around the image, in cells: samples lie in it, other surfels and edges at most this far outside.
+_MARGIN = 3
+
+#: An image of more cells than this, and than so many a surfel, is searched instead of counted.
+_FEW_CELLS, _CELLS_A_SURFEL = 1 << 20, 16
+
+#: Of a reach, in cells, for the rounding of float32.
+_SLACK = 1e-3
+
+
+def image_neighbours(
+    positions: np.ndarray, axis: int, ends: np.ndarray, reach: float, grid: Grid
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(s,) surfels that come near to any edge, and of p pairs the (p,) surfel, by its number among these, and the (p,)
+    edge.
+
+    positions: (N, 3) float32 surfels, relative to the grid's middle. ends: (2, 2, e) float32 of edges, across and up in
+    the image along `axis`, in cells from there. reach: how near, in cells, as this image sees it.
+    """
+    along, up = ((axis + k) % 3 for k in (1, 2))
+    width, height = (2 * int(grid.middle[a]) + 2 * BLOCK + 2 * _MARGIN for a in (along, up))
+    # So that the centres of cells have whole numbers, of which none is below 0.
+    shift = [np.float32(grid.middle[a] - 0.5 + _MARGIN) for a in (along, up)]
+    size, scale = width * height, np.float32(1 / grid.spacing)
+    edge, starts, stops = _runs(ends[:, 0] + shift[0], ends[:, 1] + shift[1], reach + _SLACK, width, height)
+    kind = np.int32 if size < 2**31 else np.int64
+    column, row = (np.rint(positions[:, a] * scale + s).astype(kind) for a, s in zip((along, up), shift, strict=True))
+    row *= kind(width)
+    row += column
+    is_counted = size <= max(_FEW_CELLS, _CELLS_A_SURFEL * len(positions))
+    if is_counted:
+        crossings = np.bincount(starts, minlength=size + 1) - np.bincount(stops, minlength=size + 1)
+        near = np.flatnonzero((np.cumsum(crossings) > 0).take(row, mode="clip"))
+    else:
+        near = np.arange(len(row))
+    cells, order = _ordered(row.take(near))
+    if is_counted:
+        firsts = np.zeros(size + 1, np.intp)
+        np.cumsum(np.bincount(cells, minlength=size), out=firsts[1:])
+        starts, stops = firsts.take(starts), firsts.take(stops)
+    else:
+        starts, stops = np.searchsorted(cells, starts), np.searchsorted(cells, stops)
+    run, number = expand(stops - starts)
+    number += starts.take(run)
+    return near, order.take(number), edge.take(run)
+
+
+def _runs(x: np.ndarray, y: np.ndarray, reach: float, width: int, height: int):
+    """Runs of cells that lie within `reach` of edges, and some more around their ends: (r,) the edge, and (r,) the
+    first cell of each run and the one behind its last. x, y: (2, e), of their ends."""
+    low, high = y.min(axis=0) - reach, y.max(axis=0) + reach
+    first = np.clip(np.ceil(low), 0, height).astype(np.intp)
+    last = np.clip(np.floor(high), -1, height - 1).astype(np.intp)
+    edge, number = expand(np.maximum(last - first + 1, 0))
+    row = number + first.take(edge)
+    across, rise = x[1] - x[0], y[1] - y[0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = across / rise
+        half = reach * np.hypot(across, rise) / np.abs(rise)
+    is_flat = ~(np.abs(rise) > 1e-6 * reach)
+    slope[is_flat], half[is_flat] = 0, np.inf
+    middle = slope.take(edge)
+    middle *= row - y[0].take(edge)
+    middle += x[0].take(edge)
+    half = half.take(edge)
+    left = np.maximum(middle - half, (x.min(axis=0) - reach).take(edge))
+    right = np.minimum(middle + half, (x.max(axis=0) + reach).take(edge))
+    left = np.clip(np.ceil(left), 0, width).astype(np.intp)
+    right = np.clip(np.floor(right), -1, width - 1).astype(np.intp)
+    there = np.flatnonzero(right >= left)
+    row *= width
+    left += row
+    right += row + 1
+    return edge.take(there), left.take(there), right.take(there)
+
+
+def _ordered(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The cells in ascending order, and where each was; sorted together with that number, which takes less time."""
+    bits = max(len(cells) - 1, 1).bit_length()
+    both = cells.astype(np.int64)
+    both <<= bits
+    both |= np.arange(len(cells))
+    both.sort()
+    order = both & ((1 << bits) - 1)
+    both >>= bits
+    return both, order

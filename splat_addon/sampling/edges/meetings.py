@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where borders go through splats: each edge of the same piece of surface as its splat sees it.
+
+A place on a border is seen along the axis of the surfel's image, and given in half-axes of its splat, in which this is
+the unit circle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ...surfels import quaternion_axes
+from ..ldc.grid import Grid
+from .borders import Borders
+from .image_neighbours import image_neighbours
+
+#: Rows of surfels by the axis of the image that sees them: a slice or their numbers.
+Images = list[tuple[int, slice | np.ndarray]]
+
+#: A face is looked at in the images whose axis has at least this share of its normal.
+_LEAST_SHARE = 0.4
+
+#: Least cosine between a surfel's plane and a face that its border belongs to: of one smooth piece of surface.
+_SAME_PIECE = np.float32(np.cos(np.radians(40)))
+
+#: How far off a face's plane a surfel of the same piece of surface may be: this share of its distance from the edge,
+#: and of its size.
+_OFF_PLANE, _OFF_ANYHOW = np.float32(0.35), np.float32(0.1)
+
+#: A surfel this far beyond an edge, in half-axes, and not beyond its ends, is of another piece of surface.
+BEYOND = np.float32(-0.05)
+
+#: A surfel that lies at no cell's centre is at most this far from one, in cells.
+_OFF_CENTRE = np.sqrt(0.5)
+
+
+@dataclass(frozen=True, eq=False)
+class Meetings:
+    """m meetings of a surfel with a side of an edge.
+
+    surfel, side: (m,) intp. start, end: (2, m) float32 in the unit circle, with the surface at the left. line: (3, m)
+    float32 of unit direction, above 0 on the surface. distance: (m,) float32, of the edge from the centre. facing: (m,)
+    float32 cosine between both planes, without its sign. inverse: (4, m) float32, row by row, from cells of the image
+    to half-axes. place: (2, m) float32, of the surfel in its image, in cells from the grid's middle. axis: (m,) int8,
+    of the image.
+    """
+
+    surfel: np.ndarray
+    side: np.ndarray
+    start: np.ndarray
+    end: np.ndarray
+    line: np.ndarray
+    distance: np.ndarray
+    facing: np.ndarray
+    inverse: np.ndarray
+    place: np.ndarray
+    axis: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.surfel)
+
+    def take(self, rows: np.ndarray) -> Meetings:
+        return Meetings(*(getattr(self, f.name).take(rows, axis=-1) for f in fields(self)))
+
+
+def by_facing(arrays: dict[str, np.ndarray]) -> Images:
+    """Each surfel in the image along the axis that it faces most."""
+    facing = np.abs(quaternion_axes(arrays["rotations"])[2]).argmax(axis=1)
+    return [(axis, np.flatnonzero(facing == axis)) for axis in range(3)]
+
+
+def meetings(arrays, images: Images, borders: Borders, grid: Grid, at_centres: bool = True) -> Meetings:
+    """Those of the surfels with the sides of borders.
+
+    arrays: by field of `Surfels`, positions relative to the grid's middle. at_centres: whether they lie at the centres
+    of cells.
+    """
+    ends = np.stack([borders.start, borders.end]) - grid.surfel_origin
+    ends = np.ascontiguousarray(np.moveaxis(ends, 2, 1) / grid.spacing, np.float32)
+    normals = np.ascontiguousarray(borders.normals.T, np.float32)
+    parts = [_in_image(arrays, axis, rows, ends, normals, grid, at_centres) for axis, rows in images]
+    joined = [np.concatenate([getattr(part, f.name) for part in parts], axis=-1) for f in fields(Meetings)]
+    return Meetings(*joined)
+
+
+def _in_image(arrays, axis: int, rows: slice | np.ndarray, ends, normals, grid: Grid, at_centres: bool) -> Meetings:
+    order = [(axis + k) % 3 for k in (1, 2, 0)]
+    positions, scales = arrays["positions"][rows], arrays["scales"][rows]
+    faces = np.flatnonzero(np.abs(normals[axis]) >= _LEAST_SHARE)
+    ends, normals = ends[:, order].take(faces, axis=2), normals[order].take(faces, axis=1)
+    # The smaller half-axis lies across the image's axis, the larger one is foreshortened to it.
+    reach = float((scales[:, 1] if isinstance(rows, slice) else scales).max(initial=0)) / grid.spacing
+    search = reach if at_centres else reach + _OFF_CENTRE
+    near, surfel, edge = image_neighbours(positions, axis, ends[:, :2], search, grid)
+    inverse_spacing = np.float32(1 / grid.spacing)
+    place = [np.take(positions[:, a], near) * inverse_spacing for a in order]
+    surfel, edge, off = _near_planes(place, surfel, edge, ends[0], normals, reach)
+    # Only now, as few are left, what they look like.
+    is_left = np.zeros(len(near), bool)
+    is_left[surfel] = True
+    left, number = np.flatnonzero(is_left), np.cumsum(is_left)
+    surfel, near = number.take(surfel) - 1, near.take(left)
+    surfels = _Seen(scales.take(near, axis=0) * inverse_spacing, arrays["rotations"][rows].take(near, axis=0), order)
+    facing = sum(n.take(edge) * own.take(surfel) for n, own in zip(normals, surfels.normal, strict=True))
+    alike = np.flatnonzero(np.abs(facing) >= _SAME_PIECE)
+    surfel, edge, facing, off = (values.take(alike) for values in (surfel, edge, facing, off))
+    inverse = surfels.inverse.take(surfel, axis=1)
+    u, v = (place[k].take(left).take(surfel) for k in (0, 1))
+    start, end = (_in_circle(inverse, e[0].take(edge) - u, e[1].take(edge) - v) for e in ends)
+    # The face lies at the left of its edge where it is seen from the side that its normal points to.
+    turned = facing < 0
+    start, end = np.where(turned, end, start), np.where(turned, start, end)
+    share, distance = nearest_on_segment(start, end)
+    line = line_along(start, end)
+    meets = distance < 1
+    meets &= off <= (_OFF_PLANE * distance + _OFF_ANYHOW) * surfels.size.take(surfel)
+    meets &= (line[2] >= BEYOND) | (share == 0) | (share == 1)
+    at, seen = np.flatnonzero(meets), np.stack([u, v])
+    numbers = near + rows.start if isinstance(rows, slice) else rows.take(near)
+    return Meetings(
+        numbers.take(surfel.take(at)),
+        faces.take(edge.take(at)),
+        *(values.take(at, axis=-1) for values in (start, end, line, distance, np.abs(facing), inverse, seen)),
+        np.full(len(at), axis, np.int8),
+    )
+
+
+def _near_planes(place: list[np.ndarray], surfel, edge, start: np.ndarray, normals: np.ndarray, reach: float):
+    """Those of p pairs whose surfel lies near the plane of the edge's face: (q,) surfels, (q,) edges, and how far off,
+    (q,) cells. place: (s,) each, across, up and along the image's axis. start, normals: (3, e), in the same order."""
+    slopes = normals[:2] / normals[2]
+    heights = start[2] + (start[:2] * slopes).sum(axis=0)
+    off = place[2].take(surfel)
+    off -= heights.take(edge)
+    for slope, along in zip(slopes, place, strict=False):
+        step = slope.take(edge)
+        step *= along.take(surfel)
+        off += step
+    np.abs(off, out=off)
+    foreshortening = np.abs(normals[2])
+    farthest = np.float32(np.sqrt(3) * reach) * (_OFF_PLANE + _OFF_ANYHOW) / foreshortening
+    at = np.flatnonzero(off <= farthest.take(edge))
+    edge = edge.take(at)
+    return surfel.take(at), edge, off.take(at) * foreshortening.take(edge)
+
+
+class _Seen:
+    """Surfels as their image sees them. normal: (3, s), across, up and along its axis. inverse: (4, s), row by row,
+    from cells to half-axes. size: (s,) the larger half-axis, cells."""
+
+    def __init__(self, scales: np.ndarray, rotations: np.ndarray, order: list[int]):
+        x, y, z = quaternion_axes(rotations)
+        self.normal = np.ascontiguousarray(z.T[order])
+        (xu, xv), (yu, yv) = (
+            half_axis.T[order[:2]] * size for half_axis, size in ((x, scales[:, 0]), (y, scales[:, 1]))
+        )
+        determinant = xu * yv - yu * xv
+        self.inverse = np.stack([yv, -yu, -xv, xu])
+        self.inverse /= np.where(np.abs(determinant) > 1e-12, determinant, np.float32(1e-12))
+        self.size = scales.max(axis=1)
+
+
+def _in_circle(inverse: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(2, m) in half-axes of (m,) cells from the centre."""
+    return np.stack([inverse[0] * u + inverse[1] * v, inverse[2] * u + inverse[3] * v])
+
+
+def nearest_on_segment(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(m,) share of the way at which a segment of the plane is nearest to (0, 0), and (m,) its distance there."""
+    (x, y), (u, v) = start, end - start
+    share = -(x * u + y * v)
+    share /= np.maximum(u * u + v * v, np.float32(1e-30))
+    np.clip(share, 0, 1, out=share)
+    return share, np.hypot(x + u * share, y + v * share)
+
+
+def line_along(start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """(3, m) lines of unit direction through two places each, above 0 at the left."""
+    u, v = end - start
+    scale = 1 / np.maximum(np.sqrt(u * u + v * v), np.float32(1e-30))
+    a, b = -v * scale, u * scale
+    return np.stack([a, b, -(a * start[0] + b * start[1])])

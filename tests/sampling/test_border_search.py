@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What spares work finds what a look at everything finds: borders of a mesh, and surfels near them."""
+
+import numpy as np
+import pytest
+
+from splat_addon.sampling import Channel, Surface, TriangleMesh, VertexColors, drop_unusable
+from splat_addon.sampling.edges import image_neighbours as search
+from splat_addon.sampling.edges.borders import survey_edges
+from splat_addon.sampling.ldc.grid import make_grid
+
+
+def bumpy(steps=14, height=0.12, turned=False, split=False, seed=5):
+    """An open sheet with bumps, of which some edges are creases."""
+    random = np.random.default_rng(seed)
+    x, y = (axis.ravel() for axis in np.meshgrid(*2 * [np.linspace(0, 1, steps)]))
+    positions = np.stack([x, y, height * random.random(len(x))], axis=1)
+    corner = np.add.outer(np.arange(steps - 1) * steps, np.arange(steps - 1)).ravel()
+    triangles = np.concatenate([
+        np.stack([corner, corner + 1, corner + steps], 1), np.stack([corner + 1, corner + steps + 1, corner + steps], 1)
+    ])  # fmt: skip
+    if turned:
+        triangles[::7] = triangles[::7, ::-1]
+    if split:
+        positions, triangles = positions[triangles].reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
+    return TriangleMesh(positions, triangles)
+
+
+def with_colors(mesh):
+    colors = np.ones((len(mesh), 3, 4), np.float32)
+    colors[(mesh.positions[mesh.triangles].mean(axis=1)[:, 0] > 0.5), :, 0] = 0.5
+    surface = Surface(Channel((1, 1, 1, 1), VertexColors()))
+    return TriangleMesh(mesh.positions, mesh.triangles, corner_colors=colors, surfaces=(surface,))
+
+
+def with_normals(mesh):
+    shaded = survey_normals(mesh)
+    normals = np.repeat(shaded[:, None], 3, axis=1)
+    normals[:, :, 0] += 0.2
+    return TriangleMesh(mesh.positions, mesh.triangles, corner_normals=normals)
+
+
+def survey_normals(mesh):
+    a, b, c = mesh.positions[mesh.triangles].swapaxes(0, 1)
+    normals = np.cross(b - a, c - a)
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def borders_by_hand(mesh, angle):
+    """{(triangle, corner at which a border edge starts)}, edge by edge."""
+    sides, names = {}, {}
+    place = [names.setdefault(tuple(p), len(names)) for p in mesh.positions.tolist()]
+    for t, triangle in enumerate(mesh.triangles.tolist()):
+        for k in range(3):
+            ends = place[triangle[k]], place[triangle[(k + 1) % 3]]
+            sides.setdefault(tuple(sorted(ends)), []).append((t, k, ends))
+    normals, found = survey_normals(mesh), set()
+    for edge in sides.values():
+        breaks = len(edge) != 2
+        if not breaks:
+            (s, k, ends), (t, n, others) = edge
+            sign = -1 if ends == others else 1
+            breaks = sign * (normals[s] @ normals[t]) < np.cos(angle) - 1e-6
+            for step in (0, 1):
+                other = (n + (step if ends == others else 1 - step)) % 3
+                if mesh.corner_colors is not None:
+                    difference = mesh.corner_colors[s, (k + step) % 3] - mesh.corner_colors[t, other]
+                    breaks |= np.abs(difference).max() > 0.02
+                if mesh.corner_normals is not None:
+                    a, b = mesh.corner_normals[s, (k + step) % 3], mesh.corner_normals[t, other]
+                    breaks |= sign * (a @ b) < np.cos(angle) * np.linalg.norm(a) * np.linalg.norm(b)
+        if breaks:
+            found |= {(t, k) for t, k, _ in edge}
+    return found
+
+
+@pytest.mark.parametrize("height", [0.0, 0.02, 0.12])
+@pytest.mark.parametrize("changed", [lambda m: m, with_colors, with_normals], ids=["plain", "colours", "normals"])
+@pytest.mark.parametrize("form", [{}, {"turned": True}, {"split": True}], ids=["even", "turned", "split"])
+def test_borders_are_those_that_a_look_at_every_edge_finds(height, changed, form):
+    angle = np.radians(30)
+    mesh, _ = drop_unusable(changed(bumpy(height=height, **form)))
+    borders = survey_edges(mesh, angle).borders
+    starts = borders.start[:, None] == mesh.positions[mesh.triangles[borders.triangles]]
+    found = set(zip(borders.triangles.tolist(), starts.all(axis=2).argmax(axis=1).tolist(), strict=True))
+    expected = borders_by_hand(mesh, angle)
+    assert found == expected and len(found) == len(borders)
+
+
+def test_planes_that_differ_by_just_the_angle_make_no_crease():
+    turns = np.arange(12) * np.pi / 6
+    ring = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    positions = np.concatenate([np.column_stack([ring, np.full(12, z)]) for z in (0.0, 1.0)])
+    i, j = np.arange(12), (np.arange(12) + 1) % 12
+    walls = np.concatenate([np.stack([i, j, j + 12], 1), np.stack([i, j + 12, i + 12], 1)])
+    borders = survey_edges(TriangleMesh(positions, walls), np.radians(30)).borders
+    assert len(borders) == 24 and np.all(borders.start[:, 2] == borders.end[:, 2])
+
+
+def test_bends_are_about_the_angles_between_neighbours(sphere):
+    bends = survey_edges(drop_unusable(sphere)[0]).bends
+    a, b, c = sphere.positions[sphere.triangles].swapaxes(0, 1)
+    across = np.sqrt(np.linalg.norm(np.cross(b - a, c - a), axis=1))
+    assert 0.4 < np.median(bends / across) < 2.5
+
+
+@pytest.mark.parametrize("is_counted", [True, False])
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_every_surfel_within_reach_of_an_edge_is_found(monkeypatch, is_counted, axis):
+    random, reach = np.random.default_rng(2), 1.25
+    corners = np.array([(0, 0, 0), (1, 0.7, 0.4), (0.3, 0.2, 0.4)])
+    grid = make_grid(TriangleMesh(corners, np.array([(0, 1, 2)])), 1 / 40)
+    cells = random.integers(0, (40, 28, 16), (3000, 3)) + 0.5 - grid.middle
+    ends = (random.random((2, 3, 60)) * np.array((40, 28, 16))[:, None] - grid.middle[:, None]).astype(np.float32)
+    ends[1, :, :20] = ends[0, :, :20] + random.normal(0, 0.5, (3, 20))
+    ends[1, (axis + 2) % 3, 20:30] = ends[0, (axis + 2) % 3, 20:30]
+    if not is_counted:
+        monkeypatch.setattr(search, "_FEW_CELLS", 0)
+        monkeypatch.setattr(search, "_CELLS_A_SURFEL", 0)
+    order = [(axis + 1) % 3, (axis + 2) % 3]
+    positions = (cells * grid.spacing).astype(np.float32)
+    near, surfel, edge = search.image_neighbours(positions, axis, ends[:, order], reach, grid)
+    found = set(zip(near[surfel].tolist(), edge.tolist(), strict=True))
+    start, end = (e[order].astype(float).T for e in ends)
+    offset, along = cells[:, None, order] - start, end - start
+    share = np.clip((offset * along).sum(2) / (along * along).sum(1), 0, 1)
+    distance = np.linalg.norm(offset - share[..., None] * along, axis=2)
+    assert len(found) == len(surfel)
+    assert found >= set(map(tuple, np.argwhere(distance < reach).tolist()))
+    surfels, edges = np.array(sorted(found)).T
+    assert distance[surfels, edges].max() < 3 * reach and len(found) < 3 * (distance < reach).sum()
