@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import zipfile
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -73,7 +74,7 @@ def joined_parts(paths: Iterable[str | os.PathLike], size: tuple[int, int], numb
                 covered[y : y + height, x : x + width] += 1
                 for turn, (name, names) in enumerate(zip(about["frames"], about["names"], strict=True)):
                     _put(wholes.setdefault(tuple(name), {}), arrays, turn, about["place"], size, names)
-        except (KeyError, OSError, EOFError, TypeError) as error:
+        except (KeyError, OSError, EOFError, TypeError, zipfile.BadZipFile) as error:
             raise ValueError(f"{path} is no part of a picture: {error}; draw it again.") from error
     if not (covered == 1).all():
         missing, twice = np.count_nonzero(covered == 0), np.count_nonzero(covered > 1)

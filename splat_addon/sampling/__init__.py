@@ -9,6 +9,7 @@ without faces become surfels in `points`.
 
 from ..images import Image
 from .attributes.surfaces import Channel, NormalMap, Surface, Texture, VertexColors
+from .blocks import Block, joined_blocks, read_blocks, sample_block, write_blocks
 from .camera_density import NotSeenError, Outline, camera_spacing, outline
 from .deform.deforming import STRETCHED_SHARE, DeformingSurfels
 from .density import grid_spacing, predict_count
@@ -32,6 +33,7 @@ __all__ = [
     "LEAST_GRAZING_ANGLE",
     "REDUCTIONS",
     "STRETCHED_SHARE",
+    "Block",
     "Channel",
     "DeformingSurfels",
     "Image",
@@ -54,12 +56,16 @@ __all__ = [
     "have_same_values",
     "is_solid",
     "joined",
+    "joined_blocks",
     "outline",
     "predict_count",
     "projected_area",
+    "read_blocks",
+    "sample_block",
     "sample_mesh",
     "sample_surface",
     "surfels_from_points",
     "transformed",
     "transition_edges",
+    "write_blocks",
 ]

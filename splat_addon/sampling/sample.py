@@ -99,67 +99,138 @@ def sample_surface(
 
     Raises ValueError with one sentence for an unusable option.
     """
-    chosen = find_reduction(reduction)
-    check_fineness(spacing, resolution, count)
-    check_grazing_angle(grazing_angle)
-    if crease_angle is not None and not 0 < crease_angle <= math.pi:
-        raise ValueError(f"A crease's angle must be above 0 and up to pi radians, not {crease_angle}.")
-    if not (math.isfinite(splat_size) and splat_size > 0):
-        raise ValueError(f"The splat size must be a finite number above 0, not {splat_size}.")
-    if tolerance is not None and chosen.merge is not None:
-        raise ValueError(f"The reduction {reduction!r} leaves nothing flat to merge; choose another, or no tolerance.")
-    mesh, _ = drop_unusable(mesh)
-    if not len(mesh):
+    run = SamplingRun(
+        mesh,
+        spacing=spacing,
+        resolution=resolution,
+        count=count,
+        reduction=reduction,
+        grazing_angle=grazing_angle,
+        splat_size=splat_size,
+        tolerance=tolerance,
+        texture_mapped=texture_mapped,
+        crease_angle=crease_angle,
+        fits_blending=fits_blending,
+    )
+    if run.is_empty:
         return Sampling(empty_surfels())
-    how = {"reduction": reduction, "grazing_angle": grazing_angle}
-    grid = make_grid(mesh, grid_spacing(mesh, spacing=spacing, resolution=resolution, count=count, **how))
-    keeps = partial(chosen.keeps, grazing_angle=grazing_angle)
-    coordinates = grid.coordinates(mesh.positions)
-    surface = SampledSurface(len(mesh.positions))
-    images = depth_cube(coordinates, mesh.triangles, grid, keeps, surface, stage(progress, 0.0, 0.5))
-    lost = missed_components(mesh, surface)
-
-    total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
-    sampler = MaterialSampler(mesh.surfaces)
-    uv_fields = (*UV_FIELDS, BORDER) if texture_mapped and is_texture_mapped(mesh.surfaces) else ()
-    seams = seam_edges(mesh) if uv_fields and mesh.corner_uvs is not None else None
-    layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in (*sampler.optional, *uv_fields)}
-    arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
-    tangents = layered_tangents(mesh) if sampler.needs_tangents else None
-    needs_edges = crease_angle is not None or fits_blending
-    edges = survey_edges(mesh, DEFAULT_CREASE_ANGLE if crease_angle is None else crease_angle) if needs_edges else None
-    if fits_blending:
-        arrays["blend_depth"] = np.empty(total, np.float32)
-    bends = (edges.bends, edges.sizes) if fits_blending else None
-    filler = SampleFiller(mesh, coordinates, grid, splat_size * grid.spacing, sampler, tangents, seams, bends, arrays)
+    surface = SampledSurface(len(run.mesh.positions))
+    images = run.images(surface, stage(progress, 0.0, 0.5))
+    lost = missed_components(run.mesh, surface)
     filled = 1.0 if crease_angle is None else 0.6
-    _fill(filler, images, stage(progress, 0.5, filled))
-    if chosen.merge is not None:
-        arrays = chosen.merge(arrays, grid.spacing)
-    gaps, gap_triangles = {}, np.empty(0, np.intp)
-    if crease_angle is not None:
-        report = stage(progress, filled, 1.0)
-        seen = _rows_of(images) if reduction == "normal" else by_facing(arrays)
-        clipping = clip(arrays, seen, edges.borders, grid)
-        report(0.7)
-        gaps, gap_triangles = gap_surfels(mesh, edges.borders, clipping, grid, splat_size, sampler, tangents)
-        if bends is not None and gaps:
-            gaps["blend_depth"] = blend_depths(*(of[gap_triangles] for of in bends), gaps["scales"].max(axis=1))
-        arrays |= clipping.fields
-        report(1.0)
-    saved, error = 0, 0.0
-    if tolerance is not None:
-        axes = np.repeat(np.arange(3), [int(spans.counts.sum(dtype=np.int64)) for spans in images])
-        arrays, error = merge_flat(arrays, axes, grid.spacing, tolerance)
-        saved = total - len(arrays["positions"])
-    if gaps:
-        arrays = _appended(arrays, gaps)
-    small_parts = int(lost[1].max(initial=-1)) + 1
-    if small_parts:
-        extra = component_surfels(mesh, coordinates, grid, lost, splat_size, sampler, tangents, bool(uv_fields))
-        arrays = _appended(arrays, extra)
-    surfels = Surfels(origin=grid.surfel_origin, **arrays)
-    return Sampling(surfels, small_parts, chosen.merge is None and not small_parts, saved, error, gap_triangles)
+    arrays = run.filled(images, stage(progress, 0.5, filled))
+    return run.finished(arrays, images, lost, stage(progress, filled, 1.0))
+
+
+class SamplingRun:
+    """What `sample_surface` does, which has the same options, in steps that several machines may share (`blocks`).
+
+    mesh: its usable triangles; where there are none, `is_empty` holds and there is nothing else. grid: of the samples.
+    """
+
+    def __init__(
+        self,
+        mesh: TriangleMesh,
+        *,
+        spacing: float | None = None,
+        resolution: float | None = None,
+        count: float | None = None,
+        reduction: str = "normal",
+        grazing_angle: float = DEFAULT_GRAZING_ANGLE,
+        splat_size: float = DEFAULT_SPLAT_SIZE,
+        tolerance: Tolerance | None = None,
+        texture_mapped: bool = False,
+        crease_angle: float | None = None,
+        fits_blending: bool = False,
+    ):
+        chosen = find_reduction(reduction)
+        check_fineness(spacing, resolution, count)
+        check_grazing_angle(grazing_angle)
+        if crease_angle is not None and not 0 < crease_angle <= math.pi:
+            raise ValueError(f"A crease's angle must be above 0 and up to pi radians, not {crease_angle}.")
+        if not (math.isfinite(splat_size) and splat_size > 0):
+            raise ValueError(f"The splat size must be a finite number above 0, not {splat_size}.")
+        if tolerance is not None and chosen.merge is not None:
+            raise ValueError(
+                f"The reduction {reduction!r} leaves nothing flat to merge; choose another, or no tolerance."
+            )
+        mesh, _ = drop_unusable(mesh)
+        self.mesh, self._chosen, self._splat_size, self._tolerance = mesh, chosen, splat_size, tolerance
+        self._clips, self._is_by_normal = crease_angle is not None, reduction == "normal"
+        if self.is_empty:
+            return
+        how = {"reduction": reduction, "grazing_angle": grazing_angle}
+        self.grid = make_grid(mesh, grid_spacing(mesh, spacing=spacing, resolution=resolution, count=count, **how))
+        self._keeps = partial(chosen.keeps, grazing_angle=grazing_angle)
+        self._coordinates = self.grid.coordinates(mesh.positions)
+        self._sampler = MaterialSampler(mesh.surfaces)
+        is_mapped = texture_mapped and is_texture_mapped(mesh.surfaces)
+        self._uv_fields = (*UV_FIELDS, BORDER) if is_mapped else ()
+        self._seams = seam_edges(mesh) if is_mapped and mesh.corner_uvs is not None else None
+        self._tangents = layered_tangents(mesh) if self._sampler.needs_tangents else None
+        angle = DEFAULT_CREASE_ANGLE if crease_angle is None else crease_angle
+        self._edges = survey_edges(mesh, angle) if self._clips or fits_blending else None
+        self._bends = (self._edges.bends, self._edges.sizes) if fits_blending else None
+
+    @property
+    def is_empty(self) -> bool:
+        return not len(self.mesh)
+
+    def images(self, surface: SampledSurface, report: Callable, share: tuple[int, int] = (0, 1)) -> tuple[Spans, ...]:
+        """The spans of all samples, or of one block: share is its number, from 0, and how many there are.
+
+        surface: is told which triangles are sampled.
+        """
+        return depth_cube(self._coordinates, self.mesh.triangles, self.grid, self._keeps, surface, report, share)
+
+    def filled(self, images: tuple[Spans, ...], report: Callable[[float], None]) -> dict[str, np.ndarray]:
+        """Field of `Surfels` -> its values at the samples of these spans, as the sampling itself has them."""
+        total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
+        layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in (*self._sampler.optional, *self._uv_fields)}
+        arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
+        if self._bends is not None:
+            arrays["blend_depth"] = np.empty(total, np.float32)
+        half_size = self._splat_size * self.grid.spacing
+        of_mesh = self._sampler, self._tangents, self._seams, self._bends
+        _fill(SampleFiller(self.mesh, self._coordinates, self.grid, half_size, *of_mesh, arrays), images, report)
+        return arrays
+
+    def finished(
+        self, arrays: dict[str, np.ndarray], images: tuple[Spans, ...], lost: tuple, report: Callable[[float], None]
+    ) -> Sampling:
+        """Of all samples, what needs their neighbours. lost: as `missed_components` has it of all of them."""
+        mesh, grid, tangents, bends = self.mesh, self.grid, self._tangents, self._bends
+        about = grid, self._splat_size, self._sampler, tangents
+        total = len(arrays["positions"])
+        if self._chosen.merge is not None:
+            arrays = self._chosen.merge(arrays, grid.spacing)
+        gaps, gap_triangles = {}, np.empty(0, np.intp)
+        if self._clips:
+            seen = _rows_of(images) if self._is_by_normal else by_facing(arrays)
+            clipping = clip(arrays, seen, self._edges.borders, grid)
+            report(0.7)
+            gaps, gap_triangles = gap_surfels(mesh, self._edges.borders, clipping, *about)
+            if bends is not None and gaps:
+                gaps["blend_depth"] = blend_depths(*(of[gap_triangles] for of in bends), gaps["scales"].max(axis=1))
+            arrays = arrays | clipping.fields
+            report(1.0)
+        saved, error = 0, 0.0
+        if self._tolerance is not None:
+            axes = np.repeat(np.arange(3), [int(spans.counts.sum(dtype=np.int64)) for spans in images])
+            arrays, error = merge_flat(arrays, axes, grid.spacing, self._tolerance)
+            saved = total - len(arrays["positions"])
+        if gaps:
+            arrays = _appended(arrays, gaps)
+        small_parts = int(lost[1].max(initial=-1)) + 1
+        if small_parts:
+            sampler, is_mapped = self._sampler, bool(self._uv_fields)
+            extra = component_surfels(
+                mesh, self._coordinates, grid, lost, self._splat_size, sampler, tangents, is_mapped
+            )
+            arrays = _appended(arrays, extra)
+        surfels = Surfels(origin=grid.surfel_origin, **arrays)
+        keeps_both_sides = self._chosen.merge is None and not small_parts
+        return Sampling(surfels, small_parts, keeps_both_sides, saved, error, gap_triangles)
 
 
 def _rows_of(images: tuple[Spans, ...]) -> list[tuple[int, slice]]:

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`surfels convert`: objects of the file become surfels, in a new file."""
+"""`surfels convert`: objects of the file become surfels, in a new file; or one block of them, for `surfels merge`."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import bpy
 
+from ...sampling import Sampling, sample_block, sample_surface, write_blocks
 from ..conversion.batch import ConversionBatch
+from ..conversion.mesh_conversion import sampling_options
 from ..conversion.mesh_settings import DENSITIES, choices
 from ..geometry.sources import has_surfaces
 from ..ids import CONVERSION_SETTINGS
@@ -19,14 +21,22 @@ from .whole_results import unfinished
 HELP = "make surfels of objects, in a new file"
 DESCRIPTION = (
     "Converts objects with the settings of the file's sidebar, or those that are given here, and saves the result as a "
-    "new file. The sources are left out of its renders."
+    "new file. The sources are left out of its renders. With --block, leaves that block alone beside the new file's "
+    "place for `merge`."
 )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", required=True, help="the new .blend")
-    parser.add_argument("--objects", nargs="+", help="names; without them everything visible that has surfaces")
+    add_conversion_arguments(parser)
+    parser.add_argument("--block", type=int, help="the one block to convert, from 1; it waits beside --out")
     parser.add_argument("--again", action="store_true", help="convert even where the file is there already")
+
+
+def add_conversion_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `merge` is told too."""
+    parser.add_argument("--objects", nargs="+", help="names; without them everything visible that has surfaces")
+    parser.add_argument("--blocks", type=int, help="how many blocks of the sampling grid machines share")
     density = parser.add_mutually_exclusive_group()
     for name, kind in (("resolution", int), ("spacing", float), ("count", int)):
         density.add_argument(f"--{name}", type=kind, help=DENSITIES[name.upper()].description)
@@ -34,19 +44,51 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
     """Yields the file. Raises ValueError or OSError; nothing is saved where one object cannot be converted."""
+    if (options.block is None) != (options.blocks is None):
+        raise ValueError("A block needs both --block and --blocks.")
+    out = result(options)
+    file = out if options.block is None else block_file(out, options.block, options.blocks)
+    if not options.again and (file.is_file() or out.is_file()):
+        print(f"there already: {file if file.is_file() else out}", flush=True)
+        return
+    batch = new_batch(options)
+    if options.block is None:
+        for conversion in batch.prepared(bpy.context):
+            batch.sample(conversion)
+        place(batch)
+        save(out)
+    else:
+        _write_block(batch, file, options.block, options.blocks)
+    yield file
+
+
+def _write_block(batch: ConversionBatch, file: Path, number: int, count: int) -> None:
+    blocks = [
+        sample_block(conversion.mesh, number - 1, count, **sampling_options(conversion))
+        for conversion in batch.prepared(bpy.context)
+    ]
+    refuse(batch)
+    with unfinished(file) as folder:
+        write_blocks(folder / file.name, blocks)
+
+
+def result(options: argparse.Namespace) -> Path:
+    """Raises ValueError for one that is no .blend."""
     out = Path(options.out).absolute()
     if out.suffix != ".blend":
         raise ValueError(f"The result is a .blend, not {out.name!r}.")
-    if out.is_file() and not options.again:
-        print(f"there already: {out}", flush=True)
-        return
-    settings = settings_of(options)
-    batch = ConversionBatch(sources_of(options.objects), choices(settings), bpy.context.active_object)
-    for conversion in batch.prepared(bpy.context):
-        batch.sample(conversion)
-    place(batch)
-    save(out)
-    yield out
+    return out
+
+
+def block_file(out: Path, number: int, count: int) -> Path:
+    """number: from 1."""
+    return out.with_name(f"{out.name}.block-{number}-of-{count}.npz")
+
+
+def new_batch(options: argparse.Namespace, sampler: Callable[..., Sampling] = sample_surface) -> ConversionBatch:
+    """sampler: gives what `sample_surface` does, of the same arguments."""
+    sources, chosen = sources_of(options.objects), choices(settings_of(options))
+    return ConversionBatch(sources, chosen, bpy.context.active_object, sampler)
 
 
 def settings_of(options: argparse.Namespace):
@@ -75,10 +117,15 @@ def sources_of(names: list[str] | None) -> list[bpy.types.Object]:
     return found
 
 
-def place(batch: ConversionBatch) -> None:
-    """The surfel objects, with their sources out of the way. Raises ValueError where something was refused."""
+def refuse(batch: ConversionBatch) -> None:
+    """Raises ValueError where something cannot be converted."""
     if batch.refused:
         raise ValueError("; ".join(f"{name}: {sentence}" for name, sentence in batch.refused))
+
+
+def place(batch: ConversionBatch) -> None:
+    """The surfel objects, with their sources out of the way. Raises ValueError where something was refused."""
+    refuse(batch)
     for conversion, _ in batch.place_all(bpy.context):
         print(f"{conversion.name}: {conversion.summary()}", flush=True)
         for note in conversion.notes:

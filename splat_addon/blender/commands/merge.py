@@ -5,13 +5,16 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
 
 import bpy
 
 from ...rendering.frame_parts import joined_parts
+from ...sampling import Block, joined_blocks, read_blocks
 from ..engine import final_render
 from ..export.camera import picture_size
+from .convert import add_conversion_arguments, block_file, new_batch, place, result, save
 from .pictures import (
     add_picture_arguments,
     files_of,
@@ -28,17 +31,22 @@ from .whole_results import remove_leftovers
 HELP = "put tiles or blocks together; or see that all frames are there"
 DESCRIPTION = (
     "With --tiles, puts the tiles of each frame together, lets the compositor and the file format have the whole "
-    "picture, and removes the tiles. Without, sees that all frames are there, names those that are not, and removes "
-    "what killed workers left."
+    "picture, and removes the tiles. With --blocks, joins the blocks of converted objects in a new file, and removes "
+    "them. With neither, sees that all frames are there, names those that are not, and removes what killed workers "
+    "left."
 )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_picture_arguments(parser)
+    add_conversion_arguments(parser)
 
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
     """Yields the files as they are written. Raises ValueError, RuntimeError or OSError."""
+    if options.blocks is not None:
+        yield from _blocks(options)
+        return
     scene, frames = prepare_scene(options.out), frames_of(options)
     if options.tiles:
         yield from _tiles(scene, frames, options.tiles)
@@ -80,6 +88,35 @@ def _merge(scene: bpy.types.Scene, frame: int, parts: list[Path]) -> None:
         write_picture(scene, frame)
     finally:
         final_render.given = None
+
+
+def _blocks(options: argparse.Namespace) -> Iterator[Path]:
+    out = result(options)
+    files = [block_file(out, number, options.blocks) for number in range(1, options.blocks + 1)]
+    if out.is_file():
+        print(f"there already: {out}", flush=True)
+    else:
+        if missing := [file for file in files if not file.is_file()]:
+            raise ValueError(f"{len(missing)} of {len(files)} blocks are missing, first {missing[0]}; convert them.")
+        turns = count()
+        batch = new_batch(options, lambda mesh, **how: joined_blocks(mesh, _blocks_of(files, next(turns)), **how))
+        for conversion in batch.prepared(bpy.context):
+            batch.sample(conversion)
+        place(batch)
+        save(out)
+        yield out
+    for file in files:
+        file.unlink(missing_ok=True)
+        remove_leftovers(file)
+
+
+def _blocks_of(files: list[Path], turn: int) -> Iterator[Block]:
+    """Of one object, the `turn`th that is converted."""
+    for file in files:
+        blocks = read_blocks(file)
+        if turn >= len(blocks):
+            raise ValueError(f"{file.name} has other objects than the file; convert it again.")
+        yield blocks[turn]
 
 
 def _shortened(frames: list[int]) -> str:

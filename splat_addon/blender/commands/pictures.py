@@ -43,8 +43,8 @@ def pair(text: str) -> tuple[int, int]:
 
 def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--frames", type=frame_list, help="like 1-10,15,20..30; without it the scene's current frame")
-    parser.add_argument("--first", type=int, help="the first frame of a chunk, with --count")
-    parser.add_argument("--count", type=int, help="how many frames the chunk has")
+    parser.add_argument("--first", type=int, help="the first frame of a chunk, with --chunk")
+    parser.add_argument("--chunk", type=int, help="how many frames the chunk has")
     parser.add_argument("--last", type=int, help="no frame of the chunk lies after this one")
     parser.add_argument("--out", help="path of the pictures, with # where the number goes; without it the scene's own")
     parser.add_argument("--tiles", type=pair, help="columns and rows of each frame's tiles, like 4x4")
@@ -54,9 +54,9 @@ def frames_of(options: argparse.Namespace) -> list[int]:
     """Raises ValueError where it is not clear which are meant."""
     if options.first is None:
         return options.frames or [bpy.context.scene.frame_current]
-    if options.frames or not (options.count and options.count > 0):
-        raise ValueError("A chunk needs --first and --count above 0, and no --frames.")
-    last = options.first + options.count - 1
+    if options.frames or not (options.chunk and options.chunk > 0):
+        raise ValueError("A chunk needs --first and --chunk above 0, and no --frames.")
+    last = options.first + options.chunk - 1
     last = last if options.last is None else min(last, options.last)
     if last < options.first:
         raise ValueError(f"The chunk begins at {options.first}, after the last frame, {options.last}.")

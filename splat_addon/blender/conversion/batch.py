@@ -8,11 +8,11 @@ with nothing usable does not stop the others.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import bpy
 
-from ...sampling import SamplingCancelled
+from ...sampling import Sampling, SamplingCancelled, sample_surface
 from .gathering import groups
 from .mesh_conversion import Choices, Conversion, bake, place, prepare, sample
 from .surfel_objects import select_only
@@ -87,17 +87,23 @@ class Batch(ABC):
 
 
 class ConversionBatch(Batch):
-    """Of surfaces. active: whose place a joined result takes."""
+    """Of surfaces. active: whose place a joined result takes. sampler: gives what `sample_surface` does."""
 
-    def __init__(self, sources: list[bpy.types.Object], choices: Choices, active: bpy.types.Object | None = None):
+    def __init__(
+        self,
+        sources: list[bpy.types.Object],
+        choices: Choices,
+        active: bpy.types.Object | None = None,
+        sampler: Callable[..., Sampling] = sample_surface,
+    ):
         super().__init__(groups(sources, active, choices.join))
-        self._choices = choices
+        self._choices, self._sampler = choices, sampler
 
     def _prepare(self, sources, depsgraph) -> Conversion:
         return prepare(sources, depsgraph, self._choices)
 
     def _sample(self, conversion: Conversion, progress) -> None:
-        sample(conversion, progress)
+        sample(conversion, progress, self._sampler)
 
     def _place(self, conversion: Conversion, context) -> bpy.types.Object:
         try:

@@ -159,31 +159,38 @@ def prepare(
     )
 
 
-def sample(conversion: Conversion, progress: Callable[[float], bool | None] | None = None) -> None:
-    """Make the surfels; touches nothing of Blender's.
+def sample(
+    conversion: Conversion,
+    progress: Callable[[float], bool | None] | None = None,
+    sampler: Callable[..., Sampling] = sample_surface,
+) -> None:
+    """Make the surfels; touches nothing of Blender's. sampler: gives what `sample_surface` does, of the same arguments.
 
     Raises SamplingCancelled where `progress` returned False, ValueError for a choice that sampling cannot meet.
     """
     start = time.perf_counter()
-    choices = conversion.choices
-    sampling = sample_surface(
-        conversion.mesh,
-        spacing=conversion.spacing,
-        reduction=choices.reduction,
-        grazing_angle=choices.grazing_angle,
-        splat_size=choices.splat_size,
-        tolerance=None if choices.tolerance is None else Tolerance(choices.tolerance),
-        texture_mapped=choices.texture_mapped,
-        crease_angle=choices.crease_angle,
-        fits_blending=choices.crease_angle is not None,
-        progress=progress,
-    )
+    sampling = sampler(conversion.mesh, progress=progress, **sampling_options(conversion))
     solid = sampling.keeps_both_sides and is_solid(conversion.whole)
     conversion.surfels = sampling.surfels.as_solid() if solid else sampling.surfels
     conversion.sampling = sampling
-    if choices.texture_mapped and not sampling.surfels.has_uvs:
+    if conversion.choices.texture_mapped and not sampling.surfels.has_uvs:
         conversion.notes.append("No base colour is one image times a constant, so no surfel is texture-mapped")
     conversion.seconds += time.perf_counter() - start
+
+
+def sampling_options(conversion: Conversion) -> dict:
+    """What `sample_surface` is asked for."""
+    choices = conversion.choices
+    return {
+        "spacing": conversion.spacing,
+        "reduction": choices.reduction,
+        "grazing_angle": choices.grazing_angle,
+        "splat_size": choices.splat_size,
+        "tolerance": None if choices.tolerance is None else Tolerance(choices.tolerance),
+        "texture_mapped": choices.texture_mapped,
+        "crease_angle": choices.crease_angle,
+        "fits_blending": choices.crease_angle is not None,
+    }
 
 
 def bake(conversion: Conversion, depsgraph: bpy.types.Depsgraph) -> None:

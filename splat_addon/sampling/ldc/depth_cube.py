@@ -33,12 +33,14 @@ def depth_cube(
     keeps: Callable[[np.ndarray], np.ndarray],
     surface: SampledSurface,
     report: Callable[[float], None],
+    share: tuple[int, int] = (0, 1),
 ) -> tuple[Spans, Spans, Spans]:
     """One `Spans` for the image along each of x, y, z.
 
     coordinates: (3, V) float64, of the vertices on the grid. triangles: (T, 3).
     keeps: (3, t) absolute normal components -> the (3, t) images that sample a triangle.
     surface: of the same vertices; is told which triangles are sampled.
+    share: of the rows of each image only those of one block: its number, from 0, and how many blocks there are.
     report: called with the finished share, 0 to 1. The axis is chosen from the snapped corners, whose normal is exact.
     Raises ValueError with one sentence where there would be more samples than `MAX_SAMPLES`.
     """
@@ -46,6 +48,7 @@ def depth_cube(
     for chunk in triangle_chunks(len(cells)):
         grid.snapped(coordinates[:, chunk], out=snapped[:, chunk])
         cells[chunk] = _packed_cells(snapped[:, chunk], grid.subcells)
+    bands = _bands(snapped, grid, *share) if share[1] > 1 else None
     images: tuple[list, list, list] = ([], [], [])
     total = 0
     for chunk in triangle_chunks(len(triangles), _CHUNK):
@@ -58,11 +61,14 @@ def depth_cube(
         kept = keeps(normals)
         kept &= hits.take(candidates, axis=1)
         kept &= normals > 0
+        if bands is not None:
+            kept &= _reaches(corners, bands * grid.subcells)
         picked = [np.flatnonzero(row) for row in kept]
         places = candidates.take(np.concatenate(picked))
         ends = np.cumsum([len(part) for part in picked])
         # All images at once: numpy is slow on small arrays.
-        for found in scan_convert(*(_seen(corners, picked, k) for k in (1, 2)), grid.subcells):
+        rows = None if bands is None else np.repeat(bands, [len(part) for part in picked], axis=1)
+        for found in scan_convert(*(_seen(corners, picked, k) for k in (1, 2)), grid.subcells, rows):
             stops = np.searchsorted(found.triangles, ends)
             sampled = places.take(found.triangles)
             found = replace(found, triangles=(sampled + chunk.start).astype(np.int32))
@@ -75,6 +81,30 @@ def depth_cube(
         surface.grow(indices, chunk.start)
         report(chunk.stop / len(triangles))
     return tuple(Spans.joined(spans) for spans in images)
+
+
+def surface_of(triangles: np.ndarray, images: tuple[Spans, ...], vertices: int) -> SampledSurface:
+    """What `depth_cube` tells a surface while it makes these spans, all of them."""
+    surface, is_sampled = SampledSurface(vertices), np.zeros(len(triangles), bool)
+    for spans in images:
+        is_sampled[spans.triangles] = True
+    for chunk in triangle_chunks(len(triangles), _CHUNK):
+        indices = corner_indices(triangles[chunk])
+        surface.add(indices, np.flatnonzero(is_sampled[chunk]))
+        surface.grow(indices, chunk.start)
+    return surface
+
+
+def _bands(snapped: np.ndarray, grid: Grid, number: int, blocks: int) -> np.ndarray:
+    """(2, 3) float64: the first row of this block in each image and that of the next; half-open, in whole numbers."""
+    ends = np.ceil(snapped.max(axis=1) / grid.subcells)[[2, 0, 1]].astype(np.int64)
+    return np.stack([ends * number // blocks, ends * (number + 1) // blocks]).astype(np.float64)
+
+
+def _reaches(corners: np.ndarray, bands: np.ndarray) -> np.ndarray:
+    """(3, t) bool: whether a triangle may have a row of the image's band. bands: (2, 3), in sub-cells."""
+    rows = corners[[2, 0, 1]]
+    return (rows.min(axis=1) < bands[1, :, None]) & (rows.max(axis=1) > bands[0, :, None])
 
 
 def _seen(corners: np.ndarray, picked: list[np.ndarray], k: int) -> np.ndarray:

@@ -44,14 +44,18 @@ class Spans:
         return Spans(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Spans)))
 
 
-def scan_convert(u: np.ndarray, v: np.ndarray, subcells: int) -> Iterator[Spans]:
+def scan_convert(u: np.ndarray, v: np.ndarray, subcells: int, band: np.ndarray | None = None) -> Iterator[Spans]:
     """The samples of t triangles, numbered from 0, as spans.
 
     u, v: (3, t) float64, the corners' image coordinates in whole sub-cells.
+    band: (2, t) float64, the first row that is wanted of each triangle and the first that is not; None: all.
     The edge A-B meets row j, the line v = y = j S, at column ceil((uA (vB - vA) + (y - vA)(uB - uA)) / ((vB - vA) S)).
     """
     u, v = _sorted_by_row(u, v)
     first, turn, last = np.ceil(v * (1 / subcells))
+    if band is not None:
+        first, last = np.maximum(first, band[0]), np.minimum(last, band[1])
+        last = np.maximum(last, first)
     base, slope, divisor = (line.ravel() for line in _edges(u, v, subcells))
     rows_of = (last - first).astype(np.intp)
     for part in batches(rows_of, BATCH):

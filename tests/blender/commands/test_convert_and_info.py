@@ -33,3 +33,28 @@ def test_a_file_is_told_of(animation, surfels_command):
     assert code == 0 and facts["frames"] == "1-4:1" and facts["size"] == "48 x 32" and facts["surfels"] > 1000
     assert "floor" in facts["convertible"] and facts["surfel_objects"] == ["Sphere surfels"]
     assert "surfel objects: Sphere surfels" in surfels_command("info")[1]
+
+
+def test_blocks_are_the_file_that_one_machine_makes(animation, surfels_command, surfels_of, tmp_path):
+    """Two objects at once, bit by bit; a block that is missing is named."""
+    bpy.data.objects["ball"].hide_set(False)
+    bpy.ops.wm.save_mainfile()
+    made_from, objects = str(tmp_path / "anim.blend"), ("--objects", "ball", "floor", "--resolution", 40)
+    assert surfels_command("convert", *objects, "--out", tmp_path / "whole.blend")[0] == 0
+    shared = (*objects, "--blocks", 3, "--out", tmp_path / "shared.blend")
+    for block in (3, 1, 2):
+        bpy.ops.wm.open_mainfile(filepath=made_from)
+        if block == 2:
+            code, said = surfels_command("merge", *shared)
+            assert code == 1 and "1 of 3 blocks are missing, first" in said and "block-2-of-3" in said
+        code, said = surfels_command("convert", *shared, "--block", block)
+        assert code == 0 and f"block-{block}-of-3.npz" in said
+    assert surfels_command("merge", *shared)[0] == 0
+    assert sorted(path.name for path in tmp_path.glob("*[!1]")) == ["anim.blend", "shared.blend", "whole.blend"]
+    stored = []
+    for name in ("whole", "shared"):
+        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / f"{name}.blend"))
+        stored.append([surfels_of(bpy.data.objects[f"{each} surfels"]).arrays() for each in ("ball", "floor")])
+    for whole, joined in zip(*stored, strict=True):
+        assert len(whole["positions"]) > 1000 and whole.keys() == joined.keys()
+        assert all(whole[field].tobytes() == joined[field].tobytes() for field in whole)

@@ -11,7 +11,7 @@ from splat_addon.blender.commands import pictures, render
 
 
 def test_chunks_give_the_pictures_of_an_animation_bit_by_bit(animation, surfels_command, pixels, tmp_path):
-    for chunk in (("--frames", "3-4"), ("--first", 1, "--count", 2, "--last", 4)):
+    for chunk in (("--frames", "3-4"), ("--first", 1, "--chunk", 2, "--last", 4)):
         code, said = surfels_command("render", *chunk)
         assert code == 0 and f"wrote {tmp_path / 'frame_000'}" in said
     in_chunks = [pixels(tmp_path / f"frame_000{frame}.exr") for frame in range(1, 5)]

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One mesh sampled by several machines: each takes the rows of one block of the grid, and what is joined is what one
+machine makes, bit by bit.
+
+A block is a band of rows of each of the three images, half-open and in whole numbers, so that every run of samples
+belongs to one block and is never cut: what a sample is depends on its run and its triangle alone. Runs are joined in
+the order of a single machine, triangle after triangle. What looks at neighbours (merged samples, clip lines, parts that
+no ray meets) comes after that, as it does there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import zipfile
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ..surfels import empty_surfels
+from .ldc.depth_cube import surface_of
+from .ldc.scan_conversion import Spans, expand
+from .mesh.triangle_mesh import TriangleMesh
+from .progress import Progress, stage
+from .refine.missed_components import SampledSurface, missed_components
+from .sample import Sampling, SamplingRun
+
+_VERSION = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """The samples of block `number` of `count`, from 0.
+
+    made_from: hex digest of mesh and options. images: the runs of samples in each of the three images.
+    arrays: field of `Surfels` -> values of the samples, in the order of the runs.
+    """
+
+    number: int
+    count: int
+    made_from: str
+    images: tuple[Spans, Spans, Spans]
+    arrays: dict[str, np.ndarray]
+
+
+def sample_block(mesh: TriangleMesh, number: int, count: int, progress: Progress | None = None, **options) -> Block:
+    """options: as `sample_surface` has them. Raises ValueError for an unusable option, or a block that is not."""
+    if not 0 <= number < count:
+        raise ValueError(f"There is no block {number + 1} of {count}.")
+    run = SamplingRun(mesh, **options)
+    if run.is_empty:
+        return Block(number, count, _digest(run, options), (Spans.joined([]),) * 3, {})
+    images = run.images(SampledSurface(len(run.mesh.positions)), stage(progress, 0.0, 0.5), (number, count))
+    return Block(number, count, _digest(run, options), images, run.filled(images, stage(progress, 0.5, 1.0)))
+
+
+def joined_blocks(mesh: TriangleMesh, blocks: Iterable[Block], progress: Progress | None = None, **options) -> Sampling:
+    """What `sample_surface` gives with the same mesh and options.
+
+    Raises ValueError with a sentence for blocks of another mesh or other options, and where not each is there once.
+    """
+    run = SamplingRun(mesh, **options)
+    blocks = sorted(blocks, key=lambda block: block.number)
+    digest = _digest(run, options)
+    for block in blocks:
+        if block.made_from != digest:
+            raise ValueError(
+                f"Block {block.number + 1} was made from another mesh or with other settings; convert it again."
+            )
+    numbers, count = [block.number for block in blocks], blocks[0].count if blocks else 1
+    if numbers != list(range(count)) or any(block.count != count for block in blocks):
+        there = ", ".join(str(number + 1) for number in numbers) or "none"
+        raise ValueError(f"Of {count} blocks each must be there once, but there are {there}.")
+    if run.is_empty:
+        return Sampling(empty_surfels())
+    images, order = _in_order(blocks)
+    arrays = {}
+    for name in blocks[0].arrays:
+        arrays[name] = np.concatenate([block.arrays[name] for block in blocks])[order]
+    surface = surface_of(run.mesh.triangles, images, len(run.mesh.positions))
+    lost = missed_components(run.mesh, surface)
+    return run.finished(arrays, images, lost, stage(progress, 0.0, 1.0))
+
+
+def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], np.ndarray]:
+    """The spans of all blocks as one machine has them, and where each sample lies in the blocks' arrays, joined."""
+    sizes = [[int(spans.counts.sum(dtype=np.int64)) for spans in block.images] for block in blocks]
+    starts = np.cumsum([0, *(size for block in sizes for size in block)])[:-1].reshape(-1, 3)
+    images, orders = [], []
+    for axis in range(3):
+        spans = Spans.joined([block.images[axis] for block in blocks])
+        firsts = [
+            start + np.cumsum(block.images[axis].counts, dtype=np.int64) - block.images[axis].counts
+            for start, block in zip(starts[:, axis], blocks, strict=True)
+        ]
+        order = np.lexsort((spans.rows, spans.triangles))
+        spans = Spans(*(getattr(spans, f.name)[order] for f in fields(Spans)))
+        owner, step = expand(spans.counts)
+        images.append(spans)
+        orders.append(np.concatenate(firsts)[order].take(owner) + step)
+    return tuple(images), np.concatenate(orders)
+
+
+def _digest(run: SamplingRun, options: dict) -> str:
+    """Of the usable mesh and of what it is sampled with. What materials are is not in it, only whose triangles are."""
+    digest = hashlib.sha256(repr((_VERSION, sorted(options.items()))).encode("utf-8"))
+    mesh = run.mesh
+    for values in (
+        mesh.positions,
+        mesh.triangles,
+        mesh.corner_normals,
+        mesh.corner_colors,
+        mesh.corner_uvs,
+        mesh.materials,
+    ):
+        digest.update(b"-" if values is None else np.ascontiguousarray(values).tobytes())
+    return digest.hexdigest()
+
+
+def write_blocks(path: str | os.PathLike, blocks: list[Block]) -> None:
+    """One file for the blocks of several meshes, numpy's .npz. Raises OSError."""
+    arrays = {}
+    for turn, block in enumerate(blocks):
+        arrays[f"{turn}.about"] = np.array([block.number, block.count])
+        arrays[f"{turn}.made_from"] = np.frombuffer(bytes.fromhex(block.made_from), np.uint8)
+        for axis, spans in enumerate(block.images):
+            arrays |= {f"{turn}.{axis}.{f.name}": getattr(spans, f.name) for f in fields(Spans)}
+        arrays |= {f"{turn}.surfels.{name}": values for name, values in block.arrays.items()}
+    with open(path, "wb") as stream:
+        np.savez(stream, **arrays)
+
+
+def read_blocks(path: str | os.PathLike) -> list[Block]:
+    """What `write_blocks` wrote. Raises ValueError with one sentence for a damaged file."""
+    try:
+        with np.load(path, allow_pickle=False) as arrays:
+            return [_read(arrays, turn) for turn in range(sum(name.endswith(".about") for name in arrays.files))]
+    except (KeyError, OSError, EOFError, TypeError, zipfile.BadZipFile) as error:
+        raise ValueError(f"{path} holds no blocks: {error}; convert it again.") from error
+
+
+def _read(arrays, turn: int) -> Block:
+    number, count = arrays[f"{turn}.about"].tolist()
+    images = tuple(Spans(*(arrays[f"{turn}.{axis}.{f.name}"] for f in fields(Spans))) for axis in range(3))
+    prefix = f"{turn}.surfels."
+    surfels = {name.removeprefix(prefix): arrays[name] for name in arrays.files if name.startswith(prefix)}
+    return Block(number, count, bytes(arrays[f"{turn}.made_from"]).hex(), images, surfels)

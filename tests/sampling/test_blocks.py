@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A mesh that several machines sample in blocks of the grid has the surfels of one machine, bit by bit."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.sampling import Tolerance, TriangleMesh, joined_blocks, read_blocks, sample_block, sample_surface
+from splat_addon.sampling.blocks import write_blocks
+
+
+@pytest.fixture(scope="module")
+def rubble():
+    """2,000 random triangles from slivers to plates, with shading normals and colours, and dust between the rays."""
+    random = np.random.default_rng(5)
+    middles, sizes = random.uniform(-1, 1, (2000, 1, 3)), 10 ** random.uniform(-3, -0.3, (2000, 1, 1))
+    corners = middles * (1, 1, 0.3) + sizes * random.normal(size=(2000, 3, 3))
+    normals = random.normal(size=(2000, 3, 3))
+    return TriangleMesh(
+        positions=corners.reshape(-1, 3),
+        triangles=np.arange(6000).reshape(-1, 3),
+        corner_normals=normals / np.linalg.norm(normals, axis=2, keepdims=True),
+        corner_colors=random.uniform(size=(2000, 3, 4)),
+        materials=random.integers(0, 1, 2000),
+    )
+
+
+OPTIONS = {
+    "plain": {"resolution": 90},
+    "merged": {"resolution": 60, "reduction": "three_to_one"},
+    "adaptive": {"resolution": 60, "tolerance": Tolerance(0.01)},
+    "clipped": {"resolution": 40, "crease_angle": math.radians(30), "fits_blending": True},
+}
+
+
+@pytest.mark.parametrize("count", [1, 7])
+@pytest.mark.parametrize("name", OPTIONS)
+def test_blocks_are_one_run_bit_by_bit(name, count, rubble, tmp_path):
+    whole = sample_surface(rubble, **OPTIONS[name])
+    files = [tmp_path / str(number) for number in range(count)]
+    for number, file in enumerate(files):
+        write_blocks(file, [sample_block(rubble, number, count, **OPTIONS[name])])
+    blocks = [block for file in reversed(files) for block in read_blocks(file)]
+    joined = joined_blocks(rubble, blocks, **OPTIONS[name])
+    assert len(whole.surfels) > 1000 and whole.small_parts > 10
+    assert (joined.small_parts, joined.saved, joined.error) == (whole.small_parts, whole.saved, whole.error)
+    mine, other = joined.surfels.arrays(), whole.surfels.arrays()
+    assert mine.keys() == other.keys()
+    for field in mine:
+        assert mine[field].tobytes() == other[field].tobytes(), field
+    if count > 1 and name == "plain":
+        sizes = [len(block.arrays["positions"]) for block in blocks]
+        assert min(sizes) > 0 and sum(sizes) + whole.small_parts == len(whole.surfels)
+
+
+def test_a_mesh_without_usable_triangles_has_no_surfels_in_blocks_either():
+    mesh = TriangleMesh(positions=np.zeros((3, 3)), triangles=np.array([[0, 1, 2]]))
+    blocks = [sample_block(mesh, number, 2, spacing=1.0) for number in range(2)]
+    assert len(joined_blocks(mesh, blocks, spacing=1.0).surfels) == 0
+
+
+def test_blocks_that_do_not_belong_together_are_refused(rubble):
+    first, second = (sample_block(rubble, number, 2, resolution=20) for number in range(2))
+    with pytest.raises(ValueError, match="each must be there once, but there are 2"):
+        joined_blocks(rubble, [second], resolution=20)
+    with pytest.raises(ValueError, match="other settings"):
+        joined_blocks(rubble, [first, second], resolution=21)
+    with pytest.raises(ValueError, match="another mesh"):
+        joined_blocks(replace(rubble, positions=rubble.positions + 1), [first, second], resolution=20)
+    with pytest.raises(ValueError, match="no block 3 of 2"):
+        sample_block(rubble, 2, 2, resolution=20)
