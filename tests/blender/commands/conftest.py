@@ -17,6 +17,7 @@ SIZE = (48, 32)
 def animation(empty_file, tmp_path):
     """A ball of surfels that moves over frames 1 to 4, with its shadow on a floor of polygons; saved as anim.blend."""
     scene = bpy.context.scene
+    scene.render.engine = "SURFEL_SPLATTING"
     bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=0.8, location=(-1, 0, 0.8))
     ball = bpy.context.object
     bpy.ops.object.surfels_from_mesh(resolution=24, source="HIDE")
