@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Builds the extension's zip with Blender's own builder, and has Blender's own validator read it.
 
-    python3 scripts/build.py [--out DIR]
+    python3 scripts/build.py [--out DIR] [--index]
 
-The builder is plain Python that comes with every Blender: here that of the demo's environment.
+One checkout gives the same bytes everywhere. The builder is plain Python that comes with every Blender: here that of
+the demo's environment.
 """
 
 import argparse
 import subprocess
 import sys
 import tempfile
+import zipfile
 from pathlib import Path
 
 import environment
@@ -37,11 +39,31 @@ def build(python: Path, blender_scripts: Path, out: Path) -> Path:
     with tempfile.TemporaryDirectory(dir=out, prefix=".build-") as unfinished:
         _run([*tool, "build", tags, f"--source-dir={ROOT}", f"--output-dir={unfinished}"])
         (made,) = Path(unfinished).glob(ZIPS)
+        write_reproducibly(made)
         _run([*tool, "validate", tags, str(made)])
         for old in out.glob(ZIPS):
             if old.name != made.name:
                 old.unlink()
         return made.replace(out / made.name)
+
+
+def write_reproducibly(package: Path) -> None:
+    """Write a zip anew: names in order, one date and mode for all, nothing compressed, for what that gives depends on
+    the library.
+    """
+    with zipfile.ZipFile(str(package)) as built:
+        contents = {name: built.read(name) for name in sorted(built.namelist()) if not name.endswith("/")}
+    with zipfile.ZipFile(str(package), "w", zipfile.ZIP_STORED) as anew:
+        for name, content in contents.items():
+            entry = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
+            entry.create_system, entry.external_attr = 3, 0o100644 << 16  # a plain file of Unix, wherever it is built
+            anew.writestr(entry, content)
+
+
+def write_index(python: Path, blender_scripts: Path, out: Path) -> Path:
+    """`index.json` beside the zips in `out`: what Blender reads of a repository of extensions. Raises Problem."""
+    _run([str(python), str(blender_scripts / BUILDER), "server-generate", f"--repo-dir={out}"])
+    return out / "index.json"
 
 
 def _run(command: list) -> None:
@@ -62,9 +84,13 @@ def main(arguments: list) -> int:
     """Exit code 0, or 1 after one sentence."""
     parser = argparse.ArgumentParser(prog="build.py", description="Builds and validates the extension's zip.")
     parser.add_argument("--out", type=Path, default=ROOT / "build", help="the folder for the zip")
+    parser.add_argument("--index", action="store_true", help="also the index.json of a repository that holds it")
     options = parser.parse_args(arguments)
     made = environment.make("demo")
-    print(build(made.python, wheel_scripts(made.folder), options.out.resolve()))
+    tools = made.python, wheel_scripts(made.folder), options.out.resolve()
+    print(build(*tools))
+    if options.index:
+        print(write_index(*tools))
     return 0
 
 

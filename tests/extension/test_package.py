@@ -1,6 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is in the zip, which Blender's own builder made and its validator read."""
 
+import ast
+import hashlib
+import json
+import re
+import subprocess
+import sys
 import zipfile
 from pathlib import Path, PurePosixPath
 
@@ -45,3 +51,53 @@ def test_no_dotfile_and_no_cache_is_in(files):
 def test_no_compiled_file_is_in(files):
     # .npy is a table of numbers, which numpy reads without running anything of it
     assert [f for f in files if f.suffix not in (".py", ".glsl", ".toml", ".md", ".npy", "")] == []
+
+
+def test_nothing_in_it_can_send_anything_or_start_a_program(package):
+    """docs/privacy.md says so."""
+    able = {"socket", "ssl", "urllib", "http", "ftplib", "smtplib", "xmlrpc", "requests", "subprocess", "webbrowser"}
+    with zipfile.ZipFile(package) as opened:
+        texts = {name: opened.read(name).decode("utf-8") for name in opened.namelist() if name.endswith(".py")}
+    for name, text in texts.items():
+        for node in ast.walk(ast.parse(text)):
+            modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            modules += [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
+            assert not able & {module.split(".")[0] for module in modules}, name
+    assert len(texts) > 50
+
+
+def test_an_index_names_the_zip_as_blender_reads_it(package, tmp_path):
+    """By Blender's own tool, which then lists the repository as a user's Blender does."""
+    import bpy
+
+    hosted = tmp_path / package.name
+    hosted.write_bytes(package.read_bytes())
+    tool = Path(bpy.utils.system_resource("SCRIPTS")) / "addons_core/bl_pkg/cli/blender_ext.py"
+    command = [sys.executable, str(tool), "server-generate", f"--repo-dir={tmp_path}"]
+    subprocess.run(command, check=True, stdout=subprocess.PIPE, timeout=60)
+    (entry,) = json.loads((tmp_path / "index.json").read_text())["data"]
+    assert entry["id"] == "surfel_splatting" and entry["archive_url"] == f"./{package.name}"
+    assert entry["archive_size"] == hosted.stat().st_size
+    assert entry["archive_hash"] == f"sha256:{hashlib.sha256(hosted.read_bytes()).hexdigest()}"
+    listed = subprocess.run(
+        [
+            sys.executable,
+            str(tool),
+            "list",
+            f"--remote-url={(tmp_path / 'index.json').as_uri()}",
+            f"--local-dir={tmp_path / 'user'}",
+        ],
+        stdout=subprocess.PIPE,
+        text=True,
+        timeout=60,
+    )
+    assert listed.returncode == 0 and f"surfel_splatting({entry['version']})" in listed.stdout
+
+
+def test_one_version_stands_everywhere():
+    manifest, changes, citation = (
+        (ROOT / n).read_text() for n in ("blender_manifest.toml", "CHANGELOG.md", "CITATION.cff")
+    )
+    (version,) = re.findall(r'^version = "(.*)"$', manifest, re.MULTILINE)
+    assert re.findall(r"^## (\S+)", changes, re.MULTILINE)[0] == version
+    assert re.findall(r"^version: (.*)$", citation, re.MULTILINE) == [version]

@@ -3,6 +3,7 @@
 
 import importlib.util
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -12,11 +13,13 @@ from environment import Problem
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "build.py"
 #: Stands for Blender's tool: `build` makes a zip, and `validate` refuses one that says so.
 TOOL = """
-import pathlib, sys
+import pathlib, sys, zipfile
 if sys.argv[1] == "build":
     (folder,) = (a.split("=", 1)[1] for a in sys.argv if a.startswith("--output-dir="))
-    (pathlib.Path(folder) / "surfel_splatting-0.2.0.zip").write_text({content!r})
-elif "bad" in pathlib.Path(sys.argv[-1]).read_text():
+    with zipfile.ZipFile(pathlib.Path(folder) / "surfel_splatting-0.2.0.zip", "w") as made:
+        made.writestr("b", {content!r})
+        made.writestr("a", "")
+elif b"bad" in pathlib.Path(sys.argv[-1]).read_bytes():
     sys.exit("the zip is bad")
 """
 
@@ -54,7 +57,21 @@ def out(tmp_path):
 
 def test_a_good_zip_takes_the_place_of_the_earlier_one(build, blender_scripts, out):
     made = build.build(sys.executable, blender_scripts("better"), out)
-    assert made.read_text() == "better" and list(out.iterdir()) == [made]
+    with zipfile.ZipFile(made) as package:
+        assert package.read("b") == b"better" and package.namelist() == ["a", "b"]
+    assert list(out.iterdir()) == [made]
+
+
+def test_a_zip_is_the_same_bytes_whenever_it_is_built(build, tmp_path):
+    made = []
+    for number, date in enumerate([(2020, 1, 1, 0, 0, 0), (2026, 5, 5, 5, 5, 4)]):
+        package = tmp_path / f"{number}.zip"
+        with zipfile.ZipFile(package, "w", zipfile.ZIP_DEFLATED) as written:
+            for name in sorted(["a.py", "b/c.glsl"], reverse=bool(number)):
+                written.writestr(zipfile.ZipInfo(name, date), name * 99)
+        build.write_reproducibly(package)
+        made.append(package.read_bytes())
+    assert made[0] == made[1] and b"a.pya.py" in made[0]
 
 
 def test_a_zip_that_is_refused_leaves_the_earlier_one(build, blender_scripts, out):
