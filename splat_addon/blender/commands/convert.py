@@ -88,7 +88,7 @@ def block_file(out: Path, number: int, count: int) -> Path:
 def new_batch(options: argparse.Namespace, sampler: Callable[..., Sampling] = sample_surface) -> ConversionBatch:
     """sampler: gives what `sample_surface` does, of the same arguments."""
     sources, chosen = sources_of(options.objects), choices(settings_of(options))
-    return ConversionBatch(sources, chosen, bpy.context.active_object, sampler)
+    return ConversionBatch(sources, chosen, bpy.context.view_layer.objects.active, sampler)
 
 
 def settings_of(options: argparse.Namespace):
@@ -104,7 +104,7 @@ def settings_of(options: argparse.Namespace):
 def sources_of(names: list[str] | None) -> list[bpy.types.Object]:
     """Raises ValueError for a name that is not there, or has no surface."""
     if not names:
-        found = [each for each in bpy.context.visible_objects if has_surfaces(each)]
+        found = [each for each in bpy.context.view_layer.objects if each.visible_get() and has_surfaces(each)]
         if not found:
             raise ValueError("Nothing visible has surfaces to convert; name objects with --objects.")
         return found

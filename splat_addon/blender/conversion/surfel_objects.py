@@ -39,7 +39,8 @@ def collections_of(source: bpy.types.Object, fallback: bpy.types.Collection) -> 
 
 def select_only(context: bpy.types.Context, made: list[bpy.types.Object]) -> None:
     """Select the new objects and nothing else; the last is active."""
-    for selected in context.selected_objects:
+    # a command line has no window, whose context would name them
+    for selected in list(context.view_layer.objects.selected):
         selected.select_set(False)
     for new in made:
         new.select_set(True)

@@ -120,3 +120,18 @@ def test_the_surfels_command_tells_by_its_exit_code(user_folder, scene, surfels,
     missing = blender(user_folder, path, "--command", "surfels", "merge", "--frames", "1-3", "--out", "//frame_")
     assert missing.returncode == 1 and "1 of 3 frames are missing: 3" in missing.stdout
     assert blender(user_folder, "--command", "surfels", "render", "--nonsense").returncode == 2
+
+
+def test_the_surfels_command_converts_without_a_window(user_folder, add_square, tmp_path):
+    add_square()
+    path, out = tmp_path / "scene.blend", tmp_path / "out.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    about = ("--command", "surfels", "convert", "--resolution", 10, "--out", out)
+    for block in (1, 2):
+        done = blender(user_folder, path, *about, "--blocks", 2, "--block", block)
+        assert done.returncode == 0, done.stdout
+    merge = ["merge" if word == "convert" else word for word in about]
+    done = blender(user_folder, path, *merge, "--blocks", 2)
+    assert done.returncode == 0 and f"wrote {out}" in done.stdout, done.stdout
+    bpy.ops.wm.open_mainfile(filepath=str(out))
+    assert len(bpy.data.objects["Square surfels"].data.vertices) == 100
