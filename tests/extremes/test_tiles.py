@@ -8,7 +8,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import Settings
+from splat_addon.rendering import Settings, plan
 
 
 @pytest.mark.parametrize("edge", [40, 100])
@@ -35,3 +35,12 @@ def test_parts_are_the_whole_picture_bit_by_bit_where_their_tiles_are(render, mo
             assert np.array_equal(getattr(drawn, name), getattr(whole, name)[y : y + height, x : x + width]), name
         shares = whole.cryptomatte.ranks(2)[y : y + height, x : x + width]
         assert np.array_equal(drawn.cryptomatte.ranks(2), shares) and shares.any()
+
+
+def test_sixteen_parts_of_a_huge_picture_have_its_own_tiles():
+    """So 16,384 x 16,384 pixels that 4 x 4 machines draw are, bit by bit, what one of them draws."""
+    scene, camera = scenes.torus(100, (16384, 16384))
+    settings, edge = Settings(), 16384 // 4
+    parts = [(edge * x, edge * y, edge, edge) for x in range(4) for y in range(4)]
+    tiles = [tile for part in parts for tile in plan(scene, camera, settings, part=part).tiles]
+    assert sorted(tiles) == sorted(plan(scene, camera, settings).tiles) and len(tiles) == 64
