@@ -48,8 +48,41 @@ OPAQUE = 0.999
 UNIT_TOLERANCE = 1e-3
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Shape:
+    """What surfels and the corners of polygons, N of either, have in common beside their positions and colours.
+
+    origin: (3,) float64, object units, to which positions are relative.
+    is_solid: they bound solids, so that from outside no back is ever seen (`sampling.is_solid`).
+    roughness, metallic: (N,) float32, 0 to 1, in place of their material's; None: the material's.
+    emission: (N, 3) float32, scene-linear radiance, in place of their material's; None: the material's.
+    uvs: (N, 2) float32 texture coordinates, where the instance's textures are looked up; None: nowhere.
+    """
+
+    origin: np.ndarray = (0.0, 0.0, 0.0)
+    is_solid: bool = False
+    roughness: np.ndarray | None = None
+    metallic: np.ndarray | None = None
+    emission: np.ndarray | None = None
+    uvs: np.ndarray | None = None
+
+    def __len__(self) -> int:
+        """What is stored of each is looked up by its number."""
+        return len(self.positions)
+
+    @property
+    def has_own_material(self) -> bool:
+        """Whether something of their materials is in their own fields."""
+        return not all(a is None for a in (self.roughness, self.metallic, self.emission))
+
+    @cached_property
+    def brightest(self) -> float:
+        """The largest absolute colour (0 when empty)."""
+        return float(np.abs(self.colors[:, :3]).max(initial=0.0))
+
+
 @dataclass(frozen=True, eq=False)
-class Surfels:
+class Surfels(Shape):
     """A set of N surfels; C-contiguous arrays, checked once, here.
 
     positions: (N, 3) float32, object units, relative to `origin`.
@@ -59,12 +92,8 @@ class Surfels:
     normals: (N, 3) float32, unit: the shading normal.
     colors: (N, 4) float32, scene-linear, not premultiplied; alpha is opacity.
     materials: (N,) int32, index into the object's material slots.
-    origin: (3,) float64, object units.
-    is_solid: they bound solids, so that from outside no surfel's back is ever seen (`sampling.is_solid`).
-    roughness, metallic: (N,) float32, 0 to 1, in place of their material's; None: the material's.
-    emission: (N, 3) float32, scene-linear radiance, in place of their material's; None: the material's.
-    uvs: (N, 2) float32 texture coordinates at the centres; uv_along_x, uv_along_y: (N, 2) their change along the local
-        x and y half-axis. Where both changes are 0, and without all three, no texture is looked up: `colors` shows.
+    uv_along_x, uv_along_y: (N, 2) change of `uvs`, which are at the centres, along the local x and y half-axis. Where
+        both changes are 0, and without all three, no texture is looked up: `colors` shows.
     uv_border: (N, 2) m of a line m . q = 1 in half-axes, beyond which the texture is not looked up; 0 and None: none.
     clip_line, clip_line_2: (N, 2) int16, up to two lines at which the splat ends, as `clip_lines` packs them: 4 bytes
         each; 0 and None: none.
@@ -81,12 +110,6 @@ class Surfels:
     normals: np.ndarray
     colors: np.ndarray
     materials: np.ndarray
-    origin: np.ndarray = (0.0, 0.0, 0.0)
-    is_solid: bool = False
-    roughness: np.ndarray | None = None
-    metallic: np.ndarray | None = None
-    emission: np.ndarray | None = None
-    uvs: np.ndarray | None = None
     uv_along_x: np.ndarray | None = None
     uv_along_y: np.ndarray | None = None
     uv_border: np.ndarray | None = None
@@ -112,9 +135,6 @@ class Surfels:
             view.flags.writeable = False
             object.__setattr__(self, name, view)
 
-    def __len__(self) -> int:
-        return len(self.positions)
-
     def arrays(self) -> dict[str, np.ndarray]:
         """The arrays by field, in the order of the layouts, without the optional ones that are not there."""
         names = (*LAYOUT, *OPTIONAL_LAYOUT)
@@ -134,11 +154,6 @@ class Surfels:
     def has_uvs(self) -> bool:
         """Whether a texture can be looked up at every point of the ellipses."""
         return not any(a is None for a in (self.uvs, self.uv_along_x, self.uv_along_y))
-
-    @property
-    def has_own_material(self) -> bool:
-        """Whether something of their materials is in their own fields."""
-        return not all(a is None for a in (self.roughness, self.metallic, self.emission))
 
     @property
     def is_clipped(self) -> bool:
@@ -162,21 +177,21 @@ class Surfels:
         return quaternion_axes(self.rotations)[2]
 
     @cached_property
-    def brightest(self) -> float:
-        """The largest absolute colour (0 when empty)."""
-        return float(np.abs(self.colors[:, :3]).max(initial=0.0))
-
-    @cached_property
     def is_transparent(self) -> bool:
         """Whether something shows through one of them."""
         return bool((self.colors[:, 3] < OPAQUE).any())
+
+    @cached_property
+    def largest(self) -> float:
+        """The longest half-axis, object units (0 when empty)."""
+        return float(self.scales.max(initial=0.0))
 
     @cached_property
     def local_bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Two (3,) float64 corners, relative to `origin`, of a box that holds every ellipse (NaN when empty)."""
         if not len(self):
             return np.full(3, np.nan), np.full(3, np.nan)
-        margin = float(self.scales.max())
+        margin = self.largest
         columns = self.positions.T
         low, high = (np.array([end(column) for column in columns], np.float64) for end in (np.min, np.max))
         return low - margin, high + margin

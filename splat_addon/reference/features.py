@@ -77,7 +77,7 @@ def _surfaces():
     row, on = partial(Feature, "surface"), partial(together, LIT)
     dull, shiny = Material(roughness=0.9), Material(roughness=0.2, metallic=1.0)
     glowing = Material(emission=(1, 0.5, 0.2))
-    solid = shots.instances(lambda number, instance: replace(instance, surfels=instance.surfels.as_solid()))
+    solid = shots.instances(lambda number, instance: replace(instance, shape=instance.surfels.as_solid()))
     held_out = shots.instances(lambda number, instance: replace(instance, is_holdout=number == 0))
     yield row("two materials", "one", on(shots.materials(dull, shiny)), LIT, True)
     yield row("roughness of each surfel", "one material", on(shots.own(roughness=0)), LIT)

@@ -50,7 +50,7 @@ def _is_lit(casters: Scene, camera: Camera, splats: Splats, epsilon: float, lamp
 
 
 def _without_solids(scene: Scene) -> Scene:
-    loose = (replace(i, surfels=replace(i.surfels, is_solid=False)) for i in scene.surfels)
+    loose = (replace(i, shape=replace(i.surfels, is_solid=False)) for i in scene.surfels)
     return replace(scene, surfels=tuple(loose))
 
 

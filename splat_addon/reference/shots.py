@@ -127,7 +127,7 @@ def own(**fields) -> Change:
     def changed(number: int, instance: Instance) -> Instance:
         x = 0.5 + 0.5 * instance.surfels.positions[:, 0] / np.abs(instance.surfels.positions[:, 0]).max()
         values = {name: np.repeat(x[:, None], n, axis=1) if n else x for name, n in fields.items()}
-        return replace(instance, surfels=replace(instance.surfels, **values))
+        return replace(instance, shape=replace(instance.surfels, **values))
 
     return instances(changed)
 
@@ -153,7 +153,7 @@ def glass(alpha: float, *numbers: int) -> Change:
             return instance
         colors = instance.surfels.colors.copy()
         colors[:, 3] = alpha
-        return replace(instance, surfels=replace(instance.surfels, colors=colors))
+        return replace(instance, shape=replace(instance.surfels, colors=colors))
 
     return instances(changed)
 

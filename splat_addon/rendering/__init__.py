@@ -7,7 +7,7 @@ scene, camera, settings -> plan -> view -> passes on a device -> Frame
 from .cryptomatte import Cryptomatte
 from .device import open_device
 from .frame import EMPTY_DEPTH, Frame
-from .plan import plan
+from .plan.build import plan
 from .plan.frame_plan import FramePlan
 from .presets import PRESETS, Preset
 from .refinement import Refinement

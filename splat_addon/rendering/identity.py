@@ -89,7 +89,7 @@ class Identified:
         """
         x, y, width, height = tile
         indices = [name for name in INDICES if name in self.arrays]
-        numbers = nearest_numbers(seen[:: plan.numbers[1]], plan) if indices else None
+        numbers = nearest_numbers(seen[:: plan.facts["identity_rows"]], plan) if indices else None
         for name in indices:
             self.arrays[name][y : y + height, x : x + width] = self._identities.indices[name][numbers]
         if matte := self.arrays.get("cryptomatte"):
@@ -121,7 +121,7 @@ def nearest_numbers(seen: np.ndarray, plan: FramePlan) -> np.ndarray:
 def tile_matte(seen: np.ndarray, tile, size: tuple[int, int], plan: FramePlan, identities: Identities) -> Cryptomatte:
     """What a tile, x, y, width and height in a picture of that size, holds of whom. seen: as in `Identified.add`."""
     x, y, width, height = tile
-    between = plan.numbers[1]
+    between = plan.facts["identity_rows"]
     away = np.arange(-FILTER_MARGIN * between, FILTER_MARGIN * between + 1) / between
     up = _Axis.of(plan, height, between, np.exp(-0.5 * away**2 / _FILTER_VARIANCE))
     axes = [up, _Axis.of(plan, width, 1, _COLUMN_WEIGHTS)]
@@ -157,7 +157,7 @@ class _Axis:
         kernel = np.zeros(step - between + 1)
         kernel[::between] = 1 / plan.samples
         lead = 0
-        if plan.filters_silhouettes:
+        if plan.facts["filters_silhouettes"]:
             kernel, lead = np.convolve(kernel, weights / weights.sum()), len(weights) // 2
         first = plan.margin * step - lead
         return cls(kernel, step, slice(first, first + (pixels - 1) * step + len(kernel)))

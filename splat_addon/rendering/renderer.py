@@ -18,7 +18,7 @@ from .features.outputs import HELD_BY, PIXELS, check_samplers
 from .frame import EMPTY_DEPTH, Frame
 from .identity import Identified, nearer
 from .panorama_faces import panorama_frame
-from .plan import plan
+from .plan.build import plan
 from .plan.executor import Execution, TileContext, texture_key
 from .plan.frame_plan import FramePlan
 from .plan.graph import Texture

@@ -45,8 +45,10 @@ class ShadowMap:
 
 def shadow_maps(scene: Scene, camera: Camera, resolution: int) -> tuple[tuple[ShadowMap, ...], int]:
     """The maps that a picture needs, and how many lights had to go without. resolution: texels along a map's side."""
+    if not any(light.casts_shadow for light in scene.lights):
+        return (), 0
     casters = casting(scene)
-    if not casters.shown or not any(light.casts_shadow for light in scene.lights):
+    if not casters.shown:
         return (), 0
     corners = np.concatenate([instance.world_corners() for instance in casters.shown])
     seen = visible_corners(scene, camera)

@@ -20,9 +20,6 @@ from .scene.camera import Camera
 #: so that rounding clips nothing, be they as near to one another as they may.
 _MARGIN = 1e-3
 
-#: A matrix whose shortest axis is this share of its longest leaves no direction for a normal.
-_FLATTEST = 1e-12
-
 #: Steps of the depth's resolution by which visibility moves every splat back at least: rounding in the rasteriser's
 #: interpolation is one or two.
 _LEAST_STEPS = 16
@@ -230,23 +227,15 @@ def _seen(scene: Scene, camera: Camera) -> tuple[list, int, int]:
     """(instance, depths of its box's corners, its largest splat's radius) of what may touch the picture; the numbers
     of instances that cannot, and of those that flatten space.
     """
-    seen, outside, degenerate = [], 0, 0
-    for instance in scene.shown:
-        linear = instance.matrix_world[:3, :3]
-        if not _invertible(linear):
-            degenerate += 1
-            continue
-        corners = instance.corners(camera)
-        if _beyond(corners, camera).all(axis=1).any():
-            outside += 1
-            continue
-        seen.append((instance, -corners[:, 2], instance.radius))
-    return seen, outside, degenerate
-
-
-def _invertible(linear: np.ndarray) -> bool:
-    lengths = np.linalg.svd(linear, compute_uv=False)
-    return bool(lengths[2] > _FLATTEST * lengths[0])
+    shown = scene.shown
+    firm = [instance for instance in shown if not instance.is_flattened]
+    if not firm:
+        return [], 0, len(shown)
+    corners = np.stack([instance.corners(camera) for instance in firm])
+    inside = ~_beyond(corners.reshape(-1, 3), camera).reshape(6, *corners.shape[:2]).all(axis=2).any(axis=0)
+    kept = zip(firm, -corners[..., 2], inside.tolist(), strict=True)
+    seen = [(instance, depths, instance.radius) for instance, depths, is_inside in kept if is_inside]
+    return seen, len(firm) - len(seen), len(shown) - len(firm)
 
 
 def _beyond(corners: np.ndarray, camera: Camera) -> np.ndarray:

@@ -36,6 +36,6 @@ def test_the_distance_may_lie_in_the_surfels_origin(offset, world, render_all):
     """A scan in map coordinates: float32 positions relative to a float64 origin."""
     scene, camera = world
     far_scene, far_camera = transformed(scene, camera, moved(offset))
-    instances = [replace(i, surfels=replace(i.surfels, origin=offset * DIRECTION)) for i in scene.surfels]
+    instances = [replace(i, shape=replace(i.surfels, origin=offset * DIRECTION)) for i in scene.surfels]
     base, far = render_all([(scene, camera, None), (replace(far_scene, surfels=instances), far_camera, None)])
     assert psnr(far.color, base.color) > 60

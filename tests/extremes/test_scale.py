@@ -44,7 +44,7 @@ def test_a_scaled_world_looks_the_same(world, scale, render_all, is_default):
 def test_surfels_may_be_stored_at_any_scale(scale, render_all):
     scene, camera = perspective()
     lights, moved = transformed(scene, camera, scaled(scale))
-    instances = [replace(i, surfels=stored_at(i.surfels, np.float32(scale))) for i in scene.surfels]
+    instances = [replace(i, shape=stored_at(i.surfels, np.float32(scale))) for i in scene.surfels]
     base, frame = render_all(
         [(scene, camera, None), (replace(scene, surfels=instances, lights=lights.lights), moved, None)]
     )

@@ -15,7 +15,7 @@ from splat_addon.rendering import Settings, plan
 def test_a_tiled_picture_equals_the_whole(edge, render_all, monkeypatch):
     scene, camera = scenes.torus(6000, (93, 61))
     (whole,) = render_all([(scene, camera, None)])
-    monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", edge)
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", edge)
     (tiled,) = render_all([(scene, camera, None)])
     assert len(whole.stats["plan"].tiles) == 1 < len(tiled.stats["plan"].tiles)
     assert psnr(tiled.color, whole.color) > 60
@@ -24,7 +24,7 @@ def test_a_tiled_picture_equals_the_whole(edge, render_all, monkeypatch):
 
 def test_parts_are_the_whole_picture_bit_by_bit_where_their_tiles_are(render, monkeypatch):
     """Each with the shadow maps and the depths of the whole picture."""
-    monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", 80)
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", 80)
     scene, camera = scenes.torus(3000, (93, 61))
     settings = Settings(outputs=("color", "depth", "position", "object_index", "cryptomatte"))
     whole = render(scene, camera, settings)

@@ -12,7 +12,7 @@ from splat_addon.rendering import Camera, look_at
 def with_solid(scene, is_solid):
     instance = scene.surfels[0]
     surfels = instance.surfels.as_solid() if is_solid else instance.surfels
-    return replace(scene, surfels=(replace(instance, surfels=surfels),))
+    return replace(scene, surfels=(replace(instance, shape=surfels),))
 
 
 def test_backs_of_a_solid_are_not_seen():

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 import zlib
-from dataclasses import replace
+from dataclasses import fields, replace
 from importlib import import_module
 from pathlib import Path
 
@@ -116,7 +116,7 @@ def draw(file: Path, only: str) -> None:
 
 def edge_module():
     """The module that knows how large tiles may be."""
-    for name in ("splat_addon.rendering.plan.limits", "splat_addon.rendering.plan"):
+    for name in ("splat_addon.rendering.plan.tiles", "splat_addon.rendering.plan"):
         try:
             module = import_module(name)
         except ModuleNotFoundError:
@@ -176,7 +176,9 @@ def small(scene, camera):
         kept = {n: v[::8] if isinstance(v, np.ndarray) and len(v) == len(surfels) else v for n, v in kept.items()}
         return Surfels(**{**kept, "scales": kept["scales"] * 2.8})
 
-    return replace(scene, surfels=[replace(i, surfels=thinned(i.surfels)) for i in scene.surfels]), camera
+    return replace(
+        scene, surfels=[replace(i, **{fields(i)[0].name: thinned(i.surfels)}) for i in scene.surfels]
+    ), camera
 
 
 def random_case(rng):

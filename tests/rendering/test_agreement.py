@@ -48,7 +48,7 @@ SURFACES = 8
 
 def solid(scene, camera):
     """The scene with its instances declared solid."""
-    instances = (replace(i, surfels=i.surfels.as_solid()) for i in scene.surfels)
+    instances = (replace(i, shape=i.surfels.as_solid()) for i in scene.surfels)
     return replace(scene, surfels=tuple(instances)), camera
 
 
@@ -132,7 +132,7 @@ def own_materials(scene, camera):
         emission=np.stack([np.maximum(z, 0), 0 * x, x * x], axis=1),
     )
     glow = (replace(i, materials=(replace(i.materials[0], emission=(0.1, 0.4, 0.2)),)) for i in others)
-    return replace(scene, surfels=(replace(first, surfels=own), *glow)), camera
+    return replace(scene, surfels=(replace(first, shape=own), *glow)), camera
 
 
 def deep(scene, camera):
@@ -174,7 +174,7 @@ def split(scene, camera):
     (ball,), (floor, other) = scene.surfels, scene.polygons
     uvs = floor.polygons.positions[:, :2] * 0.7
     paper = SurfaceTexture(Image(scenes.checks(64, 8)))
-    floor = replace(floor, polygons=replace(floor.polygons, uvs=uvs), textures=(paper,))
+    floor = replace(floor, shape=replace(floor.polygons, uvs=uvs), textures=(paper,))
     near = PolygonInstance(scenes.round_polygons(24), materials=ball.materials, split=2.6)
     return replace(scene, surfels=(replace(ball, split=2.6),), polygons=(floor, other, near)), camera
 

@@ -22,8 +22,8 @@ from splat_addon.rendering import (
     plan,
 )
 from splat_addon.rendering import PolygonInstance as Polygons
-from splat_addon.rendering.plan import MAX_TARGET_EDGE
-from splat_addon.rendering.plan.executor import describe
+from splat_addon.rendering.plan.programs import describe
+from splat_addon.rendering.plan.tiles import MAX_TARGET_EDGE
 from splat_addon.surfels import Surfels
 
 SETTINGS = Settings(method="quad", ambient_occlusion=4.0)

@@ -39,7 +39,7 @@ def transparent_torus():
     scene, camera = scenes.torus(count=6_000, size=SIZE)
     inner, outer = scene.surfels
     glass = replace(outer.surfels, colors=outer.surfels.colors * (1, 1, 1, 0.4))
-    return replace(scene, surfels=(inner, replace(outer, surfels=glass))), camera
+    return replace(scene, surfels=(inner, replace(outer, shape=glass))), camera
 
 
 def parallel():
@@ -111,10 +111,10 @@ def test_a_cell_holds_the_farthest_that_is_seen_around_it(on_device, monkeypatch
 def solids():
     """Surfels and polygons."""
     scene, camera = scenes.polygons(size=SIZE)
-    surfels = tuple(replace(i, surfels=i.surfels.as_solid()) for i in scene.surfels)
+    surfels = tuple(replace(i, shape=i.surfels.as_solid()) for i in scene.surfels)
     floor, ball = scene.polygons
     return replace(
-        scene, surfels=surfels, polygons=(floor, replace(ball, polygons=replace(ball.polygons, is_solid=True)))
+        scene, surfels=surfels, polygons=(floor, replace(ball, shape=replace(ball.polygons, is_solid=True)))
     ), camera
 
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Passes over typed textures: what nobody reads is trimmed, loops end early, what is updated changes places."""
 
-from dataclasses import replace
-
 import pytest
 
 from splat_addon.rendering.plan.executor import Execution
@@ -44,7 +42,7 @@ def test_an_attachment_that_nobody_reads_goes_with_its_part():
     steps, before = trimmed([VISIBLE, SUMS, SHADE], [PICTURE])
     assert [p.name for p in steps] == ["visible", "sums", "shade"] and not before
     assert parts_of(steps, "sums") == ["sums", "tints"] and steps[1].colors == (SUM,) and steps[1].depth is DEPTH
-    counting = replace(SHADE, parts=(*SHADE.parts, Part("counts", reads=(COUNT,))))
+    counting = SHADE._replace(parts=(*SHADE.parts, Part("counts", reads=(COUNT,))))
     steps, _ = trimmed([VISIBLE, SUMS, counting], [PICTURE])
     assert parts_of(steps, "sums") == ["sums", "counts", "tints"]
 
@@ -68,7 +66,7 @@ def test_a_loop_keeps_what_its_next_turn_and_what_follows_read():
 
 
 def test_every_pass_can_be_changed():
-    steps = changed([VISIBLE, LOOP], lambda p: replace(p, reason="changed"))
+    steps = changed([VISIBLE, LOOP], lambda p: p._replace(reason="changed"))
     assert {p.reason for p in each_pass(steps)} == {"changed"} and len(list(each_pass(steps))) == 5
 
 
@@ -83,7 +81,7 @@ def test_a_loop_ends_where_nothing_is_left(surfaces, turns, ends):
 
 
 def test_what_is_made_once_is_made_with_the_first_tile():
-    maps, tiles = replace(VISIBLE, once="key"), [Tile(0), Tile(0)]
+    maps, tiles = VISIBLE._replace(once="key"), [Tile(0), Tile(0)]
     execution = Execution(False, lambda p, number: None, lambda p, target: None)
     for tile in tiles:
         execution.run((maps, SHADE), tile)

@@ -172,7 +172,7 @@ def test_shares_are_those_of_plain_sums(method, supersampling):
     """Of random numbers, every pixel's window added up one by one."""
     random = np.random.default_rng(0)
     made = plan(three(), CAMERA, settings(method=method, supersampling=supersampling))
-    step, (width, height), (_, between) = made.samples, (6, 5), made.numbers
+    step, (width, height), (_, between) = made.samples, (6, 5), (None, made.facts["identity_rows"])
     assert between == (2 if method == "mip" else 1)
     shape = (height + 2 * made.margin) * step * between, (width + 2 * made.margin) * step
     blotches = random.integers(0, 5, [-(-n // 3) for n in shape]).repeat(3, 0).repeat(3, 1)[: shape[0], : shape[1]]
@@ -214,7 +214,7 @@ def column_weight(made, pixel, column):
 
 def test_a_picture_in_tiles_is_the_picture(render, monkeypatch):
     whole = render(three(), CAMERA, settings(method="mip"))
-    monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", 34)
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", 34)
     tiled = render(three(), CAMERA, settings(method="mip"))
     assert len(tiled.stats["plan"].tiles) > 4
     for name in ("object_index", "material_index"):

@@ -118,7 +118,7 @@ def test_a_crease_is_drawn_above_its_angle(cube, darkness):
 def test_no_seam_shows_between_tiles(settings, cube, darkness, monkeypatch):
     camera = Camera.perspective(look_at((1, -5, 2), (0, 0, 0)), 0.7, SIZE, near=0.1, far=30)
     whole = darkness([cube], camera, settings, Lines(width=4.0))
-    monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", 40)
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", 40)
     difference = np.abs(whole - darkness([cube], camera, settings, Lines(width=4.0)))
     # Single samples tie, anywhere along the lines: the mip filter spreads one over 5 x 5 pixels, where it counts 1 in
     # all. A seam would run along a border, through all lines.

@@ -23,7 +23,7 @@ def with_own(scene, **fields):
     (instance,) = scene.surfels
     count = len(instance.surfels)
     own = {name: np.broadcast_to(value, (count, *np.shape(value))) for name, value in fields.items()}
-    return replace(scene, surfels=(replace(instance, surfels=replace(instance.surfels, **own)),))
+    return replace(scene, surfels=(replace(instance, shape=replace(instance.surfels, **own)),))
 
 
 def with_material(scene, **fields):

@@ -188,7 +188,7 @@ def glowing():
     x, y, _ = (first.surfels.positions / np.abs(first.surfels.positions).max()).T
     own = replace(first.surfels, metallic=np.clip(0.5 + y, 0, 1), emission=np.stack([x * x, y * y, 0 * x], axis=1))
     lights = (Light("sun", (1, 0.8, 0.6), 2.0, direction=(1, -0.5, -1)), Light("sun", direction=(-1, 0.2, -1)))
-    return replace(scene, surfels=(replace(first, surfels=own), *others), lights=lights), camera
+    return replace(scene, surfels=(replace(first, shape=own), *others), lights=lights), camera
 
 
 def test_the_passes_are_the_exact_ones(render):

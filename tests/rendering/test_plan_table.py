@@ -20,7 +20,7 @@ from splat_addon.rendering import (
     plan,
 )
 from splat_addon.rendering.features import INPUTS
-from splat_addon.rendering.plan.executor import describe
+from splat_addon.rendering.plan.programs import describe
 from splat_addon.rendering.settings import Lines
 from splat_addon.surfels import Surfels
 
@@ -146,7 +146,7 @@ TABLE = {
         "row_depth depth_bounds hiz shaded surface", "", (),
     ),
     "mip, the backs of a solid": (
-        Scene([replace(TURNED_OVER.surfels[0], surfels=surfels().as_solid())]), {"method": "mip"},
+        Scene([replace(TURNED_OVER.surfels[0], shape=surfels().as_solid())]), {"method": "mip"},
         ("visibility", "depth_bounds", "attributes", "deferred_lighting", "resolve"),
         "row_depth depth_bounds shaded surface", "", (),
     ),

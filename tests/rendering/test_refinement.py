@@ -48,7 +48,7 @@ def redraws(on_device):
 
 @pytest.fixture
 def small_tiles(monkeypatch):
-    monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", 40)
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", 40)
 
 
 @pytest.fixture

@@ -63,7 +63,7 @@ def test_normals_are_those_of_the_world(render):
 def test_depth_runs_from_the_nearest_to_the_farthest(edge, render, monkeypatch):
     """Also where tiles see different parts of the scene."""
     if edge:
-        monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", edge)
+        monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", edge)
     step = replace(floor(2.0, half=0.5), positions=floor(2.0, half=0.5).positions + np.float32((-0.5, 0, 0)))
     frame = render(Scene([floor(), step]), ABOVE, Settings(method="quad", shading="depth", supersampling=1))
     near, far = frame.stats["plan"].facts["depth_range"]
@@ -106,7 +106,7 @@ def test_a_toon_highlight_has_an_edge(render):
     scene, camera = scenes.sphere(size=(48, 48))
     (ball,) = scene.surfels
     white = replace(ball.surfels, colors=np.ones_like(ball.surfels.colors))
-    scene = Scene([replace(ball, surfels=white, materials=(Material(roughness=0.35),))], [from_above(0.6)])
+    scene = Scene([replace(ball, shape=white, materials=(Material(roughness=0.35),))], [from_above(0.6)])
     seen = render(scene, camera, Settings(method="quad", shading="toon", toon_softness=0.0, supersampling=1)).color
     values = {round(float(v), 4) for v in seen[..., 0].ravel()}
     highlight = 2 / math.pi * (1 + 1 - 0.35)

@@ -26,7 +26,7 @@ def whole_plane(elevation):
     scene, camera = scenes.textured_plane(side=4, elevation=elevation, size=(SIZE, SIZE))
     (instance,) = scene.surfels
     surfels = replace(instance.surfels, materials=np.zeros(16, int))
-    return replace(scene, surfels=(replace(instance, surfels=surfels),)), camera
+    return replace(scene, surfels=(replace(instance, shape=surfels),)), camera
 
 
 def on_plane(eye, rays):
@@ -53,7 +53,7 @@ def test_without_texture_coordinates_so_few_surfels_show_next_to_nothing(render)
     averaged = np.tile((*seen[inside].mean(axis=0), 1.0), (16, 1))
     bare = replace(instance.surfels, colors=averaged, uvs=None, uv_along_x=None, uv_along_y=None)
     frame = render(
-        replace(scene, surfels=(replace(instance, surfels=bare),)),
+        replace(scene, surfels=(replace(instance, shape=bare),)),
         camera,
         Settings(method="quad", supersampling=2, shading="flat"),
     )
@@ -87,7 +87,7 @@ def test_outside_of_the_image_the_extension_is_shown(extension, interpolation, r
 def test_coordinates_that_differ_by_whole_images_show_the_same(render):
     scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
     (instance,) = scene.surfels
-    moved = replace(instance, surfels=replace(instance.surfels, uvs=instance.surfels.uvs + np.array((3, -2))))
+    moved = replace(instance, shape=replace(instance.surfels, uvs=instance.surfels.uvs + np.array((3, -2))))
     first, second = (
         render(replace(scene, surfels=(i,)), camera, Settings(method="quad", supersampling=2))
         for i in (instance, moved)
@@ -102,7 +102,7 @@ def test_surfels_without_a_change_of_coordinates_show_their_own_colour(render):
     bare = replace(instance.surfels, uvs=None, uv_along_x=None, uv_along_y=None)
     joined = concatenate([bare, bare, instance.surfels])
     held = replace(joined, uv_along_x=0 * joined.uv_along_x, uv_along_y=0 * joined.uv_along_y)
-    own, shown = (render(replace(scene, surfels=(replace(instance, surfels=s),)), camera) for s in (bare, held))
+    own, shown = (render(replace(scene, surfels=(replace(instance, shape=s),)), camera) for s in (bare, held))
     differs = np.abs(own.color - shown.color).max(axis=2)
     # Two shaders: what lies just at the end of a neighbour's reach may be within it in one of them.
     assert differs.max() < 2e-4 and np.count_nonzero(differs > 1e-5) <= 2
@@ -144,7 +144,12 @@ def test_a_scene_without_textures_has_nothing_of_them(on_device, monkeypatch):
         (instance,) = scene.surfels
         plain = replace(instance, textures=())
         stats = renderer.render(Scene((plain,)), camera, Settings(method="quad", supersampling=2)).stats
-        return names, len(renderer.resources._atlases), len(renderer.resources._surfel_uvs), str(stats["plan"])
+        return (
+            names,
+            len(renderer.resources._atlases),
+            sum("uvs" in held for held in renderer.resources._held.values()),
+            str(stats["plan"]),
+        )
 
     names, atlases, uvs, plan = on_device(textures_and_pipelines)
     assert "attributes" in names and "textured_attributes" not in names
@@ -180,7 +185,7 @@ def test_a_splat_over_a_seam_shows_nothing_of_the_next_chart(method, render):
     arrays = {name: array[kept] for name, array in replace(instance.surfels, uv_border=border).arrays().items()}
     red = []
     for surfels in (Surfels(**arrays), Surfels(**(arrays | {"uv_border": None}))):
-        textured = replace(instance, surfels=surfels, textures=(SurfaceTexture(Image(image, "EXTEND")),))
+        textured = replace(instance, shape=surfels, textures=(SurfaceTexture(Image(image, "EXTEND")),))
         color = render(Scene((textured,)), camera, Settings(method=method, supersampling=1, shading="flat")).color
         red.append(np.count_nonzero(color[..., 0] > 0.2 * color[..., 3]))
     # what is left lies within half a texel of the line, where any renderer looks up both sides

@@ -2,6 +2,7 @@
 """Transparent layers: closed forms, and the picture by definition (Guennebaud et al. 2006, section 6)."""
 
 import math
+from importlib import import_module
 from dataclasses import replace
 
 import numpy as np
@@ -76,7 +77,7 @@ def test_colours_of_little_opacity_count_for_little(method, render):
     red = sheet(0, (1, 0, 0), 0.5)
     colors = red.surfels.colors.copy()
     colors[red.surfels.positions[:, 0] < 0] = (1, 1, 1, 0.001)
-    scene = Scene([replace(red, surfels=replace(red.surfels, colors=colors))])
+    scene = Scene([replace(red, shape=replace(red.surfels, colors=colors))])
     frame = render(scene, CAMERA, flat(method=method, transparent_film=True))
     seen = frame.color[..., 3] > 0.1
     assert seen[:, 17:].all() and not seen[:, 0].any()
@@ -127,7 +128,7 @@ def test_splats_of_the_rest_are_lit_as_the_layers_are(method, render):
     lights = lamp, Light("sun", energy=1.0, direction=(0.3, 0, -1), receivers=(1,))
     nearer, *sheets = (sheet(-z, (0.8, 0.5, 0.3), 0.5) for z in range(3))
     own = {"roughness": np.full(256, 0.4), "metallic": np.full(256, 0.3), "emission": np.tile((0.1, 0.2, 0), (256, 1))}
-    last = replace(sheets[1], surfels=replace(sheets[1].surfels, **own), light_set=1)
+    last = replace(sheets[1], shape=replace(sheets[1].surfels, **own), light_set=1)
     scene = Scene([nearer, last], lights, (0.1, 0.1, 0.1))
     camera = Camera.orthographic(CAMERA.matrix_world, 2.0, (24, 24), 0.1, 50)
     peeled, rest = (
@@ -220,7 +221,7 @@ def test_an_orthographic_camera_has_layers(render):
 def test_tiles_hide_no_seam(render, monkeypatch):
     scene, camera = spheres(64)
     whole = render(scene, camera, Settings()).color
-    monkeypatch.setitem(plan.__globals__, "MAX_TARGET_EDGE", 60)
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", 60)
     assert len(plan(scene, camera, Settings()).tiles) > 1
     differs = np.abs(render(scene, camera, Settings()).color - whole).max(axis=2)
     assert differs.max() < 1e-3 and np.count_nonzero(differs > 1e-4) <= 2  # where depths or weights tie
@@ -233,7 +234,7 @@ def test_tiles_store_the_depths_of_the_whole(method, edge, render, monkeypatch):
     scene, camera = scenes.transparent_spheres(count=600, size=(160, 160))
     settings = Settings(method=method, layers=8, blends_rest=False, supersampling=1)
     whole = render(scene, camera, settings).color
-    monkeypatch.setitem(plan.__globals__, "MAX_TARGET_EDGE", edge)
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", edge)
     differs = np.abs(render(scene, camera, settings).color - whole).max(axis=2)
     # One sample that ties shows in as many pixels as the filter spreads it over.
     assert differs.max() < 0.01 and np.count_nonzero(differs > 1e-4) <= 8

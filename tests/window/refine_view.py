@@ -80,7 +80,7 @@ def steps():
     return report
 
 
-import_module("splat_addon.rendering.plan").MAX_TARGET_EDGE = 400
+import_module("splat_addon.rendering.plan.tiles").MAX_TARGET_EDGE = 400
 viewport.draw = counted(viewport.draw)
 splat_addon.register()
 play(steps())

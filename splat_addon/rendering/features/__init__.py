@@ -4,7 +4,10 @@
 Each module decides from a `Planning` whether the frame needs it, and says why not. It may have
 
     passes(planning)       its passes, where the frame needs them
+    is_present(planning)   whether it has parts, where that does not depend on the pass
     parts(planning, p)     its parts in the passes of others, and in its own
+    read_back(planning)    textures that are read when the frame is done
+    check(plan)            raises ValueError for a plan that no device has room for
     VALUES                 name -> (type, value for a tile) of what shaders are told in the frame's block
     INPUTS                 sampler -> the texture for a tile that no pass writes
     CONSTANTS              what Python and shaders both know by a name
@@ -77,6 +80,15 @@ def name_of(feature) -> str:
 
 #: word -> its place among those that act at one hook
 ORDER = {name: number for number, name in enumerate(n for f in FEATURES for n in getattr(f, "NAMES", (name_of(f),)))}
+
+
+def _having(name: str) -> tuple:
+    return tuple(getattr(feature, name) for feature in FEATURES if hasattr(feature, name))
+
+
+PASSES, READ_BACK, MARGINS, CHECKS = (_having(name) for name in ("passes", "read_back", "margin", "check"))
+#: (parts, is_present) of each
+PARTS = tuple((f.parts, getattr(f, "is_present", lambda planning: True)) for f in FEATURES if hasattr(f, "parts"))
 
 
 def _joined(attribute: str) -> dict:

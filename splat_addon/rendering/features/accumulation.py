@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture
-from . import outputs
+from . import outputs, world
 
 
 def _corner(tile):
@@ -13,11 +13,21 @@ def _corner(tile):
 
 
 VALUES = {"corner": ("vec2", _corner)}
-SUM = Texture("sample_sum", per="picture")
+
+
+def _of_picture(plan, pixels: tuple[int, int]) -> tuple[int, int]:
+    return max(x + width for x, _, width, _ in plan.tiles), max(y + height for _, y, _, height in plan.tiles)
+
+
+SUM = Texture("sample_sum", per=_of_picture)
+
+
+def read_back(planning) -> tuple[Texture, ...]:
+    return (SUM,) if planning.is_added_up else ()
 
 
 def passes(planning):
-    if planning.is_added_up:
+    if planning.is_added_up and (planning.shown or world.is_shown(planning)):
         own = Part("accumulation", reads=(outputs.PIXELS["combined"],), writes=(SUM,))
         yield Pass("accumulate", "a view refines while it rests", "accumulate.frag", run, (own,),
                    state={"blend": "add"}, adds=True)  # fmt: skip

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from ..plan.executor import fill
-from ..plan.graph import Part, Pass, Texture
+from ..plan.graph import Part, Pass, Texture, fill
+from ..plan.tiles import tile_edge
 from . import gbuffer, polygons
 from .drawing import LIT_HOSTS
 
@@ -30,8 +30,6 @@ def missing(planning) -> str:
 
 def margin(planning) -> int:
     """Pixels that are looked at beside a tile's own; 0 where the whole picture is one tile."""
-    from ..plan import tile_edge
-
     edge = tile_edge(planning)
     return int(TILE_SHARE * edge) if not planning.find(missing) and max(planning.camera.size) > edge else 0
 
@@ -76,6 +74,10 @@ def _depths(planning) -> Pass:
     return Pass("occluders", why, "occluders.frag", fill, (own, sums, *polygons.joined(planning)))
 
 
+def is_present(planning) -> bool:
+    return not planning.find(missing)
+
+
 def parts(planning, p):
-    if p.kind == "opaque" and p.host in LIT_HOSTS and not planning.find(missing):
+    if p.kind == "opaque" and p.host in LIT_HOSTS:
         yield Part("ambient_occlusion", reads=(DEPTHS,))

@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-from ..plan.executor import fill
-from ..plan.frame_plan import VISIBILITY_ROWS
-from ..plan.graph import Part, Pass, Texture
+from ..plan.graph import Part, Pass, Texture, fill
 from . import silhouettes, visibility
 
 BOUNDS = Texture("depth_bounds")
@@ -13,7 +11,7 @@ BOUNDS = Texture("depth_bounds")
 
 def bounds(planning, reason: str, seen: Texture, kind: str = "opaque") -> Pass:
     """The pass, of the depths that are seen; and the depths of samples, where visibility has more rows than they."""
-    rows = VISIBILITY_ROWS if seen.per == "row" else 1
+    rows = silhouettes.rows_of(seen)
     own = Part(
         "depth_bounds",
         reads=(seen,),
@@ -39,9 +37,11 @@ def passes(planning):
     yield bounds(planning, compared, visibility.nearest_depth(planning))
 
 
+def is_present(planning) -> bool:
+    return planning.method.works_in == "picture"
+
+
 def parts(planning, p):
-    if planning.method.works_in != "picture":
-        return
     if p.host == "screen_space.frag" and p.kind in ("opaque", "layer"):
         yield Part("depth_bounds", reads=(BOUNDS,))
     if p.host in ("polygons.frag", "lines.frag"):

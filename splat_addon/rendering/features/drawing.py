@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..device.interface import Texture as DeviceTexture
-from ..plan.executor import TileContext
 from ..plan.graph import Pass
 from ..plan.uniforms import DRAW, std140
 from ..scene import Instance
@@ -16,12 +16,17 @@ from ..scene.light import MAX_LIGHT_SETS
 from ..upload.storages import get_storage
 from ..view import DrawItem
 
+if TYPE_CHECKING:
+    from ..plan.executor import TileContext
+
 #: where a method works -> the host of its shaders
 RASTERIZERS = {"space": "object_space", "picture": "screen_space", "sprites": "point_sprite"}
 #: Fragment shaders that add splats to sums.
 SPLAT_HOSTS = tuple(f"{name}.frag" for name in RASTERIZERS.values())
 #: Fragment shaders that light samples.
 LIT_HOSTS = ("shading.frag", "deferred_lighting.frag")
+#: Fragment shaders that light samples, or splats one by one.
+LIGHTING_HOSTS = (*LIT_HOSTS, "lit_splats.frag")
 
 
 def drawn_by(p: Pass, tile: TileContext) -> tuple[DrawItem, ...]:

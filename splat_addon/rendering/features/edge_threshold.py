@@ -22,6 +22,10 @@ def passes(planning):
     return ()
 
 
+def is_present(planning) -> bool:
+    return planning.settings.edge_threshold > 0 and planning.method.works_in == "space"
+
+
 def parts(planning, p):
-    if p.host in LIT_HOSTS and planning.settings.edge_threshold and planning.method.works_in == "space":
+    if p.host in LIT_HOSTS:
         yield Part("edge_threshold")

@@ -6,15 +6,20 @@ One level of a hierarchical z-buffer (Greene, Kass, Miller 1993).
 
 from __future__ import annotations
 
-from ..plan.executor import fill
-from ..plan.graph import Part, Pass, Texture
+from ..plan.graph import Part, Pass, Texture, fill, of_samples
 from . import depth_bounds
 
 #: Samples along each side of what it holds one value for.
 CELL = 4
 CONSTANTS = {"CELL": CELL}
 
-FARTHEST = Texture("hiz", "R32F", "cell")
+
+def _of_cells(plan, pixels: tuple[int, int]) -> tuple[int, int]:
+    width, height = of_samples(plan, pixels)
+    return -(-width // CELL), -(-height // CELL)
+
+
+FARTHEST = Texture("hiz", "R32F", _of_cells)
 
 
 def pays(planning) -> str:
@@ -38,6 +43,10 @@ def passes(planning):
         yield Pass("hiz", why, "hiz.frag", fill, (own,))
 
 
+def is_present(planning) -> bool:
+    return bool(planning.shown and planning.find(pays))
+
+
 def parts(planning, p):
-    if p.host == "screen_space.frag" and p.kind == "opaque" and planning.find(pays):
+    if p.host == "screen_space.frag" and p.kind == "opaque":
         yield Part("hiz", reads=(FARTHEST,))

@@ -10,7 +10,7 @@ from . import silhouettes, visibility
 from .drawing import LIT_HOSTS
 
 DEPTH = Texture("holdout_depth", "DEPTH32F")
-ROW_DEPTH = Texture("row_holdout_depth", "DEPTH32F", "row")
+ROW_DEPTH = Texture("row_holdout_depth", "DEPTH32F", silhouettes.of_rows)
 
 
 def _count(planning) -> int:
@@ -33,11 +33,15 @@ def passes(planning):
     if cutting and planning.method.works_in == "picture":
         own = visibility.own_parts(planning, _depth(planning))
         why = "a filter brings what lies behind a hole before it"
-        yield replace(visibility.drawn("holdouts", why, own, planning, "holes"), run=run)
+        yield visibility.drawn("holdouts", why, own, planning, "holes")._replace(run=run)
+
+
+def is_present(planning) -> bool:
+    return bool(planning.find(_count))
 
 
 def parts(planning, p):
-    if p.kind != "opaque" or not planning.find(_count):
+    if p.kind != "opaque":
         return
     if p.host == "depth_bounds.frag":
         yield Part("holdout", reads=(_depth(planning),), called=((_depth(planning), "holes"),))

@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-from ..plan.executor import fill
-from ..plan.frame_plan import VISIBILITY_ROWS
-from ..plan.graph import Part, Pass, Texture
+from ..plan.graph import Part, Pass, Texture, fill
 from ..upload.brdf_table import brdf_texels
-from . import depth_bounds, outputs, visibility
-from .drawing import LIT_HOSTS
+from . import depth_bounds, outputs, silhouettes, visibility
+from .drawing import LIGHTING_HOSTS
 
 NAMES = ("lighting", "picture")
 VALUES = {
@@ -39,27 +37,24 @@ def deferred(planning, reason: str, kind: str = "opaque") -> Pass:
 
 def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque", state=None) -> Pass:
     """Filters silhouettes."""
-    rows = VISIBILITY_ROWS if seen.per == "row" else 1
     own = Part(
         "lighting",
         reads=(SHADED, SURFACE, seen, depth_bounds.BOUNDS),
         writes=writes,
         called=((seen, "seen_depth"),),
-        constants=(("SAMPLES", planning.settings.supersampling), ("ROWS", rows)),
+        constants=(("SAMPLES", planning.settings.supersampling), ("ROWS", silhouettes.rows_of(seen))),
     )
     return Pass("resolve", reason, "resolve.frag", fill, (own,), kind, state or {}, adds=bool(state))
 
 
-def layer_pixels(planning) -> Pass:
-    """What a transparent layer adds to pixels."""
-    from . import transparency
-
-    writes, add = (transparency.COLOR, transparency.COLOR_DEPTH), {"blend": "add"}
+def layer_pixels(planning, depth: Texture, writes: tuple[Texture, ...]) -> Pass:
+    """What a transparent layer of these depths adds to pixels."""
+    add = {"blend": "add"}
     if planning.method.filters_silhouettes:
-        return _filtered(planning, "nearer layers cover it", transparency.DEPTH, writes, "layer", add)
+        return _filtered(planning, "nearer layers cover it", depth, writes, "layer", add)
     own = Part(
         "lighting",
-        reads=(SHADED, SURFACE, transparency.DEPTH),
+        reads=(SHADED, SURFACE, depth),
         writes=writes,
         constants=(("SAMPLES", planning.settings.supersampling),),
     )
@@ -79,7 +74,7 @@ def passes(planning):
 
 
 def parts(planning, p):
-    if p.host in (*LIT_HOSTS, "lit_splats.frag") and planning.model.tables:
+    if p.host in LIGHTING_HOSTS and planning.model.tables:
         yield Part("lighting", inputs=planning.model.tables)
     if p.kind == "opaque" and p.host in ("deferred_lighting.frag", "resolve.frag"):
         yield Part("picture")

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ..plan.graph import Part, Texture
 from . import shadows
-from .drawing import LIT_HOSTS, SPLAT_HOSTS
+from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
 
 NAMES = ("lights", "light_links", "sized_lights")
 VALUES = {"light_count": ("float", lambda tile: len(tile.scene.lights))}
@@ -48,5 +48,5 @@ def parts(planning, p):
         yield Part("lights", inputs=("lights",))
         if _are_linked(planning):
             yield Part("light_links")
-    if p.host in (*LIT_HOSTS, "lit_splats.frag") and is_lit and any(one.is_sized for one in planning.scene.lights):
+    if p.host in LIGHTING_HOSTS and is_lit and any(one.is_sized for one in planning.scene.lights):
         yield Part("sized_lights")

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 import math
 
-from ..plan.executor import fill
-from ..plan.graph import Part, Pass, Texture
+from ..plan.graph import Part, Pass, Texture, fill
 from ..scene.lines import CREASE_REACH
 from .drawing import LIT_HOSTS
 
@@ -37,8 +36,12 @@ def passes(planning):
     yield Pass("lines", why, "lines.frag", fill, (own,))
 
 
+def is_present(planning) -> bool:
+    return planning.settings.lines is not None
+
+
 def parts(planning, p):
-    if planning.settings.lines and p.host in LIT_HOSTS and p.kind == "opaque":
+    if p.host in LIT_HOSTS and p.kind == "opaque":
         yield Part("lines", reads=(COVERED,))
 
 

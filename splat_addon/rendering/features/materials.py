@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ..plan.graph import Part, Texture
 from ..upload.packing import pack_materials, shared_emission, shared_material
-from .drawing import LIT_HOSTS, SPLAT_HOSTS
+from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
 
 NAMES = ("materials", "emission")
 
@@ -77,5 +77,5 @@ def parts(planning, p):
             yield Part("materials", **drawn)
         if has_emissions:
             yield Part("emission", ("gbuffer_emission",), **drawn)
-    if p.host in (*LIT_HOSTS, "lit_splats.frag") and planning.model.has_material and emission and any(emission):
+    if p.host in LIGHTING_HOSTS and planning.model.has_material and emission and any(emission):
         yield Part("emission", ("shared_emission",))

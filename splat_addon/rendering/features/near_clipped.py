@@ -17,6 +17,10 @@ def passes(planning):
     return ()
 
 
+def is_present(planning) -> bool:
+    return planning.find(depth_format.extent).reaches_near
+
+
 def parts(planning, p):
-    if p.host == "screen_space.frag" and planning.find(depth_format.extent).reaches_near:
+    if p.host == "screen_space.frag":
         yield Part("near_clipped", varyings=(("flat", "float", "near_clipped"),))

@@ -10,7 +10,7 @@ from .drawing import draw_splats, drawn_by
 from .rasterizers import rasterized
 
 IDENTITY = Texture("identity", "RG32F")
-ROW_IDENTITY = Texture("row_identity", "RG32F", "row")
+ROW_IDENTITY = Texture("row_identity", "RG32F", silhouettes.of_rows)
 LAYER_IDENTITY = Texture("layer_identity", "RG32F")
 POLYGON_IDENTITY = Texture("polygon_identity", "RG32F")
 EDGE_DEPTH = Texture("edge_depth", "DEPTH32F")
@@ -39,7 +39,8 @@ def passes(planning):
     if not planning.shown:
         return
     names, method = asked_for(planning), planning.method
-    planning.facts["identity"] = read_back(planning)
+    planning.facts["identity"] = read = read_back(planning)
+    planning.facts["identity_rows"] = silhouettes.rows_of(read[0]) if read else 1
     if not names:
         planning.skip("identity", "no index or matte tells objects or materials apart")
         return
@@ -56,9 +57,11 @@ def passes(planning):
         yield Pass("edge_ids", why, "screen_space.frag", run_edges, parts, "rims", state, adds=True)
 
 
+def is_present(planning) -> bool:
+    return bool(asked_for(planning))
+
+
 def parts(planning, p):
-    if not planning.find(asked_for):
-        return
     if p.host == "visibility.frag" and p.kind in ("opaque", "layer"):
         texture = LAYER_IDENTITY if p.kind == "layer" else IDENTITY
         if p.kind == "opaque" and planning.find(silhouettes.have_rows):

@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
-from ..plan.executor import fill
-from ..plan.graph import Part, Pass, Texture
+from ..plan.graph import Part, Pass, Texture, fill
 from ..upload.packing import SPLATS_PER_ROW, row_count
 from . import gbuffer, lighting
 from .drawing import RASTERIZERS, draw_block, draw_splats, drawn_by, splat_textures, storage_samplers
 from .rasterizers import rasterized
 
-LIT = Texture("lit_splats", per="splat")
+
+def _of_splats(plan, pixels: tuple[int, int]) -> tuple[int, int]:
+    return SPLATS_PER_ROW, plan.facts["lit_rows"]
+
+
+LIT = Texture("lit_splats", per=_of_splats)
 ACCUM = Texture("oit_accum")
 WEIGHT = Texture("oit_weight", "RG32F")
 
@@ -20,10 +24,8 @@ def lit_rows(scene) -> int:
     return max(row_count(i.surfels) for i in scene.surfels if i.is_transparent)
 
 
-def passes_of_rest(planning) -> tuple[Pass, ...]:
-    """What is done where no layer was empty."""
-    from . import transparency
-
+def passes_of_rest(planning, peeled: Texture, layers: Texture) -> tuple[Pass, ...]:
+    """What is done where no layer was empty: with what layers add up to, and how far they are peeled."""
     planning.facts["lit_rows"] = lit_rows(planning.scene)
     samples = (("SAMPLES", planning.settings.supersampling),)
     add = {"blend": "add"}
@@ -32,8 +34,8 @@ def passes_of_rest(planning) -> tuple[Pass, ...]:
     state = gbuffer.state(planning) | {"depth_test": False}
     host = f"{RASTERIZERS[planning.method.works_in]}.frag"
     shade = Part("oit", reads=(ACCUM, WEIGHT, gbuffer.DEPTH_SUM), writes=(lighting.SHADED,))
-    put = Part("oit", reads=(lighting.SHADED, transparency.PEELED), writes=(transparency.COLOR,), constants=samples)
-    peel = Part("oit", reads=(lighting.SHADED,), updates=(transparency.PEELED,))
+    put = Part("oit", reads=(lighting.SHADED, peeled), writes=(layers,), constants=samples)
+    peel = Part("oit", reads=(lighting.SHADED,), updates=(peeled,))
     each = Pass("light_splats", "each splat is lit by itself", "lit_splats.frag", run, (light,), "rest")
     return (
         Pass("rest", "all that is left is added up", host, run, rest, "rest", state, each=each),

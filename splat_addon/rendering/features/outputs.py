@@ -8,8 +8,8 @@ silhouettes are filtered afterwards, of layers where something is transparent, o
 from __future__ import annotations
 
 from ..plan.frame_plan import FramePlan
-from ..plan.graph import Part, Texture
-from .drawing import LIT_HOSTS, SPLAT_HOSTS
+from ..plan.graph import Part, Texture, of_pixels
+from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
 
 NAMES = (
     "overdraw", "weight_output", "shadow_output", "normal_coverage", "diffuse_color", "emission_output",
@@ -33,12 +33,12 @@ HELD_BY = {
 _HANDED_ON = {"diffuse_color": "diffuse_color", "emission": "emission_output", "shadow_overdraw": "shadow_overdraw"}
 
 PIXELS = {
-    name: Texture(name, "R32F" if name == "depth" else "RGBA32F", "pixel")
+    name: Texture(name, "R32F" if name == "depth" else "RGBA32F", of_pixels)
     for name in dict.fromkeys(texture for texture, _ in HELD_BY.values())
 }
 SAMPLES = {name: Texture(f"sample_{name}") for name in _HANDED_ON}
-LAYERS = {name: Texture(f"layers_{name}", per="pixel") for name in _HANDED_ON}
-LAYERS_NORMAL = Texture("layers_normal", per="pixel")
+LAYERS = {name: Texture(f"layers_{name}", per=of_pixels) for name in _HANDED_ON}
+LAYERS_NORMAL = Texture("layers_normal", per=of_pixels)
 OVERDRAW = Texture("gbuffer_overdraw", "R32F", is_multisampled=True)
 
 _HOSTS = (*LIT_HOSTS, *SPLAT_HOSTS, "lit_splats.frag", "resolve.frag", "layer.frag", "background.frag")
@@ -60,15 +60,15 @@ def wanted(planning) -> tuple[str, ...]:
 
 def _handed_on(planning, by_layers: bool = False) -> tuple[str, ...]:
     """Of those, what samples hand on. Layers tell nothing of overdraw, which is of what is opaque."""
-    names = [name for name in wanted(planning) if name in _HANDED_ON]
+    names = [name for name in planning.find(wanted) if name in _HANDED_ON]
     if by_layers and "shadow" not in planning.settings.outputs:
         names = [name for name in names if name != "shadow_overdraw"]
     return tuple(names)
 
 
-def live(planning) -> tuple[Texture, ...]:
+def read_back(planning) -> tuple[Texture, ...]:
     """What is read of a frame."""
-    return tuple(PIXELS[name] for name in wanted(planning))
+    return tuple(PIXELS[name] for name in planning.find(wanted))
 
 
 def counts_splats(planning) -> bool:
@@ -79,8 +79,9 @@ def counts_splats(planning) -> bool:
 def passes(planning):
     """None; it says what is not asked for."""
     if planning.shown or planning.scene.environment:
+        given = planning.find(wanted)
         for name in PIXELS:
-            if name not in wanted(planning):
+            if name not in given:
                 planning.skip(name, "nothing that it holds is asked for")
     if not planning.shown:
         return ()
@@ -98,7 +99,7 @@ def passes(planning):
 
 def _found(planning):
     """What is wanted, handed on, and handed on by layers."""
-    return wanted(planning), _handed_on(planning), _handed_on(planning, True)
+    return planning.find(wanted), _handed_on(planning), _handed_on(planning, True)
 
 
 def parts(planning, p):
@@ -112,7 +113,7 @@ def parts(planning, p):
         yield Part("overdraw", ("overdraw_model",) if model.sums else (), reads=(OVERDRAW,))
     if p.host in LIT_HOSTS and model.features:
         yield Part("weight_output")
-    if p.host in (*LIT_HOSTS, "lit_splats.frag"):
+    if p.host in LIGHTING_HOSTS:
         if model.is_lit and planning.scene.lights and "shadow" in planning.settings.outputs:
             yield Part("shadow_output")
     has_layers = p.host in ("shading.frag", "resolve.frag") and bool(planning.facts.get("layers")) and not in_layer
@@ -150,8 +151,8 @@ def _handing(planning, p, in_layer: bool, has_layers: bool):
 def check(plan: FramePlan) -> None:
     """Raises ValueError for a pass of more attachments than every device has."""
     for p in plan.passes:
-        names = [texture.name for texture in p.colors]
-        if len(names) > MAX_COLORS and p.host:
+        if len(p.colors) > MAX_COLORS and p.host:
+            names = [texture.name for texture in p.colors]
             raise ValueError(
                 f"The {p.name} pass would write {len(names)} textures at once ({', '.join(names)}), and "
                 f"devices have room for {MAX_COLORS}. Leave Overdraw, indices and mattes out, or choose float32 sums."

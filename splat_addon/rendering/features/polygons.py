@@ -48,9 +48,11 @@ def passes(planning):
     yield Pass("polygons", why, "polygons.frag", run, (own,), state=state)
 
 
+def is_present(planning) -> bool:
+    return bool(planning.scene.polygons)
+
+
 def parts(planning, p):
-    if not planning.scene.polygons:
-        return
     if p.host == "polygons.frag":
         yield from _drawn(planning)
     if p.kind == "opaque" and p.host in (*LIT_HOSTS, "lines.frag"):

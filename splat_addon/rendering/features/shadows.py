@@ -5,19 +5,23 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..plan.executor import TileContext
 from ..plan.graph import Part, Pass, Texture
 from ..scene.camera import Camera
 from ..scene.light import pack_lights
-from ..shadow import MAX_MAPS, map_ranges, pack_shadow_maps, same_maps, shadow_maps
+from ..shadow import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps, same_maps, shadow_maps
 from ..view import View
 from . import visibility
-from .drawing import LIT_HOSTS
+from .drawing import LIGHTING_HOSTS
 
 #: Of polygons, in texels of a map: a filter reaches two, over which planes may differ by that much at 45 degrees.
 SETBACK = 2.0
 
-DEPTH = Texture("shadow_depth", "DEPTH32F", "frame")
+
+def _of_atlas(plan, pixels: tuple[int, int]) -> tuple[int, int]:
+    return atlas_size(plan.facts["shadow_maps"])
+
+
+DEPTH = Texture("shadow_depth", "DEPTH32F", _of_atlas)
 
 
 def maps(planning):
@@ -46,17 +50,20 @@ def passes(planning):
         casting = len({one.light for one in made})
         why = f"{casting} of {len(planning.scene.lights)} lights cast shadows, through {len(made)} maps"
         own = visibility.own_parts(planning, DEPTH)
-        yield replace(
-            visibility.drawn("shadow_maps", why, own, planning, "shadow"), run=run, once=made, is_same=same_maps
-        )
+        drawn = visibility.drawn("shadow_maps", why, own, planning, "shadow")
+        yield drawn._replace(run=run, once=made, is_same=same_maps)
+
+
+def is_present(planning) -> bool:
+    return bool(planning.facts["shadow_maps"])
 
 
 def parts(planning, p):
-    if p.host in (*LIT_HOSTS, "lit_splats.frag") and planning.find(maps):
+    if p.host in LIGHTING_HOSTS:
         yield Part("shadows", reads=(DEPTH,), inputs=("shadow_maps",))
 
 
-def run(tile: TileContext, p: Pass):
+def run(tile, p: Pass):
     """Fill the atlas, a visibility pass a map. Parallel cameras store the hardware's depth, others depth / far."""
     target = tile.target(p)
     target.clear(depth=1.0)
@@ -67,8 +74,8 @@ def run(tile: TileContext, p: Pass):
             multisamples=0, sample_shading=False,
         )  # fmt: skip
         view = _as_cast(view, made.camera)
-        from_light = TileContext(tile.resources, seen, tile.scene, made.camera, tile.settings, view)
-        drawn = replace(p, state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
+        from_light = replace(tile, plan=seen, camera=made.camera, view=view, shadow_views=())
+        drawn = p._replace(state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
         visibility.draw(from_light, drawn, target, view.placed, view.polygons, (*made.place, *made.camera.size))
     return target
 
@@ -83,7 +90,7 @@ def _as_cast(view: View, camera: Camera) -> View:
     return replace(view, placed=tuple(replace(p, split=0.0) for p in view.placed), polygons=polygons)
 
 
-def lights_texture(tile: TileContext):
+def lights_texture(tile):
     """The scene's lights, with the maps of each."""
     lights, made = tile.scene.lights, tile.plan.facts.get("shadow_maps")
     ranges = map_ranges(made, len(lights)) if made else None

@@ -3,10 +3,36 @@
 
 from __future__ import annotations
 
-from ..plan.frame_plan import FILTER_MARGIN
-from ..plan.graph import Part
+from ..plan.frame_plan import FILTER_MARGIN, VISIBILITY_ROWS, FramePlan
+from ..plan.graph import Part, Texture, of_samples
 
 CONSTANTS = {"FILTER_REACH": FILTER_MARGIN}
+
+
+def of_rows(plan: FramePlan, pixels: tuple[int, int]) -> tuple[int, int]:
+    """A texture's size: so many rows to each row of samples."""
+    columns, rows = of_samples(plan, pixels)
+    return columns, rows * VISIBILITY_ROWS
+
+
+def rows_of(texture: Texture) -> int:
+    """How many rows of it a row of samples has."""
+    return VISIBILITY_ROWS if texture.per is of_rows else 1
+
+
+def passes(planning):
+    """None; it says whether silhouettes are filtered."""
+    planning.facts["filters_silhouettes"] = is_present(planning) and bool(planning.shown)
+    return ()
+
+
+def is_present(planning) -> bool:
+    return planning.method.filters_silhouettes
+
+
+def margin(planning) -> int:
+    """Pixels that the filter reads to each side."""
+    return FILTER_MARGIN if planning.facts["filters_silhouettes"] else 0
 
 
 def have_rows(planning) -> bool:
@@ -17,8 +43,7 @@ def have_rows(planning) -> bool:
 
 
 def parts(planning, p):
-    if planning.method.filters_silhouettes:
-        if p.host == "screen_space.frag" and p.kind in ("opaque", "layer"):
-            yield Part("silhouettes")
-        if p.host in ("depth_bounds.frag", "oit_layer.frag"):
-            yield Part("silhouettes")
+    if p.host == "screen_space.frag" and p.kind in ("opaque", "layer"):
+        yield Part("silhouettes")
+    if p.host in ("depth_bounds.frag", "oit_layer.frag"):
+        yield Part("silhouettes")

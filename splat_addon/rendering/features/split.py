@@ -21,9 +21,11 @@ def passes(planning):
     return ()
 
 
+def is_present(planning) -> bool:
+    return bool(planning.find(_count))
+
+
 def parts(planning, p):
-    if not planning.find(_count):
-        return
     varyings = (("smooth", "vec3", "split_place"),)
     if p.host in SPLAT_HOSTS:
         yield Part("split")

@@ -23,6 +23,10 @@ def _are_textured(planning) -> tuple[bool, bool]:
     return any(i.is_textured for i in scene.surfels), any(i.is_textured for i in scene.polygons)
 
 
+def is_present(planning) -> bool:
+    return any(planning.find(_are_textured))
+
+
 def parts(planning, p):
     settings, each = planning.settings, planning.settings.multisampling and planning.settings.sample_shading
     # of what is evaluated once: a sample, or each of its hardware samples, which is a smaller piece of the pixel

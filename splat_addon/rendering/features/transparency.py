@@ -15,8 +15,7 @@ of its samples, and the opaque picture what all of them do.
 
 from __future__ import annotations
 
-from ..plan.executor import fill
-from ..plan.graph import Loop, Part, Pass, Texture
+from ..plan.graph import Loop, Part, Pass, Texture, fill, of_pixels
 from . import depth_bounds, gbuffer, lighting, oit, outputs, visibility
 from .drawing import SPLAT_HOSTS
 
@@ -28,10 +27,10 @@ CONSTANTS = {"BLOCKS": BLOCKS}
 VALUES = {"alpha_threshold": ("float", lambda tile: tile.settings.alpha_threshold)}
 
 DEPTH = Texture("layer_depth", "DEPTH32F")
-OCCUPANCY = Texture("layer_occupancy", "R32F", "block")
+OCCUPANCY = Texture("layer_occupancy", "R32F", lambda plan, pixels: (BLOCKS, BLOCKS))
 PEELED = Texture("peel_state", "RG32F")
-COLOR = Texture("layers", per="pixel")
-COLOR_DEPTH = Texture("layers_depth", "R32F", "pixel")
+COLOR = Texture("layers", per=of_pixels)
+COLOR_DEPTH = Texture("layers_depth", "R32F", of_pixels)
 
 
 def layers(planning) -> int:
@@ -67,7 +66,7 @@ def passes(planning):
     more += tuple(outputs.LAYERS[name] for name in outputs._handed_on(planning, True))
     yield Pass("start_layers", "nothing is peeled yet", "", start, (Part("transparency", writes=(*cleared, *more)),))
     peeled = count - planning.settings.blends_rest
-    last = oit.passes_of_rest(planning) if planning.settings.blends_rest else ()
+    last = oit.passes_of_rest(planning, PEELED, COLOR) if planning.settings.blends_rest else ()
     yield Loop("layers", "from the nearest to the farthest", peeled, _body(planning), OCCUPANCY, last)
 
 
@@ -84,14 +83,20 @@ def _body(planning) -> tuple[Pass, ...]:
         *(() if in_space else (bounds,)),
         gbuffer.attributes(planning, "splats of one layer blend", DEPTH, "layer"),
         lighting.deferred(planning, "a layer is lit once", "layer"),
-        lighting.layer_pixels(planning),
+        lighting.layer_pixels(planning, DEPTH, (COLOR, COLOR_DEPTH)),
         Pass("peel", "the next layer lies behind this one", "peel.frag", fill, (peel,), "layer"),
     )
 
 
+def is_present(planning) -> bool:
+    return bool(planning.facts["layers"])
+
+
+def margin(planning) -> int:
+    return LAYER_MARGIN if planning.facts["layers"] else 0
+
+
 def parts(planning, p):
-    if not planning.facts.get("layers"):
-        return
     opaque, tested = visibility.DEPTH, (PEELED, visibility.DEPTH)
     opacity = {"varyings": (("flat", "float", "opacity"),)}
     if p.kind == "layer":

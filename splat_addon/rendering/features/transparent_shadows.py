@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ..plan.graph import Part
 from . import shadows, transparency
-from .drawing import LIT_HOSTS
+from .drawing import LIGHTING_HOSTS
 
 
 def _casting(planning) -> int:
@@ -24,10 +24,12 @@ def passes(planning):
     return ()
 
 
+def is_present(planning) -> bool:
+    return bool(planning.shown and planning.find(_casting))
+
+
 def parts(planning, p):
-    if not planning.find(_casting):
-        return
     if p.host == "visibility.frag" and p.kind == "shadow":
         yield Part("transparent_shadows", varyings=(("flat", "vec2", "opacity_surface"),), only="splats")
-    if p.host in (*LIT_HOSTS, "lit_splats.frag"):
+    if p.host in LIGHTING_HOSTS:
         yield Part("transparent_shadows", choices=(("shadow_taps", "masked"),))

@@ -5,15 +5,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..plan.executor import TileContext
-from ..plan.frame_plan import VISIBILITY_ROWS
 from ..plan.graph import Part, Pass, Texture
 from ..view import View
 from . import depth_format, silhouettes
 from .drawing import draw_polygons, draw_splats, drawn_by, storage_samplers
 
 DEPTH = Texture("visibility_depth", "DEPTH32F", is_multisampled=True)
-ROW_DEPTH = Texture("row_depth", "DEPTH32F", "row")
+ROW_DEPTH = Texture("row_depth", "DEPTH32F", silhouettes.of_rows)
 _OF_POLYGONS = Part("visibility", ("of_polygons",), inputs=("polygon_corners",), only="polygons")
 
 
@@ -64,18 +62,18 @@ def parts(planning, p):
         yield Part("visibility")
 
 
-def run(tile: TileContext, p: Pass):
+def run(tile, p: Pass):
     """Fill the depth texture, and what else is kept of what is nearest."""
     target = tile.target(p)
     target.clear(color=0.0 if p.colors else None, depth=1.0)
-    if p.depth.per == "row":
+    if silhouettes.rows_of(p.depth) > 1:
         tile = replace(tile, view=_seen_by_rows(tile.view, target.size[1]))
     polygons = tile.view.polygons if p.kind != "layer" else ()
     draw(tile, p, target, drawn_by(p, tile), polygons)
     return target
 
 
-def draw(tile: TileContext, p: Pass, target, splats, polygons, viewport=None) -> None:
+def draw(tile, p: Pass, target, splats, polygons, viewport=None) -> None:
     """Both kinds, with the pass's programs."""
     draw_splats(tile, p, target, splats, "visibility.vert", "splats", viewport=viewport)
     draw_polygons(tile, p, target, polygons, "polygon_visibility.vert", "polygons", viewport=viewport)
@@ -84,5 +82,5 @@ def draw(tile: TileContext, p: Pass, target, splats, polygons, viewport=None) ->
 def _seen_by_rows(view: View, rows: int) -> View:
     """A view moved in the picture, so that the first of a sample's rows goes through its centre as the sample does."""
     projection = view.projection.copy()
-    projection[1] -= projection[3] * (VISIBILITY_ROWS - 1) / rows
+    projection[1] -= projection[3] * (silhouettes.VISIBILITY_ROWS - 1) / rows
     return replace(view, projection=projection)

@@ -5,10 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..plan.executor import fill
-from ..plan.graph import Part, Pass
+from ..plan.graph import Part, Pass, fill
 from . import outputs
-from .drawing import LIT_HOSTS
+from .drawing import LIGHTING_HOSTS
 
 
 def _to_environment(tile) -> np.ndarray:
@@ -33,7 +32,7 @@ def passes(planning):
     """A world without anything in it is a pass of its own."""
     if not planning.shown:
         planning.skip("all other passes", "the scene has neither surfels nor polygons: the picture is its background")
-        if _is_shown(planning):
+        if is_shown(planning):
             samples = ("SAMPLES", planning.settings.supersampling)
             own = Part("world", writes=outputs.pixel_textures(planning), constants=(samples,), called=outputs.CALLED)
             yield Pass("background", "the world is a picture", "background.frag", fill, (own,))
@@ -41,12 +40,17 @@ def passes(planning):
         planning.skip("environment", "the world is even")
 
 
+def is_present(planning) -> bool:
+    return planning.scene.environment is not None
+
+
 def parts(planning, p):
-    if p.kind == "opaque" and p.host in ("shading.frag", "resolve.frag", "background.frag") and _is_shown(planning):
+    if p.kind == "opaque" and p.host in ("shading.frag", "resolve.frag", "background.frag") and is_shown(planning):
         yield _SHOWN
-    if p.host in (*LIT_HOSTS, "lit_splats.frag") and planning.model.has_world and planning.scene.environment:
+    if p.host in LIGHTING_HOSTS and planning.model.has_world:
         yield _LIGHTS
 
 
-def _is_shown(planning) -> bool:
+def is_shown(planning) -> bool:
+    """Whether the world is a picture that is seen."""
     return planning.scene.environment is not None and not planning.settings.transparent_film

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from ..device.interface import Pipeline, PipelineDescription, Target
+from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
 from ..identity import Identities
 from ..scene import Scene
@@ -18,10 +18,10 @@ from ..scene.camera import Camera
 from ..settings import Settings
 from ..upload.resources import Resources, TextureKey
 from ..view import View
-from .compose import DEFAULTS, compose
 from .frame_plan import FramePlan
 from .graph import Loop, Pass, Step, Texture
-from .uniforms import DRAW, VIEW, Block, blocks_in, constants_in, frame_value, std140
+from .programs import describe, frame_value
+from .uniforms import DRAW, VIEW, Block, std140
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,45 +133,6 @@ def texture_key(texture: Texture, size: tuple[int, int], plan: FramePlan, is_nex
     """Of a texture of the plan, for a tile of `size` pixels."""
     name = f"{texture.name}_next" if is_next else texture.name
     return name, *plan.size(texture, size), plan.format(texture), plan.multisamples_of(texture)
-
-
-def describe(plan: FramePlan, p: Pass, vertex: str = "fullscreen.vert", *variants: str) -> PipelineDescription:
-    """The pipeline of a pass with the parts of these variants."""
-    taken = {"", *plan.variants, *variants}
-    parts = [part for part in p.parts if part.only in taken]
-    words = dict.fromkeys([part.feature for part in parts] + [word for part in parts for word in part.words])
-    depth_format = {"depth_format": "linear" if plan.linear_depth else "hardware"}
-    names = DEFAULTS | dict(plan.choices) | depth_format | {name: file for part in parts for name, file in part.choices}
-    ordered, chosen = _ordered((*words, p.kind)), tuple(names.items())
-    texts = compose(vertex, ordered, chosen), compose(p.host, ordered, chosen)
-    called = {texture: name for part in parts for texture, name in part.called}
-    updated = {texture for part in parts for texture in part.updates}
-    drawn = [texture for part in parts for texture in part.fills if not texture.is_depth]
-    sampled = [(called.get(t, t.name), t) for part in parts for t in (*part.reads, *part.updates)]
-    return PipelineDescription(
-        name="_".join((p.name, *variants)),
-        vertex=texts[0],
-        fragment=texts[1],
-        blocks=blocks_in(*texts),
-        samplers=tuple(dict.fromkeys([name for part in parts for name in part.inputs] + [name for name, _ in sampled])),
-        multisampled=tuple(dict.fromkeys(name for name, t in sampled if plan.multisamples_of(t))),
-        varyings=tuple(dict.fromkeys(varying for part in parts for varying in part.varyings)),
-        outputs=tuple((t.type, f"{t.name}_next" if t in updated else called.get(t, t.name)) for t in drawn),
-        defines=tuple({**constants_in(*texts), **{n: str(v) for part in parts for n, v in part.constants}}.items()),
-        **p.state,
-    )
-
-
-def _ordered(words: Iterable[str]) -> tuple[str, ...]:
-    """Features in the order in which they act, then the other words."""
-    from ..features import ORDER
-
-    return tuple(sorted(words, key=lambda word: (ORDER.get(word, len(ORDER)), word)))
-
-
-def fill(tile: TileContext, p: Pass) -> Target:
-    """Run a pass that is drawn over the whole of what it writes."""
-    return tile.fill(p)
 
 
 def run_pass(tile: TileContext, p: Pass) -> Target:

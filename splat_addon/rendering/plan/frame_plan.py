@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -25,7 +24,6 @@ class FramePlan:
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
     steps: passes and loops, in order. variants: those of their parts that are in every program.
     choices: (name in paths of shaders, file). margin: pixels drawn around a tile and not kept.
-    sizes: what a texture holds one value for -> its width and height, for a tile of so many pixels.
     facts: what features have found out for when passes run, by name.
     features: (name, why), of what is present beside passes. skipped: (what, why), of what others would need.
     """
@@ -42,7 +40,6 @@ class FramePlan:
     variants: frozenset[str]
     choices: tuple[tuple[str, str], ...]
     margin: int
-    sizes: dict[str, Callable[[FramePlan, tuple[int, int]], tuple[int, int]]]
     facts: dict[str, object]
     features: tuple[tuple[str, str], ...]
     skipped: tuple[tuple[str, str], ...]
@@ -50,17 +47,6 @@ class FramePlan:
     def has(self, feature: str) -> bool:
         """Whether it is present beside passes."""
         return feature in (name for name, _ in self.features)
-
-    @property
-    def filters_silhouettes(self) -> bool:
-        """Whether a pass does."""
-        return self.facts["filters_silhouettes"]
-
-    @property
-    def numbers(self) -> tuple[Texture, int]:
-        """The texture of whose the samples are that mattes are made of, and its rows to a row of samples."""
-        texture = self.facts["identity"][0]
-        return texture, VISIBILITY_ROWS if texture.per == "row" else 1
 
     @cached_property
     def passes(self) -> tuple[Pass, ...]:
@@ -88,7 +74,7 @@ class FramePlan:
 
     def size(self, texture: Texture, pixels: tuple[int, int]) -> tuple[int, int]:
         """Width and height of a texture, for a tile of so many pixels with its margin."""
-        return self.sizes[texture.per](self, pixels)
+        return texture.per(self, pixels)
 
     def format(self, texture: Texture) -> str:
         """A name in `device.interface.FORMATS`."""

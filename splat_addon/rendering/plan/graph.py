@@ -7,8 +7,9 @@ life of what was there, which lets passes share a texture (each transparent laye
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..device.interface import FORMATS
@@ -17,17 +18,27 @@ from ..device.interface import FORMATS
 _TYPES = {1: "float", 2: "vec2", 4: "vec4"}
 
 
+def of_samples(plan, pixels: tuple[int, int]) -> tuple[int, int]:
+    """A size: one value a sample."""
+    return pixels[0] * plan.samples, pixels[1] * plan.samples
+
+
+def of_pixels(plan, pixels: tuple[int, int]) -> tuple[int, int]:
+    """A size: one value a pixel."""
+    return pixels
+
+
 @dataclass(frozen=True, eq=False)
 class Texture:
     """What passes write. name: also of the sampler that reads it. format: a name in `device.interface.FORMATS`.
 
-    per: what it holds one value for, a name in `plan.SIZES`. is_multisampled: it has the frame's hardware samples.
-    is_sum: of float16, where sums are that.
+    per: what it holds one value for: of the plan and a tile of so many pixels with its margin, its width and height.
+    is_multisampled: it has the frame's hardware samples. is_sum: of float16, where sums are that.
     """
 
     name: str
     format: str = "RGBA32F"
-    per: str = "sample"
+    per: Callable[[Any, tuple[int, int]], tuple[int, int]] = of_samples
     is_multisampled: bool = False
     is_sum: bool = False
 
@@ -39,9 +50,6 @@ class Texture:
     def type(self) -> str:
         """In a shader that writes it."""
         return _TYPES[FORMATS[self.format]]
-
-
-_FILLS = ("writes", "updates")
 
 
 class Part(NamedTuple):
@@ -78,16 +86,20 @@ class Part(NamedTuple):
     def fills(self) -> tuple[Texture, ...]:
         return (*self.writes, *self.updates)
 
-    def needed(self, live: set[Texture]) -> Part:
-        """Without the attachments that nobody reads; depth stays, the pass tests with it."""
-        if all(t in live or t.is_depth for t in self.fills):
+    def without(self, dead: set[Texture]) -> Part:
+        """Without some of the attachments that it fills."""
+        if dead.isdisjoint(self.fills):
             return self
-        kept = {name: tuple(t for t in getattr(self, name) if t in live or t.is_depth) for name in _FILLS}
-        return self._replace(**kept)
+        writes, updates = (tuple(t for t in filled if t not in dead) for filled in (self.writes, self.updates))
+        return self._replace(writes=writes, updates=updates)
 
 
-@dataclass(frozen=True)
-class Pass:
+def fill(tile, p: Pass):
+    """Run a pass that is drawn over the whole of what it writes."""
+    return tile.fill(p)
+
+
+class Pass(NamedTuple):
     """name: told to the user. reason: why the frame needs it. host: its fragment shader, which features know it by.
 
     run: run(tile, pass) -> the target that was drawn into. kind: "opaque", "layer", "rest", ..., for features.
@@ -102,7 +114,7 @@ class Pass:
     run: Callable[[Any, Pass], Any]
     parts: tuple[Part, ...]
     kind: str = "opaque"
-    state: dict[str, Any] = field(default_factory=dict)
+    state: Mapping[str, Any] = MappingProxyType({})
     adds: bool = False
     once: object = None
     is_same: Callable[[Any, Any], bool] | None = None
@@ -114,7 +126,7 @@ class Pass:
 
     @property
     def fills(self) -> tuple[Texture, ...]:
-        return self.all(*_FILLS)
+        return tuple(dict.fromkeys([t for part in self.parts for t in part.fills]))
 
     @property
     def colors(self) -> tuple[Texture, ...]:
@@ -137,8 +149,7 @@ class Pass:
         return (*(t.name for t in self.all("writes")), *(f"{t.name}_next" for t in self.all("updates")))
 
 
-@dataclass(frozen=True)
-class Loop:
+class Loop(NamedTuple):
     """Passes that repeat `times`, or until one leaves nothing in `stop`, which is read back; `last` where none does."""
 
     name: str
@@ -166,8 +177,8 @@ def changed(steps: Iterable[Step], change: Callable[[Pass], Pass]) -> tuple[Step
 
     def one(step: Step) -> Step:
         if isinstance(step, Loop):
-            return replace(step, body=changed(step.body, change), last=changed(step.last, change))
-        return replace(change(step), each=change(step.each)) if step.each else change(step)
+            return step._replace(body=changed(step.body, change), last=changed(step.last, change))
+        return change(step)._replace(each=change(step.each)) if step.each else change(step)
 
     return tuple(one(step) for step in steps)
 
@@ -185,20 +196,32 @@ def trimmed(steps: Iterable[Step], live: Iterable[Texture], stop=None, after=())
             while found != start:
                 found = start
                 body, start = trimmed(step.body, ended | found | live, step.stop, live)
-            kept.append(replace(step, body=body, last=last))
+            kept.append(step._replace(body=body, last=last))
             live = start | live
             continue
-        if stop in step.fills:
+        filled = step.fills
+        if stop in filled:
             live |= {stop, *after}
-        if live.intersection(step.fills):
-            pairs = [(old, old.needed(live)) for old in step.parts]
-            parts = tuple(new for old, new in pairs if new.fills or not old.fills or old is step.parts[0])
-            is_same = len(parts) == len(step.parts) and all(a is b for a, b in zip(parts, step.parts, strict=True))
-            kept.append(step if is_same else replace(step, parts=parts))
-            if not step.adds:
-                live -= set(kept[-1].all("writes"))
-            live |= set(kept[-1].all("reads", "updates", "tests"))
-            if step.each:
-                live |= set(step.each.all("reads"))
-                live -= set(step.each.fills)
+        if not live.isdisjoint(filled):
+            step = _without(step, {t for t in filled if t not in live and not t.is_depth})
+            kept.append(step)
+            live = _live_before(step, live)
     return tuple(kept[::-1]), live
+
+
+def _without(p: Pass, dead: set[Texture]) -> Pass:
+    """Without attachments that nobody reads, and parts that filled no others."""
+    if not dead:
+        return p
+    pairs = [(part, part.without(dead)) for part in p.parts]
+    return p._replace(parts=tuple(new for old, new in pairs if new.fills or not old.fills or old is p.parts[0]))
+
+
+def _live_before(p: Pass, live: set[Texture]) -> set[Texture]:
+    """What has to be there before a pass, where `live` has to be after it."""
+    if not p.adds:
+        live = live.difference(*[part.writes for part in p.parts])
+    live = live.union(*[part.reads + part.updates + part.tests for part in p.parts])
+    if p.each:
+        live = live.union(p.each.all("reads")).difference(p.each.fills)
+    return live

@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Uniform blocks: what shaders are told by name of the view, of what is drawn, and of the frame's features.
 
-A shader has the blocks that its text uses; that of the frame holds just the values that the text names.
+A shader has the blocks that its text uses (`programs`); that of the frame holds just the values that the text names.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from .executor import TileContext
 
 #: (struct name, instance name, ((type, field), ...))
 Block = tuple[str, str, tuple[tuple[str, str], ...]]
@@ -56,38 +50,6 @@ DRAW: Block = (
         ("float", "nowhere"),
     ),
 )
-
-
-@cache
-def _registry() -> tuple[dict[str, tuple[str, Callable]], dict[str, object]]:
-    """The frame's values and the constants of all features."""
-    from ..features import CONSTANTS, VALUES
-
-    return VALUES, CONSTANTS
-
-
-def frame_value(name: str) -> Callable[[TileContext], object]:
-    """What gives a value of the frame's block for a tile."""
-    return _registry()[0][name][1]
-
-
-@cache
-def blocks_in(*texts: str) -> tuple[Block, ...]:
-    """The blocks that a program's texts use. Raises ValueError for a value that no feature gives."""
-    values, text = _registry()[0], "".join(texts)
-    names = set(re.findall(r"\bframe\.(\w+)", text))
-    if missing := names - set(values):
-        raise ValueError(f"A shader uses frame.{min(missing)}, which no feature gives.")
-    used = [block for block in (VIEW, DRAW) if re.search(rf"\b{block[1]}\.", text)]
-    fields = tuple((kind, name) for name, (kind, _) in values.items() if name in names)
-    return (*used, *((("Frame", "frame", fields),) if fields else ()))
-
-
-@cache
-def constants_in(*texts: str) -> dict[str, str]:
-    """The constants that a program's texts use."""
-    words = set(re.findall(r"\b[A-Z][A-Z0-9_]+\b", "".join(texts)))
-    return {name: str(value) for name, value in _registry()[1].items() if name in words}
 
 
 _SIZES = {"float": (1, 1), "vec2": (2, 2), "vec4": (4, 4), "mat4": (16, 4)}

@@ -11,6 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ...surfels import Shape
+
 #: Corners in a row of a texture, and rows that every tested backend's textures can have.
 CORNERS_PER_ROW = 512
 MAX_ROWS = 16384
@@ -32,14 +34,12 @@ _OPTIONAL = ("roughness", "metallic", "emission", "uvs")
 
 
 @dataclass(frozen=True, eq=False)
-class Polygons:
+class Polygons(Shape):
     """T triangles of three corners each: corner k of triangle t is row 3 t + k, counter-clockwise seen from outside.
 
-    positions: (3 T, 3) float32, object units, relative to `origin` (3,) float64. normals: (3 T, 3), for shading, of any
-    length; where one is zero the triangle's own is meant. colors: (3 T, 4) scene-linear; alpha is not looked at.
-    materials: (3 T,) of the instance's slots, the same at the three corners. is_solid: closed and never seen from
-    inside. roughness, metallic: (3 T,), emission: (3 T, 3): where given, they take the place of the slots'.
-    uvs: (3 T, 2), where the instance's textures are looked up.
+    positions: (3 T, 3) float32, object units, relative to `origin`. normals: (3 T, 3), for shading, of any length;
+    where one is zero the triangle's own is meant. colors: (3 T, 4) scene-linear; alpha is not looked at.
+    materials: (3 T,) of the instance's slots, the same at the three corners.
 
     Raises ValueError with one sentence for a wrong shape, a number that is not finite, or too many triangles.
     """
@@ -48,12 +48,6 @@ class Polygons:
     normals: np.ndarray
     colors: np.ndarray
     materials: np.ndarray
-    origin: np.ndarray = (0.0, 0.0, 0.0)
-    is_solid: bool = False
-    roughness: np.ndarray | None = None
-    metallic: np.ndarray | None = None
-    emission: np.ndarray | None = None
-    uvs: np.ndarray | None = None
 
     def __post_init__(self):
         count = len(self.positions)
@@ -76,10 +70,6 @@ class Polygons:
         object.__setattr__(self, "normals", _unit_or_own(self.normals, self.positions))
         object.__setattr__(self, "origin", np.array(self.origin, np.float64))
 
-    def __len__(self) -> int:
-        """Corners: what is stored of each is looked up by its number."""
-        return len(self.positions)
-
     @property
     def triangles(self) -> int:
         """How many."""
@@ -91,19 +81,9 @@ class Polygons:
         return self.uvs is not None
 
     @property
-    def has_own_material(self) -> bool:
-        """Whether something of their materials is in their own fields."""
-        return not all(a is None for a in (self.roughness, self.metallic, self.emission))
-
-    @property
     def is_transparent(self) -> bool:
         """Polygons are opaque."""
         return False
-
-    @cached_property
-    def brightest(self) -> float:
-        """The largest absolute colour (0 when empty)."""
-        return float(np.abs(self.colors[:, :3]).max(initial=0.0))
 
     @cached_property
     def local_bounds(self) -> tuple[np.ndarray, np.ndarray]:

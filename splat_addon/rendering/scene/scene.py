@@ -65,9 +65,41 @@ class SurfaceTexture:
 #: Of how many of an object's surfels or corners decisions are made that cost time alone if they are wrong.
 _SOME = 256
 
+#: A matrix whose shortest axis is this share of its longest leaves no direction for a normal.
+_FLATTEST = 1e-12
 
+#: (8, 3) of each corner of a box, whether it is at the high end of each axis.
+_CORNERS = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
+
+
+@dataclass(frozen=True, eq=False)
 class Placed:
-    """What surfels and polygons that stand in the world have in common; `shape` is what stands there."""
+    """What stands in the world: surfels by an `Instance`, polygons by a `PolygonInstance`.
+
+    shape: what stands there.
+    matrix_world: (4, 4), object to world, any invertible affine map (mirrored, non-uniform, sheared).
+    materials: what `shape.materials` indexes; an index past the end uses the last one.
+    light_set: number of the set of instances that the same lights light (`Light.receivers`).
+    casts_shadow: whether it does where a light casts shadows.
+    textures: indexed alike; where one is None, and for shapes without texture coordinates, the shape's own colours
+        are shown.
+    name: by which the frame's `cryptomatte` tells it from others; those of one name are one. index: what its
+        `object_index` shows.
+    split: distance from the camera, world units, up to which an object is drawn as polygons, and beyond it as surfels,
+        by two instances that have the same; None: each is drawn everywhere. Shadows are cast by both.
+    is_holdout: it hides what is behind it and shows nothing: where it is seen, the picture has an alpha of 0.
+    """
+
+    shape: Surfels | Polygons
+    matrix_world: np.ndarray = field(default_factory=lambda: np.eye(4))
+    materials: tuple[Material, ...] = (Material(),)
+    light_set: int = 0
+    casts_shadow: bool = True
+    textures: tuple[SurfaceTexture | None, ...] = ()
+    name: str = ""
+    index: int = 0
+    split: float | None = None
+    is_holdout: bool = False
 
     def __post_init__(self):
         if not 0 <= self.light_set < MAX_LIGHT_SETS:
@@ -81,6 +113,21 @@ class Placed:
         object.__setattr__(self, "textures", tuple(self.textures))
         if self.split is not None and not 0 < self.split < math.inf:
             raise ValueError(f"An instance's split must be a finite distance above 0, not {self.split}.")
+
+    @property
+    def radius(self) -> float:
+        """How far anything may stick out of the shape's places, in the world."""
+        raise NotImplementedError
+
+    @cached_property
+    def stretches(self) -> np.ndarray:
+        """(3,) by how much the matrix lengthens at most, and across that: its singular values."""
+        return np.linalg.svd(self.matrix_world[:3, :3], compute_uv=False)
+
+    @property
+    def is_flattened(self) -> bool:
+        """Whether its matrix leaves no direction for a normal."""
+        return not self.stretches[2] > _FLATTEST * self.stretches[0]
 
     @property
     def is_textured(self) -> bool:
@@ -106,17 +153,17 @@ class Placed:
     def corners(self, camera: Camera) -> np.ndarray:
         """(8, 3) float64 corners of a box around it all, in the camera's view space."""
         model_view = self.model_view(camera)
-        return self._local_corners() @ model_view[:3, :3].T + model_view[:3, 3]
+        return self._local_corners @ model_view[:3, :3].T + model_view[:3, 3]
 
     def world_corners(self) -> np.ndarray:
         """(8, 3) float64 corners of a box around it all, in the world."""
-        corners = self._local_corners() + self.shape.origin
+        corners = self._local_corners + self.shape.origin
         return corners @ self.matrix_world[:3, :3].T + self.matrix_world[:3, 3]
 
+    @cached_property
     def _local_corners(self) -> np.ndarray:
         low, high = self.shape.local_bounds
-        pick = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
-        return np.where(pick, high, low)
+        return np.where(_CORNERS, high, low)
 
     def some_places(self, camera: Camera) -> np.ndarray:
         """(n, 3) of some of its surfels or corners, in the camera's view space."""
@@ -137,72 +184,43 @@ class Placed:
 
 @dataclass(frozen=True, eq=False)
 class Instance(Placed):
-    """Surfels placed in the world.
-
-    matrix_world: (4, 4), object to world, any invertible affine map (mirrored, non-uniform, sheared).
-    materials: what `Surfels.materials` indexes; an index past the end uses the last one.
-    light_set: number of the set of instances that the same lights light (`Light.receivers`).
-    casts_shadow: whether it does where a light casts shadows.
-    textures: indexed alike; where one is None, and for surfels without texture coordinates, the surfels' own colours
-        are shown.
-    name: by which the frame's `cryptomatte` tells it from others; those of one name are one. index: what its
-        `object_index` shows.
-    split: distance from the camera, world units, up to which an object is drawn as polygons, and beyond it as surfels,
-        by two instances that have the same; None: each is drawn everywhere. Shadows are cast by both.
-    is_holdout: it hides what is behind it and shows nothing: where it is seen, the picture has an alpha of 0.
-    """
-
-    surfels: Surfels
-    matrix_world: np.ndarray = field(default_factory=lambda: np.eye(4))
-    materials: tuple[Material, ...] = (Material(),)
-    light_set: int = 0
-    casts_shadow: bool = True
-    textures: tuple[SurfaceTexture | None, ...] = ()
-    name: str = ""
-    index: int = 0
-    split: float | None = None
-    is_holdout: bool = False
+    """Surfels placed in the world."""
 
     @property
-    def shape(self) -> Surfels:
-        return self.surfels
+    def surfels(self) -> Surfels:
+        return self.shape
 
-    @property
+    @cached_property
     def radius(self) -> float:
         """The largest surfel's in the world."""
-        if not len(self.surfels):
-            return 0.0
-        return float(self.surfels.scales.max()) * float(np.linalg.norm(self.matrix_world[:3, :3], 2))
+        return self.surfels.largest * float(self.stretches[0])
 
     def shows_backs(self, camera: Camera) -> bool:
-        """Whether some surfels turn their backs to the camera and are drawn; as far as some of them tell."""
-        if self.hides_backs(camera):
+        """Whether some surfels turn their backs to the camera and are drawn; as far as some of them tell.
+
+        An affine map leaves what lies before a plane before it: that is looked for in the object's own space.
+        """
+        if self.is_flattened or self.hides_backs(camera):
             return False
-        linear = self.model_view(camera)[:3, :3]
-        x, y, _ = (axes @ linear.T for axes in quaternion_axes(self.surfels.rotations[self._some]))
-        outward = np.cross(x, y) * np.sign(np.linalg.det(linear))
-        to_eye = (0.0, 0.0, 1.0) if camera.is_orthographic else -self.some_places(camera)
-        return bool((np.sum(outward * to_eye, axis=1) < 0).any())
+        model_view = self.model_view(camera)
+        if camera.is_orthographic:
+            to_eye = np.linalg.solve(model_view[:3, :3], (0.0, 0.0, 1.0))
+        else:
+            to_eye = np.linalg.solve(model_view[:3, :3], -model_view[:3, 3]) - self.surfels.positions[self._some]
+        return bool((np.sum(self._some_normals * to_eye, axis=1) < 0).any())
+
+    @cached_property
+    def _some_normals(self) -> np.ndarray:
+        return quaternion_axes(self.surfels.rotations[self._some])[2]
 
 
 @dataclass(frozen=True, eq=False)
 class PolygonInstance(Placed):
-    """Polygons placed in the world; the fields are an `Instance`'s."""
-
-    polygons: Polygons
-    matrix_world: np.ndarray = field(default_factory=lambda: np.eye(4))
-    materials: tuple[Material, ...] = (Material(),)
-    light_set: int = 0
-    casts_shadow: bool = True
-    textures: tuple[SurfaceTexture | None, ...] = ()
-    name: str = ""
-    index: int = 0
-    split: float | None = None
-    is_holdout: bool = False
+    """Polygons placed in the world."""
 
     @property
-    def shape(self) -> Polygons:
-        return self.polygons
+    def polygons(self) -> Polygons:
+        return self.shape
 
     @property
     def radius(self) -> float:

@@ -114,7 +114,8 @@ def shared_material(instances: tuple[Placed, ...]) -> Material | None:
     """
     if any(i.shape.roughness is not None or i.shape.metallic is not None for i in instances):
         return None
-    materials = {replace(m, emission=(0.0, 0.0, 0.0), index=0) for instance in instances for m in instance.materials}
+    given = {material for instance in instances for material in instance.materials}
+    materials = given if len(given) == 1 else {replace(m, emission=(0.0, 0.0, 0.0), index=0) for m in given}
     return materials.pop() if len(materials) == 1 else None
 
 

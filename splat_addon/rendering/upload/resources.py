@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -18,6 +18,8 @@ from .atlas import FORMAT, make_atlas
 from .packing import pack_materials, pack_own_materials, pack_uvs
 from .storages import Storage
 
+Uploaded = TypeVar("Uploaded")
+
 #: name, width, height, format, samples a texel (0 for one) of a texture that a pass writes.
 TextureKey = tuple[str, int, int, str, int]
 
@@ -25,7 +27,6 @@ TextureKey = tuple[str, int, int, str, int]
 class StoredSurfels(NamedTuple):
     """textures: by sampler. coarse: surfels whose place the storage loses visibly."""
 
-    storage: Storage
     textures: dict[str, Texture]
     coarse: int
 
@@ -37,61 +38,48 @@ class Resources:
 
     def __init__(self, device: Device):
         self.device = device
-        self._surfels = WeakKeyDictionary()
-        self._polygons = WeakKeyDictionary()
-        self._polygon_uvs = WeakKeyDictionary()
-        self._kept = WeakKeyDictionary()
-        self._own_materials = WeakKeyDictionary()
-        self._constants = {}
-        self._surfel_uvs = WeakKeyDictionary()
+        self._held = WeakKeyDictionary()
         self._atlases = {}
         self.textures = {}
 
     def surfels(self, surfels: Surfels, storage: Storage) -> StoredSurfels:
         """Their textures, uploaded once; another storage takes their place."""
-        stored = self._surfels.get(surfels)
-        if stored is None or stored.storage is not storage:
+
+        def stored() -> StoredSurfels:
             arrays, coarse = storage.pack(surfels)
             textures = {
                 sampler: self.data(texels, format)
                 for (sampler, format), texels in zip(storage.textures, arrays, strict=True)
             }
-            stored = self._surfels[surfels] = StoredSurfels(storage, textures, coarse)
-        return stored
+            return StoredSurfels(textures, coarse)
+
+        return self._once(surfels, "surfels", storage.name, stored)
 
     def polygons(self, polygons: Polygons) -> Texture:
         """Their corners, uploaded once."""
-        if polygons not in self._polygons:
-            self._polygons[polygons] = self.data(pack_polygons(polygons))
-        return self._polygons[polygons]
+        return self._once(polygons, "corners", None, lambda: self.data(pack_polygons(polygons)))
 
     def polygon_uvs(self, polygons: Polygons) -> Texture:
         """Their texture coordinates, uploaded once."""
-        if polygons not in self._polygon_uvs:
-            self._polygon_uvs[polygons] = self.data(pack_polygon_uvs(polygons))
-        return self._polygon_uvs[polygons]
+        return self._once(polygons, "uvs", None, lambda: self.data(pack_polygon_uvs(polygons)))
 
     def materials(self, instance: Placed, storage: Storage | None, with_emission: bool) -> Texture:
         """Those of its slots; where surfels, or the corners of polygons, have their own, one of each, uploaded once.
 
         storage: of surfels, whose order it may change.
         """
-        surfels, slots = instance.shape, instance.materials
-        if not surfels.has_own_material:
+        shape, slots = instance.shape, instance.materials
+        if not shape.has_own_material:
             return self.data(pack_materials(slots, with_emission))
-        known, texture = self._own_materials.get(surfels, (None, None))
-        if known != (slots, storage, with_emission):
-            texture = self.data(pack_own_materials(surfels, slots, _order(surfels, storage), with_emission))
-            self._own_materials[surfels] = (slots, storage, with_emission), texture
-        return texture
+
+        def own() -> Texture:
+            return self.data(pack_own_materials(shape, slots, _order(shape, storage), with_emission))
+
+        return self._once(shape, "materials", (slots, storage and storage.name, with_emission), own)
 
     def surfel_uvs(self, surfels: Surfels, storage: Storage) -> Texture:
         """Their texture coordinates, uploaded once."""
-        known, texture = self._surfel_uvs.get(surfels, (None, None))
-        if known != storage.name:
-            texture = self.data(pack_uvs(surfels, _order(surfels, storage)))
-            self._surfel_uvs[surfels] = storage.name, texture
-        return texture
+        return self._once(surfels, "uvs", storage.name, lambda: self.data(pack_uvs(surfels, _order(surfels, storage))))
 
     def atlas(self, textures: tuple[SurfaceTexture | None, ...]) -> tuple[Texture, Texture]:
         """Texels and table of an instance's textures, uploaded once."""
@@ -109,17 +97,19 @@ class Resources:
         return self.device.texture(texels.shape[1::-1], format, texels)
 
     def constant(self, texels: Callable[[], np.ndarray]) -> Texture:
-        """The texture of what `texels` gives, which is always the same; uploaded once."""
-        if texels not in self._constants:
-            self._constants[texels] = self.data(texels())
-        return self._constants[texels]
+        """The texture of what `texels`, a function, gives, which is always the same; uploaded once."""
+        return self._once(texels, "constant", None, lambda: self.data(texels()))
 
     def kept(self, owner: object, texels: Callable[[], np.ndarray]) -> Texture:
         """The texture of what `texels`, a method of `owner`, gives; it leaves the device with the owner."""
-        textures = self._kept.setdefault(owner, {})
-        if texels.__name__ not in textures:
-            textures[texels.__name__] = self.data(texels())
-        return textures[texels.__name__]
+        return self._once(owner, texels.__name__, None, lambda: self.data(texels()))
+
+    def _once(self, owner: object, kind: str, made_from: object, make: Callable[[], Uploaded]) -> Uploaded:
+        """What an owner has on the device, of one kind; made anew where it was made from something else."""
+        held = self._held.setdefault(owner, {})
+        if kind not in held or held[kind][0] != made_from:
+            held[kind] = made_from, make()
+        return held[kind][1]
 
     def texture(self, key: TextureKey) -> Texture:
         """The texture of that name, size and format, made when it is first asked for."""
@@ -142,13 +132,7 @@ class Resources:
 
     def release(self) -> None:
         """Let go of everything on the device but its programs."""
-        self._surfels.clear()
-        self._polygons.clear()
-        self._polygon_uvs.clear()
-        self._kept.clear()
-        self._own_materials.clear()
-        self._constants.clear()
-        self._surfel_uvs.clear()
+        self._held.clear()
         self._atlases.clear()
         self.textures.clear()
 

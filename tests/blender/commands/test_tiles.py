@@ -32,7 +32,7 @@ def draw(animation, surfels_command, pixels, tmp_path):
 
 def test_tiles_that_are_the_engines_own_are_the_whole_picture_bit_by_bit(draw, monkeypatch):
     """48 x 32 pixels in tiles of 16, as 16,384 x 16,384 are in tiles of 2,048."""
-    monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "tile_edge", lambda planning: 16)
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan.build"), "tile_edge", lambda planning: 16)
     whole, tiled = draw()
     assert whole.any() and np.array_equal(tiled, whole)
 

@@ -52,7 +52,7 @@ def _redrawn(refinement, scene, camera, turns):
 @pytest.mark.parametrize("edge", [4096, 40])
 @pytest.mark.parametrize("samples", [1, 3])
 def test_the_view_is_the_render(edge, samples, shown, render, monkeypatch):
-    monkeypatch.setattr(import_module("splat_addon.rendering.plan"), "MAX_TARGET_EDGE", edge)
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", edge)
     scene, camera = scenes.torus(count=4000, size=SIZE)
     seen = shown(scene, camera, 1 if samples == 1 else samples + 1)
     expected = render(scene, camera, replace(SETTINGS, samples=samples)).color

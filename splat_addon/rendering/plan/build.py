@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a frame needs, decided before anything is allocated: a pure function from scene, camera and settings.
+
+Nothing exists on the device that the plan does not name, each entry has its reason, and what was left out has one too:
+print the plan to read them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK, depth_format
+from ..scene import Scene
+from ..scene.camera import Camera
+from ..settings import Settings
+from ..upload.storages import get_storage
+from .frame_plan import FramePlan
+from .graph import Part, Pass, changed, trimmed
+from .planning import Planning
+from .tiles import tile_edge, tiles
+
+
+def plan(
+    scene: Scene,
+    camera: Camera,
+    settings: Settings,
+    shadow_camera: Camera | None = None,
+    is_added_up: bool = False,
+    part: tuple[int, int, int, int] | None = None,
+) -> FramePlan:
+    """The passes that this picture needs.
+
+    shadow_camera: to whose view shadow maps are fitted, if it is another, so that cameras which differ little share
+    them. is_added_up: the picture is one of the samples of a view that refines. part: x, y, width, height in pixels, of
+    a picture that is not drawn whole. Raises ValueError for an unknown method or storage, for multisampling with a
+    method that does not work in space, and for a picture that devices have no room for.
+    """
+    planning = Planning(scene, camera, settings, shadow_camera or camera, is_added_up)
+    if settings.multisampling and planning.method.works_in != "space":
+        raise ValueError(
+            f"Method {planning.method.name} works in the picture, where hardware multisampling sees nothing; set "
+            "multisampling to 0 and use supersampling, or method quad."
+        )
+    found = [p for passes in PASSES for p in passes(planning)]
+    present = [parts for parts, is_present in PARTS if is_present(planning)]
+    live = {texture for read_back in READ_BACK for texture in read_back(planning)}
+    steps, _ = trimmed(changed(found, lambda p: _with_parts(planning, p, present)), live)
+    is_linear = planning.find(depth_format.linear)[0]
+    each = settings.multisampling and not settings.sample_shading
+    storage = get_storage(settings.storage).name
+    made = FramePlan(
+        tiles=tiles(part or (0, 0, *camera.size), tile_edge(planning)),
+        samples=settings.supersampling,
+        multisamples=settings.multisampling,
+        sample_shading=bool(settings.multisampling and settings.sample_shading),
+        method=settings.method,
+        storage=storage,
+        accumulation=settings.accumulation,
+        linear_depth=is_linear,
+        steps=steps,
+        variants=frozenset(["linear"] if is_linear else []),
+        choices=(
+            ("method", settings.method),
+            ("storage", storage),
+            ("shading", settings.shading),
+            ("sum_format", settings.accumulation),
+            ("samples", "mean" if each else "each"),
+        ),
+        margin=sum(margin(planning) for margin in MARGINS),
+        facts=planning.facts,
+        features=tuple(planning.features),
+        skipped=tuple(planning.skipped),
+    )
+    for check in CHECKS:
+        check(made)
+    return made
+
+
+def _with_parts(planning: Planning, p: Pass, present: Iterable[Callable[[Planning, Pass], Iterable[Part]]]) -> Pass:
+    """A pass with what the features that are present do in it."""
+    if not p.host:
+        return p
+    found = [part for parts in present for part in parts(planning, p)]
+    reason = "; ".join([p.reason, *(part.reason for part in found if part.reason)])
+    return p._replace(reason=reason, parts=(*p.parts, *found))

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The programs of a plan's passes: composed texts, and what they declare beside them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from functools import cache
+from typing import TYPE_CHECKING
+
+from ..device.interface import PipelineDescription
+from ..features import CONSTANTS, ORDER, VALUES
+from .compose import DEFAULTS, compose
+from .frame_plan import FramePlan
+from .graph import Pass
+from .uniforms import DRAW, VIEW, Block
+
+if TYPE_CHECKING:
+    from .executor import TileContext
+
+
+def describe(plan: FramePlan, p: Pass, vertex: str = "fullscreen.vert", *variants: str) -> PipelineDescription:
+    """The pipeline of a pass with the parts of these variants."""
+    taken = {"", *plan.variants, *variants}
+    parts = [part for part in p.parts if part.only in taken]
+    words = dict.fromkeys([part.feature for part in parts] + [word for part in parts for word in part.words])
+    depth_format = {"depth_format": "linear" if plan.linear_depth else "hardware"}
+    names = DEFAULTS | dict(plan.choices) | depth_format | {name: file for part in parts for name, file in part.choices}
+    ordered, chosen = _ordered((*words, p.kind)), tuple(names.items())
+    texts = compose(vertex, ordered, chosen), compose(p.host, ordered, chosen)
+    called = {texture: name for part in parts for texture, name in part.called}
+    updated = {texture for part in parts for texture in part.updates}
+    drawn = [texture for part in parts for texture in part.fills if not texture.is_depth]
+    sampled = [(called.get(t, t.name), t) for part in parts for t in (*part.reads, *part.updates)]
+    return PipelineDescription(
+        name="_".join((p.name, *variants)),
+        vertex=texts[0],
+        fragment=texts[1],
+        blocks=blocks_in(*texts),
+        samplers=tuple(dict.fromkeys([name for part in parts for name in part.inputs] + [name for name, _ in sampled])),
+        multisampled=tuple(dict.fromkeys(name for name, t in sampled if plan.multisamples_of(t))),
+        varyings=tuple(dict.fromkeys(varying for part in parts for varying in part.varyings)),
+        outputs=tuple((t.type, f"{t.name}_next" if t in updated else called.get(t, t.name)) for t in drawn),
+        defines=tuple({**constants_in(*texts), **{n: str(v) for part in parts for n, v in part.constants}}.items()),
+        **p.state,
+    )
+
+
+def _ordered(words: Iterable[str]) -> tuple[str, ...]:
+    """Features in the order in which they act, then the other words."""
+    return tuple(sorted(words, key=lambda word: (ORDER.get(word, len(ORDER)), word)))
+
+
+def frame_value(name: str) -> Callable[[TileContext], object]:
+    """What gives a value of the frame's block for a tile."""
+    return VALUES[name][1]
+
+
+@cache
+def blocks_in(*texts: str) -> tuple[Block, ...]:
+    """The blocks that a program's texts use. Raises ValueError for a value that no feature gives."""
+    text = "".join(texts)
+    names = set(re.findall(r"\bframe\.(\w+)", text))
+    if missing := names - set(VALUES):
+        raise ValueError(f"A shader uses frame.{min(missing)}, which no feature gives.")
+    used = [block for block in (VIEW, DRAW) if re.search(rf"\b{block[1]}\.", text)]
+    fields = tuple((kind, name) for name, (kind, _) in VALUES.items() if name in names)
+    return (*used, *((("Frame", "frame", fields),) if fields else ()))
+
+
+@cache
+def constants_in(*texts: str) -> dict[str, str]:
+    """The constants that a program's texts use."""
+    words = set(re.findall(r"\b[A-Z][A-Z0-9_]+\b", "".join(texts)))
+    return {name: str(value) for name, value in CONSTANTS.items() if name in words}

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Large pictures are drawn in tiles, so that memory stays below about 1 GB."""
+
+from __future__ import annotations
+
+import math
+
+from .planning import Planning
+
+#: A target's edge in samples.
+MAX_TARGET_EDGE = 4096
+
+
+def tile_edge(planning: Planning) -> int:
+    """In pixels: along it lie the samples, and the square root of the hardware's samples in each. To filter silhouettes
+    takes half as many textures again.
+    """
+    settings = planning.settings
+    room = 2 if planning.method.filters_silhouettes else 1
+    across = settings.supersampling * room * math.ceil(math.sqrt(max(settings.multisampling, 1)))
+    return max(MAX_TARGET_EDGE // across, 1)
+
+
+def tiles(part: tuple[int, int, int, int], edge: int) -> tuple[tuple[int, int, int, int], ...]:
+    """(x, y, width, height) of what a part of a picture is drawn by, row by row, in pixels."""
+    left, bottom, width, height = part
+    return tuple(
+        (left + x, bottom + y, min(edge, width - x), min(edge, height - y))
+        for y in range(0, height, edge)
+        for x in range(0, width, edge)
+    )
