@@ -2,8 +2,8 @@
 """Transparent layers: closed forms, and the picture by definition (Guennebaud et al. 2006, section 6)."""
 
 import math
-from importlib import import_module
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
