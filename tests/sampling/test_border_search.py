@@ -119,13 +119,17 @@ def test_every_surfel_within_reach_of_an_edge_is_found(monkeypatch, is_counted, 
         monkeypatch.setattr(search, "_CELLS_A_SURFEL", 0)
     order = [(axis + 1) % 3, (axis + 2) % 3]
     positions = (cells * grid.spacing).astype(np.float32)
-    near, surfel, edge = search.image_neighbours(positions, axis, ends[:, order], reach, grid)
+    planes = random.normal(0, 0.3, (3, 60)).astype(np.float32)
+    near, surfel, edge, above = search.image_neighbours(positions, axis, ends[:, order], planes, reach, 4.0, grid)
     found = set(zip(near[surfel].tolist(), edge.tolist(), strict=True))
     start, end = (e[order].astype(float).T for e in ends)
     offset, along = cells[:, None, order] - start, end - start
     share = np.clip((offset * along).sum(2) / (along * along).sum(1), 0, 1)
     distance = np.linalg.norm(offset - share[..., None] * along, axis=2)
     assert len(found) == len(surfel)
-    assert found >= set(map(tuple, np.argwhere(distance < reach).tolist()))
+    height = cells[:, [axis]] - planes[2] - cells[:, [order[0]]] * planes[0] - cells[:, [order[1]]] * planes[1]
+    assert np.allclose(above, height[near[surfel], edge], atol=1e-3) and np.abs(above).max() <= 4
+    is_near = (distance < reach) & (np.abs(height) < 3.999)
+    assert found >= set(map(tuple, np.argwhere(is_near).tolist()))
     surfels, edges = np.array(sorted(found)).T
-    assert distance[surfels, edges].max() < 3 * reach and len(found) < 3 * (distance < reach).sum()
+    assert distance[surfels, edges].max() < 3 * reach and len(found) < 3 * is_near.sum()

@@ -3,7 +3,7 @@
 
 Samples lie at the centres of its cells, and along its axis a splat is a disc. So an edge is scan-converted into the
 cells that it comes near to, row by row, and a run of cells is a run of the surfels, once these are in the order of
-their cells. What lies in other layers of the same cells, `meetings` tells by its plane.
+their cells. What lies in other layers of the same cells is told by the plane of the edge's face.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..ldc.grid import BLOCK, Grid
-from ..ldc.scan_conversion import expand
+from ..ldc.scan_conversion import batches, expand
 
 #: Around the image, in cells: samples lie in it, other surfels and edges at most this far outside.
 _MARGIN = 3
@@ -22,15 +22,19 @@ _FEW_CELLS, _CELLS_A_SURFEL = 1 << 20, 16
 #: Of a reach, in cells, for the rounding of float32.
 _SLACK = 1e-3
 
+#: Pairs at a time.
+_PAIRS = 32768
+
 
 def image_neighbours(
-    positions: np.ndarray, axis: int, ends: np.ndarray, reach: float, grid: Grid
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(s,) surfels that come near to any edge, and of p pairs the (p,) surfel, by its number among these, and the (p,)
-    edge.
+    positions: np.ndarray, axis: int, ends: np.ndarray, planes: np.ndarray, reach: float, depth: float, grid: Grid
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """(s,) surfels that come near to any edge; and of p pairs the (p,) surfel, by its number among these, the (p,) edge
+    and how much higher the surfel lies than the plane of the edge's face, (p,) cells.
 
     positions: (N, 3) float32 surfels, relative to the grid's middle. ends: (2, 2, e) float32 of edges, across and up in
-    the image along `axis`, in cells from there. reach: how near, in cells, as this image sees it.
+    the image along `axis`, in cells from there. planes: (3, e) float32, their rise across and up, and height there.
+    reach: how near, in cells, as this image sees it. depth: how far above or below the plane.
     """
     along, up = ((axis + k) % 3 for k in (1, 2))
     width, height = (2 * int(grid.middle[a]) + 2 * BLOCK + 2 * _MARGIN for a in (along, up))
@@ -49,15 +53,40 @@ def image_neighbours(
     else:
         near = np.arange(len(row))
     cells, order = _ordered(row.take(near))
+    near = near.take(order)
     if is_counted:
         firsts = np.zeros(size + 1, np.intp)
         np.cumsum(np.bincount(cells, minlength=size), out=firsts[1:])
-        starts, stops = firsts.take(starts), firsts.take(stops)
+        firsts_of, stops = firsts.take(starts), firsts.take(stops)
     else:
-        starts, stops = np.searchsorted(cells, starts), np.searchsorted(cells, stops)
-    run, number = expand(stops - starts)
-    number += starts.take(run)
-    return near, order.take(number), edge.take(run)
+        firsts_of, stops = np.searchsorted(cells, starts), np.searchsorted(cells, stops)
+    counts = stops - firsts_of
+    there = np.flatnonzero(counts)
+    edge, counts, firsts_of = edge.take(there), counts.take(there), firsts_of.take(there)
+    place = [positions[:, a].take(near) * scale for a in (along, up, axis)]
+    # A part at a time, which stays in the processor's cache.
+    parts = [
+        _near_planes(place, firsts_of[part], counts[part], edge[part], planes, np.float32(depth))
+        for part in batches(counts, _PAIRS)
+    ]
+    nothing = np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0, np.float32)
+    return near, *(np.concatenate(found) for found in zip(*parts, nothing, strict=True))
+
+
+def _near_planes(place, firsts: np.ndarray, counts: np.ndarray, edge: np.ndarray, planes: np.ndarray, depth):
+    """Of the pairs of edges and runs of surfels, `counts` from `firsts` on, those that lie near the face's plane, as
+    `image_neighbours` gives them. place: (s,) each, across, up and along the image's axis."""
+    # The surfels of a run follow one another, so what is asked of each pair is read in order.
+    surfel = np.repeat(firsts - (np.cumsum(counts) - counts), counts)
+    surfel += np.arange(len(surfel))
+    above = place[2].take(surfel)
+    above -= np.repeat(planes[2].take(edge), counts)
+    for rise, values in zip(planes, place[:2], strict=False):
+        step = np.repeat(rise.take(edge), counts)
+        step *= values.take(surfel)
+        above -= step
+    at = np.flatnonzero(np.abs(above) <= depth)
+    return surfel.take(at), np.repeat(edge, counts).take(at), above.take(at)
 
 
 def _runs(x: np.ndarray, y: np.ndarray, reach: float, width: int, height: int):
@@ -79,7 +108,8 @@ def _runs(x: np.ndarray, y: np.ndarray, reach: float, width: int, height: int):
     middle += x[0].take(edge)
     half = half.take(edge)
     left = np.maximum(middle - half, (x.min(axis=0) - reach).take(edge))
-    right = np.minimum(middle + half, (x.max(axis=0) + reach).take(edge))
+    middle += half
+    right = np.minimum(middle, (x.max(axis=0) + reach).take(edge))
     left = np.clip(np.ceil(left), 0, width).astype(np.intp)
     right = np.clip(np.floor(right), -1, width - 1).astype(np.intp)
     there = np.flatnonzero(right >= left)

@@ -93,10 +93,12 @@ def _in_image(arrays, axis: int, rows: slice | np.ndarray, ends, normals, grid: 
     # The smaller half-axis lies across the image's axis, the larger one is foreshortened to it.
     reach = float((scales[:, 1] if isinstance(rows, slice) else scales).max(initial=0)) / grid.spacing
     search = reach if at_centres else reach + _OFF_CENTRE
-    near, surfel, edge = image_neighbours(positions, axis, ends[:, :2], search, grid)
+    rises = -normals[:2] / normals[2]
+    planes = np.stack([*rises, ends[0, 2] - (ends[0, :2] * rises).sum(axis=0)])
+    farthest = np.sqrt(3) * reach * (_OFF_PLANE + _OFF_ANYHOW) / _LEAST_SHARE
+    near, surfel, edge, above = image_neighbours(positions, axis, ends[:, :2], planes, search, farthest, grid)
+    off = np.abs(above * normals[2].take(edge))
     inverse_spacing = np.float32(1 / grid.spacing)
-    place = [np.take(positions[:, a], near) * inverse_spacing for a in order]
-    surfel, edge, off = _near_planes(place, surfel, edge, ends[0], normals, reach)
     # Only now, as few are left, what they look like.
     is_left = np.zeros(len(near), bool)
     is_left[surfel] = True
@@ -107,7 +109,7 @@ def _in_image(arrays, axis: int, rows: slice | np.ndarray, ends, normals, grid: 
     alike = np.flatnonzero(np.abs(facing) >= _SAME_PIECE)
     surfel, edge, facing, off = (values.take(alike) for values in (surfel, edge, facing, off))
     inverse = surfels.inverse.take(surfel, axis=1)
-    u, v = (place[k].take(left).take(surfel) for k in (0, 1))
+    u, v = ((positions[:, a].take(near) * inverse_spacing).take(surfel) for a in order[:2])
     start, end = (_in_circle(inverse, e[0].take(edge) - u, e[1].take(edge) - v) for e in ends)
     # The face lies at the left of its edge where it is seen from the side that its normal points to.
     turned = facing < 0
@@ -125,25 +127,6 @@ def _in_image(arrays, axis: int, rows: slice | np.ndarray, ends, normals, grid: 
         *(values.take(at, axis=-1) for values in (start, end, line, distance, np.abs(facing), inverse, seen)),
         np.full(len(at), axis, np.int8),
     )
-
-
-def _near_planes(place: list[np.ndarray], surfel, edge, start: np.ndarray, normals: np.ndarray, reach: float):
-    """Those of p pairs whose surfel lies near the plane of the edge's face: (q,) surfels, (q,) edges, and how far off,
-    (q,) cells. place: (s,) each, across, up and along the image's axis. start, normals: (3, e), in the same order."""
-    slopes = normals[:2] / normals[2]
-    heights = start[2] + (start[:2] * slopes).sum(axis=0)
-    off = place[2].take(surfel)
-    off -= heights.take(edge)
-    for slope, along in zip(slopes, place, strict=False):
-        step = slope.take(edge)
-        step *= along.take(surfel)
-        off += step
-    np.abs(off, out=off)
-    foreshortening = np.abs(normals[2])
-    farthest = np.float32(np.sqrt(3) * reach) * (_OFF_PLANE + _OFF_ANYHOW) / foreshortening
-    at = np.flatnonzero(off <= farthest.take(edge))
-    edge = edge.take(at)
-    return surfel.take(at), edge, off.take(at) * foreshortening.take(edge)
 
 
 class _Seen:
