@@ -16,6 +16,7 @@ from .ui.engine_panel import EnginePanel
 
 #: density -> the property of `MeshSamplingProperties` that holds the number, and the kind of density that it is.
 _FINENESS = {
+    "AUTOMATIC": ("mesh_pixels", "automatic"),
     "RESOLUTION": ("mesh_resolution", "resolution"),
     "SPACING": ("mesh_spacing", "spacing"),
     "CAMERA": ("mesh_pixels", "pixels"),
@@ -25,6 +26,17 @@ _FINENESS = {
 def _read_again(settings, context) -> None:
     """A 3D view reads the scene only when Blender tells it of a change; it is not told of one that a script makes."""
     settings.id_data.update_tag()
+
+
+def _meant(density: str):
+    """Of a number that shows only with its own density: a script that sets it means that one."""
+
+    def update(settings, context) -> None:
+        if settings.mesh_density == "AUTOMATIC":
+            settings.mesh_density = density
+        _read_again(settings, context)
+
+    return update
 
 
 #: The numbers are those of a .blend's earlier on and off.
@@ -49,7 +61,10 @@ _MESH_ITEMS = (
     ("HIDDEN", "Nothing", "Leave them out", 2),
 )
 
-_DENSITY_ITEMS = [(name, DENSITIES[name].label, DENSITIES[name].description) for name in _FINENESS]
+#: The numbers of earlier files, in which nothing was found by itself.
+_NUMBERS = {"RESOLUTION": 0, "SPACING": 1, "CAMERA": 2, "AUTOMATIC": 3}
+
+_DENSITY_ITEMS = [(name, DENSITIES[name].label, DENSITIES[name].description, _NUMBERS[name]) for name in _FINENESS]
 
 
 class MeshSamplingProperties:
@@ -66,7 +81,7 @@ class MeshSamplingProperties:
         name="Density",
         description="How it is said how close the surfels of meshes lie",
         items=_DENSITY_ITEMS,
-        default="RESOLUTION",
+        default="AUTOMATIC",
         update=_read_again,
     )
     mesh_resolution: IntProperty(
@@ -79,7 +94,7 @@ class MeshSamplingProperties:
         min=1,
         soft_min=8,
         soft_max=2048,
-        update=_read_again,
+        update=_meant("RESOLUTION"),
     )
     mesh_spacing: FloatProperty(
         name="Spacing",
@@ -92,7 +107,7 @@ class MeshSamplingProperties:
         soft_max=10.0,
         precision=4,
         step=0.1,
-        update=_read_again,
+        update=_meant("SPACING"),
     )
     mesh_pixels: FloatProperty(
         name="Pixels per Surfel",
@@ -100,7 +115,7 @@ class MeshSamplingProperties:
             "Distance between surfels in pixels of the render, where the object comes closest to the scene's camera. "
             "An object is sampled anew when it comes a quarter closer, or is far too fine"
         ),
-        default=1.0,
+        default=0.75,
         min=0.1,
         soft_max=10.0,
         update=_read_again,
@@ -120,7 +135,7 @@ def are_meshes_texture_mapped(scene: bpy.types.Scene) -> bool:
 
 
 def mesh_fineness(scene: bpy.types.Scene) -> dict[str, float]:
-    """How fine meshes are sampled: {"resolution" | "spacing" (world units) | "pixels": number}."""
+    """How fine meshes are sampled: {"resolution" | "spacing" (world units) | "pixels" | "automatic": number}."""
     properties = getattr(scene, RENDER_SETTINGS)
     name, kind = _FINENESS[properties.mesh_density]
     return {kind: getattr(properties, name)}

@@ -7,7 +7,7 @@ Gaussian of 0.7071 pixels. Meshes are coloured by their normals, split at crease
 device. The others are exact pictures (--exact): "now" of the same surfels; "clip" of ones that end at clip lines;
 "blend" of ones that blend as deep as their surface asks for; "both". PSNR is of sRGB; a pixel is wrong where a
 component is off by more than 0.15; bare where the mesh covers it whole and the surfels not by 0.98; spilled where they
-cover 0.02 of it and the mesh nothing. Conversion: the median ratio of times to surfels without edges, in turn.
+cover 0.02 of it and the mesh nothing. Conversion: the median ratio of processor seconds to surfels without edges.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from functools import partial
 from bench.representation.error import over_grey, picture_error
 from bench.representation.meshes import load_colored, view
 from measuring.models import short
-from measuring.timing import Spread, in_turn
+from measuring.timing import Spread, in_turn, processor
 from splat_addon.reference import render_exact
 from splat_addon.reference.triangles import render_triangles
 from splat_addon.rendering import Renderer, Scene, Settings, open_device
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, is_solid, sample_surface
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, camera_spacing, is_solid, outline, sample_surface
 
 DEVICES = ("standalone",)
 QUICK = {"size": 48, "resolution": [24], "model": ["plate"], "views": 1, "exact": 2}
@@ -40,7 +40,8 @@ COLUMNS = "model resolution view picture PSNR FLIP FLIP_99_% largest_blob wrong 
 
 def arguments(parser) -> None:
     parser.add_argument("--size", type=int, default=384, help="pixels along each side")
-    parser.add_argument("--resolution", type=int, nargs="+", default=[256], help="cells along the longest edge")
+    parser.add_argument("--resolution", type=int, nargs="*", default=[256], help="cells along the longest edge")
+    parser.add_argument("--pixels", type=float, nargs="*", default=[], help="between surfels in the nearest view, too")
     parser.add_argument("--model", nargs="+", default=MODELS, help='files among the models, or "plate"')
     parser.add_argument("--views", type=int, default=3, choices=(1, 2, 3))
     parser.add_argument("--exact", type=int, default=0, help="samples along a pixel of exact pictures; 0 for none")
@@ -57,9 +58,24 @@ def run(options, report) -> None:
     report.table(columns, conversions(meshes, options))
 
 
-def converted(mesh, resolution: int, kind: str):
-    surfels = sample_surface(mesh, resolution=resolution, **KINDS[kind]).surfels
+def converted(mesh, density: dict, kind: str):
+    surfels = sample_surface(mesh, **density, **KINDS[kind]).surfels
     return surfels.as_solid() if is_solid(mesh) else surfels
+
+
+def densities(mesh, cameras, options) -> dict[str, dict]:
+    """Name -> how fine: resolutions, and spacings of so many pixels in the nearest of all views."""
+    found, surface = {str(resolution): {"resolution": resolution} for resolution in options.resolution}, outline(mesh)
+    for pixels in options.pixels:
+        near = min(
+            camera_spacing(
+                surface, pixels, object_to_view=camera.world_to_view(), window=camera.window, size=camera.size,
+                near=camera.near, is_orthographic=False,
+            )
+            for camera in cameras
+        )  # fmt: skip
+        found[f"{pixels:g} px"] = {"spacing": near}
+    return found
 
 
 def rows(meshes, renderer, options, report):
@@ -67,11 +83,11 @@ def rows(meshes, renderer, options, report):
         cameras = [view(mesh, k, options.size) for k in range(options.views)]
         corners, colors = mesh.positions[mesh.triangles], mesh.corner_colors[..., :3]
         truths = [render_triangles(corners, colors, camera) for camera in cameras]
-        for resolution in options.resolution:
-            scenes = {"engine": Scene((converted(mesh, resolution, "now"),))}
+        for resolution, density in densities(mesh, cameras, options).items():
+            scenes = {"engine": Scene((converted(mesh, density, "now"),))}
             draw = {"engine": partial(renderer.render, settings=SETTINGS)}
             for kind in options.kind if options.exact else ():
-                scenes[kind] = Scene((converted(mesh, resolution, kind),))
+                scenes[kind] = Scene((converted(mesh, density, kind),))
                 how = {"settings": SETTINGS, "samples": options.exact, "pixel_filter": "gaussian"}
                 draw[kind] = partial(render_exact, **how)
             for kind, scene in scenes.items():
@@ -79,7 +95,9 @@ def rows(meshes, renderer, options, report):
                     color = draw[kind](scene, camera).color
                     shown = over_grey(color[..., :3], color[..., 3]), over_grey(truth.color, truth.coverage)
                     found = picture_error(*shown, color[..., 3], truth.coverage)
-                    report.picture(f"{short(name)}_{resolution}_{k}_{kind}", [*shown, found.difference])
+                    report.picture(
+                        f"{short(name)}_{resolution}_{k}_{kind}".replace(" ", ""), [*shown, found.difference]
+                    )
                     yield (
                         short(name), resolution, k, kind, f"{found.psnr:.1f}", f"{found.flip:.4f}",
                         f"{found.flip_99:.3f}", found.blob, found.wrong, found.bare, found.spilled,
@@ -90,7 +108,8 @@ def conversions(meshes, options):
     for name, mesh in meshes.items():
         for resolution in options.resolution:
             jobs = {k: partial(sample_surface, mesh, resolution=resolution, **KINDS[k]) for k in options.kind}
-            turns = in_turn({"now": jobs.get("now", partial(converted, mesh, resolution, "now"))} | jobs, options.turns)
+            now = jobs.get("now", partial(converted, mesh, {"resolution": resolution}, "now"))
+            turns = in_turn({"now": now} | jobs, options.turns, processor)
             for kind in options.kind:
                 sampling, (lines, reflex) = turns.results[kind], turns.results[kind].surfels.clip_lines()
                 cut = lines[..., 2] < 1

@@ -26,6 +26,7 @@ from ...sampling import (
     is_solid,
     outline,
     predict_count,
+    projected_area,
     sample_surface,
 )
 from ...surfels import Surfels
@@ -33,6 +34,7 @@ from ..export.object_detail import detail_of, finer
 from ..geometry.mesh_extraction import read_mesh, unread_sentences
 from ..materials.baking import Bakeable, baked
 from ..materials.material_surfaces import Unread
+from .automatic_density import automatic_spacing
 from .camera_density import without_camera
 from .gathering import gather
 from .surfel_objects import add_surfel_object, collections_of
@@ -46,13 +48,14 @@ MAX_SURFELS = 100_000_000
 
 @dataclass(frozen=True)
 class Choices:
-    """density: one keyword and value: "resolution", "spacing" or "count" as sampling takes them, or "pixels" that a
-    surfel may cover for the scene's camera. reduction, grazing_angle: as sampling takes them. splat_size: half-axis of
-    a splat, in spacings. tolerance: how far from flat, object units, where surfels may become larger, or None.
-    texture_mapped: colours that are one image are looked up in it when rendered. crease_angle: radians, beyond which
-    splats end at edges and blend as deep as the surface asks for, or None.
-    space: "object" or "world", whose units lengths are in and which the surfels are even in. join: all sources become
-    one, in world units. bake: what materials cannot be read for comes from Blender's own bake."""
+    """density: one keyword and value: "resolution", "spacing" or "count" as sampling takes them, "pixels" that a
+    surfel may cover for the scene's camera, or "automatic", the same pixels within bounds (`automatic_density`).
+    reduction, grazing_angle: as sampling takes them. splat_size: half-axis of a splat, in spacings. tolerance: how far
+    from flat, object units, where surfels may become larger, or None. texture_mapped: colours that are one image are
+    looked up in it when rendered. crease_angle: radians, beyond which splats end at edges and blend as deep as the
+    surface asks for, or None. space: "object" or "world", whose units lengths are in and which the surfels are even in.
+    join: all sources become one, in world units. bake: what materials cannot be read for comes from Blender's own
+    bake."""
 
     density: dict[str, float]
     splat_size: float = DEFAULT_SPLAT_SIZE
@@ -66,6 +69,10 @@ class Choices:
     bake: bool = False
 
     @property
+    def asks_camera(self) -> bool:
+        return not self.density.keys().isdisjoint(("pixels", "automatic"))
+
+    @property
     def in_world_units(self) -> bool:
         return self.join or self.space == "world"
 
@@ -75,7 +82,7 @@ class Conversion:
     """The sources of one surfel object on their way, and what there is to tell about them.
 
     sources: the first gives the place. whole: as it was read; mesh: without its unusable triangles.
-    unread: inputs of materials that are to be baked.
+    unread: inputs of materials that are to be baked. reason: why the density is what it is, where it was found.
     """
 
     sources: list[bpy.types.Object]
@@ -89,6 +96,7 @@ class Conversion:
     triangles: int
     notes: list[str]
     seconds: float
+    reason: str = ""
     surfels: Surfels | None = None
     sampling: Sampling | None = None
 
@@ -100,13 +108,14 @@ class Conversion:
         """What was made, in one line."""
         parts, saved = self.sampling.small_parts, self.sampling.saved
         objects = f"{len(self.sources)} objects, " if len(self.sources) > 1 else ""
+        why = f" ({self.reason})" if self.reason else ""
         details = [f"{parts:,} small part{'s' * (parts > 1)} got one surfel each"] if parts else []
         if self.choices.tolerance is not None:
             details.append(f"flat places saved {saved:,} surfels and are off by {self.sampling.error:.2g} at most")
         return "; ".join(
             [
                 f"{objects}{self.triangles:,} triangles -> {len(self.surfels):,} surfels "
-                f"in {self.seconds:.1f} s, spacing {self.spacing:.4g}",
+                f"in {self.seconds:.1f} s, spacing {self.spacing:.4g}{why}",
                 *details,
             ]
         )
@@ -130,9 +139,14 @@ def prepare(
     if not len(mesh):
         raise ValueError(f"The mesh has no usable faces, only {', '.join(skipped)}; repair it first.")
     how = {"reduction": choices.reduction, "grazing_angle": choices.grazing_angle}
-    asked = finer(choices.density, detail_of(sources[0]))
-    density = without_camera(asked, lambda: outline(mesh), matrix_world, depsgraph)
-    spacing = grid_spacing(mesh, **density, **how)
+    detail, reason = detail_of(sources[0]), ""
+    if "automatic" in choices.density:
+        area, longest_edge = projected_area(mesh, **how), grid_spacing(mesh, resolution=1)
+        what = choices.density["automatic"], lambda: outline(mesh), area, longest_edge
+        spacing, reason = automatic_spacing(*what, matrix_world, depsgraph, sources, detail)
+    else:
+        density = without_camera(finer(choices.density, detail), lambda: outline(mesh), matrix_world, depsgraph)
+        spacing = grid_spacing(mesh, **density, **how)
     predicted = predict_count(mesh, spacing=spacing, **how)
     if predicted > MAX_SURFELS:
         raise ValueError(f"It would become {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
@@ -156,6 +170,7 @@ def prepare(
         len(whole),
         [*notes, *gathered.notes],
         seconds,
+        reason,
     )
 
 

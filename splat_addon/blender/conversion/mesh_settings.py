@@ -11,27 +11,37 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 
 from ...sampling import DEFAULT_CREASE_ANGLE, DEFAULT_GRAZING_ANGLE, DEFAULT_SPLAT_SIZE, LEAST_GRAZING_ANGLE, REDUCTIONS
 from ..ids import CONVERSION_SETTINGS
+from .automatic_density import FALLBACK_RESOLUTION, MOST_SURFELS
 from .mesh_conversion import Choices
 
 
 class Density(NamedTuple):
-    """A way to say how close surfels lie: for people, and the property that holds the number."""
+    """A way to say how close surfels lie: for people, the property that holds the number, and what a .blend keeps."""
 
     label: str
     description: str
     property: str
+    number: int
 
 
 DENSITIES = {
-    "RESOLUTION": Density(
-        "Resolution", "The same number of surfels along the longest edge, whatever the object's size", "resolution"
+    "AUTOMATIC": Density(
+        "Automatic",
+        "As fine as the scene's camera needs on the current frame, a quarter finer where something moves. "
+        f"Resolution {FALLBACK_RESOLUTION} where no camera sees the object, and {MOST_SURFELS:,} surfels at most",
+        "pixels",
+        4,
     ),
-    "SPACING": Density("Spacing", "The same distance between surfels in every object", "spacing"),
-    "COUNT": Density("Count", "The same number of surfels for each object", "count"),
+    "RESOLUTION": Density(
+        "Resolution", "The same number of surfels along the longest edge, whatever the object's size", "resolution", 0
+    ),
+    "SPACING": Density("Spacing", "The same distance between surfels in every object", "spacing", 1),
+    "COUNT": Density("Count", "The same number of surfels for each object", "count", 2),
     "CAMERA": Density(
         "Camera",
         "As fine as the scene's camera and resolution need on the current frame, where each object comes closest",
         "pixels",
+        3,
     ),
 }
 
@@ -42,8 +52,8 @@ class ConversionProperties:
     density: EnumProperty(
         name="Density",
         description="How it is said how close the surfels lie",
-        items=[(name, density.label, density.description) for name, density in DENSITIES.items()],
-        default="RESOLUTION",
+        items=[(name, density.label, density.description, density.number) for name, density in DENSITIES.items()],
+        default="AUTOMATIC",
     )
     resolution: IntProperty(
         name="Resolution",
@@ -83,7 +93,7 @@ class ConversionProperties:
             "Distance between surfels in pixels of the render, where the object comes closest to the scene's camera. "
             "Twice as many pixels make a quarter of the surfels"
         ),
-        default=1.0,
+        default=0.75,
         min=0.0,
         soft_min=0.25,
         soft_max=10.0,
@@ -212,9 +222,8 @@ PROPERTY_NAMES = tuple(ConversionProperties.__annotations__)
 
 def choices(properties: ConversionProperties) -> Choices:
     """What the properties ask for."""
-    key = DENSITIES[properties.density].property
     return Choices(
-        density={key: getattr(properties, key)},
+        density=_density(properties),
         splat_size=properties.splat_size,
         reduction=properties.reduction.lower(),
         grazing_angle=properties.grazing_angle,
@@ -225,6 +234,17 @@ def choices(properties: ConversionProperties) -> Choices:
         join=properties.join,
         bake=properties.bake_materials,
     )
+
+
+def _density(properties: ConversionProperties) -> dict[str, float]:
+    """The kind of density and its number. A script that gives the operator a number, and not its kind, means that."""
+    chosen = properties.density
+    if isinstance(properties, bpy.types.Operator) and not properties.properties.is_property_set("density"):
+        is_set = properties.properties.is_property_set
+        given = [name for name, kind in DENSITIES.items() if kind.property != "pixels" and is_set(kind.property)]
+        chosen = given[0] if len(given) == 1 else chosen
+    name = DENSITIES[chosen].property
+    return {"automatic" if chosen == "AUTOMATIC" else name: getattr(properties, name)}
 
 
 def draw_properties(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:

@@ -63,7 +63,7 @@ def measure(sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, cho
     mesh, _ = drop_unusable(gathered.mesh)
     if not len(mesh):
         return NOTHING
-    surface = outline(mesh) if "pixels" in choices.density else None
+    surface = outline(mesh) if choices.asks_camera else None
     area = projected_area(mesh, choices.reduction, choices.grazing_angle)
     return Extent(area, grid_spacing(mesh, resolution=1), surface, gathered.others)
 
@@ -89,7 +89,7 @@ def _key(sources: list[bpy.types.Object], choices: Choices) -> tuple:
     except ValueError:
         places = ()
     uids = tuple(source.session_uid for source in sources)
-    how = choices.reduction, choices.grazing_angle, "pixels" in choices.density, choices.in_world_units
+    how = choices.reduction, choices.grazing_angle, choices.asks_camera, choices.in_world_units
     return uids, places, *how
 
 

@@ -29,8 +29,10 @@ from ...sampling import (
     have_same_values,
     outline,
     predict_count,
+    projected_area,
 )
 from ...surfels import OPTIONAL_LAYOUT, Surfels, split
+from ..conversion.automatic_density import automatic_spacing
 from ..conversion.camera_density import without_camera
 from ..conversion.mesh_conversion import MAX_SURFELS
 from ..geometry.mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
@@ -299,5 +301,18 @@ def _by_camera(live: _LiveMesh, pixels: float, depsgraph) -> float:
     return live.spacing if live.deforming else grid_spacing(mesh, resolution=_UNSEEN_RESOLUTION)
 
 
+def _by_itself(live: _LiveMesh, pixels: float, depsgraph) -> float:
+    """As the neediest place asks, within the bounds of `automatic_density`; sampled anew when that changes much."""
+    mesh = live.content.triangles
+    if live.surface is None or live.surface[0] is not mesh:
+        live.surface = mesh, outline(mesh)
+    shape = projected_area(mesh), grid_spacing(mesh, resolution=1)
+    finest = min(
+        automatic_spacing(pixels, lambda: live.surface[1], *shape, matrix, depsgraph).spacing
+        for matrix in live.matrices
+    )
+    return live.kept_if_near(finest)
+
+
 #: kind of density -> function of a mesh, the number and the depsgraph
-_SPACINGS = {"resolution": _by_resolution, "spacing": _by_spacing, "pixels": _by_camera}
+_SPACINGS = {"resolution": _by_resolution, "spacing": _by_spacing, "pixels": _by_camera, "automatic": _by_itself}

@@ -8,7 +8,7 @@ import bpy
 from ..ids import OBJECT_SETTINGS
 
 #: kind of density -> the power of the detail that it changes by
-_POWERS = {"resolution": 1, "spacing": -1, "pixels": -1, "count": 2}
+_POWERS = {"resolution": 1, "spacing": -1, "pixels": -1, "automatic": -1, "count": 2}
 
 
 def detail_of(source: bpy.types.Object) -> float:

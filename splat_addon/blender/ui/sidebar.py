@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import bpy
 
+from ..conversion.automatic_density import automatic_spacing
 from ..conversion.camera_density import without_camera
 from ..conversion.gathering import frame_of, groups
 from ..conversion.mesh_conversion import Choices
 from ..conversion.mesh_settings import PROPERTY_NAMES, choices, draw_properties
-from ..conversion.prediction import known_extents
+from ..conversion.prediction import Extent, known_extents
 from ..export.object_detail import detail_of, finer
 from ..geometry.sources import is_surfel_object
 from ..ids import CONVERSION_SETTINGS, OBJECT_SETTINGS, SHOW_SURFELS, SIDEBAR_PANEL, SIDEBAR_TAB, SURFELS_FROM_MESH
@@ -34,7 +35,8 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
             text = prediction(context, sources, choices(settings))
         else:
             text = "Select surfaces, in Object Mode"
-        self.layout.label(text=text, icon="INFO")
+        for k, line in enumerate(text.split("\n")):
+            self.layout.label(text=line, icon="BLANK1" if k else "INFO")
         button = self.layout.operator(SURFELS_FROM_MESH, icon="OUTLINER_OB_POINTCLOUD")
         for name in PROPERTY_NAMES:
             setattr(button, name, getattr(settings, name))
@@ -44,26 +46,28 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
 
 
 def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], asked: Choices) -> str:
-    """One line on what the sources will become, or why they cannot."""
+    """What the sources will become, and in lines of their own why that density; or why they cannot."""
     parts = groups(sources, context.active_object, asked.join)
     extents = known_extents(parts, asked)
     if extents is None:
         return "Counting …"
-    depsgraph = context.view_layer.depsgraph
     try:
-        finenesses = [
-            without_camera(
-                finer(asked.density, detail_of(part[0])),
-                lambda e=extent: e.surface,
-                frame_of(part[0], asked.in_world_units),
-                depsgraph,
-            )
-            for part, extent in zip(parts, extents, strict=True)
-        ]
+        found = [_density_of(*pair, asked, context.view_layer.depsgraph) for pair in zip(parts, extents, strict=True)]
     except ValueError as error:
         return str(error)
-    text = prediction_text([extent.predict(f) for extent, f in zip(extents, finenesses, strict=True)])
-    return text if asked.tolerance is None else f"{text}, less where flat"
+    text = prediction_text([extent.predict(f) for extent, (f, _) in zip(extents, found, strict=True)])
+    text = text if asked.tolerance is None else f"{text}, less where flat"
+    return "\n".join([text, *dict.fromkeys(reason for _, reason in found if reason)])
+
+
+def _density_of(sources, extent: Extent, asked: Choices, depsgraph) -> tuple[dict[str, float], str]:
+    """In terms that `Extent.predict` knows, and why, where it is found by itself. Raises ValueError."""
+    detail, frame = detail_of(sources[0]), frame_of(sources[0], asked.in_world_units)
+    if "automatic" not in asked.density:
+        return without_camera(finer(asked.density, detail), lambda: extent.surface, frame, depsgraph), ""
+    what = asked.density["automatic"], lambda: extent.surface, extent.area, extent.longest_edge
+    spacing, reason = automatic_spacing(*what, frame, depsgraph, sources, detail)
+    return {"spacing": spacing}, reason
 
 
 def prediction_text(predictions: list[tuple[int, float]]) -> str:

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The density that nobody needs to choose: as fine as the scene's camera needs it, within bounds, and why it is so.
+
+Where the camera or what it looks at moves, its distance on the current frame is not the nearest one, so surfels lie
+closer together by a margin. Without a camera that sees the object the density is a resolution.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+import bpy
+from mathutils import Matrix
+
+from ...sampling import NotSeenError, Outline
+from .camera_density import without_camera
+
+#: Cells along the longest edge where no camera sees the object, and the fewest where one sees it from afar.
+FALLBACK_RESOLUTION, LEAST_RESOLUTION = 256, 16
+
+#: Surfels that one object becomes at most: 0.6 GB while it is converted. Who wants more chooses another density.
+MOST_SURFELS = 4_000_000
+
+#: By so much closer may something that moves come before its surfels are wider apart than asked.
+MOTION_MARGIN = 1.25
+
+
+class Automatic(NamedTuple):
+    """spacing: in the units of the result. reason: why it is that, for people; "" where there is nothing to sample."""
+
+    spacing: float
+    reason: str
+
+
+def automatic_spacing(
+    pixels: float,
+    surface: Callable[[], Outline],
+    area: float,
+    longest_edge: float,
+    matrix_world: Matrix,
+    depsgraph: bpy.types.Depsgraph,
+    sources: Iterable[bpy.types.Object] = (),
+    detail: float = 1.0,
+) -> Automatic:
+    """pixels: that surfels are to lie apart where the camera sees the object closest, before `detail`, how many times
+    closer together they are asked for.
+
+    surface: gives the outline of the object. area: of it as the images see it. longest_edge: of its box. All in the
+    units of the result. sources: the objects that it is made of; where one of them moves, or the camera, the margin
+    applies.
+    """
+    if not (area > 0 and longest_edge > 0 and pixels > 0):
+        return Automatic(0.0, "")
+    moves = any(map(is_moving, (*sources, depsgraph.scene.camera)))
+    margin = MOTION_MARGIN if moves else 1.0
+    try:
+        asked = {"pixels": pixels / margin / detail}
+        spacing = without_camera(asked, surface, matrix_world, depsgraph)["spacing"]
+        reason = f"{asked['pixels']:.3g} pixels where the camera is nearest"
+        reason += f", {margin:g} times finer as something moves" if moves else ""
+    except NotSeenError:
+        spacing, reason = _by_resolution(longest_edge, detail, "the camera does not see it")
+    except ValueError as error:
+        is_there = depsgraph.scene.camera is not None
+        why = str(error).rstrip(".") if is_there else "the scene has no camera"
+        spacing, reason = _by_resolution(longest_edge, detail, why)
+    coarsest, finest = longest_edge / LEAST_RESOLUTION, math.sqrt(area / MOST_SURFELS)
+    if spacing > coarsest:
+        spacing, reason = coarsest, f"resolution {LEAST_RESOLUTION}, the least, as the camera is far away"
+    if spacing < finest:
+        reason = f"at most {MOST_SURFELS:,} surfels, {finest / spacing:.1f} times coarser than {reason}"
+        spacing = finest
+    return Automatic(spacing, reason)
+
+
+def is_moving(source: bpy.types.Object | None) -> bool:
+    """Whether an object, or one that it hangs on, has animation, drivers, constraints or a rigid body."""
+    while source is not None:
+        animation = source.animation_data
+        if animation is not None and (animation.action or animation.drivers or animation.nla_tracks):
+            return True
+        if len(source.constraints) or source.rigid_body is not None:
+            return True
+        source = source.parent
+    return False
+
+
+def _by_resolution(longest_edge: float, detail: float, why: str) -> tuple[float, str]:
+    resolution = FALLBACK_RESOLUTION * detail
+    return longest_edge / resolution, f"resolution {resolution:g}, as {why}"

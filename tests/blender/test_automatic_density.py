@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The default density: the camera's where there is one, a resolution where there is none, never beyond the ceiling."""
+
+import bpy
+import pytest
+
+from splat_addon.blender.conversion import automatic_density, prediction
+from splat_addon.blender.conversion.mesh_conversion import Choices, prepare
+from splat_addon.blender.conversion.mesh_settings import choices
+from splat_addon.blender.ids import CONVERSION_SETTINGS
+from splat_addon.blender.ui.sidebar import prediction as sidebar_text
+
+AUTOMATIC = Choices({"automatic": 1.0})
+
+
+@pytest.fixture
+def cube():
+    bpy.ops.mesh.primitive_cube_add(size=2)
+    return bpy.context.object
+
+
+@pytest.fixture
+def camera():
+    """The scene's camera, 10 above the origin, looking down."""
+    made = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    bpy.context.collection.objects.link(made)
+    made.location.z = 10
+    bpy.context.scene.camera = made
+    return made
+
+
+def prepared(source, asked=AUTOMATIC):
+    bpy.context.view_layer.update()
+    return prepare([source], bpy.context.evaluated_depsgraph_get(), asked)
+
+
+def test_it_is_the_default():
+    assert choices(getattr(bpy.context.scene, CONVERSION_SETTINGS)).density.keys() == {"automatic"}
+
+
+def test_without_a_camera_it_is_a_resolution_and_says_so(cube):
+    conversion = prepared(cube)
+    assert conversion.spacing == pytest.approx(2 / automatic_density.FALLBACK_RESOLUTION)
+    assert conversion.reason == "resolution 256, as the scene has no camera"
+
+
+def test_it_is_the_cameras_density_where_it_sees_the_object(cube, camera):
+    by_camera = prepared(cube, Choices({"pixels": 1.0})).spacing
+    found = prepared(cube)
+    assert found.spacing == pytest.approx(by_camera) and found.reason == "1 pixels where the camera is nearest"
+
+
+def test_a_camera_that_sees_nothing_leaves_the_resolution(cube, camera):
+    camera.rotation_euler = (3.1, 0, 0)
+    found = prepared(cube)
+    assert found.spacing == pytest.approx(2 / 256) and "does not see it" in found.reason
+
+
+def test_a_camera_that_moves_asks_for_a_margin(cube, camera):
+    still = prepared(cube).spacing
+    camera.keyframe_insert("location", frame=1)
+    moving = prepared(cube)
+    assert still / moving.spacing == pytest.approx(automatic_density.MOTION_MARGIN) and "moves" in moving.reason
+
+
+def test_so_does_what_hangs_on_something_that_moves(cube, camera):
+    still = prepared(cube).spacing
+    parent = bpy.data.objects.new("parent", None)
+    bpy.context.collection.objects.link(parent)
+    cube.parent = parent
+    assert prepared(cube).spacing == pytest.approx(still)
+    parent.keyframe_insert("location", frame=1)
+    assert still / prepared(cube).spacing == pytest.approx(automatic_density.MOTION_MARGIN)
+
+
+def test_a_thing_on_the_horizon_keeps_a_few_cells(cube, camera):
+    camera.location = camera.location * 2000
+    camera.data.clip_end = 1e6
+    found = prepared(cube)
+    assert found.spacing == pytest.approx(2 / automatic_density.LEAST_RESOLUTION) and "far away" in found.reason
+
+
+def test_the_ceiling_is_named_when_it_applies(cube, camera, monkeypatch):
+    asked = prepared(cube)
+    monkeypatch.setattr(automatic_density, "MOST_SURFELS", 1500)
+    found = prepared(cube)
+    assert found.spacing == pytest.approx((24 / 1500) ** 0.5)
+    times = f"{found.spacing / asked.spacing:.1f} times coarser"
+    assert found.reason == f"at most 1,500 surfels, {times} than 1 pixels where the camera is nearest"
+
+
+def test_an_objects_own_detail_counts(cube, camera):
+    asked = Choices({"automatic": 4.0})
+    one = prepared(cube, asked).spacing
+    cube.surfel_splatting.detail = 2
+    assert prepared(cube, asked).spacing == pytest.approx(one / 2)
+    bpy.context.scene.camera = None
+    assert prepared(cube).spacing == pytest.approx(2 / 512)
+
+
+def test_the_sidebar_says_the_count_before_and_why(cube, camera, convert):
+    asked = Choices({"automatic": 8.0})
+    sidebar_text(bpy.context, [cube], asked)
+    prediction._measure_wanted()
+    count, why = sidebar_text(bpy.context, [cube], asked).split("\n")
+    assert why == "8 pixels where the camera is nearest"
+    made = convert(density="AUTOMATIC", pixels=8.0)[0]
+    assert int(count.split()[1].replace(",", "")) == pytest.approx(len(made.data.vertices), rel=0.01)
+
+
+def test_a_script_that_gives_a_number_means_that_kind_of_density(cube, camera, convert):
+    assert len(convert(resolution=16)[0].data.vertices) == 1536
+
+
+def test_meshes_sampled_live_have_it_too():
+    settings = bpy.context.scene.surfel_splatting
+    assert settings.mesh_density == "AUTOMATIC"
+    settings.mesh_resolution = 32
+    assert settings.mesh_density == "RESOLUTION"
