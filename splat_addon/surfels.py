@@ -160,6 +160,16 @@ class Surfels(Shape):
         """Whether some of them may end at a line before their ellipse does."""
         return self.clip_line is not None or self.clip_line_2 is not None
 
+    def is_cut(self) -> np.ndarray:
+        """(N,) bool: which of them a line reaches into."""
+        cuts = (lines[:, 1] > 0 for lines in (self.clip_line, self.clip_line_2) if lines is not None)
+        return np.logical_or.reduce([np.zeros(len(self), bool), *cuts])
+
+    @cached_property
+    def clipped_count(self) -> int:
+        """How many of them a line reaches into."""
+        return int(np.count_nonzero(self.is_cut())) if self.is_clipped else 0
+
     def clip_lines(self) -> tuple[np.ndarray, np.ndarray]:
         """(N, 2, 3) float64 lines a u + b v + c >= 0 of unit direction in half-axes, and (N,) bool, of which surfels
         they make a reflex corner (`clip_lines.kept`)."""

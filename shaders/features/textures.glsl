@@ -23,7 +23,7 @@ void textures_color(inout vec3 color) {
 
 #part screen_space.vert
 // Axes that the method replaced move in the picture as others of the true plane do.
-void textures_replaced(Plane true_plane, Plane plane) {
+void textures_replaced(Plane true_plane, Plane plane, bool in_space) {
   if (true_plane.a != plane.a || true_plane.b != plane.b) {
     mat2 to_true = inverse(mat2(true_plane.a, true_plane.b)) * mat2(plane.a, plane.b);
     mat2 along = mat2(texture_along.xy, texture_along.zw) * to_true;

@@ -1,5 +1,6 @@
 // References: Botsch, Kobbelt 2003, section 5 (the level without filtering).
-// Summary: the attributes of the one splat that is nearest; shading divides by its weight. Hook: `add` fills targets beside.
+// Summary: the attributes of the one splat that is nearest; shading divides by its weight. Hooks: `keep` discards, `add`
+//          fills targets beside.
 
 #include "hosts/gbuffer.glsl"
 #include "methods/{method}.glsl"
@@ -7,6 +8,7 @@
 #parts
 void main() {
   if (!is_in_disc(place, tilt_depth.xy)) discard;
+  #hook keep()
   add_to_sums(color_weight.rgb, color_weight.w, tilt_depth.z);
   #hook add()
 }

@@ -31,7 +31,7 @@ void main() {
   color_weight = splat.color_weight;
   normal = splat.normal;
   hand_on(splat, gl_VertexID / 3);
-  #hook replaced(true_plane, plane)
+  #hook replaced(true_plane, plane, in_space)
   gl_Position = NOWHERE;
   #hook place(splat, corner, in_space)
   if (!splat.is_hidden && !in_space) {

@@ -1,5 +1,6 @@
 // References: Botsch et al. 2005, section 4 (what a splat blends).
-// Summary: a stored splat as the attributes that every method accumulates. Hook: `hide` what is not drawn.
+// Summary: a stored splat as the attributes that every method accumulates. Hooks: `unpack` what else a
+//          number holds, `hide` what is not drawn.
 
 #include "lib/sides.glsl"
 #include "lib/stored_splat.glsl"
@@ -19,6 +20,7 @@ struct Splat {
 #parts
 Splat fetch_splat(int index) {
   StoredSplat stored = stored_splat(index);
+  #hook unpack(stored, index)
   mat3 linear = mat3(draw.model_view);
   Splat splat;
   splat.position = (draw.model_view * vec4(stored.position, 1.0)).xyz;

@@ -1,7 +1,7 @@
 // References: Botsch, Hornung, Zwicker, Kobbelt, "High-Quality Surface Splatting on Today's GPUs", 2005, section 4.1
 //             (visibility splatting); the view-independent paper, section 5 (the offset along the view ray).
 // Summary: every splat moved away from the eye by its own epsilon, so that what lies within epsilon blends; by no less
-//          than the depth can resolve, or rounding would let a splat hide itself.
+//          than the depth can resolve, or rounding would let a splat hide itself. Hook: `blend` less deeply.
 
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/nowhere.glsl"
@@ -9,6 +9,7 @@
 #include "hosts/splat_varyings.glsl"
 #include "methods/quad.glsl"
 
+#parts
 void main() {
   Splat splat = fetch_splat(gl_VertexID / 3);
   vec2 corner = triangle_corner(gl_VertexID);
@@ -17,6 +18,7 @@ void main() {
   hand_on(splat, gl_VertexID / 3);
   float offset = draw.epsilon * sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
   if (splat.is_back) offset *= BACK_EPSILON;
+  #hook blend(splat, eye, offset)
   vec4 moved = splat_corner(eye, offset);
   gl_Position = splat.is_hidden ? NOWHERE : moved;
 }

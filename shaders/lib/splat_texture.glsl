@@ -21,9 +21,7 @@ vec3 fetch_texture_place(int index, float material, out vec4 along, out vec2 bor
 }
 #part fragment
 #include "lib/texture_lookup.glsl"
-
-const float SPLAT_VARIANCE = 0.25;   // of the kernel, half-axes squared
-const float LARGEST_PIXEL = 1e8;     // variance, half-axes squared
+#include "lib/kernel_under_pixel.glsl"
 
 // What a pixel along x and y moves the place in an ellipse with these half-axes in view space, at a point of the picture
 // whose depth is given.
@@ -36,16 +34,9 @@ mat2 space_place_change(vec3 axis_u, vec3 axis_v, vec2 point, float depth) {
 // q: the pixel's place in the ellipse; change: columns are what a pixel along x and y moves it.
 vec3 splat_texture_color(vec3 own, vec3 place, vec4 along, vec2 border, vec2 q, mat2 change) {
   if (place.z < 0.0) return own;
-  mat2 pixel = PIXEL_VARIANCE * change * transpose(change);
-  float size = pixel[0].x + pixel[1].y, area = PIXEL_VARIANCE * determinant(change);
-  vec2 middle = vec2(0.0);
-  mat2 seen = mat2(SPLAT_VARIANCE);
-  if (size < LARGEST_PIXEL && dot(q, q) < LARGEST_PIXEL) {
-    float det = SPLAT_VARIANCE * (SPLAT_VARIANCE + size) + area * area;
-    mat2 turned = mat2(pixel[1].y, -pixel[0].y, -pixel[1].x, pixel[0].x);
-    middle = SPLAT_VARIANCE / det * (SPLAT_VARIANCE * q + turned * q);
-    seen = SPLAT_VARIANCE / det * (SPLAT_VARIANCE * pixel + mat2(area * area));
-  }
+  vec2 middle;
+  mat2 seen;
+  kernel_under_pixel(q, change, PIXEL_VARIANCE, middle, seen);
   mat2 gradient = mat2(along.xy, along.zw);
   SurfaceTexture t = surface_texture(int(place.z));
   float beyond = dot(border, middle) - 1.0;

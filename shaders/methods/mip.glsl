@@ -7,9 +7,6 @@
 
 const float KERNEL_VARIANCE = 0.25;
 const float FILTER_VARIANCE = 0.5;  // square pixels
-// 0.5 - x (NORMAL.x + x^2 (NORMAL.y + ...)) is within 7e-4 of a normal distribution's share beyond x, from -NORMAL_END on.
-const vec4 NORMAL = vec4(0.396668, -0.0613809, 0.00673240, -0.000320832);
-const float NORMAL_END = 2.6;
 const float RIM_END = 1.4;  // standard deviations beyond the rim at which nothing counts: a pixel of the filter's
 
 // Of the triangle around the footprint, all of which is drawn in any case, what lies within that many times the ellipse:
@@ -24,6 +21,8 @@ vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   return max(sqrt(size * size + 1.25 * 1.25), size + 0.75);
 }
 #part fragment
+#include "lib/normal_share.glsl"
+
 // Weight and depth.
 vec2 splat_sample(Plane plane, vec2 pixel) {
   Place place = place_at(plane, pixel);
@@ -45,8 +44,7 @@ vec2 splat_sample(Plane plane, vec2 pixel) {
   float both = KERNEL_VARIANCE + along;
   float x = (KERNEL_VARIANCE * reach2 * over_reach - both) * inversesqrt(both * KERNEL_VARIANCE * along);
   bool is_within = place.k > 0.0 && x < RIM_END;
-  x = clamp(x, -NORMAL_END, RIM_END);
-  float x2 = x * x, within = 0.5 - x * (NORMAL.x + x2 * (NORMAL.y + x2 * (NORMAL.z + x2 * NORMAL.w)));
+  float within = share_beyond(clamp(x, -NORMAL_END, RIM_END));
   float weight = KERNEL_VARIANCE * amplitude * exp(-2.0 * rho2) * within;
   return vec2(is_within ? weight : 0.0, plane_depth(plane, place));
 }

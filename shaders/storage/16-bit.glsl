@@ -32,3 +32,10 @@ StoredSplat stored_splat(int index) {
   return StoredSplat(block_low.xyz + block_size.xyz * place.xyz, u * lengths.x, v * lengths.y, normal,
                      floor(shape.z * 65535.0 + 0.5), vec4(root * root * root * brightest, tint.a));
 }
+
+#part blend_depth
+// The share of the radius that a splat blends over.
+float take_blend_depth(inout StoredSplat stored, int index) {
+  ivec2 texel = ivec2((index % SPLATS_PER_ROW) * TEXELS_PER_SPLAT + 2, index / SPLATS_PER_ROW);
+  return 1.0 - texelFetch(surfels, texel, 0).w * (65535.0 / float(BLEND_STEPS));
+}

@@ -12,3 +12,11 @@ StoredSplat stored_splat(int index) {
   vec3 normal = octahedral_decode(vec2(position_data.w, u_data.w));
   return StoredSplat(position_data.xyz, u_data.xyz, v_data.xyz, normal, v_data.w, color);
 }
+
+#part blend_depth
+// The share of the radius that a splat blends over; it leaves the material's number whole.
+float take_blend_depth(inout StoredSplat stored, int index) {
+  float whole = floor(stored.material), left_out = stored.material - whole;
+  stored.material = whole;
+  return 1.0 - left_out;
+}

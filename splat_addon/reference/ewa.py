@@ -17,10 +17,11 @@ from ..rendering.frame import EMPTY_DEPTH, Frame
 from ..rendering.scene import Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.settings import Settings
+from .clipped_kernels import kernel_ends
 from .exact import DEFAULTS, shaded_rays
 from .filters import SIGMA
 from .rays import RayGrid, average, candidates, splats_in, visible_depth
-from .splats import BACK_WEIGHT, Splats, eye_splats, projected_bounds
+from .splats import Splats, eye_splats, projected_bounds
 
 #: Standard deviation of the kernel exp(-2 rho^2), in half-axes.
 KERNEL_SIGMA = 0.5
@@ -58,15 +59,15 @@ def render_ewa(
     A splat's projection is taken as affine at its centre; one whose centre lies before the near plane has none and is
     left out (`stats["left_out"]` counts them). All are opaque. What is visible is found by the unfiltered splats on the
     rays through the pixels' centres, as `render_exact` does; the sums are normalised and shaded once a pixel.
-    Clip lines cut what hides, and not the kernels, which the paper ends nowhere.
+    Clip lines cut what hides, and end kernels as the pixel's Gaussian blurs them (`clipped_kernels`).
     """
     splats = eye_splats(scene, camera).as_opaque()
     before = -splats.center[:, 2] > (-np.inf if camera.is_orthographic else camera.near)
     grid = RayGrid.of_pixels(camera, 1, 0, 0, *camera.size)
-    visibility = _visibility(splats, grid, settings.epsilon)
+    visibility, apart = _visibility(splats, grid, settings.epsilon), 1 + 4 * settings.epsilon
     splats = splats.take(np.flatnonzero(before))
     projections = project(splats, camera, filter_sigma)
-    surface = average(splats, grid, _contributions(splats, projections, grid, visibility, cutoff))
+    surface = average(splats, grid, _contributions(splats, projections, grid, visibility, cutoff, apart))
     rays = shaded_rays(surface, grid, scene, camera, settings)
     depth = np.full(grid.count, EMPTY_DEPTH)
     depth[surface.rays] = surface.depth
@@ -114,8 +115,13 @@ def _visibility(splats: Splats, grid: RayGrid, epsilon: float) -> np.ndarray:
     return visible_depth(inside, boxes, grid, epsilon)
 
 
-def _contributions(splats: Splats, projections: Projections, grid: RayGrid, visibility: np.ndarray, cutoff: float):
-    """Rays, splats, weights, depths and places of what is visible, in chunks."""
+def _contributions(
+    splats: Splats, projections: Projections, grid: RayGrid, visibility: np.ndarray, cutoff: float, apart: float
+):
+    """Rays, splats, weights, depths and places of what is visible, in chunks.
+
+    apart: in radii, how far before a splat another surface lies that does not meet it at a clip line.
+    """
     half = cutoff * np.sqrt(np.stack([projections.variance[:, 0, 0], projections.variance[:, 1, 1]], axis=1))
     limit = np.array(grid.shape[::-1])
     first = np.clip(np.ceil(projections.center - half - 0.5 - 1e-6), 0, limit).astype(np.int64)
@@ -131,10 +137,14 @@ def _contributions(splats: Splats, projections: Projections, grid: RayGrid, visi
         square = np.einsum("ni,nij,nj->n", offset, inverse[local[splat]], offset)
         depth = _plane_depth(splats, projections, splat, grid, ray)
         camera = grid.camera
-        seen = (square <= cutoff**2) & (depth <= visibility[ray]) & (depth >= camera.near) & (depth <= camera.far)
+        share, nearest = kernel_ends(splats, grid, ray, splat)
+        meets = (nearest != ray) & (depth - visibility[ray] <= apart * splats.radius()[splat])
+        meets &= _plane_depth(splats, projections, splat, grid, nearest) <= visibility[nearest]
+        seen = (square <= cutoff**2) & (depth >= camera.near) & (depth <= camera.far) & (share > 0)
+        seen &= (depth <= visibility[ray]) | meets
         ray, splat = ray[seen], splat[seen]
-        weight = projections.amplitude[splat] * np.exp(-square[seen] / 2)
-        weight *= np.where(splats.is_back[splat], BACK_WEIGHT, 1.0)
+        weight = projections.amplitude[splat] * np.exp(-square[seen] / 2) * share[seen]
+        weight *= splats.side_weight()[splat]
         # A splat has one colour, that of its centre.
         yield ray, splat, weight, depth[seen], np.zeros((len(ray), 2))
 

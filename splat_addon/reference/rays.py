@@ -14,7 +14,7 @@ import numpy as np
 
 from ..clip_lines import kept
 from ..rendering.scene.camera import Camera
-from .splats import BACK_WEIGHT, Splats
+from .splats import Splats
 from .textures import point_colors
 
 #: Splat-ray pairs handled at once: about 100 bytes each.
@@ -160,7 +160,7 @@ def _between(hits: Hits, grid: RayGrid, after, until) -> np.ndarray:
 
 
 def _seen(splats: Splats, boxes, grid: RayGrid, visibility: np.ndarray, after=-np.inf):
-    side = np.where(splats.is_back, BACK_WEIGHT, 1.0) * ~splats.is_holdout
+    side = splats.side_weight() * ~splats.is_holdout
     for hits in _hits(splats, boxes, grid):
         seen = _between(hits, grid, after, visibility)
         splat = hits.splat[seen]

@@ -19,6 +19,9 @@ from .textures import surfel_textures
 BACK_WEIGHT = 1e-3
 BACK_EPSILON = 2.0
 
+#: The deepest blending, in radii, that devices tell from any: rendering/upload/packing.py.
+FITTED_BLENDING = 255 / 256
+
 #: A splat that shows less of itself is not there at all: shaders/lib/sides.glsl.
 LEAST_OPACITY = 1e-3
 
@@ -71,6 +74,10 @@ class Splats:
     def is_clipped(self) -> bool:
         """Whether a line reaches into one of them."""
         return bool((self.clip[:, :, 2] < 1).any())
+
+    def side_weight(self) -> np.ndarray:
+        """(N,) of the side that is seen: a back's is little, unless it blends as deep as its surface asks for."""
+        return np.where(self.is_back & (self.blend > FITTED_BLENDING), BACK_WEIGHT, 1.0)
 
     def push(self, epsilon: float) -> np.ndarray:
         """(N,) how far each is moved away to find what hides it, world units. epsilon: in radii."""

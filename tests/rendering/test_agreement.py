@@ -31,6 +31,7 @@ from splat_addon.rendering import (
 from splat_addon.rendering.methods import METHODS, get_method
 from splat_addon.rendering.plan.frame_plan import FILTER_MARGIN
 from splat_addon.rendering.shading_models import SHADING_MODELS
+from tests.rendering.creased import clipped_iron
 
 TOLERANCE = 1e-4
 ROUNDING = 1e-6
@@ -157,6 +158,7 @@ SCENES = {
     "deep": lambda: deep(*scenes.torus(size=SIZE)),
     "polygons": lambda: scenes.polygons(size=SIZE),
     "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),
+    "clip_lines": lambda: clipped_iron(SIZE),
 }
 
 #: Compared with the truth, with as many layers as there are, in tests/rendering/test_transparency.py.
@@ -215,6 +217,8 @@ CASES = [
     *((name, method, {}) for name in HYBRID for method in ("quad", "mip")),
     *(("polygons", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
     ("polygons", "mip", {"shading": "flat", "lines": Lines(width=2.0)}),
+    *(("clip_lines", method, {"shading": "flat"}) for method in METHODS if method != "quad"),
+    *(("clip_lines", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
     ("own_materials", "mip", {}),
     ("holdout", "mip", {}),
     ("own_materials", "mip", {"storage": "16-bit"}),

@@ -64,6 +64,8 @@ TRANSPARENT = Scene([Instance(replace(surfels(), colors=np.full((2, 4), 0.5)))])
 
 HOLED = Scene([Instance(surfels()), Instance(surfels(), is_holdout=True)])
 
+CLIPPED = Scene([Instance(surfels(clip_line=[(0, 9), (0, 0)]))])
+
 
 def lit(**options) -> Scene:
     return replace(PLAIN, lights=(Light("sun", **options),))
@@ -185,6 +187,9 @@ TABLE = {
     "transparent, overdraw": (
         TRANSPARENT, {"shading": "overdraw"}, PASSES, "gbuffer_overdraw", "-brdf_table", (),
     ),
+    "clip lines": (CLIPPED, {}, PASSES, "", "", ("CLIP_LINES",)),
+    "lines that cut nothing": (Scene([Instance(surfels(clip_line=np.zeros((2, 2))))]), {}, PASSES, "", "", ()),
+    "blend depths": (Scene([Instance(surfels(blend_depth=[0.1, 1]))]), {}, PASSES, "", "", ("BLEND_DEPTH",)),
     "holdout": (HOLED, {}, PASSES, "", "", ("HOLDOUT",)),
     "holdout, by mip": (
         HOLED, {"method": "mip"},

@@ -107,8 +107,10 @@ def plane_depth(plane: Plane, at: Places, pixel: np.ndarray, filter_pixels: floa
     return np.where(at.k > 0, depth, plane.depth)
 
 
-def straddling_samples(position, axis_u, axis_v, points: np.ndarray, is_orthographic: bool):
+def straddling_samples(position, axis_u, axis_v, points: np.ndarray, is_orthographic: bool, is_kept=None):
     """(M,) weights, unfiltered, and (M,) depths of a splat that reaches the near plane, wherever its centre lies.
+
+    is_kept: of (M, 2) places in half-axes, (M,) bool: those that no clip line takes away.
 
     Guennebaud et al. 2006, equation 5: (u w, v w, w) = adj(M) direction. The twin of
     shaders/features/near_clipped.glsl.
@@ -124,4 +126,5 @@ def straddling_samples(position, axis_u, axis_v, points: np.ndarray, is_orthogra
         w = directions @ np.cross(s, t)
         u, v = ((c * directions).sum(axis=1) / w for c in (np.cross(t, p), np.cross(p, s)))
         rho2 = u * u + v * v
-        return np.where(rho2 <= 1, np.exp(-2 * rho2), 0.0), p @ np.cross(s, t) / w
+        ends = rho2 <= 1 if is_kept is None else (rho2 <= 1) & is_kept(np.stack([u, v], axis=1))
+        return np.where(ends, np.exp(-2 * rho2), 0.0), p @ np.cross(s, t) / w

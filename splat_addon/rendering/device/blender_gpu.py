@@ -55,14 +55,14 @@ class BlenderDevice:
     def target(self, colors, depth=None):
         return _Target(self._gpu, colors, depth)
 
-    def draw_triangles(self, pipeline, target, triangles, blocks, textures, viewport=None):
+    def draw_triangles(self, pipeline, target, triangles, blocks, textures, viewport=None, first=0):
         if not triangles:
             return
-        if self._triangles[0] < triangles:
+        if self._triangles[0] < first + triangles:
             # The next power of two: it then grows only a few times.
-            size = 1 << max(triangles - 1, 1023).bit_length()
+            size = 1 << max(first + triangles - 1, 1023).bit_length()
             self._triangles = size, _batch(self._gpu, size)
-        self._draw(pipeline, target, blocks, textures, self._triangles[1], 3 * triangles, viewport)
+        self._draw(pipeline, target, blocks, textures, self._triangles[1], (3 * first, 3 * triangles), viewport)
 
     def draw_fullscreen(self, pipeline, target, blocks, textures, viewport=None):
         self._draw(pipeline, target, blocks, textures, self._triangle, None, viewport)
@@ -96,7 +96,7 @@ class BlenderDevice:
             if vertices is None:
                 batch.draw(shader)
             else:
-                batch.draw_range(shader, elem_start=0, elem_count=vertices)
+                batch.draw_range(shader, elem_start=vertices[0], elem_count=vertices[1])
 
     def _uniform(self, block):
         """The uniform buffer of an array, which stays alive with it."""

@@ -114,9 +114,16 @@ class Device(Protocol):
         """
 
     def draw_triangles(
-        self, pipeline, target, triangles: int, blocks: list[np.ndarray], textures: list[Texture], viewport=None
+        self,
+        pipeline,
+        target,
+        triangles: int,
+        blocks: list[np.ndarray],
+        textures: list[Texture],
+        viewport=None,
+        first=0,
     ) -> None:
-        """Draw triangles 0 to `triangles`, in order: vertex 3 t + c is corner c of triangle t.
+        """Draw so many triangles from number `first` on, in order: vertex 3 t + c is corner c of triangle t.
 
         blocks: each uniform block's float32 values as std140 has them. An array that is given again is not copied again
             before `restore`.

@@ -57,10 +57,10 @@ class StandaloneDevice:
     def target(self, colors, depth=None):
         return _Target(self._context, colors, depth)
 
-    def draw_triangles(self, pipeline, target, triangles, blocks, textures, viewport=None):
+    def draw_triangles(self, pipeline, target, triangles, blocks, textures, viewport=None, first=0):
         if triangles:
             self._bind(pipeline, target, blocks, textures, viewport)
-            pipeline.vertex_array.render(vertices=3 * triangles)
+            pipeline.vertex_array.render(vertices=3 * triangles, first=3 * first)
 
     def draw_fullscreen(self, pipeline, target, blocks, textures, viewport=None):
         self.draw_triangles(pipeline, target, 1, blocks, textures, viewport)

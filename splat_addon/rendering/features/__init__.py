@@ -16,10 +16,12 @@ Each module decides from a `Planning` whether the frame needs it, and says why n
 """
 
 from ..scene.polygons import CORNERS_PER_ROW, TEXELS_PER_CORNER
-from ..upload.packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT
+from ..upload.packing import BLEND_STEPS, SPLATS_PER_ROW, TEXELS_PER_SPLAT
 from . import (
     accumulation,
     ambient_occlusion,
+    blend_depth,
+    clip_lines,
     depth_bounds,
     depth_format,
     edge_threshold,
@@ -50,6 +52,7 @@ FEATURES = (
     depth_format,
     near_clipped,
     split,
+    blend_depth,
     shadows,
     visibility,
     object_id,
@@ -64,6 +67,7 @@ FEATURES = (
     textures,
     gbuffer,
     oit,
+    clip_lines,
     polygons,
     ambient_occlusion,
     outputs,
@@ -101,6 +105,7 @@ INPUTS = _joined("INPUTS")
 CONSTANTS = _joined("CONSTANTS") | {
     "SPLATS_PER_ROW": SPLATS_PER_ROW,
     "TEXELS_PER_SPLAT": TEXELS_PER_SPLAT,
+    "BLEND_STEPS": BLEND_STEPS,
     "CORNERS_PER_ROW": CORNERS_PER_ROW,
     "TEXELS_PER_CORNER": TEXELS_PER_CORNER,
 }

@@ -49,20 +49,26 @@ def splat_textures(tile: TileContext, instance: Instance) -> dict[str, Callable[
         **{name: lambda t=texture: t for name, texture in stored.textures.items()},
         "materials": lambda: resources.materials(instance, storage, tile.plan.facts["emissions_differ"]),
         "surfel_uvs": lambda: resources.surfel_uvs(instance.surfels, storage),
+        "clip_lines": lambda: resources.clip_lines(instance.surfels, storage),
         "texture_atlas": lambda: resources.atlas(instance.textures)[0],
         "texture_table": lambda: resources.atlas(instance.textures)[1],
     }
 
 
 def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None):
-    """One draw call an instance. variants: of the pass's programs. viewport: as `Device.draw_triangles` takes it."""
-    program = None
+    """One draw call an instance, and one for those of its splats that end at clip lines: they are stored first.
+
+    variants: of the pass's programs. viewport: as `Device.draw_triangles` takes it.
+    """
+    programs = {}
     for placed in placed_ones:
-        program = program or tile.program(p, vertex, *variants)
-        textures = tile.textures(p, program, splat_textures(tile, placed.instance))
-        blocks = tile.blocks(program, draw_block(tile, placed, tile.settings.epsilon))
-        triangles = len(placed.instance.surfels)
-        tile.resources.device.draw_triangles(program, target, triangles, blocks, textures, viewport)
+        count, clipped = len(placed.instance.surfels), placed.instance.surfels.clipped_count
+        textures, block = splat_textures(tile, placed.instance), draw_block(tile, placed, tile.settings.epsilon)
+        for more, first, end in (((), clipped, count), (("clipped",), 0, clipped)):
+            if first < end:
+                program = programs[more] = programs.get(more) or tile.program(p, vertex, *variants, *more)
+                read, blocks = tile.textures(p, program, textures), tile.blocks(program, block)
+                tile.resources.device.draw_triangles(program, target, end - first, blocks, read, viewport, first)
 
 
 def draw_polygons(

@@ -3,7 +3,8 @@
 
 A splat is four RGBA32F texels, 512 splats a row:
     position.xyz, normal.x   |   axis u.xyz, normal.y   |   axis v.xyz, material   |   color.rgba
-where normal.xy is the octahedral form of the shading normal and the axes carry the half-axes' lengths.
+where normal.xy is the octahedral form of the shading normal and the axes carry the half-axes' lengths. Surfels that
+have blend depths carry them in the fraction of the material.
 """
 
 from __future__ import annotations
@@ -12,28 +13,42 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...clip_lines import CLIP_FIELDS, TURN
 from ...surfels import Surfels
 from ..scene import Material, Placed
+from .stored_order import clipped_first
 
 SPLATS_PER_ROW = 512
 TEXELS_PER_SPLAT = 4
+#: Of a radius in a stored blend depth.
+BLEND_STEPS = 256
 #: Rows that every tested backend's textures can have.
 MAX_ROWS = 16384
 MAX_SPLATS = SPLATS_PER_ROW * MAX_ROWS
 
 
 def pack_surfels(surfels: Surfels) -> np.ndarray:
-    """(rows, 2048, 4) float32 texels of N surfels. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
-    rows, count = row_count(surfels), len(surfels)
+    """(rows, 2048, 4) float32 texels, clipped surfels first. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
+    rows, count, order = row_count(surfels), len(surfels), clipped_first(surfels)
     texels = np.zeros((rows * SPLATS_PER_ROW, TEXELS_PER_SPLAT, 4), np.float32)
     filled = texels[:count]
-    filled[:, 0, :3] = surfels.positions
-    filled[:, 1, :3], filled[:, 2, :3] = surfels.half_axes()
-    encoded = octahedral(surfels.normals)
+    filled[:, 0, :3] = surfels.positions[order]
+    filled[:, 1, :3], filled[:, 2, :3] = (axis[order] for axis in surfels.half_axes())
+    encoded = octahedral(surfels.normals[order])
     filled[:, 0, 3], filled[:, 1, 3] = encoded[0], encoded[1]
-    filled[:, 2, 3] = surfels.materials
-    filled[:, 3] = surfels.colors
+    filled[:, 2, 3] = surfels.materials[order]
+    if surfels.blend_depth is not None:
+        filled[:, 2, 3] += not_blended(surfels)[order] / BLEND_STEPS
+    filled[:, 3] = surfels.colors[order]
     return texels.reshape(rows, SPLATS_PER_ROW * TEXELS_PER_SPLAT, 4)
+
+
+def not_blended(surfels: Surfels) -> np.ndarray:
+    """(N,) float64 whole numbers from 0 to 255: how much of the radius a splat does not blend over, in 256ths, rounded
+    towards more blending; at most 255 of them. So much fits beside a material's number, and 0 is what a set without
+    blend depths has.
+    """
+    return np.minimum(np.floor((1 - surfels.blend_depth.astype(np.float64)) * BLEND_STEPS), BLEND_STEPS - 1)
 
 
 def pack_uvs(surfels: Surfels, order=slice(None)) -> np.ndarray:
@@ -49,6 +64,19 @@ def pack_uvs(surfels: Surfels, order=slice(None)) -> np.ndarray:
     if surfels.uv_border is not None:
         filled[:, 1, 2:] = surfels.uv_border[order]
     return texels.reshape(rows, SPLATS_PER_ROW * 2, 4)
+
+
+def pack_clip_lines(surfels: Surfels, order: np.ndarray) -> np.ndarray:
+    """(rows, 512, 4) float32 multiples of 1 / 65535: direction and cut of the first line, and of the second, of the
+    clipped surfels alone, 8 bytes each. order: in which all are stored, the clipped ones first.
+    """
+    count = surfels.clipped_count
+    texels = np.zeros((-(-count // SPLATS_PER_ROW) * SPLATS_PER_ROW, 4), np.float32)
+    for number, name in enumerate(CLIP_FIELDS):
+        lines = getattr(surfels, name)
+        if lines is not None:
+            texels[:count, 2 * number : 2 * number + 2] = lines[order[:count]].astype(np.int64) % TURN
+    return (texels / (TURN - 1)).reshape(-1, SPLATS_PER_ROW, 4)
 
 
 def row_count(surfels: Surfels) -> int:

@@ -3,7 +3,7 @@
 
 A splat is four texels of four 16-bit numbers (unsigned, normalised: the one 16-bit format that every graphics API fills
 alike; drivers differ in how they round to float16):
-    position.xyz, normal.x  |  rotation.xyz, normal.y  |  log length u, v, material, 0  |  color.rgb, opacity
+    position.xyz, normal.x  |  rotation.xyz, normal.y  |  log length u, v, material, blend  |  color.rgb, opacity
 The 512 splats of a row are neighbours, and numbers are relative to that block. Its row in the table is
     low corner, longest half-axis  |  size of the box, log2 of longest over shortest half-axis  |  brightest colour, 0
 
@@ -15,6 +15,7 @@ What each number may lose:
     colour: cube root of the share of the block's brightest in steps of 2^-15, so 5e-5 of the brightest and 1e-3 of a
         colour a thousandth as bright. 0 is exact.
     opacity: 2^-17 within 0 to 1. material: none up to 65,535, beyond which it is refused.
+    blend depth: what `not_blended` rounds.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...surfels import Surfels
-from .packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT, octahedral, row_count
+from .packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT, not_blended, octahedral, row_count
+from .stored_order import clipped_first
 
 #: A share of a splat's shorter half-axis that is seen.
 COARSE = 1 / 8
@@ -52,7 +54,7 @@ def pack_16_bit(surfels: Surfels) -> tuple[tuple[np.ndarray, np.ndarray], int]:
     if not len(surfels):
         return (texels.reshape(rows, -1, 4), table), 0
     # the last row is filled up with its last splat, which widens no block
-    order = np.pad(spatial_order(surfels.positions), (0, rows * SPLATS_PER_ROW - len(surfels)), "edge")
+    order = np.pad(order_16_bit(surfels), (0, rows * SPLATS_PER_ROW - len(surfels)), "edge")
 
     def blocks(array):
         return array[order].reshape(rows, SPLATS_PER_ROW, *array.shape[1:])
@@ -73,6 +75,8 @@ def pack_16_bit(surfels: Surfels) -> tuple[tuple[np.ndarray, np.ndarray], int]:
     normals = octahedral(surfels.normals[order]).reshape(2, rows, SPLATS_PER_ROW)
     texels[:, :, 0, 3], texels[:, :, 1, 3] = _signed_steps(normals)
     texels[:, :, 2, 2] = blocks(surfels.materials) / _STEPS
+    if surfels.blend_depth is not None:
+        texels[:, :, 2, 3] = blocks(not_blended(surfels)) / _STEPS
 
     colors = blocks(surfels.colors)
     brightest = np.abs(colors[..., :3]).max(axis=(1, 2))
@@ -81,6 +85,11 @@ def pack_16_bit(surfels: Surfels) -> tuple[tuple[np.ndarray, np.ndarray], int]:
     table[:, 2, 0] = brightest
     is_coarse = blocks(surfels.scales).min(axis=2) * COARSE < size.max(axis=1, keepdims=True) / (2 * _STEPS)
     return (texels.reshape(rows, -1, 4), table), int(np.count_nonzero(is_coarse.ravel()[: len(surfels)]))
+
+
+def order_16_bit(surfels: Surfels) -> np.ndarray:
+    """(N,) indices: clipped surfels first, neighbours together."""
+    return clipped_first(surfels, spatial_order(surfels.positions))
 
 
 def spatial_order(positions: np.ndarray) -> np.ndarray:

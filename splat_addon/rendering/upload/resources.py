@@ -15,7 +15,7 @@ from ..device.interface import Pipeline, PipelineDescription, Texture
 from ..scene import Placed, SurfaceTexture
 from ..scene.polygons import Polygons, pack_polygon_uvs, pack_polygons
 from .atlas import FORMAT, make_atlas
-from .packing import pack_materials, pack_own_materials, pack_uvs
+from .packing import pack_clip_lines, pack_materials, pack_own_materials, pack_uvs
 from .storages import Storage
 
 Uploaded = TypeVar("Uploaded")
@@ -81,6 +81,14 @@ class Resources:
         """Their texture coordinates, uploaded once."""
         return self._once(surfels, "uvs", storage.name, lambda: self.data(pack_uvs(surfels, _order(surfels, storage))))
 
+    def clip_lines(self, surfels: Surfels, storage: Storage) -> Texture:
+        """The lines of those that are clipped, uploaded once."""
+
+        def uploaded() -> Texture:
+            return self.data(pack_clip_lines(surfels, storage.order(surfels)), "RGBA16")
+
+        return self._once(surfels, "clip_lines", storage.name, uploaded)
+
     def atlas(self, textures: tuple[SurfaceTexture | None, ...]) -> tuple[Texture, Texture]:
         """Texels and table of an instance's textures, uploaded once."""
         if textures not in self._atlases:
@@ -139,4 +147,4 @@ class Resources:
 
 def _order(surfels: Surfels, storage: Storage | None):
     """The index of surfels that brings them into the order in which they are stored."""
-    return storage.order(surfels) if storage and storage.order else slice(None)
+    return storage.order(surfels) if storage else slice(None)

@@ -10,7 +10,8 @@ import numpy as np
 
 from ...surfels import Surfels
 from .packing import pack_surfels
-from .packing_16_bit import pack_16_bit, spatial_order
+from .packing_16_bit import order_16_bit, pack_16_bit
+from .stored_order import clipped_first
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,7 @@ class Storage:
     """name: also of its GLSL file. label, summary: for users.
     textures: (sampler, format) of each texture.
     pack: to their (h, w, 4) float32 texels, and the number of surfels whose place it loses visibly.
-    order: (N,) the surfels in the order in which they are stored; None: their own.
+    order: (N,) the surfels in the order in which they are stored, clipped ones first; a whole slice: their own.
     """
 
     name: str
@@ -26,7 +27,7 @@ class Storage:
     summary: str
     textures: tuple[tuple[str, str], ...]
     pack: Callable[[Surfels], tuple[tuple[np.ndarray, ...], int]]
-    order: Callable[[Surfels], np.ndarray] | None = None
+    order: Callable[[Surfels], np.ndarray | slice]
 
     @property
     def samplers(self) -> tuple[str, ...]:
@@ -43,6 +44,7 @@ STORAGES = {
             "64 bytes a surfel, exact",
             (("surfels", "RGBA32F"),),
             lambda surfels: ((pack_surfels(surfels),), 0),
+            clipped_first,
         ),
         Storage(
             "16-bit",
@@ -53,7 +55,7 @@ STORAGES = {
             ),
             (("surfels", "RGBA16"), ("surfel_blocks", "RGBA32F")),
             pack_16_bit,
-            lambda surfels: spatial_order(surfels.positions),
+            order_16_bit,
         ),
     )
 }

@@ -6,7 +6,8 @@ float32 cannot know more than its inputs: a weight may be anything between the t
 roundings, and rims may fall either way by a fraction of a pixel.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -14,7 +15,8 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from splat_addon.reference.methods import TWINS
+from splat_addon.clip_lines import MAX_CUT, TURN, kept
+from splat_addon.reference.methods.clip_lines import clipped_samples
 from splat_addon.reference.methods.plane import splat_plane, straddling_samples
 from splat_addon.rendering import EMPTY_DEPTH, Camera, Renderer, Scene, Settings
 from splat_addon.rendering.methods import METHODS
@@ -35,6 +37,9 @@ BACK_WEIGHT = 1e-3
 #: Methods whose formula has no tangents for a disc that faces the ray: rounding decides whether it is seen.
 NOT_FACING = ("homogeneous_printed",)
 
+#: As `Surfels.clip_lines` gives them of one surfel: a line that keeps all, twice, and no reflex corner.
+NO_LINES = np.array([(1.0, 0, 1), (1, 0, 1)]), False
+
 CAMERAS = {
     "perspective": Camera.perspective(np.eye(4), 1.0, (SIZE, SIZE), NEAR, FAR),
     "orthographic": Camera.orthographic(np.eye(4), 2.0, (SIZE, SIZE), NEAR, FAR),
@@ -44,7 +49,8 @@ CAMERAS = {
 @dataclass(frozen=True)
 class Splat:
     """angle: degrees between its normal and the viewer; turn, spin: of the normal and in the plane. place: in the
-    picture's half-widths. size: the longer half-axis over the depth. ratio: the shorter one over it.
+    picture's half-widths. size: the longer half-axis over the depth. ratio: the shorter one over it. lines: direction
+    and cut of both clip lines, as they are stored.
     """
 
     depth: float
@@ -54,6 +60,7 @@ class Splat:
     spin: float
     size: float
     ratio: float
+    lines: tuple[tuple[int, int], ...] = ((0, 0), (0, 0))
 
     def surfels(self, camera: Camera) -> Surfels:
         across = camera.window[1] * (1 if camera.is_orthographic else self.depth)
@@ -69,7 +76,12 @@ class Splat:
         return Surfels(
             position[None], axes_quaternions(x[None], np.cross(normal, x)[None], normal[None]),
             np.array([[long, long * self.ratio]]), normal[None], np.ones((1, 4)), np.zeros(1, int),
+            **self.clip_fields(),
         )  # fmt: skip
+
+    def clip_fields(self) -> dict:
+        packed = np.array(self.lines, np.int64).astype(np.int16)[:, None]
+        return {"clip_line": packed[0], "clip_line_2": packed[1]} if packed[..., 1].any() else {}
 
 
 def powers(low, high):
@@ -89,6 +101,14 @@ SPLATS = st.builds(
     ratio=st.one_of(st.floats(0.1, 1), powers(1e-6, 1)),
 )
 
+LINES = st.tuples(st.integers(0, TURN - 1), st.integers(1, MAX_CUT))
+CLIPPED_SPLATS = st.builds(
+    lambda splat, first, second: replace(splat, lines=(first, second)),
+    SPLATS,
+    LINES,
+    st.one_of(st.just((0, 0)), LINES),
+)
+
 
 def drawn(renderer, method, surfels, camera):
     """(SIZE, SIZE) sums of weights that the attribute pass leaves, and the frame's depths."""
@@ -104,10 +124,10 @@ def sum_of(renderer, name):
     return renderer.device.target([texture]).read(0)[margin : margin + SIZE, margin : margin + SIZE]
 
 
-def twin_weights(method, axes, camera, shift=(0.0, 0.0)):
+def twin_weights(method, axes, camera, shift=(0.0, 0.0), lines=NO_LINES):
     """(SIZE, SIZE) weights and depths at the pixels' centres, or `shift` pixels beside them.
 
-    axes: position and half-axes, float64.
+    axes: position and half-axes, float64. lines: (2, 3) clip lines and whether they make a reflex corner.
     """
     left, right, bottom, top = camera.window
     pixel = np.array([right - left, top - bottom]) / SIZE
@@ -116,12 +136,16 @@ def twin_weights(method, axes, camera, shift=(0.0, 0.0)):
     position, u, v = axes
     is_sprite = METHODS[method].works_in == "sprites"  # drawn whole or not at all
     if -position[2] - np.hypot(u[2], v[2]) <= NEAR and not is_sprite:
-        weights, depths = straddling_samples(position, u, v, points, camera.is_orthographic)
+        weights, depths = straddling_samples(position, u, v, points, camera.is_orthographic, partial(inside, lines))
     else:
         plane = splat_plane(position, u, v, camera.is_orthographic)
-        weights, depths = TWINS[method](plane, points, pixel)
+        weights, depths = clipped_samples(method, plane, points, pixel, *lines)
     is_seen = (weights > 0) & (depths >= NEAR) & (depths <= FAR)
     return np.where(is_seen, weights, 0.0).reshape(SIZE, SIZE), depths.reshape(SIZE, SIZE)
+
+
+def inside(lines, places):
+    return kept(places, lines[0][None], np.full(len(places), lines[1]))
 
 
 def side_weight(axes, camera):
@@ -138,10 +162,11 @@ def neighbours(method, surfels, camera):
     """
     random = np.random.default_rng(0)
     axes = [a.astype(np.float64) for a in (surfels.positions[0], *(a[0] for a in surfels.half_axes()))]
-    found = [twin_weights(method, axes, camera)]
+    lines = tuple(column[0] for column in surfels.clip_lines())
+    found = [twin_weights(method, axes, camera, lines=lines)]
     for _ in range(NEIGHBOURS):
         moved = [a + ROUNDING * np.linalg.norm(a) * random.uniform(-1, 1, 3) for a in axes]
-        found.append(twin_weights(method, moved, camera, random.uniform(-SNAP, SNAP, 2)))
+        found.append(twin_weights(method, moved, camera, random.uniform(-SNAP, SNAP, 2), lines))
     weights, depths = np.moveaxis(np.array(found), 1, 0)
     return weights, depths, side_weight(axes, camera)
 
@@ -156,6 +181,16 @@ def is_within(found, known, tolerance):
 @pytest.mark.parametrize("kind", CAMERAS)
 @pytest.mark.parametrize("method", METHODS)
 def test_weights_and_depths_are_the_twins(method, kind, on_device):
+    agree_with_twins(method, kind, SPLATS, on_device)
+
+
+@pytest.mark.parametrize("kind", CAMERAS)
+@pytest.mark.parametrize("method", METHODS)
+def test_splats_that_end_at_lines_are_the_twins(method, kind, on_device):
+    agree_with_twins(method, kind, CLIPPED_SPLATS, on_device)
+
+
+def agree_with_twins(method, kind, splats, on_device):
     camera = CAMERAS[kind]
     compared = []
 
@@ -163,7 +198,7 @@ def test_weights_and_depths_are_the_twins(method, kind, on_device):
         renderer = Renderer(device)
 
         @hypothesis_settings(deadline=None, max_examples=EXAMPLES, derandomize=True, database=None)
-        @given(splat=SPLATS)
+        @given(splat=splats)
         def agree(splat):
             surfels = splat.surfels(camera)
             picture, depth = drawn(renderer, method, surfels, camera)

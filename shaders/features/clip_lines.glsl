@@ -1,0 +1,92 @@
+// References: Zwicker, Rasanen, Botsch, Dachsbacher, Pauly, "Perspective Accurate Splatting", 2004; Botsch et al. 2005,
+//             section 4 (splats clipped at lines in their plane); splat_addon/clip_lines.py, which says what is stored.
+// Summary: splats that end at up to two lines before their ellipse does. A line is (direction, c) of direction . q + c >= 0
+//          in half-axes; two make a convex corner or, in the other order, a reflex one. A filter blurs the end as it blurs
+//          the ellipse's: of kernel times pixel that share counts which lies on the line's kept side. Twins:
+//          reference/rays.py, reference/methods/clip_lines.py.
+
+#part splat_varyings
+const float TURN = 6.28318531 / 65536.0;  // of a stored direction
+const float CUT = 1.0 / 16384.0;          // half-axes, of a stored cut
+const vec3 NO_LINE = vec3(0.0, 0.0, 1.0);
+
+vec3 unpacked_line(vec2 stored) {
+  return stored.y > 0.0 ? vec3(cos(stored.x * TURN), sin(stored.x * TURN), 1.0 - stored.y * CUT) : NO_LINE;
+}
+
+void clip_lines_attributes(Splat splat, int index) {
+  vec4 stored = floor(texelFetch(clip_lines, ivec2(index % SPLATS_PER_ROW, index / SPLATS_PER_ROW), 0) * 65535.0 + 0.5);
+  clip_first = unpacked_line(stored.xy);
+  clip_second = unpacked_line(stored.zw);
+  bool are_there = stored.y > 0.0 && stored.w > 0.0;
+  clip_is_reflex = are_there && mod(stored.z - stored.x + 65536.0, 65536.0) > 32768.0 ? 1.0 : 0.0;
+}
+
+#part splat_varyings, of_sprites
+#include "lib/line_in_picture.glsl"
+void of_sprites_attributes(Splat splat, int index) {
+  Plane plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, view.is_parallel > 0.5);
+  clip_first = line_in_picture(clip_first, plane);
+  clip_second = line_in_picture(clip_second, plane);
+}
+
+#part screen_space.vert, cuts_at_lines
+#include "lib/line_in_picture.glsl"
+// The method may have replaced axes: lines are the true plane's.
+void clip_lines_replaced(Plane true_plane, Plane plane, bool in_space) {
+  bool is_true = true_plane.a == plane.a && true_plane.b == plane.b;
+  clip_in_space = in_space && is_true ? 1.0 : 0.0;
+  if (in_space && is_true) return;
+  clip_first = line_in_picture(clip_first, true_plane);
+  clip_second = line_in_picture(clip_second, true_plane);
+}
+
+#part fragment
+bool is_inside_lines(vec2 place) {
+  float first = dot(clip_first.xy, place) + clip_first.z, second = dot(clip_second.xy, place) + clip_second.z;
+  return (clip_is_reflex > 0.5 ? max(first, second) : min(first, second)) >= 0.0;
+}
+
+#part visibility.frag
+void clip_lines_keep() {
+  if (!is_inside_lines(place_depth.xy)) discard;
+}
+
+#part object_space.frag
+void clip_lines_keep() {
+  if (!is_inside_lines(place_depth.xy)) discard;
+}
+
+#part point_sprite.frag
+void clip_lines_keep() {
+  if (!is_inside_lines(gl_FragCoord.xy)) discard;
+}
+
+#part screen_space.frag, cuts_at_lines
+void clip_lines_look(inout Candidate c) {
+  if (!is_inside_lines(clip_in_space > 0.5 ? c.place.xy : gl_FragCoord.xy)) discard;
+}
+
+#part screen_space.frag, blurs_lines
+#include "lib/clipped_share.glsl"
+
+void clip_lines_look(inout Candidate c) {
+  if (c.in_space) {
+    if (!is_inside_lines(c.place.xy)) discard;
+    return;
+  }
+  c.weight *= clipped_share(c.plane, place_at(c.plane, gl_FragCoord.xy));
+  if (!(c.weight > 0.0)) discard;
+}
+
+#part screen_space.frag, blurs_lines, depth_bounds
+// Past the line, where the face that meets this one is seen, a splat counts as far as it is seen before the line: the
+// other face may hide its plane there, and the pixel's filter reaches over the crease.
+void blurs_lines_look(inout Candidate c) {
+  Place place = place_at(c.plane, gl_FragCoord.xy);
+  vec2 back = way_back(c.plane, place);
+  if (c.in_space || back == vec2(0.0) || c.depth - c.seen.z > (1.0 + 4.0 * draw.epsilon) * c.plane.radius) return;
+  ivec2 last = textureSize(depth_bounds, 0) - 1, at = clamp(ivec2(floor(gl_FragCoord.xy + back)), ivec2(0), last);
+  float before = plane_depth(c.plane, place_at(c.plane, vec2(at) + 0.5));
+  if (before <= texelFetch(depth_bounds, at, 0).z) c.compared = min(c.compared, c.seen.z);
+}

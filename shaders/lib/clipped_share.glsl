@@ -1,0 +1,48 @@
+// References: features/clip_lines.glsl; Sheppard 1899 (two correlated normal variables, both above their means).
+// Summary: of kernel times pixel, the share on the kept side of a splat's lines, and where the nearest kept place is.
+
+#include "lib/place.glsl"
+#include "lib/normal_share.glsl"
+#include "lib/kernel_under_pixel.glsl"
+
+const float LEAST_SHARE = 0.006;  // less is none: the approximation ends there
+const float TO_WITHIN = 0.75;     // pixels past the line, whose sample is on its kept side then but for a corner of it
+
+// Of a Gaussian, what two lines keep both. one, other: what either keeps; correlation: of the distances to them. Exact
+// where both lines go through the middle, and of lines that are parallel or across.
+float both_keep(float one, float other, float correlation) {
+  float turn = asin(clamp(correlation, -1.0, 1.0)) * 0.63661977;
+  return mix(one * other, turn > 0.0 ? min(one, other) : max(one + other - 1.0, 0.0), abs(turn));
+}
+
+// Of a normal distribution, what lies before x: all, from where the approximation ends.
+float share_before(float x) {
+  return x < NORMAL_END ? share_beyond(-max(x, -NORMAL_END)) : 1.0;
+}
+
+float clipped_share(Plane plane, Place place) {
+  vec2 middle;
+  mat2 seen;
+  // Beyond the plane's horizon only the splat itself can be meant.
+  vec2 q = place.k > 0.0 ? place.uv : vec2(LARGEST_PIXEL);
+  kernel_under_pixel(q, place.scale * place_turn(plane, place), FILTER_VARIANCE, middle, seen);
+  vec2 across = seen * clip_first.xy;
+  vec2 deviation = sqrt(max(vec2(dot(clip_first.xy, across), dot(clip_second.xy, seen * clip_second.xy)), 1e-20));
+  vec2 inside = vec2(dot(clip_first.xy, middle) + clip_first.z, dot(clip_second.xy, middle) + clip_second.z) / deviation;
+  float one = share_before(inside.x), other = share_before(inside.y);
+  float both = both_keep(one, other, dot(clip_second.xy, across) / (deviation.x * deviation.y));
+  float share = clip_is_reflex > 0.5 ? one + other - both : both;
+  return share > LEAST_SHARE ? share : 0.0;
+}
+
+// In pixels, to a place that is kept, past the line that is nearest; none from a place that is.
+vec2 way_back(Plane plane, Place place) {
+  mat2 change = place.scale * place_turn(plane, place);
+  vec2 first = clip_first.xy * change, second = clip_second.xy * change;
+  float one = (dot(clip_first.xy, place.uv) + clip_first.z) / max(length(first), 1e-20);
+  float other = (dot(clip_second.xy, place.uv) + clip_second.z) / max(length(second), 1e-20);
+  bool is_first = clip_is_reflex > 0.5 ? one > other : one < other;
+  vec2 gradient = is_first ? first : second;
+  float inside = is_first ? one : other;
+  return inside < 0.0 && place.k > 0.0 ? (TO_WITHIN - inside) / max(length(gradient), 1e-20) * gradient : vec2(0.0);
+}

@@ -1,0 +1,20 @@
+// References: Zwicker et al. 2001 (kernel and pixel filter are Gaussians, and so is their product).
+// Summary: what a pixel shows of a splat is kernel times pixel filter: a Gaussian narrower than both, in half-axes.
+
+const float SPLAT_VARIANCE = 0.25;   // of the kernel, half-axes squared
+const float LARGEST_PIXEL = 1e8;     // variance, half-axes squared
+
+// q: the pixel's place in the ellipse; change: columns are what a pixel along x and y moves it; variance: of the pixel's
+// filter. Its middle and its variance; the kernel's where the pixel is too large for digits, or q beyond all.
+void kernel_under_pixel(vec2 q, mat2 change, float variance, out vec2 middle, out mat2 seen) {
+  mat2 pixel = variance * change * transpose(change);
+  float size = pixel[0].x + pixel[1].y, area = variance * determinant(change);
+  middle = vec2(0.0);
+  seen = mat2(SPLAT_VARIANCE);
+  if (size < LARGEST_PIXEL && dot(q, q) < LARGEST_PIXEL) {
+    float det = SPLAT_VARIANCE * (SPLAT_VARIANCE + size) + area * area;
+    mat2 turned = mat2(pixel[1].y, -pixel[0].y, -pixel[1].x, pixel[0].x);
+    middle = SPLAT_VARIANCE / det * (SPLAT_VARIANCE * q + turned * q);
+    seen = SPLAT_VARIANCE / det * (SPLAT_VARIANCE * pixel + mat2(area * area));
+  }
+}

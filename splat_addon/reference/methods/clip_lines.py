@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The numpy twin of shaders/features/clip_lines.glsl and lib/clipped_share.glsl: splats that end at lines."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...rendering.methods import METHODS
+from . import TWINS
+from .mip import FILTER_SIGMA, KERNEL_VARIANCE, NORMAL, NORMAL_END
+from .plane import Plane, gradients, places
+
+#: A smaller share is none: the approximation ends there.
+LEAST_SHARE = 0.006
+
+#: Half-axes squared, beyond which the pixel is too large for digits.
+LARGEST_PIXEL = 1e8
+
+
+def clipped_samples(method: str, plane: Plane, points: np.ndarray, pixel: np.ndarray, lines: np.ndarray, reflex: bool):
+    """(M,) weights and (M,) depths as the method's twin gives them, of a splat that ends at lines.
+
+    lines: (2, 3) of unit direction, in half-axes, as `Surfels.clip_lines` gives them.
+    """
+    weights, depths = TWINS[method](plane, points, pixel)
+    at, reflex = places(plane, points), np.full(len(points), reflex)
+    if METHODS[method].blurs_rims:
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            place = np.where(at.k[:, None] > 0, at.uv, np.inf)
+            share = clipped_share(place, gradients(plane, at, pixel), lines[None], reflex)
+    else:
+        share = _in_picture(at, there(lines), reflex)
+    return weights * share, depths
+
+
+def there(lines: np.ndarray) -> np.ndarray:
+    """(..., 3) lines; those that are none without a direction: a filter reaches beyond the ellipse that they keep."""
+    return np.where(lines[..., 2:] < 1, lines, (0.0, 0.0, 1.0))
+
+
+def _in_picture(at, lines: np.ndarray, reflex: np.ndarray) -> np.ndarray:
+    """(M,) bool: which places are kept. In the picture lines go straight on beyond the plane's horizon."""
+    side = np.where(at.k > 0, 1.0, -1.0)[:, None]
+    homogeneous = np.concatenate([at.uv * side, side], axis=1)
+    inside = np.einsum("nk,lk->nl", homogeneous, lines) >= 0
+    inside |= ~lines[:, :2].any(axis=1)
+    return np.where(reflex, inside.any(axis=1), inside.all(axis=1))
+
+
+def clipped_share(place: np.ndarray, change: np.ndarray, lines: np.ndarray, reflex: np.ndarray) -> np.ndarray:
+    """(M,) share of kernel times pixel that lies on the kept side of the lines.
+
+    place: (M, 2) of the pixels, in half-axes, infinite beyond the plane's horizon. change: (M, 2, 2) what a pixel along
+    x and y moves it. lines: (1 or M, 2, 3). reflex: (M,) bool.
+    """
+    middle, seen = _kernel_under_pixel(place, change)
+    lines = np.broadcast_to(there(lines), (len(place), 2, 3))
+    direction = lines[..., :2]
+    across = np.einsum("nij,nkj->nki", seen, direction)
+    deviation = np.sqrt(np.maximum(np.einsum("nki,nki->nk", direction, across), 1e-20))
+    inside = (np.einsum("nki,ni->nk", direction, middle) + lines[..., 2]) / deviation
+    one, other = _share_before(inside).T
+    correlation = np.einsum("ni,ni->n", across[:, 0], direction[:, 1]) / deviation.prod(axis=1)
+    both = _both_keep(one, other, correlation)
+    share = np.where(reflex, one + other - both, both)
+    return np.where(share > LEAST_SHARE, share, 0.0)
+
+
+def _share_before(inside: np.ndarray) -> np.ndarray:
+    """Of a normal distribution, what lies before x: all, from where the approximation ends."""
+    x = np.clip(inside, -NORMAL_END, NORMAL_END)
+    return np.where(inside < NORMAL_END, 0.5 + x * sum(f * x ** (2 * power) for power, f in enumerate(NORMAL)), 1.0)
+
+
+def _both_keep(one: np.ndarray, other: np.ndarray, correlation: np.ndarray) -> np.ndarray:
+    """What two lines keep both of a Gaussian, of which each keeps a share (Sheppard 1899, exact at the middle)."""
+    turn = np.arcsin(np.clip(correlation, -1, 1)) * 2 / np.pi
+    end = np.where(turn > 0, np.minimum(one, other), np.maximum(one + other - 1, 0))
+    return one * other + np.abs(turn) * (end - one * other)
+
+
+def _kernel_under_pixel(place: np.ndarray, change: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Middle (M, 2) and variance (M, 2, 2) of kernel times pixel; the kernel's where the pixel has no end."""
+    pixel = FILTER_SIGMA**2 * change @ np.swapaxes(change, 1, 2)
+    kernel = KERNEL_VARIANCE * np.eye(2)
+    has_end = (np.trace(pixel, axis1=1, axis2=2) < LARGEST_PIXEL) & ((place**2).sum(axis=1) < LARGEST_PIXEL)
+    pixel, place = np.where(has_end[:, None, None], pixel, np.eye(2)), np.where(has_end[:, None], place, 0.0)
+    joined = KERNEL_VARIANCE * np.linalg.inv(kernel + pixel)
+    middle = np.einsum("nij,nj->ni", joined, place)
+    seen = np.einsum("nij,njk->nik", joined, pixel)
+    return np.where(has_end[:, None], middle, 0.0), np.where(has_end[:, None, None], seen, kernel)

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Splats that blend no deeper than splats of their own surface lie off its plane: visibility moves them by less."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part
+from .drawing import SPLAT_HOSTS
+
+_HOSTS = (*SPLAT_HOSTS, "visibility.frag", "lit_splats.frag")
+
+
+def _count(planning) -> int:
+    return sum(instance.surfels.blend_depth is not None for instance in planning.scene.surfels)
+
+
+def passes(planning):
+    """None; it says whether there are any."""
+    if planning.shown:
+        if count := planning.find(_count):
+            planning.has("BLEND_DEPTH", f"splats of {count} instances blend as deep as their surface asks for")
+        else:
+            planning.skip("blend depths", "all splats blend as deep as epsilon says")
+    return ()
+
+
+def parts(planning, p):
+    if p.host in _HOSTS and planning.find(_count):
+        # A light's view is compared with places that the camera sees, and moved by less, surfaces shadow themselves.
+        words = ("blends_less",) if p.kind != "shadow" else ()
+        yield Part("blend_depth", words, only="splats" if p.host == "visibility.frag" else "")

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Splats that end at lines before their ellipse does, where their surface has a crease or a border.
+
+They are a draw of their own, with the variant "clipped" of every program that draws splats; others pay nothing.
+"""
+
+from __future__ import annotations
+
+from ..plan.graph import Part
+from .drawing import RASTERIZERS, SPLAT_HOSTS
+
+_VARYINGS = (("flat", "vec3", "clip_first"), ("flat", "vec3", "clip_second"), ("flat", "float", "clip_is_reflex"))
+
+#: Whether lines are of places in the ellipse, where others are of places in the picture.
+_IN_SPACE = (("flat", "float", "clip_in_space"),)
+
+
+def _count(planning) -> int:
+    return sum(instance.surfels.clipped_count > 0 for instance in planning.scene.surfels)
+
+
+def passes(planning):
+    """None; it says whether there are any."""
+    if planning.shown:
+        if count := planning.find(_count):
+            planning.has("CLIP_LINES", f"splats of {count} instances end at creases and borders, drawn by themselves")
+        else:
+            planning.skip("clip lines", "all splats are whole")
+    return ()
+
+
+def parts(planning, p):
+    if p.host in (*SPLAT_HOSTS, "visibility.frag") and planning.find(_count):
+        words = _words(planning, p)
+        varyings = (*_VARYINGS, *(_IN_SPACE if "cuts_at_lines" in words else ()))
+        yield Part("clip_lines", words, inputs=("clip_lines",), varyings=varyings, only="clipped")
+
+
+def _words(planning, p) -> tuple[str, ...]:
+    """How lines act: on places in the ellipse or in the picture, and blurred where the method blurs rims."""
+    if p.host == f"{RASTERIZERS['sprites']}.frag":
+        return ("of_sprites",)
+    if p.host == f"{RASTERIZERS['picture']}.frag":
+        return ("blurs_lines",) if planning.method.blurs_rims else ("cuts_at_lines",)
+    return ()
