@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from . import commands, mesh_sampling_settings, operators, properties
-from .conversion import mesh_settings, prediction
+from .conversion import bring_back, mesh_settings, prediction, source_record
 from .engine import render_engine, render_passes
 from .ui import (
     camera_panels,
@@ -31,6 +31,8 @@ MODULES = (
     view_layer_panels,
     mesh_sampling_settings,
     mesh_settings,
+    source_record,
+    bring_back,
     operators,
     prediction,
     sidebar,

@@ -17,6 +17,7 @@ SURFELS_FROM_POINTS = "object.surfels_from_points"
 EXPORT_PLY = "export_scene.surfels_ply"
 IMPORT_PLY = "import_scene.surfels_ply"
 RENDER_PRESET = "render.surfel_preset"
+UPDATE_SURFELS = "object.surfels_update"
 SHOW_SURFELS = "view3d.surfels_show"
 
 SIDEBAR_TAB = "Surfels"
@@ -39,6 +40,9 @@ LAYER_SETTINGS = "surfel_splatting"
 
 #: What an object says about its rendering: `object.surfel_splatting`.
 OBJECT_SETTINGS = "surfel_splatting"
+
+#: What a surfel object was made of, and how: `object.surfel_record`.
+SURFEL_RECORD = "surfel_record"
 
 #: Where the sidebar keeps what it will convert with: `scene.surfel_conversion`.
 CONVERSION_SETTINGS = "surfel_conversion"

@@ -147,8 +147,8 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
     render_as: EnumProperty(
         name="Render as",
         description=(
-            "What becomes of this object, with its instances. The conversion leaves it out, since its surfels stand in "
-            "the object's place; choose anew if you delete them"
+            "What becomes of this object, with its instances. An object that was converted is left out while there are "
+            "its surfels, unless something is chosen here"
         ),
         items=[
             ("SCENE", "As the Scene Says", "What Render Meshes as in the render properties says"),
@@ -242,11 +242,6 @@ def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) ->
         raise ValueError("It is split by a vertex group, and none is chosen; choose one in its object properties.")
     split = settings.split_distance if kind == "DISTANCE" else None
     return Form(kind, split, settings.split_group if kind == "GROUP" else "")
-
-
-def leave_to_surfels(source: bpy.types.Object) -> None:
-    """The object has been converted: it must not be drawn a second time."""
-    getattr(source, OBJECT_SETTINGS).render_as = "HIDDEN"
 
 
 class RENDER_PT_surfel_meshes(EnginePanel, bpy.types.Panel):

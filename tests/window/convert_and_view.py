@@ -37,8 +37,19 @@ def prepare():
 def convert():
     """As a press of the button: the operator runs modally, and Blender's window lives on."""
     with in_view():
-        result = bpy.ops.object.surfels_from_mesh("INVOKE_DEFAULT", resolution=160, source="HIDE")
+        result = bpy.ops.object.surfels_from_mesh("INVOKE_DEFAULT", True, resolution=80, source="HIDE")
     return list(result)
+
+
+def adjust():
+    """As Adjust Last Operation does."""
+    bpy.context.window_manager.operators[-1].properties.resolution = 160
+    with in_view():
+        bpy.ops.ed.undo_redo()
+
+
+def made():
+    return [owner for owner in bpy.data.objects if owner.name.endswith(" surfels")]
 
 
 def look():
@@ -55,13 +66,18 @@ def steps():
     prepare()
     yield 1.0
     result = convert()
-    while not (made := [o for o in bpy.data.objects if o.name.endswith(" surfels")]):
+    while not made():
         yield POLL_SECONDS
     yield 1.0
+    first = len(made()[0].data.vertices)
+    adjust()
+    yield 2.0
     look()
     yield 4.0
     source_hidden = bpy.data.objects["Suzanne"].hide_get()
-    return {"operator": result, "surfels": len(made[0].data.vertices), "source_hidden": source_hidden}
+    report = {"operator": result, "first": first, "source_hidden": source_hidden}
+    report["surfels"] = [len(owner.data.vertices) for owner in made()]
+    return report
 
 
 splat_addon.register()

@@ -18,8 +18,14 @@ def session(in_a_window):
 def test_the_operator_runs_from_the_interface(session):
     report, _ = session
     assert report.get("operator") == ["RUNNING_MODAL"], report
-    assert 20_000 < report["surfels"] < 60_000
+    assert 5_000 < report["first"] < 15_000
     assert report["source_hidden"]
+
+
+def test_the_last_operation_can_be_adjusted(session):
+    report, _ = session
+    assert len(report["surfels"]) == 1
+    assert 3.5 * report["first"] < report["surfels"][0] < 4.5 * report["first"]
 
 
 def test_the_rendered_view_shows_the_surfels_without_holes(session):

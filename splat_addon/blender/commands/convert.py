@@ -13,9 +13,9 @@ from ...sampling import Sampling, sample_block, sample_surface, write_blocks
 from ..conversion.batch import ConversionBatch
 from ..conversion.mesh_conversion import sampling_options
 from ..conversion.mesh_settings import DENSITIES, choices
+from ..conversion.ties import tie
 from ..geometry.sources import has_surfaces
 from ..ids import CONVERSION_SETTINGS
-from ..mesh_sampling_settings import leave_to_surfels
 from .whole_results import unfinished
 
 HELP = "make surfels of objects, in a new file"
@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
     if options.block is None:
         for conversion in batch.prepared(bpy.context):
             batch.sample(conversion)
-        place(batch)
+        place(batch, settings_of(options))
         save(out)
     else:
         _write_block(batch, file, options.block, options.blocks)
@@ -123,16 +123,14 @@ def refuse(batch: ConversionBatch) -> None:
         raise ValueError("; ".join(f"{name}: {sentence}" for name, sentence in batch.refused))
 
 
-def place(batch: ConversionBatch) -> None:
-    """The surfel objects, with their sources out of the way. Raises ValueError where something was refused."""
+def place(batch: ConversionBatch, settings) -> None:
+    """The surfel objects, tied to their sources, which are hidden. Raises ValueError where something was refused."""
     refuse(batch)
-    for conversion, _ in batch.place_all(bpy.context):
+    for conversion, made in batch.place_all(bpy.context):
         print(f"{conversion.name}: {conversion.summary()}", flush=True)
         for note in conversion.notes:
             print(f"{conversion.name}: {note}", flush=True)
-        for source in conversion.sources:
-            leave_to_surfels(source)
-            source.hide_render = True
+        tie(conversion, made, "MESH", settings, follows=True, hides=True)
 
 
 def save(out: Path) -> None:

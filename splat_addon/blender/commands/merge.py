@@ -102,7 +102,7 @@ def _blocks(options: argparse.Namespace) -> Iterator[Path]:
         batch = new_batch(options, lambda mesh, **how: joined_blocks(mesh, _blocks_of(files, next(turns)), **how))
         for conversion in batch.prepared(bpy.context):
             batch.sample(conversion)
-        place(batch)
+        place(batch, settings_of(options))
         save(out)
         yield out
     for file in files:

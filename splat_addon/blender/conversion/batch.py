@@ -7,15 +7,20 @@ with nothing usable does not stop the others.
 
 from __future__ import annotations
 
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 
 import bpy
+from mathutils import Matrix, Vector
 
 from ...sampling import Sampling, SamplingCancelled, sample_surface
+from .as_rendered import as_rendered
+from .following import at_origin_of_source
 from .gathering import groups
 from .mesh_conversion import Choices, Conversion, bake, place, prepare, sample
-from .surfel_objects import select_only
+from .source_record import record_of
+from .surfel_objects import refill, select_only
 
 
 class Batch(ABC):
@@ -37,6 +42,10 @@ class Batch(ABC):
         return (max(self._begun - 1, 0) + self._part) / len(self._groups)
 
     @property
+    def has_sources(self) -> bool:
+        return bool(self._groups)
+
+    @property
     def has_surfels(self) -> bool:
         return bool(self._sampled)
 
@@ -45,7 +54,9 @@ class Batch(ABC):
         for sources in self._groups:
             self._begun, self._part = self._begun + 1, 0.0
             try:
-                yield self._prepare(sources, context.evaluated_depsgraph_get())
+                with as_rendered(sources, context) as depsgraph:
+                    conversion = self._prepare(sources, depsgraph)
+                yield conversion
             except ValueError as error:
                 self.refused.append((sources[0].name, str(error)))
 
@@ -69,9 +80,33 @@ class Batch(ABC):
 
     def place_all(self, context: bpy.types.Context) -> list[tuple[object, bpy.types.Object]]:
         """Add the surfel objects to the file; they are selected, and the last is active."""
-        made = [(conversion, self._place(conversion, context)) for conversion in self._sampled]
+        made = [(conversion, self._placed(conversion, context)) for conversion in self._sampled]
         select_only(context, [new for _, new in made])
         return made
+
+    def _placed(self, conversion, context: bpy.types.Context) -> bpy.types.Object:
+        start = time.perf_counter()
+        self._finish(conversion, context)
+        made = self._place(conversion, context)
+        record_of(made).origin = conversion.surfels.origin
+        conversion.seconds += time.perf_counter() - start
+        return made
+
+    def replace(self, made: bpy.types.Object, context: bpy.types.Context) -> list:
+        """Give a surfel object the surfels of the one source that was sampled, or of several that were joined."""
+        for conversion in self._sampled:
+            start, record = time.perf_counter(), record_of(made)
+            self._finish(conversion, context)
+            refill(made, conversion.surfels, conversion.materials)
+            shift = Vector(conversion.surfels.origin) - Vector(record.origin)
+            made.matrix_basis = made.matrix_basis @ Matrix.Translation(shift)
+            record.origin = conversion.surfels.origin
+            conversion.seconds += time.perf_counter() - start
+        return self._sampled
+
+    def _finish(self, conversion, context: bpy.types.Context) -> None:
+        """What is left to do with the surfels and may ask Blender."""
+        conversion.surfels = at_origin_of_source(conversion.surfels)
 
     @abstractmethod
     def _prepare(self, sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph):
@@ -105,9 +140,14 @@ class ConversionBatch(Batch):
     def _sample(self, conversion: Conversion, progress) -> None:
         sample(conversion, progress, self._sampler)
 
+    def _finish(self, conversion: Conversion, context) -> None:
+        if conversion.unread:
+            try:
+                with as_rendered(conversion.sources, context) as depsgraph:
+                    bake(conversion, depsgraph)
+            except ValueError as error:
+                conversion.notes.append(f"Nothing was baked: {error}")
+        super()._finish(conversion, context)
+
     def _place(self, conversion: Conversion, context) -> bpy.types.Object:
-        try:
-            bake(conversion, context.evaluated_depsgraph_get())
-        except ValueError as error:
-            conversion.notes.append(f"Nothing was baked: {error}")
         return place(conversion, context.collection)

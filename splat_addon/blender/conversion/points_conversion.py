@@ -38,6 +38,22 @@ class PointsConversion:
     def name(self) -> str:
         return self.source.name
 
+    @property
+    def sources(self) -> list[bpy.types.Object]:
+        return [self.source]
+
+    @property
+    def materials(self) -> tuple[bpy.types.Material | None, ...]:
+        return self.points.materials
+
+    @property
+    def notes(self) -> list[str]:
+        return list(self.report.notes())
+
+    def is_warning(self, note: str) -> bool:
+        """Whether it tells of something that was left out."""
+        return note.startswith("Skipped")
+
     def summary(self) -> str:
         """What was made, in one line."""
         return f"{self.report.points:,} points -> {len(self.surfels):,} surfels in {self.seconds:.1f} s"
@@ -76,10 +92,8 @@ class PointsBatch(Batch):
         conversion.seconds += time.perf_counter() - start
 
     def _place(self, conversion: PointsConversion, context) -> bpy.types.Object:
-        start, source = time.perf_counter(), conversion.source
-        collections = collections_of(source, context.collection)
-        name, materials = f"{source.name} surfels", conversion.points.materials
-        made = add_surfel_object(name, conversion.surfels, conversion.matrix_world, collections, materials)
+        source = conversion.source
+        collections, name = collections_of(source, context.collection), f"{source.name} surfels"
+        made = add_surfel_object(name, conversion.surfels, conversion.matrix_world, collections, conversion.materials)
         made.pass_index = source.pass_index
-        conversion.seconds += time.perf_counter() - start
         return made

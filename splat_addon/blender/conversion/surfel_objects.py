@@ -9,7 +9,7 @@ import bpy
 from mathutils import Matrix
 
 from ...surfels import Surfels
-from ..geometry.attributes import write_surfels
+from ..geometry.attributes import fill, write_surfels
 from ..geometry.points_proxy import show_as_points
 
 
@@ -30,6 +30,14 @@ def add_surfel_object(
         collection.objects.link(made)
     made.matrix_world = matrix_world @ Matrix.Translation(surfels.origin)
     return made
+
+
+def refill(made: bpy.types.Object, surfels: Surfels, materials: Iterable[bpy.types.Material | None]) -> None:
+    """Other surfels in place of those that an object has; all objects that share its mesh have them too."""
+    fill(made.data, surfels)
+    made.data.materials.clear()
+    for material in materials:
+        made.data.materials.append(material)
 
 
 def collections_of(source: bpy.types.Object, fallback: bpy.types.Collection) -> list[bpy.types.Collection]:

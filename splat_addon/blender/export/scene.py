@@ -15,12 +15,13 @@ import numpy as np
 from ...rendering import Instance, Light, Scene
 from ...rendering.upload.packing import MAX_SPLATS
 from ...surfels import Surfels, split
+from ..conversion.source_record import is_stood_in, sources_in
 from ..geometry.attributes import Points, has_surfels, has_surfels_beside_faces, have_same_values, read_stored
 from ..geometry.points_proxy import is_solid, shown_points, shows_as_points
 from ..geometry.sources import owner_of
 from ..materials.material_override import Overridden, override_of
 from ..materials.surface_textures import TextureStore
-from ..mesh_sampling_settings import are_meshes_texture_mapped, form_of, mesh_fineness
+from ..mesh_sampling_settings import Form, are_meshes_texture_mapped, form_of, mesh_fineness
 from . import passed_over
 from .light_linking import LightSets
 from .live_meshes import LiveMeshes, Place
@@ -114,6 +115,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
     override = override_of(depsgraph)
     for sentence in passed_over.of_scene(bpy_scene):
         notes.add(sentence)
+    stood_in = sources_in(bpy_scene.original)
     surfels, (lights, light_sets) = [], _lights(depsgraph, notes)
     for entry in depsgraph.object_instances:
         object_, matrix = entry.object, np.array(entry.matrix_world, np.float64)
@@ -138,8 +140,8 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                     with shown_points(source) as points:
                         kept = store.get(points, object_.data.session_uid, owner.name_full, is_solid(owner))
                     surfels += _instances(object_, kept, depsgraph, matrix, fields, store, notes, override)
-                if "faces" in what and (form := form_of(entry, bpy_scene)).kind != "HIDDEN":
-                    owner = owner_of(entry)
+                owner, form = owner_of(entry), form_of(entry, bpy_scene) if "faces" in what else _NO_FORM
+                if form.kind != "HIDDEN" and not is_stood_in(owner, stood_in):
                     live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), notes, override)
                 if "points" in what:
                     notes.add(_BARE_POINTS)
@@ -191,6 +193,9 @@ def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], 
                 objects.append(entry.object.original)
     return lights, LightSets(objects, notes)
 
+
+#: Of what has no faces.
+_NO_FORM = Form("HIDDEN")
 
 #: Blender's type -> its name, of what could be seen but is no mesh. Curves and texts come as meshes.
 _NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "volume", "GREASEPENCIL": "grease pencil"}

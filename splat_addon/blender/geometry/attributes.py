@@ -51,6 +51,13 @@ def has_surfels_beside_faces(mesh: bpy.types.Mesh) -> bool:
 def write_surfels(name: str, surfels: Surfels) -> bpy.types.Mesh:
     """A new vertex-only mesh that stores `surfels`; `surfels.origin` is left to the object's location."""
     mesh = bpy.data.meshes.new(name)
+    fill(mesh, surfels)
+    return mesh
+
+
+def fill(mesh: bpy.types.Mesh, surfels: Surfels) -> None:
+    """Store `surfels` in a mesh, in place of all that it has."""
+    mesh.clear_geometry()
     mesh.vertices.add(len(surfels))
     for field, layout in POINT_ATTRIBUTES.items():
         values = getattr(surfels, field)
@@ -60,8 +67,9 @@ def write_surfels(name: str, surfels: Surfels) -> bpy.types.Mesh:
     _write(mesh, REST, surfels.positions)
     if surfels.is_solid:
         mesh[SOLID] = True
+    else:
+        mesh.pop(SOLID, None)
     mesh.update()
-    return mesh
 
 
 def _write(mesh: bpy.types.Mesh, layout: PointAttribute, values: np.ndarray) -> None:

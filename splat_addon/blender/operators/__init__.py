@@ -3,9 +3,17 @@
 
 from __future__ import annotations
 
-from . import export_ply, import_ply, render_preset, show_surfels, surfels_from_mesh, surfels_from_points
+from . import (
+    export_ply,
+    import_ply,
+    render_preset,
+    show_surfels,
+    surfels_from_mesh,
+    surfels_from_points,
+    update_surfels,
+)
 
-MODULES = (surfels_from_mesh, surfels_from_points, export_ply, import_ply, render_preset, show_surfels)
+MODULES = (surfels_from_mesh, surfels_from_points, update_surfels, export_ply, import_ply, render_preset, show_surfels)
 
 
 def register():

@@ -7,26 +7,52 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 
 import bpy
+from bpy.props import BoolProperty
 
 from ..conversion.batch import Batch
+from ..conversion.source_record import sources_of
+from ..conversion.ties import tie
 from ..ids import ENGINE, ENGINE_LABEL
 
 _TIMER_SECONDS = 0.05
 
 
+_ALREADY = "What is selected is surfels already; use Update from Source to convert its source again"
+
+
+def follow_property():
+    return BoolProperty(
+        name="Follow Source",
+        description=(
+            "The surfels go where their source goes, with its parent, animation and constraints. Off, they are a "
+            "frozen copy"
+        ),
+        default=True,
+    )
+
+
+def was_converted(context: bpy.types.Context) -> bool:
+    """Whether surfels that know their sources are selected: Adjust Last Operation asks, before it takes them back."""
+    return any(sources_of(made) for made in context.selected_objects if made.type == "MESH")
+
+
 class ModalConversion:
-    """A mix-in for operators that have the property `source`, "KEEP" or "HIDE"."""
+    """A mix-in for operators that have the property `source`, "KEEP" or "HIDE", and `follow`."""
+
+    follow: follow_property()
 
     def _new_batch(self, context: bpy.types.Context) -> Batch:
         """Of what is selected, as the properties say. Raises ValueError with a sentence."""
         raise NotImplementedError
 
-    def _tell(self, conversion) -> None:
-        """Report what became of a conversion, and do with its sources what always is done."""
-        raise NotImplementedError
+    #: As what the record knows the conversion.
+    kind = ""
 
     def execute(self, context):
         batch = self._new_batch(context)
+        if not batch.has_sources:
+            self.report({"ERROR"}, _ALREADY)
+            return {"CANCELLED"}
         manager = context.window_manager
         manager.progress_begin(0.0, 1.0)
         try:
@@ -40,6 +66,9 @@ class ModalConversion:
         if bpy.app.background:
             return self.execute(context)
         self._batch = self._new_batch(context)
+        if not self._batch.has_sources:
+            self.report({"ERROR"}, _ALREADY)
+            return {"CANCELLED"}
         self._prepared = self._batch.prepared(context)
         self._executor, self._sampling = ThreadPoolExecutor(max_workers=1), None
         self._timer = context.window_manager.event_timer_add(_TIMER_SECONDS, window=context.window)
@@ -90,18 +119,14 @@ class ModalConversion:
             self.report({"INFO"}, "The conversion to surfels was cancelled; nothing was changed")
             return {"CANCELLED"}
         made = batch.place_all(context) if batch.has_surfels else []
-        for conversion, _ in made:
+        for conversion, new in made:
             self.report({"INFO"}, f"{conversion.name}: {conversion.summary()}")
-            self._tell(conversion)
+            for note in conversion.notes:
+                self.report({"WARNING" if conversion.is_warning(note) else "INFO"}, f"{conversion.name}: {note}")
+            tie(conversion, new, self.kind, self, self.follow, self.source == "HIDE")
         if made and context.scene.render.engine != ENGINE:
             self.report({"INFO"}, f"Choose the render engine {ENGINE_LABEL} to see the surfels")
         # An error fails a script's call; where others were converted, that would hide them from it.
         for name, sentence in batch.refused:
             self.report({"WARNING" if made else "ERROR"}, f"{name}: {sentence}")
         return {"FINISHED"} if made else {"CANCELLED"}
-
-    def _hide(self, source: bpy.types.Object) -> None:
-        """If that is asked for."""
-        if self.source == "HIDE":
-            source.hide_set(True)
-            source.hide_render = True

@@ -9,9 +9,8 @@ from ..conversion.batch import ConversionBatch
 from ..conversion.mesh_settings import ConversionProperties, choices, draw_properties
 from ..geometry.sources import has_surfaces
 from ..ids import SURFELS_FROM_MESH
-from ..mesh_sampling_settings import leave_to_surfels
 from .menu_entry import with_menu_entry
-from .modal_conversion import ModalConversion
+from .modal_conversion import ModalConversion, was_converted
 
 
 def selected_sources(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -31,7 +30,7 @@ meshes, curves, texts, metaballs, and the instances of Geometry Nodes and collec
     def poll(cls, context):
         if context.mode != "OBJECT":
             cls.poll_message_set("Objects are converted in object mode; leave the current mode first")
-        elif not selected_sources(context):
+        elif not (selected_sources(context) or was_converted(context)):
             cls.poll_message_set(
                 "Select a mesh object, curve, text, metaball or collection instance, one that is not surfels already"
             )
@@ -39,18 +38,14 @@ meshes, curves, texts, metaballs, and the instances of Geometry Nodes and collec
             return True
         return False
 
+    kind = "MESH"
+
     def draw(self, context):
         draw_properties(self.layout, self)
+        self.layout.prop(self, "follow")
 
     def _new_batch(self, context):
         return ConversionBatch(selected_sources(context), choices(self), context.active_object)
-
-    def _tell(self, conversion):
-        for note in conversion.notes:
-            self.report({"WARNING"}, f"{conversion.name}: {note}")
-        for source in conversion.sources:
-            leave_to_surfels(source)
-            self._hide(source)
 
 
 def draw_menu_entry(menu, context):

@@ -11,7 +11,7 @@ from ..conversion.points_settings import PointsProperties, draw_points_propertie
 from ..geometry.points_extraction import has_points
 from ..ids import SURFELS_FROM_POINTS
 from .menu_entry import with_menu_entry
-from .modal_conversion import ModalConversion
+from .modal_conversion import ModalConversion, was_converted
 
 
 def selected_points(context: bpy.types.Context) -> list[bpy.types.Object]:
@@ -31,17 +31,18 @@ directions, is estimated from neighbouring points"""
         name="Source",
         description="What happens to the points that were converted",
         items=(
-            ("KEEP", "Keep", "Leave the points as they are; they and the surfels lie in the same place"),
+            ("KEEP", "Keep", "Leave the points as they are: of a mesh, as black dots over the surfels"),
             ("HIDE", "Hide", "Hide the points in the viewport and in renders, so that only the surfels are seen"),
         ),
-        default="KEEP",
+        default="HIDE",
     )
+    kind = "POINTS"
 
     @classmethod
     def poll(cls, context):
         if context.mode != "OBJECT":
             cls.poll_message_set("Points are converted in object mode; leave the current mode first")
-        elif not selected_points(context):
+        elif not (selected_points(context) or was_converted(context)):
             cls.poll_message_set("Select a point cloud, or a mesh that is not surfels already")
         else:
             return True
@@ -49,15 +50,11 @@ directions, is estimated from neighbouring points"""
 
     def draw(self, context):
         draw_points_properties(self.layout, self)
-        self.layout.prop(self, "source")
+        for name in ("source", "follow"):
+            self.layout.prop(self, name)
 
     def _new_batch(self, context):
         return PointsBatch(selected_points(context), keywords(self), lambda: viewpoint(self, context))
-
-    def _tell(self, conversion):
-        for note in conversion.report.notes():
-            self.report({"WARNING" if note.startswith("Skipped") else "INFO"}, f"{conversion.name}: {note}")
-        self._hide(conversion.source)
 
 
 def draw_points_menu_entry(menu, context):

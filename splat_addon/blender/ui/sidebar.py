@@ -11,11 +11,21 @@ from ..conversion.gathering import frame_of, groups
 from ..conversion.mesh_conversion import Choices
 from ..conversion.mesh_settings import PROPERTY_NAMES, choices, draw_properties
 from ..conversion.prediction import Extent, known_extents
+from ..conversion.source_record import sources_of
 from ..export.object_detail import detail_of, finer
 from ..geometry.sources import is_surfel_object
-from ..ids import CONVERSION_SETTINGS, OBJECT_SETTINGS, SHOW_SURFELS, SIDEBAR_PANEL, SIDEBAR_TAB, SURFELS_FROM_MESH
+from ..ids import (
+    CONVERSION_SETTINGS,
+    OBJECT_SETTINGS,
+    SHOW_SURFELS,
+    SIDEBAR_PANEL,
+    SIDEBAR_TAB,
+    SURFELS_FROM_MESH,
+    UPDATE_SURFELS,
+)
 from ..operators.show_surfels import shows_surfels
 from ..operators.surfels_from_mesh import selected_sources
+from ..operators.update_surfels import updatable
 
 
 class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
@@ -40,6 +50,13 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         button = self.layout.operator(SURFELS_FROM_MESH, icon="OUTLINER_OB_POINTCLOUD")
         for name in PROPERTY_NAMES:
             setattr(button, name, getattr(settings, name))
+        self._draw_surfels(context)
+
+    def _draw_surfels(self, context):
+        """What there is to do with the active object, if that is surfels."""
+        if context.active_object in updatable(context):
+            names = ", ".join(source.name for source in sources_of(context.active_object))
+            self.layout.operator(UPDATE_SURFELS, text=f"Update from {names}", icon="FILE_REFRESH")
         # Another engine shows points in place of a surfel object.
         if context.active_object is not None and is_surfel_object(context.active_object) and not shows_surfels(context):
             self.layout.operator(SHOW_SURFELS, icon="SHADING_RENDERED")

@@ -175,7 +175,8 @@ def test_one_source_without_points_does_not_stop_the_others(scan, add_mesh, conv
 
 def test_surfels_are_not_converted_again(scan, convert_points):
     convert_points()
-    assert not bpy.ops.object.surfels_from_points.poll()
+    with pytest.raises(RuntimeError, match="surfels already; use Update from Source"):
+        convert_points()
 
 
 def test_a_cancelled_batch_adds_nothing_and_leaves_its_sources(scan):

@@ -27,6 +27,9 @@ def add_metaballs():
     for x in (0, 1.2):
         bpy.ops.object.metaball_add(type="BALL", location=(x, 0, 0), rotation=(0.2, 0.4, x))
     bpy.data.objects["Mball"].select_set(True)
+    for ball in bpy.data.metaballs:
+        # the operator that makes them real has no other
+        ball.render_resolution = ball.resolution
 
 
 KINDS = {f.__name__: f for f in (add_text, add_bevelled_curve, add_nurbs_surface, add_metaballs)}

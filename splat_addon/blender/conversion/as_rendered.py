@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects as a final render sees them, while a conversion reads them: shown, and with their modifiers' render levels.
+
+Blender makes a render's evaluation only in a render. So the viewport's settings take the render's values, and have
+their own again afterwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+
+import bpy
+
+#: type of a modifier -> its viewport's setting, and the render's
+_MODIFIERS = {
+    "SUBSURF": ("levels", "render_levels"),
+    "MULTIRES": ("levels", "render_levels"),
+    "OCEAN": ("viewport_resolution", "resolution"),
+}
+
+
+@contextmanager
+def as_rendered(sources: Iterable[bpy.types.Object], context: bpy.types.Context) -> Iterator[bpy.types.Depsgraph]:
+    """The view layer's evaluation, in which the sources, and what is in collections that they show, are as rendered."""
+    changed = []
+    try:
+        for source in sources:
+            if source.hide_get():
+                source.hide_set(False)
+                changed.append((source.hide_set, True))
+            for owner in [source, *(source.instance_collection.all_objects if source.instance_collection else ())]:
+                for thing, name, value in _settings(owner):
+                    if getattr(thing, name) != value:
+                        changed.append((_setter(thing, name), getattr(thing, name)))
+                        setattr(thing, name, value)
+        render = context.scene.render
+        if render.use_simplify and render.simplify_subdivision != render.simplify_subdivision_render:
+            changed.append((_setter(render, "simplify_subdivision"), render.simplify_subdivision))
+            render.simplify_subdivision = render.simplify_subdivision_render
+        yield context.evaluated_depsgraph_get()
+    finally:
+        for restore, value in reversed(changed):
+            restore(value)
+
+
+def _settings(owner: bpy.types.Object) -> Iterator[tuple[object, str, object]]:
+    """The viewport's settings of an object, and the values that they have in a render."""
+    yield owner, "hide_viewport", owner.hide_viewport and owner.hide_render
+    for modifier in owner.modifiers:
+        yield modifier, "show_viewport", modifier.show_render
+        if modifier.type in _MODIFIERS:
+            name, render_name = _MODIFIERS[modifier.type]
+            yield modifier, name, getattr(modifier, render_name)
+    data = owner.data
+    if owner.type == "META":
+        yield data, "resolution", data.render_resolution
+    elif owner.type in ("CURVE", "SURFACE", "FONT"):
+        for axis in "uv":
+            if resolution := getattr(data, f"render_resolution_{axis}"):
+                yield data, f"resolution_{axis}", resolution
+
+
+def _setter(thing, name: str):
+    return lambda value: setattr(thing, name, value)

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfels go where their source goes: as its child, with its parent, animation and constraints."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ...surfels import Surfels
+
+#: A surfel may be moved by this share of the smaller half-axis of the middle surfel, which nobody sees.
+_HARMLESS = 1e-3
+
+#: Relative rounding of float32.
+_ROUNDING = 2.0**-24
+
+#: Kinds of instancing in which children are put on the vertices or faces of their parent.
+_REPEATING = ("VERTS", "FACES")
+
+
+def at_origin_of_source(surfels: Surfels) -> Surfels:
+    """The surfels with the source's own origin; as they are where that is so far away that they would lose digits."""
+    if not len(surfels):
+        return surfels
+    farthest = float(np.abs(surfels.origin).max() + np.abs(surfels.positions).max())
+    if farthest * _ROUNDING > _HARMLESS * float(np.median(surfels.scales.min(axis=1))):
+        return surfels
+    return replace(surfels, origin=np.zeros(3), positions=(surfels.positions + surfels.origin).astype(np.float32))
+
+
+def follow(made: bpy.types.Object, source: bpy.types.Object, matrix_world: Matrix, unit: float) -> None:
+    """Tie a surfel object to its source and leave it where it is.
+
+    matrix_world: of `made`, whose own may not be up to date. unit: half-axis of the surfels, world units.
+    """
+    inverse = source.matrix_world.inverted_safe()
+    made.matrix_basis = matrix_world
+    # As Blender's own parenting, so that it stays in its place without its parent; far from the origin that rounds.
+    off = np.array(source.matrix_world @ (inverse @ made.matrix_basis)) - np.array(matrix_world)
+    if np.abs(off).max() > _HARMLESS * unit:
+        inverse = inverse @ matrix_world
+        made.matrix_basis = Matrix()
+    if _moves_children(source):
+        tie = made.constraints.new("CHILD_OF")
+        tie.name, tie.target, tie.inverse_matrix = "Follow Source", source, inverse
+    else:
+        made.parent = source
+        made.matrix_parent_inverse = inverse
+
+
+def _moves_children(source: bpy.types.Object) -> bool:
+    """Whether an object puts its children elsewhere: on its vertices or faces, or along its path."""
+    return source.instance_type in _REPEATING or (source.type == "CURVE" and source.data.use_path)

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a surfel object keeps of its conversion, `object.surfel_record`: its sources and the settings.
+
+By that it can be converted again, and while it is in a scene its sources are left out of what the engine draws there.
+Nothing leads from a source to its surfels: that would keep them in the file after they were deleted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import bpy
+from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatVectorProperty, PointerProperty
+
+from ..ids import OBJECT_SETTINGS, SURFEL_RECORD
+from .mesh_settings import ConversionProperties, SurfelConversionSettings
+from .points_settings import PointsProperties
+
+
+class SurfelPointsSettings(PointsProperties, bpy.types.PropertyGroup):
+    """With which points were converted."""
+
+
+class SurfelSource(bpy.types.PropertyGroup):
+    object: PointerProperty(name="Source", type=bpy.types.Object)
+
+
+class SurfelRecord(bpy.types.PropertyGroup):
+    sources: CollectionProperty(type=SurfelSource)
+    kind: EnumProperty(
+        name="Kind",
+        description="What the sources were converted as",
+        items=(("MESH", "Surfaces", "Their surfaces were sampled"), ("POINTS", "Points", "Their points were taken")),
+    )
+    mesh: PointerProperty(type=SurfelConversionSettings)
+    points: PointerProperty(type=SurfelPointsSettings)
+    origin: FloatVectorProperty(name="Origin", description="Of the surfels, in the space of the first source")
+    is_hidden_source: BoolProperty(
+        name="Hidden for Surfels",
+        description="This object was hidden when it was converted, and comes back when its surfels are deleted",
+    )
+
+
+#: kind -> the mix-in whose properties are kept
+_PROPERTIES = {"MESH": ConversionProperties, "POINTS": PointsProperties}
+
+
+def record_of(owner: bpy.types.Object) -> SurfelRecord:
+    return getattr(owner, SURFEL_RECORD)
+
+
+def keep_record(made: bpy.types.Object, sources: Iterable[bpy.types.Object], kind: str, settings) -> None:
+    """Note in a new surfel object what it was made of. settings: with the properties of that kind."""
+    record = record_of(made)
+    record.kind = kind
+    record.sources.clear()
+    for source in sources:
+        record.sources.add().object = source
+    kept = record.mesh if kind == "MESH" else record.points
+    for name in _PROPERTIES[kind].__annotations__:
+        setattr(kept, name, getattr(settings, name))
+
+
+def sources_of(made: bpy.types.Object) -> list[bpy.types.Object]:
+    """What a surfel object was made of, without what has been taken out of the file."""
+    return [each.object for each in record_of(made).sources if each.object is not None]
+
+
+def sources_in(scene: bpy.types.Scene) -> set[bpy.types.Object]:
+    """The sources of all surfel objects of a scene in the file."""
+    return {source for made in scene.objects if made.type == "MESH" for source in sources_of(made)}
+
+
+def is_stood_in(owner: bpy.types.Object, sources: set[bpy.types.Object]) -> bool:
+    """Whether surfels stand in the place of an object in the file, which says nothing else of itself."""
+    return owner in sources and getattr(owner, OBJECT_SETTINGS).render_as == "SCENE"
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (SurfelPointsSettings, SurfelSource, SurfelRecord)
+)
+
+
+def register():
+    _register_classes()
+    setattr(bpy.types.Object, SURFEL_RECORD, PointerProperty(type=SurfelRecord))
+
+
+def unregister():
+    delattr(bpy.types.Object, SURFEL_RECORD)
+    _unregister_classes()

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Object > Update Surfels from Source: the sources of surfel objects are converted again, with the settings kept."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..conversion.batch import Batch, ConversionBatch
+from ..conversion.mesh_settings import choices
+from ..conversion.points_conversion import PointsBatch
+from ..conversion.points_settings import keywords, viewpoint
+from ..conversion.source_record import record_of, sources_of
+from ..ids import UPDATE_SURFELS
+from .menu_entry import with_menu_entry
+
+
+def updatable(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """The selected surfel objects that know their sources."""
+    return [made for made in context.selected_objects if made.type == "MESH" and sources_of(made)]
+
+
+class OBJECT_OT_surfels_update(bpy.types.Operator):
+    """Convert the sources of the selected surfels again, as they are now, with the settings of the first time"""
+
+    bl_idname = UPDATE_SURFELS
+    bl_label = "Update Surfels from Source"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads a set
+
+    @classmethod
+    def poll(cls, context):
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Surfels are updated in object mode; leave the current mode first")
+        elif not updatable(context):
+            cls.poll_message_set("Select surfels that were converted from an object of this file")
+        else:
+            return True
+        return False
+
+    def execute(self, context):
+        updated = sum(self._update(made, context) for made in updatable(context))
+        return {"FINISHED"} if updated else {"CANCELLED"}
+
+    def _update(self, made: bpy.types.Object, context: bpy.types.Context) -> bool:
+        try:
+            batch = _batch(made, context)
+        except ValueError as error:
+            self.report({"ERROR"}, f"{made.name}: {error}")
+            return False
+        for conversion in batch.prepared(context):
+            batch.sample(conversion)
+        replaced = batch.replace(made, context)
+        for conversion in replaced:
+            self.report({"INFO"}, f"{made.name}: {conversion.summary()}")
+            for note in conversion.notes:
+                self.report({"WARNING" if conversion.is_warning(note) else "INFO"}, f"{made.name}: {note}")
+        for _, sentence in batch.refused:
+            self.report({"ERROR"}, f"{made.name}: {sentence}")
+        return bool(replaced)
+
+
+def _batch(made: bpy.types.Object, context: bpy.types.Context) -> Batch:
+    """Of the sources of a surfel object. Raises ValueError where one of them cannot be seen any more."""
+    sources, record = sources_of(made), record_of(made)
+    for source in sources:
+        if source.name not in context.view_layer.objects:
+            raise ValueError(f"Its source {source.name!r} is not in this view layer; put it back into the scene first.")
+    if record.kind == "POINTS":
+        return PointsBatch(sources, keywords(record.points), lambda: viewpoint(record.points, context))
+    return ConversionBatch(sources, choices(record.mesh), sources[0])
+
+
+def draw_update_menu_entry(menu, context):
+    menu.layout.operator(UPDATE_SURFELS)
+
+
+register, unregister = with_menu_entry(OBJECT_OT_surfels_update, bpy.types.VIEW3D_MT_object, draw_update_menu_entry)
