@@ -28,6 +28,9 @@ POINTS_PANEL = "VIEW3D_PT_surfels_from_points"
 #: Nodes drop it, which is right: what they make may be open.
 SOLID = "surfels_solid"
 
+#: The node group that bends surfels with their source.
+SHAPE_GROUP = "Follow Shape"
+
 #: The node group by which other engines and shadings see a surfel object, and the material that it has there.
 POINTS_GROUP = "Surfels as Points"
 POINTS_MATERIAL = "Surfels as Points"

@@ -31,6 +31,7 @@ def prepare():
         material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (0.8, 0.05, 0.03, 1)
         suzanne.data.materials.append(material)
         bpy.ops.view3d.view_selected()
+        bpy.ops.ed.undo_push(message="Suzanne")
     open_sidebar()
 
 

@@ -130,7 +130,8 @@ def place(batch: ConversionBatch, settings) -> None:
         print(f"{conversion.name}: {conversion.summary()}", flush=True)
         for note in conversion.notes:
             print(f"{conversion.name}: {note}", flush=True)
-        tie(conversion, made, "MESH", settings, follows=True, hides=True)
+        for note in tie(conversion, made, "MESH", settings, follows=True, hides=True):
+            print(note, flush=True)
 
 
 def save(out: Path) -> None:

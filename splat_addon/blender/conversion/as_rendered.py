@@ -44,6 +44,17 @@ def as_rendered(sources: Iterable[bpy.types.Object], context: bpy.types.Context)
             restore(value)
 
 
+def differing_levels(owner: bpy.types.Object) -> str | None:
+    """The name of a modifier that gives an object other vertices in the viewport than in a render, or None."""
+    for modifier in owner.modifiers:
+        if modifier.type in _MODIFIERS and (modifier.show_viewport or modifier.show_render):
+            name, render_name = _MODIFIERS[modifier.type]
+            same_levels = getattr(modifier, name) == getattr(modifier, render_name)
+            if not same_levels or modifier.show_viewport != modifier.show_render:
+                return modifier.name
+    return None
+
+
 def _settings(owner: bpy.types.Object) -> Iterator[tuple[object, str, object]]:
     """The viewport's settings of an object, and the values that they have in a render."""
     yield owner, "hide_viewport", owner.hide_viewport and owner.hide_render

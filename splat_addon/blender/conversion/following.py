@@ -51,6 +51,12 @@ def follow(made: bpy.types.Object, source: bpy.types.Object, matrix_world: Matri
         made.matrix_parent_inverse = inverse
 
 
+def follows(made: bpy.types.Object, source: bpy.types.Object) -> bool:
+    """Whether a surfel object is tied to its source."""
+    ties = (each for each in made.constraints if each.type == "CHILD_OF")
+    return made.parent == source or any(each.target == source for each in ties)
+
+
 def _moves_children(source: bpy.types.Object) -> bool:
     """Whether an object puts its children elsewhere: on its vertices or faces, or along its path."""
     return source.instance_type in _REPEATING or (source.type == "CURVE" and source.data.use_path)

@@ -8,21 +8,41 @@ import numpy as np
 from mathutils import Matrix
 
 from ..ids import OBJECT_SETTINGS
+from .as_rendered import as_rendered, differing_levels
 from .bring_back import hide_source
 from .following import follow
+from .shape_following import follow_shape, is_bent
 from .source_record import keep_record
 
 
-def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, hides: bool) -> None:
+def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, hides: bool) -> list[str]:
     """conversion: placed as `made`. kind, settings: of the record. follows: it goes where its source goes. hides: its
-    sources are hidden for as long as it is there."""
+    sources are hidden for as long as it is there. Gives a sentence for each thing in which it does not follow.
+    """
+    notes = []
     keep_record(made, conversion.sources, kind, settings)
     if follows:
         matrix_world = conversion.matrix_world @ Matrix.Translation(conversion.surfels.origin)
         unit = float(np.median(conversion.surfels.scales)) * min(map(abs, matrix_world.to_scale()))
         follow(made, conversion.sources[0], matrix_world, unit)
+        notes = tie_shape(conversion, made, kind)
     for source in conversion.sources:
         # what was chosen for its earlier form does not keep it beside its surfels
         getattr(source, OBJECT_SETTINGS).render_as = "SCENE"
         if hides:
             hide_source(source)
+    return notes
+
+
+def tie_shape(conversion, made: bpy.types.Object, kind: str) -> list[str]:
+    """Let the surfels that an object was just given be bent with their source; sentences as of `tie`."""
+    if kind != "MESH":
+        return []
+    [source, *_] = conversion.sources
+    with as_rendered(conversion.sources, bpy.context) as depsgraph:
+        why = follow_shape(made, conversion, depsgraph)
+    if why:
+        return [f"What bends {source.name!r} does not bend its surfels: {why}"]
+    if is_bent(made) and (differing := differing_levels(source)):
+        return [f"The surfels are bent in renders only: {differing} has other levels in the viewport"]
+    return []

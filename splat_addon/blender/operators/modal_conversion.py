@@ -123,7 +123,8 @@ class ModalConversion:
             self.report({"INFO"}, f"{conversion.name}: {conversion.summary()}")
             for note in conversion.notes:
                 self.report({"WARNING" if conversion.is_warning(note) else "INFO"}, f"{conversion.name}: {note}")
-            tie(conversion, new, self.kind, self, self.follow, self.source == "HIDE")
+            for note in tie(conversion, new, self.kind, self, self.follow, self.source == "HIDE"):
+                self.report({"WARNING"}, note)
         if made and context.scene.render.engine != ENGINE:
             self.report({"INFO"}, f"Choose the render engine {ENGINE_LABEL} to see the surfels")
         # An error fails a script's call; where others were converted, that would hide them from it.

@@ -6,10 +6,12 @@ from __future__ import annotations
 import bpy
 
 from ..conversion.batch import Batch, ConversionBatch
+from ..conversion.following import follows
 from ..conversion.mesh_settings import choices
 from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import keywords, viewpoint
 from ..conversion.source_record import record_of, sources_of
+from ..conversion.ties import tie_shape
 from ..ids import UPDATE_SURFELS
 from .menu_entry import with_menu_entry
 
@@ -50,6 +52,9 @@ class OBJECT_OT_surfels_update(bpy.types.Operator):
             batch.sample(conversion)
         replaced = batch.replace(made, context)
         for conversion in replaced:
+            if follows(made, conversion.sources[0]):
+                for note in tie_shape(conversion, made, record_of(made).kind):
+                    self.report({"WARNING"}, note)
             self.report({"INFO"}, f"{made.name}: {conversion.summary()}")
             for note in conversion.notes:
                 self.report({"WARNING" if conversion.is_warning(note) else "INFO"}, f"{made.name}: {note}")

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfels are bent with their source: by its armature, its shape keys and whatever else deforms it.
+
+Each is bound to the triangle that it lies on: place, half-axes and shading normal are kept in terms of the triangle's
+edges and normal, as attributes, and a Geometry Nodes modifier makes them anew of the triangle as it is. That is the
+twin of `sampling.deform.binding`, which does the same for meshes that are sampled as they are rendered. As Blender
+evaluates it, every engine sees it, and a source that is hidden is evaluated too.
+"""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from mathutils.bvhtree import BVHTree
+
+from ...surfels import Surfels
+from ..geometry.node_maths import Maths, enabled
+from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP
+
+#: Modifiers that move vertices from frame to frame.
+_DEFORMING = frozenset(
+    "ARMATURE CAST CLOTH CORRECTIVE_SMOOTH CURVE DISPLACE HOOK LAPLACIANDEFORM LATTICE MESH_CACHE MESH_DEFORM "
+    "MESH_SEQUENCE_CACHE NODES SHRINKWRAP SIMPLE_DEFORM SMOOTH SOFT_BODY SURFACE_DEFORM WARP WAVE".split()
+)
+
+_VERTICES = ("surfel_vertex_a", "surfel_vertex_b", "surfel_vertex_c")
+_PLACE, _ALONG_X, _ALONG_Y, _NORMAL = (f"surfel_bound_{name}" for name in ("place", "x", "y", "normal"))
+
+#: Custom property of the node group.
+_MAKE, _VERSION = "surfels_shape", 1
+
+#: A half-axis shrinks to this share of what it was, and not to nothing.
+_LEAST_SHRINKING = 1e-3
+
+#: How far a source's own space may be from that of its surfels, relative.
+_ROUNDING = 1e-5
+
+
+def is_deformed(source: bpy.types.Object) -> bool:
+    """Whether something may move the vertices of an object from frame to frame."""
+    has_keys = getattr(source.data, "shape_keys", None) is not None
+    return has_keys or source.parent_type == "ARMATURE" or any(m.type in _DEFORMING for m in source.modifiers)
+
+
+def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgraph) -> str | None:
+    """Bind the surfels of `made` to the one source that they were just made of, where that is deformed.
+
+    Gives the end of a sentence where they are not bound, None where they are or where there is nothing to follow.
+    """
+    [source, *others] = conversion.sources
+    _unbind(made)
+    if others or not is_deformed(source):
+        return None
+    surfels, mesh = conversion.surfels, conversion.mesh
+    if source.type != "MESH" or not _is_own_mesh(source, mesh, depsgraph):
+        return "it shows instances, or no mesh of its own"
+    frame, own = (np.array(m, np.float64) for m in (conversion.matrix_world, source.matrix_world))
+    if surfels.origin.any() or np.abs(frame - own).max() > _ROUNDING * np.abs(own).max():
+        return "its surfels are even in the world, or it is sheared or far from its origin"
+    if surfels.has_uvs or surfels.clip_line is not None:
+        return "its surfels are texture-mapped or end at edges"
+    _bind(made.data, surfels, np.asarray(mesh.positions, np.float64), mesh.triangles)
+    modifier = made.modifiers.new(SHAPE_GROUP, "NODES")
+    modifier.node_group, modifier.show_expanded = _group(), False
+    made.modifiers.move(len(made.modifiers) - 1 - _pinned(made), 0)
+    for name, value in (("Source", source), ("Vertices", len(mesh.positions))):
+        _give(modifier, name, value)
+    return None
+
+
+def is_bent(made: bpy.types.Object) -> bool:
+    """Whether the surfels of an object follow the shape of a source."""
+    return any(map(_is_ours, made.modifiers))
+
+
+def _is_ours(modifier: bpy.types.Modifier) -> bool:
+    return modifier.type == "NODES" and modifier.node_group is not None and _MAKE in modifier.node_group
+
+
+def _unbind(made: bpy.types.Object) -> None:
+    for modifier in list(filter(_is_ours, made.modifiers)):
+        made.modifiers.remove(modifier)
+
+
+def _pinned(made: bpy.types.Object) -> int:
+    """How many modifiers stay behind a new one."""
+    return sum(modifier.use_pin_to_last for modifier in made.modifiers)
+
+
+def _give(modifier: bpy.types.NodesModifier, name: str, value) -> None:
+    """Set an input of the modifier's node group."""
+    items = modifier.node_group.interface.items_tree
+    identifier = next(item.identifier for item in items if item.name == name and item.in_out == "INPUT")
+    if hasattr(modifier, "properties"):
+        getattr(modifier.properties.inputs, identifier).value = value
+    else:
+        modifier[identifier] = value
+
+
+def _is_own_mesh(source: bpy.types.Object, mesh, depsgraph: bpy.types.Depsgraph) -> bool:
+    """Whether a mesh has the vertices of the source's own, in their order."""
+    vertices = source.evaluated_get(depsgraph).data.attributes.get("position")
+    if vertices is None or len(vertices.data) != len(mesh.positions):
+        return False
+    positions = np.empty((len(mesh.positions), 3), np.float32)
+    vertices.data.foreach_get("vector", positions.ravel())
+    return np.allclose(positions, mesh.positions, rtol=0, atol=_ROUNDING * float(np.ptp(positions, axis=0).max()))
+
+
+def _bind(mesh: bpy.types.Mesh, surfels: Surfels, vertices: np.ndarray, triangles: np.ndarray) -> None:
+    """Keep the surfels in terms of the nearest of the triangles, as attributes."""
+    tree = BVHTree.FromPolygons(vertices.tolist(), triangles.tolist(), all_triangles=True)
+    nearest = np.array([tree.find_nearest(position)[2] for position in surfels.positions.tolist()], np.int64)
+    corners = triangles[nearest]
+    start = vertices[corners[:, 0]]
+    edge_1, edge_2 = (vertices[corners[:, k]] - start for k in (1, 2))
+    normal = np.cross(edge_1, edge_2)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    basis = np.stack([edge_1, edge_2, normal], axis=2)
+    normals = surfels.normals.astype(np.float64)
+    columns = {
+        _PLACE: np.linalg.solve(basis, (surfels.positions - start)[..., None])[..., 0],
+        **{
+            name: np.linalg.solve(basis, axis.astype(np.float64)[..., None])[..., 0]
+            for name, axis in zip((_ALONG_X, _ALONG_Y), surfels.half_axes(), strict=True)
+        },
+        _NORMAL: np.stack([(normals * side).sum(axis=1) for side in (edge_1, edge_2, normal)], axis=1),
+    }
+    for name, values in columns.items():
+        mesh.attributes.new(name, "FLOAT_VECTOR", "POINT").data.foreach_set("vector", np.float32(values).ravel())
+    for name, values in zip(_VERTICES, corners.T, strict=True):
+        mesh.attributes.new(name, "INT", "POINT").data.foreach_set("value", np.ascontiguousarray(values, np.int32))
+
+
+def _group() -> bpy.types.NodeTree:
+    known = (group for group in bpy.data.node_groups if group.get(_MAKE) == _VERSION and group.library is None)
+    return next(known, None) or _new_group()
+
+
+def _new_group() -> bpy.types.NodeTree:
+    group = bpy.data.node_groups.new(SHAPE_GROUP, "GeometryNodeTree")
+    group[_MAKE] = _VERSION
+    group.is_modifier = True
+    for way in ("INPUT", "OUTPUT"):
+        group.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    group.interface.new_socket("Source", in_out="INPUT", socket_type="NodeSocketObject")
+    group.interface.new_socket("Vertices", in_out="INPUT", socket_type="NodeSocketInt")
+    m, link = Maths(group), group.links.new
+    given, result = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+    info = group.nodes.new("GeometryNodeObjectInfo")
+    link(given.outputs["Source"], info.inputs["Object"])
+    shape = info.outputs["Geometry"]
+
+    a, b, c = (m.sampled(shape, m.attribute(name, "INT")) for name in _VERTICES)
+    edge_1, edge_2 = m.vector("SUBTRACT", b, a), m.vector("SUBTRACT", c, a)
+    across = m.vector("CROSS_PRODUCT", edge_1, edge_2)
+    normal, area = m.vector("NORMALIZE", across), m.length(across)
+    basis = edge_1, edge_2, normal
+    place = m.vector("ADD", a, m.combined(basis, m.attribute(_PLACE, "FLOAT_VECTOR")))
+    u, v = (m.combined(basis, m.attribute(name, "FLOAT_VECTOR")) for name in (_ALONG_X, _ALONG_Y))
+    # the dual basis takes normals where the edges take vectors
+    dual = (
+        m.vector("SCALE", m.vector("CROSS_PRODUCT", edge_2, normal), scale=m.number("DIVIDE", 1.0, area)),
+        m.vector("SCALE", m.vector("CROSS_PRODUCT", normal, edge_1), scale=m.number("DIVIDE", 1.0, area)),
+        normal,
+    )
+    shading = m.vector("NORMALIZE", m.combined(dual, m.attribute(_NORMAL, "FLOAT_VECTOR")))
+
+    # u and v are conjugate half-diameters of the new ellipse; turned by t they are its half-axes
+    crossed = m.number("MULTIPLY", m.dot(u, v), 2.0)
+    t = m.number("MULTIPLY", m.number("ARCTAN2", crossed, m.number("SUBTRACT", m.dot(u, u), m.dot(v, v))), 0.5)
+    cosine, sine = m.number("COSINE", t), m.number("SINE", t)
+    x = m.vector("ADD", m.vector("SCALE", u, scale=cosine), m.vector("SCALE", v, scale=sine))
+    y = m.vector("SUBTRACT", m.vector("SCALE", v, scale=cosine), m.vector("SCALE", u, scale=sine))
+    was = m.separated(m.attribute(POINT_ATTRIBUTES["scales"].name, "FLOAT_VECTOR"))
+    least = m.number("MULTIPLY", m.number("MINIMUM", was[0], was[1]), _LEAST_SHRINKING)
+    sizes = [m.number("MAXIMUM", m.length(axis), least) for axis in (x, y)]
+
+    stored = given.outputs["Geometry"]
+    for layout, value in (
+        (POINT_ATTRIBUTES["radius"], m.number("MAXIMUM", *sizes)),
+        (POINT_ATTRIBUTES["rotations"], m.rotation(x, y)),
+        (POINT_ATTRIBUTES["normals"], shading),
+        (REST, place),
+        (POINT_ATTRIBUTES["scales"], m.joined(*sizes)),
+    ):
+        stored = m.stored(stored, layout.name, layout.data_type, value)
+    moved = group.nodes.new("GeometryNodeSetPosition")
+    link(stored, moved.inputs["Geometry"])
+    link(place, moved.inputs["Position"])
+
+    # where the source has other vertices, as with other levels of subdivision, the surfels stay as they are
+    size, same, switch = (
+        group.nodes.new(kind)
+        for kind in ("GeometryNodeAttributeDomainSize", "FunctionNodeCompare", "GeometryNodeSwitch")
+    )
+    same.data_type, same.operation, switch.input_type = "INT", "EQUAL", "GEOMETRY"
+    link(shape, size.inputs[0])
+    link(size.outputs["Point Count"], enabled(same.inputs, "A"))
+    link(given.outputs["Vertices"], enabled(same.inputs, "B"))
+    link(same.outputs[0], enabled(switch.inputs, "Switch"))
+    link(given.outputs["Geometry"], enabled(switch.inputs, "False"))
+    link(moved.outputs[0], enabled(switch.inputs, "True"))
+    link(enabled(switch.outputs, "Output"), result.inputs[0])
+    return group

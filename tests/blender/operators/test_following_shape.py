@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfels are bent with their source: after a while they are the surfels that a new conversion would make."""
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender.geometry.attributes import read_surfels
+from splat_addon.blender.geometry.points_proxy import shown_points
+
+
+@pytest.fixture
+def sheet(add_mesh):
+    """A square of 8 x 8 faces in x and y from 0 to 1."""
+    axis = np.linspace(0, 1, 9)
+    vertices = [(x, y, 0) for y in axis for x in axis]
+    faces = [(k, k + 1, k + 10, k + 9) for row in range(8) for k in range(9 * row, 9 * row + 8)]
+    return add_mesh("Sheet", vertices, faces)
+
+
+@pytest.fixture
+def bent_surfels():
+    """bent_surfels(object) -> its surfels as its modifiers make them."""
+
+    def read(made):
+        evaluated = made.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        with shown_points(evaluated) as points:
+            surfels, skipped = read_surfels(points)
+        assert skipped == 0
+        return surfels
+
+    return read
+
+
+def add_keys(sheet):
+    """Shape keys that stretch the sheet to twice its width, and tilt it by 45 degrees in y; weight 0 and 1."""
+    sheet.shape_key_add(name="Basis")
+    key = sheet.shape_key_add(name="Bent")
+    for point in key.data:
+        x, y, _ = point.co
+        point.co = (2 * x, y, y)
+    return key
+
+
+def test_shape_keys_bend_surfels(sheet, convert, bent_surfels):
+    key = add_keys(sheet)
+    key.value = 0.0
+    (made,) = convert(resolution=16, splat_size=1.0)
+    flat = bent_surfels(made)
+    assert np.abs(flat.normals - (0, 0, 1)).max() < 1e-5
+    key.value = 1.0
+    bent = bent_surfels(made)
+    x, y, _ = flat.positions.T
+    assert np.abs(bent.positions - np.stack([2 * x, y, y], axis=1)).max() < 1e-5
+    tilted = np.array((0, -1, 1)) / 2**0.5
+    assert np.abs(bent.normals - tilted).max() < 1e-5 and np.abs(bent.geometric_normals() - tilted).max() < 1e-5
+    assert np.allclose(np.sort(bent.scales, axis=1), flat.scales * (2**0.5, 2), rtol=1e-4)
+    long = bent.half_axes()[0] if bent.scales[0, 0] > bent.scales[0, 1] else bent.half_axes()[1]
+    assert np.abs(np.abs(long[:, 0]) - bent.scales.max(axis=1)).max() < 1e-5
+    key.value = 0.0
+    assert np.abs(bent_surfels(made).positions - flat.positions).max() < 1e-6
+
+
+def add_armature(sheet):
+    """One bone at x = 1, to which the right half belongs."""
+    bpy.ops.object.armature_add(location=(1, 0, 0))
+    armature = bpy.context.object
+    group = sheet.vertex_groups.new(name="Bone")
+    group.add([k for k, v in enumerate(sheet.data.vertices) if v.co.x > 0.6], 1.0, "REPLACE")
+    modifier = sheet.modifiers.new("armature", "ARMATURE")
+    modifier.object = armature
+    for owner in bpy.context.selected_objects:
+        owner.select_set(owner == sheet)
+    sheet.select_set(True)
+    bpy.context.view_layer.objects.active = sheet
+    return armature
+
+
+@pytest.mark.parametrize("source", ["KEEP", "HIDE"])
+def test_an_armature_bends_surfels_even_of_a_hidden_source(source, sheet, convert, bent_surfels):
+    armature = add_armature(sheet)
+    (made,) = convert(resolution=16, source=source)
+    before = bent_surfels(made).positions
+    armature.pose.bones["Bone"].location.y = 0.5
+    after = bent_surfels(made).positions
+    moved = np.linalg.norm(after - before, axis=1)
+    right = before[:, 0] > 0.75
+    assert right.any() and np.abs(moved[right] - 0.5).max() < 1e-4
+    assert moved[before[:, 0] < 0.45].max() < 1e-6
+
+
+def test_a_frozen_copy_is_not_bent(sheet, convert):
+    add_keys(sheet)
+    (made,) = convert(resolution=16, follow=False)
+    assert [modifier.name for modifier in made.modifiers] == ["Surfels as Points"]
+
+
+def test_what_nothing_bends_costs_nothing(sheet, convert):
+    (made,) = convert(resolution=16)
+    assert [modifier.name for modifier in made.modifiers] == ["Surfels as Points"]
+    assert not any("bound" in attribute.name for attribute in made.data.attributes)
+
+
+def test_an_update_binds_anew(sheet, convert, bent_surfels):
+    key = add_keys(sheet)
+    (made,) = convert(resolution=16)
+    key.value = 1.0
+    assert bpy.ops.object.surfels_update() == {"FINISHED"}
+    assert len(made.modifiers) == 2 and made.modifiers[0].name == "Follow Shape"
+    assert np.ptp(bent_surfels(made).positions[:, 2]) > 0.8
+    key.value = 0.0
+    assert np.ptp(bent_surfels(made).positions[:, 2]) < 1e-5
+
+
+def test_what_is_not_followed_is_named(sheet, convert, capfd):
+    add_keys(sheet)
+    sheet.scale = (1, 2, 1)
+    convert(resolution=16, space="WORLD")
+    assert "Warning: What bends 'Sheet' does not bend its surfels" in capfd.readouterr().out
+
+
+def test_other_levels_in_the_viewport_are_named(sheet, convert, capfd, bent_surfels):
+    add_keys(sheet).value = 0.0
+    modifier = sheet.modifiers.new("Fine", "SUBSURF")
+    modifier.levels, modifier.render_levels = 0, 1
+    (made,) = convert(resolution=16)
+    assert "Warning: The surfels are bent in renders only: Fine has other levels" in capfd.readouterr().out
+    assert len(bent_surfels(made))
