@@ -14,7 +14,7 @@ from ...rendering.frame_parts import joined_parts
 from ...sampling import Block, joined_blocks, read_blocks
 from ..engine import final_render
 from ..export.camera import picture_size
-from .convert import add_conversion_arguments, block_file, new_batch, place, result, save
+from .convert import add_conversion_arguments, block_file, new_batch, place, result, save, settings_of
 from .pictures import (
     add_picture_arguments,
     files_of,

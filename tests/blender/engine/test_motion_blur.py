@@ -118,7 +118,7 @@ def test_the_blur_is_cycles(kind, scene, add_camera, add_object, add_surfels, pi
         scene.surfel_splatting.render_meshes = "HIDDEN"
         positions = [tuple(v.co) for v in ball.data.vertices]
         normals = [tuple(v.normal) for v in ball.data.vertices]
-        animate_key(add_surfels(positions, normals, size=0.06), kind)
+        animate_key(add_surfels(positions, normals, size=0.06, is_shown=False), kind)
     ours = picture()[..., 3]
     scene.cycles.pixel_filter_type = "BOX"
     switch_to_cycles(samples=256, filter_width=1.0)
