@@ -10,10 +10,13 @@ from bpy.props import StringProperty
 _OPTIONS = {"SKIP_PRESET"} | ({"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 2, 0) else set())
 
 
-def path_property(way: str):
-    """The operator's `filepath`, as Blender's helpers have it. way: "reading from" or "writing to"."""
+def path_property(way: str, is_forgotten: bool = False):
+    """The operator's `filepath`, as Blender's helpers have it. way: "reading from" or "writing to".
+    is_forgotten: it is empty each time the operator is invoked, so that it then says whether a file was dropped.
+    """
     description = f"Filepath used for {way} the file"
-    return StringProperty(name="File Path", description=description, maxlen=1024, subtype="FILE_PATH", options=_OPTIONS)
+    options = _OPTIONS | ({"SKIP_SAVE"} if is_forgotten else set())
+    return StringProperty(name="File Path", description=description, maxlen=1024, subtype="FILE_PATH", options=options)
 
 
 def absolute(filepath: str) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 from bpy.props import FloatProperty, StringProperty
-from bpy_extras.io_utils import ImportHelper
+from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
 from mathutils import Matrix
 
 from ...interchange import DEFAULT_FLATNESS, Gaussians, Points, StoredSurfels, read_contents
@@ -28,7 +28,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
     bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 - Blender reads a set
 
     filename_ext = ".ply"
-    filepath: path_property("reading from")
+    filepath: path_property("reading from", is_forgotten=True)
     filter_glob: StringProperty(default="*.ply", options={"HIDDEN"})
     flatness: FloatProperty(
         name="Flatness",
@@ -40,6 +40,12 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
         min=0.0,
         max=1.0,
     )
+
+    def invoke(self, context, event):
+        if not self.filepath:
+            return super().invoke(context, event)
+        # dropped: the settings, and no file browser
+        return context.window_manager.invoke_props_dialog(self, title=Path(self.filepath).name, confirm_text="Import")
 
     def draw(self, context):
         self.layout.use_property_split = True
@@ -107,4 +113,19 @@ def draw_menu_entry(menu, context):
     menu.layout.operator(IMPORT_PLY, text="Surfels (.ply)")
 
 
-register, unregister = with_menu_entry(IMPORT_SCENE_OT_surfels_ply, bpy.types.TOPBAR_MT_file_import, draw_menu_entry)
+class IO_FH_surfels_ply(bpy.types.FileHandler):
+    """A file that is dropped on the 3D view or the Outliner; Blender asks where its own importer takes it too."""
+
+    bl_idname = "IO_FH_surfels_ply"
+    bl_label = "Surfels (.ply)"
+    bl_import_operator = IMPORT_PLY
+    bl_file_extensions = ".ply"
+
+    @classmethod
+    def poll_drop(cls, context):
+        return poll_file_object_drop(context)
+
+
+register, unregister = with_menu_entry(
+    IMPORT_SCENE_OT_surfels_ply, bpy.types.TOPBAR_MT_file_import, draw_menu_entry, (IO_FH_surfels_ply,)
+)

@@ -8,9 +8,13 @@ from collections.abc import Callable
 import bpy
 
 
-def with_menu_entry(operator: type[bpy.types.Operator], menu: type[bpy.types.Menu], draw: Callable) -> tuple:
-    """The functions `register` and `unregister` of an operator's module. draw(menu, context): adds the entry."""
-    register_class, unregister_class = bpy.utils.register_classes_factory((operator,))
+def with_menu_entry(
+    operator: type[bpy.types.Operator], menu: type[bpy.types.Menu], draw: Callable, others: tuple[type, ...] = ()
+) -> tuple:
+    """The functions `register` and `unregister` of an operator's module. draw(menu, context): adds the entry.
+    others: classes that come and go with it.
+    """
+    register_class, unregister_class = bpy.utils.register_classes_factory((operator, *others))
 
     def register():
         register_class()

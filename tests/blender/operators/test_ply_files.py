@@ -2,6 +2,7 @@
 """File > Export and Import of surfels."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -188,3 +189,15 @@ def test_unregistering_takes_the_operators_and_the_panel_away():
     finally:
         splat_addon.register()
     assert hasattr(bpy.types, ids.POINTS_PANEL)
+
+
+def test_a_file_dropped_on_the_3d_view_is_imported_by_the_same_operator():
+    handler = bpy.types.FileHandler.bl_rna_get_subclass_py("IO_FH_surfels_ply")
+    assert (handler.bl_import_operator, handler.bl_file_extensions) == ("import_scene.surfels_ply", ".ply")
+    taking = {area: handler.poll_drop(SimpleNamespace(area=SimpleNamespace(type=area))) for area in ("VIEW_3D", "INFO")}
+    assert taking == {"VIEW_3D": True, "INFO": False}
+    splat_addon.unregister()
+    try:
+        assert bpy.types.FileHandler.bl_rna_get_subclass_py("IO_FH_surfels_ply") is None
+    finally:
+        splat_addon.register()
