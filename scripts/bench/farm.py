@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What chunks of an animation cost on a farm, and what is left where workers are killed at random moments.
 
-The efficiency of four workers is simulated: each task is timed alone, as a process of its own that opens the file, and
-the tasks are handed out in order to whoever is free. That is what four machines do that share nothing but a disk.
+The efficiency of four workers is simulated: what each task costs is measured in seconds of one processor, as a process
+of its own that starts and opens the file, and the tasks are handed out in order to whoever is free. That is what four
+machines of one core do that share nothing but a disk.
 """
 
 from __future__ import annotations
 
+import os
 import random
+import resource
 import subprocess
 import sys
 import time
@@ -46,7 +49,7 @@ def run(options, report) -> None:
         makespan = _makespan(tasks, WORKERS)
         report.say(f"{options.frames} frames of {options.size[0]} x {options.size[1]}, {surfels:,} surfels.")
         report.table(
-            ["what", "seconds"],
+            ["what", "seconds of a processor"],
             [
                 ["one worker, one process", f"{whole:.1f}"],
                 [f"{len(tasks)} tasks of {options.chunk} frames, one after another", f"{sum(tasks):.1f}"],
@@ -104,10 +107,12 @@ def _makespan(tasks: list[float], workers: int) -> float:
 
 
 def _timed(command: list[str]) -> float:
-    """Seconds. Raises CalledProcessError."""
-    started = time.perf_counter()
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    return time.perf_counter() - started
+    """Seconds of one processor. Raises CalledProcessError."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    one_thread = {**os.environ, "LP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=one_thread)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def _command(folder: Path, name: str, first: int, chunk: int, last: int | None = None) -> list[str]:
