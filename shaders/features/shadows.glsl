@@ -21,16 +21,44 @@ void shadows_hide(inout Incident here, LightTexels of, vec3 position, vec3 norma
       half_u = is_flat ? ROUND * turned_to(here.to_light, of.u.xyz) : facing_axis(here.to_light) * caster.z;
       half_v = is_flat ? ROUND * turned_to(here.to_light, side.xyz) : cross(here.to_light, half_u);
     }
-    float lit = lit_share(caster, half_u, half_v, position, normal);
+    float lit = lit_share(caster, half_u, half_v, position);
     here.irradiance *= lit;
     here.radiance *= lit;
   }
 }
 
+#part splat_varyings
+#include "lib/faced_normal.glsl"
+void shadows_attributes(Splat splat, int index) {
+  vec3 plane = geometric_normal(splat);
+  splat_faces = plane.xy / max(1.0 + plane.z, LEAST_FACED);
+}
+
+#part gbuffer, planes_apart
+void shadows_add(inout Fragment f) {
+  gbuffer_plane = splat_faces * f.weight;
+}
+
+#part gbuffer, planes_beside_depths
+void shadows_add(inout Fragment f) {
+  gbuffer_depth.zw = splat_faces * f.weight;
+}
+
 #part shaded_sample
+#include "lib/faced_normal.glsl"
 void shadows_attributes(inout Shaded s) {
   shadow_turn = 0.125 + 0.25 * float((s.texel.x & 1) + 2 * (s.texel.y & 1));
-  shadow_plane = vec3(0.0);
+}
+
+#part shaded_sample, planes_apart
+void shadows_planes_apart_attributes(inout Shaded s) {
+  shadow_plane = faced_normal(SUM_AT(gbuffer_plane, s.texel, s.tap).xy / max(s.mean.weight, 1e-37));
+}
+
+#part shaded_sample, planes_beside_depths
+void shadows_planes_beside_depths_attributes(inout Shaded s) {
+  vec4 sums = SUM_AT(gbuffer_depth, s.texel, s.tap);
+  shadow_plane = faced_normal(sums.zw / max(sums.y, 1e-37));
 }
 
 #part shaded_sample, polygons
@@ -39,7 +67,8 @@ void shadows_polygons_attributes(inout Shaded s) {
 }
 
 #part lit_splats.frag
+#include "lib/faced_normal.glsl"
 void shadows_attributes(Splat splat, int index) {
   shadow_turn = 0.125 + 0.25 * float(index & 3);
-  shadow_plane = vec3(0.0);
+  shadow_plane = geometric_normal(splat);
 }

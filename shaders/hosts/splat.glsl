@@ -17,6 +17,12 @@ struct Splat {
   bool is_hidden;     // it is not drawn: the back of a solid, or of no opacity
 };
 
+// The geometric normal on the side that is seen, unit, view space.
+vec3 geometric_normal(Splat splat) {
+  vec3 outward = cross(splat.axis_u, splat.axis_v) * (splat.is_back ? -draw.orientation : draw.orientation);
+  return outward / max(length(outward), 1e-37);
+}
+
 #parts
 Splat fetch_splat(int index) {
   StoredSplat stored = stored_splat(index);

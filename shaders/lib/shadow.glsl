@@ -8,7 +8,7 @@
 const int SOFT_SAMPLES = 32;
 // Neighbouring samples of the picture look at different places: a pixel of 2 x 2 samples has four times as many of them.
 float shadow_turn;
-// Of the plane that is lit, where its normal is not the one that is shaded; 0 elsewhere.
+// Normal of the plane that is lit: the geometric one, from which that which is shaded differs wherever shading is smooth.
 vec3 shadow_plane;
 const float GOLDEN_ANGLE = 2.39996323;
 const float GRAZING = 0.08;  // least cosine that a surface's plane is followed at
@@ -160,11 +160,10 @@ float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lam
 
 // caster: number of the light's first map, of its maps, and its size in units of the shaded view (of a sun as it is).
 // half_u, half_v: half-axes of a lamp with a size, in the shaded view.
-float lit_share(vec4 caster, vec3 half_u, vec3 half_v, vec3 position, vec3 normal) {
+float lit_share(vec4 caster, vec3 half_u, vec3 half_v, vec3 position) {
   for (int i = 0; i < int(caster.y); i++) {
     ShadowPlace here;
-    vec3 plane = dot(shadow_plane, shadow_plane) > 0.0 ? shadow_plane : normal;
-    if (!shadow_place(int(caster.x) + i, position, plane, here)) continue;
+    if (!shadow_place(int(caster.x) + i, position, shadow_plane, here)) continue;
     bool is_parallel = here.atlas.w > 0.5;
     float bias = 0.5 * here.depths.z * (is_parallel ? 1.0 : here.depth);
     if (caster.z == 0.0) return hard_share(here, bias);

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture
-from . import depth_format, visibility
+from . import depth_format, shadows, visibility
 from .drawing import LIT_HOSTS, RASTERIZERS, draw_splats, drawn_by
 from .rasterizers import rasterized
 
@@ -17,14 +17,27 @@ VALUES = {
 COLOR = Texture("gbuffer_color", is_multisampled=True, is_sum=True)
 NORMAL = Texture("gbuffer_normal", is_multisampled=True, is_sum=True)
 DEPTH_SUM = Texture("gbuffer_depth", "RG32F", is_multisampled=True)
+#: With room for the planes that shadows compare depths with: targets have no room for a texture more.
+DEPTH_PLANE_SUM = Texture("gbuffer_depth", "RGBA32F", is_multisampled=True)
 SPRITE_DEPTH = Texture("seen_depth", "DEPTH32F")
+
+
+def depths_are_apart(planning, kind: str) -> bool:
+    """From normals."""
+    return kind == "layer" or planning.settings.accumulation == "float16"
+
+
+def depth_sum(planning) -> Texture:
+    """Of depths that are apart."""
+    return DEPTH_PLANE_SUM if planning.find(shadows.maps) else DEPTH_SUM
 
 
 def depth_parts(planning, kind: str, **fields) -> Part:
     """Depths are beside normals, or apart. fields: what is done with them."""
-    is_apart = kind == "layer" or planning.settings.accumulation == "float16"
-    name = "gbuffer_depth" if is_apart else "depth_in_normals"
-    return Part(name, **{field: (*textures, DEPTH_SUM) if is_apart else textures for field, textures in fields.items()})
+    if not depths_are_apart(planning, kind):
+        return Part("depth_in_normals", **fields)
+    apart = depth_sum(planning)
+    return Part("gbuffer_depth", **{field: (*textures, apart) for field, textures in fields.items()})
 
 
 def state(planning) -> dict:

@@ -33,7 +33,7 @@ def passes_of_rest(planning, peeled: Texture, layers: Texture) -> tuple[Pass, ..
     rest = Part("oit", ("rest",), (LIT,), writes=(ACCUM, WEIGHT)), *rasterized(planning)
     state = gbuffer.state(planning) | {"depth_test": False}
     host = f"{RASTERIZERS[planning.method.works_in]}.frag"
-    shade = Part("oit", reads=(ACCUM, WEIGHT, gbuffer.DEPTH_SUM), writes=(lighting.SHADED,))
+    shade = Part("oit", reads=(ACCUM, WEIGHT, gbuffer.depth_sum(planning)), writes=(lighting.SHADED,))
     put = Part("oit", reads=(lighting.SHADED, peeled), writes=(layers,), constants=samples)
     peel = Part("oit", reads=(lighting.SHADED,), updates=(peeled,))
     each = Pass("light_splats", "each splat is lit by itself", "lit_splats.frag", run, (light,), "rest")

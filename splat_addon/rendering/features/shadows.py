@@ -11,7 +11,7 @@ from ..scene.light import pack_lights
 from ..shadow import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps, same_maps, shadow_maps
 from ..view import View
 from . import visibility
-from .drawing import LIGHTING_HOSTS
+from .drawing import LIT_HOSTS, SPLAT_HOSTS
 
 #: Of polygons, in texels of a map: a filter reaches two, over which planes may differ by that much at 45 degrees.
 SETBACK = 2.0
@@ -22,6 +22,8 @@ def _of_atlas(plan, pixels: tuple[int, int]) -> tuple[int, int]:
 
 
 DEPTH = Texture("shadow_depth", "DEPTH32F", _of_atlas)
+#: The splats' geometric normals: depths are compared with their plane.
+PLANE = Texture("gbuffer_plane", "RG32F", is_multisampled=True)
 
 
 def maps(planning):
@@ -59,7 +61,15 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.host in LIGHTING_HOSTS:
+    from . import gbuffer
+
+    is_beside = gbuffer.depths_are_apart(planning, p.kind)
+    words, planes = (("planes_beside_depths",), ()) if is_beside else (("planes_apart",), (PLANE,))
+    if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer"):
+        yield Part("shadows", words, writes=planes, varyings=(("flat", "vec2", "splat_faces"),))
+    if p.host in LIT_HOSTS:
+        yield Part("shadows", words, reads=(DEPTH, *planes), inputs=("shadow_maps",))
+    if p.host == "lit_splats.frag":
         yield Part("shadows", reads=(DEPTH,), inputs=("shadow_maps",))
 
 
