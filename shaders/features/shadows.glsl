@@ -1,5 +1,6 @@
 // References: lib/shadow.glsl.
-// Summary: what of each light something else keeps away.
+// Summary: what of each light something else keeps away. Splats are summed with their geometric normals, apart from depths
+//          or beside them: how they are moved back has its twin in reference/shadows.py.
 
 #part lights
 #include "lib/shadow.glsl"
@@ -27,7 +28,20 @@ void shadows_hide(inout Incident here, LightTexels of, vec3 position, vec3 norma
   }
 }
 
-#part splat_varyings
+#part visibility.vert, shadow
+// Splats of a smooth surface reach over its edges, and lie before what is beyond them: before a plane that is turned away
+// by this bend by up to its sine in radii. They cast shadows from so far behind themselves, as that plane has it, that they
+// do not fall on it; the more, the flatter the light, up to a limit, or shadows would begin behind what casts them.
+const float SIN_BEND = 0.5, COS_BEND = 0.8660254;
+const float FARTHEST_BACK = 4.0;  // epsilons
+
+void shadows_move(Splat splat, float radius, inout float offset) {
+  float facing = abs(outward_cosine(splat.position, splat.axis_u, splat.axis_v, 1.0, view.is_parallel > 0.5));
+  float turned = facing * COS_BEND - sqrt(max(1.0 - facing * facing, 0.0)) * SIN_BEND;
+  offset = draw.epsilon * radius * min(1.0 / max(turned, 1e-3), FARTHEST_BACK);
+}
+
+#part splat_varyings, adds_planes
 #include "lib/faced_normal.glsl"
 void shadows_attributes(Splat splat, int index) {
   vec3 plane = geometric_normal(splat);

@@ -1,7 +1,8 @@
 // References: Botsch, Hornung, Zwicker, Kobbelt, "High-Quality Surface Splatting on Today's GPUs", 2005, section 4.1
 //             (visibility splatting); the view-independent paper, section 5 (the offset along the view ray).
 // Summary: every splat moved away from the eye by its own epsilon, so that what lies within epsilon blends; by no less
-//          than the depth can resolve, or rounding would let a splat hide itself. Hook: `blend` less deeply.
+//          than the depth can resolve, or rounding would let a splat hide itself. Hooks: `blend` less deeply, `move` by
+//          another length.
 
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/nowhere.glsl"
@@ -16,9 +17,11 @@ void main() {
   vec3 eye = footprint_corner(splat.position, splat.axis_u, splat.axis_v, corner);
   place_depth = vec3(corner, -eye.z);
   hand_on(splat, gl_VertexID / 3);
-  float offset = draw.epsilon * sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
+  float radius = sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
+  float offset = draw.epsilon * radius;
   if (splat.is_back) offset *= BACK_EPSILON;
   #hook blend(splat, eye, offset)
+  #hook move(splat, radius, offset)
   vec4 moved = splat_corner(eye, offset);
   gl_Position = splat.is_hidden ? NOWHERE : moved;
 }

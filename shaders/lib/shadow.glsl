@@ -11,7 +11,7 @@ float shadow_turn;
 // Normal of the plane that is lit: the geometric one, from which that which is shaded differs wherever shading is smooth.
 vec3 shadow_plane;
 const float GOLDEN_ANGLE = 2.39996323;
-const float GRAZING = 0.08;  // least cosine that a surface's plane is followed at
+const float GRAZING = 0.02;  // least cosine that a surface's plane is followed at
 
 struct ShadowPlace {
   int map;
@@ -44,13 +44,13 @@ bool shadow_place(int map, vec3 position, vec3 normal, out ShadowPlace here) {
   return all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0)));
 }
 
-// Depth of the lit surface's plane toward another place; toward.z is -1, seen from the place's own map. A lamp's is no
-// deeper than `own`, that of the place if it faced the lamp: what lies farther is behind what is lit. Near its horizon, and
-// over it, the plane is not followed.
+// Depth of the lit surface's plane toward another place; toward.z is -1, seen from the place's own map. It is no deeper
+// than `own`, that of the place if it faced the light: what lies farther is behind what is lit, as the other wall of a
+// corner is. Near its horizon, and over it, the plane of a lamp is not followed.
 float receiver_depth(ShadowPlace here, vec3 toward, float own) {
   if (here.atlas.w > 0.5) {
     float slope = max(abs(here.normal.z), GRAZING) * (here.normal.z < 0.0 ? -1.0 : 1.0);
-    return here.depth + dot(here.normal.xy, toward.xy - here.place) / slope;
+    return min(here.depth + dot(here.normal.xy, toward.xy - here.place) / slope, own);
   }
   float facing = dot(here.normal, toward), away = dot(here.normal, here.position);
   return abs(facing) > GRAZING * length(toward) && facing * away > 0.0 ? min(away / facing, own) : own;

@@ -24,6 +24,11 @@ LAMP_POINTS = 25
 #: Of the way from a lamp, at its end: what a polygon does not shadow of itself.
 OWN_SURFACE = 1e-9
 
+#: shaders/features/shadows.glsl: the turn of an edge, radians, beyond which splats that reach over it cast no shadow,
+#: and how far they are moved back at most, in epsilons.
+BEND = math.radians(30)
+FARTHEST_BACK = 4.0
+
 #: Where a sun is taken to stand, in units of the scene's extent.
 FAR_AWAY = 1e4
 
@@ -31,7 +36,8 @@ FAR_AWAY = 1e4
 def lit_share(light: Light, scene: Scene, camera: Camera, position: np.ndarray, epsilon: float) -> np.ndarray:
     """(n,) which share of the lamp positions (n, 3) of the eye space see.
 
-    A splat hides the places that lie more than epsilon, in its radii, behind it as seen from the light.
+    A splat hides the places that lie farther behind it, as seen from the light, than it is moved back: epsilon, in its
+    radii, behind a plane that is turned away from the light by BEND more than its own.
     """
     # Splats are wanted from the light's side: solid instances hide backs by the camera, so they count in full here.
     casters = casting(scene)
@@ -46,7 +52,18 @@ def lit_share(light: Light, scene: Scene, camera: Camera, position: np.ndarray, 
 def _is_lit(casters: Scene, camera: Camera, splats: Splats, epsilon: float, lamp: np.ndarray, position: np.ndarray):
     """(n,) bool."""
     lit = are_lit(casters, camera, lamp, position, OWN_SURFACE)
-    return lit & _is_seen(splats, epsilon * splats.radius(), lamp, position) if len(splats) else lit
+    return lit & _is_seen(splats, epsilon * _moved(splats, lamp[0]), lamp, position) if len(splats) else lit
+
+
+def _moved(splats: Splats, lamp: np.ndarray) -> np.ndarray:
+    """(N,) how far splats are moved away from the lamp, over epsilon."""
+    way = splats.center - lamp
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cosine = np.abs(np.einsum("ij,ij->i", splats.plane, way))
+        cosine /= np.linalg.norm(splats.plane, axis=1) * np.linalg.norm(way, axis=1)
+    facing = np.nan_to_num(np.minimum(cosine, 1.0))
+    turned = np.cos(np.arccos(facing) + BEND)
+    return splats.radius() / np.maximum(turned, 1 / FARTHEST_BACK)
 
 
 def _without_solids(scene: Scene) -> Scene:

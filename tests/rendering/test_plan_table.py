@@ -82,7 +82,13 @@ TABLE = {
     "light": (lit(), {}, PASSES, "", "lights", ()),
     "flat under a light": (lit(), {"shading": "flat"}, PASSES, "", "-brdf_table", ()),
     "light with a size": (lit(size=0.1), {}, PASSES, "", "lights", ("SIZED_LIGHTS",)),
-    "shadow": (lit(casts_shadow=True), {}, ("shadow_maps", *PASSES), "shadow_depth", "lights shadow_maps", ()),
+    "shadow": (
+        lit(casts_shadow=True), {}, ("shadow_maps", *PASSES), "shadow_depth gbuffer_plane", "lights shadow_maps", (),
+    ),
+    "shadow, float16 sums": (
+        lit(casts_shadow=True), {"accumulation": "float16"}, ("shadow_maps", *PASSES), "shadow_depth gbuffer_depth",
+        "lights shadow_maps", (),
+    ),
     "shadow, switched off": (lit(casts_shadow=True), {"shadow_resolution": 0}, PASSES, "", "lights", ()),
     "linked light": (lit(receivers=(1,)), {}, PASSES, "gbuffer_light_set", "lights", ()),
     "world's picture": (IN_PICTURE, {}, PASSES, "", "environment_image environment_levels", ()),
@@ -104,7 +110,7 @@ TABLE = {
     "emission": (PLAIN, {"outputs": ("emission",)}, PASSES, "-normal_coverage emission", "", ()),
     "shadow share": (
         lit(casts_shadow=True), {"outputs": ("shadow",)}, ("shadow_maps", *PASSES),
-        "-normal_coverage shadow_depth shadow_overdraw", "lights shadow_maps", ("SHADOW_SHARE",),
+        "-normal_coverage shadow_depth gbuffer_plane shadow_overdraw", "lights shadow_maps", ("SHADOW_SHARE",),
     ),
     "count of splats": (
         PLAIN, {"outputs": ("overdraw",)}, PASSES, "-normal_coverage gbuffer_overdraw shadow_overdraw", "", (),
@@ -117,7 +123,7 @@ TABLE = {
     ),
     "polygons in the shadow": (
         replace(HYBRID, lights=(Light("sun", casts_shadow=True),)), {}, ("shadow_maps", *AMONG),
-        f"{AMONG_TEXTURES} shadow_depth polygon_plane", "lights shadow_maps", (),
+        f"{AMONG_TEXTURES} shadow_depth gbuffer_plane polygon_plane", "lights shadow_maps", (),
     ),
     "polygons alone": (replace(HYBRID, surfels=()), {}, AMONG, AMONG_TEXTURES, "", ()),
     "polygons of another material under a linked light": (

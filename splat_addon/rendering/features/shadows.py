@@ -65,8 +65,10 @@ def parts(planning, p):
 
     is_beside = gbuffer.depths_are_apart(planning, p.kind)
     words, planes = (("planes_beside_depths",), ()) if is_beside else (("planes_apart",), (PLANE,))
+    if p.host == "visibility.frag" and p.kind == "shadow":
+        yield Part("shadows", only="splats")
     if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer"):
-        yield Part("shadows", words, writes=planes, varyings=(("flat", "vec2", "splat_faces"),))
+        yield Part("shadows", ("adds_planes", *words), writes=planes, varyings=(("flat", "vec2", "splat_faces"),))
     if p.host in LIT_HOSTS:
         yield Part("shadows", words, reads=(DEPTH, *planes), inputs=("shadow_maps",))
     if p.host == "lit_splats.frag":

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""No surface shadows itself: coarse meshes that are shaded smooth, against rays from what is seen to the lights."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+
+from splat_addon.reference.polygons import nearest_hits
+from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at
+from splat_addon.sampling import TriangleMesh, sample_mesh
+
+SIZE = (112, 112)
+CAMERA = Camera.perspective(look_at((1.5, -4.2, 1.2), (0, 0, 0)), 0.62, SIZE, near=0.1, far=100)
+CHALK = (Material(roughness=1.0, ior=1.0),)
+PLACE = (2.0, -3.0, 3.2)
+LIGHTS = {
+    "sun": Light("sun", energy=3, direction=(-2, 3, -4)),
+    "sun from the side": Light("sun", energy=3, direction=(4, 1, -1.5)),
+    "wide sun": Light("sun", energy=3, direction=(-2, 3, -4), size=0.1),
+    "point": Light("point", energy=300, position=PLACE),
+    "large point": Light("point", energy=300, position=PLACE, size=0.3),
+    "spot": Light("spot", energy=300, position=PLACE, direction=(-2, 3, -3.2), spot_angle=1.2),
+    "area": Light(
+        "area", energy=300, position=PLACE, direction=(-2, 3, -3.2), half_axes=((0.5, 0, 0), (0, 0.38, 0.35))
+    ),
+}
+#: Where a sun's rays are followed to.
+FAR_AWAY = 1e4
+
+
+def uv_sphere(segments=16, rings=8) -> trimesh.Trimesh:
+    """Blender's: quads between rings, each as two triangles, and triangles at the poles."""
+    down, around = np.meshgrid(np.arange(rings + 1) * math.pi / rings, np.arange(segments) * 2 * math.pi / segments)
+    places = np.stack([np.sin(down) * np.cos(around), np.sin(down) * np.sin(around), np.cos(down)], axis=2)
+    index = np.arange(segments * (rings + 1)).reshape(segments, rings + 1)
+    following = np.roll(index, -1, axis=0)
+    a, b, c, d = index[:, :-1], index[:, 1:], following[:, 1:], following[:, :-1]
+    faces = np.concatenate([np.stack(t, axis=2).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
+    mesh = trimesh.Trimesh(places.reshape(-1, 3), faces)
+    mesh.merge_vertices(merge_tex=True, merge_norm=True)
+    mesh.update_faces(mesh.nondegenerate_faces())
+    return mesh
+
+
+MESHES = {"uv sphere": uv_sphere, "icosphere": lambda: trimesh.creation.icosphere(2)}
+
+
+def instance(mesh: trimesh.Trimesh, resolution: int, is_smooth=True, matrix=None) -> Instance:
+    normals = mesh.vertex_normals[mesh.faces] if is_smooth else None
+    surfels = sample_mesh(TriangleMesh(mesh.vertices, mesh.faces, normals), resolution=resolution)
+    white = replace(surfels, colors=np.ones((len(surfels), 4)))
+    return Instance(white, np.eye(4) if matrix is None else matrix, CHALK)
+
+
+def lamp_places(light: Light) -> np.ndarray:
+    """(k, 3) its middle and its rim."""
+    if light.kind == "sun":
+        way = np.asarray(light.direction) / np.linalg.norm(light.direction)
+        u = np.cross(way, (0.3, 0.8, 0.5))
+        u /= np.linalg.norm(u)
+        axes, middle = np.tan(light.size / 2) * FAR_AWAY * np.stack([u, np.cross(way, u)]), -FAR_AWAY * way
+    else:
+        axes = np.asarray(light.half_axes) if light.kind == "area" else light.size * np.eye(3)
+        middle = np.asarray(light.position)
+    corners = [a * axes[0] + b * axes[1] for a in (-1, 1) for b in (-1, 1)] if light.kind == "area" else [*axes, *-axes]
+    return middle + np.array([(0, 0, 0), *(corners if light.is_sized else ())])
+
+
+def arriving(mesh: trimesh.Trimesh, light: Light, camera: Camera) -> np.ndarray:
+    """(h, w) which share of the lamp's places each pixel's place of the mesh sees by rays in float64; NaN beside it."""
+    width, height = camera.size
+    left, right, bottom, top = camera.window
+    x = left + (np.arange(width) + 0.5) * (right - left) / width
+    y = bottom + (np.arange(height) + 0.5) * (top - bottom) / height
+    across, up = np.meshgrid(x, y)
+    ray = np.stack([across, up, -np.ones_like(up)], axis=2).reshape(-1, 3) @ camera.matrix_world[:3, :3].T
+    eye, corners = camera.matrix_world[:3, 3], mesh.triangles.astype(np.float64)
+    depth, triangle, _ = nearest_hits(corners, np.broadcast_to(eye, ray.shape), ray, 0.0, 1e9)
+    hit = np.isfinite(depth)
+    normal = mesh.face_normals[triangle[hit]]
+    normal = normal * np.where(np.einsum("nk,nk->n", normal, ray[hit]) > 0, -1.0, 1.0)[:, None]
+    place = eye + ray[hit] * depth[hit, None] + 1e-6 * normal
+    free = [np.isinf(nearest_hits(corners, place, lamp - place, 0.0, 1 - 1e-9)[0]) for lamp in lamp_places(light)]
+    share = np.full(width * height, np.nan)
+    share[hit] = np.mean(free, axis=0)
+    return share.reshape(height, width)
+
+
+def inside(mask: np.ndarray) -> np.ndarray:
+    """Where all eight neighbours are, too."""
+    h, w = mask.shape
+    wide = np.pad(mask, 1)
+    return np.logical_and.reduce([wide[i : i + h, k : k + w] for i in range(3) for k in range(3)])
+
+
+@pytest.fixture
+def with_and_without(render):
+    """(instances, light, camera) -> two (h, w): brightness with its shadow and without."""
+
+    def draw(instances, light, camera=CAMERA, **settings):
+        lights = replace(light, casts_shadow=True), light
+        return [render(Scene(instances, [one]), camera, Settings(**settings)).color[..., 0] for one in lights]
+
+    return draw
+
+
+def falsely_dark(truth, with_shadow, without) -> float:
+    """Share of the pixels that all of the lamp lights, and that are darker with its shadow."""
+    clear = inside(truth == 1) & (without > 0.05 * without.max())
+    assert clear.sum() > 500
+    return np.count_nonzero(clear & (with_shadow < 0.98 * without)) / np.count_nonzero(clear)
+
+
+@pytest.mark.parametrize("light", LIGHTS)
+@pytest.mark.parametrize("name", MESHES)
+def test_a_coarse_smooth_mesh_does_not_shadow_itself(name, light, with_and_without):
+    """Up to 11 % where depths are compared with the plane of the shading normal."""
+    mesh = MESHES[name]()
+    truth = arriving(mesh, LIGHTS[light], CAMERA)
+    for resolution in (64, 256):
+        shares = falsely_dark(truth, *with_and_without([instance(mesh, resolution)], LIGHTS[light]))
+        assert shares < 0.02, resolution
+
+
+@pytest.mark.parametrize("is_smooth", [True, False])
+def test_nor_does_it_scaled_and_mirrored(is_smooth, with_and_without):
+    mesh, scale = uv_sphere(), np.diag((-1.1, 0.8, 1.0, 1.0))
+    made = instance(mesh, 128, is_smooth, scale)
+    there = mesh.copy().apply_transform(scale)
+    for light in (LIGHTS["sun"], LIGHTS["point"], LIGHTS["area"]):
+        assert falsely_dark(arriving(there, light, CAMERA), *with_and_without([made], light)) < 0.02
+
+
+@pytest.mark.parametrize("settings", [{"method": "quad"}, {"accumulation": "float16"}, {"storage": "16-bit"}])
+def test_nor_by_other_methods_sums_and_storages(settings, with_and_without):
+    mesh = uv_sphere()
+    shares = arriving(mesh, LIGHTS["sun"], CAMERA)
+    drawn = with_and_without([instance(mesh, 128)], LIGHTS["sun"], **settings)
+    assert falsely_dark(shares, *drawn) < 0.02
+
+
+def test_nor_where_it_is_transparent(with_and_without):
+    """Its layers have planes of their own, too."""
+    made = instance(uv_sphere(), 96)
+    glass = replace(made, surfels=replace(made.surfels, colors=np.tile((1, 1, 1, 0.995), (len(made.surfels), 1))))
+    assert glass.is_transparent
+    truth = arriving(uv_sphere(), LIGHTS["sun"], CAMERA)
+    drawn = with_and_without([glass], LIGHTS["sun"], layers=1, blends_rest=False)
+    assert falsely_dark(truth, *drawn) < 0.03
+
+
+@pytest.mark.parametrize("light", ["sun", "point", "wide sun"])
+def test_a_shadow_begins_where_a_box_stands(light, with_and_without):
+    """No light gets in between: two pixels from where rays say that all is dark, it is."""
+    box = trimesh.creation.box((1, 1, 1)).apply_translation((0, 0, 0.5))
+    floor = trimesh.creation.box((5, 5, 0.2)).apply_translation((0, 0, -0.1))
+    camera = Camera.perspective(look_at((2.5, 3.2, 2.2), (0, 0.3, 0.2)), 0.62, SIZE, near=0.1, far=100)
+    truth = arriving(trimesh.util.concatenate([box, floor]), LIGHTS[light], camera)
+    drawn = with_and_without([instance(box, 96, False), instance(floor, 128, False)], LIGHTS[light], camera)
+    dark = inside(inside(truth == 0)) & (drawn[1] > 0.05 * drawn[1].max())
+    assert dark.sum() > 300
+    assert np.count_nonzero(dark & (drawn[0] > 0.1 * drawn[1])) == 0
