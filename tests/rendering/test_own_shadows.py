@@ -144,8 +144,8 @@ def test_nor_by_other_methods_sums_and_storages(settings, with_and_without):
 
 def test_nor_where_it_is_transparent(with_and_without):
     """Its layers have planes of their own, too."""
-    made = instance(uv_sphere(), 96)
-    glass = replace(made, surfels=replace(made.surfels, colors=np.tile((1, 1, 1, 0.995), (len(made.surfels), 1))))
+    surfels = instance(uv_sphere(), 96).surfels
+    glass = Instance(replace(surfels, colors=np.tile((1, 1, 1, 0.995), (len(surfels), 1))), materials=CHALK)
     assert glass.is_transparent
     truth = arriving(uv_sphere(), LIGHTS["sun"], CAMERA)
     drawn = with_and_without([glass], LIGHTS["sun"], layers=1, blends_rest=False)
