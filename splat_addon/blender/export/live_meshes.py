@@ -307,11 +307,10 @@ def _by_itself(live: _LiveMesh, pixels: float, depsgraph) -> float:
     if live.surface is None or live.surface[0] is not mesh:
         live.surface = mesh, outline(mesh)
     shape = projected_area(mesh), grid_spacing(mesh, resolution=1)
-    finest = min(
-        automatic_spacing(pixels, lambda: live.surface[1], *shape, matrix, depsgraph).spacing
-        for matrix in live.matrices
-    )
-    return live.kept_if_near(finest)
+    # The detail is in the pixels already, but counts where no camera sees the mesh too.
+    what, detail = (pixels * live.detail, lambda: live.surface[1], *shape), live.detail
+    found = (automatic_spacing(*what, matrix, depsgraph, detail=detail).spacing for matrix in live.matrices)
+    return live.kept_if_near(min(found))
 
 
 #: kind of density -> function of a mesh, the number and the depsgraph

@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.conversion.automatic_density import LEAST_RESOLUTION
 from splat_addon.blender.engine import final_render
 from splat_addon.blender.export import live_meshes
 from splat_addon.rendering.upload import storages
@@ -345,6 +346,25 @@ def test_for_the_camera_a_surfel_covers_as_many_pixels_as_asked(live, scene, sam
     bpy.context.object.location.z = 20
     picture()
     assert counts()["meshes"] == 1
+
+
+def test_by_itself_the_density_is_the_cameras(live, scene, sampled, picture):
+    scene.camera.data.sensor_width = scene.camera.data.lens = 36
+    bpy.ops.mesh.primitive_plane_add(size=2)
+    live.mesh_density, live.mesh_pixels = "AUTOMATIC", 0.5
+    picture()
+    assert sampled[0].scales[0, 0] / 1.25 == pytest.approx(2 / LEAST_RESOLUTION)
+    live.mesh_pixels = 0.25
+    picture()
+    assert sampled[1].scales[0, 0] / 1.25 == pytest.approx(0.25 * 10 / 32, rel=0.02)
+
+
+def test_by_itself_the_density_is_a_resolution_where_the_camera_sees_nothing(live, sampled, picture):
+    bpy.ops.mesh.primitive_plane_add(size=2, location=(0, 0, 20))
+    bpy.context.object.surfel_splatting.detail = 0.25
+    live.mesh_density = "AUTOMATIC"
+    picture()
+    assert counts()["meshes"] == 1 and counts()["surfels"] == 64**2
 
 
 def test_more_surfels_than_the_renderer_holds_in_one_set_look_the_same(live, picture, sampled, monkeypatch):
