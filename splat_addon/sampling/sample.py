@@ -90,9 +90,8 @@ def sample_surface(
     tolerance: how far from flat the surface may be where larger surfels take the place of several; None: all alike.
     texture_mapped: surfels whose colour is one image also keep where they lie in it, to look it up when rendered.
     crease_angle: radians; where the surface turns by more, and at borders of materials, colours and the surface itself,
-    splats end at clip lines (`clipping`); None: they reach over. Renderers must honour these: `reference` does, the
-    engine not yet. fits_blending: each has the depth that the surface asks for (`blending`), and not the same for all;
-    that, too, only `reference` follows yet.
+    splats end at clip lines (`edges.clipping`); None: they reach over. fits_blending: each blends as deep as the
+    surface asks for (`attributes.blend_depths`), and not all alike.
     progress: called between chunks with the finished share, 0 to 1; where it returns False, `SamplingCancelled` rises.
     Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the middle.
     A connected part that lies between the rays gets one surfel. A mesh without usable triangles gives none.

@@ -4,10 +4,11 @@
 The truth is the mesh's triangles in float64 with 8 x 8 samples a pixel, which shares no code with surfels, under the
 Gaussian of 0.7071 pixels. Meshes are coloured by their normals, split at creases over 30 degrees, unlit, over grey of
 0.05, and seen three times from 1.4 diagonals of their boxes. "engine": surfels as the operator makes them, drawn by the
-device. The others are exact pictures (--exact): "now" of the same surfels; "clip" of ones that end at clip lines;
-"blend" of ones that blend as deep as their surface asks for; "both". PSNR is of sRGB; a pixel is wrong where a
-component is off by more than 0.15; bare where the mesh covers it whole and the surfels not by 0.98; spilled where they
-cover 0.02 of it and the mesh nothing. Conversion: the median ratio of processor seconds to surfels without edges.
+device; "whole": such without clip lines and blend depths. The others are exact pictures (--exact): "now" of whole ones;
+"clip" of ones that end at clip lines; "blend" of ones that blend as deep as their surface asks for; "both". PSNR is of
+sRGB; a pixel is wrong where a component is off by more than 0.15; bare where the mesh covers it whole and the surfels
+not by 0.98; spilled where they cover 0.02 of it and the mesh nothing. Conversion: the median ratio of processor seconds
+to surfels without edges.
 """
 
 from __future__ import annotations
@@ -84,8 +85,9 @@ def rows(meshes, renderer, options, report):
         corners, colors = mesh.positions[mesh.triangles], mesh.corner_colors[..., :3]
         truths = [render_triangles(corners, colors, camera) for camera in cameras]
         for resolution, density in densities(mesh, cameras, options).items():
-            scenes = {"engine": Scene((converted(mesh, density, "now"),))}
-            draw = {"engine": partial(renderer.render, settings=SETTINGS)}
+            drawn = {"engine": "both", "whole": "now"}
+            scenes = {shown: Scene((converted(mesh, density, kind),)) for shown, kind in drawn.items()}
+            draw = dict.fromkeys(drawn, partial(renderer.render, settings=SETTINGS))
             for kind in options.kind if options.exact else ():
                 scenes[kind] = Scene((converted(mesh, density, kind),))
                 how = {"settings": SETTINGS, "samples": options.exact, "pixel_filter": "gaussian"}

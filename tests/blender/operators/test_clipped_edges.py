@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels that end at edges: asked for, kept as attributes, and not there otherwise."""
+"""Surfels that end at edges: kept as attributes, and not there where they are switched off."""
 
 import bpy
 import numpy as np
@@ -17,9 +17,9 @@ def add_cube():
     return add
 
 
-def test_nothing_is_kept_where_it_is_not_asked_for(add_cube, convert):
+def test_nothing_is_kept_where_it_is_switched_off(add_cube, convert):
     add_cube()
-    (made,) = convert(resolution=9)
+    (made,) = convert(resolution=9, clips_edges=False)
     assert not {"clip_line", "clip_line_2", "blend_depth"} & set(made.data.attributes.keys())
 
 
