@@ -40,17 +40,20 @@ def main(arguments: list) -> int:
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
     splat_addon.register()
+    from demonstration import studio
     from demonstration.models import convert, import_model
-    from demonstration.scene import dress, painted_suzanne
+    from demonstration.scene import dress
 
     picture, blend = options.out / "render.png", options.out / "surfels.blend"
     with step("Reading the model"):
-        meshes = import_model(options.model) if options.model else painted_suzanne()
+        meshes = import_model(options.model) if options.model else studio.models()
         triangles = triangle_count(meshes)
     with step(f"Converting {triangles:,} triangles to surfels"):
+        if not options.model:
+            studio.copies(meshes)
         surfels, seconds = convert(meshes, resolution=options.resolution, source="HIDE")
     with step("Rendering"):
-        dress(surfels, options.size)
+        (dress if options.model else studio.set_up)(surfels, options.size)
         bpy.context.scene.render.engine = "SURFEL_SPLATTING"
         render(picture)
     with step("Timing a second frame"):
@@ -127,7 +130,7 @@ def summary(options, triangles: int, surfels: list, seconds: float, stats: dict)
     """What was made and what it took."""
     count = sum(len(o.data.vertices) for o in surfels)
     table = Table(show_header=False, title="Surfel Splatting", title_justify="left")
-    table.add_row("Model", options.model.name if options.model else "Suzanne, subdivided and painted")
+    table.add_row("Model", options.model.name if options.model else "Suzanne, subdivided and painted, and a nut")
     table.add_row("Triangles", f"{triangles:,}")
     table.add_row("Surfels", f"{count:,} at resolution {options.resolution}")
     table.add_row("Conversion", f"{seconds:.2f} s")
