@@ -41,6 +41,11 @@ class Image:
                 raise ValueError(f"An image's {name} must be one of {', '.join(allowed)}, not {getattr(self, name)!r}.")
 
     @cached_property
+    def is_opaque(self) -> bool:
+        """Whether nothing shows through it, nor beside it."""
+        return self.extension != "CLIP" and bool((self.pixels[..., 3] == 1).all())
+
+    @cached_property
     def pyramid(self) -> Pyramid:
         """Made once, however many look the image up."""
         return Pyramid(self)
@@ -55,7 +60,7 @@ class Pyramid:
     def __init__(self, image: Image):
         self._texels = EXTENSIONS[image.extension]
         self._taps = _linear_taps if image.interpolation == "Linear" else _closest_taps
-        self._is_opaque = image.extension != "CLIP" and bool((image.pixels[..., 3] == 1).all())
+        self._is_opaque = image.is_opaque
         pixels = image.pixels
         self._levels = [pixels if self._is_opaque else _premultiplied(pixels)]
         self.size = pixels.shape[1], pixels.shape[0]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...rendering import Polygons
 from ...rendering.scene.polygons import MAX_TRIANGLES
-from ...sampling import Surface, TriangleMesh, corner_values
+from ...sampling import Surface, Texture, TriangleMesh, corner_values
 from ...surfels import OPAQUE
 
 
@@ -51,7 +51,14 @@ def left_out_of_polygons(owner: str, mesh: TriangleMesh) -> Iterator[str]:
 
 def is_transparent(mesh: TriangleMesh) -> bool:
     """Whether some of its triangles may be seen through."""
-    return any(surface.opacity is not None or surface.color.value[3] < OPAQUE for surface in _used(mesh))
+    return any(_shows_through(surface) for surface in _used(mesh))
+
+
+def _shows_through(surface: Surface) -> bool:
+    """By an opacity of its own or its colour's alpha: a constant one, or that of an image, as cards of leaves have."""
+    images = [factor.image for factor in surface.color.factors if isinstance(factor, Texture) and factor.uses_alpha]
+    is_clear = surface.opacity is not None or surface.color.value[3] < OPAQUE
+    return is_clear or not all(image.is_opaque for image in images)
 
 
 def _used(mesh: TriangleMesh) -> list[Surface]:

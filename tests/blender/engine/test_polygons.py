@@ -261,3 +261,47 @@ def test_a_group_that_is_not_there_is_named(group, sentence, ball, picture, said
     assert not picture().any()
     text = said()
     assert "Sphere is left out: It is split by" in text and sentence in text
+
+
+def leaf_card(pixels) -> bpy.types.Object:
+    """A plane with one image as Base Color and as Alpha."""
+    image = bpy.data.images.new("leaf", *pixels.shape[1::-1], alpha=True, float_buffer=True)
+    image.pixels.foreach_set(np.float32(pixels).ravel())
+    material = principled(Roughness=1.0)
+    tree, shader = material.node_tree, material.node_tree.nodes["Principled BSDF"]
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = image
+    tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
+    tree.links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
+    bpy.ops.mesh.primitive_plane_add(size=3)
+    bpy.context.object.data.materials.append(material)
+    return bpy.context.object
+
+
+def leaf(size=32) -> np.ndarray:
+    """A green disc; what is clear around it is black, as in a card of leaves."""
+    x, y = np.meshgrid(*2 * [(np.arange(size) + 0.5) / size - 0.5])
+    inside = x * x + y * y < 0.35**2
+    return inside[..., None] * np.array((0.1, 0.6, 0.2, 1.0))
+
+
+def test_a_leaf_card_is_seen_through_as_in_cycles(look, picture, switch_to_cycles):
+    """Its mesh is drawn as surfels: polygons are opaque."""
+    leaf_card(leaf())
+    add_sun(look)
+    ours = picture()
+    assert set(counts()) == {"meshes", "surfels", "sampled"}
+    switch_to_cycles(samples=64)
+    look.cycles.max_bounces, look.cycles.transparent_max_bounces = 0, 8
+    truth = picture()
+    assert np.abs(ours[..., 3] - truth[..., 3]).mean() < 0.01
+    assert abs(ours[..., 3].sum() / truth[..., 3].sum() - 1) < 0.03
+    whole = (truth[..., 3] > 0.999) & (ours[..., 3] > 0.999)
+    assert whole.sum() > 300 and np.abs(ours - truth)[whole].max() < 0.1 * truth[whole].max()
+
+
+def test_a_card_of_an_opaque_image_stays_polygons(look, picture):
+    pixels = leaf()
+    pixels[..., 3] = 1
+    leaf_card(pixels)
+    assert picture()[..., 3].max() == 1 and set(counts()) == {"polygon_meshes", "triangles"}
