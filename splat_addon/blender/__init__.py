@@ -14,6 +14,7 @@ from .ui import (
     passes_panel,
     points_panel,
     render_panels,
+    report_panel,
     sidebar,
     view_layer_panels,
 )
@@ -24,6 +25,7 @@ MODULES = (
     render_passes,
     render_engine,
     render_panels,
+    report_panel,
     passes_panel,
     light_panels,
     camera_panels,

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import bpy
 from bpy.props import (
@@ -146,6 +147,17 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         soft_max=256,
         default=Settings.samples,
     )
+    blur_samples: IntProperty(
+        name="Blur Samples",
+        description=(
+            "The least samples of a final render with depth of field or motion blur, which one sample does not show. "
+            "Each takes a picture's time; at 1 Samples alone counts"
+        ),
+        min=1,
+        max=MAX_SAMPLES,
+        soft_max=256,
+        default=16,
+    )
     viewport_samples: IntProperty(
         name="Viewport Samples",
         description=(
@@ -274,7 +286,18 @@ def final_settings(view_layer: bpy.types.ViewLayer, scene: bpy.types.Scene, outp
     choices = {name: getattr(properties, name) for name in ("supersampling", "samples", "profile")}
     if view_layer.samples:
         choices["samples"] = min(view_layer.samples, MAX_SAMPLES)
+    if any(blurs(scene, view_layer)):
+        choices["samples"] = max(choices["samples"], properties.blur_samples)
     return _settings(scene, outputs=outputs, alpha_threshold=view_layer.pass_alpha_threshold, **choices)
+
+
+def blurs(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> Iterator[str]:
+    """What is switched on that a final render of one sample does not show."""
+    camera = scene.camera
+    if camera is not None and camera.type == "CAMERA" and camera.data.type == "PERSP" and camera.data.dof.use_dof:
+        yield "Depth of Field"
+    if scene.render.use_motion_blur and view_layer.use_motion_blur:
+        yield "Motion Blur"
 
 
 def stops_where_broken(scene: bpy.types.Scene) -> bool:

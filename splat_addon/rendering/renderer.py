@@ -12,6 +12,7 @@ import numpy as np
 from .accumulation import mean_frame, sample_blocks, sample_camera
 from .device import Device
 from .device.interface import Texture as DeviceTexture
+from .device.interface import texture_bytes
 from .features import INPUTS
 from .features.accumulation import SUM
 from .features.outputs import HELD_BY, PIXELS, check_samplers
@@ -145,6 +146,7 @@ class Renderer:
         arrays = _assembled(tiles, size) if tiles else _background(scene, size, settings)
         arrays |= identified.arrays
         stats["milliseconds"] = 1e3 * (perf_counter() - started)
+        stats["texture_bytes"] = texture_bytes(self.device.textures)
         if "position" in settings.outputs:
             arrays["position"] = _positions(camera, arrays["depth"], (left, bottom))
         return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)

@@ -13,6 +13,8 @@ class SurfelSplattingEngine(bpy.types.RenderEngine):
     bl_idname = ENGINE
     bl_label = ENGINE_LABEL
     bl_use_gpu_context = True
+    # Previews are rendered by a thread of their own, at the same time as F12, and the textures of a render can only be
+    # let go of where its context is current (`final_render._Resources`): on 4.5 that aborts Blender.
     bl_use_preview = False
     bl_use_eevee_viewport = True
     bl_use_shading_nodes_custom = False

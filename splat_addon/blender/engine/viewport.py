@@ -17,6 +17,9 @@ from ..export.scene import SurfelStore, export_scene
 from ..properties import viewport_settings
 from .final_render import sentence_of
 
+#: What the 3D view that was read last has to say of its scene.
+last_notes: list[str] = []
+
 
 def guarded(engine: bpy.types.RenderEngine, callback, context, depsgraph) -> None:
     """Call one of the functions below; what it raises is said once in the view, and must not reach Blender."""
@@ -41,7 +44,8 @@ def update(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph
     state.store.forget_unused()
     # A multilayer matcap is read through a data-block, which Blender lets nobody make while it draws.
     viewport_settings(depsgraph.scene)
-    engine.update_stats("", "; ".join(notes.sentences()))
+    last_notes[:] = notes.sentences()
+    engine.update_stats("", "; ".join(last_notes))
 
 
 def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:

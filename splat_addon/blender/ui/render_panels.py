@@ -10,6 +10,7 @@ import bpy
 from ...rendering.methods import get_method
 from ..ids import ENGINE, RENDER_SETTINGS
 from ..operators.render_preset import draw_presets
+from ..properties import blurs
 from .engine_panel import EnginePanel
 
 
@@ -34,19 +35,17 @@ class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
             column = self.layout.column(align=True)
             column.prop(properties, name, text=label)
             column.prop(properties, f"viewport_{name}", text="Viewport")
+            if name == "samples":
+                column.prop(properties, "blur_samples", text="Blur at Least")
         for blur in blurs_that_need_samples(context.scene, context.view_layer):
             self.layout.label(text=f"{blur} needs more samples", icon="INFO")
 
 
 def blurs_that_need_samples(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> Iterator[str]:
-    """What is switched on and would not be seen in a final render of one sample."""
-    if (view_layer.samples or getattr(scene, RENDER_SETTINGS).samples) > 1:
-        return
-    camera = scene.camera
-    if camera is not None and camera.type == "CAMERA" and camera.data.type == "PERSP" and camera.data.dof.use_dof:
-        yield "Depth of Field"
-    if scene.render.use_motion_blur and view_layer.use_motion_blur:
-        yield "Motion Blur"
+    """What is switched on and would not be seen in a final render, since that has one sample."""
+    properties = getattr(scene, RENDER_SETTINGS)
+    if max(view_layer.samples or properties.samples, properties.blur_samples) == 1:
+        yield from blurs(scene, view_layer)
 
 
 class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):

@@ -8,6 +8,7 @@ drawn (Vulkan then crashes), and its state leaks into Blender's own drawing.
 from __future__ import annotations
 
 from functools import lru_cache
+from weakref import WeakSet
 
 import numpy as np
 
@@ -41,6 +42,7 @@ class BlenderDevice:
             ) from error
         self._gpu = gpu
         self.pipeline = _shared_pipeline
+        self.textures = WeakSet()
         self._in_flight = []
         self._uniforms = {}
         self._triangles = (0, None)
@@ -50,7 +52,9 @@ class BlenderDevice:
         if samples:
             raise ValueError("Blender's gpu module has no multisampled textures.")
         check_texture_size(size, self._gpu.capabilities.max_texture_size_get())
-        return _Texture(self._gpu, size, format, data)
+        made = _Texture(self._gpu, size, format, data)
+        self.textures.add(made)
+        return made
 
     def target(self, colors, depth=None):
         return _Target(self._gpu, colors, depth)
@@ -107,7 +111,7 @@ class BlenderDevice:
 
 class _Texture:
     def __init__(self, gpu, size, format, data):
-        self.size, self.format = tuple(size), format
+        self.size, self.format, self.samples = tuple(size), format, 0
         options = {}
         if data is not None:
             values = np.ascontiguousarray(data, np.float32)

@@ -9,8 +9,10 @@ way, and the GLSL text of `main` and its functions is the same, word for word, o
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol
+from weakref import WeakSet
 
 import numpy as np
 
@@ -22,6 +24,18 @@ PROGRAMS = 512
 
 #: blend mode -> what happens to a fragment
 BLENDS = ("none", "add")
+
+
+#: format -> bytes of a channel, where it is not 4
+_CHANNEL_BYTES = {"RGBA16F": 2, "RGBA16": 2}
+
+
+def texture_bytes(textures: Iterable[Texture]) -> int:
+    """What these textures hold, without what a driver adds."""
+    return sum(
+        t.size[0] * t.size[1] * FORMATS[t.format] * _CHANNEL_BYTES.get(t.format, 4) * max(t.samples, 1)
+        for t in textures
+    )
 
 
 def check_texture_size(size: tuple[int, int], largest: int) -> None:
@@ -63,10 +77,11 @@ class PipelineDescription:
 
 
 class Texture(Protocol):
-    """size: width, height. format: a name in `FORMATS`."""
+    """size: width, height. format: a name in `FORMATS`. samples: of a texel, 0 for one."""
 
     size: tuple[int, int]
     format: str
+    samples: int
 
 
 class Target(Protocol):
@@ -88,7 +103,7 @@ class Pipeline(Protocol):
 class Device(Protocol):
     """kind: its name in `DEVICES`. backend: "OpenGL", "Vulkan" ... renderer, version: what the driver calls itself.
     multisample_counts: the samples a texel that its textures can have beside one. max_samplers: textures that a shader
-        may read.
+        may read. textures: those that are there.
     """
 
     kind: str
@@ -97,6 +112,7 @@ class Device(Protocol):
     version: str
     multisample_counts: tuple[int, ...]
     max_samplers: int
+    textures: WeakSet[Texture]
 
     def texture(self, size: tuple[int, int], format: str, data: np.ndarray | None = None, samples: int = 0) -> Texture:
         """data: (h, w, channels) float32, row 0 first; without it the contents are undefined.

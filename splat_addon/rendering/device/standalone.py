@@ -6,6 +6,7 @@ from __future__ import annotations
 import ctypes
 import sys
 from functools import lru_cache, partial
+from weakref import WeakSet
 
 import numpy as np
 
@@ -45,6 +46,7 @@ class StandaloneDevice:
         self.renderer = self._context.info["GL_RENDERER"]
         self.version = self._context.info["GL_VERSION"]
         self.max_samplers = self._context.info["GL_MAX_TEXTURE_IMAGE_UNITS"]
+        self.textures = WeakSet()
         self._uniforms = {}
         self.pipeline = lru_cache(PROGRAMS)(partial(_Pipeline, self._context))
         self._set_sample_shading = _sample_shading(self._context)
@@ -52,7 +54,9 @@ class StandaloneDevice:
 
     def texture(self, size, format, data=None, samples=0):
         check_texture_size(size, self._context.info["GL_MAX_TEXTURE_SIZE"])
-        return _Texture(self._context, size, format, data, samples)
+        made = _Texture(self._context, size, format, data, samples)
+        self.textures.add(made)
+        return made
 
     def target(self, colors, depth=None):
         return _Target(self._context, colors, depth)
@@ -101,7 +105,7 @@ class StandaloneDevice:
 
 class _Texture:
     def __init__(self, context, size, format, data, samples):
-        self.size, self.format = tuple(size), format
+        self.size, self.format, self.samples = tuple(size), format, samples
         if format == "DEPTH32F":
             self.handle = context.depth_texture(self.size, samples=samples)
             _respecify_depth_as_32f(context, self.handle, samples)

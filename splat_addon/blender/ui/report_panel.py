@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the last picture had to say: its messages, what was drawn in which time and memory, and its plan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from textwrap import wrap
+
+import bpy
+
+from ..engine import final_render, viewport
+from .engine_panel import EnginePanel
+
+#: Pixels of a letter at 72 dots an inch, on average; a panel's own margins in letters.
+_LETTER, _MARGIN = 6.0, 8
+
+
+class RENDER_PT_surfel_report(EnginePanel, bpy.types.Panel):
+    bl_label = "Last Picture"
+    bl_context = "render"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+
+    def draw(self, context):
+        stats = final_render.last_frame_stats
+        for line in measured(stats):
+            self.layout.label(text=line)
+        for title, sentences in (("Render", stats.get("notes", [])), ("3D View", viewport.last_notes)):
+            if sentences:
+                box = self.layout.box()
+                box.label(text=title, icon="ERROR")
+                for sentence in sentences:
+                    _write(box, sentence, context)
+
+
+class RENDER_PT_surfel_report_times(EnginePanel, bpy.types.Panel):
+    bl_label = "Times"
+    bl_context = "render"
+    bl_parent_id = "RENDER_PT_surfel_report"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and bool(final_render.last_frame_stats.get("passes"))
+
+    def draw(self, context):
+        for name, milliseconds in final_render.last_frame_stats["passes"].items():
+            self.layout.label(text=f"{name}: {milliseconds:,.1f} ms")
+
+
+class RENDER_PT_surfel_report_plan(EnginePanel, bpy.types.Panel):
+    bl_label = "Plan"
+    bl_context = "render"
+    bl_parent_id = "RENDER_PT_surfel_report"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and "plan" in final_render.last_frame_stats
+
+    def draw(self, context):
+        for line in str(final_render.last_frame_stats["plan"]).splitlines():
+            _write(self.layout, line, context)
+
+
+def measured(stats: dict) -> Iterator[str]:
+    """Lines on what a final render drew, in which time and memory. stats: of `final_render`."""
+    if not stats:
+        yield "Nothing has been rendered yet"
+        return
+    drawn = [f"{stats[name]:,} {name}" for name in ("splats", "polygons") if stats[name]]
+    yield f"Drawn: {' and '.join(drawn) or 'nothing'}"
+    samples = stats.get("samples", 1)
+    yield f"Time: {stats['milliseconds']:,.0f} ms{f', {samples} samples' if samples > 1 else ''}"
+    yield f"Textures on the device: {stats['texture_bytes'] / 1e6:,.1f} MB"
+    yield f"Device: {stats['device']}, {stats['backend']}"
+
+
+def _write(layout: bpy.types.UILayout, text: str, context: bpy.types.Context) -> None:
+    """A text in as many lines as the panel's width asks for."""
+    width = context.region.width / (_LETTER * context.preferences.system.ui_scale) - _MARGIN if context.region else 60
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    for line in wrap(text, max(int(width), 20)) or [""]:
+        column.label(text=line)
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (RENDER_PT_surfel_report, RENDER_PT_surfel_report_times, RENDER_PT_surfel_report_plan)
+)
