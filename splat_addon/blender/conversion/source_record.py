@@ -10,7 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import bpy
-from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatVectorProperty, PointerProperty
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatVectorProperty,
+    PointerProperty,
+    StringProperty,
+)
 
 from ..ids import OBJECT_SETTINGS, SURFEL_RECORD
 from .mesh_settings import ConversionProperties, SurfelConversionSettings
@@ -34,6 +41,7 @@ class SurfelRecord(bpy.types.PropertyGroup):
     )
     mesh: PointerProperty(type=SurfelConversionSettings)
     points: PointerProperty(type=SurfelPointsSettings)
+    unread: StringProperty(name="Not Sampled", description="What the materials could not be read for, a line each")
     origin: FloatVectorProperty(name="Origin", description="Of the surfels, in the space of the first source")
     is_hidden_source: BoolProperty(
         name="Hidden for Surfels",

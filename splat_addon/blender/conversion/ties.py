@@ -7,12 +7,13 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from ..geometry.mesh_extraction import is_unread
 from ..ids import OBJECT_SETTINGS
 from .as_rendered import as_rendered, differing_levels
 from .bring_back import hide_source
 from .following import follow
 from .shape_following import follow_shape, is_bent
-from .source_record import keep_record
+from .source_record import keep_record, record_of
 
 
 def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, hides: bool) -> list[str]:
@@ -21,6 +22,7 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
     """
     notes = []
     keep_record(made, conversion.sources, kind, settings)
+    keep_unread(made, conversion)
     if follows:
         matrix_world = conversion.matrix_world @ Matrix.Translation(conversion.surfels.origin)
         unit = float(np.median(conversion.surfels.scales)) * min(map(abs, matrix_world.to_scale()))
@@ -32,6 +34,11 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
         if hides:
             hide_source(source)
     return notes
+
+
+def keep_unread(made: bpy.types.Object, conversion) -> None:
+    """Note in a surfel object what could be baked for it."""
+    record_of(made).unread = "\n".join(filter(is_unread, conversion.notes))
 
 
 def tie_shape(conversion, made: bpy.types.Object, kind: str) -> list[str]:

@@ -36,7 +36,16 @@ class ExtractedMesh:
 
 def unread_sentences(unread: Iterable[tuple[bpy.types.Material, Unread]]) -> list[str]:
     """What is said of inputs that are not baked."""
-    return [f"The material {owner.name!r}'s {what}; the plain value of its socket is used" for owner, what in unread]
+    return [f"The material {owner.name!r}'s {what}{_USED}" for owner, what in unread]
+
+
+#: How each of them ends.
+_USED = "; the plain value of its socket is used"
+
+
+def is_unread(sentence: str) -> bool:
+    """Whether it is one of `unread_sentences`, about something that could be baked."""
+    return sentence.endswith(_USED)
 
 
 @dataclass(frozen=True, eq=False)

@@ -91,32 +91,74 @@ MAX_CHAIN = 100
 
 class _Reading:
     """One walk up a node tree. Each node's output is read once, however many sockets it feeds: in a chain of nodes that
-    take their predecessor twice, the number of paths doubles with each."""
+    take their predecessor twice, the number of paths doubles with each.
+
+    groups: the group nodes that the walk is inside of, the innermost last; what stands in a group is read once for each
+    of its users.
+    """
 
     def __init__(self):
-        self._read: dict[tuple[Node, str], Product] = {}
-        self._followed: list[tuple[Node, str]] = []
+        self._read: dict[tuple, Product] = {}
+        self._followed: list[tuple] = []
+        self._groups: list[Node] = []
 
     def product(self, socket: Socket) -> Product:
         source = linked(socket)
         if source is None:
             return constant(socket)
-        read = self._read[source] if source in self._read else self._output(source)
+        key = (*source, *self._groups)
+        read = self._read[key] if key in self._read else self._output(source, key)
         return read.weighted(LUMINANCE) if socket.type == "VALUE" else read
 
-    def _output(self, source: tuple[Node, str]) -> Product:
+    def _output(self, source: tuple[Node, str], key: tuple) -> Product:
         node, output = source
-        reader = _READERS.get((node.bl_idname, output))
-        if reader is None or node.mute:
+        reader = self._reader(node, output)
+        if reader is None:
             raise UnreadableError(f"a {'muted ' if node.mute else ''}{node.bl_label} node")
-        if source in self._followed:
+        if key in self._followed:
             raise UnreadableError(f"a {node.bl_label} node in a ring of nodes")
         if len(self._followed) == MAX_CHAIN:
             raise UnreadableError(f"a chain of more than {MAX_CHAIN} nodes")
-        self._followed.append(source)
-        self._read[source] = reader(node, self.product)
+        self._followed.append(key)
+        self._read[key] = reader(node, self.product)
         self._followed.pop()
-        return self._read[source]
+        return self._read[key]
+
+    def _reader(self, node: Node, output: str) -> Reader | None:
+        if node.mute:
+            return _passed_through(node, output)
+        if node.bl_idname == "ShaderNodeGroup" and node.node_tree is not None:
+            return lambda node, _: self._inside(node, output)
+        if node.bl_idname == "NodeGroupInput" and self._groups:
+            return lambda node, _: self._outside(output)
+        return _READERS.get((node.bl_idname, output))
+
+    def _inside(self, group: Node, output: str) -> Product:
+        """What a group puts out."""
+        ends = (n for n in group.node_tree.nodes if n.bl_idname == "NodeGroupOutput" and n.is_active_output)
+        end = next(ends, None)
+        if end is None:
+            raise UnreadableError(f"the group {group.node_tree.name!r}, which has no output")
+        self._groups.append(group)
+        try:
+            return self.product(_input(end, output))
+        finally:
+            self._groups.pop()
+
+    def _outside(self, output: str) -> Product:
+        """What is put into the innermost group."""
+        group = self._groups.pop()
+        try:
+            return self.product(_input(group, output))
+        finally:
+            self._groups.append(group)
+
+
+def _passed_through(node: Node, output: str) -> Reader | None:
+    """A muted node hands on the input that Blender links to that output inside of it; None where it links none."""
+    links = (link for link in node.internal_links if link.to_socket.identifier == output)
+    found = next(links, None)
+    return found and (lambda node, read: read(found.from_socket))
 
 
 def constant(socket: Socket) -> Product:

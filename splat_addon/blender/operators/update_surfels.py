@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import bpy
+from bpy.props import BoolProperty
 
 from ..conversion.batch import Batch, ConversionBatch
 from ..conversion.following import follows
@@ -11,7 +12,7 @@ from ..conversion.mesh_settings import choices
 from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import keywords, viewpoint
 from ..conversion.source_record import record_of, sources_of
-from ..conversion.ties import tie_shape
+from ..conversion.ties import keep_unread, tie_shape
 from ..ids import UPDATE_SURFELS
 from .menu_entry import with_menu_entry
 
@@ -28,6 +29,12 @@ class OBJECT_OT_surfels_update(bpy.types.Operator):
     bl_label = "Update Surfels from Source"
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads a set
 
+    bake: BoolProperty(
+        name="Bake Materials",
+        description="Let Cycles bake what the materials could not be read for. 35 s for a million surfels and input",
+        options={"SKIP_SAVE"},
+    )
+
     @classmethod
     def poll(cls, context):
         if context.mode != "OBJECT":
@@ -43,6 +50,8 @@ class OBJECT_OT_surfels_update(bpy.types.Operator):
         return {"FINISHED"} if updated else {"CANCELLED"}
 
     def _update(self, made: bpy.types.Object, context: bpy.types.Context) -> bool:
+        if self.bake:
+            record_of(made).mesh.bake_materials = True
         try:
             batch = _batch(made, context)
         except ValueError as error:
@@ -52,6 +61,7 @@ class OBJECT_OT_surfels_update(bpy.types.Operator):
             batch.sample(conversion)
         replaced = batch.replace(made, context)
         for conversion in replaced:
+            keep_unread(made, conversion)
             if follows(made, conversion.sources[0]):
                 for note in tie_shape(conversion, made, record_of(made).kind):
                     self.report({"WARNING"}, note)

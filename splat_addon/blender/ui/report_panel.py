@@ -4,15 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from textwrap import wrap
 
 import bpy
 
 from ..engine import final_render, viewport
 from .engine_panel import EnginePanel
-
-#: Pixels of a letter at 72 dots an inch, on average; a panel's own margins in letters.
-_LETTER, _MARGIN = 6.0, 8
+from .wrapped_text import write
 
 
 class RENDER_PT_surfel_report(EnginePanel, bpy.types.Panel):
@@ -29,7 +26,7 @@ class RENDER_PT_surfel_report(EnginePanel, bpy.types.Panel):
                 box = self.layout.box()
                 box.label(text=title, icon="ERROR")
                 for sentence in sentences:
-                    _write(box, sentence, context)
+                    write(box, sentence, context)
 
 
 class RENDER_PT_surfel_report_times(EnginePanel, bpy.types.Panel):
@@ -59,7 +56,7 @@ class RENDER_PT_surfel_report_plan(EnginePanel, bpy.types.Panel):
 
     def draw(self, context):
         for line in str(final_render.last_frame_stats["plan"]).splitlines():
-            _write(self.layout, line, context)
+            write(self.layout, line, context)
 
 
 def measured(stats: dict) -> Iterator[str]:
@@ -73,15 +70,6 @@ def measured(stats: dict) -> Iterator[str]:
     yield f"Time: {stats['milliseconds']:,.0f} ms{f', {samples} samples' if samples > 1 else ''}"
     yield f"Textures on the device: {stats['texture_bytes'] / 1e6:,.1f} MB"
     yield f"Device: {stats['device']}, {stats['backend']}"
-
-
-def _write(layout: bpy.types.UILayout, text: str, context: bpy.types.Context) -> None:
-    """A text in as many lines as the panel's width asks for."""
-    width = context.region.width / (_LETTER * context.preferences.system.ui_scale) - _MARGIN if context.region else 60
-    column = layout.column(align=True)
-    column.scale_y = 0.8
-    for line in wrap(text, max(int(width), 20)) or [""]:
-        column.label(text=line)
 
 
 register, unregister = bpy.utils.register_classes_factory(

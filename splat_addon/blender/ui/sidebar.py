@@ -11,7 +11,7 @@ from ..conversion.gathering import frame_of, groups
 from ..conversion.mesh_conversion import Choices
 from ..conversion.mesh_settings import PROPERTY_NAMES, choices, draw_properties
 from ..conversion.prediction import Extent, known_extents
-from ..conversion.source_record import sources_of
+from ..conversion.source_record import record_of, sources_of
 from ..export.object_detail import detail_of, finer
 from ..geometry.sources import is_surfel_object
 from ..ids import (
@@ -26,6 +26,7 @@ from ..ids import (
 from ..operators.show_surfels import shows_surfels
 from ..operators.surfels_from_mesh import selected_sources
 from ..operators.update_surfels import updatable
+from .wrapped_text import write
 
 
 class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
@@ -52,11 +53,21 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
             setattr(button, name, getattr(settings, name))
         self._draw_surfels(context)
 
+    def _draw_unread(self, sentences: list[str], context):
+        """What the materials could not be read for, and the button that bakes it."""
+        if not sentences:
+            return
+        box = self.layout.box()
+        for sentence in sentences:
+            write(box, sentence, context)
+        box.operator(UPDATE_SURFELS, text="Bake Materials", icon="RENDER_STILL").bake = True
+
     def _draw_surfels(self, context):
         """What there is to do with the active object, if that is surfels."""
         if context.active_object in updatable(context):
             names = ", ".join(source.name for source in sources_of(context.active_object))
             self.layout.operator(UPDATE_SURFELS, text=f"Update from {names}", icon="FILE_REFRESH")
+            self._draw_unread(record_of(context.active_object).unread.splitlines(), context)
         # Another engine shows points in place of a surfel object.
         if context.active_object is not None and is_surfel_object(context.active_object) and not shows_surfels(context):
             self.layout.operator(SHOW_SURFELS, icon="SHADING_RENDERED")

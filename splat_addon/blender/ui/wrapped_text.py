@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sentences in panels, which Blender does not break into lines."""
+
+from __future__ import annotations
+
+from textwrap import wrap
+
+import bpy
+
+#: Pixels of a letter at 72 dots an inch, on average; a panel's own margins in letters.
+_LETTER, _MARGIN = 6.0, 8
+
+
+def write(layout: bpy.types.UILayout, text: str, context: bpy.types.Context) -> None:
+    """A text in as many lines as the panel's width asks for."""
+    width = context.region.width / (_LETTER * context.preferences.system.ui_scale) - _MARGIN if context.region else 60
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    for line in wrap(text, max(int(width), 20)) or [""]:
+        column.label(text=line)
