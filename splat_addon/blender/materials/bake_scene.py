@@ -19,6 +19,7 @@ from ..geometry.mesh_extraction import slot_materials
 from ..geometry.sources import shown_by
 from .material_surfaces import SHADERS, surface_shader, uses_nodes
 from .node_products import linked
+from .shader_mixes import emitted
 
 #: Pixels along a square.
 SIDE = 2
@@ -29,7 +30,6 @@ _MISSED = -1.0
 #: How `bpy.ops.object.bake` is asked, by kind.
 _KINDS = {
     "EMIT": {},
-    "DIFFUSE": {"pass_filter": {"COLOR"}},
     "NORMAL": {"normal_space": "OBJECT", "normal_r": "POS_X", "normal_g": "POS_Y", "normal_b": "POS_Z"},
 }
 
@@ -65,13 +65,13 @@ class BakeScene:
     ) -> np.ndarray:
         """(n, 4, 3) float32 values in the four pixels of n squares; NaN where nothing was met.
 
-        kind: "EMIT", "DIFFUSE" (colour) or "NORMAL" (of world space, 0 to 1). channel: the field of `Surface` whose
+        kind: "EMIT" or "NORMAL" (of world space, 0 to 1). channel: the field of `Surface` whose
         input becomes the emission of these materials. corners: (n, 4, 3) of the squares, world space. reach: world
         units above and below a square within which a surface is looked for.
         """
         for material in materials:
             if kind == "EMIT":
-                _emit(self._copies[material], SHADERS[surface_shader(material).bl_idname][channel])
+                _emit(self._copies[material], channel)
         made = len(self._made)
         try:
             image, squares = self._squares(corners)
@@ -175,10 +175,13 @@ class BakeScene:
         return image, self._object(mesh, np.eye(4))
 
 
-def _emit(material: bpy.types.Material, sockets: tuple[str, ...]) -> None:
-    """Let the surface send out what feeds these sockets of its shader: a colour or a number, and a strength."""
+def _emit(material: bpy.types.Material, channel: str) -> None:
+    """Let the surface send out what feeds that channel of its shader: a colour or a number, and a strength."""
     tree, shader = material.node_tree, surface_shader(material)
     emission = tree.nodes.new("ShaderNodeEmission")
+    sockets = SHADERS[shader.bl_idname][channel] if shader.bl_idname in SHADERS else ()
+    if not sockets:
+        tree.links.new(emitted(tree, shader, channel), emission.inputs["Color"])
     for socket, into in zip(sockets, ("Color", "Strength"), strict=False):
         source, target = shader.inputs[socket], emission.inputs[into]
         if linked(source) is not None:

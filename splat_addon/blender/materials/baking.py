@@ -16,6 +16,9 @@ from ...surfels import OPTIONAL_LAYOUT, Surfels
 from .bake_scene import BakeScene
 from .material_surfaces import SHADERS, Unread, surface_shader
 
+#: Below it nothing is seen of a colour.
+_LEAST_OPACITY = 1e-4
+
 #: Surfels of one bake: four million pixels, 64 MB.
 _CHUNK = 1_000_000
 
@@ -63,7 +66,22 @@ def baked(surfels: Surfels, what: Bakeable, depsgraph: bpy.types.Depsgraph) -> t
                 good = np.isfinite(values).all(axis=1)
                 missed += int(np.count_nonzero(~good))
                 target[chunk[good]] = values[good] if target.ndim == 2 else values[good, 0]
+    _uncover(arrays["colors"], slots, what)
     return replace(surfels, **arrays), missed
+
+
+def _uncover(colors: np.ndarray, slots: np.ndarray, what: Bakeable) -> None:
+    """Of mixed shaders colours are baked as far as they are covered; make them whole."""
+    mixed = {m for m, unread in what.unread if unread.channel == "opacity" and _is_mixed(m)}
+    rows = np.isin(slots, [k for k, material in enumerate(what.materials) if material in mixed])
+    opacity = np.clip(colors[rows, 3:], 0, 1)
+    colors[rows, 3:] = opacity
+    colors[rows, :3] = np.where(opacity > _LEAST_OPACITY, colors[rows, :3] / np.maximum(opacity, _LEAST_OPACITY), 0)
+
+
+def _is_mixed(material: bpy.types.Material) -> bool:
+    shader = surface_shader(material)
+    return shader is not None and shader.bl_idname not in SHADERS
 
 
 def _passes(unread) -> dict[tuple[str, str], set[bpy.types.Material]]:
@@ -76,7 +94,7 @@ def _passes(unread) -> dict[tuple[str, str], set[bpy.types.Material]]:
         if what.channel == "normal_map":
             kind = "NORMAL"
         else:
-            kind = "EMIT" if shader.bl_idname in SHADERS else "DIFFUSE"
+            kind = "EMIT"
         passes[kind, what.channel].add(material)
     return passes
 

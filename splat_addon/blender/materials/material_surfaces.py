@@ -17,6 +17,7 @@ from ...sampling.attributes.surfaces import ALPHA, RED
 from ..geometry.attributes import has_surfels_beside_faces
 from . import node_products
 from .node_products import AttributeSource, ImageSource, Product, constant, linked, product
+from .shader_mixes import channels
 from .texture_images import UnreadableError, linear_pixels
 from .texture_placement import placement, uv_layer
 
@@ -134,8 +135,9 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
         return plain, []
     shader = surface_shader(material)
     if shader is None or shader.bl_idname not in SHADERS:
-        name = f"a {shader.bl_label} node" if shader else "no shader at its output"
-        return plain, [Unread("color", name)]
+        if shader is None:
+            return plain, [Unread("color", "no shader at its output")]
+        return plain, [Unread(channel, f"a {shader.bl_label} node") for channel in channels(shader)]
     return _Reader(shader, layers).surface()
 
 

@@ -154,6 +154,11 @@ class _Reading:
             self._groups.append(group)
 
 
+def passed_through_link(node: Node) -> bpy.types.NodeLink | None:
+    """The link inside of a muted shader, from one of its inputs to its output."""
+    return next((link for link in node.internal_links if link.to_socket == node.outputs[0]), None)
+
+
 def _passed_through(node: Node, output: str) -> Reader | None:
     """A muted node hands on the input that Blender links to that output inside of it; None where it links none."""
     links = (link for link in node.internal_links if link.to_socket.identifier == output)

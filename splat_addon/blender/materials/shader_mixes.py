@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Mixed and added shaders, and those that have no diffuse colour such as Glass, as colours that Cycles can bake.
+
+A tree of shaders becomes a tree of colours of the same shape, once for each thing that surfels keep: Mix Shader mixes
+them, Add Shader adds them, and each shader at an end gives its own. What a surface lets through adds up as light does,
+so opacity is 1 less that, and colours count as much as their shader covers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import bpy
+
+from .node_products import linked, passed_through_link
+
+Node = bpy.types.Node
+Tree = bpy.types.NodeTree
+Socket = bpy.types.NodeSocket
+#: A socket, or the colour that stands for it.
+Given = Socket | tuple[float, float, float]
+
+_BLACK, _WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
+
+#: What a shader sends out is the product of these.
+_EMISSION_SOCKETS = {"EMISSION": ("Color", "Strength"), "BSDF_PRINCIPLED": ("Emission Color", "Emission Strength")}
+
+#: Shaders that let everything through, and cover nothing.
+_CLEAR = ("BSDF_TRANSPARENT", "HOLDOUT")
+
+
+def ends(shader: Node) -> Iterator[Node]:
+    """The shaders that a tree of them is made of."""
+    if shader.mute:
+        link = passed_through_link(shader)
+        source = link and linked(link.from_socket)
+        if source:
+            yield from ends(source[0])
+    elif shader.type in ("MIX_SHADER", "ADD_SHADER"):
+        for socket in shader.inputs:
+            source = linked(socket) if socket.type == "SHADER" else None
+            if source:
+                yield from ends(source[0])
+    else:
+        yield shader
+
+
+def channels(shader: Node) -> list[str]:
+    """What of a surface is to be baked of a tree of shaders."""
+    kinds = [end.type for end in ends(shader)]
+    emits = any(end.type == "EMISSION" or _emits(end) for end in ends(shader))
+    is_clear = any(kind in _CLEAR or kind == "BSDF_PRINCIPLED" for kind in kinds)
+    return ["color", *["opacity"] * is_clear, *["emission"] * emits]
+
+
+def _emits(end: Node) -> bool:
+    strength = end.inputs.get("Emission Strength")
+    return strength is not None and (strength.is_linked or strength.default_value != 0)
+
+
+def emitted(tree: Tree, shader: Node, channel: str) -> Socket:
+    """New nodes' output that is one channel of a tree of shaders; of the colour as much as is covered."""
+    found = _combined(tree, shader, channel)
+    if channel == "opacity":
+        found = _mixed(tree, "SUBTRACT", _WHITE, found)
+    return found if isinstance(found, Socket) else _mixed(tree, "ADD", found, _BLACK)
+
+
+def _combined(tree: Tree, shader: Node | None, channel: str) -> Given:
+    if shader is None:
+        return _BLACK
+    if shader.mute:
+        link = passed_through_link(shader)
+        return _combined(tree, _source(link.from_socket) if link else None, channel)
+    if shader.type in ("MIX_SHADER", "ADD_SHADER"):
+        first, second = (_combined(tree, _source(s), channel) for s in shader.inputs if s.type == "SHADER")
+        if shader.type == "ADD_SHADER":
+            return _mixed(tree, "ADD", first, second)
+        return _mixed(tree, "MIX", first, second, shader.inputs[0])
+    return _ENDS[channel](tree, shader)
+
+
+def _source(socket: Socket) -> Node | None:
+    source = linked(socket)
+    return source and source[0]
+
+
+def _color(tree: Tree, end: Node) -> Given:
+    if end.type in _CLEAR or end.type == "EMISSION":
+        return _BLACK
+    if end.type == "BSDF_PRINCIPLED":
+        return _mixed(tree, "MULTIPLY", _given(end.inputs["Base Color"]), _given(end.inputs["Alpha"]))
+    color = end.inputs.get("Color") or end.inputs.get("Base Color")
+    return (0.8, 0.8, 0.8) if color is None else _given(color)
+
+
+def _let_through(tree: Tree, end: Node) -> Given:
+    if end.type == "BSDF_PRINCIPLED":
+        return _mixed(tree, "SUBTRACT", _WHITE, _given(end.inputs["Alpha"]))
+    return _WHITE if end.type in _CLEAR else _BLACK
+
+
+def _emission(tree: Tree, end: Node) -> Given:
+    names = {"EMISSION": ("Color", "Strength"), "BSDF_PRINCIPLED": ("Emission Color", "Emission Strength")}.get(
+        end.type
+    )
+    if names is None:
+        return _BLACK
+    return _mixed(tree, "MULTIPLY", *(_given(end.inputs[name]) for name in names))
+
+
+#: channel -> what a shader at an end gives; of the opacity, what it lets through
+_ENDS = {"color": _color, "opacity": _let_through, "emission": _emission}
+
+
+def _given(socket: Socket) -> Given:
+    """What feeds a socket, or its own value as a colour."""
+    if linked(socket) is not None:
+        return socket.links[0].from_socket
+    value = socket.default_value
+    return (value,) * 3 if isinstance(value, float) else tuple(value[:3])
+
+
+def _mixed(tree: Tree, how: str, a: Given, b: Given, factor: Socket | None = None) -> Socket:
+    """The colour of a new Mix node."""
+    node = tree.nodes.new("ShaderNodeMix")
+    node.data_type, node.blend_type, node.clamp_factor, node.clamp_result = "RGBA", how, True, False
+    sockets = {socket.identifier: socket for socket in node.inputs}
+    sockets["Factor_Float"].default_value = 1.0
+    for name, given in (("A_Color", a), ("B_Color", b)):
+        if isinstance(given, bpy.types.NodeSocket):
+            tree.links.new(given, sockets[name])
+        else:
+            sockets[name].default_value = (*given, 1.0)
+    if factor is not None:
+        if linked(factor) is not None:
+            tree.links.new(factor.links[0].from_socket, sockets["Factor_Float"])
+        else:
+            sockets["Factor_Float"].default_value = factor.default_value
+    return next(socket for socket in node.outputs if socket.identifier == "Result_Color")

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What Cycles bakes of mixed, added and colourless shaders is what they look like: never black."""
+
+import bpy
+import numpy as np
+import pytest
+
+RED, BLUE = (0.8, 0.1, 0.1, 1), (0.1, 0.2, 0.9, 1)
+
+
+@pytest.fixture
+def tree(add_square):
+    """The node tree of a square's material, with nothing but its output."""
+    material = bpy.data.materials.new("made")
+    if material.node_tree is None:
+        material.use_nodes = True
+    for node in list(material.node_tree.nodes):
+        if node.type != "OUTPUT_MATERIAL":
+            material.node_tree.nodes.remove(node)
+    add_square().data.materials.append(material)
+    return material.node_tree
+
+
+@pytest.fixture
+def baked(tree, convert, surfels_of):
+    """baked(shader) -> the surfels of the square with that shader at its output."""
+
+    def bake(shader):
+        tree.links.new(shader.outputs[0], tree.get_output_node("ALL").inputs["Surface"])
+        (made,) = convert(resolution=4, bake_materials=True)
+        return surfels_of(made)
+
+    return bake
+
+
+def add(tree, kind, color=None, **values):
+    node = tree.nodes.new(kind)
+    if color is not None:
+        node.inputs["Color"].default_value = color
+    for name, value in values.items():
+        node.inputs[name].default_value = value
+    return node
+
+
+def joined(tree, kind, first, second, factor=None):
+    node = tree.nodes.new(kind)
+    sockets = [socket for socket in node.inputs if socket.type == "SHADER"]
+    for shader, socket in zip((first, second), sockets, strict=True):
+        tree.links.new(shader.outputs[0], socket)
+    if factor is not None:
+        node.inputs[0].default_value = factor
+    return node
+
+
+@pytest.mark.parametrize("kind", ["ShaderNodeBsdfGlass", "ShaderNodeBsdfGlossy", "ShaderNodeBsdfTranslucent"])
+def test_a_shader_without_a_diffuse_part_has_its_colour(kind, tree, baked):
+    assert np.abs(baked(add(tree, kind, RED)).colors - RED).max() < 2e-3
+
+
+def test_a_mix_mixes(tree, baked):
+    mix = joined(tree, "ShaderNodeMixShader", *(add(tree, "ShaderNodeBsdfDiffuse", c) for c in (RED, BLUE)), 0.25)
+    expected = 0.75 * np.array(RED) + 0.25 * np.array(BLUE)
+    assert np.abs(baked(mix).colors - expected).max() < 2e-3
+
+
+def test_a_mix_with_transparent_keeps_transparency_and_colour(tree, baked):
+    clear, red = add(tree, "ShaderNodeBsdfTransparent"), add(tree, "ShaderNodeBsdfGlossy", RED)
+    surfels = baked(joined(tree, "ShaderNodeMixShader", clear, red, 0.75))
+    assert np.abs(surfels.colors - (*RED[:3], 0.75)).max() < 3e-3
+
+
+def test_a_holdout_is_clear(tree, baked):
+    assert np.abs(baked(add(tree, "ShaderNodeHoldout")).colors[:, 3]).max() < 1e-3
+
+
+def test_an_added_emission_is_kept(tree, baked):
+    light = add(tree, "ShaderNodeEmission", BLUE, Strength=3.0)
+    surfels = baked(joined(tree, "ShaderNodeAddShader", add(tree, "ShaderNodeBsdfDiffuse", RED), light))
+    assert np.abs(surfels.colors - RED).max() < 2e-3
+    assert np.abs(surfels.emission - 3 * np.array(BLUE[:3])).max() < 1e-2
+
+
+def test_a_muted_mix_hands_on_its_first_shader(tree, baked):
+    mix = joined(tree, "ShaderNodeMixShader", *(add(tree, "ShaderNodeBsdfDiffuse", c) for c in (RED, BLUE)), 1.0)
+    mix.mute = True
+    assert np.abs(baked(mix).colors - RED).max() < 2e-3
