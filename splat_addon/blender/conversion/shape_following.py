@@ -57,13 +57,12 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
     frame, own = (np.array(m, np.float64) for m in (conversion.matrix_world, source.matrix_world))
     if surfels.origin.any() or np.abs(frame - own).max() > _ROUNDING * np.abs(own).max():
         return "its surfels are even in the world, or it is sheared or far from its origin"
-    if surfels.has_uvs or surfels.clip_line is not None:
-        return "its surfels are texture-mapped or end at edges"
     _bind(made.data, surfels, np.asarray(mesh.positions, np.float64), mesh.triangles)
     modifier = made.modifiers.new(SHAPE_GROUP, "NODES")
     modifier.node_group, modifier.show_expanded = _group(), False
     made.modifiers.move(len(made.modifiers) - 1 - _pinned(made), 0)
-    for name, value in (("Source", source), ("Vertices", len(mesh.positions))):
+    turns = not (surfels.has_uvs or surfels.clip_line is not None)
+    for name, value in (("Source", source), ("Vertices", len(mesh.positions)), ("Turns", float(turns))):
         _give(modifier, name, value)
     return None
 
@@ -145,6 +144,7 @@ def _new_group() -> bpy.types.NodeTree:
         group.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
     group.interface.new_socket("Source", in_out="INPUT", socket_type="NodeSocketObject")
     group.interface.new_socket("Vertices", in_out="INPUT", socket_type="NodeSocketInt")
+    group.interface.new_socket("Turns", in_out="INPUT", socket_type="NodeSocketFloat")
     m, link = Maths(group), group.links.new
     given, result = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
     info = group.nodes.new("GeometryNodeObjectInfo")
@@ -166,9 +166,11 @@ def _new_group() -> bpy.types.NodeTree:
     )
     shading = m.vector("NORMALIZE", m.combined(dual, m.attribute(_NORMAL, "FLOAT_VECTOR")))
 
-    # u and v are conjugate half-diameters of the new ellipse; turned by t they are its half-axes
+    # u and v are conjugate half-diameters of the new ellipse; turned by t they are its half-axes. Textures and clip
+    # lines go by the axes: where a surfel has them it is not turned, and a sheared one is as long as u and v
     crossed = m.number("MULTIPLY", m.dot(u, v), 2.0)
     t = m.number("MULTIPLY", m.number("ARCTAN2", crossed, m.number("SUBTRACT", m.dot(u, u), m.dot(v, v))), 0.5)
+    t = m.number("MULTIPLY", t, given.outputs["Turns"])
     cosine, sine = m.number("COSINE", t), m.number("SINE", t)
     x = m.vector("ADD", m.vector("SCALE", u, scale=cosine), m.vector("SCALE", v, scale=sine))
     y = m.vector("SUBTRACT", m.vector("SCALE", v, scale=cosine), m.vector("SCALE", u, scale=sine))

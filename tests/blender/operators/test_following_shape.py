@@ -42,10 +42,11 @@ def add_keys(sheet):
     return key
 
 
-def test_shape_keys_bend_surfels(sheet, convert, bent_surfels):
+@pytest.mark.parametrize("clips_edges", [False, True])
+def test_shape_keys_bend_surfels(clips_edges, sheet, convert, bent_surfels):
     key = add_keys(sheet)
     key.value = 0.0
-    (made,) = convert(resolution=16, splat_size=1.0)
+    (made,) = convert(density="RESOLUTION", resolution=16, splat_size=1.0, clips_edges=clips_edges)
     flat = bent_surfels(made)
     assert np.abs(flat.normals - (0, 0, 1)).max() < 1e-5
     key.value = 1.0
@@ -79,7 +80,7 @@ def add_armature(sheet):
 @pytest.mark.parametrize("source", ["KEEP", "HIDE"])
 def test_an_armature_bends_surfels_even_of_a_hidden_source(source, sheet, convert, bent_surfels):
     armature = add_armature(sheet)
-    (made,) = convert(resolution=16, source=source)
+    (made,) = convert(density="RESOLUTION", resolution=16, source=source)
     before = bent_surfels(made).positions
     armature.pose.bones["Bone"].location.y = 0.5
     after = bent_surfels(made).positions
@@ -91,19 +92,19 @@ def test_an_armature_bends_surfels_even_of_a_hidden_source(source, sheet, conver
 
 def test_a_frozen_copy_is_not_bent(sheet, convert):
     add_keys(sheet)
-    (made,) = convert(resolution=16, follow=False)
+    (made,) = convert(density="RESOLUTION", resolution=16, follow=False)
     assert [modifier.name for modifier in made.modifiers] == ["Surfels as Points"]
 
 
 def test_what_nothing_bends_costs_nothing(sheet, convert):
-    (made,) = convert(resolution=16)
+    (made,) = convert(density="RESOLUTION", resolution=16)
     assert [modifier.name for modifier in made.modifiers] == ["Surfels as Points"]
     assert not any("bound" in attribute.name for attribute in made.data.attributes)
 
 
 def test_an_update_binds_anew(sheet, convert, bent_surfels):
     key = add_keys(sheet)
-    (made,) = convert(resolution=16)
+    (made,) = convert(density="RESOLUTION", resolution=16)
     key.value = 1.0
     assert bpy.ops.object.surfels_update() == {"FINISHED"}
     assert len(made.modifiers) == 2 and made.modifiers[0].name == "Follow Shape"
@@ -115,7 +116,7 @@ def test_an_update_binds_anew(sheet, convert, bent_surfels):
 def test_what_is_not_followed_is_named(sheet, convert, capfd):
     add_keys(sheet)
     sheet.scale = (1, 2, 1)
-    convert(resolution=16, space="WORLD")
+    convert(density="RESOLUTION", resolution=16, space="WORLD")
     assert "Warning: What bends 'Sheet' does not bend its surfels" in capfd.readouterr().out
 
 
@@ -123,6 +124,6 @@ def test_other_levels_in_the_viewport_are_named(sheet, convert, capfd, bent_surf
     add_keys(sheet).value = 0.0
     modifier = sheet.modifiers.new("Fine", "SUBSURF")
     modifier.levels, modifier.render_levels = 0, 1
-    (made,) = convert(resolution=16)
+    (made,) = convert(density="RESOLUTION", resolution=16)
     assert "Warning: The surfels are bent in renders only: Fine has other levels" in capfd.readouterr().out
     assert len(bent_surfels(made))
