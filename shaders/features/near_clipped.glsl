@@ -4,9 +4,7 @@
 #part vertex
 const float STRADDLING_MARGIN = 1.02;
 
-bool reaches_near(Splat splat) {
-  return -splat.position.z - length(vec2(splat.axis_u.z, splat.axis_v.z)) <= view.near;
-}
+#include "lib/reaches_near.glsl"
 
 #part screen_space.vert
 void near_clipped_clip(Splat splat, inout bool in_space) {

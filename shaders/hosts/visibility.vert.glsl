@@ -2,7 +2,7 @@
 //             (visibility splatting); the view-independent paper, section 5 (the offset along the view ray).
 // Summary: every splat moved away from the eye by its own epsilon, so that what lies within epsilon blends; by no less
 //          than the depth can resolve, or rounding would let a splat hide itself. Hooks: `blend` less deeply, `move` by
-//          another length.
+//          another length, `shape` of what hides, where it is not the exact ellipse.
 
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/nowhere.glsl"
@@ -23,5 +23,6 @@ void main() {
   #hook blend(splat, eye, offset)
   #hook move(splat, radius, offset)
   vec4 moved = splat_corner(eye, offset);
+  #hook shape(splat, corner, offset, moved)
   gl_Position = splat.is_hidden ? NOWHERE : moved;
 }

@@ -33,7 +33,7 @@ def global_names(text: str) -> set[str]:
 
 def home(file) -> str:
     """The folder of a file of which a text has one; else the file."""
-    if file.stem == "homogeneous":  # two methods have this in common
+    if file.parent.name == "lib" and file.stem in ("homogeneous", "sprites"):  # two methods have it in common
         return "methods"
     return file.parent.name if file.parent.name in CHOICES else file.relative_to(FOLDER).as_posix()
 

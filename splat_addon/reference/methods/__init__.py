@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The numpy twins of the methods: what shaders/methods computes of one splat, in float64."""
 
-from . import ewa, homogeneous, homogeneous_printed, mip, quad, raycast, sprites, sprites_unfiltered
+from . import ewa, homogeneous, homogeneous_printed, mip, quad, raycast, sprites, sprites_printed, sprites_unfiltered
+
+_MODULES = ewa, homogeneous, homogeneous_printed, mip, quad, raycast, sprites, sprites_printed, sprites_unfiltered
 
 #: name of a method -> samples(plane, points, pixel) -> (weights, depths)
-TWINS = {
-    module.__name__.rpartition(".")[2]: module.samples
-    for module in (ewa, homogeneous, homogeneous_printed, mip, quad, raycast, sprites, sprites_unfiltered)
-}
+TWINS = {module.__name__.rpartition(".")[2]: module.samples for module in _MODULES}

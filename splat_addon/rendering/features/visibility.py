@@ -12,6 +12,7 @@ from .drawing import draw_polygons, draw_splats, drawn_by, storage_samplers
 
 DEPTH = Texture("visibility_depth", "DEPTH32F", is_multisampled=True)
 ROW_DEPTH = Texture("row_depth", "DEPTH32F", silhouettes.of_rows)
+NAMES = ("visibility", "sprite_visibility")
 _OF_POLYGONS = Part("visibility", ("of_polygons",), inputs=("polygon_corners",), only="polygons")
 
 
@@ -30,6 +31,7 @@ def own_parts(planning, depth: Texture, reads=(), words=()) -> tuple[Part, ...]:
             varyings=(("smooth", "vec3", "place_depth"),),
         ),
         Part("visibility", reads=reads, inputs=storage_samplers(planning.settings.storage), only="splats"),
+        *((Part("sprite_visibility", only="splats"),) if planning.method.sprites_hide else ()),
         Part("visibility", varyings=(("smooth", "vec3", "across_offset"),), only="linear"),
         *((_OF_POLYGONS,) if planning.scene.polygons else ()),
     )

@@ -18,6 +18,7 @@ class Method:
     filters_silhouettes: a resolve pass filters them as the colours are.
     culls_hidden: splats that lie behind all that is seen are found before they are drawn. The papers draw them, so do
         their methods here.
+    sprites_hide: visibility too is of its sprites. Else it is of the exact ellipses.
     pixel_variance: of its pixel filter, samples squared; 1/12 is that of a box. Textures are looked up under it.
     """
 
@@ -29,6 +30,7 @@ class Method:
     blurs_rims: bool = False
     filters_silhouettes: bool = False
     culls_hidden: bool = False
+    sprites_hide: bool = False
     pixel_variance: float = 0.5
 
 
@@ -82,6 +84,15 @@ METHODS = {
             "Sprites",
             "Botsch and Kobbelt 2003, sections 3.1 to 3.4",
             "Discs in point sprites; opens holes at flat angles",
+            sprites_hide=True,
+            pixel_variance=1 / 12,
+        ),
+        Method(
+            "sprites_printed",
+            "Sprites, as Printed",
+            "Botsch and Kobbelt 2003, equation 4 as printed",
+            "The paper's own formula: depths are off by as much as splats are flatter or steeper than 1 unit",
+            sprites_hide=True,
             pixel_variance=1 / 12,
         ),
         Method(

@@ -8,13 +8,15 @@ import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs, sheet
+from splat_addon.reference.methods.sprites import window_depth
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Scene, Settings, plan
 
 SIZE = (128, 128)
 FLAT = Settings(shading="flat", supersampling=1)
-ONE_PASS, PRINTED, REPAIRED = (
-    replace(FLAT, method=name) for name in ("sprites_unfiltered", "homogeneous_printed", "homogeneous")
+ONE_PASS, SPRITES, SPRITES_PRINTED, PRINTED, REPAIRED = (
+    replace(FLAT, method=name)
+    for name in ("sprites_unfiltered", "sprites", "sprites_printed", "homogeneous_printed", "homogeneous")
 )
 AHEAD = Camera.perspective(np.eye(4), 1.0, SIZE, 0.01, 100)
 
@@ -27,7 +29,7 @@ POSES = {
 }
 
 
-@pytest.mark.parametrize("settings", [ONE_PASS, PRINTED], ids=lambda s: s.method)
+@pytest.mark.parametrize("settings", [ONE_PASS, SPRITES, SPRITES_PRINTED, PRINTED], ids=lambda s: s.method)
 @pytest.mark.parametrize("pose", POSES)
 def test_no_number_is_non_finite(pose, settings, render):
     frame = render(*POSES[pose], settings)
@@ -46,6 +48,41 @@ def test_a_grazing_sheet_is_truer_where_its_small_splats_keep_the_depth_of_their
     truth = render_exact(scene, camera, FLAT, samples=4, pixel_filter="gaussian")
     printed, repaired = (psnr(render(scene, camera, s).color, truth.color) for s in (PRINTED, REPAIRED))
     assert repaired > printed + 2
+
+
+def test_sprites_hide_by_their_own_shape_and_depth(render):
+    """What one pass of them covers both passes do; with the visibility of quads fewer pixels were."""
+    scene, camera = scenes.checker_plane(40, 10_000, 6, SIZE)
+    one, both = (render(scene, camera, settings).coverage > 0 for settings in (ONE_PASS, SPRITES))
+    assert np.count_nonzero(one) > 3000
+    np.testing.assert_array_equal(both, one)
+
+
+def test_sprites_alone_have_their_visibility():
+    parts = {
+        method: {part.feature for p in plan(*POSES["torus"], replace(FLAT, method=method)).passes for part in p.parts}
+        for method in ("sprites", "sprites_printed", "raycast", "quad")
+    }
+    assert [method for method in parts if "sprite_visibility" in parts[method]] == ["sprites", "sprites_printed"]
+
+
+def test_equation_4_runs_from_0_at_the_near_plane_to_1_at_the_far_one_and_not_as_printed():
+    near, far = 0.5, 20.0
+    ends = np.array((near, far))
+    np.testing.assert_allclose(window_depth(ends, near, far), (0, 1), atol=1e-12)
+    printed = window_depth(ends, near, far, as_printed=True)
+    np.testing.assert_allclose(printed, (-far / (far - near), 1 - near / (far - near)))
+
+
+def test_depths_lie_in_the_plane_of_a_tilted_disc_and_off_it_as_printed(render):
+    """Of a disc of radius 0.1 that leans by 45 degrees the plane is 0.05 nearer half a radius up; as printed, half a
+    unit farther."""
+    beside = discs((0.15, 0, -5), (0.01, 0, 0), (0, 0.01, 0))
+    scene, at = Scene((discs((0, 0, -2), (0.1, 0, 0), (0, 0.1, 0.1)), beside)), (82, 64)
+    camera = Camera.orthographic(np.eye(4), 0.36, SIZE, 0.1, 10)
+    up = (at[0] + 0.5 - 64) * 0.36 / 128
+    assert render(scene, camera, SPRITES).depth[at] == pytest.approx(2 - up, abs=2e-3)
+    assert render(scene, camera, SPRITES_PRINTED).depth[at] == pytest.approx(2 + up / (0.1 * 2**0.5), abs=1e-2)
 
 
 def test_one_pass_is_one_pass():

@@ -1,0 +1,6 @@
+// References: none needed.
+// Summary: whether a splat reaches the near plane, where no projection of its ellipse is known.
+
+bool reaches_near(Splat splat) {
+  return -splat.position.z - length(vec2(splat.axis_u.z, splat.axis_v.z)) <= view.near;
+}
