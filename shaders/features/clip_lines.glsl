@@ -47,9 +47,14 @@ bool is_inside_lines(vec2 place) {
   return (clip_is_reflex > 0.5 ? max(first, second) : min(first, second)) >= 0.0;
 }
 
-#part visibility.frag
+#part visibility.frag, of_ellipses
 void clip_lines_keep() {
   if (!is_inside_lines(place_depth.xy)) discard;
+}
+
+#part visibility.frag, of_sprites
+void clip_lines_keep() {
+  if (!is_inside_lines(gl_FragCoord.xy)) discard;
 }
 
 #part object_space.frag

@@ -3,8 +3,7 @@
 //          in its place: behind a silhouette splats stick out by their radius, and would rim it with the light of
 //          the far side. Alone, a back is drawn as any splat. The twin of reference/splats.py.
 
-const float BACK_WEIGHT = 1e-3;     // of a back against a front
-const float BACK_EPSILON = 2.0;     // a back is moved away that much further
+#include "lib/sides/{sides}.glsl"
 
 // A splat that shows less of itself is not there at all, and holds no layer.
 const float LEAST_OPACITY = 1e-3;

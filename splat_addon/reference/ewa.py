@@ -61,7 +61,7 @@ def render_ewa(
     rays through the pixels' centres, as `render_exact` does; the sums are normalised and shaded once a pixel.
     Clip lines cut what hides, and end kernels as the pixel's Gaussian blurs them (`clipped_kernels`).
     """
-    splats = eye_splats(scene, camera).as_opaque()
+    splats = eye_splats(scene, camera).as_asked(settings).as_opaque()
     before = -splats.center[:, 2] > (-np.inf if camera.is_orthographic else camera.near)
     grid = RayGrid.of_pixels(camera, 1, 0, 0, *camera.size)
     visibility, apart = _visibility(splats, grid, settings.epsilon), 1 + 4 * settings.epsilon

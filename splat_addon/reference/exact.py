@@ -6,6 +6,8 @@ Scene -> `splats` (eye space) -> in tiles: `rays` (visibility, weighted averages
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..rendering.frame import EMPTY_DEPTH, Frame
@@ -13,6 +15,7 @@ from ..rendering.scene import Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.settings import Settings
 from .filters import filter_weights, resample
+from .lit_splats import lit_splats
 from .outputs import OUTPUTS
 from .polygons import contact, joined, polygon_hits
 from .rays import RayGrid, Surface, layer_surfaces, splats_in, visible_depth, visible_surface
@@ -45,7 +48,9 @@ def render_exact(
     """
     weights = filter_weights(pixel_filter, samples)
     margin = (len(weights) // samples - 1) // 2
-    splats = eye_splats(scene, camera)
+    splats = eye_splats(scene, camera).as_asked(settings)
+    if settings.lights_splats:
+        splats, settings = lit_splats(splats, scene, camera, settings), replace(settings, shading="flat")
     bounds = projected_bounds(splats, camera)
     width, height = camera.size
     depth, means = np.empty((height, width)), {}

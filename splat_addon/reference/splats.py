@@ -13,6 +13,7 @@ import numpy as np
 from ..rendering.scene import Instance, Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.scene.light import MAX_LIGHT_SETS
+from ..rendering.settings import Settings
 from .textures import surfel_textures
 
 #: What the back of a splat weighs against a front, and how much further it is moved away: shaders/lib/sides.glsl.
@@ -90,6 +91,11 @@ class Splats:
     def take(self, rows: np.ndarray) -> Splats:
         """The splats of some rows."""
         return Splats(*(getattr(self, f.name)[rows] for f in fields(self)))
+
+    def as_asked(self, settings: Settings) -> Splats:
+        """Without backs, or with backs as fronts, where the settings say so."""
+        splats = self.take(np.flatnonzero(~self.is_back)) if settings.culls_backs else self
+        return replace(splats, is_back=np.zeros(len(splats), bool)) if settings.as_printed else splats
 
     def as_opaque(self) -> Splats:
         """The same, and nothing shows through them."""

@@ -228,6 +228,7 @@ class Renderer:
             "instances_degenerate": 0,
             "surfels_coarse": 0,
             "layers": 0,
+            "culled": frame_plan.facts.get("culled", 0),
             "passes": {},
         }
 

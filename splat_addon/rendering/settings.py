@@ -86,6 +86,10 @@ class Settings:
     transparent_film: leave the background out and keep its alpha at 0.
     outputs: which arrays of the `Frame` are wanted; the others are None and cost nothing. A position and
         an index bring the depth that they belong to.
+    lights_splats: light each splat where it stands and blend their colours, as Botsch and Kobbelt 2003 do, instead of
+        lighting the sample that they blend to.
+    culls_backs: leave out splats whose backs are seen, of open surfaces too (Botsch and Kobbelt 2003, section 4).
+    as_printed: draw backs as fronts, as the papers do; else they weigh little where there is a front.
     storage: the form in which surfels lie on the device, a name in `upload.storages`.
     accumulation: of the sums of colour and material, a name in `ACCUMULATIONS`.
     profile: wait for the device after each pass, so that the frame's statistics hold a time for each.
@@ -110,6 +114,9 @@ class Settings:
     alpha_threshold: float = 0.5
     transparent_film: bool = False
     outputs: tuple[str, ...] = ("color", "depth", "normal", "coverage")
+    lights_splats: bool = False
+    culls_backs: bool = False
+    as_printed: bool = False
     storage: str = "float32"
     accumulation: str = "float32"
     profile: bool = False
@@ -139,6 +146,11 @@ class Settings:
             raise ValueError(f"layers must be 1 to {MAX_LAYERS}, not {self.layers}.")
         if self.blends_rest and self.layers < 2:
             raise ValueError("layers must be 2 or more where the last one blends the rest, which needs a nearer one.")
+        if self.lights_splats and (blind := set(self.outputs) & {"diffuse_color", "emission", "shadow"}):
+            raise ValueError(
+                f"Splats that are lit one by one hand on no {', '.join(sorted(blind))}: leave these outputs out, or "
+                "set lights_splats to False."
+            )
         if not 0 <= self.alpha_threshold <= 1:
             raise ValueError(f"alpha_threshold must be 0 to 1, not {self.alpha_threshold}.")
         if not set(self.outputs) <= set(OUTPUTS):

@@ -21,7 +21,7 @@ CHOICES = {
     "background",
     "world_light",
 }
-CHOICES |= {"shadow_taps", "polygon_share"}
+CHOICES |= {"shadow_taps", "polygon_share", "sides"}
 GLOBAL = re.compile(r"^(?:const )?(?:struct (\w+)|\w+ (\w+)(?:\[\d*\])?(?:\(| =|;))", re.MULTILINE)
 
 

@@ -19,6 +19,8 @@ def missing(planning) -> str:
     scene = planning.scene
     if not planning.settings.ambient_occlusion:
         return "its distance is 0"
+    if planning.settings.lights_splats:
+        return "splats are lit one by one"
     if not planning.model.has_world:
         return f"{planning.model.name} shading does not look at the world's light"
     if not any(scene.world):

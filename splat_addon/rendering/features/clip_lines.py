@@ -40,6 +40,9 @@ def _words(planning, p) -> tuple[str, ...]:
     """How lines act: on places in the ellipse or in the picture, and blurred where the method blurs rims."""
     if p.host == f"{RASTERIZERS['sprites']}.frag":
         return ("of_sprites",)
+    if p.host == "visibility.frag":
+        is_of_sprites = planning.method.sprites_hide and p.kind in ("opaque", "layer")
+        return ("of_sprites",) if is_of_sprites else ("of_ellipses",)
     if p.host == f"{RASTERIZERS['picture']}.frag":
         return ("blurs_lines",) if planning.method.blurs_rims else ("cuts_at_lines",)
     return ()

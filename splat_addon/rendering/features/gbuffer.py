@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture
-from . import depth_format, shadows, visibility
+from . import depth_format, lit_splats, shadows, visibility
 from .drawing import LIT_HOSTS, RASTERIZERS, draw_splats, drawn_by
 from .rasterizers import rasterized
 
@@ -29,7 +29,8 @@ def depths_are_apart(planning, kind: str) -> bool:
 
 def depth_sum(planning) -> Texture:
     """Of depths that are apart."""
-    return DEPTH_PLANE_SUM if planning.find(shadows.maps) else DEPTH_SUM
+    has_planes = planning.find(shadows.maps) and not planning.settings.lights_splats
+    return DEPTH_PLANE_SUM if has_planes else DEPTH_SUM
 
 
 def depth_parts(planning, kind: str, **fields) -> Part:
@@ -59,8 +60,8 @@ def attributes(planning, reason: str, tests: Texture | None, kind: str = "opaque
     own_parts = own, *rasterized(planning), depth_parts(planning, kind, writes=(NORMAL,))
     if planning.method.works_in == "sprites":
         own_parts += (Part("gbuffer", writes=(SPRITE_DEPTH,)),)
-    host = f"{RASTERIZERS[planning.method.works_in]}.frag"
-    return Pass("attributes", reason, host, run, own_parts, kind, state(planning))
+    host, lit = f"{RASTERIZERS[planning.method.works_in]}.frag", lit_splats.each(planning)
+    return Pass("attributes", reason, host, lit_splats.run if lit else run, own_parts, kind, state(planning), each=lit)
 
 
 def passes(planning):

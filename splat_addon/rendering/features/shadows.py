@@ -67,6 +67,8 @@ def parts(planning, p):
     words, planes = (("planes_beside_depths",), ()) if is_beside else (("planes_apart",), (PLANE,))
     if p.host == "visibility.frag" and p.kind == "shadow":
         yield Part("shadows", only="splats")
+    if not planning.model.is_lit:
+        return
     if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer"):
         yield Part("shadows", ("adds_planes", *words), writes=planes, varyings=(("flat", "vec2", "splat_faces"),))
     if p.host in LIT_HOSTS:

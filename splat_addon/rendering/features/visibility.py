@@ -31,7 +31,6 @@ def own_parts(planning, depth: Texture, reads=(), words=()) -> tuple[Part, ...]:
             varyings=(("smooth", "vec3", "place_depth"),),
         ),
         Part("visibility", reads=reads, inputs=storage_samplers(planning.settings.storage), only="splats"),
-        *((Part("sprite_visibility", only="splats"),) if planning.method.sprites_hide else ()),
         Part("visibility", varyings=(("smooth", "vec3", "across_offset"),), only="linear"),
         *((_OF_POLYGONS,) if planning.scene.polygons else ()),
     )
@@ -62,6 +61,8 @@ def passes(planning):
 def parts(planning, p):
     if p.host == "screen_space.frag" and p.kind in ("opaque", "layer"):
         yield Part("visibility")
+    if p.host == "visibility.frag" and p.kind in ("opaque", "layer") and planning.method.sprites_hide:
+        yield Part("sprite_visibility", only="splats")
 
 
 def run(tile, p: Pass):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK, depth_format
+from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK, depth_format, lit_splats
 from ..scene import Scene
 from ..scene.camera import Camera
 from ..settings import Settings
@@ -65,6 +65,7 @@ def plan(
             ("shading", settings.shading),
             ("sum_format", settings.accumulation),
             ("samples", "mean" if each else "each"),
+            ("sides", "alike" if settings.as_printed else "told_apart"),
         ),
         margin=sum(margin(planning) for margin in MARGINS),
         facts=planning.facts,
@@ -80,6 +81,7 @@ def _with_parts(planning: Planning, p: Pass, present: Iterable[Callable[[Plannin
     """A pass with what the features that are present do in it."""
     if not p.host:
         return p
+    planning.model = lit_splats.model_in(planning, p)
     found = [part for parts in present for part in parts(planning, p)]
     reason = "; ".join([p.reason, *(part.reason for part in found if part.reason)])
     return p._replace(reason=reason, parts=(*p.parts, *found))

@@ -45,6 +45,7 @@ DEFAULTS = {
     "world_light": "even",
     "shadow_taps": "even",
     "polygon_share": "compared",
+    "sides": "told_apart",
 }
 
 

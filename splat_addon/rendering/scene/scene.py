@@ -202,12 +202,23 @@ class Instance(Placed):
         """
         if self.is_flattened or self.hides_backs(camera):
             return False
+        return bool(self._are_backs(camera, self.surfels.positions[self._some], self._some_normals).any())
+
+    def backs(self, camera: Camera) -> int:
+        """How many surfels turn their backs to the camera."""
+        if self.is_flattened:
+            return 0
+        normals = quaternion_axes(self.surfels.rotations)[2]
+        return int(np.count_nonzero(self._are_backs(camera, self.surfels.positions, normals)))
+
+    def _are_backs(self, camera: Camera, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
+        """(n,) bool of surfels in the object's own space."""
         model_view = self.model_view(camera)
         if camera.is_orthographic:
             to_eye = np.linalg.solve(model_view[:3, :3], (0.0, 0.0, 1.0))
         else:
-            to_eye = np.linalg.solve(model_view[:3, :3], -model_view[:3, 3]) - self.surfels.positions[self._some]
-        return bool((np.sum(self._some_normals * to_eye, axis=1) < 0).any())
+            to_eye = np.linalg.solve(model_view[:3, :3], -model_view[:3, 3]) - positions
+        return np.sum(normals * to_eye, axis=1) < 0
 
     @cached_property
     def _some_normals(self) -> np.ndarray:

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Splats whose backs are seen, left out in the vertex stage (Botsch and Kobbelt 2003, section 4)."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part
+from .drawing import SPLAT_HOSTS
+
+
+def passes(planning):
+    """None; it says whether they are, and how many."""
+    if planning.shown and planning.settings.culls_backs:
+        count = sum(len(instance.surfels) for instance in planning.scene.surfels)
+        backs = planning.facts["culled"] = sum(i.backs(planning.camera) for i in planning.scene.surfels)
+        planning.has("BACK_CULLING", f"{backs:,} of {count:,} splats show their backs, and are asked to be left out")
+    return ()
+
+
+def parts(planning, p):
+    hosts = (*SPLAT_HOSTS, "visibility.frag")
+    if planning.settings.culls_backs and p.host in hosts and p.kind in ("opaque", "layer", "rest"):
+        yield Part("back_culling", only="splats" if p.host == "visibility.frag" else "")

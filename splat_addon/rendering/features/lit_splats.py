@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Splats that are lit one by one, whose colours blend (Botsch and Kobbelt 2003, section 4).
+
+Otherwise samples are lit once (Botsch et al. 2005, section 4). Each instance's splats are lit before they are added up,
+one fragment a splat, with their own colours: what is texture-mapped too.
+"""
+
+from __future__ import annotations
+
+from ..plan.graph import Part, Pass, Texture
+from ..shading_models import ShadingModel, get_shading_model
+from ..upload.packing import SPLATS_PER_ROW, row_count
+from .drawing import LIT_HOSTS, SPLAT_HOSTS, draw_block, draw_splats, drawn_by, splat_textures, storage_samplers
+
+
+def _of_splats(plan, pixels: tuple[int, int]) -> tuple[int, int]:
+    return SPLATS_PER_ROW, plan.facts["lit_rows"]
+
+
+LIT = Texture("lit_splats", per=_of_splats)
+
+
+def wanted(planning) -> bool:
+    """Raises ValueError where polygons, which are lit at samples, are among the splats."""
+    if not planning.settings.lights_splats or not planning.shown:
+        return False
+    if planning.scene.polygons:
+        raise ValueError("Splats can be lit one by one only without polygons; set lights_splats to False.")
+    if get_shading_model(planning.settings.shading).is_diagnostic:
+        planning.skip("lighting of splats", f"{planning.settings.shading} shows how splats add up")
+        return False
+    planning.has("LIT_SPLATS", "each splat is lit, and colours blend")
+    return True
+
+
+def model_in(planning, p: Pass) -> ShadingModel:
+    """The shading model that a pass has to do with: samples show blended colours as they are."""
+    asked_for = get_shading_model(planning.settings.shading)
+    of_samples = p.kind in ("opaque", "layer") and p.host in (*LIT_HOSTS, *SPLAT_HOSTS)
+    return get_shading_model("flat") if of_samples and planning.find(wanted) else asked_for
+
+
+def each(planning) -> Pass | None:
+    """What lights the splats of an instance before they are added up."""
+    if not planning.find(wanted):
+        return None
+    planning.facts["lit_rows"] = max(row_count(i.surfels) for i in planning.scene.surfels)
+    return light(planning)
+
+
+def light(planning) -> Pass:
+    """What lights the splats of one instance."""
+    own = Part("lit_splats", inputs=storage_samplers(planning.settings.storage), writes=(LIT,))
+    return Pass("light_splats", "each splat is lit by itself", "lit_splats.frag", run, (own,), "rest")
+
+
+def parts(planning, p):
+    if not planning.find(wanted) or p.kind not in ("opaque", "layer"):
+        return
+    if p.host in SPLAT_HOSTS:
+        yield Part("lit_splats", reads=(LIT,))
+    if p.host in LIT_HOSTS:
+        yield Part("lit_splats", choices=(("shading", "flat"),))
+
+
+def run(tile, p: Pass):
+    """Fill the sums, one instance after the other, whose splats are lit first: one fragment each, at the texel of its
+    number.
+    """
+    target, lit, light = tile.target(p), tile.target(p.each), None
+    target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
+    for placed in drawn_by(p, tile):
+        light = light or tile.program(p.each)
+        textures = tile.textures(p.each, light, splat_textures(tile, placed.instance))
+        blocks = tile.blocks(light, draw_block(tile, placed, tile.settings.epsilon))
+        viewport = 0, 0, SPLATS_PER_ROW, row_count(placed.instance.surfels)
+        tile.resources.device.draw_triangles(light, lit, 1, blocks, textures, viewport)
+        draw_splats(tile, p, target, [placed], p.host.replace(".frag", ".vert"))
+    return target

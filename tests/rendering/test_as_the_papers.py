@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the papers do otherwise than this project, asked for by settings: splats that are lit one by one, backs that are
+left out or drawn as fronts. Each is what the reference says, and nothing of it is there where nobody asks.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import render_exact, scenes
+from splat_addon.reference.extremes import discs
+from splat_addon.reference.metrics import psnr
+from splat_addon.rendering import Camera, Light, Scene, Settings, make_polygons, plan
+from splat_addon.rendering.methods import METHODS
+
+SIZE = (96, 96)
+QUADS = Settings(method="quad", shading="phong", supersampling=1, shadow_resolution=0)
+ASKED = {"lit splats": {"lights_splats": True}, "culled": {"culls_backs": True}, "as printed": {"as_printed": True}}
+
+
+def torus():
+    scene, camera = scenes.torus(6_000, SIZE)
+    return replace(scene, lights=(Light("sun", energy=3.0, direction=(1, -0.5, -1)),)), camera
+
+
+@pytest.mark.parametrize("shading", ["phong", "principled", "toon", "normals"])
+@pytest.mark.parametrize("asked", ASKED)
+def test_the_picture_is_the_references(asked, shading, render):
+    settings = replace(QUADS, shading=shading, **ASKED[asked])
+    frame, truth = render(*torus(), settings), render_exact(*torus(), settings, samples=1)
+    tied = np.abs(frame.color - truth.color).max(axis=2) > 1e-3
+    assert np.count_nonzero(tied) <= 4
+    assert psnr(frame.color[~tied][None], truth.color[~tied][None]) > 90
+
+
+def test_each_changes_the_picture(render):
+    """Those that tell backs from fronts where backs are seen: the torus is open."""
+    before = render(*torus(), QUADS).color
+    for asked in ASKED.values():
+        assert np.abs(render(*torus(), replace(QUADS, **asked)).color - before).max() > 1e-3, asked
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_lit_splats_of_one_normal_are_what_lit_samples_are(method, render):
+    """Under a sun every splat of a wall has one colour, whatever the method."""
+    x, y = (a.reshape(-1, 1) for a in np.meshgrid(np.arange(-1, 1.01, 0.1), np.arange(-1, 1.01, 0.1)))
+    tilted = np.array((0.8, 0, 0.6)) * 0.15
+    wall = discs(x * (0.8, 0, 0.6) + y * (0, 1, 0) + (0, 0, -3), tilted, (0, 0.15, 0), (0.8, 0.4, 0.2))
+    scene = Scene((wall,), (Light("sun", energy=2.0, direction=(0.1, 0.2, -1)),), (0.1, 0.1, 0.1))
+    camera = Camera.perspective(np.eye(4), 0.6, SIZE, 0.01, 100)
+    settings = replace(QUADS, method=method, shading="toon")
+    one, other = (render(scene, camera, replace(settings, lights_splats=lit)).color for lit in (False, True))
+    assert one[..., :3].max() > 0.2
+    np.testing.assert_allclose(other, one, atol=2e-3)
+
+
+def test_backs_that_are_left_out_are_counted(render):
+    scene, camera = torus()
+    frame = render(scene, camera, replace(QUADS, culls_backs=True))
+    exact = sum(instance.backs(camera) for instance in scene.surfels)
+    assert frame.stats["culled"] == exact
+    assert 0.3 < exact / sum(len(i.surfels) for i in scene.surfels) < 0.7
+    assert "BACK_CULLING" in str(plan(scene, camera, replace(QUADS, culls_backs=True)))
+
+
+def test_nothing_of_it_is_there_where_nobody_asks():
+    made = plan(*torus(), QUADS)
+    assert {"lit_splats", "back_culling"}.isdisjoint(part.feature for p in made.passes for part in p.parts)
+    assert "lit_splats" not in made.textures
+
+
+def test_what_lit_splats_cannot_give_is_refused():
+    scene, camera = torus()
+    with pytest.raises(ValueError, match="hand on no diffuse_color"):
+        replace(QUADS, lights_splats=True, outputs=("color", "diffuse_color"))
+    polygons = make_polygons(np.eye(3), np.array([[0, 1, 2]]))
+    with pytest.raises(ValueError, match="only without polygons"):
+        plan(replace(scene, polygons=(polygons,)), camera, replace(QUADS, lights_splats=True))
