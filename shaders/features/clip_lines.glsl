@@ -41,6 +41,13 @@ void clip_lines_replaced(Plane true_plane, Plane plane, bool in_space) {
   clip_second = line_in_picture(clip_second, true_plane);
 }
 
+#part object_space.vert
+// Along axes that the method has widened.
+void clip_lines_axes(Splat splat, mat2 widened) {
+  clip_first.xy = clip_first.xy * widened;
+  clip_second.xy = clip_second.xy * widened;
+}
+
 #part fragment
 bool is_inside_lines(vec2 place) {
   float first = dot(clip_first.xy, place) + clip_first.z, second = dot(clip_second.xy, place) + clip_second.z;

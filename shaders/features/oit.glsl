@@ -1,6 +1,6 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6 (lighting for each splat in the last layer); McGuire, Bavoil,
 //             "Weighted Blended Order-Independent Transparency", JCGT 2013.
-// Summary: of all that is left behind transparent layers: lit colours, and logarithms of what the splats let through.
+// Summary: of all that is left behind transparent layers: lit colours, and what tells how much the splats hide.
 
 #part splat_varyings
 void oit_attributes(Splat splat, int index) {
@@ -9,11 +9,11 @@ void oit_attributes(Splat splat, int index) {
 }
 
 #part gbuffer
-const float MOST_OPAQUE = 0.999;
+#include "lib/rest_opacity/{rest_opacity}.glsl"
 
 void oit_add(inout Fragment f) {
   oit_accum = vec4(f.color, 1.0) * (f.weight * opacity);
-  oit_weight = vec2(-log(1.0 - min(opacity, MOST_OPAQUE)), 1.0) * f.weight;
+  oit_weight = vec2(rest_term(opacity), 1.0) * f.weight;
 }
 
 #part screen_space.frag

@@ -8,9 +8,13 @@ void textures_attributes(Splat splat, int index) {
 }
 
 #part object_space.vert
-void textures_axes(Splat splat) {
+// Coordinates change along axes that a method has widened as along the splat's own.
+void textures_axes(Splat splat, mat2 widened) {
   texture_axis_u = splat.axis_u;
   texture_axis_v = splat.axis_v;
+  mat2 along = mat2(texture_along.xy, texture_along.zw) * widened;
+  texture_along = vec4(along[0], along[1]);
+  texture_border = texture_border * widened;
 }
 
 #part object_space.frag

@@ -10,11 +10,12 @@
 void main() {
   Splat splat = fetch_splat(gl_VertexID / 3);
   vec2 corner = triangle_corner(gl_VertexID);
+  mat2 widened = widen(splat);
   vec3 eye = footprint_corner(splat.position, splat.axis_u, splat.axis_v, corner);
   place_depth = vec3(corner, -eye.z);
   color_weight = splat.color_weight;
   normal = splat.normal;
   hand_on(splat, gl_VertexID / 3);
-  #hook axes(splat)
-  gl_Position = splat.is_hidden ? NOWHERE : view.projection * vec4(eye, 1.0);
+  #hook axes(splat, widened)
+  gl_Position = splat.is_hidden ? NOWHERE : quad_corner(eye);
 }

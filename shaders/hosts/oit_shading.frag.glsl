@@ -5,6 +5,7 @@
 
 #include "sum_formats/{sum_format}.glsl"
 #include "lib/front_weight.glsl"
+#include "lib/rest_opacity/{rest_opacity}.glsl"
 
 float front_weight_at(ivec2 texel) {
   return front_weight(texelFetch(gbuffer_depth, texel, 0).y);
@@ -28,8 +29,7 @@ void main() {
   vec2 weights = texelFetch(oit_weight, texel, 0).xy;
   shaded = vec4(0.0);
   if (sum.w > 0.0) {
-    float one = surface_weight(texel);
-    float hidden = 1.0 - exp(-weights.x / (one > 0.0 ? one : weights.y));
+    float hidden = rest_hidden(weights, sum.w, surface_weight(texel));
     shaded = vec4(sum.rgb / sum.w, 1.0) * hidden;
   }
 }

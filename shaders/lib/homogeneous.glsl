@@ -9,6 +9,8 @@ const float FILTER_RADIUS = 1.41421356;  // pixels
 const float FOOTPRINT_END = 1.0;
 
 #part vertex
+#include "lib/principal_places.glsl"
+
 // Half-axis `axis` no shorter in the picture than the filter.
 vec3 at_least_filter(vec3 axis, vec3 position, bool is_orthographic) {
   vec2 pixel = view.window.zw;
@@ -19,17 +21,22 @@ vec3 at_least_filter(vec3 axis, vec3 position, bool is_orthographic) {
   return size < FILTER_RADIUS && size > 0.0 ? vec3(pixels / size * FILTER_RADIUS * pixel * depth, 0.0) : axis;
 }
 
-// The tangents of the paper: across the ray and along it. It has discs, so their radius is the longer half-axis.
-// As printed, those of a disc that faces the ray are 0 / 0, and where a tangent is replaced, depths are lost with it.
-// Repaired, such a disc keeps its stored axes, and depths stay those of the splat's own plane.
+// The tangents of the paper, for discs alone: across the ray and along it, in the picture about at right angles. As
+// printed, those of a disc that faces the ray are 0 / 0, and where a tangent is replaced, depths are lost with it.
+// Repaired, they are the half-axes of the splat's own ellipse, as section 3 has it, that are at right angles in the
+// picture, which any splat has; and depths stay those of its plane.
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {
-  vec3 ray = is_orthographic ? vec3(0.0, 0.0, -1.0) : splat.position;
-  vec3 normal_to_plane = normalize(cross(splat.axis_u, splat.axis_v));
-  vec3 across = cross(ray, normal_to_plane);
-  bool has_tangents = AS_PRINTED || length(across) > 1e-4 * length(ray);
-  if (has_tangents) {
+  if (AS_PRINTED) {
+    vec3 normal_to_plane = normalize(cross(splat.axis_u, splat.axis_v));
+    vec3 across = cross(is_orthographic ? vec3(0.0, 0.0, -1.0) : splat.position, normal_to_plane);
     splat.axis_u = plane.radius * normalize(across);
     splat.axis_v = plane.radius * normalize(cross(normal_to_plane, across));
+  } else {
+    vec2 lengths2;
+    mat2 places = principal_places(plane.a, plane.b, plane.det.z, lengths2);
+    vec3 axis_u = splat.axis_u, axis_v = splat.axis_v;
+    splat.axis_u = axis_u * places[0].x + axis_v * places[0].y;
+    splat.axis_v = axis_u * places[1].x + axis_v * places[1].y;
   }
   splat.axis_u = at_least_filter(splat.axis_u, splat.position, is_orthographic);
   splat.axis_v = at_least_filter(splat.axis_v, splat.position, is_orthographic);

@@ -89,7 +89,8 @@ class Settings:
     lights_splats: light each splat where it stands and blend their colours, as Botsch and Kobbelt 2003 do, instead of
         lighting the sample that they blend to.
     culls_backs: leave out splats whose backs are seen, of open surfaces too (Botsch and Kobbelt 2003, section 4).
-    as_printed: draw backs as fronts, as the papers do; else they weigh little where there is a front.
+    as_printed: follow the papers where this project has rules of its own: backs are drawn as fronts, where else they
+        weigh little beside one; and the last transparent layer hides as one surface does, not as all that it holds.
     storage: the form in which surfels lie on the device, a name in `upload.storages`.
     accumulation: of the sums of colour and material, a name in `ACCUMULATIONS`.
     profile: wait for the device after each pass, so that the frame's statistics hold a time for each.

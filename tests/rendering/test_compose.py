@@ -21,7 +21,9 @@ CHOICES = {
     "background",
     "world_light",
 }
-CHOICES |= {"shadow_taps", "polygon_share", "sides"}
+CHOICES |= {"shadow_taps", "polygon_share", "sides", "rest_opacity"}
+#: Files of shaders/lib that two methods have in common.
+SHARED = "homogeneous", "raycast", "sprites", "surfel_quad"
 GLOBAL = re.compile(r"^(?:const )?(?:struct (\w+)|\w+ (\w+)(?:\[\d*\])?(?:\(| =|;))", re.MULTILINE)
 
 
@@ -33,7 +35,12 @@ def global_names(text: str) -> set[str]:
 
 def home(file) -> str:
     """The folder of a file of which a text has one; else the file."""
-    if file.parent.name == "lib" and file.stem in ("homogeneous", "sprites"):  # two methods have it in common
+    if file.parent.name == "lib" and file.stem in (
+        "homogeneous",
+        "raycast",
+        "sprites",
+        "surfel_quad",
+    ):  # two methods have it in common
         return "methods"
     return file.parent.name if file.parent.name in CHOICES else file.relative_to(FOLDER).as_posix()
 

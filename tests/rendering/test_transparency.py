@@ -98,6 +98,20 @@ def test_the_rest_hides_as_many_surfaces_as_there_are(method, render):
 
 
 @pytest.mark.parametrize("method", SPACES)
+def test_as_printed_the_rest_hides_as_one_surface(method, render):
+    """Of the mean opacity, under weights that are opacities: of sheets of 0.3 and 0.6 that is 0.5."""
+    camera = Camera.orthographic(CAMERA.matrix_world, 2.0, (16, 16), 0.1, 50)
+    sheets = [sheet(-z, (1, 1, 1), opacity) for z, opacity in enumerate((0.5, 0.3, 0.6))]
+    settings = flat(method=method, layers=2, blends_rest=True)
+    hidden = {
+        printed: render(Scene(sheets), camera, replace(settings, as_printed=printed)).color[..., 0]
+        for printed in (True, False)
+    }
+    np.testing.assert_allclose(hidden[True], 1 - 0.5 * (1 - (0.3**2 + 0.6**2) / 0.9), atol=1e-4)
+    np.testing.assert_allclose(hidden[False], 1 - 0.5 * 0.7 * 0.4, atol=1e-4)
+
+
+@pytest.mark.parametrize("method", SPACES)
 def test_the_rest_is_mixed_by_opacity_and_in_no_order(method, render):
     camera = Camera.orthographic(CAMERA.matrix_world, 2.0, (16, 16), 0.1, 50)
     sheets = [sheet(0, (1, 1, 1), 0.5), sheet(-1, (1, 0, 0), 0.6), sheet(-2, (0, 1, 0), 0.2), sheet(-3, (0, 0, 1), 1)]

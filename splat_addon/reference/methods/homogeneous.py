@@ -18,7 +18,7 @@ def samples(
 ) -> tuple[np.ndarray, np.ndarray]:
     """(M,) weights and (M,) depths at (M, 2) picture points (Guennebaud et al. 2006, equations 8 to 10).
 
-    as_printed: without the repairs for discs that face the ray, and for depths.
+    as_printed: discs alone, and without the repairs for those that face the ray, and for depths.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         wide = adjusted(plane, pixel, as_printed)
@@ -31,16 +31,17 @@ def samples(
 
 
 def adjusted(plane: Plane, pixel: np.ndarray, as_printed: bool = False) -> Plane:
-    """The plane of the disc whose half-axes are no shorter than the filter."""
+    """The plane of the ellipse, as printed of the disc, whose half-axes are no shorter than the filter."""
     is_orthographic = plane.scale == 1.0 and not plane.gh.any() and plane.slope.any()
     depth = 1.0 if is_orthographic else plane.depth
     position = np.array([*(plane.center / plane.scale), -plane.depth])
-    ray = np.array((0.0, 0.0, -1.0)) if is_orthographic else position
-    normal = plane.normal / np.linalg.norm(plane.normal)
-    across = np.cross(ray, normal)
-    axes = _axes(plane)
-    if as_printed or np.linalg.norm(across) > 1e-4 * np.linalg.norm(ray):
+    if as_printed:
+        normal = plane.normal / np.linalg.norm(plane.normal)
+        across = np.cross(np.array((0.0, 0.0, -1.0)) if is_orthographic else position, normal)
         axes = [plane.radius * v / np.linalg.norm(v) for v in (across, np.cross(normal, across))]
+    else:
+        _, _, places_of_axes = np.linalg.svd(np.stack([plane.a, plane.b], axis=1) / pixel[:, None])
+        axes = places_of_axes @ _axes(plane)
     axes = [_at_least_filter(axis, position, pixel, depth, is_orthographic) for axis in axes]
     return replace(splat_plane(position, *axes, is_orthographic), normal=plane.normal)
 

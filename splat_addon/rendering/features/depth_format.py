@@ -24,8 +24,8 @@ def linear(planning) -> tuple[bool, str]:
     """Whether fragments must write their own depth, which costs the early depth test, and why."""
     if not planning.shown:
         return False, ""
-    if planning.method.sprites_hide:
-        return True, "the depth of sprites is corrected at every pixel"
+    if planning.method.writes_depth:
+        return True, f"{planning.method.name} writes its depth at every pixel"
     found = planning.find(extent)
     ratio, radius = found.ratio, found.radius
     if planning.camera.is_orthographic:

@@ -19,6 +19,7 @@ class Method:
     culls_hidden: splats that lie behind all that is seen are found before they are drawn. The papers draw them, so do
         their methods here.
     sprites_hide: visibility too is of its sprites. Else it is of the exact ellipses.
+    writes_depth: at every pixel: the hardware's would be another than that which it corrects or clamps.
     pixel_variance: of its pixel filter, samples squared; 1/12 is that of a box. Textures are looked up under it.
     """
 
@@ -31,6 +32,7 @@ class Method:
     filters_silhouettes: bool = False
     culls_hidden: bool = False
     sprites_hide: bool = False
+    writes_depth: bool = False
     pixel_variance: float = 0.5
 
 
@@ -62,16 +64,30 @@ METHODS = {
             blurs_rims=True,
         ),
         Method(
+            "ewa_object",
+            "EWA in Space",
+            "Ren et al. 2002; view-independent object-space surface splatting, section 3, equation 10",
+            "The same filter joined in each splat's plane, drawn as a larger quad",
+            works_in="space",
+            writes_depth=True,
+        ),
+        Method(
             "raycast",
             "Ray Cast",
             "Botsch et al. 2005, sections 3 and 5",
             "Exact ellipses, no smaller than the pixel's disc",
         ),
         Method(
+            "raycast_printed",
+            "Ray Cast, as Printed",
+            "Botsch et al. 2005, sections 3 and 5, within the paper's square",
+            "The square cuts the low-pass, and large splats off the axis",
+        ),
+        Method(
             "homogeneous",
             "Homogeneous",
             "Guennebaud et al. 2006, sections 3 and 4, repaired",
-            "Exact discs no smaller than the pixel's filter, at the depth of their planes; 3 dB truer at flat angles",
+            "Exact ellipses no smaller than the pixel's filter, at their planes' depth; 3 dB truer at flat angles",
         ),
         Method(
             "homogeneous_printed",
@@ -85,6 +101,7 @@ METHODS = {
             "Botsch and Kobbelt 2003, sections 3.1 to 3.4",
             "Discs in point sprites; opens holes at flat angles",
             sprites_hide=True,
+            writes_depth=True,
             pixel_variance=1 / 12,
         ),
         Method(
@@ -93,6 +110,7 @@ METHODS = {
             "Botsch and Kobbelt 2003, equation 4 as printed",
             "The paper's own formula: depths are off by as much as splats are flatter or steeper than 1 unit",
             sprites_hide=True,
+            writes_depth=True,
             pixel_variance=1 / 12,
         ),
         Method(

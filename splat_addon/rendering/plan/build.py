@@ -66,6 +66,7 @@ def plan(
             ("sum_format", settings.accumulation),
             ("samples", "mean" if each else "each"),
             ("sides", "alike" if settings.as_printed else "told_apart"),
+            ("rest_opacity", "printed" if settings.as_printed else "surfaces"),
         ),
         margin=sum(margin(planning) for margin in MARGINS),
         facts=planning.facts,

@@ -46,6 +46,7 @@ DEFAULTS = {
     "shadow_taps": "even",
     "polygon_share": "compared",
     "sides": "told_apart",
+    "rest_opacity": "surfaces",
 }
 
 

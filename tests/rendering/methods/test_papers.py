@@ -43,11 +43,40 @@ def test_a_disc_that_faces_the_ray_vanishes_as_printed_and_stays_repaired(render
     assert np.count_nonzero(render(scene, camera, REPAIRED).coverage != truth.coverage) <= 4
 
 
+def test_tangents_of_equation_10_meet_in_the_picture_at_60_to_90_degrees():
+    """In a frustum of 90 degrees, 81.7 on average as printed: 81.3 of places and normals that are spread evenly."""
+    random = np.random.default_rng(0)
+    places = np.concatenate([random.uniform(-1, 1, (200_000, 2)), np.ones((200_000, 1))], axis=1)
+    normals = random.normal(size=places.shape)
+    across = np.cross(places, normals)
+    a, b = (v[:, :2] - v[:, 2:] * places[:, :2] for v in (across, np.cross(normals, across)))
+    cosines = np.abs((a * b).sum(axis=1)) / np.linalg.norm(a, axis=1) / np.linalg.norm(b, axis=1)
+    angles = np.degrees(np.arccos(np.clip(cosines, 0, 1)))
+    assert 60 < angles.min() < 61 and angles.max() <= 90
+    assert angles.mean() == pytest.approx(81.7, abs=0.5)
+
+
+def test_an_ellipse_keeps_its_shape_and_is_the_disc_of_its_longer_axis_as_printed(render):
+    scene = Scene((discs((0.02, 0.01, -2), (0.4, 0, 0), (0, 0.1, 0)),))
+    truth = render_exact(scene, AHEAD, FLAT, samples=1).coverage.sum()
+    printed, repaired = (render(scene, AHEAD, settings).coverage.sum() for settings in (PRINTED, REPAIRED))
+    assert repaired == pytest.approx(truth, rel=0.02)
+    assert printed == pytest.approx(4 * truth, rel=0.05)
+
+
+def test_the_papers_square_cuts_the_low_pass_of_a_small_splat(render):
+    """Beside a pixel's corner the square of 2 x 2 pixels has the centres of 4, the disc of sqrt(2) of more."""
+    scene = Scene((discs((0, 0, -2), (1e-5, 0, 0), (0, 1e-5, 0)),))
+    moved = Camera.orthographic(np.eye(4), 1.28, SIZE, 0.1, 10, shift=(0.25 / 128, 0.25 / 128))
+    whole, cut = (render(scene, moved, replace(FLAT, method=m)).coverage.sum() for m in ("raycast", "raycast_printed"))
+    assert cut == 4 < whole
+
+
 def test_a_grazing_sheet_is_truer_where_its_small_splats_keep_the_depth_of_their_planes(render):
     scene, camera = scenes.checker_plane(40, 20_000, 6, SIZE)
     truth = render_exact(scene, camera, FLAT, samples=4, pixel_filter="gaussian")
     printed, repaired = (psnr(render(scene, camera, s).color, truth.color) for s in (PRINTED, REPAIRED))
-    assert repaired > printed + 2
+    assert repaired > printed + 1.5
 
 
 def test_sprites_hide_by_their_own_shape_and_depth(render):

@@ -1,0 +1,35 @@
+// References: Botsch, Hornung, Zwicker, Kobbelt 2005, section 3 (ray casting a splat; its fragments are those of a square) and
+//             section 5 (the union of the kernel and the pixel's low-pass as an approximation of EWA).
+// Summary: the exact place in the ellipse, or the distance from the centre in pixels if that is less.
+//          Its includer says whether AS_PRINTED.
+
+const float FOOTPRINT_END = 1.0;
+
+// Half the side of the paper's square, in pixels: that of the bounding sphere on the axis, no less than 1.
+float half_square(Plane plane) {
+  float scale = view.is_parallel > 0.5 ? 1.0 : 1.0 / plane.depth;
+  return max(plane.radius * scale / min(view.window.z, view.window.w), 1.0);
+}
+
+#part vertex
+void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
+
+// The ellipse, and the low-pass's disc of sqrt(2) pixels, which lies around the splat's centre: beside the ellipse's.
+vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
+  if (AS_PRINTED) {
+    middle = plane.center;
+    return vec2(1.45 * half_square(plane));
+  }
+  return 1.05 * max(size, vec2(2.0 * FILTER_SIGMA)) + length(plane.center - middle);
+}
+#part fragment
+// Weight and depth: the plane's inside the ellipse, the centre's where only the low-pass reaches.
+vec2 splat_sample(Plane plane, vec2 pixel) {
+  Place place = place_at(plane, pixel);
+  float inside = dot(place.uv, place.uv);
+  bool is_inside = inside <= 1.0 && place.k > 0.0;
+  float rho2 = min(is_inside ? inside : 2.0, 0.5 * dot(place.d, place.d));
+  bool is_drawn = !AS_PRINTED || max(abs(place.d.x), abs(place.d.y)) <= half_square(plane);
+  float depth = plane.depth + (is_inside ? dot(plane.slope, place.uv) : 0.0);
+  return vec2(is_drawn && rho2 <= 1.0 ? exp(-2.0 * rho2) : 0.0, depth);
+}

@@ -1,0 +1,42 @@
+// References: Ren, Pfister, Zwicker, "Object Space EWA Surface Splatting", 2002, as the view-independent paper has it in
+//             section 3, equations 8 to 10; the amplitude that keeps the integral: Yu et al., "Mip-Splatting", 2024.
+// Summary: the pixel's Gaussian is taken to the splat's plane by the derivative of the projection at its centre, and joined
+//          with the kernel there: a larger quad, which the hardware draws. One that reaches the near plane stays as it is.
+//          The twin of reference/methods/ewa_object.py.
+
+#include "lib/surfel_quad.glsl"
+
+#part vertex
+#include "lib/plane.glsl"
+#include "lib/principal_places.glsl"
+#include "lib/reaches_near.glsl"
+
+const float KERNEL_VARIANCE = 0.25;
+const float FILTER_VARIANCE = 0.5;   // square pixels
+const float LEAST_FLATNESS2 = 0.004;  // seen flatter than 1 : 16, it is widened no more: its quad would have no end
+
+// The joined half-axes, whose columns in those of the splat are given back.
+mat2 widen(inout Splat splat) {
+  if (reaches_near(splat)) return mat2(1.0);
+  Plane plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, view.is_parallel > 0.5);
+  vec2 lengths2;
+  mat2 along = principal_places(plane.a, plane.b, plane.det.z, lengths2);
+  vec2 both = KERNEL_VARIANCE * lengths2 + FILTER_VARIANCE;
+  splat.color_weight.w *= KERNEL_VARIANCE * abs(plane.det.z) * inversesqrt(both.x * both.y);
+  lengths2.y = max(lengths2.y, LEAST_FLATNESS2 * lengths2.x);
+  vec2 half_axes = 2.0 * sqrt(KERNEL_VARIANCE + FILTER_VARIANCE / max(lengths2, vec2(1e-30)));
+  mat2 joined = mat2(along[0] * half_axes.x, along[1] * half_axes.y);
+  vec3 axis_u = splat.axis_u, axis_v = splat.axis_v;
+  splat.axis_u = axis_u * joined[0].x + axis_v * joined[0].y;
+  splat.axis_v = axis_u * joined[1].x + axis_v * joined[1].y;
+  return joined;
+}
+
+// The clip range is that of the splats as they are: what sticks out of it is drawn nevertheless, at the depth that its
+// fragments write; what lies before the camera's near plane is not.
+vec4 quad_corner(vec3 eye) {
+  vec4 corner = view.projection * vec4(eye, 1.0);
+  float end = 0.999999 * corner.w;
+  if (-eye.z >= view.near) corner.z = clamp(corner.z, -end, end);
+  return corner;
+}

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The numpy twin of shaders/methods/ewa_object.glsl: kernel and pixel joined in the splat's plane."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .plane import Plane, places
+
+KERNEL_VARIANCE = 0.25
+FILTER_VARIANCE = 0.5
+#: Of the squares of the half-axes in the picture; seen flatter, a splat is widened no more.
+LEAST_FLATNESS2 = 0.004
+
+
+def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(M,) weights and (M,) depths at (M, 2) picture points (Ren et al. 2002; view-independent paper, equation 10)."""
+    at = places(plane, points)
+    _, lengths, along = np.linalg.svd(np.stack([plane.a, plane.b], axis=1) / pixel[:, None])
+    amplitude = np.prod(KERNEL_VARIANCE**0.5 * lengths / np.sqrt(KERNEL_VARIANCE * lengths**2 + FILTER_VARIANCE))
+    lengths2 = np.maximum(lengths**2, [0, LEAST_FLATNESS2 * lengths[0] ** 2])
+    half_axes = 2 * np.sqrt(KERNEL_VARIANCE + FILTER_VARIANCE / np.maximum(lengths2, 1e-30))
+    with np.errstate(invalid="ignore", over="ignore"):
+        rho2 = ((at.uv @ along.T / half_axes) ** 2).sum(axis=1)
+        weights = np.where((rho2 <= 1) & (at.k > 0), amplitude * np.exp(-2 * rho2), 0.0)
+        return weights, plane.depth + at.uv @ plane.slope

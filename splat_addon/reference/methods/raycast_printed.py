@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The numpy twin of shaders/methods/raycast_printed.glsl: ray casting within the paper's square."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import raycast
+from .plane import Plane
+
+
+def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(M,) weights and (M,) depths at (M, 2) picture points (Botsch et al. 2005, sections 3 and 5)."""
+    weights, depths = raycast.samples(plane, points, pixel)
+    half_square = max(plane.radius * plane.scale / pixel.min(), 1)
+    return np.where((abs(points - plane.center) / pixel).max(axis=1) <= half_square, weights, 0.0), depths
