@@ -31,7 +31,12 @@ def test_each_feature_makes_another_picture_or_another_plan(feature, on_device):
 @pytest.mark.parametrize(
     ("name", "passes", "textures", "more"),
     [
-        ("hard shadow of a sun", "shadow_maps", "shadow_depth, shadow_maps", 1024 * 1024 * 4),
+        (
+            "hard shadow of a sun",
+            "shadow_maps",
+            "shadow_depth, gbuffer_plane, shadow_maps",
+            1024 * 1024 * 4 + 48 * 48 * 8,
+        ),
         ("two materials", "", "gbuffer_material", 48 * 48 * 16),
         ("lines of 1.5 pixels", "lines", "lines", None),
         ("a picture of the world", "", "environment_image, environment_levels", 0),
