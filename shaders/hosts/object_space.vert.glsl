@@ -8,14 +8,15 @@
 
 #parts
 void main() {
-  Splat splat = fetch_splat(gl_VertexID / 3);
+  int index = drawn_splat(gl_VertexID / 3);
+  Splat splat = fetch_splat(index);
   vec2 corner = triangle_corner(gl_VertexID);
   mat2 widened = widen(splat);
   vec3 eye = footprint_corner(splat.position, splat.axis_u, splat.axis_v, corner);
   place_depth = vec3(corner, -eye.z);
   color_weight = splat.color_weight;
   normal = splat.normal;
-  hand_on(splat, gl_VertexID / 3);
+  hand_on(splat, index);
   #hook axes(splat, widened)
   gl_Position = splat.is_hidden ? NOWHERE : quad_corner(eye);
 }

@@ -9,7 +9,8 @@
 #include "methods/{method}.glsl"
 
 void main() {
-  Splat splat = fetch_splat(gl_VertexID / 3);
+  int index = drawn_splat(gl_VertexID / 3);
+  Splat splat = fetch_splat(index);
   float radius = sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
   float depth = -splat.position.z, scale = view.is_parallel > 0.5 ? 1.0 : 1.0 / depth;
   vec2 tilt = sprite_tilt(splat.axis_u, splat.axis_v);
@@ -17,7 +18,7 @@ void main() {
   tilt_depth = vec3(tilt, depth);
   color_weight = splat.color_weight;
   normal = splat.normal;
-  hand_on(splat, gl_VertexID / 3);
+  hand_on(splat, index);
   vec4 clip = view.projection * vec4((splat.position.xy + radius * place) * scale, -1.0, 1.0);
   float behind = splat.color_weight.w < 1.0 ? BACK_EPSILON * draw.epsilon * radius : 0.0;
   bool is_before = !(depth >= view.near);

@@ -15,7 +15,8 @@ const float MARGIN = 1.01;
 
 #parts
 void main() {
-  Splat splat = fetch_splat(gl_VertexID / 3);
+  int index = drawn_splat(gl_VertexID / 3);
+  Splat splat = fetch_splat(index);
   vec2 corner = triangle_corner(gl_VertexID);
   bool is_orthographic = view.is_parallel > 0.5, in_space = false;
   #hook clip(splat, in_space)
@@ -30,7 +31,7 @@ void main() {
   #hook clipped(splat, in_space)
   color_weight = splat.color_weight;
   normal = splat.normal;
-  hand_on(splat, gl_VertexID / 3);
+  hand_on(splat, index);
   #hook replaced(true_plane, plane, in_space)
   gl_Position = NOWHERE;
   #hook place(splat, corner, in_space)

@@ -1,6 +1,6 @@
 // References: Botsch et al. 2005, section 4 (what a splat blends).
-// Summary: a stored splat as the attributes that every method accumulates. Hooks: `unpack` what else a
-//          number holds, `hide` what is not drawn.
+// Summary: a stored splat as the attributes that every method accumulates. Hooks: `choose` which splat a triangle
+//          draws, `unpack` what else a number holds, `hide` what is not drawn.
 
 #include "lib/sides.glsl"
 #include "lib/stored_splat.glsl"
@@ -24,6 +24,13 @@ vec3 geometric_normal(Splat splat) {
 }
 
 #parts
+// Number of the splat of a triangle.
+int drawn_splat(int triangle) {
+  int index = triangle;
+  #hook choose(index)
+  return index;
+}
+
 Splat fetch_splat(int index) {
   StoredSplat stored = stored_splat(index);
   #hook unpack(stored, index)

@@ -12,11 +12,12 @@
 
 #parts
 void main() {
-  Splat splat = fetch_splat(gl_VertexID / 3);
+  int index = drawn_splat(gl_VertexID / 3);
+  Splat splat = fetch_splat(index);
   vec2 corner = triangle_corner(gl_VertexID);
   vec3 eye = footprint_corner(splat.position, splat.axis_u, splat.axis_v, corner);
   place_depth = vec3(corner, -eye.z);
-  hand_on(splat, gl_VertexID / 3);
+  hand_on(splat, index);
   float radius = sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
   float offset = draw.epsilon * radius;
   if (splat.is_back) offset *= BACK_EPSILON;

@@ -203,6 +203,18 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         soft_max=1.0,
         default=Settings.edge_threshold,
     )
+    detail_tolerance: FloatProperty(
+        name="Detail Tolerance",
+        description=(
+            "Where surfels are too small to be seen one by one, larger ones that stand for many are drawn, off by at "
+            "most this many pixels (texels in shadow maps): a frame then costs what its pixels cost. FLIP at most "
+            "0.005 from all surfels at 1.5; 0 draws every surfel. Transparent ones are always drawn"
+        ),
+        min=0.0,
+        soft_max=8.0,
+        subtype="PIXEL",
+        default=Settings.detail_tolerance,
+    )
     shadow_resolution: IntProperty(
         name="Resolution",
         description=(
@@ -325,6 +337,7 @@ def _settings(scene, **choices) -> Settings:
         lines=_lines(properties) if properties.use_lines else None,
         epsilon=properties.epsilon,
         edge_threshold=properties.edge_threshold,
+        detail_tolerance=properties.detail_tolerance,
         shadow_resolution=properties.shadow_resolution,
         ambient_occlusion=properties.ambient_occlusion_distance if properties.use_ambient_occlusion else 0.0,
         layers=properties.layers,

@@ -53,7 +53,8 @@ def _sorted(table: Table, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np
     keys = np.concatenate(parts, axis=-1)
     is_first = np.ones(len(rows), bool)
     if fits:
-        order = np.argsort(keys)
+        # stable, so that every numpy gives the same order where some are equal
+        order = np.argsort(keys, kind="stable")
         keys = keys[order]
         place, depth = keys >> bits[-1], keys & ((1 << bits[-1]) - 1)
         is_first[1:] = place[1:] != place[:-1]

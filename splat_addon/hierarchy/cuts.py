@@ -35,6 +35,12 @@ class Sight:
     tolerance: float
 
     @property
+    def key(self) -> bytes:
+        """Equal views have equal ones."""
+        numbers = (self.planes, self.depth, self.eye, (self.pixels, self.near, self.hides_backs, self.tolerance))
+        return b"".join(np.asarray(n, np.float64).tobytes() for n in numbers)
+
+    @property
     def is_parallel(self) -> bool:
         return self.eye[3] == 0
 
@@ -74,6 +80,8 @@ def _pixels(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
         return error
     middle, half = _middle_half(blocks, rows)
     nearest = middle @ sight.depth[:3] + sight.depth[3] - half @ np.abs(sight.depth[:3])
+    # nothing that is merged touches the near plane, at which methods may treat splats otherwise
+    error = np.where((nearest > sight.near) | (error == 0), error, np.inf)
     return error / np.maximum(nearest, sight.near)
 
 

@@ -18,12 +18,14 @@ from .nodes import MEANS, Nodes, Table
 from .runs import Runs
 from .texture_places import along_axes, merged_places
 
-#: Half-axis of the splat of a square cell, in its edge: as conversion lays them.
+#: Half-axis of the splat of a square cell, in its edge: as conversion lays them, of a cell for each sample.
 OVERLAP = 1.25
+#: And of merged ones, whose cells are rounder than a sample's and lie closer over seams: less shows beside silhouettes.
+MERGED_OVERLAP = 0.9
 #: Square of a half-axis per variance of position: a cell's is 1 / 12 of its edge's square.
-_PER_VARIANCE = np.float32(12 * OVERLAP**2)
+_PER_VARIANCE = np.float32(12 * MERGED_OVERLAP**2)
 #: Of a child's half-axes: the ellipse around its own cell, which the parent's must cover.
-_CORE = np.float32(np.sqrt(0.5) / OVERLAP)
+_CORE = np.float32(np.sqrt(0.5) / MERGED_OVERLAP)
 #: More than this it is not widened to do so.
 _MOST_WIDENED = np.float32(1.5)
 #: Of the longer half-axis, the shorter one at least.

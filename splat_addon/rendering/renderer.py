@@ -29,7 +29,6 @@ from .scene.panorama import Panorama
 from .settings import OUTPUTS, Settings, held_arrays
 from .shadow import ShadowMap, casting, same_maps
 from .upload.resources import Resources
-from .upload.storages import get_storage
 from .view import build_view, clip_range
 
 #: x, y, width, height in pixels.
@@ -222,6 +221,7 @@ class Renderer:
             "device": self.device.renderer,
             "plan": frame_plan,
             "splats": 0,
+            "splats_drawn": 0,
             "polygons": 0,
             "instances": 0,
             "instances_outside": 0,
@@ -244,6 +244,7 @@ class Renderer:
                 for size in sizes
             }
         )
+        self.resources.cuts.begin_frame()
         self.resources.forget_atlases_but({placed.textures for placed in scene.shown})
         casters = casting(scene)
         shadow_views = tuple(
@@ -266,7 +267,8 @@ class Renderer:
             stats["instances"] += len(view.placed) + len(view.polygons)
             stats["instances_outside"] += view.outside
             stats["instances_degenerate"] = view.degenerate
-            stored = [self.resources.surfels(p.instance.surfels, get_storage(frame_plan.storage)) for p in view.placed]
+            stats["splats_drawn"] += sum(context.cut(p).count for p in view.placed)
+            stored = [context.stored(p.instance) for p in view.placed]
             stats["surfels_coarse"] = max(stats["surfels_coarse"], sum(s.coarse for s in stored))
             target = execution.run(frame_plan.steps, context)
             stats["layers"] = execution.turns

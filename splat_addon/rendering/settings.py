@@ -77,6 +77,8 @@ class Settings:
         threshold, section 4.5); 1 is one splat's centre, 0 covers whatever a splat reaches.
     epsilon: how far, in radii of each splat, the visibility pass moves it back along the view ray;
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
+    detail_tolerance: of opaque surfels that are too small to be seen one by one, merged ones are drawn that are off by
+        at most this many pixels, in each view (the camera's, and each shadow map's in its texels); 0 draws all.
     shadow_resolution: texels along the side of a shadow map; 0 leaves shadows out.
     ambient_occlusion: up to this distance, in units of the scene, surfaces keep the world's light from one another, as
         far as the picture shows them; 0 leaves it out.
@@ -108,6 +110,7 @@ class Settings:
     sample_shading: bool = False
     edge_threshold: float = 0.0
     epsilon: float = 0.5
+    detail_tolerance: float = 0.0
     shadow_resolution: int = 1024
     ambient_occlusion: float = 0.0
     layers: int = 3
@@ -139,6 +142,8 @@ class Settings:
             raise ValueError(f"multisampling must be one of {MULTISAMPLING}, not {self.multisampling!r}.")
         if not (math.isfinite(self.edge_threshold) and self.edge_threshold >= 0):
             raise ValueError(f"edge_threshold must be 0 or more splat weights, not {self.edge_threshold}.")
+        if not (math.isfinite(self.detail_tolerance) and self.detail_tolerance >= 0):
+            raise ValueError(f"detail_tolerance must be 0 or more pixels, not {self.detail_tolerance}.")
         if self.shadow_resolution not in range(MAX_SHADOW_RESOLUTION + 1):
             raise ValueError(f"shadow_resolution must be 0 to {MAX_SHADOW_RESOLUTION}, not {self.shadow_resolution}.")
         if not (math.isfinite(self.ambient_occlusion) and self.ambient_occlusion >= 0):

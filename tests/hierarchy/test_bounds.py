@@ -95,7 +95,7 @@ def test_what_clip_lines_take_away_counts_as_sticking_out(seed):
 
 
 def test_a_clip_line_adds_what_it_takes_away():
-    positions, normals = sheet(count=3, spacing=0.01)
+    positions, normals = sheet(count=3)
     line = np.tile(np.array([0, 8192], np.int16), (9, 1))  # half of a half-axis
     plain, clipped = (leaves_of(make_surfels(positions, normals, **f))[2][0, 1] for f in ({}, {"clip_line": line}))
     assert np.isclose(clipped - plain, 0.05 / 2)

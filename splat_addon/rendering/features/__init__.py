@@ -29,6 +29,7 @@ from . import (
     gbuffer,
     hiz,
     holdout,
+    levels,
     lighting,
     lights,
     lines,
@@ -51,6 +52,7 @@ from . import (
 
 FEATURES = (
     world,
+    levels,
     depth_format,
     near_clipped,
     split,

@@ -43,13 +43,13 @@ def drawn_by(p: Pass, tile: TileContext) -> tuple[DrawItem, ...]:
 
 def splat_textures(tile: TileContext, instance: Instance) -> dict[str, Callable[[], DeviceTexture]]:
     """What an instance's splats are made of, by the names of samplers."""
-    resources, storage = tile.resources, get_storage(tile.plan.storage)
-    stored = resources.surfels(instance.surfels, storage)
+    resources, storage, levels = tile.resources, get_storage(tile.plan.storage), tile.levels(instance)
+    stored = tile.stored(instance)
     return {
         **{name: lambda t=texture: t for name, texture in stored.textures.items()},
-        "materials": lambda: resources.materials(instance, storage, tile.plan.facts["emissions_differ"]),
-        "surfel_uvs": lambda: resources.surfel_uvs(instance.surfels, storage),
-        "clip_lines": lambda: resources.clip_lines(instance.surfels, storage),
+        "materials": lambda: resources.materials(instance, storage, tile.plan.facts["emissions_differ"], levels),
+        "surfel_uvs": lambda: resources.surfel_uvs(instance.surfels, storage, levels),
+        "clip_lines": lambda: resources.clip_lines(instance.surfels, storage, levels),
         "texture_atlas": lambda: resources.atlas(instance.textures)[0],
         "texture_table": lambda: resources.atlas(instance.textures)[1],
     }
@@ -62,9 +62,10 @@ def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawIt
     """
     programs = {}
     for placed in placed_ones:
-        count, clipped = len(placed.instance.surfels), placed.instance.surfels.clipped_count
-        textures, block = splat_textures(tile, placed.instance), draw_block(tile, placed, tile.settings.epsilon)
-        for more, first, end in (((), clipped, count), (("clipped",), 0, clipped)):
+        cut = tile.cut(placed)
+        textures = {**splat_textures(tile, placed.instance), "drawn_splats": lambda c=cut: c.numbers}
+        block, own = draw_block(tile, placed, tile.settings.epsilon), () if cut.numbers is None else ("cut",)
+        for more, first, end in ((own, cut.clipped, cut.count), ((*own, "clipped"), 0, cut.clipped)):
             if first < end:
                 program = programs[more] = programs.get(more) or tile.program(p, vertex, *variants, *more)
                 read, blocks = tile.textures(p, program, textures), tile.blocks(program, block)

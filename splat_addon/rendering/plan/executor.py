@@ -10,14 +10,18 @@ from functools import cached_property
 
 import numpy as np
 
+from ...hierarchy import Hierarchy, cut_entries
 from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
 from ..identity import Identities
-from ..scene import Scene
+from ..levels import hierarchy_of, sight
+from ..scene import Instance, Scene
 from ..scene.camera import Camera
 from ..settings import Settings
-from ..upload.resources import Resources, TextureKey
-from ..view import View
+from ..upload.cuts import Cut
+from ..upload.resources import Resources, StoredSurfels, TextureKey
+from ..upload.storages import get_storage
+from ..view import DrawItem, View
 from .frame_plan import FramePlan
 from .graph import Loop, Pass, Step, Texture
 from .programs import describe, frame_value
@@ -87,6 +91,28 @@ class TileContext:
         view, is_parallel = self.view, self.camera.is_orthographic
         return view.projection, to_world, self.window, view.near, is_parallel, self.depth_unit, 1.0 / view.scale
 
+    def levels(self, instance: Instance) -> Hierarchy | None:
+        """The hierarchy of its surfels, where the plan has levels of detail for it."""
+        return hierarchy_of(instance.surfels) if instance in self.plan.facts.get("levels", ()) else None
+
+    def stored(self, instance: Instance) -> StoredSurfels:
+        """Its surfels on the device, with the merged ones if it has levels."""
+        return self.resources.surfels(instance.surfels, get_storage(self.plan.storage), self.levels(instance))
+
+    def cut(self, placed: DrawItem) -> Cut:
+        """What this view draws of an instance."""
+        instance, levels = placed.instance, self.levels(placed.instance)
+        if levels is None:
+            return Cut(len(instance.surfels), instance.surfels.clipped_count, None)
+        seen = sight(instance, self.camera, placed.hides_backs, self.settings.detail_tolerance)
+        places = self.stored(instance).places
+        return self.resources.cuts.get(
+            (levels, places is None, seen.key),
+            lambda: _stored(cut_entries(levels, seen), levels, places),
+            levels.surfels,
+            instance.surfels.clipped_count,
+        )
+
     @cached_property
     def identities(self) -> Identities:
         """What the scene's numbers mean; they tell instances apart in transparent shadows too."""
@@ -127,6 +153,13 @@ class TileContext:
         device = self.resources.device
         device.draw_fullscreen(program, target, self.blocks(program), self.textures(p, program, {}), viewport=viewport)
         return target
+
+
+def _stored(entries: np.ndarray | None, levels: Hierarchy, places: np.ndarray | None) -> np.ndarray | None:
+    """Where entries of a hierarchy are stored; None for all surfels, each in its own place."""
+    if places is None:
+        return entries
+    return places[: levels.surfels] if entries is None else places[entries]
 
 
 def texture_key(texture: Texture, size: tuple[int, int], plan: FramePlan, is_next: bool = False) -> TextureKey:

@@ -9,12 +9,14 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ...surfels import Surfels
+from ...hierarchy import Hierarchy
+from ...surfels import Surfels, concatenate
 from ..device import Device
 from ..device.interface import Pipeline, PipelineDescription, Texture
 from ..scene import Placed, SurfaceTexture
 from ..scene.polygons import Polygons, pack_polygon_uvs, pack_polygons
 from .atlas import FORMAT, make_atlas
+from .cuts import Cuts
 from .packing import pack_clip_lines, pack_materials, pack_own_materials, pack_uvs
 from .storages import Storage
 
@@ -25,10 +27,14 @@ TextureKey = tuple[str, int, int, str, int]
 
 
 class StoredSurfels(NamedTuple):
-    """textures: by sampler. coarse: surfels whose place the storage loses visibly."""
+    """textures: by sampler. coarse: surfels whose place the storage loses visibly. levels: with the merged nodes after
+    the surfels. places: where each is stored; None: in its own place.
+    """
 
     textures: dict[str, Texture]
     coarse: int
+    levels: Hierarchy | None = None
+    places: np.ndarray | None = None
 
 
 class Resources:
@@ -38,22 +44,29 @@ class Resources:
 
     def __init__(self, device: Device):
         self.device = device
+        self.cuts = Cuts(device)
         self._held = WeakKeyDictionary()
         self._atlases = {}
         self.textures = {}
 
-    def surfels(self, surfels: Surfels, storage: Storage) -> StoredSurfels:
-        """Their textures, uploaded once; another storage takes their place."""
+    def surfels(self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None) -> StoredSurfels:
+        """Their textures, uploaded once; another storage takes their place. levels: whose nodes lie after them."""
+        made_from, held = self._held.get(surfels, {}).get("surfels", (None, None))
+        if levels is None and held is not None and made_from[0] == storage.name and held.places is None:
+            # what lies after surfels in their own places is nothing to who draws them alone
+            return held
 
         def stored() -> StoredSurfels:
-            arrays, coarse = storage.pack(surfels)
+            every = _with_nodes(surfels, levels)
+            arrays, coarse = storage.pack(every)
+            places = _places(every, storage) if levels else None
             textures = {
                 sampler: self.data(texels, format)
                 for (sampler, format), texels in zip(storage.textures, arrays, strict=True)
             }
-            return StoredSurfels(textures, coarse)
+            return StoredSurfels(textures, coarse, levels, places)
 
-        return self._once(surfels, "surfels", storage.name, stored)
+        return self._once(surfels, "surfels", (storage.name, levels), stored)
 
     def polygons(self, polygons: Polygons) -> Texture:
         """Their corners, uploaded once."""
@@ -63,7 +76,9 @@ class Resources:
         """Their texture coordinates, uploaded once."""
         return self._once(polygons, "uvs", None, lambda: self.data(pack_polygon_uvs(polygons)))
 
-    def materials(self, instance: Placed, storage: Storage | None, with_emission: bool) -> Texture:
+    def materials(
+        self, instance: Placed, storage: Storage | None, with_emission: bool, levels: Hierarchy | None = None
+    ) -> Texture:
         """Those of its slots; where surfels, or the corners of polygons, have their own, one of each, uploaded once.
 
         storage: of surfels, whose order it may change.
@@ -73,21 +88,28 @@ class Resources:
             return self.data(pack_materials(slots, with_emission))
 
         def own() -> Texture:
-            return self.data(pack_own_materials(shape, slots, _order(shape, storage), with_emission))
+            every = _with_nodes(shape, levels) if levels else shape
+            return self.data(pack_own_materials(every, slots, _order(every, storage), with_emission))
 
-        return self._once(shape, "materials", (slots, storage and storage.name, with_emission), own)
+        return self._once(shape, "materials", (slots, storage and storage.name, with_emission, levels), own)
 
-    def surfel_uvs(self, surfels: Surfels, storage: Storage) -> Texture:
+    def surfel_uvs(self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None) -> Texture:
         """Their texture coordinates, uploaded once."""
-        return self._once(surfels, "uvs", storage.name, lambda: self.data(pack_uvs(surfels, _order(surfels, storage))))
 
-    def clip_lines(self, surfels: Surfels, storage: Storage) -> Texture:
+        def uploaded() -> Texture:
+            every = _with_nodes(surfels, levels)
+            return self.data(pack_uvs(every, _order(every, storage)))
+
+        return self._once(surfels, "uvs", (storage.name, levels), uploaded)
+
+    def clip_lines(self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None) -> Texture:
         """The lines of those that are clipped, uploaded once."""
 
         def uploaded() -> Texture:
-            return self.data(pack_clip_lines(surfels, storage.order(surfels)), "RGBA16")
+            every = _with_nodes(surfels, levels)
+            return self.data(pack_clip_lines(every, storage.order(every)), "RGBA16")
 
-        return self._once(surfels, "clip_lines", storage.name, uploaded)
+        return self._once(surfels, "clip_lines", (storage.name, levels), uploaded)
 
     def atlas(self, textures: tuple[SurfaceTexture | None, ...]) -> tuple[Texture, Texture]:
         """Texels and table of an instance's textures, uploaded once."""
@@ -141,8 +163,24 @@ class Resources:
     def release(self) -> None:
         """Let go of everything on the device but its programs."""
         self._held.clear()
+        self.cuts.clear()
         self._atlases.clear()
         self.textures.clear()
+
+
+def _with_nodes(surfels: Surfels, levels: Hierarchy | None) -> Surfels:
+    """The surfels, then the merged nodes."""
+    return concatenate([surfels, levels.nodes]) if levels else surfels
+
+
+def _places(surfels: Surfels, storage: Storage) -> np.ndarray | None:
+    """(N,) where each is stored; None: in its own place."""
+    order = storage.order(surfels)
+    if isinstance(order, slice):
+        return None
+    places = np.empty(len(surfels), np.int32)
+    places[order] = np.arange(len(surfels), dtype=np.int32)
+    return places
 
 
 def _order(surfels: Surfels, storage: Storage | None):

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Levels of detail: of an instance with more surfels than its picture shows, a view draws a cut through its hierarchy.
+
+The numbers of what is drawn lie in a texture, and nothing else of the object changes with the view: one instance may be
+drawn by several views, each with its own cut.
+"""
+
+from __future__ import annotations
+
+from ..levels import LEAST_SURFELS, may_merge
+from ..plan.graph import Part
+from ..upload.cuts import NUMBERS_PER_ROW
+from .drawing import SPLAT_HOSTS
+
+CONSTANTS = {"NUMBERS_PER_ROW": NUMBERS_PER_ROW}
+
+
+def merging(planning) -> frozenset:
+    """The instances of which there may be merged surfels in the picture; of no others are there any in its shadows."""
+    tolerance = planning.settings.detail_tolerance
+    return frozenset(i for i in planning.scene.surfels if may_merge(i, planning.camera, tolerance))
+
+
+def passes(planning):
+    """None; it says whether there are any."""
+    if planning.shown:
+        if not planning.settings.detail_tolerance:
+            planning.skip("levels of detail", "every surfel is drawn, as the tolerance is 0")
+        elif found := planning.find(merging):
+            planning.facts["levels"] = found
+            planning.has("LEVELS", f"{len(found)} instances may have surfels too small to be seen one by one")
+        else:
+            planning.skip("levels of detail", f"no opaque instance of {LEAST_SURFELS:,} surfels or more is so far away")
+    return ()
+
+
+def is_present(planning) -> bool:
+    return bool(planning.find(merging))
+
+
+def parts(planning, p):
+    if p.host in SPLAT_HOSTS or p.host == "visibility.frag":
+        yield Part("levels", inputs=("drawn_splats",), only="cut")

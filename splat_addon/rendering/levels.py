@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Levels of detail: which surfels of an instance a view draws, or merged ones in their place.
+
+A view is told to the object's hierarchy in the object's own space; what it draws is a list of numbers, of surfels first
+and then of merged nodes, as they are stored.
+"""
+
+from __future__ import annotations
+
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from ..hierarchy import Hierarchy, Sight, build_hierarchy
+from ..hierarchy.merging import OVERLAP
+from ..surfels import Surfels
+from .scene import Instance
+from .scene.camera import Camera
+
+#: Of fewer surfels than this a cut saves less than it takes.
+LEAST_SURFELS = 4096
+
+#: A method's filter shows splats that lie less than this beside the picture, pixels.
+_BESIDE = 8.0
+
+#: At most this many spacings is the error of the finest merged surfels that are worth a hierarchy.
+_FINEST_ERROR = 2.0
+
+_BUILT: WeakKeyDictionary[Surfels, Hierarchy] = WeakKeyDictionary()
+
+
+def hierarchy_of(surfels: Surfels) -> Hierarchy:
+    """That of a set, built when it is first asked for and kept as long as the set is."""
+    if surfels not in _BUILT:
+        _BUILT[surfels] = build_hierarchy(surfels)
+    return _BUILT[surfels]
+
+
+def has_levels(instance: Instance) -> bool:
+    """Whether it may be drawn as merged surfels: opaque ones, of which there are many. What is split by its distance
+    from the camera is polygons where it is near, and surfels beyond that are told apart by where they lie."""
+    return len(instance.surfels) >= LEAST_SURFELS and not instance.is_transparent and instance.split is None
+
+
+def may_merge(instance: Instance, camera: Camera, tolerance: float) -> bool:
+    """Whether, seen from its farthest corner, merged surfels may be within the tolerance, as far as some tell."""
+    if not tolerance or not has_levels(instance):
+        return False
+    if instance.surfels in _BUILT:
+        return True
+    linear = instance.model_view(camera)[:3, :3]
+    some = instance.surfels.scales[:: max(len(instance.surfels) // LEAST_SURFELS, 1)]
+    spacing = float(np.median(some.min(axis=1))) / OVERLAP
+    farthest = float(-instance.corners(camera)[:, 2].min())
+    pixels = _pixels(camera) * float(np.linalg.norm(linear, 2))
+    return _FINEST_ERROR * spacing * pixels <= tolerance * (1 if camera.is_orthographic else max(farthest, camera.near))
+
+
+def sight(instance: Instance, camera: Camera, hides_backs: bool, tolerance: float) -> Sight:
+    """A camera's view of an instance. tolerance: pixels of the camera's picture."""
+    matrix = instance.model_view(camera)
+    x, y, depth = matrix[0], matrix[1], -matrix[2]
+    left, right, bottom, top = camera.window
+    across, up = _BESIDE * (right - left) / camera.size[0], _BESIDE * (top - bottom) / camera.size[1]
+    one = np.array([0, 0, 0, 1.0])
+    spread = one if camera.is_orthographic else depth
+    planes = (
+        x - (left - across) * spread,
+        (right + across) * spread - x,
+        y - (bottom - up) * spread,
+        (top + up) * spread - y,
+        depth - camera.near * one,
+        camera.far * one - depth,
+    )
+    inverse = np.linalg.inv(matrix[:3, :3])
+    if camera.is_orthographic:
+        eye = np.append(inverse[:, 2] / np.linalg.norm(inverse[:, 2]), 0.0)
+    else:
+        eye = np.append(-inverse @ matrix[:3, 3], 1.0)
+    pixels = _pixels(camera) * float(np.linalg.norm(matrix[:3, :3], 2))
+    return Sight(np.array(planes), depth, pixels, camera.near, eye, hides_backs, tolerance)
+
+
+def _pixels(camera: Camera) -> float:
+    """How many a unit of the world is at distance 1, or anywhere of a parallel view."""
+    left, right, bottom, top = camera.window
+    return max(camera.size[0] / (right - left), camera.size[1] / (top - bottom))

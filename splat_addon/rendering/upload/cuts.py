@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cuts on the device: the numbers of the splats that a view draws, uploaded when the view changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ..device import Device
+from ..device.interface import Texture
+
+#: Of the texture of numbers, which float32 has exactly up to 2^24.
+NUMBERS_PER_ROW = 4096
+
+
+class Cut(NamedTuple):
+    """count: splats that are drawn. clipped: how many of them, the first, end at clip lines.
+
+    numbers: their texture; None where they are the first `count` that are stored.
+    """
+
+    count: int
+    clipped: int
+    numbers: Texture | None
+
+
+class Cuts:
+    """Those that the last frames drew. uploads: how many were made."""
+
+    def __init__(self, device: Device):
+        self._device = device
+        self._kept: dict[object, tuple[int, Cut]] = {}
+        self._frame = 0
+        self.uploads = 0
+
+    def begin_frame(self) -> None:
+        """Let go of those that the frame before did not use."""
+        self._kept = {key: kept for key, kept in self._kept.items() if kept[0] == self._frame}
+        self._frame += 1
+
+    def get(self, key: object, numbers: Callable[[], np.ndarray | None], every: int, clipped: int) -> Cut:
+        """The cut of a view and an object, which the key tells apart.
+
+        numbers: where what it draws is stored; None: the first `every`. clipped: how many are stored first that end at
+        clip lines.
+        """
+        known = self._kept.get(key)
+        cut = known[1] if known else self._made(numbers(), every, clipped)
+        self._kept[key] = self._frame, cut
+        return cut
+
+    def _made(self, numbers: np.ndarray | None, every: int, clipped: int) -> Cut:
+        if numbers is None:
+            return Cut(every, clipped, None)
+        if clipped:
+            is_clipped = numbers < clipped
+            numbers, clipped = np.concatenate([numbers[is_clipped], numbers[~is_clipped]]), int(is_clipped.sum())
+        rows = max(-(-len(numbers) // NUMBERS_PER_ROW), 1)
+        texels = np.zeros((rows, NUMBERS_PER_ROW, 1), np.float32)
+        texels.reshape(-1)[: len(numbers)] = numbers
+        self.uploads += 1
+        return Cut(len(numbers), clipped, self._device.texture((NUMBERS_PER_ROW, rows), "R32F", texels))
+
+    def clear(self) -> None:
+        self._kept.clear()

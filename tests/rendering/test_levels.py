@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Levels of detail: fewer splats draw the same picture, a tolerance of 0 draws all, a still view uploads nothing."""
+
+from dataclasses import replace
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import scenes
+from splat_addon.reference.metrics import psnr
+from splat_addon.rendering import Camera, Renderer, Settings, plan
+from splat_addon.rendering.levels import LEAST_SURFELS
+from splat_addon.rendering.methods import METHODS
+
+SIZE = (48, 40)
+EVERY = Settings(detail_tolerance=0.0, outputs=("color", "depth", "normal", "coverage"))
+SOME = replace(EVERY, detail_tolerance=1.5)
+
+
+def far_torus(count=80_000, size=SIZE):
+    """Some twenty surfels a pixel, under a sun and a lamp that cast shadows."""
+    scene, camera = scenes.torus(count, size)
+    return replace(scene, lights=tuple(replace(light, casts_shadow=True) for light in scene.lights)), camera
+
+
+def with_surfels(scene, **fields):
+    """Other fields for all surfels; fields: name -> what gives an array for so many."""
+    changed = (
+        replace(i, shape=replace(i.surfels, **{n: of(len(i.surfels)) for n, of in fields.items()}))
+        for i in scene.surfels
+    )
+    return replace(scene, surfels=tuple(changed))
+
+
+def rough():
+    scene, camera = far_torus()
+    return with_surfels(scene, roughness=lambda n: np.linspace(0.2, 0.8, n), metallic=lambda n: np.zeros(n)), camera
+
+
+def parallel():
+    scene, camera = far_torus()
+    return scene, Camera.orthographic(camera.matrix_world, 3.0, SIZE, 0.1, 10)
+
+
+def turned():
+    """Mirrored, stretched and far from the origin."""
+    scene, camera = far_torus()
+    matrix = np.diag([-1, 1.2, 0.7, 1.0])
+    moved = tuple(replace(i, matrix_world=matrix @ i.matrix_world) for i in scene.surfels)
+    return replace(scene, surfels=moved), camera
+
+
+def solid():
+    scene, camera = scenes.sphere(80_000, SIZE)
+    return replace(scene, surfels=tuple(replace(i, shape=i.surfels.as_solid()) for i in scene.surfels)), camera
+
+
+def clipped():
+    """Half of the surfels end at lines that take next to nothing away; some of them are seen one by one."""
+    scene, camera = far_torus()
+
+    def lines(n):
+        return np.stack([np.arange(n) * 7 % 65536 - 32768, np.arange(n) % 2 * 400], axis=1).astype(np.int16)
+
+    return with_surfels(scene, clip_line=lines), camera
+
+
+@pytest.mark.parametrize("shot", [far_torus, rough, parallel, turned, solid, clipped], ids=lambda shot: shot.__name__)
+def test_fewer_splats_draw_the_same_picture(shot, render):
+    scene, camera = shot()
+    every, some = (render(scene, camera, settings) for settings in (EVERY, SOME))
+    assert every.stats["splats_drawn"] == every.stats["splats"] == some.stats["splats"]
+    assert some.stats["splats_drawn"] < 0.3 * every.stats["splats"]
+    # where surfels have a roughness of their own, what normals lose in length adds to it
+    assert psnr(some.color, every.color) > (35 if shot is rough else 37)
+    inside = every.coverage > 0.999
+    assert inside.sum() > 200 and some.coverage[inside].min() > 0.99
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_method_draws_them(method, render):
+    scene, camera = far_torus()
+    every, some = (render(scene, camera, replace(settings, method=method)) for settings in (EVERY, SOME))
+    assert some.stats["splats_drawn"] < 0.3 * every.stats["splats"]
+    # of those without a filter one of many splats is seen in a pixel, and now fewer
+    assert psnr(some.color, every.color) > (37 if METHODS[method].filters_silhouettes else 19)
+
+
+def test_16_bit_storage_draws_the_same_splats(render):
+    scene, camera = far_torus()
+    exact, stored = (render(scene, camera, replace(SOME, storage=name)) for name in ("float32", "16-bit"))
+    assert stored.stats["splats_drawn"] == exact.stats["splats_drawn"]
+    assert psnr(stored.color, exact.color) > 50
+
+
+def test_a_finer_tolerance_is_nearer_and_draws_more(render):
+    scene, camera = far_torus(160_000)
+    truth = render(scene, camera, EVERY).color
+    frames = [render(scene, camera, replace(SOME, detail_tolerance=t)) for t in (0.75, 1.5, 3.0, 6.0)]
+    assert np.all(np.diff([f.stats["splats_drawn"] for f in frames]) < 0)
+    errors = [psnr(f.color, truth) for f in frames]
+    assert errors[0] > errors[2] > errors[3]
+
+
+def test_a_tolerance_of_0_is_the_picture_of_the_surfels_bit_by_bit(on_device):
+    scene, camera = far_torus()
+
+    def draw(device):
+        renderer = Renderer(device)
+        alone = renderer.render(scene, camera, EVERY)
+        renderer.render(scene, camera, SOME)
+        return alone, renderer.render(scene, camera, EVERY)
+
+    alone, after = on_device(draw)
+    for name in EVERY.outputs:
+        np.testing.assert_array_equal(getattr(after, name), getattr(alone, name))
+
+
+def test_what_merges_nothing_is_drawn_as_it_is(render):
+    """Surfels that are seen one by one, though a hierarchy is over them."""
+    scene, camera = far_torus()
+    near = replace(camera, window=tuple(edge / 20 for edge in camera.window))
+    render(scene, camera, SOME)
+    every, some = (render(scene, near, settings) for settings in (EVERY, replace(SOME, detail_tolerance=1e-3)))
+    assert psnr(some.color, every.color) > 90
+
+
+def test_a_still_view_uploads_nothing_and_a_moved_one_its_cuts(on_device):
+    scene, camera = far_torus()
+    shift = np.eye(4)
+    shift[0, 3] = 0.05
+    moved = replace(camera, matrix_world=camera.matrix_world @ shift)
+
+    def draw(device):
+        renderer, uploads = Renderer(device), []
+        for view in (camera, camera, moved, moved):
+            before = renderer.resources.cuts.uploads
+            renderer.render(scene, view, replace(SOME, shadow_resolution=0))
+            uploads.append(renderer.resources.cuts.uploads - before)
+        return uploads
+
+    assert on_device(draw) == [2, 0, 2, 0]
+
+
+def test_parts_of_a_picture_are_drawn_with_the_whole_s_levels(render, monkeypatch):
+    scene, camera = far_torus()
+    whole = render(scene, camera, SOME)
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", 48)
+    tiles = render(scene, camera, SOME)
+    assert len(tiles.stats["plan"].tiles) > 1
+    assert psnr(tiles.color, whole.color) > 70
+
+
+def test_transparent_surfels_and_few_are_all_drawn():
+    scene, camera = far_torus()
+    glass = with_surfels(scene, colors=lambda n: np.full((n, 4), 0.5))
+    few, _ = far_torus(LEAST_SURFELS // 2)
+    assert plan(scene, camera, SOME).has("LEVELS")
+    for other, settings in ((glass, SOME), (few, SOME), (scene, EVERY)):
+        made = plan(other, camera, settings)
+        assert not made.has("LEVELS") and "levels of detail" in dict(made.skipped)
+        assert not any("drawn_splats" in part.inputs for p in made.passes for part in p.parts)
