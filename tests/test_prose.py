@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The words: spelt right, within their budget, in sentences that are understood at first reading.
 
-`Vale` and `proselint` would ask for a program or a network; codespell and the few rules below are the style.
 """
 
 import re

@@ -1,4 +1,4 @@
-// References: docs/numerics.md, which measures both formats.
+// References: docs/evidence/numerics.md, which measures both formats.
 // Summary: the depth buffer holds the hardware's depth, affine in 1 / z. It costs nothing and leaves a resolution of
 //          z / near / 2^24: enough where the plan says so. Corners are moved back, which is right for splats of a small angle.
 

@@ -1,4 +1,4 @@
-// References: docs/numerics.md, which measures both formats.
+// References: docs/evidence/numerics.md, which measures both formats.
 // Summary: the depth buffer holds depth / far, whose float32 has 2^-24 of z at any distance. Fragments write it, and are
 //          moved back one by one.
 

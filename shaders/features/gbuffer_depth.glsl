@@ -1,4 +1,4 @@
-// References: docs/numerics.md, Formats.
+// References: docs/evidence/numerics.md, Formats.
 // Summary: depths and their weights apart, in float32: where sums are float16, and where colours count by opacity.
 
 #part gbuffer

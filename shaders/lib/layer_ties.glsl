@@ -1,4 +1,4 @@
-// References: docs/numerics.md.
+// References: docs/evidence/numerics.md.
 // Summary: depths that rounding may have changed. What the visibility pass finds first in a layer, the attribute pass must
 //          find too, or the sample would be taken for a rim and have the colour of what is beside it.
 

@@ -1,4 +1,4 @@
-// References: this project; docs/rendering.md shows pictures with and without.
+// References: this project; docs/evidence/rendering.md shows pictures with and without.
 // Summary: which side of a splat the viewer sees. A splat's back counts for little where the front of another lies
 //          in its place: behind a silhouette splats stick out by their radius, and would rim it with the light of
 //          the far side. Alone, a back is drawn as any splat. The twin of reference/splats.py.

@@ -13,7 +13,7 @@ struct StoredSplat {
 #include "storage/{storage}.glsl"
 
 // Corners of the triangle around the unit circle: one triangle a splat is less work than the two of a quad, unless
-// splats are many pixels large (docs/methods.md).
+// splats are many pixels large (docs/evidence/methods.md).
 vec2 triangle_corner(int vertex) {
   int corner = vertex % 3;
   return corner == 0 ? vec2(0.0, 2.0) : vec2(corner == 1 ? -1.73205081 : 1.73205081, -1.0);

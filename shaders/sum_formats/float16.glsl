@@ -1,4 +1,4 @@
-// References: docs/numerics.md, Formats.
+// References: docs/evidence/numerics.md, Formats.
 // Summary: sums of float16. Of weights up to 1 such a sum stops growing at 2048, of what they are multiplied by here at
 //          32768, which float16 (up to 65504) holds; and the smallest it holds is then a 16th as small. Colours are scaled so
 //          that the scene's brightest is at most 1.

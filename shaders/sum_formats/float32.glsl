@@ -1,4 +1,4 @@
-// References: docs/numerics.md, Formats.
+// References: docs/evidence/numerics.md, Formats.
 // Summary: sums of float32 hold weights and colours as they are.
 
 const float WEIGHT_SCALE = 1.0;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Three settings that are worth their time: each on the frontier of accuracy and speed (docs/trade.md)."""
+"""Three settings that are worth their time: each on the frontier of accuracy and speed (docs/evidence/trade.md)."""
 
 from __future__ import annotations
 

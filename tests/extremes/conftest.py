@@ -119,7 +119,7 @@ KNOWN_FAILURES = {
     ),
 }
 
-#: dB; measured: 70 and more (docs/numerics.md). Of 64 x 64 pixels one sample that falls the other way costs 60 dB.
+#: dB; measured: 70 and more (docs/evidence/numerics.md). Of 64 x 64 pixels one sample that falls the other way costs 60 dB.
 LEAST_PSNR = 50
 
 #: Of the truth, and of every method but the default, which needs one sample.

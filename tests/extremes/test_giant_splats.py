@@ -5,7 +5,7 @@ import pytest
 
 from splat_addon.reference.extremes import discs, giant_floor
 
-#: Of the near distance, 0.01: above 1e7 the driver's clipping loses the quad (docs/numerics.md).
+#: Of the near distance, 0.01: above 1e7 the driver's clipping loses the quad (docs/evidence/numerics.md).
 RADII = [1e-2, 1e-1, 1e0, 1e1, 1e2, 1e3, 1e4]
 
 

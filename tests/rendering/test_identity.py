@@ -30,7 +30,7 @@ from splat_addon.surfels import Surfels
 SIZE = (40, 30)
 CAMERA = Camera.perspective(np.eye(4), 0.9, SIZE)
 OUTPUTS = ("color", "coverage", *NUMBERED)
-#: Pixels that a method may see nothing in where something is visible: what these print leaves holes (docs/methods.md);
+#: Pixels that a method may see nothing in where something is visible: what these print leaves holes (docs/evidence/methods.md);
 #: of others one splat's rim may tie.
 TIES = {"homogeneous_printed": 8, "sprites": 4}
 

@@ -110,7 +110,7 @@ def test_reductions_by_normals_keep_subsets_and_3_to_1_merges(mesh):
 def farthest(resolution):
     """In H. Float32 leaves of a coordinate 2^-25 or 2^-24 of it, by where its powers of two lie, and none is more than
     half the longest edge and 8 cells; snapping moves the outline by 0.71 sub-cells, of which there are at least 2^24
-    along that edge. See docs/conversion.md."""
+    along that edge. See docs/evidence/conversion.md."""
     return (np.sqrt(3) * min(resolution, resolution / 2 + 8) + 0.71 * resolution) * 2.0**-24
 
 

@@ -3,7 +3,7 @@
 
 After Pfister et al. 2000, who resample the three images of a cube into one with the nearest surfel's attributes. The
 lattice is that of the cell centres, where the rays of all three images cross. Two sheets that lie closer than a cell
-share their nodes and become one: that is the reduction's known failure (docs/conversion.md).
+share their nodes and become one: that is the reduction's known failure (docs/evidence/conversion.md).
 """
 
 from __future__ import annotations
