@@ -57,7 +57,7 @@ def test_nothing_is_written_outside_the_folder(tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["models", "target"]
 
 
-PACKED = gzip.compress(b"v 0 0 0\n" * 99)
+PACKED = gzip.compress(b"v 0 0 0\n" * 99, mtime=0)
 
 
 @pytest.mark.parametrize("damaged", [PACKED[:-9], PACKED[:12] + b"\xff" * 9, b"no gzip"])
