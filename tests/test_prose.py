@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The words: spelt right, within their budget, in sentences that are understood at first reading.
-
-"""
+"""The words: spelt right, within their budget, in sentences that are understood at first reading."""
 
 import re
 import subprocess

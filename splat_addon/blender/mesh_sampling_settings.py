@@ -10,7 +10,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 
 from .conversion.mesh_settings import DENSITIES
 from .enum_values import check_choices
-from .geometry.sources import has_surfaces, owner_of
+from .geometry.sources import asked_of, has_surfaces
 from .ids import OBJECT_SETTINGS, RENDER_SETTINGS
 from .ui.engine_panel import EnginePanel
 
@@ -44,18 +44,15 @@ _MESH_ITEMS = (
     (
         "POLYGONS",
         "Polygons",
-        "Draw their triangles among the splats, with the same depth, light and shadows. Base colours that are one "
-        "image are looked up at every pixel, what else is textured once a corner. As many triangles as surfels take "
-        "0.7 of their time, without a graphics card. Meshes that are transparent in places become surfels all the "
-        "same, unless their object says otherwise",
+        "Draw the triangles among the splats, with the same depth, light and shadows. Transparent meshes become"
+        " surfels unless their object says otherwise",
         0,
     ),
     (
         "SURFELS",
         "Surfels",
-        "Sample them as they are on each frame. A mesh that keeps its triangles keeps its surfels, so deformation "
-        "flickers a third as much. A frame costs 1 to 3 microseconds a surfel where the mesh deforms, and next to "
-        "nothing where it does not",
+        "Sample the mesh when it is first drawn; its surfels follow it as it deforms. That takes 1 to 3 "
+        "microseconds a surfel in each frame in which it deforms",
         1,
     ),
     ("HIDDEN", "Nothing", "Leave them out", 2),
@@ -72,14 +69,14 @@ class MeshSamplingProperties:
 
     render_meshes: EnumProperty(
         name="Render Meshes as",
-        description="What becomes of meshes, curves, texts and metaballs that have not been converted",
+        description="How meshes, curves, texts and metaballs are drawn that have not been converted",
         items=_MESH_ITEMS,
         default="POLYGONS",
         update=_read_again,
     )
     mesh_density: EnumProperty(
         name="Density",
-        description="How it is said how close the surfels of meshes lie",
+        description="How the distance between the surfels of meshes is chosen",
         items=_DENSITY_ITEMS,
         default="AUTOMATIC",
         update=_read_again,
@@ -87,8 +84,8 @@ class MeshSamplingProperties:
     mesh_resolution: IntProperty(
         name="Resolution",
         description=(
-            "Grid cells along the longest edge of each object's bounding box. "
-            "Twice as many show details half the size, for four times the surfels, memory and time"
+            "Grid cells along the longest edge of each object's bounding box. Doubling it makes four times as "
+            "many surfels, and takes four times the memory and time"
         ),
         default=256,
         min=1,
@@ -99,8 +96,8 @@ class MeshSamplingProperties:
     mesh_spacing: FloatProperty(
         name="Spacing",
         description=(
-            "Distance between surfels in world units, where the object's scale spreads them most. "
-            "Half of it shows details half the size, for four times the surfels, memory and time"
+            "Distance between surfels in world units, where the object's scale spreads them most. Half of it "
+            "takes four times the memory and time"
         ),
         default=0.01,
         min=1e-6,
@@ -112,8 +109,8 @@ class MeshSamplingProperties:
     mesh_pixels: FloatProperty(
         name="Pixels per Surfel",
         description=(
-            "Distance between surfels in pixels of the render, where the object comes closest to the scene's camera. "
-            "An object is sampled anew when it comes a quarter closer, or is far too fine"
+            "Distance between surfels in pixels of the render, where the object comes closest to the camera. An"
+            " object is sampled again when it comes much closer"
         ),
         default=0.75,
         min=0.1,
@@ -123,8 +120,8 @@ class MeshSamplingProperties:
     mesh_textures: BoolProperty(
         name="Texture-Mapped",
         description=(
-            "Base colours that are one image are looked up in it at every pixel, instead of once a surfel: sharp "
-            "textures with few surfels, 20 to 28 dB truer on a globe of text for 3.6 to 6 times the time in software"
+            "Look the base colour's image up at every pixel instead of once a surfel. Textures are much "
+            "sharper, and a frame takes 3.6 to 6 times as long in software"
         ),
         default=False,
     )
@@ -147,23 +144,22 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
     render_as: EnumProperty(
         name="Render as",
         description=(
-            "What becomes of this object, with its instances. An object that was converted is left out while there are "
-            "its surfels, unless something is chosen here"
+            "How this object and its instances are drawn. Conversion sets it to Nothing, because the surfels "
+            "stand in the object's place"
         ),
         items=[
-            ("SCENE", "As the Scene Says", "What Render Meshes as in the render properties says"),
+            ("SCENE", "As the Scene Says", "As Render Meshes as in the render properties says"),
             *(item[:3] for item in _MESH_ITEMS),
             (
                 "DISTANCE",
                 "Split by Distance",
-                "Draw polygons up to a distance from the camera and surfels beyond, which go over into one another. "
-                "Both are kept: 1.4 times the time of surfels alone, without a graphics card",
+                "Draw polygons up to a distance from the camera and surfels beyond it. It takes 1.4 times the "
+                "time of surfels alone",
             ),
             (
                 "GROUP",
                 "Split by Vertex Group",
-                "Draw polygons where the weights of a vertex group are 1/2 or more and surfels elsewhere, with more of "
-                "them along the edges between",
+                "Draw polygons where the weights of a vertex group are 0.5 or more, and surfels elsewhere",
             ),
         ],
         default="SCENE",
@@ -171,7 +167,7 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
     )
     split_distance: FloatProperty(
         name="Distance",
-        description="From the camera, up to which the object is drawn as polygons",
+        description="Distance from the camera up to which the object is drawn as polygons",
         subtype="DISTANCE",
         default=10.0,
         min=1e-6,
@@ -180,15 +176,14 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
     )
     split_group: StringProperty(
         name="Vertex Group",
-        description="Whose weights of 1/2 or more say where the object is drawn as polygons",
+        description="The object is drawn as polygons where its weights are 0.5 or more",
         update=_read_again,
     )
     detail: FloatProperty(
         name="Object Detail",
         description=(
-            "How many times closer together than the density says the surfels of this object lie, with its instances, "
-            "when it is converted or rendered as surfels; joined objects go by the active one. "
-            "2 shows details half the size, for four times the surfels, memory and time"
+            "How many times closer together the surfels of this object lie than the density says. 2 makes four "
+            "times as many surfels"
         ),
         default=1.0,
         min=0.01,
@@ -227,9 +222,7 @@ def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) ->
     """Of an instance its instancer says it; of one from a collection the object in there comes first, unless either of
     them is hidden. Raises ValueError where what it says is not whole.
     """
-    owner = owner_of(entry)
-    asked = [entry.object.original, owner] if owner.instance_type == "COLLECTION" else [owner]
-    asked = [getattr(each, OBJECT_SETTINGS) for each in asked]
+    asked = [getattr(each, OBJECT_SETTINGS) for each in asked_of(entry)]
     for settings in asked:
         check_choices(settings, "object properties")
     chosen = [settings for settings in asked if settings.render_as != "SCENE"]

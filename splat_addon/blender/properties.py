@@ -45,7 +45,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     )
     shading: EnumProperty(
         name="Shading",
-        description="How the surface answers light",
+        description="How the surface reflects light",
         items=[
             (m.name, m.label, f"{m.summary} ({m.source}). {m.cost:g} times the frame of Flat")
             for m in SHADING_MODELS.values()
@@ -61,31 +61,26 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     )
     toon_softness: FloatProperty(
         name="Softness",
-        description="How much of a level is spent on going over to the next; at 0 its edge is as jagged as the samples",
+        description="How much of each level blends into the next; at 0 edges are jagged",
         min=0.0,
         max=1.0,
         default=Settings.toon_softness,
     )
     matcap: PointerProperty(
         name="Matcap",
-        description=(
-            "A picture of a lit ball that fills it. Of a multilayer file, as most of Blender 5's own are, the first "
-            "layer is shown: what Solid mode shows without Specular Highlights. It is read once, in 0.7 s; metals, "
-            "whose first layer is black, are refused"
-        ),
+        description=("An image of a lit ball that fills the frame. Of a multilayer file the first layer is shown"),
         type=bpy.types.Image,
     )
     use_lines: BoolProperty(
         name="Lines",
         description=(
-            "Draw lines along silhouettes and creases, whatever the shading. 1.6 times the time of a frame of flat "
-            "shading without a graphics card, 1.8 with lines of 4 pixels"
+            "Draw lines along silhouettes and creases, with any shading. It takes 1.5 to 1.7 times the time of a frame"
         ),
         default=False,
     )
     line_width: FloatProperty(
         name="Width",
-        description="Of a silhouette, all on the nearer surface; of a crease, half on each side",
+        description="Width of a line, which lies on the nearer surface of a silhouette and on both sides of a crease",
         subtype="PIXEL",
         min=0.1,
         max=MAX_WIDTH,
@@ -98,8 +93,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     line_crease_angle: FloatProperty(
         name="Crease Angle",
         description=(
-            "Where the surface turns by more than this within about 3 pixels, a crease is drawn; 180 degrees for none. "
-            "Splats larger than that blur a crease away"
+            "A crease is drawn where the surface turns by more than this angle within about 3 pixels; 180 "
+            "degrees draws none"
         ),
         subtype="ANGLE",
         min=math.radians(1),
@@ -108,7 +103,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     )
     line_depth_threshold: FloatProperty(
         name="Depth Threshold",
-        description="How much deeper the next surface must lie for a silhouette, in pixels as wide as they are there",
+        description="How much deeper the next surface must lie for a silhouette, in pixels at that distance",
         min=0.0,
         soft_max=50.0,
         default=Lines.depth_threshold,
@@ -116,9 +111,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     supersampling: IntProperty(
         name="Supersampling",
         description=(
-            "Samples along each side of a pixel in final renders, so 3 means 9 samples a pixel. Mip Filter is made for "
-            "1: more narrow its filter. With Quads, 2 is 8 to 13 dB truer than 1 for 1.3 times the time, 4 is 13 to "
-            "23 dB truer for 2.1 times (box-filtered pixels)"
+            "Samples along each side of a pixel in final renders, so 3 means 9 samples. Use 1 with Mip Filter; "
+            "with Quads, 2 takes 1.3 times and 4 takes 2.1 times the time"
         ),
         min=1,
         max=MAX_SUPERSAMPLING,
@@ -136,11 +130,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     samples: IntProperty(
         name="Samples",
         description=(
-            "Pictures that a final render is the mean of, each seen through another place in the pixel and, with "
-            "depth of field, on the lens, with motion blur, in time. Beyond one, with Quads, 4 are 2 to 9 dB truer, "
-            "16 are 15 to 22, 64 are 23 to 30 (box-filtered pixels); with Mip, 16 are 2 to 6 (its Gaussian). "
-            "Each takes a picture's time: 16 took 13 times as long with Mip, 17 with Quads, 8.5 under shadow maps, "
-            "which are drawn once"
+            "Number of pictures that a final render averages, each through another place in the pixel, on the "
+            "lens and in time. Each takes the time of one picture"
         ),
         min=1,
         max=MAX_SAMPLES,
@@ -160,11 +151,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     )
     viewport_samples: IntProperty(
         name="Viewport Samples",
-        description=(
-            "Pictures that the viewport is the mean of when it has been at rest: one is shown at once, the others "
-            "follow one by one, and whatever changes starts anew at the cost of one. 16 are 15 to 22 dB truer with "
-            "Quads, 2 to 6 with Mip. The camera's depth of field needs them"
-        ),
+        description=("Number of pictures that the viewport averages while nothing changes"),
         min=1,
         max=MAX_SAMPLES,
         soft_max=256,
@@ -173,9 +160,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     motion_blur_steps: IntProperty(
         name="Steps",
         description=(
-            "Moments of the open shutter at which the scene is evaluated and read anew, at most one a sample. Fewer "
-            "save that time; what moves then shows as so many pictures. From as many as all samples, 4 samples are "
-            "31 to 36 dB, 16 are 38 to 45, 64 are 46 to 51"
+            "Moments of the open shutter at which the scene is evaluated. Fewer are faster, and show what moves"
+            " as separate pictures"
         ),
         min=1,
         max=MAX_SAMPLES,
@@ -185,8 +171,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     epsilon: FloatProperty(
         name="Blend Depth",
         description=(
-            "How far behind the front surface splats still blend with it, in splat radii. "
-            "Lower separates thin sheets, but below 0.2 the surface breaks up"
+            "How far behind the nearest splat others still blend with it, in splat radii. Lower values separate"
+            " thin sheets; below 0.2 the surface breaks up"
         ),
         min=0.0,
         soft_max=5.0,
@@ -195,9 +181,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     edge_threshold: FloatProperty(
         name="Edge Fade",
         description=(
-            "Where the weights of Quads sum to less than this, the pixel fades to the background; 1 is one splat's "
-            "centre, 0 covers whatever a splat reaches. Costs up to a tenth of the time and gains 0.2 dB at best. "
-            "Other methods filter, and are left alone. (Multisampling, which it goes with, Blender's gpu module lacks)"
+            "With Quads, a pixel fades to the background where the splats' weights sum to less than this. It "
+            "takes up to a tenth more time"
         ),
         min=0.0,
         soft_max=1.0,
@@ -206,9 +191,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     detail_tolerance: FloatProperty(
         name="Detail Tolerance",
         description=(
-            "Where surfels are too small to be seen one by one, larger ones that stand for many are drawn, off by at "
-            "most this many pixels (texels in shadow maps): a frame then costs what its pixels cost. FLIP at most "
-            "0.005 from all surfels at 1.5; 0 draws every surfel. Transparent ones are always drawn"
+            "Draw larger surfels in place of those that are too small to be seen, off by at most this many pixels. 0 "
+            "draws every surfel; 1.5 makes large sets many times faster"
         ),
         min=0.0,
         soft_max=8.0,
@@ -218,9 +202,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     shadow_resolution: IntProperty(
         name="Resolution",
         description=(
-            "Texels along the side of a shadow map; 0 leaves shadows out. A sun or a spot has one map, a point up to "
-            "six. Each map costs a visibility pass (a quarter of a frame of 188,000 surfels under a sun, in software) "
-            "and each light of a size 64 looks into it a sample"
+            "Texels along each side of a shadow map; 0 turns shadows off. Each map takes the time of one "
+            "visibility pass"
         ),
         min=0,
         max=MAX_SHADOW_RESOLUTION,
@@ -228,12 +211,15 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     )
     use_ambient_occlusion: BoolProperty(
         name="Ambient Occlusion",
-        description="Surfaces that the picture shows keep the world's light from one another",
+        description=(
+            "Let visible surfaces block the world's light from one another. It takes 1.1 to 1.5 times the time of a"
+            " frame"
+        ),
         default=False,
     )
     ambient_occlusion_distance: FloatProperty(
         name="Distance",
-        description="How far away a surface may be to keep the world's light from another",
+        description="How far away a surface can be and still block the world's light",
         subtype="DISTANCE",
         min=0.0,
         soft_max=100.0,
@@ -242,10 +228,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     layers: IntProperty(
         name="Layers",
         description=(
-            "Transparent surfaces behind one another, the most that a pixel is made of; where there are fewer, the "
-            "others cost nothing. Of 27 transparent spheres with 6 surfaces behind one another, 6 layers are 44 to "
-            "50 dB from the exact picture in 9 to 10 times the time of opaque spheres, 3 that blend the rest 40 to "
-            "42 dB in 4, 2 are 36 dB in 2.2 to 2.8. Opaque scenes have none"
+            "Number of transparent surfaces behind one another that are sorted exactly. Each takes about the "
+            "time of an opaque frame"
         ),
         min=2,
         max=MAX_LAYERS,
@@ -255,31 +239,34 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     blends_rest: BoolProperty(
         name="Blend the Rest",
         description=(
-            "Let the last layer hold all surfaces that are left, mixed by their opacity, without an order. 4 to 5 dB "
-            "closer than 3 layers alone, in the same time; off, what lies behind the last layer is lost"
+            "Mix all surfaces behind the last layer by their opacity, without sorting them. If off, they are left out"
         ),
         default=Settings.blends_rest,
     )
     storage: EnumProperty(
         name="Surfel Storage",
-        description="How surfels lie on the graphics device",
+        description="How surfels are stored on the graphics device",
         items=[(s.name, s.label, s.summary) for s in STORAGES.values()],
         default=Settings.storage,
     )
     accumulation: EnumProperty(
         name="Sums",
-        description="How what overlapping splats add to a pixel is kept",
+        description="How the sums of overlapping splats are stored",
         items=[(name, *texts) for name, texts in ACCUMULATIONS.items()],
         default=Settings.accumulation,
     )
     broken_objects: EnumProperty(
         name="Broken Objects",
         description=(
-            "What happens to a final render when an object or a light cannot be drawn, such as surfels that lost an "
-            "attribute. A render that stops writes no file, and Blender in background then ends with exit code 1"
+            "What happens to a final render when an object or a light cannot be drawn. A render that stops "
+            "writes no file, and Blender in the background ends with exit code 1"
         ),
         items=(
-            ("BACKGROUND", "Stop in Background", "Stop where nobody watches, so that a render farm notices; else warn"),
+            (
+                "BACKGROUND",
+                "Stop in Background",
+                "Stop in the background, so that a render farm notices; warn in the interface",
+            ),
             ("STOP", "Stop", "Stop the render"),
             ("WARN", "Warn", "Render without them, and name them in a warning"),
         ),
@@ -287,7 +274,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     )
     profile: BoolProperty(
         name="Time Each Pass",
-        description="Wait for the graphics device after every pass, and report how long each took",
+        description="Measure how long each pass takes, by waiting for the graphics device after each",
         default=Settings.profile,
     )
 

@@ -39,7 +39,7 @@ def test_no_unit_and_no_distance_costs_digits(scale, offset, compare):
     instances = [
         replace(
             i,
-            surfels=replace(
+            shape=replace(
                 i.surfels,
                 positions=i.surfels.positions * np.float32(scale),
                 scales=i.surfels.scales * np.float32(scale),

@@ -47,10 +47,12 @@ def square_surfels(spacing: float, color, keep=lambda x, y: x > -9):
 
 
 #: Their splats lie away from the surface: the whole disc, or at flat angles.
-IN_FRONT = {"sprites_unfiltered", "homogeneous_printed", "raycast"}
+IN_FRONT = {"sprites_unfiltered", "homogeneous_printed", "raycast", "raycast_printed"}
+#: Equation 4 as printed has depths that are off by a slope in units of the scene.
+MISPLACED = {"sprites_printed"}
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", [name for name in METHODS if name not in MISPLACED])
 def test_the_nearer_of_splats_and_polygons_is_seen(method, render):
     """A ball cut by a floor. Methods that filter may differ within a pixel of the curve."""
     scene, camera = scenes.polygons(size=SIZE)

@@ -32,14 +32,12 @@ DENSITIES = {
         "pixels",
         4,
     ),
-    "RESOLUTION": Density(
-        "Resolution", "The same number of surfels along the longest edge, whatever the object's size", "resolution", 0
-    ),
+    "RESOLUTION": Density("Resolution", "A number of cells along each object's longest edge", "resolution", 0),
     "SPACING": Density("Spacing", "The same distance between surfels in every object", "spacing", 1),
-    "COUNT": Density("Count", "The same number of surfels for each object", "count", 2),
+    "COUNT": Density("Count", "A number of surfels for each object", "count", 2),
     "CAMERA": Density(
         "Camera",
-        "As fine as the scene's camera and resolution need on the current frame, where each object comes closest",
+        "As fine as the scene's camera and resolution need on the current frame",
         "pixels",
         3,
     ),
@@ -51,16 +49,15 @@ class ConversionProperties:
 
     density: EnumProperty(
         name="Density",
-        description="How it is said how close the surfels lie",
+        description="How the distance between surfels is chosen",
         items=[(name, density.label, density.description, density.number) for name, density in DENSITIES.items()],
         default="AUTOMATIC",
     )
     resolution: IntProperty(
         name="Resolution",
         description=(
-            "Grid cells along the longest edge of the object's bounding box. "
-            "Twice as many shows details half the size, for four times the surfels, memory and time: "
-            "a million surfels take 0.2 to 0.6 s of a processor and 140 MB"
+            "Grid cells along the longest edge of the object's bounding box. Doubling it makes four times as "
+            "many surfels, and takes four times the memory and time"
         ),
         default=256,
         min=0,
@@ -70,8 +67,8 @@ class ConversionProperties:
     spacing: FloatProperty(
         name="Spacing",
         description=(
-            "Distance between surfels, in the units of the chosen space. "
-            "Half of it shows details half the size, for four times the surfels, memory and time"
+            "Distance between surfels, in the units of the chosen space. Half of it takes four times the memory"
+            " and time"
         ),
         default=0.01,
         min=0.0,
@@ -81,7 +78,7 @@ class ConversionProperties:
     )
     count: IntProperty(
         name="Count",
-        description="How many surfels each object becomes, within about 1 in 100",
+        description="How many surfels each object becomes, within 1 %",
         default=100_000,
         min=0,
         soft_min=1_000,
@@ -90,8 +87,8 @@ class ConversionProperties:
     pixels: FloatProperty(
         name="Pixels per Surfel",
         description=(
-            "Distance between surfels in pixels of the render, where the object comes closest to the scene's camera. "
-            "Twice as many pixels make a quarter of the surfels"
+            "Distance between surfels in pixels of the render, where the object comes closest to the camera. "
+            "Doubling it makes a quarter of the surfels"
         ),
         default=0.75,
         min=0.0,
@@ -101,21 +98,20 @@ class ConversionProperties:
     join: BoolProperty(
         name="Join",
         description=(
-            "Make one surfel object of everything selected, in the place of the active object and evenly spaced in the "
-            "world, with the materials of all. The density then means the whole: its longest edge, its count. Takes "
-            "up to a third longer: 20 objects, 1.8 million surfels, 7.4 s joined and 5.7 s apart"
+            "Make one surfel object of everything that is selected, in the place of the active object. Density "
+            "then refers to the whole"
         ),
         default=False,
     )
     space: EnumProperty(
         name="Space",
-        description="Where surfels are spaced evenly, and whose units lengths are in",
+        description="The space in which surfels are spaced evenly and lengths are measured",
         items=(
-            ("OBJECT", "Object", "The object's own space: its scale spreads the surfels, unevenly if it is uneven"),
+            ("OBJECT", "Object", "The object's own space, so that its scale also scales the spacing"),
             (
                 "WORLD",
                 "World",
-                "The world: scaled objects are as dense as others. The surfel object has a scale of 1",
+                "World space, so that scaled objects are as dense as others; the surfel object has a scale of 1",
             ),
         ),
         default="OBJECT",
@@ -129,8 +125,8 @@ class ConversionProperties:
     grazing_angle: FloatProperty(
         name="Grazing Angle",
         description=(
-            "Samples are left out where the surface is turned farther than this from their axis. 54.7 degrees keeps "
-            "hardly more than one axis everywhere, 90 degrees keeps everything"
+            "Samples are dropped where the surface is turned away from their axis by more than this angle. 90 "
+            "degrees keeps all of them"
         ),
         subtype="ANGLE",
         default=DEFAULT_GRAZING_ANGLE,
@@ -140,8 +136,8 @@ class ConversionProperties:
     use_adaptive: BoolProperty(
         name="Adaptive",
         description=(
-            "Larger surfels, up to 8 spacings, where the surface is flat and its colour even. Leaves a third of the "
-            "surfels of a building or a machine and nearly all of a scan. Takes 2 to 3 s longer for a million surfels"
+            "Use larger surfels where the surface is flat and its colour even. It helps buildings and machines,"
+            " and adds 2 to 3 s for a million surfels"
         ),
         default=False,
     )
@@ -159,19 +155,16 @@ class ConversionProperties:
     bake_materials: BoolProperty(
         name="Bake Materials",
         description=(
-            "Let Cycles bake the inputs of materials that are no plain product of images, colour attributes and "
-            "numbers, such as procedural textures and bumps, at each surfel; otherwise the sockets' plain values are "
-            "used. Adds about 35 s for a million surfels and each such input, while progress stands still"
+            "Let Cycles bake material inputs that cannot be read directly, such as procedural textures. It adds"
+            " about 35 s for a million surfels and each such input"
         ),
         default=False,
     )
     texture_mapped: BoolProperty(
         name="Texture-Mapped",
         description=(
-            "Surfels whose base colour is one image look it up at every pixel of a render, instead of keeping one "
-            "colour each, and an edited image shows at once. A globe of text is 20 to 28 dB truer for it, at 3.6 to 6 "
-            "times the time of a frame in software; sampling takes twice as long. With Adaptive, a flat board of text "
-            "keeps 1 surfel in 13"
+            "Look the base colour's image up at every pixel instead of once a surfel. Textures are much "
+            "sharper, and a frame takes 3.6 to 6 times as long in software"
         ),
         default=False,
     )
@@ -185,7 +178,7 @@ class ConversionProperties:
     )
     crease_angle: FloatProperty(
         name="Crease Angle",
-        description="Where the surface or its shading turns by more, there is an edge; sharp edges break the shading",
+        description="The surface has an edge where it, or its shading, turns by more than this angle",
         subtype="ANGLE",
         default=DEFAULT_CREASE_ANGLE,
         min=math.radians(1),
@@ -194,8 +187,8 @@ class ConversionProperties:
     splat_size: FloatProperty(
         name="Splat Size",
         description=(
-            "Half-axis of a splat, in spacings. 1.25 covers every surface without holes; 1 is sharper, "
-            "but leaves 1 point of the surface in 3,000 uncovered, as single dark specks"
+            "Half-axis of a splat, in spacings. 1.25 covers every surface; smaller splats are sharper but leave"
+            " dark specks"
         ),
         default=DEFAULT_SPLAT_SIZE,
         min=0.0,
@@ -206,7 +199,7 @@ class ConversionProperties:
         name="Source",
         description="What happens to the object that was converted",
         items=(
-            ("KEEP", "Keep", "Leave the object as it is; it and its surfels lie in the same place"),
+            ("KEEP", "Keep", "Leave the object as it is, in the same place as its surfels"),
             ("HIDE", "Hide", "Hide the object in the viewport and in renders, so that only its surfels are seen"),
         ),
         default="KEEP",

@@ -17,8 +17,8 @@ class PointsProperties:
     neighbours: IntProperty(
         name="Neighbours",
         description=(
-            "How many neighbours of a point tell its normal and size. "
-            "More even out noise, and bridge scan lines far apart; fewer keep small details"
+            "Number of neighbours from which a point's normal and size are estimated. More smooth out noise; "
+            "fewer keep small details"
         ),
         default=DEFAULT_NEIGHBOURS,
         min=0,
@@ -28,7 +28,9 @@ class PointsProperties:
     )
     splat_size: FloatProperty(
         name="Splat Size",
-        description="Half-axis of a splat, in distances between points. A splat too small to close a hole is enlarged",
+        description=(
+            "Half-axis of a splat, in distances between points. Splats too small to close a hole are enlarged"
+        ),
         default=DEFAULT_SPLAT_SIZE,
         min=0.0,
         soft_min=0.5,
@@ -36,13 +38,13 @@ class PointsProperties:
     )
     isolated: EnumProperty(
         name="Stray Points",
-        description="What happens to points far from all others",
+        description="What happens to points that are far from all others",
         items=[(name.upper(), name.title(), description) for name, description in ISOLATED_CHOICES.items()],
         default="DROP",
     )
     facing: EnumProperty(
         name="Normals Face",
-        description="To which side estimated normals point; normals that the points have are kept",
+        description="The side to which estimated normals point; existing normals are kept",
         items=(
             ("OUTWARD", "Outward", "Away from the middle of each connected part, for scans of whole objects"),
             ("CAMERA", "Camera", "Towards the scene's camera, for scans from one place"),

@@ -75,8 +75,17 @@ def sources_of(made: bpy.types.Object) -> list[bpy.types.Object]:
 
 
 def sources_in(scene: bpy.types.Scene) -> set[bpy.types.Object]:
-    """The sources of all surfel objects of a scene in the file."""
-    return {source for made in scene.objects if made.type == "MESH" for source in sources_of(made)}
+    """The sources of all surfel objects of a scene in the file, and of the collections that it places as instances."""
+    found, seen, waiting = set(), set(), [scene.objects]
+    while waiting:
+        for made in waiting.pop():
+            if made.type == "MESH":
+                found.update(sources_of(made))
+            placed = made.instance_collection if made.instance_type == "COLLECTION" else None
+            if placed is not None and placed not in seen:
+                seen.add(placed)
+                waiting.append(placed.all_objects)
+    return found
 
 
 def is_stood_in(owner: bpy.types.Object, sources: set[bpy.types.Object]) -> bool:

@@ -59,12 +59,12 @@ RENDER_PASSES = (
 class ViewLayerPasses(bpy.types.PropertyGroup):
     use_pass_coverage: BoolProperty(
         name="Coverage",
-        description="The share of each pixel that surfaces cover, whatever the world behind. Costs no time to speak of",
+        description="The share of each pixel that surfaces cover, whatever the world behind them",
         default=False,
     )
     use_pass_overdraw: BoolProperty(
         name="Overdraw",
-        description="How many splats a pixel's samples are the mean of. 1.03 times the time of a frame",
+        description="How many splats each pixel's samples average. It takes 1.03 times the time of a frame",
         default=False,
     )
 

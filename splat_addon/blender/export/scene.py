@@ -18,7 +18,7 @@ from ...surfels import Surfels, split
 from ..conversion.source_record import is_stood_in, sources_in
 from ..geometry.attributes import Points, has_surfels, has_surfels_beside_faces, have_same_values, read_stored
 from ..geometry.points_proxy import is_solid, shown_points, shows_as_points
-from ..geometry.sources import owner_of
+from ..geometry.sources import asked_of, owner_of
 from ..materials.material_override import Overridden, override_of
 from ..materials.surface_textures import TextureStore
 from ..mesh_sampling_settings import Form, are_meshes_texture_mapped, form_of, mesh_fineness
@@ -141,7 +141,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                         kept = store.get(points, object_.data.session_uid, owner.name_full, is_solid(owner))
                     surfels += _instances(object_, kept, depsgraph, matrix, fields, store, notes, override)
                 owner, form = owner_of(entry), form_of(entry, bpy_scene) if "faces" in what else _NO_FORM
-                if form.kind != "HIDDEN" and not is_stood_in(owner, stood_in):
+                if form.kind != "HIDDEN" and not any(is_stood_in(each, stood_in) for each in asked_of(entry)):
                     live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), notes, override)
                 if "points" in what:
                     notes.add(_BARE_POINTS)

@@ -115,6 +115,12 @@ def owner_of(entry: bpy.types.DepsgraphObjectInstance) -> bpy.types.Object:
     return (entry.parent if entry.is_instance else entry.object).original
 
 
+def asked_of(entry: bpy.types.DepsgraphObjectInstance) -> tuple[bpy.types.Object, ...]:
+    """The objects in the file that say how an entry is drawn: of a collection's instance the object in there, too."""
+    owner = owner_of(entry)
+    return (entry.object.original, owner) if owner.instance_type == "COLLECTION" else (owner,)
+
+
 def mesh_key(evaluated: bpy.types.Object) -> tuple:
     """Equal for what has one evaluated mesh and the same materials on it, within one evaluation."""
     slots = (slot.material.session_uid if slot.material else 0 for slot in evaluated.material_slots)

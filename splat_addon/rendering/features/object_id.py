@@ -49,6 +49,8 @@ def passes(planning):
             f"Hardware samples are not told apart by object: leave {', '.join(names)} out of the outputs, or set "
             "multisampling to 0 and use supersampling."
         )
+    if method.works_in == "space" and method.writes_depth:
+        planning.skip("edge ids", f"what {method.name} spreads in space past what is visible is nobody's")
     if method.works_in == "picture" and not method.filters_silhouettes:
         why = f"{method.name} spreads splats past what is visible, which is somebody's"
         own = Part("object_id", ("rims",), (visibility.DEPTH,), writes=(IDENTITY, EDGE_DEPTH), varyings=_VARYINGS)

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 @dataclass(frozen=True)
 class ShadingModel:
     """name: also of shaders/shading_models/<name>.glsl and of its twin in `reference.shading_models`. label: for users.
-    source: of the model. summary: what it shows. cost: time of a frame, as a multiple of flat's (docs/evidence/features.md).
+    source: of the model. summary: what it shows. cost: time of a frame, as a multiple of flat's
+        (docs/evidence/features.md).
 
     is_lit: it looks at lights, with their shadows and the objects they are linked to.
     has_material: it looks at roughness, metallic, reflectance and emission.

@@ -49,10 +49,7 @@ STORAGES = {
         Storage(
             "16-bit",
             "16 Bit",
-            (
-                "32 bytes a surfel, placed to 1/131,072 of its block of 512 neighbours. "
-                "58 dB and more from Float 32; 0.57 to 0.96 times the time without a graphics card"
-            ),
+            ("32 bytes a surfel, at least 58 dB from Float 32"),
             (("surfels", "RGBA16"), ("surfel_blocks", "RGBA32F")),
             pack_16_bit,
             order_16_bit,

@@ -72,14 +72,14 @@ class Reduction:
 REDUCTIONS: dict[str, Reduction] = {
     "normal": Reduction(
         "Normal",
-        "Sample each face along the axis that it faces most. Leaves 56 to 92 of 100 samples, and no holes",
+        "Sample each face along the axis that it faces most. It leaves no holes and is the fastest",
         keeps=keep_dominant,
         counts=keep_dominant,
     ),
     "grazing": Reduction(
         "Grazing Rejection",
-        "Sample along all three axes, but not where a face is seen at a grazing angle (Zwicker's reduction). "
-        "Leaves 86 to 98 of 100 samples at 70 degrees; most surfaces are sampled more than once",
+        "Sample along all three axes, except where a face is seen at a grazing angle (Zwicker's reduction). "
+        "Most surfaces are sampled more than once",
         keeps=keep_facing,
         counts=keep_facing,
         has_angle=True,
@@ -87,14 +87,13 @@ REDUCTIONS: dict[str, Reduction] = {
     # A plane passes within half a cell of A max|n| / H^2 lattice nodes: the count of the dominant images.
     "three_to_one": Reduction(
         "3-to-1",
-        "Sample along all three axes, move each surfel to the nearest node of a lattice and keep one a node "
-        "(Pfister's reduction). Leaves 45 to 89 of 100 samples, up to half a spacing off the surface, and makes one "
-        "sheet of two that lie closer than a spacing",
+        "Sample along all three axes and keep one surfel at each node of a lattice (Pfister's reduction). "
+        "Surfels move up to half a spacing off the surface",
         keeps=keep_all,
         counts=keep_dominant,
         merge=nearest_to_lattice,
     ),
-    "none": Reduction("None", "Sample along all three axes and keep everything", keeps=keep_all, counts=keep_all),
+    "none": Reduction("None", "Sample along all three axes and keep every sample", keeps=keep_all, counts=keep_all),
 }
 
 

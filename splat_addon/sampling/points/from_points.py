@@ -33,7 +33,7 @@ _STAGES = {"neighbours": (0.05, 0.6), "normals": (0.6, 0.7), "sides": (0.7, 0.85
 
 #: What becomes of points that stand alone.
 ISOLATED_CHOICES = {
-    "drop": "Leave them out: they are mostly errors of the scanner",
+    "drop": "Leave them out, since most are errors of the scanner",
     "keep": "Keep them, with the size of their nearest neighbours",
 }
 

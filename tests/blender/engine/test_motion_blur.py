@@ -113,7 +113,7 @@ def test_the_blur_is_cycles(kind, scene, add_camera, add_object, add_surfels, pi
     scene.frame_set(10)
     scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
     scene.surfel_splatting.samples = 32
-    scene.surfel_splatting.render_meshes = "SURFELS"
+    scene.surfel_splatting.render_meshes, scene.surfel_splatting.mesh_density = "SURFELS", "RESOLUTION"
     if kind == "surfels shift":
         scene.surfel_splatting.render_meshes = "HIDDEN"
         positions = [tuple(v.co) for v in ball.data.vertices]

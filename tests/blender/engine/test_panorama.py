@@ -48,7 +48,7 @@ def discs(scene, add_surfels, add_mesh):
     ways = random.normal(size=(40, 3))
     ways = np.concatenate([ways / np.linalg.norm(ways, axis=1, keepdims=True), [(0.577, 0.577, -0.577)]])
     places = np.array(PLACE) + 4 * ways
-    add_surfels(places, -ways, size=0.5)
+    add_surfels(places, -ways, size=0.5, is_shown=False)
     turn = np.linspace(0, 2 * np.pi, 64, endpoint=False)[:, None]
     corners = []
     for place, way in zip(places, ways, strict=True):

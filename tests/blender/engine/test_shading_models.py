@@ -12,7 +12,7 @@ from splat_addon.rendering.shading_models import SHADING_MODELS
 @pytest.fixture
 def sheet(scene, add_sheet, add_camera):
     """A sheet that faces the camera from below it."""
-    add_sheet(colors=(1.0, 0.5, 0.25, 1.0))
+    add_sheet(colors=(1.0, 0.5, 0.25, 1.0), is_shown=False)
     add_camera((0, 0, 10), type="ORTHO", ortho_scale=3.0)
     return scene.surfel_splatting
 

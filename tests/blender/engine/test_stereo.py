@@ -29,7 +29,7 @@ def discs(scene, add_surfels, add_mesh):
     """Three discs at several depths: surfels, and for Cycles the same in faces."""
     scene.surfel_splatting.render_meshes = "HIDDEN"
     places, radii = np.array([(0.5, 0.0, 0.0), (-0.8, 0.7, 4.0), (-0.1, -0.5, 7.0)]), np.array([0.9, 0.5, 0.2])
-    add_surfels(places, size=np.repeat(radii[:, None], 2, axis=1))
+    add_surfels(places, size=np.repeat(radii[:, None], 2, axis=1), is_shown=False)
     turn = np.linspace(0, 2 * np.pi, 64, endpoint=False)
     ring = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
     corners = (places[:, None] + radii[:, None, None] * ring).reshape(-1, 3)
