@@ -129,8 +129,12 @@ SUN = Light("sun", energy=2.0, direction=(0.3, 0.2, -1.0))
 WORLD = (0.1, 0.1, 0.1)
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_generate_tests(metafunc):
-    """Every test that draws, for every method but where it names its own; a new method joins by itself."""
+    """Every test that draws, for every method but where it names its own; a new method joins by itself.
+
+    First of all, so that a case has one name however the suite is called: the table of known failures goes by it.
+    """
     named = any("method" in mark.args[0] for mark in metafunc.definition.iter_markers("parametrize"))
     if "method" in metafunc.fixturenames and not named:
         metafunc.parametrize("method", METHODS)
