@@ -131,8 +131,9 @@ def _in_circles(met, first: np.ndarray, last: np.ndarray, grid: Grid) -> tuple[n
     """(2, m) where each surfel sees the first place of the side that it meets, and (2, m) the way to the last."""
     ends = [((place - grid.surfel_origin) / grid.spacing).astype(np.float32).T for place in (first, last)]
     seen = []
+    axis = met.axis.astype(np.intp)  # numpy 1.26 would count places in the axes' 8 bits
     for end in ends:
-        u, v = (end.ravel().take((met.axis + k) % 3 * np.intp(len(first)) + met.side) for k in (1, 2))
+        u, v = (end.ravel().take((axis + k) % 3 * len(first) + met.side) for k in (1, 2))
         u -= met.place[0]
         v -= met.place[1]
         seen.append(np.stack([met.inverse[0] * u + met.inverse[1] * v, met.inverse[2] * u + met.inverse[3] * v]))
