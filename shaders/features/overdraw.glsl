@@ -1,14 +1,24 @@
 // References: none needed.
-// Summary: how many splats a sample is the mean of.
+// Summary: how many splats a sample is the mean of: a sum of its own, or beside the planes of shadows.
 
-#part gbuffer
+#part gbuffer, by_itself
 void overdraw_add(inout Fragment f) {
   gbuffer_overdraw = 1.0;
 }
 
-#part shaded_sample
+#part gbuffer, beside_planes
+void overdraw_add(inout Fragment f) {
+  gbuffer_plane.zw = vec2(1.0, 0.0);
+}
+
+#part shaded_sample, by_itself
 void overdraw_outputs(inout Shaded s) {
   s.outputs.shadow_overdraw.a = SUM_AT(gbuffer_overdraw, s.texel, s.tap).r;
+}
+
+#part shaded_sample, beside_planes
+void overdraw_outputs(inout Shaded s) {
+  s.outputs.shadow_overdraw.a = SUM_AT(gbuffer_plane, s.texel, s.tap).z;
 }
 
 #part shaded_sample, overdraw_model

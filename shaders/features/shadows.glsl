@@ -50,7 +50,7 @@ void shadows_attributes(Splat splat, int index) {
 
 #part gbuffer, planes_apart
 void shadows_add(inout Fragment f) {
-  gbuffer_plane = splat_faces * f.weight;
+  gbuffer_plane.xy = splat_faces * f.weight;
 }
 
 #part gbuffer, planes_beside_depths

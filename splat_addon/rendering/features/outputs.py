@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ..plan.frame_plan import FramePlan
 from ..plan.graph import Part, Texture, of_pixels
+from . import shadows
 from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
 
 NAMES = (
@@ -97,6 +98,17 @@ def passes(planning):
     return ()
 
 
+def _count(planning, p):
+    """The sum of splats: of its own, or beside the planes that shadows compare depths with."""
+    beside = shadows.plane_sum(planning, p.kind)
+    words, own = (("beside_planes",), ()) if beside else (("by_itself",), (OVERDRAW,))
+    if p.host in SPLAT_HOSTS:
+        yield Part("overdraw", words, writes=own)
+    if p.host in LIT_HOSTS:
+        model = ("overdraw_model",) if planning.model.sums else ()
+        yield Part("overdraw", (*words, *model), reads=(beside or OVERDRAW,))
+
+
 def _found(planning):
     """What is wanted, handed on, and handed on by layers."""
     return planning.find(wanted), _handed_on(planning), _handed_on(planning, True)
@@ -107,10 +119,8 @@ def parts(planning, p):
         return
     model, in_layer = planning.model, p.kind == "layer"
     is_counted = counts_splats(planning) and p.kind == "opaque"
-    if is_counted and p.host in SPLAT_HOSTS:
-        yield Part("overdraw", writes=(OVERDRAW,))
-    if is_counted and p.host in LIT_HOSTS:
-        yield Part("overdraw", ("overdraw_model",) if model.sums else (), reads=(OVERDRAW,))
+    if is_counted:
+        yield from _count(planning, p)
     if p.host in LIT_HOSTS and model.features:
         yield Part("weight_output")
     if p.host in LIGHTING_HOSTS:

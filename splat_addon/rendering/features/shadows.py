@@ -24,6 +24,8 @@ def _of_atlas(plan, pixels: tuple[int, int]) -> tuple[int, int]:
 DEPTH = Texture("shadow_depth", "DEPTH32F", _of_atlas)
 #: The splats' geometric normals: depths are compared with their plane.
 PLANE = Texture("gbuffer_plane", "RG32F", is_multisampled=True)
+#: With room for the number of splats, where that is asked for too: targets have no room for a texture more.
+PLANE_COUNT = Texture("gbuffer_plane", "RGBA32F", is_multisampled=True)
 
 
 def maps(planning):
@@ -60,11 +62,19 @@ def is_present(planning) -> bool:
     return bool(planning.facts["shadow_maps"])
 
 
-def parts(planning, p):
-    from . import gbuffer
+def plane_sum(planning, kind: str) -> Texture | None:
+    """Of planes that are not beside depths; None where they are, or nothing asks for planes."""
+    from . import gbuffer, outputs
 
-    is_beside = gbuffer.depths_are_apart(planning, p.kind)
-    words, planes = (("planes_beside_depths",), ()) if is_beside else (("planes_apart",), (PLANE,))
+    is_lit = planning.find(maps) and not planning.settings.lights_splats
+    if not is_lit or gbuffer.depths_are_apart(planning, kind):
+        return None
+    return PLANE_COUNT if kind == "opaque" and outputs.counts_splats(planning) else PLANE
+
+
+def parts(planning, p):
+    apart = plane_sum(planning, p.kind)
+    words, planes = (("planes_apart",), (apart,)) if apart else (("planes_beside_depths",), ())
     if p.host == "visibility.frag" and p.kind == "shadow":
         yield Part("shadows", only="splats")
     if not planning.model.is_lit:
