@@ -33,27 +33,30 @@ vec3 sample_place(ivec2 texel, float depth) {
 // Cosine between the way to the viewer and the highest that is seen along a direction, no less than `lowest`.
 // phase: of the steps, which are the longer the farther away they lead. What is beyond half the distance counts less.
 float horizon_cosine(ivec2 texel, vec3 position, vec3 to_eye, ivec2 along, float reach, float phase, float lowest) {
-  ivec2 size = textureSize(occluders, 0);
+  uvec2 size = uvec2(textureSize(occluders, 0));
   float highest = lowest, most = reach / length(vec2(along));
+  float per_distance = 2.0 / frame.occlusion_distance;
   int last = 0;
   for (int i = 0; i < OCCLUSION_STEPS; i++) {
     float share = (float(i) + phase) / float(OCCLUSION_STEPS);
     last = max(last + 1, int(share * share * most + 0.5));
     ivec2 at = texel + along * last;
-    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) break;
+    if (any(greaterThanEqual(uvec2(at), size))) break;  // one below 0 is a large one of these
     float depth = texelFetch(occluders, at, 0).r;
     if (!(depth > 0.0)) continue;
     vec3 toward = sample_place(at, depth) - position;
-    float away = max(length(toward), 1e-30);
-    float weight = clamp(2.0 - 2.0 * away / frame.occlusion_distance, 0.0, 1.0);
-    highest = max(highest, mix(lowest, dot(toward, to_eye) / away, weight));
+    float square = max(dot(toward, toward), 1e-30), per_length = inversesqrt(square);
+    float weight = clamp(2.0 - square * per_length * per_distance, 0.0, 1.0);
+    highest = max(highest, mix(lowest, dot(toward, to_eye) * per_length, weight));
   }
   return min(highest, 1.0);
 }
 
-// Over an angle from the viewer, the integral of the cosine to the normal, which is `tilt` from the viewer, times the sine.
-float arc(float angle, float tilt) {
-  return 0.25 * (cos(tilt) - cos(2.0 * angle - tilt) + 2.0 * angle * sin(tilt));
+// Over an angle from the viewer of that cosine, to the side where `normal.y` is, the integral of the cosine to the normal
+// times the sine: equation 7 times the normal's length, where a half of 1 - cos 2a is 1 - cosine^2.
+float arc(float cosine, vec2 normal) {
+  float square = 1.0 - cosine * cosine;
+  return 0.5 * (normal.x * square + normal.y * (acos(cosine) - cosine * sqrt(square)));
 }
 
 float open_share_at(ivec2 texel, vec3 position, vec3 normal, vec3 to_eye) {
@@ -70,16 +73,15 @@ float open_share_at(ivec2 texel, vec3 position, vec3 normal, vec3 to_eye) {
     vec3 across = vec3(vec2(along) * view.window.zw, 0.0);
     across = normalize(across - to_eye * dot(across, to_eye));
     vec2 own = vec2(max(dot(normal, to_eye), LEAST_OCCLUSION_FACING), dot(normal, across));  // the normal in the slice
-    float size = length(own), tilt = atan(own.y, own.x), lowest = own.y / size;
-    float after = acos(horizon_cosine(texel, position, to_eye, along, reach, phase, -lowest));
-    float before = -acos(horizon_cosine(texel, position, to_eye, -along, reach, phase, lowest));
-    open += size * (arc(before, tilt) + arc(after, tilt));
-    all += own.x + tilt * own.y;
+    float lowest = own.y / length(own);
+    open += arc(horizon_cosine(texel, position, to_eye, along, reach, phase, -lowest), own);
+    open += arc(horizon_cosine(texel, position, to_eye, -along, reach, phase, lowest), vec2(own.x, -own.y));
+    all += own.x + asin(lowest) * own.y;
   }
   return clamp(open / all, 0.0, 1.0);
 }
 
-void ambient_occlusion_attributes(inout Shaded s) {
+void ambient_occlusion_prepare(inout Shaded s) {
   vec3 position = sample_place(s.texel, s.mean.depth);
   vec3 to_eye = view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
   open_share = open_share_at(s.texel, position, s.normal, to_eye);

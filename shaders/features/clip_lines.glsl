@@ -14,7 +14,7 @@ vec3 unpacked_line(vec2 stored) {
   return stored.y > 0.0 ? vec3(cos(stored.x * TURN), sin(stored.x * TURN), 1.0 - stored.y * CUT) : NO_LINE;
 }
 
-void clip_lines_attributes(Splat splat, int index) {
+void clip_lines_tell(Splat splat, int index) {
   vec4 stored = floor(texelFetch(clip_lines, ivec2(index % SPLATS_PER_ROW, index / SPLATS_PER_ROW), 0) * 65535.0 + 0.5);
   clip_first = unpacked_line(stored.xy);
   clip_second = unpacked_line(stored.zw);
@@ -24,7 +24,7 @@ void clip_lines_attributes(Splat splat, int index) {
 
 #part splat_varyings, of_sprites
 #include "lib/line_in_picture.glsl"
-void of_sprites_attributes(Splat splat, int index) {
+void of_sprites_tell(Splat splat, int index) {
   Plane plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, view.is_parallel > 0.5);
   clip_first = line_in_picture(clip_first, plane);
   clip_second = line_in_picture(clip_second, plane);
@@ -75,14 +75,14 @@ void clip_lines_keep() {
 }
 
 #part screen_space.frag, cuts_at_lines
-void clip_lines_look(inout Candidate c) {
+void clip_lines_bound(inout Candidate c) {
   if (!is_inside_lines(clip_in_space > 0.5 ? c.place.xy : gl_FragCoord.xy)) discard;
 }
 
 #part screen_space.frag, blurs_lines
 #include "lib/clipped_share.glsl"
 
-void clip_lines_look(inout Candidate c) {
+void clip_lines_bound(inout Candidate c) {
   if (c.in_space) {
     if (!is_inside_lines(c.place.xy)) discard;
     return;
@@ -94,7 +94,7 @@ void clip_lines_look(inout Candidate c) {
 #part screen_space.frag, blurs_lines, depth_bounds
 // Past the line, where the face that meets this one is seen, a splat counts as far as it is seen before the line: the
 // other face may hide its plane there, and the pixel's filter reaches over the crease.
-void blurs_lines_look(inout Candidate c) {
+void blurs_lines_bound(inout Candidate c) {
   Place place = place_at(c.plane, gl_FragCoord.xy);
   vec2 back = way_back(c.plane, place);
   if (c.in_space || back == vec2(0.0) || c.depth - c.seen.z > (1.0 + 4.0 * draw.epsilon) * c.plane.radius) return;

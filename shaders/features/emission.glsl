@@ -3,24 +3,24 @@
 
 #part splat_varyings, gbuffer_emission
 #include "lib/material_place.glsl"
-void emission_attributes(Splat splat, int index) {
+void emission_tell(Splat splat, int index) {
   emission = texelFetch(materials, material_place(index, splat.material) + ivec2(1, 0), 0).xyz;
 }
 
 #part corner, gbuffer_emission
 #include "lib/material_place.glsl"
-void emission_attributes(int corner, float slot, vec3 eye) {
+void emission_tell(int corner, float slot, vec3 eye) {
   emission = texelFetch(materials, material_place(corner, slot) + ivec2(1, 0), 0).xyz;
 }
 
 #part lit_splats.frag, gbuffer_emission
 #include "lib/material_place.glsl"
-void emission_attributes(Splat splat, int index) {
+void emission_prepare(Splat splat, int index) {
   emission = texelFetch(materials, material_place(index, splat.material) + ivec2(1, 0), 0).xyz;
 }
 
 #part lit_splats.frag, shared_emission
-void emission_attributes(Splat splat, int index) {
+void emission_prepare(Splat splat, int index) {
   emission = frame.emission.rgb;
 }
 

@@ -14,18 +14,18 @@ void light_links_receive(inout LightTexels of) {
 }
 
 #part shaded_sample
-void light_links_attributes(inout Shaded s) {
+void light_links_prepare(inout Shaded s) {
   light_set = texelFetch(gbuffer_light_set, s.texel, 0);
   light_set /= max(dot(light_set, vec4(1.0)), 1e-30);
 }
 
 #part shaded_sample, polygons
-void light_links_polygons_attributes(inout Shaded s) {
+void light_links_polygons_prepare(inout Shaded s) {
   int set = int(texelFetch(polygon_material, s.texel, 0).w);
   light_set = mix(light_set, vec4(equal(ivec4(0, 1, 2, 3), ivec4(set))), s.mean.polygon);
 }
 
 #part lit_splats.frag
-void light_links_attributes(Splat splat, int index) {
+void light_links_prepare(Splat splat, int index) {
   light_set = draw.light_set;
 }

@@ -2,6 +2,6 @@
 // Summary: the colour of a splat is what leaves it.
 
 #part splat_varyings
-void lit_splats_attributes(Splat splat, int index) {
+void lit_splats_tell(Splat splat, int index) {
   color_weight.rgb = texelFetch(lit_splats, ivec2(index % SPLATS_PER_ROW, index / SPLATS_PER_ROW), 0).rgb;
 }

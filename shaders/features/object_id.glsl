@@ -8,12 +8,12 @@ float slot_number(float slot) {
 }
 
 #part splat_varyings
-void object_id_attributes(Splat splat, int index) {
+void object_id_tell(Splat splat, int index) {
   number = slot_number(splat.material);
 }
 
 #part corner
-void object_id_attributes(int corner, float slot, vec3 eye) {
+void object_id_tell(int corner, float slot, vec3 eye) {
   number = slot_number(slot);
 }
 
@@ -37,7 +37,7 @@ void object_id_write(ivec2 texel, inout float own) {
   identity = texelFetch(row_identity, ivec2(texel.x, ROWS * texel.y), 0).xy;
 }
 
-#part screen_space.frag, rims
+#part screen_space.frag, edge_ids
 // Only whose the splat is, where nothing is visible.
 void object_id_keep(inout Candidate c) {
   if (texelFetch(visibility_depth, ivec2(gl_FragCoord.xy), 0).r < 1.0) discard;

@@ -3,7 +3,7 @@
 // Summary: of all that is left behind transparent layers: lit colours, and what tells how much the splats hide.
 
 #part splat_varyings
-void oit_attributes(Splat splat, int index) {
+void oit_tell(Splat splat, int index) {
   color_weight = vec4(texelFetch(lit_splats, ivec2(index % SPLATS_PER_ROW, index / SPLATS_PER_ROW), 0).rgb, 1.0);
   opacity = splat.opacity;
 }
@@ -17,7 +17,7 @@ void oit_add(inout Fragment f) {
 }
 
 #part screen_space.frag
-void oit_look(inout Candidate c) {
+void oit_bound(inout Candidate c) {
   c.seen = vec4(texelFetch(visibility_depth, ivec2(gl_FragCoord.xy), 0).r);
   c.seen.z = c.seen.x < 1.0 ? view_depth(c.seen.x) : 3e38;
 }

@@ -22,6 +22,6 @@ void overdraw_outputs(inout Shaded s) {
 }
 
 #part shaded_sample, overdraw_model
-void overdraw_model_attributes(inout Shaded s) {
+void overdraw_model_prepare(inout Shaded s) {
   overdraw = SUM_AT(gbuffer_overdraw, s.texel, s.tap).r;
 }

@@ -18,7 +18,7 @@ void shadow_output_arrive(inout Incident here, vec3 normal) {
 }
 
 #part shaded_sample
-void shadow_output_attributes(inout Shaded s) {
+void shadow_output_prepare(inout Shaded s) {
   light_arriving = light_unshadowed = vec3(0.0);
 }
 
@@ -27,6 +27,6 @@ void shadow_output_outputs(inout Shaded s) {
 }
 
 #part lit_splats.frag
-void shadow_output_attributes(Splat splat, int index) {
+void shadow_output_prepare(Splat splat, int index) {
   light_arriving = light_unshadowed = vec3(0.0);
 }

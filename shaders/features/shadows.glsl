@@ -43,7 +43,7 @@ void shadows_move(Splat splat, float radius, inout float offset) {
 
 #part splat_varyings, adds_planes
 #include "lib/faced_normal.glsl"
-void shadows_attributes(Splat splat, int index) {
+void shadows_tell(Splat splat, int index) {
   vec3 plane = geometric_normal(splat);
   splat_faces = plane.xy / max(1.0 + plane.z, LEAST_FACED);
 }
@@ -60,29 +60,29 @@ void shadows_add(inout Fragment f) {
 
 #part shaded_sample
 #include "lib/faced_normal.glsl"
-void shadows_attributes(inout Shaded s) {
+void shadows_prepare(inout Shaded s) {
   shadow_turn = 0.125 + 0.25 * float((s.texel.x & 1) + 2 * (s.texel.y & 1));
 }
 
 #part shaded_sample, planes_apart
-void shadows_planes_apart_attributes(inout Shaded s) {
+void shadows_planes_apart_prepare(inout Shaded s) {
   shadow_plane = faced_normal(SUM_AT(gbuffer_plane, s.texel, s.tap).xy / max(s.mean.weight, 1e-37));
 }
 
 #part shaded_sample, planes_beside_depths
-void shadows_planes_beside_depths_attributes(inout Shaded s) {
+void shadows_planes_beside_depths_prepare(inout Shaded s) {
   vec4 sums = SUM_AT(gbuffer_depth, s.texel, s.tap);
   shadow_plane = faced_normal(sums.zw / max(sums.y, 1e-37));
 }
 
 #part shaded_sample, polygons
-void shadows_polygons_attributes(inout Shaded s) {
+void shadows_polygons_prepare(inout Shaded s) {
   if (s.mean.polygon > 0.5) shadow_plane = SUM_AT(polygon_plane, s.texel, s.tap).xyz;
 }
 
 #part lit_splats.frag
 #include "lib/faced_normal.glsl"
-void shadows_attributes(Splat splat, int index) {
+void shadows_prepare(Splat splat, int index) {
   shadow_turn = 0.125 + 0.25 * float(index & 3);
   shadow_plane = geometric_normal(splat);
 }

@@ -12,7 +12,7 @@ void split_hide(inout Splat splat) {
 }
 
 #part corner
-void split_attributes(int corner, float slot, vec3 eye) {
+void split_tell(int corner, float slot, vec3 eye) {
   split_place = eye;
 }
 

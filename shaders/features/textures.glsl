@@ -3,7 +3,7 @@
 
 #part splat_varyings
 #include "lib/splat_texture.glsl"
-void textures_attributes(Splat splat, int index) {
+void textures_tell(Splat splat, int index) {
   texture_place = fetch_texture_place(index, splat.material, texture_along, texture_border);
 }
 

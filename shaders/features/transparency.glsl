@@ -8,7 +8,7 @@ void transparency_hide(inout Splat splat) {
 }
 
 #part splat_varyings, gbuffer
-void transparency_attributes(Splat splat, int index) {
+void transparency_tell(Splat splat, int index) {
   opacity = splat.opacity;
 }
 

@@ -2,7 +2,7 @@
 // Summary: transparent splats leave as much out of a shadow map as shows through them.
 
 #part splat_varyings
-void transparent_shadows_attributes(Splat splat, int index) {
+void transparent_shadows_tell(Splat splat, int index) {
   opacity_surface = vec2(splat.opacity, 2.0 * draw.first_slot + (splat.is_back ? 1.0 : 0.0));
 }
 

@@ -2,7 +2,7 @@
 // Summary: what methods that work in the picture compare depths with.
 
 #part screen_space.frag, depth_bounds
-void visibility_look(inout Candidate c) {
+void visibility_bound(inout Candidate c) {
   c.seen = texelFetch(depth_bounds, ivec2(gl_FragCoord.xy), 0);
 }
 

@@ -2,6 +2,6 @@
 // Summary: the sum of the weights that a sample was divided by, for the model that shows it.
 
 #part shaded_sample
-void weight_output_attributes(inout Shaded s) {
+void weight_output_prepare(inout Shaded s) {
   sum_of_weights = s.mean.weight / WEIGHT_SCALE;
 }

@@ -1,6 +1,6 @@
 // References: rendering/scene/polygons.py, which writes this layout.
 // Summary: the corners of polygons, pulled from their texture, and the side of a triangle that is seen. Hook:
-//          `attributes`, what fragments are told beside.
+//          `tell`, what fragments are told beside.
 
 vec4 corner_texel(int corner, int number) {
   return texelFetch(polygon_corners, ivec2((corner % CORNERS_PER_ROW) * TEXELS_PER_CORNER + number, corner / CORNERS_PER_ROW), 0);
@@ -25,5 +25,5 @@ bool shows_back(vec3 normal, vec3 first) {
 #parts
 // What fragments are told of a corner beside its place. slot: of its material.
 void hand_on_corner(int corner, float slot, vec3 eye) {
-  #hook attributes(corner, slot, eye)
+  #hook tell(corner, slot, eye)
 }

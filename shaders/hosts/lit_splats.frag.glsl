@@ -1,5 +1,5 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6 (lighting for each splat in the last layer).
-// Summary: lights each splat of an instance where it stands, at the texel of its number. Hook: `attributes` before it is
+// Summary: lights each splat of an instance where it stands, at the texel of its number. Hook: `prepare` before it is
 //          lit.
 
 vec3 material;
@@ -14,6 +14,6 @@ void main() {
   Splat splat = fetch_splat(index);
   material = frame.material.xyz;
   emission = vec3(0.0);
-  #hook attributes(splat, index)
+  #hook prepare(splat, index)
   lit_splats = vec4(shade(splat.position, splat.normal, splat.color_weight.rgb, material) + emission, 1.0);
 }

@@ -68,8 +68,8 @@ vec2 reached_range(ivec2 texel, ivec2 size) {
 ivec2 shaded_at(ivec2 texel, ivec2 size) {
   ivec2 found = texel;
   bool is_faint = texelFetch(surface, texel, 0).w < 0.0 && texelFetch(seen_depth, ivec2(texel.x, ROWS * texel.y), 0).r == 1.0;
-  int looks = is_faint ? 9 : 0, nearest = 9;
-  for (int i = 0; i < looks; i++) {
+  int taps = is_faint ? 9 : 0, nearest = 9;
+  for (int i = 0; i < taps; i++) {
     ivec2 step = ivec2(i % 3, i / 3) - 1, at = clamp(texel + step, ivec2(0), size - 1);
     int away = step.x * step.x + step.y * step.y;
     if (away < nearest && texelFetch(seen_depth, ivec2(at.x, ROWS * at.y), 0).r < 1.0 && texelFetch(shaded, at, 0).w > 0.0) {

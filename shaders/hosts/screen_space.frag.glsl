@@ -1,7 +1,7 @@
 // References: as screen_space.vert.glsl.
 // Summary: asks the method for weight and depth, and adds what is not hidden at the sample's centre. Depth is compared
 //          here with the visibility pass's, since a triangle in the picture has none. Hooks: `weigh` where splats are not
-//          evaluated in the picture, `look` what is visible, `keep` discards, `color` changes, `add` fills targets.
+//          evaluated in the picture, `bound` how far is seen, `keep` discards, `color` changes, `add` fills targets.
 
 #include "hosts/gbuffer.glsl"
 #include "lib/place.glsl"
@@ -38,7 +38,7 @@ void main() {
   c.weight *= color_weight.w;
   if (!(c.weight > 0.0 && is_on_footprint() && c.depth >= view.near)) discard;
   c.compared = c.depth;
-  #hook look(c)
+  #hook bound(c)
   #hook keep(c)
   #hook color(c)
   #hook add(c)

@@ -1,5 +1,5 @@
 // References: Botsch et al. 2005, section 4 (normalise, then light once).
-// Summary: a sample's sums as a lit surface; the includer has included a shading model. Hooks: `attributes` before it is
+// Summary: a sample's sums as a lit surface; the includer has included a shading model. Hooks: `prepare` before it is
 //          lit, `outputs` what it hands on, `finish`.
 
 #include "hosts/outputs.glsl"
@@ -24,7 +24,7 @@ Shaded shaded_sample(MeanSurface mean, ivec2 texel, int tap) {
   float size = length(mean.normal);
   vec3 normal = size > CANCELLED ? mean.normal / size : vec3(0.0, 0.0, 1.0);
   Shaded s = Shaded(mean, texel, tap, normal, frame.material.xyz, vec3(0.0), mean.coverage, NO_OUTPUTS);
-  #hook attributes(s)
+  #hook prepare(s)
   s.color = shade(position, normal, mean.color, s.material);
   s.outputs.diffuse_color = mean.color;
   #hook outputs(s)

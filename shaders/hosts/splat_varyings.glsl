@@ -1,7 +1,7 @@
 // References: none needed.
-// Summary: what fragments are told of a splat beside its place. Hook: `attributes`.
+// Summary: what fragments are told of a splat beside its place. Hook: `tell`.
 
 #parts
 void hand_on(Splat splat, int index) {
-  #hook attributes(splat, index)
+  #hook tell(splat, index)
 }

@@ -6,7 +6,7 @@
 //          face of its cube of maps, and go on in the next face: where faces meet, shadows do not change.
 
 const int SOFT_SAMPLES = 32;
-// Neighbouring samples of the picture look at different places: a pixel of 2 x 2 samples has four times as many of them.
+// Neighbouring samples of the picture tap at different places: a pixel of 2 x 2 samples has four times as many of them.
 float shadow_turn;
 // Normal of the plane that is lit: the geometric one, from which that which is shaded differs wherever shading is smooth.
 vec3 shadow_plane;
@@ -87,7 +87,7 @@ float hard_share(ShadowPlace here, float bias) {
   return lit / total;
 }
 
-// What a look meets.
+// What a tap meets.
 struct Met {
   float depth;  // of what is in the map
   float lit;    // of the surface that is lit
@@ -124,7 +124,7 @@ Met tap_toward(ShadowPlace here, vec3 toward, int number) {
   return met;
 }
 
-// Of its way behind a lamp, where looks for what is in the way begin.
+// Of its way behind a lamp, where taps for what is in the way begin.
 const float NEAREST_SHARE = 0.25;
 
 // Looks go past the place by parts of the lamp, whose half-axes lamp_u and lamp_v are in the light's view (a sun's are
@@ -136,9 +136,9 @@ float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lam
   reach = max(reach, 0.0);
   float blockers = 0.0, sum = 0.0;
   for (int i = 0; i < SEARCH_TAPS; i++) {
-    vec2 look = soft_tap(i, SEARCH_TAPS);
-    float past = look.x * look.x * reach;  // closer to one another in the middle, where what is near hides the lamp
-    Met met = tap_toward(here, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
+    vec2 tap = soft_tap(i, SEARCH_TAPS);
+    float past = tap.x * tap.x * reach;  // closer to one another in the middle, where what is near hides the lamp
+    Met met = tap_toward(here, here.position + past * (cos(tap.y) * lamp_u + sin(tap.y) * lamp_v), i);
     if (met.depth + bias < met.lit) {
       blockers += 1.0;
       sum += met.way;
@@ -150,9 +150,9 @@ float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lam
   if (size * gap < 4.0 * bias) return hard_share(here, bias);
   float lit = 0.0;
   for (int i = 0; i < FILTER_TAPS; i++) {
-    vec2 look = soft_tap(i, FILTER_TAPS);
-    float past = look.x * min(gap, reach);
-    Met met = tap_toward(here, here.position + past * (cos(look.y) * lamp_u + sin(look.y) * lamp_v), i);
+    vec2 tap = soft_tap(i, FILTER_TAPS);
+    float past = tap.x * min(gap, reach);
+    Met met = tap_toward(here, here.position + past * (cos(tap.y) * lamp_u + sin(tap.y) * lamp_v), i);
     lit += met.depth + bias >= met.lit ? 1.0 : 0.0;
   }
   return lit / float(FILTER_TAPS);

@@ -37,7 +37,8 @@ def render_exact(
     samples: samples x samples rays a pixel at (i + 0.5) / samples; takes the place of `settings.supersampling`.
     pixel_filter: a name in `filters.PIXEL_FILTERS`; always say which one a number was measured with.
     `settings.method` and `settings.layers` have no meaning here: of what is transparent there are as many layers as the
-    rays meet. `settings.lines` are not drawn.
+    rays meet. `settings.lines` are not drawn. `settings.ambient_occlusion` is left out: the world's light reaches every
+    surface whole, and `ambient_occlusion.open_share` is the share that surfaces of a frame leave one another.
 
     A ray sees the splats that lie no deeper than the nearest splat moved back by `settings.epsilon` of its radius
     along the ray, mixes them with weights exp(-2 rho^2), and is shaded once (Botsch et al. 2005, deferred).

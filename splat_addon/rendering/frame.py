@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
@@ -11,6 +11,11 @@ from .cryptomatte import Cryptomatte
 
 #: Depth where nothing was hit, as Cycles writes it.
 EMPTY_DEPTH = 1e10
+
+
+def _held(texture: str, where: int | slice) -> dict:
+    """Of an array that a texture of pixels holds on the device: its name, and where in its texels."""
+    return {"held_by": (texture, where)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,16 +42,22 @@ class Frame:
     stats: what was drawn, and milliseconds by pass where `Settings.profile` asked for them.
     """
 
-    color: np.ndarray | None
-    depth: np.ndarray | None
-    normal: np.ndarray | None
-    coverage: np.ndarray | None
+    color: np.ndarray | None = field(default=None, metadata=_held("combined", slice(0, 4)))
+    depth: np.ndarray | None = field(default=None, metadata=_held("depth", 0))
+    normal: np.ndarray | None = field(default=None, metadata=_held("normal_coverage", slice(0, 3)))
+    coverage: np.ndarray | None = field(default=None, metadata=_held("normal_coverage", 3))
     position: np.ndarray | None = None
-    diffuse_color: np.ndarray | None = None
-    emission: np.ndarray | None = None
-    shadow: np.ndarray | None = None
-    overdraw: np.ndarray | None = None
+    diffuse_color: np.ndarray | None = field(default=None, metadata=_held("diffuse_color", slice(0, 3)))
+    emission: np.ndarray | None = field(default=None, metadata=_held("emission_output", slice(0, 3)))
+    shadow: np.ndarray | None = field(default=None, metadata=_held("shadow_overdraw", slice(0, 3)))
+    overdraw: np.ndarray | None = field(default=None, metadata=_held("shadow_overdraw", 3))
     object_index: np.ndarray | None = None
     material_index: np.ndarray | None = None
     cryptomatte: Cryptomatte | None = None
     stats: dict = field(default_factory=dict)
+
+
+#: Names of the arrays, in order.
+OUTPUTS = tuple(f.name for f in fields(Frame) if f.name != "stats")
+#: array -> the texture of pixels that holds it, and where in its last axis
+HELD_BY = {f.name: f.metadata["held_by"] for f in fields(Frame) if f.metadata}

@@ -13,10 +13,9 @@ from .accumulation import mean_frame, sample_blocks, sample_camera
 from .device import Device
 from .device.interface import Texture as DeviceTexture
 from .device.interface import texture_bytes
-from .features import INPUTS
-from .features.accumulation import SUM
-from .features.outputs import HELD_BY, PIXELS, check_samplers
-from .frame import EMPTY_DEPTH, Frame
+from .features.outputs import PIXELS, check_samplers
+from .features.sample_sum import SUM
+from .frame import EMPTY_DEPTH, HELD_BY, OUTPUTS, Frame
 from .identity import Identified, nearer
 from .panorama_faces import panorama_frame
 from .plan.build import plan
@@ -26,7 +25,7 @@ from .plan.graph import Texture
 from .scene import Scene
 from .scene.camera import Camera
 from .scene.panorama import Panorama
-from .settings import OUTPUTS, Settings, held_arrays
+from .settings import Settings, held_arrays
 from .shadow import ShadowMap, casting, same_maps
 from .upload.resources import Resources
 from .view import build_view, clip_range
@@ -259,9 +258,7 @@ class Renderer:
             stats["tile"] = number
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
             view = build_view(scene, tile_camera, settings.epsilon, whole)
-            context = TileContext(
-                self.resources, frame_plan, scene, tile_camera, settings, view, shadow_views, tile, INPUTS
-            )
+            context = TileContext(self.resources, frame_plan, scene, tile_camera, settings, view, shadow_views, tile)
             stats["splats"] += sum(len(p.instance.surfels) for p in view.placed)
             stats["polygons"] += sum(p.instance.polygons.triangles for p in view.polygons)
             stats["instances"] += len(view.placed) + len(view.polygons)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from .frame import OUTPUTS
 from .scene.lines import Lines
 from .scene.matcap import Matcap
 from .shading_models import get_shading_model
@@ -32,22 +33,6 @@ MULTISAMPLING = (0, 2, 4, 8)
 MAX_SHADOW_RESOLUTION = 2048
 
 MAX_LAYERS = 64
-
-#: the arrays of a `Frame`
-OUTPUTS = (
-    "color",
-    "depth",
-    "normal",
-    "coverage",
-    "position",
-    "diffuse_color",
-    "emission",
-    "shadow",
-    "overdraw",
-    "object_index",
-    "material_index",
-    "cryptomatte",
-)
 
 #: Those that follow the nearest sample of a pixel.
 NEAREST = ("depth", "position", "object_index", "material_index")

@@ -162,7 +162,7 @@ def cases():
         named = (value if isinstance(value, str) else key for key, value in options.items())
         yield "-".join((name, method, *named)), lambda n=name, s=settings: (*small(*makers[n]()), s), None
     for seed in range(RANDOM_CASES):
-        yield f"random {seed}", lambda s=seed: random_case(np.random.default_rng(s)), 30 if seed % 7 == 0 else None
+        yield f"random {seed}", lambda s=seed: random_case(s), 30 if seed % 7 == 0 else None
 
 
 def small(scene, camera):
@@ -181,154 +181,168 @@ def small(scene, camera):
     ), camera
 
 
-def random_case(rng):
+class Chance:
+    """Choices of one random case."""
+
+    def __init__(self, seed: int):
+        self.rng = np.random.default_rng(seed)
+
+    def some(self, chance: float) -> bool:
+        return bool(self.rng.random() < chance)
+
+    def pick(self, *choices):
+        return choices[self.rng.integers(len(choices))]
+
+
+def random_case(seed: int):
     """Scene, camera, settings and whether the view refines."""
+    from splat_addon.rendering import Environment, Scene
+
+    by = Chance(seed)
+    surfels, polygons = random_objects(by)
+    sky = Environment(by.rng.random((8, 16, 3)).astype(np.float32)) if by.some(0.25) else None
+    scene = Scene(surfels, random_lights(by), (0.4, 0.5, 0.6), sky, polygons)
+    scene, camera = random_view(by, scene)
+    settings, shown = random_settings(by)
+    return replace(scene, surfels=[i for i in scene.surfels if i.name in shown]), camera, settings, by.some(0.1)
+
+
+def random_objects(by: Chance):
+    """A ball on a floor, and sometimes glass, a hole, a board, or nothing."""
     from splat_addon.images import Image
     from splat_addon.reference import extremes, scenes
-    from splat_addon.rendering import (
-        Camera,
-        Environment,
-        Instance,
-        Light,
-        Lines,
-        Matcap,
-        Material,
-        PolygonInstance,
-        Scene,
-        Settings,
-        SurfaceTexture,
-        look_at,
-        make_polygons,
-    )
+    from splat_addon.rendering import Instance, Material, SurfaceTexture
+
+    rough, shiny = Material(roughness=0.8), Material(roughness=0.2, metallic=by.pick(0.0, 1.0))
+    glow = Material(roughness=0.5, emission=(0.2, 0.1, 0.4))
+    material = by.pick((rough,), (rough,), (glow,), (rough, shiny))
+    second = by.pick(material, material, (glow,), (shiny,))
+    wraps = by.pick("REPEAT", "CLIP", "MIRROR", "EXTEND"), by.pick("Linear", "Closest")
+    texture = (SurfaceTexture(Image(scenes.checks(32, 4), *wraps)), None)
+    turned = np.diag((by.pick(1.0, 1.0, -1.0), 1.0, by.pick(1.0, 0.6), 1.0))
+    split = 3.3 if by.some(0.15) else None
+    ball, moved = random_ball(by), np.eye(4)
+    moved[2, 3] = -0.6
+    floor = replace(extremes.sheet(24, 2.0, 0.0, 0.0), materials=np.zeros(576, np.int32))
+    surfels = [
+        Instance(ball, turned, material, int(by.some(0.3)), by.some(0.9), texture, "ball", 1, split),
+        Instance(floor, moved, second, 1, name="floor", index=2, is_holdout=by.some(0.15)),
+    ]
+    if by.some(0.35):
+        glass = np.diag((0.7, 0.7, 0.7, 1.0))
+        glass[:3, 3] = 0.5, -1.2, 0.2
+        clear = replace(ball, colors=ball.colors * (1, 1, 1, by.pick(0.2, 0.6, 0.95)))
+        surfels.append(Instance(clear, glass, second, 2, textures=texture, name="glass", index=5))
+    if by.some(0.2):
+        surfels.append(
+            Instance(extremes.discs((-0.5, -1.5, 0.3), (0.3, 0, 0), (0, 0, 0.3)), is_holdout=True, name="hole")
+        )
+    polygons = random_polygons(by, turned, material, by.pick(material, (glow,)), texture, split)
+    if polygons and by.some(0.1):
+        surfels = []
+    return ([], []) if by.some(0.03) else (surfels, polygons)
+
+
+def random_ball(by: Chance):
+    """700 surfels, sometimes with materials of their own, texture coordinates, or the word that they are solid."""
+    from splat_addon.reference import extremes, scenes
+
+    points = scenes.fibonacci_sphere(700)
+    axes = (a * 0.11 for a in scenes._tangents(points, by.rng.uniform(0, 6, 700)))
+    ball = replace(extremes.discs(points, *axes, normals=points), materials=(np.arange(700) % 2).astype(np.int32))
+    if by.some(0.3):
+        x, y, z = points.T
+        glow = np.stack([np.maximum(z, 0), 0 * x, x * x], axis=1) if by.some(0.5) else None
+        metallic = np.clip(0.5 + y, 0, 1) if by.some(0.5) else None
+        ball = replace(ball, roughness=0.5 + 0.4 * x, metallic=metallic, emission=glow)
+    if by.some(0.25):
+        flat = np.tile((0.05, 0.0), (700, 1))
+        border = np.tile((0.6, 0.3), (700, 1)) if by.some(0.5) else None
+        ball = replace(ball, uvs=points[:, :2], uv_along_x=flat, uv_along_y=flat[:, ::-1], uv_border=border)
+    return ball.as_solid() if by.some(0.2) else ball
+
+
+def random_polygons(by: Chance, turned, material, board_material, texture, split):
+    """A board, and the ball's near half where it is split by its distance."""
+    from splat_addon.reference import scenes
+    from splat_addon.rendering import PolygonInstance, make_polygons
+
+    if split is None and not by.some(0.4):
+        return []
+    corners = np.array([(-1, -1.5, -0.9), (1.4, -1.4, -0.9), (1.4, -1.0, 0.5), (-1, -0.9, 0.4)])
+    extra = {"uvs": corners[[0, 1, 2, 0, 2, 3]][:, :2]} if by.some(0.4) else {}
+    board = make_polygons(corners, [(0, 1, 2), (0, 2, 3)], color=(0.8, 0.4, 0.1, 1.0), **extra)
+    fields = {"textures": texture, "name": "board", "index": 4, "is_holdout": by.some(0.15)}
+    shown = [PolygonInstance(board, materials=board_material, light_set=int(by.some(0.3)), **fields)]
+    if split is not None:
+        shown.append(PolygonInstance(scenes.round_polygons(8), turned, material, split=split, name="ball"))
+    return shown
+
+
+def random_lights(by: Chance):
+    """A sun and a lamp, or one of them, or none."""
+    from splat_addon.rendering import Light
+
+    lights = []
+    if by.some(0.85):
+        size, casts = by.pick(0, 0, 0.3), by.some(0.5)
+        lights.append(Light("sun", energy=2.0, direction=(1, 0.6, -1), size=size, casts_shadow=casts))
+    if by.some(0.5):
+        kind, size, casts = by.pick("point", "spot", "area"), by.pick(0.0, 0.3), by.some(0.5)
+        place, receivers = ((-1.5, -2, 2), (0.5, 0.6, -1)), by.pick(None, None, (1,), (0, 2))
+        lights.append(Light(kind, (1, 0.6, 0.3), 80.0, *place, size, casts_shadow=casts, receivers=receivers))
+    return lights
+
+
+def random_view(by: Chance, scene):
+    """A camera, and the scene with a disc far behind it where it sees that far."""
+    from splat_addon.reference import extremes
+    from splat_addon.rendering import Camera, Instance, look_at
+
+    eye = by.pick((0.3, -4.0, 1.5), (0.2, -4.0, 0.4), (0.1, -1.25, 0.1), (0.3, -4.0, 1.5))
+    matrix, near, far = look_at(eye, (0, 0, 0)), by.pick(0.1, 0.1, 0.5), by.pick(30.0, 30.0, 2e5)
+    make = Camera.orthographic if by.some(0.2) else Camera.perspective
+    camera = make(matrix, 3.0 if make == Camera.orthographic else 0.8, SIZE, near, far)
+    if far > 1e3 and scene.surfels:
+        beyond = camera.matrix_world.copy()
+        beyond[:3, 3] -= 1e5 * beyond[:3, 2]
+        disc = Instance(extremes.discs((0, 0, 0), (5e3, 0, 0), (0, 5e3, 0)), beyond)
+        scene = replace(scene, surfels=[*scene.surfels, disc])
+    return scene, camera
+
+
+def random_settings(by: Chance):
+    """Settings, and names of the objects that they can show."""
+    from splat_addon.rendering import Lines, Matcap, Settings
     from splat_addon.rendering.methods import METHODS
     from splat_addon.rendering.shading_models import SHADING_MODELS
 
-    def some(chance):
-        return rng.random() < chance
-
-    def pick(*choices):
-        return choices[rng.integers(len(choices))]
-
-    rough, shiny = Material(roughness=0.8), Material(roughness=0.2, metallic=pick(0.0, 1.0))
-    glow = Material(roughness=0.5, emission=(0.2, 0.1, 0.4))
-    material = pick((rough,), (rough,), (glow,), (rough, shiny))
-    second = pick(material, material, (glow,), (shiny,))
-    checks = Image(scenes.checks(32, 4), pick("REPEAT", "CLIP", "MIRROR", "EXTEND"), pick("Linear", "Closest"))
-    texture = (SurfaceTexture(checks), None)
-
-    points = scenes.fibonacci_sphere(700)
-    ball = extremes.discs(points, *(a * 0.11 for a in scenes._tangents(points, rng.uniform(0, 6, 700))), normals=points)
-    ball = replace(ball, materials=(np.arange(700) % 2).astype(np.int32))
-    if some(0.3):
-        x, y, z = points.T
-        ball = replace(
-            ball,
-            roughness=0.5 + 0.4 * x,
-            metallic=np.clip(0.5 + y, 0, 1) if some(0.5) else None,
-            emission=np.stack([np.maximum(z, 0), 0 * x, x * x], axis=1) if some(0.5) else None,
-        )
-    if some(0.25):
-        flat = np.tile((0.05, 0.0), (700, 1))
-        ball = replace(
-            ball,
-            uvs=points[:, :2],
-            uv_along_x=flat,
-            uv_along_y=flat[:, ::-1],
-            uv_border=np.tile((0.6, 0.3), (700, 1)) if some(0.5) else None,
-        )
-    if some(0.2):
-        ball = ball.as_solid()
-    turned = np.diag((pick(1.0, 1.0, -1.0), 1.0, pick(1.0, 0.6), 1.0))
-    floor = replace(extremes.sheet(24, 2.0, 0.0, 0.0), materials=np.zeros(576, np.int32))
-    moved = np.eye(4)
-    moved[2, 3] = -0.6
-    splits = some(0.15)
-    split = 3.3 if splits else None
-    surfels = [
-        Instance(ball, turned, material, int(some(0.3)), some(0.9), texture, "ball", 1, split),
-        Instance(floor, moved, second, 1, name="floor", index=2, is_holdout=some(0.15)),
-    ]
-    if some(0.35):
-        glass = np.diag((0.7, 0.7, 0.7, 1.0))
-        glass[:3, 3] = 0.5, -1.2, 0.2
-        clear = replace(ball, colors=ball.colors * (1, 1, 1, pick(0.2, 0.6, 0.95)))
-        surfels.append(Instance(clear, glass, second, 2, textures=texture, name="glass", index=5))
-    if some(0.2):
-        hole = extremes.discs((-0.5, -1.5, 0.3), (0.3, 0, 0), (0, 0, 0.3))
-        surfels.append(Instance(hole, is_holdout=True, name="hole"))
-    polygons = []
-    if splits or some(0.4):
-        corners = np.array([(-1, -1.5, -0.9), (1.4, -1.4, -0.9), (1.4, -1.0, 0.5), (-1, -0.9, 0.4)])
-        extra = {"uvs": corners[[0, 1, 2, 0, 2, 3]][:, :2]} if some(0.4) else {}
-        board = make_polygons(corners, [(0, 1, 2), (0, 2, 3)], color=(0.8, 0.4, 0.1, 1.0), **extra)
-        polygons = [
-            PolygonInstance(
-                board, materials=pick(material, (glow,)), light_set=int(some(0.3)), textures=texture, name="board",
-                index=4, is_holdout=some(0.15),
-            ),
-            PolygonInstance(scenes.round_polygons(8), turned, material, split=split or None, name="ball"),
-        ][: 2 if splits else 1]  # fmt: skip
-    if polygons and some(0.1):
-        surfels = []
-    if some(0.03):
-        surfels = polygons = []
-    lights = []
-    if some(0.85):
-        lights.append(Light("sun", energy=2.0, direction=(1, 0.6, -1), size=pick(0, 0, 0.3), casts_shadow=some(0.5)))
-    if some(0.5):
-        kind = pick("point", "spot", "area")
-        lights.append(
-            Light(
-                kind,
-                (1, 0.6, 0.3),
-                80.0,
-                (-1.5, -2, 2),
-                (0.5, 0.6, -1),
-                pick(0.0, 0.3),
-                casts_shadow=some(0.5),
-                receivers=pick(None, None, (1,), (0, 2)),
-            )
-        )
-    sky = Environment(rng.random((8, 16, 3)).astype(np.float32)) if some(0.25) else None
-    scene = Scene(surfels, lights, (0.4, 0.5, 0.6), sky, polygons)
-    eye = pick((0.3, -4.0, 1.5), (0.2, -4.0, 0.4), (0.1, -1.25, 0.1), (0.3, -4.0, 1.5))
-    matrix, near = look_at(eye, (0, 0, 0)), pick(0.1, 0.1, 0.5)
-    far = pick(30.0, 30.0, 2e5)
-    if some(0.2):
-        camera = Camera.orthographic(matrix, 3.0, SIZE, near, far)
-    else:
-        camera = Camera.perspective(matrix, 0.8, SIZE, near, far)
-    if far > 1e3 and surfels:
-        beyond = camera.matrix_world.copy()
-        beyond[:3, 3] -= 1e5 * beyond[:3, 2]
-        scene = replace(
-            scene, surfels=[*scene.surfels, Instance(extremes.discs((0, 0, 0), (5e3, 0, 0), (0, 5e3, 0)), beyond)]
-        )
-    method = pick("mip", "mip", "mip", "quad", "quad", *METHODS)
-    wanted = [name for name in OUTPUTS if some(0.85 if name == "color" else pick(0.15, 0.5))] or ["color"]
-    multisampling = pick(0, 4) if METHODS[method].works_in == "space" else 0
-    if multisampling and some(0.8):
-        scene = replace(scene, surfels=[i for i in scene.surfels if i.name != "glass"])
+    method = by.pick("mip", "mip", "mip", "quad", "quad", *METHODS)
+    wanted = [name for name in OUTPUTS if by.some(0.85 if name == "color" else by.pick(0.15, 0.5))] or ["color"]
+    multisampling = by.pick(0, 4) if METHODS[method].works_in == "space" else 0
+    shown = {"ball", "floor", "glass", "hole", ""}
+    if multisampling and by.some(0.8):
+        shown -= {"glass"}
         wanted = [name for name in wanted if name not in ("object_index", "material_index", "cryptomatte")]
-    settings = Settings(
+    return Settings(
         method=method,
-        shading=pick("principled", "principled", "principled", *SHADING_MODELS),
-        matcap=Matcap(rng.random((8, 8, 3)).astype(np.float32)),
-        lines=Lines(width=1.5) if some(0.15) else None,
-        supersampling=pick(1, 1, 2),
-        samples=pick(1, 1, 1, 2),
+        shading=by.pick("principled", "principled", "principled", *SHADING_MODELS),
+        matcap=Matcap(by.rng.random((8, 8, 3)).astype(np.float32)),
+        lines=Lines(width=1.5) if by.some(0.15) else None,
+        supersampling=by.pick(1, 1, 2),
+        samples=by.pick(1, 1, 1, 2),
         multisampling=multisampling,
-        sample_shading=some(0.5),
-        edge_threshold=pick(0.0, 0.5),
-        storage=pick("float32", "float32", "16-bit"),
-        accumulation=pick("float32", "float32", "float16"),
-        layers=pick(2, 2, 4),
-        blends_rest=some(0.5),
-        transparent_film=some(0.3),
-        shadow_resolution=pick(64, 64, 0),
+        sample_shading=by.some(0.5),
+        edge_threshold=by.pick(0.0, 0.5),
+        storage=by.pick("float32", "float32", "16-bit"),
+        accumulation=by.pick("float32", "float32", "float16"),
+        layers=by.pick(2, 2, 4),
+        blends_rest=by.some(0.5),
+        transparent_film=by.some(0.3),
+        shadow_resolution=by.pick(64, 64, 0),
+        ambient_occlusion=by.pick(0.0, 0.0, 0.8),
         outputs=tuple(wanted),
-    )
-    return scene, camera, settings, some(0.1)
+    ), shown
 
 
 if __name__ == "__main__":

@@ -6,8 +6,9 @@ from collections import defaultdict
 
 import pytest
 
-from splat_addon.rendering.plan import compose as composing
-from splat_addon.rendering.plan.compose import FOLDER, compose
+from splat_addon.rendering.plan import composition as composing
+from splat_addon.rendering.plan.compose import main
+from splat_addon.rendering.plan.composition import FOLDER, compose
 
 FILES = sorted(FOLDER.rglob("*.glsl"))
 #: Folders of which a text has one file.
@@ -35,12 +36,7 @@ def global_names(text: str) -> set[str]:
 
 def home(file) -> str:
     """The folder of a file of which a text has one; else the file."""
-    if file.parent.name == "lib" and file.stem in (
-        "homogeneous",
-        "raycast",
-        "sprites",
-        "surfel_quad",
-    ):  # two methods have it in common
+    if file.parent.name == "lib" and file.stem in SHARED:
         return "methods"
     return file.parent.name if file.parent.name in CHOICES else file.relative_to(FOLDER).as_posix()
 
@@ -99,6 +95,19 @@ def test_a_composed_text_says_where_its_parts_are_from():
     assert sorted(opened) == sorted(closed) == [
         "depth_formats/linear.glsl", "features/object_id.glsl", "hosts/visibility.frag.glsl",
     ]  # fmt: skip
+
+
+def test_a_pass_is_printed_by_its_name_with_the_origin_of_its_parts(capsys):
+    scene = ["--scene", "splat_addon.reference.scenes:textured_plane", "--set", "method=quad", "lines=Lines()"]
+    main(["attributes", *scene, "--variant", "textured"])
+    printed = capsys.readouterr().out
+    assert "==== attributes (opaque): object_space.frag" in printed
+    for part in ("features/gbuffer", "features/textures", "methods/quad", "lib/texture_lookup"):
+        assert f"// >>> {part}.glsl" in printed
+    main(["shading", *scene])
+    assert "lines_finish(s);" in capsys.readouterr().out
+    with pytest.raises(SystemExit, match=r"no pass hiz .* visibility, attributes, lines, shading"):
+        main(["hiz", *scene])
 
 
 @pytest.fixture(autouse=True)

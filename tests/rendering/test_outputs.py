@@ -240,7 +240,7 @@ def test_outputs_that_are_not_asked_for_are_not_there(render):
     frame = render(wall(), CAMERA, Settings(outputs=("color", "emission")))
     assert frame.emission is not None
     assert all(getattr(frame, name) is None for name in OUTPUTS if name not in ("color", "emission"))
-    assert frame.stats["plan"].textures[-2:] == ("depth", "emission")
+    assert frame.stats["plan"].textures[-2:] == ("depth", "emission_output")
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -107,7 +107,7 @@ TABLE = {
         PLAIN, {"outputs": ("diffuse_color",), "shading": "flat"},
         PASSES, "-normal_coverage diffuse_color", "-brdf_table", (),
     ),
-    "emission": (PLAIN, {"outputs": ("emission",)}, PASSES, "-normal_coverage emission", "", ()),
+    "emission": (PLAIN, {"outputs": ("emission",)}, PASSES, "-normal_coverage emission_output", "", ()),
     "shadow share": (
         lit(casts_shadow=True), {"outputs": ("shadow",)}, ("shadow_maps", *PASSES),
         "-normal_coverage shadow_depth gbuffer_plane shadow_overdraw", "lights shadow_maps", ("SHADOW_SHARE",),
@@ -165,8 +165,8 @@ TABLE = {
     "mip, more outputs": (
         PLAIN, {"method": "mip", "outputs": ("emission", "overdraw")},
         ("visibility", "depth_bounds", "attributes", "deferred_lighting", "resolve"),
-        "-normal_coverage row_depth depth_bounds shaded surface emission sample_emission gbuffer_overdraw "
-        "shadow_overdraw sample_shadow_overdraw", "", (),
+        "-normal_coverage row_depth depth_bounds shaded surface emission_output sample_emission_output "
+        "gbuffer_overdraw shadow_overdraw sample_shadow_overdraw", "", (),
     ),
     "transparent": (
         TRANSPARENT, {"layers": 2, "blends_rest": False},
@@ -203,7 +203,7 @@ TABLE = {
         "row_depth row_holdout_depth depth_bounds shaded surface", "", ("HOLDOUT",),
     ),
     "one pass": (
-        PLAIN, {"method": "sprites_unfiltered"}, ("attributes", "shading"), "-visibility_depth seen_depth", "", (),
+        PLAIN, {"method": "sprites_unfiltered"}, ("attributes", "shading"), "-visibility_depth sprite_depth", "", (),
     ),
 }  # fmt: skip
 

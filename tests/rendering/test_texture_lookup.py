@@ -6,7 +6,7 @@ import pytest
 
 from splat_addon.images import EXTENSIONS, Image
 from splat_addon.rendering.device.interface import PipelineDescription
-from splat_addon.rendering.plan.compose import FOLDER, compose
+from splat_addon.rendering.plan.composition import FOLDER, compose
 from splat_addon.rendering.scene import SurfaceTexture
 from splat_addon.rendering.upload.atlas import make_atlas
 from splat_addon.rendering.upload.texture_lookup import texture_colors

@@ -1,8 +1,8 @@
 // References: lib/screen_door.glsl, whose masks these taps meet; Vogel, "A Better Way to Construct the Sunflower
 //             Head", 1979.
-// Summary: looks into a shadow map of masked surfaces, spread over a disc. Which looks a surface hides is its mask's
+// Summary: taps into a shadow map of masked surfaces, spread over a disc. Which taps a surface hides is its mask's
 //          choice: so those of every place of a mask are a spiral of their own over the disc, and those of places that
-//          masks keep together are turned and widened unlike one another. Any mask then sees the disc evenly; looks that
+//          masks keep together are turned and widened unlike one another. Any mask then sees the disc evenly; taps that
 //          take their turns in the places along one spiral would have a half of them lie in some directions.
 
 #include "lib/screen_door.glsl"
@@ -25,7 +25,7 @@ vec2 soft_tap(int number, int count) {
   return vec2(sqrt(share), (turn + shadow_turn) * GOLDEN_ANGLE + float(turned) * (6.28318531 / 16.0));
 }
 
-// The texel nearest to that place of the map which lies in the look's place of a mask.
+// The texel nearest to that place of the map which lies in the tap's place of a mask.
 ivec2 soft_texel(vec2 at, int number) {
   ivec2 place = ivec2(number & 3, (number >> 2) & 3);
   return place + 4 * ivec2(floor((at - vec2(place) - 0.5) / 4.0 + 0.5));

@@ -10,21 +10,24 @@ Each module decides from a `Planning` whether the frame needs it, and says why n
     check(plan)            raises ValueError for a plan that no device has room for
     VALUES                 name -> (type, value for a tile) of what shaders are told in the frame's block
     INPUTS                 sampler -> the texture for a tile that no pass writes
+    DRAWN                  sampler -> the texture for a tile and what is drawn (a `DrawItem`)
+    draws(tile, p, i)      whether a pass draws the splats of an instance
     CONSTANTS              what Python and shaders both know by a name
     margin(planning)       pixels beside a tile's own that its functions look at
     NAMES                  its files in shaders/features, where they are not one of its own name
 """
 
 from ..scene.polygons import CORNERS_PER_ROW, TEXELS_PER_CORNER
+from ..shading_models import SHADING_MODELS
 from ..upload.packing import BLEND_STEPS, SPLATS_PER_ROW, TEXELS_PER_SPLAT
 from . import (
-    accumulation,
     ambient_occlusion,
     back_culling,
     blend_depth,
     clip_lines,
     depth_bounds,
     depth_format,
+    drawing,
     edge_threshold,
     gbuffer,
     hiz,
@@ -40,6 +43,7 @@ from . import (
     oit,
     outputs,
     polygons,
+    sample_sum,
     shadows,
     silhouettes,
     split,
@@ -80,7 +84,7 @@ FEATURES = (
     lines,
     edge_threshold,
     lighting,
-    accumulation,
+    sample_sum,
 )
 
 
@@ -96,7 +100,9 @@ def _having(name: str) -> tuple:
     return tuple(getattr(feature, name) for feature in FEATURES if hasattr(feature, name))
 
 
-PASSES, READ_BACK, MARGINS, CHECKS = (_having(name) for name in ("passes", "read_back", "margin", "check"))
+PASSES, READ_BACK, MARGINS, CHECKS, DRAWS = (
+    _having(name) for name in ("passes", "read_back", "margin", "check", "draws")
+)
 #: (parts, is_present) of each
 PARTS = tuple((f.parts, getattr(f, "is_present", lambda planning: True)) for f in FEATURES if hasattr(f, "parts"))
 
@@ -106,8 +112,10 @@ def _joined(attribute: str) -> dict:
     return {name: value for feature in FEATURES for name, value in getattr(feature, attribute, {}).items()}
 
 
-VALUES = _joined("VALUES")
-INPUTS = _joined("INPUTS")
+_MODELS = SHADING_MODELS.values()
+VALUES = _joined("VALUES") | {name: value for model in _MODELS for name, value in model.values.items()}
+INPUTS = _joined("INPUTS") | {name: texture for model in _MODELS for name, texture in model.tables.items()}
+DRAWN = _joined("DRAWN") | drawing.DRAWN
 CONSTANTS = _joined("CONSTANTS") | {
     "SPLATS_PER_ROW": SPLATS_PER_ROW,
     "TEXELS_PER_SPLAT": TEXELS_PER_SPLAT,

@@ -7,12 +7,21 @@ They are a draw of their own, with the variant "clipped" of every program that d
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..upload.storages import get_storage
 from .drawing import RASTERIZERS, SPLAT_HOSTS
 
 _VARYINGS = (("flat", "vec3", "clip_first"), ("flat", "vec3", "clip_second"), ("flat", "float", "clip_is_reflex"))
 
 #: Whether lines are of places in the ellipse, where others are of places in the picture.
 _IN_SPACE = (("flat", "float", "clip_in_space"),)
+
+
+def _lines(tile, placed):
+    instance = placed.instance
+    return tile.resources.clip_lines(instance.surfels, get_storage(tile.plan.storage), tile.levels(instance))
+
+
+DRAWN = {"clip_lines": _lines}
 
 
 def _count(planning) -> int:

@@ -39,6 +39,17 @@ def linear(planning) -> tuple[bool, str]:
     return False, f"far / near of what is seen is {ratio:.3g} and the hardware's depth serves"
 
 
+def state(planning) -> dict:
+    """Of programs that find what is nearest."""
+    settings = planning.settings
+    return {
+        "depth_test": True,
+        "depth_write": True,
+        "fragment_depth": planning.find(linear)[0],
+        "sample_shading": bool(settings.multisampling and settings.sample_shading),
+    }
+
+
 def passes(planning):
     """None; it says what it decides."""
     if planning.shown:

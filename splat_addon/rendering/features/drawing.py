@@ -3,17 +3,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..device.interface import Pipeline
 from ..device.interface import Texture as DeviceTexture
 from ..plan.graph import Pass
 from ..plan.uniforms import DRAW, std140
-from ..scene import Instance
 from ..scene.light import MAX_LIGHT_SETS
-from ..upload.storages import get_storage
+from ..upload.storages import STORAGES, get_storage
 from ..view import DrawItem
 
 if TYPE_CHECKING:
@@ -29,30 +30,14 @@ LIT_HOSTS = ("shading.frag", "deferred_lighting.frag")
 LIGHTING_HOSTS = (*LIT_HOSTS, "lit_splats.frag")
 
 
-def drawn_by(p: Pass, tile: TileContext) -> tuple[DrawItem, ...]:
-    """What a pass draws of the tile's view: where transparent layers are planned, those or all the rest; what cuts
-    holes has depths and nothing else.
-    """
-    placed = tile.view.placed
-    if tile.plan.facts.get("layers"):
-        placed = tuple(d for d in placed if d.instance.is_transparent is (p.kind in ("layer", "rest")))
-    if p.kind == "opaque" and p.host in SPLAT_HOSTS and tile.plan.has("HOLDOUT"):
-        placed = tuple(d for d in placed if not d.instance.is_holdout)
-    return placed
+def _stored(tile: TileContext, placed: DrawItem, sampler: str) -> DeviceTexture:
+    return tile.stored(placed.instance).textures[sampler]
 
 
-def splat_textures(tile: TileContext, instance: Instance) -> dict[str, Callable[[], DeviceTexture]]:
-    """What an instance's splats are made of, by the names of samplers."""
-    resources, storage, levels = tile.resources, get_storage(tile.plan.storage), tile.levels(instance)
-    stored = tile.stored(instance)
-    return {
-        **{name: lambda t=texture: t for name, texture in stored.textures.items()},
-        "materials": lambda: resources.materials(instance, storage, tile.plan.facts["emissions_differ"], levels),
-        "surfel_uvs": lambda: resources.surfel_uvs(instance.surfels, storage, levels),
-        "clip_lines": lambda: resources.clip_lines(instance.surfels, storage, levels),
-        "texture_atlas": lambda: resources.atlas(instance.textures)[0],
-        "texture_table": lambda: resources.atlas(instance.textures)[1],
-    }
+#: sampler -> the texture of what is drawn
+DRAWN = {name: partial(_stored, sampler=name) for storage in STORAGES.values() for name in storage.samplers} | {
+    "polygon_corners": lambda tile, placed: tile.resources.polygons(placed.instance.polygons),
+}
 
 
 def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None):
@@ -63,33 +48,28 @@ def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawIt
     programs = {}
     for placed in placed_ones:
         cut = tile.cut(placed)
-        textures = {**splat_textures(tile, placed.instance), "drawn_splats": lambda c=cut: c.numbers}
-        block, own = draw_block(tile, placed, tile.settings.epsilon), () if cut.numbers is None else ("cut",)
+        own = () if cut.numbers is None else ("cut",)
         for more, first, end in ((own, cut.clipped, cut.count), ((*own, "clipped"), 0, cut.clipped)):
             if first < end:
                 program = programs[more] = programs.get(more) or tile.program(p, vertex, *variants, *more)
-                read, blocks = tile.textures(p, program, textures), tile.blocks(program, block)
-                tile.resources.device.draw_triangles(program, target, end - first, blocks, read, viewport, first)
+                _draw(tile, p, target, placed, tile.settings.epsilon, program, (first, end - first), viewport)
 
 
 def draw_polygons(
     tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None
 ):
     """The same; epsilon is how far behind polygons splats may lie."""
-    program, resources = None, tile.resources
+    program = None
     for placed in placed_ones:
         program = program or tile.program(p, vertex, *variants)
-        instance = placed.instance
-        made = {
-            "polygon_corners": lambda i=instance: resources.polygons(i.polygons),
-            "polygon_uvs": lambda i=instance: resources.polygon_uvs(i.polygons),
-            "materials": lambda i=instance: resources.materials(i, None, tile.plan.facts["emissions_differ"]),
-            "texture_atlas": lambda i=instance: resources.atlas(i.textures)[0],
-            "texture_table": lambda i=instance: resources.atlas(i.textures)[1],
-        }
-        blocks = tile.blocks(program, draw_block(tile, placed, placed.overlap))
-        textures = tile.textures(p, program, made)
-        resources.device.draw_triangles(program, target, instance.polygons.triangles, blocks, textures, viewport)
+        _draw(tile, p, target, placed, placed.overlap, program, (0, placed.instance.polygons.triangles), viewport)
+
+
+def _draw(tile, p, target, placed: DrawItem, epsilon: float, program: Pipeline, which: tuple[int, int], viewport):
+    """which: the first triangle, and how many."""
+    blocks = tile.blocks(program, draw_block(tile, placed, epsilon))
+    textures = tile.textures(p, program, placed)
+    tile.resources.device.draw_triangles(program, target, which[1], blocks, textures, viewport, which[0])
 
 
 def draw_block(tile: TileContext, placed: DrawItem, epsilon: float) -> np.ndarray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture
 from . import depth_format, lit_splats, shadows, visibility
-from .drawing import LIT_HOSTS, RASTERIZERS, draw_splats, drawn_by
+from .drawing import LIT_HOSTS, RASTERIZERS, draw_splats
 from .rasterizers import rasterized
 
 NAMES = ("gbuffer", "depth_in_normals", "gbuffer_depth")
@@ -19,7 +19,7 @@ NORMAL = Texture("gbuffer_normal", is_multisampled=True, is_sum=True)
 DEPTH_SUM = Texture("gbuffer_depth", "RG32F", is_multisampled=True)
 #: With room for the planes that shadows compare depths with: targets have no room for a texture more.
 DEPTH_PLANE_SUM = Texture("gbuffer_depth", "RGBA32F", is_multisampled=True)
-SPRITE_DEPTH = Texture("seen_depth", "DEPTH32F")
+SPRITE_DEPTH = Texture("sprite_depth", "DEPTH32F")
 
 
 def depths_are_apart(planning, kind: str) -> bool:
@@ -93,7 +93,7 @@ def run(tile, p: Pass):
     """Fill the sums; textured instances with programs that look colours up."""
     target, vertex = tile.target(p), p.host.replace(".frag", ".vert")
     target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
-    drawn = drawn_by(p, tile)
+    drawn = tile.drawn_by(p)
     draw_splats(tile, p, target, [d for d in drawn if not d.instance.is_textured], vertex)
     draw_splats(tile, p, target, [d for d in drawn if d.instance.is_textured], vertex, "textured")
     return target

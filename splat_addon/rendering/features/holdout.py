@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..plan.graph import Part, Texture
+from ..plan.graph import Part, Pass, Texture
 from . import silhouettes, visibility
-from .drawing import LIT_HOSTS
+from .drawing import LIT_HOSTS, SPLAT_HOSTS
 
 DEPTH = Texture("holdout_depth", "DEPTH32F")
 ROW_DEPTH = Texture("row_holdout_depth", "DEPTH32F", silhouettes.of_rows)
@@ -49,6 +49,11 @@ def parts(planning, p):
         yield Part("holdout", reads=(visibility.DEPTH,))
     if p.host in ("screen_space.frag", "resolve.frag"):
         yield Part("holdout")
+
+
+def draws(tile, p: Pass, instance) -> bool:
+    """What cuts holes has depths and nothing else."""
+    return not (instance.is_holdout and p.kind == "opaque" and p.host in SPLAT_HOSTS and tile.plan.has("HOLDOUT"))
 
 
 def run(tile, p):

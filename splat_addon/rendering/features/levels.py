@@ -13,6 +13,7 @@ from ..upload.cuts import NUMBERS_PER_ROW
 from .drawing import SPLAT_HOSTS
 
 CONSTANTS = {"NUMBERS_PER_ROW": NUMBERS_PER_ROW}
+DRAWN = {"drawn_splats": lambda tile, placed: tile.cut(placed).numbers}
 
 
 def merging(planning) -> frozenset:

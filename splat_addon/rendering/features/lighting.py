@@ -4,20 +4,10 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture, fill
-from ..upload.brdf_table import brdf_texels
 from . import depth_bounds, outputs, silhouettes, visibility
 from .drawing import LIGHTING_HOSTS
 
 NAMES = ("lighting", "picture")
-VALUES = {
-    "toon_steps": ("float", lambda tile: tile.settings.toon_steps),
-    "toon_softness": ("float", lambda tile: tile.settings.toon_softness),
-}
-INPUTS = {
-    "matcap": lambda tile: tile.resources.kept(tile.settings.matcap, tile.settings.matcap.texels),
-    "brdf_table": lambda tile: tile.resources.constant(brdf_texels),
-}
-
 SHADED = Texture("shaded")
 SURFACE = Texture("surface")
 
@@ -75,6 +65,6 @@ def passes(planning):
 
 def parts(planning, p):
     if p.host in LIGHTING_HOSTS and planning.model.tables:
-        yield Part("lighting", inputs=planning.model.tables)
+        yield Part("lighting", inputs=tuple(planning.model.tables))
     if p.kind == "opaque" and p.host in ("deferred_lighting.frag", "resolve.frag"):
         yield Part("picture")

@@ -10,7 +10,7 @@ from __future__ import annotations
 from ..plan.graph import Part, Pass, Texture
 from ..shading_models import ShadingModel, get_shading_model
 from ..upload.packing import SPLATS_PER_ROW, row_count
-from .drawing import LIT_HOSTS, SPLAT_HOSTS, draw_block, draw_splats, drawn_by, splat_textures, storage_samplers
+from .drawing import LIT_HOSTS, SPLAT_HOSTS, draw_block, draw_splats, storage_samplers
 
 
 def _of_splats(plan, pixels: tuple[int, int]) -> tuple[int, int]:
@@ -42,14 +42,13 @@ def model_in(planning, p: Pass) -> ShadingModel:
 
 def each(planning) -> Pass | None:
     """What lights the splats of an instance before they are added up."""
-    if not planning.find(wanted):
-        return None
-    planning.facts["lit_rows"] = max(row_count(i.surfels) for i in planning.scene.surfels)
-    return light(planning)
+    return light(planning, planning.scene.surfels) if planning.find(wanted) else None
 
 
-def light(planning) -> Pass:
-    """What lights the splats of one instance."""
+def light(planning, instances) -> Pass:
+    """What lights the splats of one instance, of these: its texture has a texel a splat of the largest."""
+    rows = max(row_count(instance.surfels) for instance in instances)
+    planning.facts["lit_rows"] = max(rows, planning.facts.get("lit_rows", 0))
     own = Part("lit_splats", inputs=storage_samplers(planning.settings.storage), writes=(LIT,))
     return Pass("light_splats", "each splat is lit by itself", "lit_splats.frag", run, (own,), "rest")
 
@@ -69,9 +68,9 @@ def run(tile, p: Pass):
     """
     target, lit, light = tile.target(p), tile.target(p.each), None
     target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
-    for placed in drawn_by(p, tile):
+    for placed in tile.drawn_by(p):
         light = light or tile.program(p.each)
-        textures = tile.textures(p.each, light, splat_textures(tile, placed.instance))
+        textures = tile.textures(p.each, light, placed)
         blocks = tile.blocks(light, draw_block(tile, placed, tile.settings.epsilon))
         viewport = 0, 0, SPLATS_PER_ROW, row_count(placed.instance.surfels)
         tile.resources.device.draw_triangles(light, lit, 1, blocks, textures, viewport)

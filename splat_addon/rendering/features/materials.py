@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from ..plan.graph import Part, Texture
 from ..upload.packing import pack_materials, shared_emission, shared_material
+from ..upload.storages import get_storage
 from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
 
 NAMES = ("materials", "emission")
@@ -27,6 +28,15 @@ VALUES = {
     "material": ("vec4", _material),
     "emission": ("vec4", lambda tile: (*(tile.plan.facts["emission"] or (0.0,) * 3), 0.0)),
 }
+
+
+def _drawn(tile, placed):
+    instance, emissions_differ = placed.instance, tile.plan.facts["emissions_differ"]
+    storage = get_storage(tile.plan.storage)
+    return tile.resources.materials(instance, storage, emissions_differ, tile.levels(instance))
+
+
+DRAWN = {"materials": _drawn}
 
 
 def differ(planning) -> tuple[bool, bool]:

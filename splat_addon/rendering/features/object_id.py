@@ -6,7 +6,7 @@ from __future__ import annotations
 from ..identity import NUMBERED
 from ..plan.graph import Part, Pass, Texture
 from . import silhouettes, visibility
-from .drawing import draw_splats, drawn_by
+from .drawing import draw_splats
 from .rasterizers import rasterized
 
 IDENTITY = Texture("identity", "RG32F")
@@ -53,10 +53,10 @@ def passes(planning):
         planning.skip("edge ids", f"what {method.name} spreads in space past what is visible is nobody's")
     if method.works_in == "picture" and not method.filters_silhouettes:
         why = f"{method.name} spreads splats past what is visible, which is somebody's"
-        own = Part("object_id", ("rims",), (visibility.DEPTH,), writes=(IDENTITY, EDGE_DEPTH), varyings=_VARYINGS)
+        own = Part("object_id", ("edge_ids",), (visibility.DEPTH,), writes=(IDENTITY, EDGE_DEPTH), varyings=_VARYINGS)
         state = {"depth_test": True, "depth_write": True}
         parts = own, *rasterized(planning)
-        yield Pass("edge_ids", why, "screen_space.frag", run_edges, parts, "rims", state, adds=True)
+        yield Pass("edge_ids", why, "screen_space.frag", run_edges, parts, "edge_ids", state, adds=True)
 
 
 def is_present(planning) -> bool:
@@ -85,5 +85,5 @@ def run_edges(tile, p: Pass):
     """Fill what the visibility pass left empty of the numbers: of the footprints of splats the nearest wins."""
     target = tile.target(p)
     target.clear(depth=1.0)
-    draw_splats(tile, p, target, drawn_by(p, tile), "screen_space.vert")
+    draw_splats(tile, p, target, tile.drawn_by(p), "screen_space.vert")
     return target

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture, fill
-from ..upload.packing import row_count
 from . import gbuffer, lighting, lit_splats
 from .drawing import RASTERIZERS
 from .rasterizers import rasterized
@@ -13,14 +12,8 @@ ACCUM = Texture("oit_accum")
 WEIGHT = Texture("oit_weight", "RG32F")
 
 
-def lit_rows(scene) -> int:
-    """Of a texture of one texel a splat, for the largest of the transparent instances."""
-    return max(row_count(i.surfels) for i in scene.surfels if i.is_transparent)
-
-
 def passes_of_rest(planning, peeled: Texture, layers: Texture) -> tuple[Pass, ...]:
     """What is done where no layer was empty: with what layers add up to, and how far they are peeled."""
-    planning.facts["lit_rows"] = lit_rows(planning.scene)
     samples = (("SAMPLES", planning.settings.supersampling),)
     add = {"blend": "add"}
     rest = Part("oit", ("rest",), (lit_splats.LIT,), writes=(ACCUM, WEIGHT)), *rasterized(planning)
@@ -29,7 +22,8 @@ def passes_of_rest(planning, peeled: Texture, layers: Texture) -> tuple[Pass, ..
     shade = Part("oit", reads=(ACCUM, WEIGHT, gbuffer.depth_sum(planning)), writes=(lighting.SHADED,))
     put = Part("oit", reads=(lighting.SHADED, peeled), writes=(layers,), constants=samples)
     peel = Part("oit", reads=(lighting.SHADED,), updates=(peeled,))
-    run, each = lit_splats.run, lit_splats.light(planning)
+    transparent = [instance for instance in planning.scene.surfels if instance.is_transparent]
+    run, each = lit_splats.run, lit_splats.light(planning, transparent)
     return (
         Pass("rest", "all that is left is added up", host, run, rest, "rest", state, each=each),
         Pass("oit_shading", "its weights tell how much it hides", "oit_shading.frag", fill, (shade,), "rest"),

@@ -7,38 +7,23 @@ silhouettes are filtered afterwards, of layers where something is transparent, o
 
 from __future__ import annotations
 
+from ..frame import HELD_BY
 from ..plan.frame_plan import FramePlan
 from ..plan.graph import Part, Texture, of_pixels
 from . import shadows
 from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
 
-NAMES = (
-    "overdraw", "weight_output", "shadow_output", "normal_coverage", "diffuse_color", "emission_output",
-    "shadow_overdraw",
-)  # fmt: skip
-
 #: Colour textures that a target may have: as many as Blender's.
 MAX_COLORS = 6
-#: array of a `Frame` -> the texture of pixels that holds it, and where in its last axis
-HELD_BY = {
-    "color": ("combined", slice(0, 4)),
-    "depth": ("depth", 0),
-    "normal": ("normal_coverage", slice(0, 3)),
-    "coverage": ("normal_coverage", 3),
-    "diffuse_color": ("diffuse_color", slice(0, 3)),
-    "emission": ("emission", slice(0, 3)),
-    "shadow": ("shadow_overdraw", slice(0, 3)),
-    "overdraw": ("shadow_overdraw", 3),
-}
-#: Textures that hand on what a sample is lit to -> the feature that fills them.
-_HANDED_ON = {"diffuse_color": "diffuse_color", "emission": "emission_output", "shadow_overdraw": "shadow_overdraw"}
-
 PIXELS = {
     name: Texture(name, "R32F" if name == "depth" else "RGBA32F", of_pixels)
     for name in dict.fromkeys(texture for texture, _ in HELD_BY.values())
 }
+#: Textures that hand on what a sample is lit to; a feature of the name fills each.
+_HANDED_ON = tuple(name for name in PIXELS if name not in ("combined", "depth", "normal_coverage"))
 SAMPLES = {name: Texture(f"sample_{name}") for name in _HANDED_ON}
 LAYERS = {name: Texture(f"layers_{name}", per=of_pixels) for name in _HANDED_ON}
+NAMES = ("overdraw", "weight_output", "shadow_output", "normal_coverage", *_HANDED_ON)
 LAYERS_NORMAL = Texture("layers_normal", per=of_pixels)
 OVERDRAW = Texture("gbuffer_overdraw", "R32F", is_multisampled=True)
 
@@ -155,7 +140,7 @@ def _handing(planning, p, in_layer: bool, has_layers: bool):
         if p.host in kinds:
             texture = kinds[p.host][name]
             called = ((texture, f"out_{name}"),)
-            yield Part(_HANDED_ON[name], tuple(words), tuple(reads), writes=(texture,), called=called)
+            yield Part(name, tuple(words), tuple(reads), writes=(texture,), called=called)
 
 
 def check(plan: FramePlan) -> None:

@@ -31,13 +31,6 @@ def passes(planning):
         return
     touching = len(overlapping_radii(planning.scene))
     why = f"{len(among)} instances are polygons, of which {touching} touch surfels and may blend with them"
-    settings = planning.settings
-    state = {
-        "depth_test": True,
-        "depth_write": True,
-        "fragment_depth": planning.find(depth_format.linear)[0],
-        "sample_shading": bool(settings.multisampling and settings.sample_shading),
-    }
     varyings = ("float", "depth_at"), ("vec3", "corner_normal"), ("vec3", "corner_color")
     own = Part(
         "polygons",
@@ -45,7 +38,7 @@ def passes(planning):
         writes=(COLOR, NORMAL, DEPTH),
         varyings=tuple(("smooth", *varying) for varying in varyings),
     )
-    yield Pass("polygons", why, "polygons.frag", run, (own,), state=state)
+    yield Pass("polygons", why, "polygons.frag", run, (own,), state=depth_format.state(planning))
 
 
 def is_present(planning) -> bool:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..upload.storages import get_storage
 
 #: uv and slot, change of uv along the half-axes, where the map ends; and the half-axes.
 _VARYINGS = (("flat", "vec3", "texture_place"), ("flat", "vec4", "texture_along"), ("flat", "vec2", "texture_border"))
@@ -15,6 +16,19 @@ _OF_POLYGONS = (
     ("flat", "vec3", "gradient_v"),
 )
 _ATLAS = ("texture_atlas", "texture_table")
+
+
+def _surfel_uvs(tile, placed):
+    instance = placed.instance
+    return tile.resources.surfel_uvs(instance.surfels, get_storage(tile.plan.storage), tile.levels(instance))
+
+
+DRAWN = {
+    "surfel_uvs": _surfel_uvs,
+    "polygon_uvs": lambda tile, placed: tile.resources.polygon_uvs(placed.instance.polygons),
+    "texture_atlas": lambda tile, placed: tile.resources.atlas(placed.instance.textures)[0],
+    "texture_table": lambda tile, placed: tile.resources.atlas(placed.instance.textures)[1],
+}
 
 
 def _are_textured(planning) -> tuple[bool, bool]:

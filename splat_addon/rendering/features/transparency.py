@@ -92,6 +92,11 @@ def is_present(planning) -> bool:
     return bool(planning.facts["layers"])
 
 
+def draws(tile, p: Pass, instance) -> bool:
+    """Where layers are planned, what is transparent is drawn by them, and all the rest by other passes."""
+    return not tile.plan.facts["layers"] or instance.is_transparent is (p.kind in ("layer", "rest"))
+
+
 def margin(planning) -> int:
     return LAYER_MARGIN if planning.facts["layers"] else 0
 

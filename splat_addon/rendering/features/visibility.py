@@ -8,7 +8,7 @@ from dataclasses import replace
 from ..plan.graph import Part, Pass, Texture
 from ..view import View
 from . import depth_format, silhouettes
-from .drawing import draw_polygons, draw_splats, drawn_by, storage_samplers
+from .drawing import draw_polygons, draw_splats, storage_samplers
 
 DEPTH = Texture("visibility_depth", "DEPTH32F", is_multisampled=True)
 ROW_DEPTH = Texture("row_depth", "DEPTH32F", silhouettes.of_rows)
@@ -38,14 +38,7 @@ def own_parts(planning, depth: Texture, reads=(), words=()) -> tuple[Part, ...]:
 
 def drawn(name: str, reason: str, own: tuple[Part, ...], planning, kind: str = "opaque") -> Pass:
     """A pass that finds what is nearest."""
-    settings = planning.settings
-    state = {
-        "depth_test": True,
-        "depth_write": True,
-        "fragment_depth": planning.find(depth_format.linear)[0],
-        "sample_shading": bool(settings.multisampling and settings.sample_shading),
-    }
-    return Pass(name, reason, "visibility.frag", run, own, kind, state)
+    return Pass(name, reason, "visibility.frag", run, own, kind, depth_format.state(planning))
 
 
 def passes(planning):
@@ -72,7 +65,7 @@ def run(tile, p: Pass):
     if silhouettes.rows_of(p.depth) > 1:
         tile = replace(tile, view=_seen_by_rows(tile.view, target.size[1]))
     polygons = tile.view.polygons if p.kind != "layer" else ()
-    draw(tile, p, target, drawn_by(p, tile), polygons)
+    draw(tile, p, target, tile.drawn_by(p), polygons)
     return target
 
 

@@ -1,180 +1,83 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shaders from hosts and features: no text is switched by a conditional, what a pass does not do has no line in it.
+"""Prints the plan of a scene, or the shaders of one of its passes with the origin of every part.
 
-A *host* is a shader, or a function of several, that marks with `#hook name(arguments)` where features may act, and with
-`#parts` where their functions go. A *feature* has one file, shaders/features/<name>.glsl, of sections:
-
-    #part HOST, WORD ...
-
-A section is in a text where all its words hold: the host's name (its file's), the stage (vertex, fragment), features
-that are present, and what else a pass says of itself (layer, opaque ...). At a hook every function of these sections is
-called whose name begins with the feature's, or with one of the section's words, and ends with the hook's: in the
-features' order. Other functions help them. Any file may have sections of its own in the same way. `#include "path"`
-takes a file once a text; {names} in a path are filled in.
-
-`python3 -m splat_addon.rendering.plan.compose --help` prints the text of a pass with the origin of every part.
+    python3 -m splat_addon.rendering.plan.compose
+    python3 -m splat_addon.rendering.plan.compose attributes --scene splat_addon.reference.scenes:textured_plane \\
+        --set method=quad lines=Lines() --variant textured
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable
-from functools import cache
-from pathlib import Path
-from typing import NamedTuple
+import argparse
+import ast
+from importlib import import_module
 
-FOLDER = Path(__file__).resolve().parents[3] / "shaders"
+import splat_addon.rendering as rendering
 
-_PART = re.compile(r"^#part (.+)\n", re.MULTILINE)
-_HOOK = re.compile(r"^( *)#hook (\w+)\((.*)\)\n", re.MULTILINE)
-_INCLUDE = re.compile(r'^#include "([^"]+)"\n', re.MULTILINE)
-_PARTS = "#parts\n"
-_STAGES = {"vert": "vertex", "frag": "fragment"}
-_FUNCTION = re.compile(r"^\w+ (\w+)\(", re.MULTILINE)
+from ..settings import Settings
+from .build import plan
+from .composition import FOLDER
+from .frame_plan import FramePlan
+from .graph import Pass
+from .programs import composed
 
-
-#: What is filled in for names in paths, where a frame chooses nothing else.
-DEFAULTS = {
-    "method": "mip",
-    "storage": "float32",
-    "shading": "principled",
-    "depth_format": "hardware",
-    "sum_format": "float32",
-    "samples": "each",
-    "background": "even",
-    "world_light": "even",
-    "shadow_taps": "even",
-    "polygon_share": "compared",
-    "sides": "told_apart",
-    "rest_opacity": "surfaces",
-}
+#: variants of passes that have vertex shaders of their own
+_VERTEX = {"polygons": "polygon_visibility.vert"}
 
 
-class _Section(NamedTuple):
-    words: tuple[str, ...]
-    text: str
+def main(arguments: list[str] | None = None) -> None:
+    options = _parser().parse_args(arguments)
+    module, _, function = options.scene.partition(":")
+    scene, camera = getattr(import_module(module), function)()
+    made = plan(scene, camera, Settings(**{"shadow_resolution": 64, **dict(options.set)}))
+    if not options.name:
+        print(made)
+        return
+    found = [p for p in made.passes if p.name == options.name and options.kind in ("", p.kind)]
+    if not found:
+        names = ", ".join(dict.fromkeys(p.name for p in made.passes))
+        raise SystemExit(f"The plan has no pass {options.name} of that kind; its passes are {names}.")
+    for p in found:
+        print(_shown(made, p, options.variant))
 
 
-class _File(NamedTuple):
-    """head: what is always there."""
-
-    head: str
-    sections: tuple[_Section, ...]
-
-
-@cache
-def compose(root: str, words: tuple[str, ...] = (), names: tuple[tuple[str, str], ...] = (), origins=False) -> str:
-    """The text of shaders/hosts/`root`.glsl. words: the features that are present, in their order, and what else is
-    said of the pass. names: what is filled in for {names} in paths. origins: with a comment where each file
-    begins and ends.
-
-    Raises FileNotFoundError for a file that is not there and ValueError for a feature's function without a hook.
-    """
-    return _Text(words, _STAGES[root.rpartition(".")[2]], dict(names), origins).included(f"hosts/{root}.glsl")
+def _shown(made: FramePlan, p: Pass, variants: list[str]) -> str:
+    """Both texts of a pass. Raises SystemExit for a variant that it does not have."""
+    there = {part.only for part in p.parts} - {"", *made.variants}
+    if missing := set(variants) - there:
+        raise SystemExit(f"{p.name} has no variant {min(missing)}; it has {', '.join(sorted(there)) or 'none'}.")
+    vertex = next((_VERTEX[v] for v in variants if v in _VERTEX), p.host.replace(".frag", ".vert"))
+    if not (FOLDER / "hosts" / f"{vertex}.glsl").exists():
+        vertex = "fullscreen.vert"
+    texts = composed(made, p, vertex, *(variants or there - set(_VERTEX)), origins=True)
+    heads = (f"==== {p.name} ({p.kind}): {host}\n" for host in (vertex, p.host))
+    return "\n".join(head + text for head, text in zip(heads, texts, strict=True))
 
 
-class _Text:
-    """One text while it is put together; every file is in it once."""
-
-    def __init__(self, words: tuple[str, ...], stage: str, names: dict[str, str], origins: bool):
-        self._words, self._stage, self._names, self._origins = words, stage, names, origins
-        self._holds = {*words, stage}
-        self._seen: set[str] = set()
-
-    def included(self, path: str) -> str:
-        path = path.format(**self._names)
-        if path in self._seen:
-            return ""
-        self._seen.add(path)
-        head, sections = _read(path)
-        own = [section for section in sections if self._holds.issuperset(section.words)]
-        if _PARTS not in head:
-            return self._marked(path, self._expanded(head + "".join(section.text for section in own)))
-        return self._marked(path, self._hosted(Path(path).stem, head, own))
-
-    def _hosted(self, host: str, head: str, own: list[_Section]) -> str:
-        """A host with its own sections, then those of the features, and calls of their functions at its hooks."""
-        before, after = head.split(_PARTS)
-        features = {word: self._sections_at(host, word) for word in self._words}
-        hooks = _HOOK.findall(head + "".join(s.text for part in (own, *features.values()) for s in part))
-        names = sorted({name for _, name, _ in hooks}, key=len, reverse=True)
-        acting = [call for section in own for call in _calls(section, section.words, names)]
-        parts = ["".join(section.text for section in own)]
-        for feature, sections in features.items():
-            for section in sections:
-                acting += _calls(section, (feature, *section.words), names)
-                if section.words[0] == host:
-                    _check(section, feature, host, names)
-            path = f"features/{feature}.glsl"
-            parts.append(self._marked(path, "".join(section.text for section in sections)))
-        text = _HOOK.sub(lambda match: _called(match, acting), before + "".join(parts) + after)
-        return self._expanded(text)
-
-    def _sections_at(self, host: str, feature: str) -> list[_Section]:
-        """What a feature does there; before it, what all its sections in the stage share, once a text."""
-        path = f"features/{feature}.glsl"
-        if not _exists(path):
-            return []
-        head, sections = _read(path)
-        taken = [s for s in sections if s.words[0] == host and self._holds.issuperset(s.words[1:])]
-        if taken and path not in self._seen:
-            self._seen.add(path)
-            shared = [s for s in sections if s.words == (self._stage,)]
-            taken = [_Section((self._stage,), head), *shared, *taken]
-        return taken
-
-    def _expanded(self, text: str) -> str:
-        return _INCLUDE.sub(lambda match: self.included(match[1]), text)
-
-    def _marked(self, path: str, text: str) -> str:
-        return f"// >>> {path}\n{text.strip()}\n// <<< {path}\n" if self._origins and text else text
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python3 -m splat_addon.rendering.plan.compose",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("name", nargs="?", help="of a pass; without it the plan is printed")
+    parser.add_argument("--kind", default="", help="of passes of that name those of this kind: opaque, layer ...")
+    parser.add_argument("--scene", default="splat_addon.reference.scenes:torus", metavar="MODULE:FUNCTION",
+                        help="what gives scene and camera")  # fmt: skip
+    parser.add_argument("--set", nargs="+", default=[], type=_setting, metavar="NAME=VALUE", help="of `Settings`")
+    parser.add_argument("--variant", nargs="+", default=[], help="of its programs: splats, polygons, textured ...")
+    return parser
 
 
-def _calls(section: _Section, words: Iterable[str], hooks: list[str]) -> Iterable[tuple[str, str]]:
-    """(hook, function) of a section's functions that are called at hooks; the longest hook's name counts."""
-    for function in _FUNCTION.findall(section.text):
-        if function.startswith(tuple(f"{word}_" for word in words)):
-            if hook := next((hook for hook in hooks if function.endswith(f"_{hook}")), ""):
-                yield hook, function
-
-
-def _check(section: _Section, feature: str, host: str, hooks: list[str]) -> None:
-    for function in _FUNCTION.findall(section.text):
-        if function.startswith(f"{feature}_") and not function.endswith(tuple(f"_{hook}" for hook in hooks)):
-            raise ValueError(
-                f"features/{feature}.glsl has a function {function} for the host {host}, whose hooks are "
-                f"{', '.join(hooks)}; call it by one of them, or begin a helper's name otherwise."
-            )
-
-
-def _called(match: re.Match, acting: list[tuple[str, str]]) -> str:
-    indent, hook, arguments = match.groups()
-    return "".join(f"{indent}{function}({arguments});\n" for at, function in acting if at == hook)
-
-
-@cache
-def _read(path: str) -> _File:
-    head, *rest = _PART.split((FOLDER / path).read_text(encoding="utf-8"))
-    sections = zip(rest[::2], rest[1::2], strict=True)
-    return _File(head, tuple(_Section(tuple(re.split(r"[ ,]+", words)), text) for words, text in sections))
-
-
-@cache
-def _exists(path: str) -> bool:
-    return (FOLDER / path).exists()
-
-
-def main() -> None:
-    """Print a text with the origin of its parts."""
-    import argparse
-
-    parser = argparse.ArgumentParser(prog="python3 -m splat_addon.rendering.plan.compose", description=main.__doc__)
-    parser.add_argument("host", choices=sorted(p.name[:-5] for p in (FOLDER / "hosts").glob("*.*.glsl")))
-    parser.add_argument("words", nargs="*", help="features that are present, and what else a pass says of itself")
-    parser.add_argument("--choose", action="append", default=[], metavar="NAME=FILE", help="what {NAME} in paths is")
-    options = parser.parse_args()
-    names = DEFAULTS | dict(choice.split("=", 1) for choice in options.choose)
-    print(compose(options.host, tuple(options.words), tuple(names.items()), origins=True))
+def _setting(text: str) -> tuple[str, object]:
+    """A name and what it is set to: a literal, a bare word, or `Lines()`."""
+    name, _, value = text.partition("=")
+    if value.endswith("()"):
+        return name, getattr(rendering, value[:-2])()
+    try:
+        return name, ast.literal_eval(value)
+    except (ValueError, SyntaxError):
+        return name, value
 
 
 if __name__ == "__main__":

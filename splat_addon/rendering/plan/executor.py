@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy as np
 from ...hierarchy import Hierarchy, cut_entries
 from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
+from ..features import DRAWN, DRAWS, INPUTS
 from ..identity import Identities
 from ..levels import hierarchy_of, sight
 from ..scene import Instance, Scene
@@ -44,7 +45,6 @@ class TileContext:
     view: View
     shadow_views: tuple[View, ...] = ()
     rectangle: tuple[int, int, int, int] = (0, 0, 0, 0)
-    inputs: dict[str, Callable[[TileContext], DeviceTexture]] = field(default_factory=dict)
 
     def texture(self, texture: Texture, is_next: bool = False) -> DeviceTexture:
         """One that the plan names; is_next: the second one of what is updated."""
@@ -61,12 +61,20 @@ class TileContext:
         colors = [self.texture(texture, texture in updated) for texture in p.colors]
         return self.resources.device.target(colors, depth and self.texture(depth))
 
-    def textures(self, p: Pass, program: Pipeline, made: dict[str, Callable[[], DeviceTexture]]) -> list[DeviceTexture]:
-        """What a program samples. made: of what is drawn, by the names of samplers."""
+    def drawn_by(self, p: Pass) -> tuple[DrawItem, ...]:
+        """The splats of the tile's view that a pass draws."""
+        return tuple(d for d in self.view.placed if all(draws(self, p, d.instance) for draws in DRAWS))
+
+    def textures(self, p: Pass, program: Pipeline, placed: DrawItem | None = None) -> list[DeviceTexture]:
+        """What a program samples. placed: what is drawn."""
         called = dict(p.all("called"))
         read = {called.get(texture, texture.name): texture for texture in p.all("reads", "updates")}
         return [
-            made[name]() if name in made else self.texture(read[name]) if name in read else self.inputs[name](self)
+            self.texture(read[name])
+            if name in read
+            else DRAWN[name](self, placed)
+            if name in DRAWN
+            else INPUTS[name](self)
             for name in program.description.samplers
         ]
 
@@ -151,7 +159,7 @@ class TileContext:
         if p.depth and p.state.get("depth_write"):
             target.clear(depth=1.0)
         device = self.resources.device
-        device.draw_fullscreen(program, target, self.blocks(program), self.textures(p, program, {}), viewport=viewport)
+        device.draw_fullscreen(program, target, self.blocks(program), self.textures(p, program), viewport=viewport)
         return target
 
 

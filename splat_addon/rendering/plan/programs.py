@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 from ..device.interface import PipelineDescription
 from ..features import CONSTANTS, ORDER, VALUES
-from .compose import DEFAULTS, compose
+from .composition import DEFAULTS, compose
 from .frame_plan import FramePlan
-from .graph import Pass
+from .graph import Part, Pass
 from .uniforms import DRAW, VIEW, Block
 
 if TYPE_CHECKING:
@@ -21,13 +21,8 @@ if TYPE_CHECKING:
 
 def describe(plan: FramePlan, p: Pass, vertex: str = "fullscreen.vert", *variants: str) -> PipelineDescription:
     """The pipeline of a pass with the parts of these variants."""
-    taken = {"", *plan.variants, *variants}
-    parts = [part for part in p.parts if part.only in taken]
-    words = dict.fromkeys([part.feature for part in parts] + [word for part in parts for word in part.words])
-    depth_format = {"depth_format": "linear" if plan.linear_depth else "hardware"}
-    names = DEFAULTS | dict(plan.choices) | depth_format | {name: file for part in parts for name, file in part.choices}
-    ordered, chosen = _ordered((*words, p.kind)), tuple(names.items())
-    texts = compose(vertex, ordered, chosen), compose(p.host, ordered, chosen)
+    parts = _taken(plan, p, variants)
+    texts = composed(plan, p, vertex, *variants)
     called = {texture: name for part in parts for texture, name in part.called}
     updated = {texture for part in parts for texture in part.updates}
     drawn = [texture for part in parts for texture in part.fills if not texture.is_depth]
@@ -44,6 +39,21 @@ def describe(plan: FramePlan, p: Pass, vertex: str = "fullscreen.vert", *variant
         defines=tuple({**constants_in(*texts), **{n: str(v) for part in parts for n, v in part.constants}}.items()),
         **p.state,
     )
+
+
+def composed(plan: FramePlan, p: Pass, vertex: str, *variants: str, origins=False) -> tuple[str, str]:
+    """The texts of a pass's vertex and fragment shader. origins: as for `compose`."""
+    parts = _taken(plan, p, variants)
+    words = dict.fromkeys([part.feature for part in parts] + [word for part in parts for word in part.words])
+    depth_format = {"depth_format": "linear" if plan.linear_depth else "hardware"}
+    names = DEFAULTS | dict(plan.choices) | depth_format | {name: file for part in parts for name, file in part.choices}
+    ordered, chosen = _ordered((*words, p.kind)), tuple(names.items())
+    return compose(vertex, ordered, chosen, origins), compose(p.host, ordered, chosen, origins)
+
+
+def _taken(plan: FramePlan, p: Pass, variants: Iterable[str]) -> list[Part]:
+    taken = {"", *plan.variants, *variants}
+    return [part for part in p.parts if part.only in taken]
 
 
 def _ordered(words: Iterable[str]) -> tuple[str, ...]:

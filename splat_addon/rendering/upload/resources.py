@@ -77,7 +77,7 @@ class Resources:
         return self._once(polygons, "uvs", None, lambda: self.data(pack_polygon_uvs(polygons)))
 
     def materials(
-        self, instance: Placed, storage: Storage | None, with_emission: bool, levels: Hierarchy | None = None
+        self, instance: Placed, storage: Storage, with_emission: bool, levels: Hierarchy | None = None
     ) -> Texture:
         """Those of its slots; where surfels, or the corners of polygons, have their own, one of each, uploaded once.
 
@@ -88,10 +88,10 @@ class Resources:
             return self.data(pack_materials(slots, with_emission))
 
         def own() -> Texture:
-            every = _with_nodes(shape, levels) if levels else shape
+            every = _with_nodes(shape, levels)
             return self.data(pack_own_materials(every, slots, _order(every, storage), with_emission))
 
-        return self._once(shape, "materials", (slots, storage and storage.name, with_emission, levels), own)
+        return self._once(shape, "materials", (slots, storage.name, with_emission, levels), own)
 
     def surfel_uvs(self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None) -> Texture:
         """Their texture coordinates, uploaded once."""
@@ -168,9 +168,9 @@ class Resources:
         self.textures.clear()
 
 
-def _with_nodes(surfels: Surfels, levels: Hierarchy | None) -> Surfels:
+def _with_nodes(shape: Surfels | Polygons, levels: Hierarchy | None) -> Surfels | Polygons:
     """The surfels, then the merged nodes."""
-    return concatenate([surfels, levels.nodes]) if levels else surfels
+    return concatenate([shape, levels.nodes]) if levels else shape
 
 
 def _places(surfels: Surfels, storage: Storage) -> np.ndarray | None:
@@ -183,6 +183,6 @@ def _places(surfels: Surfels, storage: Storage) -> np.ndarray | None:
     return places
 
 
-def _order(surfels: Surfels, storage: Storage | None):
-    """The index of surfels that brings them into the order in which they are stored."""
-    return storage.order(surfels) if storage else slice(None)
+def _order(shape: Surfels | Polygons, storage: Storage):
+    """The index that brings surfels into the order in which they are stored; corners of polygons keep theirs."""
+    return storage.order(shape) if isinstance(shape, Surfels) else slice(None)

@@ -28,7 +28,7 @@ def read_back(planning) -> tuple[Texture, ...]:
 
 def passes(planning):
     if planning.is_added_up and (planning.shown or world.is_shown(planning)):
-        own = Part("accumulation", reads=(outputs.PIXELS["combined"],), writes=(SUM,))
+        own = Part("sample_sum", reads=(outputs.PIXELS["combined"],), writes=(SUM,))
         yield Pass("accumulate", "a view refines while it rests", "accumulate.frag", run, (own,),
                    state={"blend": "add"}, adds=True)  # fmt: skip
 

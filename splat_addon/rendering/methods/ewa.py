@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""EWA: Zwicker et al. 2001, Ren et al. 2002."""
+
+from .method import Method
+
+METHOD = Method(
+    "ewa",
+    label="EWA",
+    paper="Zwicker et al. 2001, Ren et al. 2002",
+    summary="The classic filter, in the picture; blurs silhouettes",
+    blurs_rims=True,
+)

@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""EWA in Space: Ren et al. 2002; view-independent object-space surface splatting, section 3, equation 10."""
+
+from .method import Method
+
+METHOD = Method(
+    "ewa_object",
+    label="EWA in Space",
+    paper="Ren et al. 2002; view-independent object-space surface splatting, section 3, equation 10",
+    summary="The same filter joined in each splat's plane, drawn as a larger quad",
+    works_in="space",
+    writes_depth=True,
+)

@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Homogeneous: Guennebaud et al. 2006, sections 3 and 4, repaired."""
+
+from .method import Method
+
+METHOD = Method(
+    "homogeneous",
+    label="Homogeneous",
+    paper="Guennebaud et al. 2006, sections 3 and 4, repaired",
+    summary="Exact ellipses no smaller than the pixel's filter, at their planes' depth; 3 dB truer at flat angles",
+)

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the registry says of a method."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Method:
+    """name: also of shaders/methods/<name>.glsl. label: for users. paper: its source.
+    summary: what it gains and costs.
+
+    works_in: "space" (what the hardware clips, interpolates and hides), "picture" (a triangle around each footprint,
+        every pixel computed) or "sprites" (parallel to the picture; the nearest wins, in one pass, and nothing blends).
+    blurs_rims: its pixel filter blurs where a splat ends; others end sharply.
+    filters_silhouettes: a resolve pass filters them as the colours are.
+    culls_hidden: splats that lie behind all that is seen are found before they are drawn. The papers draw them, so do
+        their methods here.
+    sprites_hide: visibility too is of its sprites. Else it is of the exact ellipses.
+    writes_depth: at every pixel: the hardware's would be another than that which it corrects or clamps.
+    pixel_variance: of its pixel filter, samples squared; 1/12 is that of a box. Textures are looked up under it.
+    """
+
+    name: str
+    label: str
+    paper: str
+    summary: str
+    works_in: str = "picture"
+    blurs_rims: bool = False
+    filters_silhouettes: bool = False
+    culls_hidden: bool = False
+    sprites_hide: bool = False
+    writes_depth: bool = False
+    pixel_variance: float = 0.5

@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ray Cast, as Printed: Botsch et al. 2005, sections 3 and 5, within the paper's square."""
+
+from .method import Method
+
+METHOD = Method(
+    "raycast_printed",
+    label="Ray Cast, as Printed",
+    paper="Botsch et al. 2005, sections 3 and 5, within the paper's square",
+    summary="The square cuts the low-pass, and large splats off the axis",
+)

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sprites: Botsch and Kobbelt 2003, sections 3.1 to 3.4."""
+
+from .method import Method
+
+METHOD = Method(
+    "sprites",
+    label="Sprites",
+    paper="Botsch and Kobbelt 2003, sections 3.1 to 3.4",
+    summary="Discs in point sprites; opens holes at flat angles",
+    sprites_hide=True,
+    writes_depth=True,
+    pixel_variance=1 / 12,
+)

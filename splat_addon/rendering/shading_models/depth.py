@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Depth: none needed."""
+
+from .model import ShadingModel
+
+MODEL = ShadingModel(
+    "depth",
+    label="Depth",
+    source="none needed",
+    summary="The distance along the view, from black at the nearest to white at the farthest of what is in view",
+    cost=1.0,
+)

@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Flat: none needed."""
+
+from .model import ShadingModel
+
+MODEL = ShadingModel(
+    "flat",
+    label="Flat",
+    source="none needed",
+    summary="The surfels' own colour, unlit",
+    cost=1.0,
+)

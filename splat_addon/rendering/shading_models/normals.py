@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Normals: none needed."""
+
+from .model import ShadingModel
+
+MODEL = ShadingModel(
+    "normals",
+    label="Normals",
+    source="none needed",
+    summary="The direction that the surface faces in the world, -1 to 1 on each axis as 0 to 1 of red, green and blue",
+    cost=1.0,
+)

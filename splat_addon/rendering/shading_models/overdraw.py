@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Overdraw: none needed."""
+
+from .model import ShadingModel
+
+MODEL = ShadingModel(
+    "overdraw",
+    label="Overdraw",
+    source="none needed",
+    summary="How many splats a sample is the mean of: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red",
+    cost=1.04,
+    sums=("gbuffer_overdraw",),
+)

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Toon: Lake et al. 2000."""
+
+from .model import ShadingModel
+
+MODEL = ShadingModel(
+    "toon",
+    label="Toon",
+    source="Lake et al. 2000",
+    summary="Each light in a few even steps, with a highlight that has an edge",
+    cost=1.06,
+    is_lit=True,
+    has_material=True,
+    has_world=True,
+    values={
+        "toon_steps": ("float", lambda tile: tile.settings.toon_steps),
+        "toon_softness": ("float", lambda tile: tile.settings.toon_softness),
+    },
+)

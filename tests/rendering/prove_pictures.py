@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether the pictures of `equal_pictures.py` would show that something is missing: `python3 prove_pictures.py`.
+
+Every part of every pass of their plans, every file that a part or a plan chooses, and every pass is taken out in turn;
+then some picture must be another, or the plan or the device refuse. Prints what nothing tells of: it needs a picture,
+or is not needed.
+"""
+
+import argparse
+import sys
+from collections import defaultdict
+from pathlib import Path
+from unittest.mock import patch
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(Path(__file__).resolve().parent)]
+
+import equal_pictures  # noqa: E402
+
+from splat_addon.rendering import Renderer, open_device  # noqa: E402
+from splat_addon.rendering import plan as planned  # noqa: E402
+from splat_addon.rendering.plan import build, programs  # noqa: E402
+from splat_addon.rendering.plan.composition import DEFAULTS  # noqa: E402
+from splat_addon.rendering.plan.graph import Loop, Pass  # noqa: E402
+
+#: Of the pictures that have a thing, how many are drawn before it counts as not told of.
+TRIES = 24
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("-k", default="", help="only things whose name has this in it")
+    options = parser.parse_args()
+    cases = {name: (make, edge) for name, make, edge in equal_pictures.cases()}
+    having = found(cases)
+    renderer, before, untold = Renderer(open_device("standalone")), {}, []
+    for number, (thing, names) in enumerate(sorted(having.items(), key=str)):
+        if options.k in str(thing) and not is_told(renderer, thing, names, cases, before):
+            untold.append(thing)
+            print(
+                f"{number} of {len(having)}: nothing tells of {' '.join(map(str, thing))}, in {len(names)}", flush=True
+            )
+    print(f"{len(having) - len(untold)} of {len(having)} parts, choices and passes are told of")
+    return len(untold)
+
+
+def found(cases) -> dict[tuple, list[str]]:
+    """Thing -> the cases whose plan has it."""
+    having = defaultdict(list)
+    for name, (make, _) in cases.items():
+        scene, camera, settings, *_ = make()
+        try:
+            made = planned(scene, camera, settings)
+        except (ValueError, AttributeError):  # a refusal is a picture too; panoramas have plans of their faces alone
+            continue
+        for thing in {thing for p in made.passes for thing in things(p)} | {("plan chooses", *c) for c in made.choices}:
+            if thing[0] != "plan chooses" or DEFAULTS[thing[1]] != thing[2]:
+                having[thing].append(name)
+    return having
+
+
+def things(p: Pass):
+    """What may be taken out of a pass."""
+    for part in p.parts:
+        yield "part", p.host, p.kind, part.feature, part.words, part.only
+        for name, file in part.choices:
+            if DEFAULTS[name] != file:
+                yield "choice", p.host, p.kind, part.feature, name, file
+    if p.host:
+        yield "pass", p.name, p.kind
+
+
+def without(thing: tuple, p: Pass) -> Pass:
+    """The pass with a part or a choice less."""
+    kind, host, of, *which = thing
+    if (host, of) != (p.host, p.kind):
+        return p
+    if kind == "part":
+        return p._replace(parts=tuple(t for t in p.parts if [t.feature, t.words, t.only] != which))
+    parts = (
+        t._replace(choices=tuple(c for c in t.choices if [t.feature, *c] != which)) if t.choices else t for t in p.parts
+    )
+    return p._replace(parts=tuple(parts))
+
+
+def is_told(renderer, thing: tuple, names: list[str], cases, before: dict) -> bool:
+    """Whether some picture is another without it."""
+    for name in names[:: max(len(names) // TRIES, 1)]:
+        if name not in before:
+            before[name] = drawn(renderer, *cases[name])
+        with taken_out(thing):
+            after = drawn(renderer, *cases[name])
+        if set(after) != set(before[name]) or any(
+            not np.array_equal(values, after[array], equal_nan=values.dtype.kind == "f")
+            for array, values in before[name].items()
+        ):
+            return True
+    return False
+
+
+def taken_out(thing: tuple):
+    """Plans are made without it while this is entered."""
+    if thing[0] == "plan chooses":
+        usual, taken = ((thing[1], DEFAULTS[thing[1]]),), programs._taken
+        return patch.object(
+            programs, "_taken", lambda *given: [t._replace(choices=t.choices + usual) for t in taken(*given)]
+        )
+    if thing[0] == "pass":
+        changed = build.changed
+        return patch.object(build, "changed", lambda steps, change: less(thing, changed(steps, change)))
+    with_parts = build._with_parts
+    return patch.object(build, "_with_parts", lambda *given: without(thing, with_parts(*given)))
+
+
+def less(thing: tuple, steps: tuple) -> tuple:
+    """The steps without a pass."""
+    kept = []
+    for step in steps:
+        if isinstance(step, Loop):
+            kept.append(step._replace(body=less(thing, step.body), last=less(thing, step.last)))
+        elif (step.name, step.kind) != thing[1:]:
+            kept.append(step)
+    return tuple(kept)
+
+
+def drawn(renderer, make, edge) -> dict[str, np.ndarray]:
+    """Arrays of a case, or its error."""
+    limits = equal_pictures.edge_module()
+    normal, limits.MAX_TARGET_EDGE = limits.MAX_TARGET_EDGE, edge or limits.MAX_TARGET_EDGE
+    try:
+        return {name: np.asarray(values) for name, values in equal_pictures.pictures(renderer, *make()).items()}
+    except Exception as error:
+        return {"error": np.array(type(error).__name__)}
+    finally:
+        limits.MAX_TARGET_EDGE = normal
+
+
+if __name__ == "__main__":
+    sys.exit(main() != 0)
