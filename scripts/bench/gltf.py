@@ -48,7 +48,7 @@ def run(options, report) -> None:
     surfels, seconds = convert(meshes, density="CAMERA", pixels=options.pixels, bake_materials=options.bake)
     scene.render.engine = "SURFEL_SPLATTING"
     scene.surfel_splatting.shading = "principled"
-    for name, value in PRESETS[options.preset].values.items():
+    for name, value in PRESETS[options.preset].render_values.items():
         setattr(scene.surfel_splatting, name, value)
     ours, our_seconds = picture(scene, hidden=meshes)
     scene.render.engine = options.engine

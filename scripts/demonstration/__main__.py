@@ -56,10 +56,10 @@ def main(arguments: list) -> int:
         (dress if options.model else studio.set_up)(surfels, options.size)
         bpy.context.scene.render.engine = "SURFEL_SPLATTING"
         render(picture)
-    with step("Timing a second frame"):
-        stats = timed_frame()
     with step("Saving"):
         save(blend)
+    with step("Timing a second frame"):
+        stats = timed_frame()
     CONSOLE.print(summary(options, triangles, surfels, seconds, stats))
     CONSOLE.print(f"Picture: {picture}\nBlender file: {blend}", soft_wrap=True, highlight=False)
     return 0
@@ -111,18 +111,15 @@ def save(blend: Path) -> None:
 
 
 def timed_frame() -> dict:
-    """The statistics of the second of two frames, rendered as an animation: its shaders are compiled and its surfels
-    on the device, as in every frame but the first."""
+    """The statistics of the second of two frames of one sample, rendered as an animation: its shaders are compiled and
+    its surfels on the device, as in every frame but the first. It changes the scene, so save that before."""
     from splat_addon.blender.engine.final_render import last_frame_stats
 
     scene = bpy.context.scene
-    kept = scene.render.filepath, scene.frame_start, scene.frame_end
     with tempfile.TemporaryDirectory() as folder:
         scene.render.filepath, scene.frame_start, scene.frame_end = str(Path(folder) / "frame_"), 1, 2
-        scene.surfel_splatting.profile = True
+        scene.surfel_splatting.profile, scene.surfel_splatting.samples = True, 1
         call("The timed render failed", bpy.ops.render.render, animation=True)
-        scene.surfel_splatting.profile = False
-    scene.render.filepath, scene.frame_start, scene.frame_end = kept
     return last_frame_stats
 
 

@@ -58,7 +58,7 @@ def set_up(surfels: list, size: tuple[int, int]) -> None:
     lamp(3.2, 1250, (1.0, 0.95, 0.88), (-5.0, -4.5, 9.0)).data.shape = "DISK"
     lamp(3.0, 220, (0.80, 0.89, 1.0), (7.0, -4.0, 4.0)).data.use_shadow = False
     # So that outlines of polygons are smooth, too: a splat's are by itself.
-    scene.surfel_splatting.supersampling = 2
+    scene.surfel_splatting.supersampling, scene.surfel_splatting.samples = 2, 1
     scene.camera = camera(size)
 
 

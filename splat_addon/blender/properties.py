@@ -35,6 +35,9 @@ from .ids import RENDER_SETTINGS
 from .materials.matcap_images import matcap_of
 from .mesh_sampling_settings import MeshSamplingProperties
 
+#: A new scene's samples, of F12 as of the viewport at rest: creases and the edges of polygons are smooth in both.
+_SAMPLES = 16
+
 
 class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     method: EnumProperty(
@@ -136,7 +139,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         min=1,
         max=MAX_SAMPLES,
         soft_max=256,
-        default=Settings.samples,
+        default=_SAMPLES,
     )
     blur_samples: IntProperty(
         name="Blur Samples",
@@ -147,7 +150,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         min=1,
         max=MAX_SAMPLES,
         soft_max=256,
-        default=16,
+        default=_SAMPLES,
     )
     viewport_samples: IntProperty(
         name="Viewport Samples",
@@ -155,7 +158,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         min=1,
         max=MAX_SAMPLES,
         soft_max=256,
-        default=16,
+        default=_SAMPLES,
     )
     motion_blur_steps: IntProperty(
         name="Steps",
@@ -282,12 +285,23 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
 def final_settings(view_layer: bpy.types.ViewLayer, scene: bpy.types.Scene, outputs: tuple[str, ...]) -> Settings:
     """The settings of a final render of a view layer that needs these arrays."""
     properties = getattr(scene, RENDER_SETTINGS)
-    choices = {name: getattr(properties, name) for name in ("supersampling", "samples", "profile")}
-    if view_layer.samples:
-        choices["samples"] = min(view_layer.samples, MAX_SAMPLES)
-    if any(blurs(scene, view_layer)):
-        choices["samples"] = max(choices["samples"], properties.blur_samples)
+    choices = {name: getattr(properties, name) for name in ("supersampling", "profile")}
+    choices["samples"] = final_samples(scene, view_layer)
     return _settings(scene, outputs=outputs, alpha_threshold=view_layer.pass_alpha_threshold, **choices)
+
+
+def final_samples(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> int:
+    """The pictures that a final render of a view layer is the mean of."""
+    properties = getattr(scene, RENDER_SETTINGS)
+    samples = min(view_layer.samples, MAX_SAMPLES) or properties.samples
+    return max(samples, properties.blur_samples) if any(blurs(scene, view_layer)) else samples
+
+
+def is_coarser_than_viewport(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> bool:
+    """Whether a final render of a view layer looks at fewer places of a pixel than the viewport at rest."""
+    properties = getattr(scene, RENDER_SETTINGS)
+    final = final_samples(scene, view_layer) * properties.supersampling**2
+    return final < properties.viewport_samples * properties.viewport_supersampling**2
 
 
 def blurs(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> Iterator[str]:

@@ -10,12 +10,21 @@ from .settings import Settings
 
 @dataclass(frozen=True)
 class Preset:
-    """values: the fields of `Settings` that it decides. summary: what it is for, and what was measured."""
+    """values: the fields of `Settings` that it decides; figures are of these. samples: pictures that a final render in
+    Blender is the mean of, so that no edge has steps which the viewport does not have. summary: what it is for, and
+    what was measured.
+    """
 
     name: str
     label: str
     summary: str
     values: dict
+    samples: int = 1
+
+    @property
+    def render_values(self) -> dict:
+        """`values`, and what Blender's final render has besides."""
+        return {**self.values, "samples": self.samples}
 
     def of(self, settings: Settings) -> Settings:
         """`settings` with this preset's values."""
@@ -23,7 +32,7 @@ class Preset:
 
     def is_in(self, settings) -> bool:
         """Whether an object with the attributes of `Settings` has this preset's values."""
-        return all(getattr(settings, name) == value for name, value in self.values.items())
+        return all(getattr(settings, name) == value for name, value in self.render_values.items())
 
 
 PRESETS = {
@@ -40,8 +49,9 @@ PRESETS = {
             "balanced",
             "Balanced",
             "Filtered, so smooth and still in animations and fine textures: 40 to 47 dB and FLIP 0.007 to 0.016 from "
-            "filtered pixels, in about 1.6 times the time of Preview",
+            "filtered pixels, in about 1.6 times the time of Preview a sample. 16 samples smooth creases and polygons",
             {"method": "mip", "supersampling": 1},
+            samples=16,
         ),
         Preset(
             "final",

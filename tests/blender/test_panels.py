@@ -189,7 +189,7 @@ def test_the_samples_say_which_blur_needs_more_of_them():
         return list(render_panels.blurs_that_need_samples(scene, view_layer))
 
     assert needy() == []
-    scene.surfel_splatting.blur_samples = 1
+    scene.surfel_splatting.samples = scene.surfel_splatting.blur_samples = 1
     scene.camera.data.dof.use_dof = scene.render.use_motion_blur = True
     assert needy() == ["Depth of Field", "Motion Blur"]
     view_layer.use_motion_blur = False

@@ -28,7 +28,7 @@ class RENDER_OT_surfel_preset(bpy.types.Operator):
 
     def execute(self, context):
         settings = getattr(context.scene, RENDER_SETTINGS)
-        for name, value in PRESETS[self.preset].values.items():
+        for name, value in PRESETS[self.preset].render_values.items():
             setattr(settings, name, value)
         return {"FINISHED"}
 

@@ -10,7 +10,7 @@ import bpy
 from ...rendering.methods import get_method
 from ..ids import ENGINE, RENDER_SETTINGS
 from ..operators.render_preset import draw_presets
-from ..properties import blurs
+from ..properties import blurs, is_coarser_than_viewport
 from .engine_panel import EnginePanel
 
 
@@ -39,6 +39,8 @@ class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
                 column.prop(properties, "blur_samples", text="Blur at Least")
         for blur in blurs_that_need_samples(context.scene, context.view_layer):
             self.layout.label(text=f"{blur} needs more samples", icon="INFO")
+        if is_coarser_than_viewport(context.scene, context.view_layer):
+            self.layout.label(text="Fewer samples than the viewport", icon="INFO")
 
 
 def blurs_that_need_samples(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> Iterator[str]:

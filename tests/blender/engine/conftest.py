@@ -21,7 +21,7 @@ def scene(empty_file, tmp_path):
     made.render.film_transparent = True
     made.surfel_splatting.shading = "flat"
     made.surfel_splatting.method, made.surfel_splatting.supersampling = "quad", 1
-    made.surfel_splatting.blur_samples = 1
+    made.surfel_splatting.samples = made.surfel_splatting.blur_samples = 1
     # Where it is not told, a render in background stops at what it cannot draw.
     made.surfel_splatting.broken_objects = "WARN"
     made.render.filepath = str(tmp_path / "picture.exr")

@@ -11,12 +11,11 @@ from splat_addon.blender.ui import report_panel
 
 @pytest.fixture
 def blurred(scene, add_camera, add_surfels):
-    """A camera whose lens blurs a disc; the samples are those of a new scene."""
+    """A camera whose lens blurs a disc; the least samples of a blur are those of a new scene."""
     made = add_camera()
     made.data.dof.use_dof, made.data.dof.focus_distance, made.data.dof.aperture_fstop = True, 5, 0.05
     add_surfels([(0, 0, 0)], size=1.0)
-    for name in ("samples", "blur_samples"):
-        scene.surfel_splatting.property_unset(name)
+    scene.surfel_splatting.property_unset("blur_samples")
     return made
 
 

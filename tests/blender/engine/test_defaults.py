@@ -5,13 +5,31 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.engine import final_render
+from splat_addon.blender.properties import is_coarser_than_viewport, viewport_settings
 from splat_addon.rendering.presets import PRESETS
 
 
 def test_a_new_scene_has_the_balanced_preset():
     settings = bpy.data.scenes.new("new").surfel_splatting
-    assert (settings.method, settings.supersampling) == ("mip", 1)
+    assert (settings.method, settings.supersampling, settings.samples) == ("mip", 1, 16)
     assert PRESETS["balanced"].is_in(settings)
+
+
+def test_a_new_scene_s_final_render_has_the_samples_of_the_viewport_at_rest(scene, add_camera, add_surfels, picture):
+    """The viewport's redraws are held to final renders of as many samples in tests/rendering/test_refinement.py."""
+    properties, layer = scene.surfel_splatting, scene.view_layers[0]
+    for name in ("method", "supersampling", "samples"):
+        properties.property_unset(name)
+    add_camera()
+    add_surfels([(0, 0, 0)], size=1.0)
+    picture()
+    assert final_render.last_frame_stats["samples"] == viewport_settings(scene).samples == 16
+    assert not is_coarser_than_viewport(scene, layer)
+    properties.samples = 15
+    assert is_coarser_than_viewport(scene, layer)
+    properties.supersampling = 2
+    assert not is_coarser_than_viewport(scene, layer)
 
 
 def _use_defaults(scene):
