@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfel splatting: meshes become surfels, and surfels become pictures.
 
-Floors, bottom to top: `surfels` < `sampling`, `rendering` < `reference` < `blender`; an import never goes up.
+Layers, bottom to top: `surfels` < `sampling`, `rendering` < `reference` < `blender`; imports only point downwards.
 Everything below `blender` is plain Python with numpy, so importing this package needs no Blender.
 """
 
@@ -14,7 +14,7 @@ def register():
 
 
 def unregister():
-    """Take everything that `register` added away again."""
+    """Remove everything that `register` added."""
     from . import blender
 
     blender.unregister()

@@ -2,15 +2,14 @@
 """Clip lines: where a splat ends before its ellipse does, because the surface has a crease or a border there.
 
 Sources: Zwicker et al., "Perspective Accurate Splatting", 2004; Botsch et al., "High-Quality Surface Splatting on
-Today's GPUs", 2005: splats at sharp features are cut at lines in their own plane. With the ellipse as the unit circle a
-line is cos(t) u + sin(t) v + c >= 0 on the side that is kept. Up to two lines make a corner of the surface; which kind
-of corner, their order says: who walks along the border with the surface at the left follows the first line, then the
-second, and turns left at a convex corner (what is inside of both lines is kept), right at a reflex one (what is inside
-of either).
+Today's GPUs", 2005: splats at sharp features are cut at lines in their own plane. With the ellipse mapped to the unit
+circle, a line keeps the side where cos(t) u + sin(t) v + c >= 0. Two lines make a corner, and their order tells which
+kind: walking along the border with the surface on the left, you follow the first line, then the second. A left turn is
+a convex corner (points inside both lines are kept), a right turn a reflex corner (points inside either line are kept).
 
-A line is stored as two 16-bit integers, 4 bytes: t in 65,536ths of a turn, and the *cut*, 1 - c, how deep the line
-reaches into the ellipse, in 16,384ths of a half-axis. A cut of 0 only touches the ellipse: no line. A set of surfels
-has two fields for them, each absent where it would hold zeros alone.
+A line is stored as two 16-bit integers, 4 bytes: t in units of 1/65,536 turn, and the *cut* 1 - c, the depth to which
+the line reaches into the ellipse, in units of 1/16,384 half-axis. A line with a cut of 0 only touches the ellipse, so
+it means "no line". A set of surfels has two such fields, each absent if it would be all zeros.
 """
 
 from __future__ import annotations
@@ -20,17 +19,19 @@ import numpy as np
 #: The fields of `Surfels`, each (N, 2) int16: direction and cut.
 CLIP_FIELDS = ("clip_line", "clip_line_2")
 
-#: Of a stored direction in a turn, and of a stored cut in a half-axis.
+#: Stored units per turn of direction, and per half-axis of cut.
 TURN, CUT = 65536, 16384
 
-#: The deepest cut that can be stored; with it nearly nothing of the ellipse is kept.
+#: The deepest cut that can be stored; it leaves almost nothing of the ellipse.
 MAX_CUT = 32767
 
 
 def pack_lines(lines: np.ndarray) -> np.ndarray:
-    """(n, 2) int16 of (n, 3) lines a u + b v + c >= 0 of any length; one that misses the ellipse is stored as none.
+    """Pack (n, 3) lines a u + b v + c >= 0 of any length into (n, 2) int16; a line that misses the ellipse becomes "no
+    line".
 
-    The cut is rounded towards more of the splat, so that rounding opens no gap between two that meet at a line.
+    The cut is rounded so that more of the splat stays, and rounding opens no gap between two splats that meet at a
+    line.
     """
     lines = np.asarray(lines, np.float64)
     a, b, c = lines.T / np.maximum(np.hypot(lines[:, 0], lines[:, 1]), 1e-300)
@@ -40,20 +41,21 @@ def pack_lines(lines: np.ndarray) -> np.ndarray:
 
 
 def unpack_lines(packed: np.ndarray) -> np.ndarray:
-    """(n, 3) float64 lines of unit direction from (n, 2) int16; (1, 0, 1), which keeps the whole ellipse, for none."""
+    """Unpack (n, 2) int16 into (n, 3) float64 lines of unit direction; "no line" becomes (1, 0, 1), which keeps the
+    whole ellipse."""
     angle = packed[:, 0] * (2 * np.pi / TURN)
     return np.stack([np.cos(angle), np.sin(angle), 1 - packed[:, 1] / CUT], axis=1)
 
 
 def are_reflex(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(n,) bool: whether two packed lines, (n, 2) each, make a reflex corner: both are there, and the second turns to
-    the right of the first."""
+    """(n,) bool: whether two packed lines, (n, 2) each, make a reflex corner: both exist, and the second turns right
+    relative to the first."""
     turn = (second[:, 0].astype(np.int64) - first[:, 0]) % TURN
     return (turn > TURN // 2) & (first[:, 1] > 0) & (second[:, 1] > 0)
 
 
 def kept(places: np.ndarray, lines: np.ndarray, reflex: np.ndarray) -> np.ndarray:
-    """(n,) bool: whether (n, 2) places, in half-axes, are on the sides that the lines keep.
+    """(n,) bool: whether (n, 2) points, in half-axes, lie on the kept sides of the lines.
 
     lines: (n, 2, 3) of unit direction. reflex: (n,) bool.
     """
@@ -62,11 +64,12 @@ def kept(places: np.ndarray, lines: np.ndarray, reflex: np.ndarray) -> np.ndarra
 
 
 def turned(fields: dict[str, np.ndarray], angle: np.ndarray, mirrored: np.ndarray | bool = False) -> dict:
-    """`CLIP_FIELDS` of the same places after the ellipses' axes turned in their own circles, those that are there.
+    """The `CLIP_FIELDS` that exist, after the axes of the ellipses have been rotated within their planes.
 
-    fields: name -> (n, 2) int16, or None. angle: (n,) radians; the new coordinates are u cos + v sin and
-    v cos - u sin. mirrored: (n,) bool, where the second is also turned round; two lines then change places, as their
-    order tells a convex corner from a reflex one.
+    fields: name -> (n, 2) int16, or None.
+    angle: (n,) radians; the new coordinates are u cos + v sin and v cos - u sin.
+    mirrored: (n,) bool, where the second axis is also flipped. Two lines then swap places, because their order tells a
+        convex corner from a reflex one.
     """
     there = {name: fields[name] for name in CLIP_FIELDS if fields[name] is not None}
     back = np.rint(np.asarray(angle) * (TURN / (2 * np.pi))).astype(np.int64)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Looks colours up in a texture: Blender's extension modes, bilinear or closest, box-filtered where it is minified.
 
-On the ground floor, beside `surfels`: sampling gives surfels a texture's colours, rendering looks it up per pixel.
+It sits in the bottom layer beside `surfels`, because both sampling (colours of surfels) and rendering (colours of
+pixels) use it.
 """
 
 from __future__ import annotations
@@ -42,19 +43,20 @@ class Image:
 
     @cached_property
     def is_opaque(self) -> bool:
-        """Whether nothing shows through it, nor beside it."""
+        """Whether every pixel is opaque and the extension adds no transparent area around the image."""
         return self.extension != "CLIP" and bool((self.pixels[..., 3] == 1).all())
 
     @cached_property
     def pyramid(self) -> Pyramid:
-        """Made once, however many look the image up."""
+        """The mipmap pyramid; built once and shared by all lookups."""
         return Pyramid(self)
 
 
 class Pyramid:
-    """An image and its box-filtered reductions, each half the size of the one before; made when first looked at.
+    """An image and its box-filtered reductions, each half the size of the one before; each level is computed when first
+    needed.
 
-    Colours are filtered premultiplied by alpha, so that what an alpha of 0 hides does not bleed.
+    Colours are premultiplied by alpha before filtering, so that fully transparent pixels do not bleed into others.
     """
 
     def __init__(self, image: Image):
@@ -67,7 +69,7 @@ class Pyramid:
 
     @property
     def count(self) -> int:
-        """Of levels, down to one pixel."""
+        """Number of levels, down to a single pixel."""
         return max(self.size).bit_length()
 
     def level(self, level: int) -> np.ndarray:
@@ -79,7 +81,8 @@ class Pyramid:
     def level_for(self, texels: np.ndarray) -> np.ndarray:
         """(n,) intp level whose pixels are at least as far apart as the samples.
 
-        texels: (n,) full-size pixels between neighbouring samples. The tolerance keeps a power of two at its level.
+        texels: (n,) full-size pixels between neighbouring samples. The tolerance keeps exact powers of two at their
+            level despite rounding.
         """
         with np.errstate(divide="ignore"):
             wanted = np.ceil(np.log2(np.nan_to_num(texels, nan=1.0)) - 1e-3)
@@ -127,7 +130,7 @@ def _clip(index: np.ndarray, size: int):
 #: name -> function of (pixel indices, size) giving indices inside the image and the weight, 0 for transparent black.
 EXTENSIONS: dict[str, Callable] = {"REPEAT": _repeat, "EXTEND": _extend, "CLIP": _clip, "MIRROR": _mirror}
 
-#: Coordinates beyond this many images are taken as this far: pixel indices must fit an integer.
+#: Coordinates farther out than this many images are clamped: pixel indices must fit an integer.
 _FARTHEST = 1e6
 
 
@@ -156,7 +159,8 @@ def _straight(colors: np.ndarray) -> np.ndarray:
 
 
 def _halved(pixels: np.ndarray, axis: int) -> np.ndarray:
-    """Box-filtered to half the size, rounded down, along one axis; an odd size needs three weights a pixel."""
+    """The image box-filtered along one axis to half its size, rounded down; an odd size needs three weights per
+    pixel."""
     size = pixels.shape[axis]
     if size == 1:
         return pixels

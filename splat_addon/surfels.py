@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one data model that everything passes along: a set of oriented elliptical surface samples.
+"""The central data model: a set of oriented elliptical surface samples.
 
-A *surfel* keeps its ellipse (position, frame, half-axes) apart from its shading normal: the ellipse
-shapes the splat, the normal lights it. Positions are float32 relative to a float64 origin, so that
-a model far from the world's origin loses nothing.
+A *surfel* keeps its ellipse (position, frame, half-axes) apart from its shading normal: the ellipse shapes the splat,
+the normal lights it. Positions are float32 relative to a float64 origin, so a model far from the world origin loses no
+precision.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ LAYOUT = {
     "materials": (1, np.int32),
 }
 
-#: Fields that are there only where the scene needs them, None otherwise: field -> (columns, dtype, what a set without
-#: it means, as one number for all columns: Principled's own default, and no texture).
+#: Optional fields, None where the scene does not need them: field -> (columns, dtype, default). The default, one number
+#: for all columns, is what a set without the field means: Principled's own default, or no texture.
 OPTIONAL_LAYOUT = {
     "roughness": (1, np.float32, 0.5),
     "metallic": (1, np.float32, 0.0),
@@ -41,22 +41,22 @@ OPTIONAL_LAYOUT = {
     "blend_depth": (1, np.float32, 1.0),
 }
 
-#: Least alpha of an opaque surfel: filtering an image of ones leaves them a few roundings short of 1.
+#: Minimum alpha of an opaque surfel: filtering an image of ones can leave alpha slightly below 1.
 OPAQUE = 0.999
 
-#: How far a quaternion or a normal may be from unit length before it is refused (float32 rounding is 1e-7).
+#: How far a quaternion or normal may deviate from unit length before it is rejected (float32 rounding is 1e-7).
 UNIT_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Shape:
-    """What surfels and the corners of polygons, N of either, have in common beside their positions and colours.
+    """Fields shared by surfels and polygon corners (N of either), apart from positions and colours.
 
-    origin: (3,) float64, object units, to which positions are relative.
-    is_solid: they bound solids, so that from outside no back is ever seen (`sampling.is_solid`).
-    roughness, metallic: (N,) float32, 0 to 1, in place of their material's; None: the material's.
-    emission: (N, 3) float32, scene-linear radiance, in place of their material's; None: the material's.
-    uvs: (N, 2) float32 texture coordinates, where the instance's textures are looked up; None: nowhere.
+    origin: (3,) float64, object units, that positions are relative to.
+    is_solid: the surface bounds a solid, so from outside no back face is ever visible (`sampling.is_solid`).
+    roughness, metallic: (N,) float32, 0 to 1, overriding the material; None: use the material's.
+    emission: (N, 3) float32, scene-linear radiance, overriding the material; None: use the material's.
+    uvs: (N, 2) float32 coordinates into the instance's textures; None: no textures.
     """
 
     origin: np.ndarray = (0.0, 0.0, 0.0)
@@ -67,23 +67,23 @@ class Shape:
     uvs: np.ndarray | None = None
 
     def __len__(self) -> int:
-        """What is stored of each is looked up by its number."""
+        """The number of surfels or corners."""
         return len(self.positions)
 
     @property
     def has_own_material(self) -> bool:
-        """Whether something of their materials is in their own fields."""
+        """Whether any material value is stored per surfel or corner."""
         return not all(a is None for a in (self.roughness, self.metallic, self.emission))
 
     @cached_property
     def brightest(self) -> float:
-        """The largest absolute colour (0 when empty)."""
+        """The largest absolute colour component (0 if empty)."""
         return float(np.abs(self.colors[:, :3]).max(initial=0.0))
 
 
 @dataclass(frozen=True, eq=False)
 class Surfels(Shape):
-    """A set of N surfels; C-contiguous arrays, checked once, here.
+    """A set of N surfels as C-contiguous arrays, which are validated once, here.
 
     positions: (N, 3) float32, object units, relative to `origin`.
     rotations: (N, 4) float32 unit quaternions w, x, y, z; local x and y are the ellipse's axes,
@@ -92,13 +92,15 @@ class Surfels(Shape):
     normals: (N, 3) float32, unit: the shading normal.
     colors: (N, 4) float32, scene-linear, not premultiplied; alpha is opacity.
     materials: (N,) int32, index into the object's material slots.
-    uv_along_x, uv_along_y: (N, 2) change of `uvs`, which are at the centres, along the local x and y half-axis. Where
-        both changes are 0, and without all three, no texture is looked up: `colors` shows.
-    uv_border: (N, 2) m of a line m . q = 1 in half-axes, beyond which the texture is not looked up; 0 and None: none.
-    clip_line, clip_line_2: (N, 2) int16, up to two lines at which the splat ends, as `clip_lines` packs them: 4 bytes
-        each; 0 and None: none.
-    blend_depth: (N,) float32, 0 to 1, how far splats of the same surface lie off its plane, in the longer half-axis: no
-        deeper does it blend with others, nor deeper than the renderer's epsilon; None: that everywhere.
+    uv_along_x, uv_along_y: (N, 2) change of `uvs` from the centre to the end of the local x and y half-axis. Where both
+        are 0, or if any of the three fields is missing, `colors` is shown instead of a texture.
+    uv_border: (N, 2) m of a line m . q = 1, q in half-axes, beyond which the texture is not sampled; 0 or None: no
+        line.
+    clip_line, clip_line_2: (N, 2) int16, up to two lines at which the splat ends, packed by `clip_lines` into 4 bytes
+        each; 0 or None: no line.
+    blend_depth: (N,) float32, 0 to 1, the depth within which the splat blends with others, in units of the longer
+        half-axis: how far splats of the same surface lie off its plane. The renderer's epsilon is an upper bound; None:
+        the epsilon everywhere.
 
     Raises ValueError with one sentence for a wrong shape, a non-finite or an out-of-range value;
     `valid_surfels` drops and counts such rows instead.
@@ -136,7 +138,7 @@ class Surfels(Shape):
             object.__setattr__(self, name, view)
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """The arrays by field, in the order of the layouts, without the optional ones that are not there."""
+        """The arrays by field, in layout order, without the optional fields that are absent."""
         names = (*LAYOUT, *OPTIONAL_LAYOUT)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
@@ -152,32 +154,32 @@ class Surfels(Shape):
 
     @property
     def has_uvs(self) -> bool:
-        """Whether a texture can be looked up at every point of the ellipses."""
+        """Whether every point of the ellipses has texture coordinates."""
         return not any(a is None for a in (self.uvs, self.uv_along_x, self.uv_along_y))
 
     @property
     def is_clipped(self) -> bool:
-        """Whether some of them may end at a line before their ellipse does."""
+        """Whether any surfel may be cut by a clip line."""
         return self.clip_line is not None or self.clip_line_2 is not None
 
     def is_cut(self) -> np.ndarray:
-        """(N,) bool: which of them a line reaches into."""
+        """(n,) bool: which surfels a clip line actually cuts."""
         cuts = (lines[:, 1] > 0 for lines in (self.clip_line, self.clip_line_2) if lines is not None)
         return np.logical_or.reduce([np.zeros(len(self), bool), *cuts])
 
     @cached_property
     def clipped_count(self) -> int:
-        """How many of them a line reaches into."""
+        """Number of surfels that a clip line cuts."""
         return int(np.count_nonzero(self.is_cut())) if self.is_clipped else 0
 
     def clip_lines(self) -> tuple[np.ndarray, np.ndarray]:
-        """(N, 2, 3) float64 lines a u + b v + c >= 0 of unit direction in half-axes, and (N,) bool, of which surfels
-        they make a reflex corner (`clip_lines.kept`)."""
+        """(N, 2, 3) float64 lines a u + b v + c >= 0 of unit direction in half-axes, and (N,) bool, which surfels'
+        lines make a reflex corner (`clip_lines.kept`)."""
         first, second = (_or_default(self, name) for name in CLIP_FIELDS)
         return np.stack([unpack_lines(first), unpack_lines(second)], axis=1), are_reflex(first, second)
 
     def as_solid(self) -> Surfels:
-        """The same surfels, said to be solid; the arrays are shared."""
+        """The same surfels, marked as solid; the arrays are shared."""
         solid = copy(self)
         object.__setattr__(solid, "is_solid", True)
         return solid
@@ -188,7 +190,7 @@ class Surfels(Shape):
 
     @cached_property
     def is_transparent(self) -> bool:
-        """Whether something shows through one of them."""
+        """Whether any surfel lets light through."""
         return bool((self.colors[:, 3] < OPAQUE).any())
 
     @cached_property
@@ -198,7 +200,7 @@ class Surfels(Shape):
 
     @cached_property
     def local_bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Two (3,) float64 corners, relative to `origin`, of a box that holds every ellipse (NaN when empty)."""
+        """Two (3,) float64 corners, relative to `origin`, of a box around all ellipses (NaN when empty)."""
         if not len(self):
             return np.full(3, np.nan), np.full(3, np.nan)
         margin = self.largest
@@ -208,7 +210,7 @@ class Surfels(Shape):
 
 
 def valid_surfels(origin=(0.0, 0.0, 0.0), is_solid=False, **arrays) -> tuple[Surfels, int]:
-    """`Surfels` of the usable rows, and how many rows were left out.
+    """`Surfels` made of the usable rows, and the number of rows left out.
 
     arrays: the fields of `Surfels`, with or without the optional ones. Quaternions and normals of any finite,
     non-zero length are normalised first (an attribute edited by hand or by Geometry Nodes is seldom unit); a zero or
@@ -228,7 +230,7 @@ def valid_surfels(origin=(0.0, 0.0, 0.0), is_solid=False, **arrays) -> tuple[Sur
 def concatenate(parts: list[Surfels]) -> Surfels:
     """One set from several that share an origin.
 
-    An optional field is there when one of the parts has it; the others are filled with its default, OPTIONAL_LAYOUT's.
+    The result has an optional field if any part has it; other parts are filled with its default from OPTIONAL_LAYOUT.
     """
     if any((p.origin != parts[0].origin).any() for p in parts):
         raise ValueError("Only surfels with the same origin can be joined; move them to one origin first.")
@@ -238,7 +240,7 @@ def concatenate(parts: list[Surfels]) -> Surfels:
 
 
 def split(surfels: Surfels, size: int) -> tuple[Surfels, ...]:
-    """Runs of at most `size` surfels, in their order, that share the arrays; the set itself where that holds it all."""
+    """Consecutive runs of at most `size` surfels that share the arrays; the set itself if it is small enough."""
     if len(surfels) <= size:
         return (surfels,)
     runs = (slice(start, start + size) for start in range(0, len(surfels), size))
@@ -260,8 +262,8 @@ def empty_surfels(origin=(0.0, 0.0, 0.0)) -> Surfels:
 def quaternion_axes(quaternions: np.ndarray, count: int = 3) -> tuple[np.ndarray, ...]:
     """Local x, y and z axes of unit quaternions.
 
-    quaternions: (N, 4) w, x, y, z. Returns three (N, 3) arrays of the same dtype; with `count` below 3
-    the later ones are None, to save the time.
+    quaternions: (N, 4) w, x, y, z. Returns three (N, 3) arrays of the same dtype; with `count` below 3 the remaining
+        ones are None, which saves time.
     """
     w, x, y, z = np.ascontiguousarray(quaternions.T)
     columns = (
@@ -275,8 +277,8 @@ def quaternion_axes(quaternions: np.ndarray, count: int = 3) -> tuple[np.ndarray
 def axes_quaternions(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Unit quaternions (N, 4) w, x, y, z, w >= 0, of right-handed orthonormal frames given as three (N, 3) arrays.
 
-    Each quaternion component squared is known up to its sign from the trace and the diagonal; the
-    largest one is taken as the pivot (Shepperd 1978), so no component is ever divided by a small number.
+    The trace and the diagonal give each component's square; the largest component is taken as the pivot (Shepperd
+    1978), so no component is ever divided by a small number.
     """
     (m00, m10, m20), (m01, m11, m21), (m02, m12, m22) = (np.ascontiguousarray(a.T) for a in (x, y, z))
     candidates = np.stack([1 + m00 + m11 + m22, 1 + m00 - m11 - m22, 1 - m00 + m11 - m22, 1 - m00 - m11 + m22])
@@ -292,7 +294,7 @@ def axes_quaternions(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
     return np.where(rows[:, :1] < 0, -rows, rows)
 
 
-#: Of the fields that must be more than finite.
+#: Fields with requirements beyond being finite.
 _DEMANDS = {
     "rotations": "unit quaternions",
     "scales": "finite and above 0",
@@ -305,7 +307,7 @@ _DEMANDS = {
 
 
 def _or_default(surfels: Surfels, name: str) -> np.ndarray:
-    """A field, filled with its default where it is an optional one that these surfels do not have."""
+    """A field, or its default if it is an optional field that these surfels lack."""
     if getattr(surfels, name) is not None:
         return getattr(surfels, name)
     columns, dtype, value = OPTIONAL_LAYOUT[name]
@@ -321,7 +323,7 @@ def _shaped(arrays: dict) -> dict[str, np.ndarray]:
         raise ValueError(f"Surfels have no {', '.join(sorted(unknown))}.")
     layouts = {n: layout for n, layout in (LAYOUT | OPTIONAL_LAYOUT).items() if arrays.get(n) is not None}
     with np.errstate(over="ignore", invalid="ignore"):
-        # what float32 cannot hold becomes infinite, and is met as such
+        # values beyond float32's range become infinite, and are rejected as such
         arrays = {n: np.ascontiguousarray(arrays[n], layout[1]) for n, layout in layouts.items()}
     count = len(arrays["positions"])
     for name, array in arrays.items():
@@ -333,7 +335,7 @@ def _shaped(arrays: dict) -> dict[str, np.ndarray]:
 
 
 def _row_checks(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """field -> (N,) bool: which rows are usable. Written so that NaN fails."""
+    """field -> (N,) bool: which rows are usable. Written so that NaN counts as unusable."""
     count = len(arrays["positions"])
     good = {name: np.empty(count, bool) for name in arrays}
     for name, array in arrays.items():
@@ -344,7 +346,7 @@ def _row_checks(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     return good
 
 
-#: Rows of a field checked at a time: what is made of them on the way stays in the processor's cache.
+#: Rows of a field checked at a time, few enough for the temporaries to stay in the processor's cache.
 _BLOCK = 16384
 
 
@@ -354,7 +356,7 @@ def _finite(rows: np.ndarray) -> np.ndarray:
 
 
 def _unit(rows: np.ndarray) -> np.ndarray:
-    # A product with a vector of ones: numpy's own sums are slow along an axis of three or four.
+    # A product with a vector of ones, because numpy's own sums are slow along an axis of three or four.
     with np.errstate(over="ignore", invalid="ignore"):
         off = (rows * rows) @ np.ones(rows.shape[1], rows.dtype)
     off -= 1
@@ -366,7 +368,7 @@ def _sizes(rows: np.ndarray) -> np.ndarray:
     return (rows.min(initial=1) > 0 and rows.max(initial=1) < np.inf) or _finite(rows) & (rows > 0).all(axis=1)
 
 
-#: Of the fields that must be more than finite: (n, columns) rows -> (n,) bool, or one for all.
+#: Requirements beyond being finite: (n, columns) rows -> (n,) bool, or one bool for all.
 _CHECKS = {
     "rotations": _unit,
     "normals": _unit,
@@ -379,7 +381,7 @@ _CHECKS = {
 
 
 def _normalised(vectors: np.ndarray) -> np.ndarray:
-    """Rows scaled to unit length where that is possible; already unit rows keep their bits."""
+    """Rows scaled to unit length where possible; rows that are already unit keep their bits."""
     squared = np.einsum("ij,ij->i", vectors, vectors)
     off = np.flatnonzero(~(np.abs(squared - 1) < 1e-5) & np.isfinite(vectors).all(axis=1))
     if not len(off):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels and the files of other programs: PLY in three layouts. Numpy only; knows nothing but `surfels`.
+"""Surfels and the files of other programs: PLY in three layouts. Needs only numpy and `surfels`.
 
-A file -> `ply_header` -> `ply_file` (its vertices as named columns) -> one of the layouts `surfel_ply` (everything
-that surfels have), `gaussian_ply` (3D and 2D Gaussian splatting) and `point_ply` (bare points, which
-`sampling.surfels_from_points` completes) -> `contents` says which. `placement` moves surfels into the world first.
+Reading: `ply_header`, then `ply_file` (vertices as named columns), then `contents` picks the layout: `surfel_ply`
+(every field of surfels), `gaussian_ply` (3D and 2D Gaussian splatting) or `point_ply` (bare points, which
+`sampling.surfels_from_points` completes). Before writing, `placement` moves surfels into world space.
 """
 
 from .contents import read_contents

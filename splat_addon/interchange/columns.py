@@ -1,39 +1,39 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Columns of a file to the arrays of `Surfels` and back, and the two colour encodings that files use."""
+"""Converts file columns to the arrays of `Surfels` and back, including the two colour encodings that files use."""
 
 from __future__ import annotations
 
 import numpy as np
 
-#: 8 and 16 bit colours are display values; numpy type code -> its white.
+#: 8 and 16 bit colours are display values; numpy type code -> the value of white.
 _WHITES = {"u1": 255, "u2": 65535}
 
 POSITION = ("x", "y", "z")
 NORMAL = ("nx", "ny", "nz")
 ROTATION = ("rot_0", "rot_1", "rot_2", "rot_3")
-#: How the channels of a colour are called, without and with alpha.
+#: Channel names of a colour, without and with alpha.
 _CHANNELS = (("red", "green", "blue"), ("r", "g", "b"), ("diffuse_red", "diffuse_green", "diffuse_blue"))
 _ALPHAS = ("alpha", "a")
 
 
 def has(columns: dict[str, np.ndarray], *groups: tuple[str, ...]) -> bool:
-    """Whether all columns of all groups are there."""
+    """Whether every column of every group exists."""
     return all(name in columns for group in groups for name in group)
 
 
 def matrix(columns: dict[str, np.ndarray], names: tuple[str, ...], dtype=np.float32) -> np.ndarray:
-    """(N, len(names)); a number too large for `dtype` becomes infinite, to be counted where infinite ones are."""
+    """(N, len(names)); values out of the range of `dtype` become infinite, so that later checks reject them."""
     with np.errstate(over="ignore", invalid="ignore"):
         return np.stack([columns[name].astype(dtype) for name in names], axis=1)
 
 
 def split(names: tuple[str, ...], values: np.ndarray) -> dict[str, np.ndarray]:
-    """(N, len(names)) as columns."""
+    """(N, len(names)) split into columns."""
     return dict(zip(names, values.T, strict=True))
 
 
 def display_color(columns: dict[str, np.ndarray]) -> np.ndarray | None:
-    """(N, 4) float32 scene-linear colours from red, green, blue and perhaps alpha; None where there are none.
+    """(N, 4) float32 scene-linear colours from red, green, blue and optionally alpha; None if the columns are missing.
 
     Integers are sRGB display values, as every program writes them; floats are taken as scene-linear.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a PLY file holds, by its properties: surfels, Gaussians, or points that have yet to become surfels."""
+"""What a PLY file holds, by its properties: surfels, Gaussians, or bare points."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from .surfel_ply import StoredSurfels, is_surfels, stored_surfels
 
 
 def read_contents(path: str | os.PathLike, flatness: float = DEFAULT_FLATNESS) -> StoredSurfels | Gaussians | Points:
-    """The vertices of any PLY file; faces are passed over.
+    """The vertices of any PLY file; faces are ignored.
 
-    flatness: how thick a Gaussian may be, in its middle sigma, to pass as a surfel.
-    Raises ValueError with one sentence for a file that is not PLY, is damaged or has no positions; OSError.
+    flatness: the thinnest sigma of a Gaussian relative to its middle one, at most, to count as a surfel.
+    Raises ValueError with one sentence for a file that is not PLY, is damaged or has no positions; OSError if it cannot
+    be read.
     """
     columns, comments = read_vertices(path)
     if is_gaussians(columns):

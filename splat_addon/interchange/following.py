@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels whose centres were moved without their frames, as Blender's Apply, edit mode, Mirror, Array and Join do it.
+"""Restores frames of surfels whose centres were moved alone, as Blender's Apply, edit mode, Mirror, Array and Join do.
 
-What was moved together was moved by one affine map, which is found from where the centres were and where they are, and
-then moves the whole ellipses. Several maps are found one after another, each by the consensus of most that is left
-(RANSAC: Fischler and Bolles 1981).
+Surfels that moved together moved by one affine map. The map is estimated from the old and new centres and then applied
+to the whole ellipses. Several maps are found one after another, each as the one that most of the remaining surfels
+agree on (RANSAC: Fischler and Bolles 1981).
 """
 
 from __future__ import annotations
@@ -15,39 +15,41 @@ import numpy as np
 from ..surfels import Surfels
 from .placement import transformed
 
-#: Of the largest coordinate: what float32 and a few products of it lose.
+#: Rounding error of float32 and a few products, as a fraction of the largest coordinate.
 _ROUNDING = 4e-6
 
-#: How near a map from four rows alone must come to others, of the largest coordinate.
+#: Tolerance of a map that was found from four rows alone, as a fraction of the largest coordinate.
 _NEAR = 1e-3
 
-#: Maps at most; what follows none of them keeps its frame.
+#: Maximum number of maps; surfels that follow none of them keep their frames.
 MAX_MAPS = 64
 
-#: Sets of four rows that are tried for each map, and rows on which each is tried.
+#: Sets of four rows tried per map, and rows on which each candidate is tested.
 _TRIALS, _JURY = 256, 512
 
-#: Each set is taken from so many rows in a row: what is moved together mostly stands together.
+#: Each set is drawn from a window of this many consecutive rows: rows that moved together are usually stored together.
 _WINDOWS = (8, 64, 1024, 1 << 40)
 
-#: A map must explain this share of what is left, or there are none to be found.
+#: A map must explain at least this fraction of the remaining rows; otherwise the search stops.
 _LEAST_SHARE = 0.01
 
-#: Rows that must agree: any four do with some map.
+#: Minimum number of rows that must agree, because any four rows fit some map.
 _FEWEST = 6
 
-#: Rows that a map is fitted to in the end.
+#: Rows used for the final fit of a map.
 _FITTED = 20_000
 
-#: Where the least of three singular values is below this share of the largest, points lie in a plane or on a line.
+#: If the smallest of three singular values is below this fraction of the largest, the points lie in a plane or on a
+#: line.
 _FLAT = 1e-4
 
 
 def followed(surfels: Surfels, rest: np.ndarray) -> tuple[Surfels, int]:
-    """The surfels with their frames, sizes and normals moved as their centres were, and how many centres were moved one
-    by one, whose frames are left alone.
+    """The surfels with frames, sizes and normals moved as their centres were, and the number of centres that were moved
+    individually, whose frames are left alone.
 
-    surfels: as they are stored, with an origin of 0. rest: (N, 3) where their centres were when the frames were right.
+    surfels: as they are stored, with an origin of 0.
+    rest: (N, 3) the centres at the time when the frames were right.
     """
     if np.array_equal(surfels.positions, rest):
         return surfels, 0
@@ -59,7 +61,7 @@ def followed(surfels: Surfels, rest: np.ndarray) -> tuple[Surfels, int]:
         return surfels, 0
     arrays = {name: np.array(values) for name, values in surfels.arrays().items()}
     random = np.random.default_rng(0)
-    # One map for all moves those as well that happen to be where they were, as on the axis of a rotation.
+    # If one map explains everything, it also moves surfels whose centres stayed put, as on the axis of a rotation.
     whole = _fitted(before[usable], now[usable])
     if (
         len(before) >= _FEWEST
@@ -81,7 +83,7 @@ def followed(surfels: Surfels, rest: np.ndarray) -> tuple[Surfels, int]:
 
 
 def _consensus(before, now, size: float, random) -> tuple[np.ndarray, np.ndarray] | None:
-    """(n,) which rows the best map explains, and the (4, 4) map; None where none explains enough of them."""
+    """(n,) bool, which rows the best map explains, and the (4, 4) map; None if no map explains enough rows."""
     count = len(before)
     jury = random.choice(count, min(count, _JURY), replace=False)
     maps = _minimal_maps(before, now, random)
@@ -96,7 +98,7 @@ def _consensus(before, now, size: float, random) -> tuple[np.ndarray, np.ndarray
     if affine is None:
         return None
     inliers = _distances(affine, before, now) <= _ROUNDING * size
-    # Of rows that were only nearly together, those that are so exactly may be fewer.
+    # Rows that agree exactly may be fewer than those that nearly agreed.
     for _ in range(3):
         if not inliers.any():
             return None
@@ -108,12 +110,12 @@ def _consensus(before, now, size: float, random) -> tuple[np.ndarray, np.ndarray
 
 
 def _minimal_maps(before, now, random) -> np.ndarray:
-    """(trials, 4, 3) affine maps, each through four rows; the least of those that are possible in a plane."""
+    """(trials, 4, 3) affine maps, each through four rows; the minimum-norm map if the rows lie in a plane."""
     count = len(before)
     windows = np.minimum(np.resize(_WINDOWS, _TRIALS), count)
     starts = (random.random(_TRIALS) * (count - windows + 1)).astype(np.int64)
     rows = starts[:, None] + (random.random((_TRIALS, 4)) * windows[:, None]).astype(np.int64)
-    # around a middle, so that the least map of a plane far from the origin is one that keeps it together
+    # relative to a middle, so that the minimum-norm map of a plane far from the origin keeps the plane together
     middle = before[rows].mean(axis=1, keepdims=True)
     local = np.concatenate([before[rows] - middle, np.ones((_TRIALS, 4, 1))], axis=2)
     maps = np.linalg.pinv(local, rcond=1e-6) @ now[rows]
@@ -122,8 +124,8 @@ def _minimal_maps(before, now, random) -> np.ndarray:
 
 
 def _fitted(before, now) -> np.ndarray | None:
-    """The (4, 4) map by least squares; across a plane it keeps the volume's share, and right-handedness. None for a
-    map that flattens."""
+    """The (4, 4) least-squares map. For points in a plane it preserves volume ratio and handedness across the plane.
+    None for a map that flattens."""
     step = max(len(before) // _FITTED, 1)
     before, now = before[::step], now[::step]
     middle, target = before.mean(axis=0), now.mean(axis=0)
@@ -152,7 +154,7 @@ def _distances(affine: np.ndarray, before, now) -> np.ndarray:
 
 
 def _move(arrays: dict, surfels: Surfels, rows: np.ndarray, affine: np.ndarray) -> None:
-    """These rows by the linear part of a map; their centres are where they are already."""
+    """Apply the linear part of a map to these rows; their centres are already in place."""
     linear = np.eye(4)
     linear[:3, :3] = affine[:3, :3]
     if np.abs(linear - np.eye(4)).max() <= 1e-6:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels as flat Gaussians, in the PLY layout of 3D Gaussian splatting (Kerbl et al. 2023), and back from there.
+"""Surfels as flat Gaussians, in the PLY layout of 3D Gaussian splatting (Kerbl et al. 2023), and back.
 
 | property | meaning |
 |---|---|
@@ -10,7 +10,7 @@
 | scale_0 .. scale_2 | log of sigma along the quaternion's axes; 2D Gaussians (Huang et al. 2024) have two |
 | rot_0 .. rot_3 | quaternion w x y z |
 
-All float. A splat's kernel is a Gaussian of sigma 1/2 in units of its half-axes, so sigma is half of a half-axis.
+All properties are floats. A splat's kernel is a Gaussian whose sigma is half of the half-axis.
 """
 
 from __future__ import annotations
@@ -30,24 +30,31 @@ _SCALE = ("scale_0", "scale_1", "scale_2")
 
 #: The spherical harmonic of degree 0, 1 / (2 sqrt(pi)).
 SH_DEGREE_0 = 0.28209479177387814
-#: sigma of the kernel in half-axes.
+#: sigma of the kernel, in half-axes.
 _SIGMA = 0.5
-#: Thickness of a written Gaussian, in its smaller sigma: invisible, and far from where viewers' float32 gives up.
+#: Thickness of a written Gaussian relative to its smaller sigma: invisible, yet large enough for viewers that compute
+#: in float32.
 _THICKNESS = 1e-3
-#: Opacity 1 would be infinite; this much is 1 in float32.
+#: An opacity of 1 would be stored as infinity; this value rounds to 1 in float32.
 _MAX_LOGIT = 20.0
 
-#: How thick a Gaussian may be, in its middle sigma, to pass as a surfel.
+#: Maximum thickness of a Gaussian relative to its middle sigma to count as a surfel.
 DEFAULT_FLATNESS = 0.25
 
-#: thin axis -> quaternion whose product from the right makes it the third: none, or a third of a turn about (1, 1, 1).
+#: thin axis -> quaternion that, multiplied from the right, makes it the third axis: identity, or a third of a turn
+#: about (1, 1, 1).
 _TURNS = {0: (0.5, 0.5, 0.5, 0.5), 1: (-0.5, 0.5, 0.5, 0.5), 2: (1.0, 0.0, 0.0, 0.0)}
 
 
 @dataclass(frozen=True, eq=False)
 class Gaussians:
-    """The surfels among a file's Gaussians. total: Gaussians; not_flat: left out as too thick; unusable: with numbers
-    that cannot be; view_dependent: properties of the colour that depend on the view, which surfels do not have."""
+    """The surfels among a file's Gaussians.
+
+    total: number of Gaussians.
+    not_flat: left out because they are too thick.
+    unusable: left out because of invalid numbers.
+    view_dependent: number of view-dependent colour properties, which surfels cannot represent.
+    """
 
     surfels: Surfels
     total: int
@@ -57,9 +64,9 @@ class Gaussians:
 
 
 def write_gaussian_ply(path: str | os.PathLike, surfels: Surfels) -> None:
-    """Write `surfels` as flat Gaussians, which viewers of Gaussian splats open. Material and shading are lost.
+    """Write `surfels` as flat Gaussians, which viewers of Gaussian splats can open. Materials and shading are lost.
 
-    Raises OSError where that is impossible.
+    Raises OSError if the file cannot be written.
     """
     sigmas = _SIGMA * surfels.scales.astype(np.float64)
     sigmas = np.column_stack([sigmas, _THICKNESS * sigmas.min(axis=1, initial=np.inf)])
@@ -79,12 +86,12 @@ def write_gaussian_ply(path: str | os.PathLike, surfels: Surfels) -> None:
 
 
 def is_gaussians(columns: dict[str, np.ndarray]) -> bool:
-    """Whether the columns are laid out as here, with two scales or three."""
+    """Whether the columns have the layout above, with two or three scales."""
     return has(columns, POSITION, _COLOR, ("opacity",), _SCALE[:2], ROTATION)
 
 
 def gaussians(columns: dict[str, np.ndarray], flatness: float = DEFAULT_FLATNESS) -> Gaussians:
-    """The surfels of those Gaussians whose least sigma is at most `flatness` times the middle one.
+    """Surfels from the Gaussians whose smallest sigma is at most `flatness` times the middle one.
 
     Raises ValueError for a flatness that is not a number from 0 to 1.
     """
@@ -120,7 +127,7 @@ def gaussians(columns: dict[str, np.ndarray], flatness: float = DEFAULT_FLATNESS
 
 
 def _sigmas(columns: dict[str, np.ndarray]) -> np.ndarray:
-    """(N, 3) float64; a 2D Gaussian has no thickness."""
+    """(N, 3) float64; 2D Gaussians get a thickness of 0."""
     count = 2 + (_SCALE[2] in columns)
     with np.errstate(over="ignore", under="ignore"):
         sigmas = np.exp(matrix(columns, _SCALE[:count], np.float64))
@@ -154,7 +161,7 @@ def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _normals(columns: dict[str, np.ndarray], kept: np.ndarray, rotations: np.ndarray) -> np.ndarray:
-    """(n, 3) the file's normals, or where those are 0 the thin axes."""
+    """(n, 3) the file's normals; where those are 0, the thin axes."""
     with np.errstate(invalid="ignore", divide="ignore"):
         flat = quaternion_axes(rotations / np.linalg.norm(rotations, axis=1, keepdims=True))[2]
     if not has(columns, NORMAL):
@@ -164,7 +171,7 @@ def _normals(columns: dict[str, np.ndarray], kept: np.ndarray, rotations: np.nda
 
 
 def _colors(columns: dict[str, np.ndarray], kept: np.ndarray) -> np.ndarray:
-    """(n, 4) float32 scene-linear colours and opacities; as in every renderer, no channel is below 0."""
+    """(n, 4) float32 scene-linear colours and opacities; negative channels are clamped to 0, as renderers do."""
     shown = np.maximum(0.5 + SH_DEGREE_0 * matrix(columns, _COLOR, np.float64)[kept], 0)
     with np.errstate(over="ignore"):
         opacity = 1 / (1 + np.exp(-columns["opacity"][kept].astype(np.float64)))
@@ -172,6 +179,6 @@ def _colors(columns: dict[str, np.ndarray], kept: np.ndarray) -> np.ndarray:
 
 
 def _needs_origin(positions: np.ndarray) -> bool:
-    """Whether the positions are finer than float32 keeps, as in files with double coordinates."""
+    """Whether positions are more precise than float32, as in files with double coordinates."""
     with np.errstate(over="ignore"):
         return bool((positions.astype(np.float32) != positions).any())

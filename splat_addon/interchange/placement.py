@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels moved by an affine map, as a file in world coordinates needs them, and several sets as one."""
+"""Moves surfels by an affine map, as files in world coordinates need, and joins several sets."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..surfels import Surfels, axes_quaternions, concatenate, empty_surfels
 
 
 def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
-    """The surfels under a (4, 4) affine map: exactly the ellipses that the map makes of theirs.
+    """The surfels under a (4, 4) affine map: the image of each ellipse is exact.
 
     The images of the half-axes are conjugate half-diameters p, q; the principal axes are p cos t + q sin t and
     q cos t - p sin t where tan 2t = 2 p.q / (p.p - q.q). Normals go by the inverse transpose.
@@ -28,7 +28,7 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
     p, q = (axis.astype(np.float64) @ linear.T for axis in surfels.half_axes())
     pp, qq, pq = (np.einsum("ij,ij->i", a, b)[:, None] for a, b in ((p, p), (q, q), (p, q)))
     angle = np.arctan2(2 * pq, pp - qq) / 2
-    # Axes that are still at right angles, as after a rotation, stay the axes, whichever is longer.
+    # Axes that are still at right angles, as after a rotation, are kept in their order, whichever is longer.
     angle[np.abs(pq) < 1e-6 * np.sqrt(pp * qq)] = 0
     long, short = p * np.cos(angle) + q * np.sin(angle), q * np.cos(angle) - p * np.sin(angle)
     normals, geometric = (
@@ -38,7 +38,7 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
     y = np.cross(geometric, x)
     uvs = {}
     if surfels.has_uvs:
-        # a mirrored frame is made right-handed by turning y
+        # flip y to make a mirrored frame right-handed
         cosine, sine, side = np.cos(angle), np.sin(angle), np.sign(np.einsum("ij,ij->i", y, short))[:, None]
         uvs["uv_along_x"] = surfels.uv_along_x * cosine + surfels.uv_along_y * sine
         uvs["uv_along_y"] = (surfels.uv_along_y * cosine - surfels.uv_along_x * sine) * side
@@ -62,7 +62,7 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
 
 
 def joined(parts: list[Surfels]) -> Surfels:
-    """One set of several; where their origins differ, all are moved to the first one's."""
+    """Join several sets; if their origins differ, all are moved to the first one's."""
     if not parts:
         return empty_surfels()
     origin = parts[0].origin

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The vertices of a PLY file as named columns, read and written. Sizes are checked against the file before any array
-is made, so that a small file cannot ask for a large one."""
+"""Reads and writes the vertices of a PLY file as named columns. Sizes are checked against the file before any array is
+allocated, so a small file cannot ask for a huge allocation."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from .whole_file import whole_file
 
 _VERTEX = "vertex"
 
-#: numpy's type code -> the name that every reader knows
+#: numpy's type code -> the type name that every reader knows
 _TYPE_NAMES = {code: name for name, code in reversed(TYPES.items())}
 
-#: Digits that keep every bit, by type code.
+#: Digits that preserve every bit, by type code.
 _TEXT_FORMATS = {"f4": "%.9g", "f8": "%.17g"}
 
 
 def read_vertices(path: str | os.PathLike) -> tuple[dict[str, np.ndarray], tuple[str, ...]]:
-    """(N,) columns by property name, in the types that the header names, and the header's comments.
+    """(N,) columns by property name, in the types declared in the header, and the header's comments.
 
-    Raises ValueError with one sentence for a file that is not PLY or is damaged, OSError where it cannot be opened.
+    Raises ValueError with one sentence for a file that is not PLY or is damaged, OSError if it cannot be opened.
     """
     size = os.path.getsize(path)
     with open(path, "rb") as stream:
@@ -48,9 +48,9 @@ def read_vertices(path: str | os.PathLike) -> tuple[dict[str, np.ndarray], tuple
 def write_vertices(
     path: str | os.PathLike, columns: dict[str, np.ndarray], comments: tuple[str, ...], ascii: bool
 ) -> None:
-    """A PLY file with (N,) columns as the vertices' properties, in their own types; little endian unless `ascii`.
+    """A PLY file with (N,) columns as vertex properties, in the columns' types; little endian unless `ascii`.
 
-    The file appears under its name only when it is complete. Raises OSError.
+    The file appears under its name only once it is complete. Raises OSError if it cannot be written.
     """
     codes = {name: np.asarray(column).dtype.str[1:] for name, column in columns.items()}
     count = len(next(iter(columns.values())))
@@ -66,7 +66,7 @@ def write_vertices(
         if ascii:
             np.savetxt(stream, rows, fmt=" ".join(_TEXT_FORMATS.get(code, "%d") for code in codes.values()))
         else:
-            # not `tofile`, which tells of a full disk only by two numbers
+            # not `tofile`, whose error on a full disk names only two numbers
             stream.write(rows.view(np.uint8).data)
 
 
@@ -97,7 +97,7 @@ def _row_type(element: Element, header: Header) -> np.dtype:
 
 def _read_text(stream: BinaryIO, size: int, header: Header, before, vertex: Element) -> dict[str, np.ndarray]:
     lines = sum(element.count for element in before)
-    # A value takes a digit and a space or the line's end, but for the last of the file.
+    # Each value takes a digit and a separator, except for the last value in the file.
     least = 2 * vertex.count * len(vertex.types) + lines - 1
     if least > size - header.size:
         raise ValueError(
@@ -107,7 +107,7 @@ def _read_text(stream: BinaryIO, size: int, header: Header, before, vertex: Elem
     text = (line.decode("latin-1") for line in islice(stream, lines, lines + vertex.count))
     try:
         with warnings.catch_warnings():
-            # A file without data has its own sentence below.
+            # Files without data get their own error message below.
             warnings.simplefilter("ignore", UserWarning)
             table = np.loadtxt(text, np.float64, comments=None, ndmin=2) if vertex.count else np.empty((0, 0))
     except ValueError as error:
@@ -122,7 +122,7 @@ def _read_text(stream: BinaryIO, size: int, header: Header, before, vertex: Elem
 
 
 def _as_type(column: np.ndarray, code: str) -> np.ndarray:
-    """Text as the type that the header promised; a number that it cannot hold ends at its range."""
+    """Text converted to the declared type; numbers out of range are clamped to the type's range."""
     if code[0] != "f":
         limits = np.iinfo(code)
         column = np.clip(np.nan_to_num(column), limits.min, limits.max)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The head of a PLY file: what follows, in which types, how often. Nothing in it is believed before it is checked.
+"""The header of a PLY file: its elements, their types and counts. Nothing is trusted before it is checked.
 
 G. Turk, "The PLY polygon file format" (1994), with the sized type names that later writers use.
 """
@@ -19,7 +19,7 @@ TYPES = {
 #: format name -> numpy's byte order; None: text
 FORMATS = {"ascii": None, "binary_little_endian": "<", "binary_big_endian": ">"}
 
-#: A header is read up to here at most; a Gaussian splatting file's, the longest known, has 2 kB.
+#: Maximum length of a header; the longest known, from Gaussian splatting, has 2 kB.
 MAX_HEADER = 1 << 18
 
 _END = "end_header"
@@ -27,7 +27,10 @@ _END = "end_header"
 
 @dataclass(frozen=True)
 class Element:
-    """count rows. types: property name -> numpy type code, None for a list."""
+    """An element with `count` rows.
+
+    types: property name -> numpy type code, None for a list.
+    """
 
     name: str
     count: int
@@ -36,7 +39,7 @@ class Element:
 
 @dataclass(frozen=True)
 class Header:
-    """byte_order: "<", ">" or None for text. size: bytes up to the first row."""
+    """byte_order: "<", ">" or None for text. size: number of bytes before the first row."""
 
     byte_order: str | None
     elements: tuple[Element, ...]
@@ -70,7 +73,7 @@ def read_header(stream: BinaryIO) -> Header:
 
 
 def _header_lines(stream: BinaryIO) -> tuple[list[str], int]:
-    """The lines between the first, "ply", and the last, "end_header", and where the data begins."""
+    """The lines between "ply" and "end_header", and the offset at which the data begins."""
     lines, size = [], 0
     while size <= MAX_HEADER:
         raw = stream.readline(MAX_HEADER)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bare points of an ordinary PLY file: positions, and whatever else is there that surfels can use."""
+"""Bare points of an ordinary PLY file: positions, and any other properties that surfels can use."""
 
 from __future__ import annotations
 
@@ -12,8 +12,11 @@ from .columns import NORMAL, POSITION, display_color, has, matrix
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """positions: (N, 3) float64. normals: (N, 3), radii: (N,), colors: (N, 4) scene-linear; None where the file has
-    none. Values may be anything that a file can hold; `sampling.surfels_from_points` sorts them out."""
+    """positions: (N, 3) float64.
+    normals: (N, 3), radii: (N,), colors: (N, 4) scene-linear; None if the file lacks them.
+
+    The values are not checked here; `sampling.surfels_from_points` does that.
+    """
 
     positions: np.ndarray
     normals: np.ndarray | None

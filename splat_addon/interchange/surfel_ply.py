@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels as a PLY file that keeps every bit of them, in properties that other programs know where there are such.
+"""Surfels as a lossless PLY file, using property names that other programs know where such names exist.
 
 | property | type | meaning |
 |---|---|---|
@@ -14,7 +14,7 @@
 | roughness, metallic, emission_0 .. emission_2, uvs_0 ... | float | where the surfels have them (`OPTIONAL_LAYOUT`) |
 | clip_line_0, clip_line_1, clip_line_2_0, clip_line_2_1 | short | likewise, packed as `clip_lines` says |
 
-Comments: "surfel_splatting 1", "origin X Y Z" where it is not 0, "solid" where the surfels are.
+Comments: "surfel_splatting 1"; "origin X Y Z" if it is not 0; "solid" if the surfels are solid.
 """
 
 from __future__ import annotations
@@ -43,14 +43,14 @@ _OPTIONAL = {
 
 @dataclass(frozen=True, eq=False)
 class StoredSurfels:
-    """Surfels as a file has them, and how many of its rows were not usable."""
+    """Surfels read from a file, and the number of unusable rows."""
 
     surfels: Surfels
     unusable: int
 
 
 def write_ply(path: str | os.PathLike, surfels: Surfels, ascii: bool = False) -> None:
-    """Write `surfels` with everything that they have; see the layout above. Raises OSError where that is impossible."""
+    """Write all fields of `surfels` in the layout above. Raises OSError if the file cannot be written."""
     has_origin = bool(surfels.origin.any())
     positions = surfels.positions + surfels.origin if has_origin else surfels.positions
     shown = np.clip(surfels.colors.astype(np.float64), 0, 1)
@@ -75,10 +75,10 @@ def write_ply(path: str | os.PathLike, surfels: Surfels, ascii: bool = False) ->
 
 
 def read_ply(path: str | os.PathLike) -> Surfels:
-    """The surfels of a file that `write_ply` made: the same bits, where the origin is 0; else positions may lose what
-    is below the 16th digit of the coordinate.
+    """Read a file that `write_ply` made. With an origin of 0 the result is bit-identical; otherwise positions are exact
+    to 16 digits of the coordinate.
 
-    Raises ValueError with one sentence for a damaged file, one of another layout, or rows that are no surfels.
+    Raises ValueError with one sentence for a damaged file, another layout, or rows that are not surfels.
     """
     columns, comments = read_vertices(path)
     if not is_surfels(columns):
@@ -87,19 +87,20 @@ def read_ply(path: str | os.PathLike) -> Surfels:
 
 
 def is_surfels(columns: dict[str, np.ndarray]) -> bool:
-    """Whether the columns are laid out as here; the scales of Gaussians are another thing under the same name."""
+    """Whether the columns have the layout above; Gaussians use the same names for their scales, with another
+    meaning."""
     return has(columns, POSITION, NORMAL, ROTATION, _SCALE) and not has(columns, ("opacity",))
 
 
 def stored_surfels(columns: dict[str, np.ndarray], comments: tuple[str, ...]) -> StoredSurfels:
-    """The usable rows. Raises ValueError where a comment is damaged."""
+    """The usable rows. Raises ValueError if a comment is damaged."""
     return StoredSurfels(*valid_surfels(**_fields(columns, comments)))
 
 
 def _fields(columns: dict[str, np.ndarray], comments: tuple[str, ...]) -> dict:
     origin = _origin(comments)
     positions = matrix(columns, POSITION, np.float64)
-    # Infinite rows stay so, or become NaN, and are counted as unusable.
+    # Infinite values stay infinite or become NaN, and are counted as unusable.
     with np.errstate(over="ignore", invalid="ignore"):
         positions = (positions - origin).astype(np.float32)
     colors = matrix(columns, _COLOR) if has(columns, _COLOR) else display_color(columns)

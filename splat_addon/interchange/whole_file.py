@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A file that appears under its name only when it is complete."""
+"""Writes a file that appears under its name only once it is complete."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from typing import BinaryIO
 
 @contextmanager
 def whole_file(path: str | os.PathLike) -> Iterator[BinaryIO]:
-    """A stream whose bytes are the file `path` when the context ends without an error; else all is as before.
+    """Open a stream that becomes the file `path` if the context ends without an error; otherwise nothing changes.
 
-    They are written beside it, under a name that nobody can know beforehand. A link stays, and what it points to is
-    written; an earlier file hands on its permissions, and a device is written to itself. Raises OSError.
+    The data goes to a temporary file beside it with an unpredictable name. Links are followed, an existing file's
+    permissions are kept, and a device is written to directly. Raises OSError.
     """
     target = Path(os.path.realpath(path))
     if target.exists() and not target.is_file():
@@ -36,7 +36,7 @@ def whole_file(path: str | os.PathLike) -> Iterator[BinaryIO]:
 
 
 def _mode_of_new_files() -> int:
-    """What `open` would give a new file; asking for the mask is only possible by setting it."""
+    """The mode that `open` gives a new file; the umask can only be read by setting it."""
     mask = os.umask(0o077)
     os.umask(mask)
     return 0o666 & ~mask
