@@ -14,9 +14,8 @@ from .surfel_ply import StoredSurfels, is_surfels, stored_surfels
 def read_contents(path: str | os.PathLike, flatness: float = DEFAULT_FLATNESS) -> StoredSurfels | Gaussians | Points:
     """The vertices of any PLY file; faces are ignored.
 
-    flatness: the thinnest sigma of a Gaussian relative to its middle one, at most, to count as a surfel.
-    Raises ValueError with one sentence for a file that is not PLY, is damaged or has no positions; OSError if it cannot
-    be read.
+    flatness: maximum ratio of a Gaussian's smallest to its middle sigma for it to count as a surfel. Raises ValueError
+        with one sentence for a file that is not PLY, is damaged or has no positions; OSError if it cannot be read.
     """
     columns, comments = read_vertices(path)
     if is_gaussians(columns):

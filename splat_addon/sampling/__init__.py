@@ -2,9 +2,9 @@
 """Sampling: a mesh becomes surfels by exact scan conversion onto a layered depth cube. Numpy only.
 
 Flow: `mesh` (usable triangles) -> `density`, `ldc` (grid, scan conversion, reduction) -> `attributes` (ellipse, normal,
-material) -> `edges` (clip lines) -> `refine` (fewer where it is flat, more where no ray went) -> `Surfels`; `sample`
-puts them in order. `camera_density` says how fine a camera needs it. `deform` lets surfels follow a mesh; points
-without faces become surfels in `points`.
+material) -> `edges` (clip lines) -> `refine` (fewer surfels where the surface is flat, extra ones where no ray hit) ->
+`Surfels`; `sample` runs these steps. `camera_density` finds the spacing that a camera needs. `deform` lets surfels
+follow a mesh; points without faces become surfels in `points`.
 """
 
 from ..images import Image

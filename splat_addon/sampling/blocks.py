@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One mesh sampled by several machines: each takes the rows of one block of the grid, and what is joined is what one
-machine makes, bit by bit.
+"""Samples one mesh on several machines: each takes one block of rows of the grid, and the joined result is
+bit-identical to that of a single machine.
 
-A block is a band of rows of each of the three images, half-open and in whole numbers, so that every run of samples
-belongs to one block and is never cut: what a sample is depends on its run and its triangle alone. Runs are joined in
-the order of a single machine, triangle after triangle. What looks at neighbours (merged samples, clip lines, parts that
-no ray meets) comes after that, as it does there.
+A block is a half-open band of whole rows of each of the three images, so every run of samples belongs to exactly one
+block: a sample depends on its run and triangle alone. Runs are joined in a single machine's order, triangle by
+triangle. Steps that look at neighbours (merged samples, clip lines, parts that no ray hits) run afterwards.
 """
 
 from __future__ import annotations
@@ -33,8 +32,8 @@ _VERSION = 1
 class Block:
     """The samples of block `number` of `count`, from 0.
 
-    made_from: hex digest of mesh and options. images: the runs of samples in each of the three images.
-    arrays: field of `Surfels` -> values of the samples, in the order of the runs.
+    made_from: hex digest of mesh and options. images: the spans in each of the three images.
+    arrays: field of `Surfels` -> values of the samples, in span order.
     """
 
     number: int
@@ -45,7 +44,10 @@ class Block:
 
 
 def sample_block(mesh: TriangleMesh, number: int, count: int, progress: Progress | None = None, **options) -> Block:
-    """options: as `sample_surface` has them. Raises ValueError for an unusable option, or a block that is not."""
+    """The samples of one block.
+
+    options: those of `sample_surface`. Raises ValueError for an unusable option or a block number out of range.
+    """
     if not 0 <= number < count:
         raise ValueError(f"There is no block {number + 1} of {count}.")
     run = SamplingRun(mesh, **options)
@@ -56,9 +58,9 @@ def sample_block(mesh: TriangleMesh, number: int, count: int, progress: Progress
 
 
 def joined_blocks(mesh: TriangleMesh, blocks: Iterable[Block], progress: Progress | None = None, **options) -> Sampling:
-    """What `sample_surface` gives with the same mesh and options.
+    """Join all blocks into what `sample_surface` returns for the same mesh and options.
 
-    Raises ValueError with a sentence for blocks of another mesh or other options, and where not each is there once.
+    Raises ValueError with a sentence if a block belongs to another mesh or other options, is missing, or appears twice.
     """
     run = SamplingRun(mesh, **options)
     blocks = sorted(blocks, key=lambda block: block.number)
@@ -84,7 +86,8 @@ def joined_blocks(mesh: TriangleMesh, blocks: Iterable[Block], progress: Progres
 
 
 def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], np.ndarray]:
-    """The spans of all blocks as one machine has them, and where each sample lies in the blocks' arrays, joined."""
+    """The spans of all blocks in a single machine's order, and the index of each sample in the blocks' concatenated
+    arrays."""
     sizes = [[int(spans.counts.sum(dtype=np.int64)) for spans in block.images] for block in blocks]
     starts = np.cumsum([0, *(size for block in sizes for size in block)])[:-1].reshape(-1, 3)
     images, orders = [], []
@@ -103,7 +106,8 @@ def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], np.ndarray]:
 
 
 def _digest(run: SamplingRun, options: dict) -> str:
-    """Of the usable mesh and of what it is sampled with. What materials are is not in it, only whose triangles are."""
+    """Digest of the usable mesh and the sampling options. It covers which triangles use which material, but not
+    material values."""
     digest = hashlib.sha256(repr((_VERSION, sorted(options.items()))).encode("utf-8"))
     mesh = run.mesh
     for values in (
@@ -119,7 +123,7 @@ def _digest(run: SamplingRun, options: dict) -> str:
 
 
 def write_blocks(path: str | os.PathLike, blocks: list[Block]) -> None:
-    """One file for the blocks of several meshes, numpy's .npz. Raises OSError."""
+    """Write the blocks of several meshes to one numpy .npz file. Raises OSError."""
     arrays = {}
     for turn, block in enumerate(blocks):
         arrays[f"{turn}.about"] = np.array([block.number, block.count])
@@ -132,7 +136,7 @@ def write_blocks(path: str | os.PathLike, blocks: list[Block]) -> None:
 
 
 def read_blocks(path: str | os.PathLike) -> list[Block]:
-    """What `write_blocks` wrote. Raises ValueError with one sentence for a damaged file."""
+    """Read a file that `write_blocks` made. Raises ValueError with one sentence for a damaged file."""
     try:
         with np.load(path, allow_pickle=False) as arrays:
             return [_read(arrays, turn) for turn in range(sum(name.endswith(".about") for name in arrays.files))]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The spacing for one camera and resolution: from where the surface comes closest to the camera, inside its view.
+"""Finds the spacing for one camera and resolution from the visible point of the surface that is closest to the camera.
 
-The surface is stood for by a coarse sampling of itself, so a floor under the camera or a room around it has its true
-distance, and the answer is cheap enough for every redraw of a panel.
+A coarse sampling stands in for the surface. This gives a floor under the camera or a room around it its true distance,
+and is cheap enough for every redraw of a panel.
 """
 
 from __future__ import annotations
@@ -16,26 +16,26 @@ from .mesh.cleaning import drop_unusable
 from .mesh.triangle_mesh import TriangleMesh
 from .sample import sample_mesh
 
-#: Cells along the longest edge for the outline, and how far from an outline point, in cells, the surface may be
+#: Cells along the longest edge for the outline, and the maximum distance, in cells, from a surface point to the outline
 #: (up to 1.4 on the armadillo, facts/sampling.md section 5).
 _OUTLINE_RESOLUTION = 96
 _OUTLINE_REACH = 1.5
 
 
 class NotSeenError(ValueError):
-    """Nothing of the surface lies in the camera's view."""
+    """No part of the surface is in the camera's view."""
 
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """(n, 3) points, object units, such that each point of a surface lies within `reach` of one."""
+    """(n, 3) points, object units; every point of the surface lies within `reach` of one of them."""
 
     points: np.ndarray
     reach: float
 
 
 def outline(mesh: TriangleMesh) -> Outline:
-    """Of the usable triangles; without points where there are none."""
+    """The outline of the usable triangles; without points if there are none."""
     mesh, _ = drop_unusable(mesh)
     if not len(mesh):
         return Outline(np.zeros((0, 3)), 0.0)
@@ -54,12 +54,9 @@ def camera_spacing(
     near: float,
     is_orthographic: bool,
 ) -> float:
-    """Spacing, object units, at which surfels lie `pixels` apart where the surface is closest, and less elsewhere.
+    """Spacing, object units, at which surfels are `pixels` apart in the picture where the surface is closest to the
+    camera, and less elsewhere.
 
-    object_to_view: (4, 4), the camera looks along -z. window: left, right, bottom, top on the plane at distance 1, or
-    in view units for an orthographic camera. size: width, height in pixels. near: clip distance, view units.
-    The longest stretch of the object decides: no surfel covers more than `pixels`, across any direction.
-    Raises ValueError with one sentence for an unusable `pixels`, NotSeenError for what the camera does not see.
     """
     if not (np.isfinite(pixels) and pixels > 0):
         raise ValueError(f"The pixels a surfel covers must be a finite number above 0, not {pixels}.")
@@ -81,5 +78,5 @@ def camera_spacing(
 
 
 def _beside(across: np.ndarray, depth: np.ndarray, edge: float, is_orthographic: bool) -> np.ndarray:
-    """(n,) signed distance from the side of the view that goes through `edge` of the window."""
+    """(n,) signed distance from the side plane of the view through `edge` of the window."""
     return across - edge if is_orthographic else (across - edge * depth) / np.hypot(1, edge)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How fine to sample: the ways to say it, and the spacing that each means.
+"""Sampling density: the ways to specify it, and the spacing that each results in.
 
-Before `grid` starts. What a surfel should cover on the screen is turned into a spacing by `closest_approach`.
+This runs before `grid`. `camera_density` converts a density in pixels of a camera to a spacing.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .mesh.triangle_mesh import TriangleMesh
 
 
 def check_fineness(spacing: float | None = None, resolution: float | None = None, count: float | None = None):
-    """Raises ValueError with one sentence unless exactly one is given, finite and above 0."""
+    """Raise ValueError with one sentence unless exactly one option is given, and it is finite and above 0."""
     values = {"spacing": spacing, "resolution": resolution, "count": count}
     given = {name: value for name, value in values.items() if value is not None}
     if len(given) != 1:
@@ -34,12 +34,12 @@ def grid_spacing(
     reduction: str = "normal",
     grazing_angle: float = DEFAULT_GRAZING_ANGLE,
 ) -> float:
-    """Cell size H, object units, from one of the three.
+    """Cell size H, object units, from exactly one of the three options.
 
     spacing: H itself. resolution: cells along the longest edge of the usable triangles' box.
     count: surfels that the reduction should leave; H = sqrt(projected area / count).
-    Raises ValueError with one sentence for a value that is not above 0, for more or less than one of them, and for a
-    resolution or count of a mesh without usable triangles.
+    Raises ValueError with one sentence if a value is not above 0, if not exactly one is given, and for a resolution or
+    count of a mesh without usable triangles.
     """
     check_fineness(spacing, resolution, count)
     if spacing is not None:
@@ -62,9 +62,10 @@ def predict_count(
     reduction: str = "normal",
     grazing_angle: float = DEFAULT_GRAZING_ANGLE,
 ) -> int:
-    """Number of surfels that `sample_mesh` will make, from areas alone; 0 for a mesh without usable triangles.
+    """The number of surfels that `sample_mesh` will make, computed from areas alone; 0 for a mesh without usable
+    triangles.
 
-    3-to-1 makes fewer where sheets lie closer than a cell. One surfel for each part that no ray meets comes on top.
+    3-to-1 makes fewer where sheets lie closer than a cell. Each part that no ray hits adds one surfel.
     """
     check_fineness(spacing, resolution, count)
     mesh, _ = drop_unusable(mesh)

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far a long job is, told to whoever asked, who may stop it."""
+"""Progress reports of a long job, which the receiver may cancel."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-#: Called now and then with the finished share, 0 to 1; False stops the job.
+#: Called regularly with the finished share, 0 to 1; returning False cancels the job.
 Progress = Callable[[float], bool | None]
 
 
 class SamplingCancelled(Exception):
-    """The progress callback asked to stop."""
+    """The progress callback cancelled the job."""
 
 
 def stage(progress: Progress | None, start: float, stop: float) -> Callable[[float], None]:
-    """Reports the share of one stage as a share of the whole; raises `SamplingCancelled` where that is wanted."""
+    """Report a stage's share as a share of the whole; raises `SamplingCancelled` if the callback cancels."""
 
     def report(share: float):
         if progress is not None and progress(start + (stop - start) * share) is False:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh becomes surfels: clean, scan-convert, fill. The door of the sampling room.
+"""Turns a mesh into surfels: clean, scan-convert, fill. The entry point of `sampling`.
 
-Two passes: the first finds all spans, so that the count is known exactly, the second fills arrays of that size.
+There are two passes: the first finds all spans, so that the count is known exactly; the second fills arrays of that
+size.
 """
 
 from __future__ import annotations
@@ -36,21 +37,22 @@ from .refine.adaptive import Tolerance, merge_flat
 from .refine.component_surfels import component_surfels
 from .refine.missed_components import SampledSurface, missed_components
 
-#: Half-axis of a splat in H. At 1 the seams between the regions of two axes leave 0.025 % of the armadillo uncovered
-#: at resolution 256, single dark specks in a picture; at 1.25 none of 200,000 points on it was uncovered.
+#: Half-axis of a splat in H. At 1, seams between the regions of two axes leave 0.025 % of the armadillo uncovered at
+#: resolution 256, visible as single dark specks; at 1.25 none of 200,000 points on it was uncovered.
 DEFAULT_SPLAT_SIZE = 1.25
 
 
 @dataclass(frozen=True, eq=False)
 class Sampling:
-    """What came of a mesh.
+    """The result of sampling a mesh.
 
-    small_parts: how many parts lay between all rays; each has one surfel, and these come last.
-    keeps_both_sides: the surfels of a solid are solid. Not where two sides were merged, or a part has one disc.
-    gap_triangles: (k,) those of surfels that were added where others, which end at clip lines, left something bare;
+    small_parts: number of parts that lay between all rays; each has one surfel, and these come last.
+    keeps_both_sides: whether surfels of a solid mesh are solid. They are not if two sides were merged, or if a part has
+        a single disc.
+    gap_triangles: (k,) triangles of the surfels that were added to cover gaps left by others that end at clip lines;
         these come before those of small parts.
-    saved: how many fewer surfels there are than without a tolerance. error: the largest distance of a merged surfel's
-        plane from those that it replaces, object units.
+    saved: how many fewer surfels there are than without a tolerance.
+    error: the largest distance of a merged surfel's plane from the surfels it replaces, object units.
     """
 
     surfels: Surfels
@@ -62,7 +64,7 @@ class Sampling:
 
 
 def sample_mesh(mesh: TriangleMesh, **options) -> Surfels:
-    """The surfels of `sample_surface`, which has the same options."""
+    """The surfels of `sample_surface`, with the same options."""
     return sample_surface(mesh, **options).surfels
 
 
@@ -81,20 +83,22 @@ def sample_surface(
     fits_blending: bool = False,
     progress: Progress | None = None,
 ) -> Sampling:
-    """Surfels of a mesh on a grid of exact rays, in the order of axis, triangle, row, column.
+    """Sample a mesh on a grid of exact rays; surfels are ordered by axis, triangle, row, column.
 
     spacing: cell size H, object units; or resolution: cells along the longest edge of the mesh's box; or
     count: surfels wanted, met within the accuracy of `predict_count`.
     reduction: a name in `REDUCTIONS`. grazing_angle: radians between a normal and the axis beyond which the reduction
     "grazing" refuses a sample. splat_size: smaller half-axis of a splat, in H.
-    tolerance: how far from flat the surface may be where larger surfels take the place of several; None: all alike.
-    texture_mapped: surfels whose colour is one image also keep where they lie in it, to look it up when rendered.
-    crease_angle: radians; where the surface turns by more, and at borders of materials, colours and the surface itself,
-    splats end at clip lines (`edges.clipping`); None: they reach over. fits_blending: each blends as deep as the
-    surface asks for (`attributes.blend_depths`), and not all alike.
-    progress: called between chunks with the finished share, 0 to 1; where it returns False, `SamplingCancelled` rises.
-    Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the middle.
-    A connected part that lies between the rays gets one surfel. A mesh without usable triangles gives none.
+    tolerance: how far from flat the surface may be where a larger surfel replaces several; None: all have the same
+        size.
+    texture_mapped: surfels whose colour is a single image also store their texture coordinates, so that the image is
+        looked up at render time.
+    crease_angle: radians; splats end at clip lines (`edges.clipping`) where the surface turns by more than this, and at
+        borders of materials, colours and the surface itself; None: no clip lines. fits_blending: each surfel gets its
+        own blend depth from the surface (`attributes.blend_depths`).
+    progress: called between chunks with the finished share, 0 to 1; if it returns False, `SamplingCancelled` is raised.
+        Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the middle.
+    A connected part between the rays gets one surfel. A mesh without usable triangles gives no surfels.
 
     Raises ValueError with one sentence for an unusable option.
     """
@@ -122,9 +126,10 @@ def sample_surface(
 
 
 class SamplingRun:
-    """What `sample_surface` does, which has the same options, in steps that several machines may share (`blocks`).
+    """The steps of `sample_surface`, with the same options; several machines can share them (`blocks`).
 
-    mesh: its usable triangles; where there are none, `is_empty` holds and there is nothing else. grid: of the samples.
+    mesh: the usable triangles; if there are none, `is_empty` is True and the other attributes do not exist. grid: the
+        grid of the samples.
     """
 
     def __init__(
@@ -176,14 +181,14 @@ class SamplingRun:
         return not len(self.mesh)
 
     def images(self, surface: SampledSurface, report: Callable, share: tuple[int, int] = (0, 1)) -> tuple[Spans, ...]:
-        """The spans of all samples, or of one block: share is its number, from 0, and how many there are.
+        """The spans of all samples, or of one block: share is the block's number, from 0, and the number of blocks.
 
         surface: is told which triangles are sampled.
         """
         return depth_cube(self._coordinates, self.mesh.triangles, self.grid, self._keeps, surface, report, share)
 
     def filled(self, images: tuple[Spans, ...], report: Callable[[float], None]) -> dict[str, np.ndarray]:
-        """Field of `Surfels` -> its values at the samples of these spans, as the sampling itself has them."""
+        """Field of `Surfels` -> values at the samples of these spans, as plain sampling gives them."""
         total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
         layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in (*self._sampler.optional, *self._uv_fields)}
         arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
@@ -197,7 +202,8 @@ class SamplingRun:
     def finished(
         self, arrays: dict[str, np.ndarray], images: tuple[Spans, ...], lost: tuple, report: Callable[[float], None]
     ) -> Sampling:
-        """Of all samples, what needs their neighbours. lost: as `missed_components` has it of all of them."""
+        """The result after the steps that need neighbouring samples. lost: result of `missed_components` for all
+        samples."""
         mesh, grid, tangents, bends = self.mesh, self.grid, self._tangents, self._bends
         about = grid, self._splat_size, self._sampler, tangents
         total = len(arrays["positions"])
@@ -233,13 +239,13 @@ class SamplingRun:
 
 
 def _rows_of(images: tuple[Spans, ...]) -> list[tuple[int, slice]]:
-    """Which samples are of the image along each axis."""
+    """Slices of the samples of the image along each axis."""
     ends = np.cumsum([int(spans.counts.sum(dtype=np.int64)) for spans in images]).tolist()
     return [(axis, slice(start, end)) for axis, (start, end) in enumerate(zip((0, *ends), ends, strict=False))]
 
 
 def _appended(arrays: dict[str, np.ndarray], more: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Both, by field; what only one of them has means nothing for the other."""
+    """Both sets concatenated by field; a field that one of them lacks is filled with its default."""
     both = {}
     for name in arrays | more:
         parts = []
@@ -255,9 +261,9 @@ def _appended(arrays: dict[str, np.ndarray], more: dict[str, np.ndarray]) -> dic
 
 
 def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[float], None]):
-    """Writes the samples of all images, one after another."""
+    """Write the samples of all images, one after another."""
     total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
-    # What a batch needs on its way is to be small beside the result, and numpy is slow on small batches.
+    # Temporaries of a batch should be small beside the result, but numpy is slow on small batches.
     limit = min(BATCH, max(BATCH // 4, total // 8))
     done = 0
     for axis, spans in enumerate(images):

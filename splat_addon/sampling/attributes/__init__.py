@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a sample becomes: position, ellipse, normal, blend depth, and the values of its material."""
+"""Attributes of samples: position, ellipse, normal, blend depth and material values."""

@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How deep a splat blends with others: as far as splats of its own surface lie off its plane, and no farther.
+"""Blend depth of each splat: as far as splats of its own surface lie off its plane, and no farther.
 
-Where a surface is flat that is next to nothing, and what lies closely behind it does not shine through. Where triangles
-turn against their neighbours by an angle b, a splat of radius R that is small beside a triangle of size l and reaches
-over its edge is b R / 4 off on the average; one that reaches over many triangles follows the curvature b / l, which is
-b R^2 / l over its radius.
+On a flat surface this is close to 0, so a second surface just behind does not shine through. Where triangles meet at an
+angle b, a splat of radius R that is small beside a triangle of size l and reaches over its edge is off by b R / 4 on
+average; a splat that reaches over many triangles follows the curvature b / l, which puts it off by b R^2 / l.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-#: In radii: below this, rounding would decide which of two splats of one plane is seen.
+#: In radii: with less than this, rounding would decide which of two coplanar splats is visible.
 LEAST_BLENDING = 0.05
 
-#: Of a bend, the least that counts: over one edge of a large triangle.
+#: The smallest share of a bend that counts: the share for a splat over one edge of a large triangle.
 _OVER_ONE = 0.25
 
 

@@ -3,16 +3,16 @@
 
 Seen along the image's axis the splat is a disc of radius h. On the plane with normal N its conjugate half-diameters are
 (h, 0, dz) and (0, h, dz) with dz = -(Nx dx + Ny dy) / Nz, and its principal ones h / |N_axis| along the steepest
-direction and h across it. (Figure 6 of view-independent object-space splatting has another sign and slope; this is
-the formula that stays in the tangent plane, facts/sampling.md section 5.)
+direction and h across it. (Figure 6 of view-independent object-space splatting has a different sign and slope; the
+formula here stays in the tangent plane, see facts/sampling.md section 5.)
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-#: The dominant axis of a unit normal has a component of at least 1 / sqrt(3). A sample of another axis is steeper,
-#: but lies between samples of the dominant one, so its splat need not stretch any farther.
+#: The dominant axis of a unit normal has a component of at least 1 / sqrt(3). A sample seen along another axis is
+#: steeper, but it lies between samples of the dominant axis, so its splat need not stretch any farther.
 MAX_STRETCH = np.sqrt(3)
 
 
@@ -53,7 +53,7 @@ def ellipse_rotations(normals: np.ndarray, axis: int) -> np.ndarray:
 
 
 def _half_angle(cosine: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cosine and sine of half the angle, 0 to a quarter of a turn; a cosine may be beyond 1 by its rounding."""
+    """Cosine and sine of half the angle, 0 to a quarter of a turn; rounding may push a cosine beyond 1."""
     halves, half = np.empty((2, len(cosine))), 0.5 * cosine
     np.add(0.5, half, out=halves[0])
     np.subtract(0.5, half, out=halves[1])
@@ -77,5 +77,6 @@ def _back(w, x, y, z):
     return first, second, third, fourth
 
 
-#: axis -> quaternion product that turns (u, v, axis) into (x, y, z): a third of a turn about (1, 1, 1), there or back.
+#: axis -> quaternion product that turns (u, v, axis) into (x, y, z): a third of a turn about (1, 1, 1), in either
+#: direction.
 _FROM_IMAGE_ORDER = {0: _there, 1: _back, 2: lambda w, x, y, z: (w, x, y, z)}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The values of a mesh's surfaces at samples of it: constants, textures averaged over a sample's footprint, vertex
-colours, and shading normals with the detail of normal maps."""
+"""Evaluates a mesh's surfaces at samples: constants, textures averaged over a sample's footprint, vertex colours, and
+shading normals with detail from normal maps."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ import numpy as np
 from ...surfels import OPTIONAL_LAYOUT
 from .surfaces import WRAPS, Channel, NormalMap, Surface, Texture, VertexColors
 
-#: The pixel of a normal map that leaves the normal.
+#: The pixel of a normal map that leaves the normal unchanged.
 _FLAT = np.array((0.5, 0.5, 1.0), np.float32)
 
-#: Of the size of one colour.
+#: Number of components of a colour.
 _ROW = np.complex128
 
-#: Components of one layer of texture coordinates and of vertex colours.
+#: Number of components per layer of texture coordinates and of vertex colours.
 _UV, _RGBA = 2, 4
 
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """What is known of n samples before they are looked up.
+    """Inputs for evaluating the materials of n samples.
 
     materials: (n,) integers. colors: (4 layers, n) interpolated vertex colours, or None. uvs: (2 layers, n), or None.
     uv_steps: (2, 2 layers, n) their change from a sample to the next column's and the next row's.
-    tangents: (4 layers, n) interpolated tangents and signs of the bitangent, a layer as the uvs have, or None.
+    tangents: (4 layers, n) interpolated tangents and signs of the bitangent, one set per uv layer, or None.
     """
 
     materials: np.ndarray
@@ -42,10 +42,10 @@ class Samples:
 
 
 class MaterialSampler:
-    """The surfaces of one mesh, ready to be asked for.
+    """The surfaces of one mesh, ready to be evaluated.
 
-    optional: fields of `Surfels` in `OPTIONAL_LAYOUT` that vary over one of the surfaces.
-    needs_colors, needs_uvs, needs_tangents: whether something is looked up by them.
+    optional: fields of `OPTIONAL_LAYOUT` that vary over any of the surfaces.
+    needs_colors, needs_uvs, needs_tangents: whether any surface reads them.
     """
 
     def __init__(self, surfaces: tuple[Surface, ...]):
@@ -59,9 +59,10 @@ class MaterialSampler:
         self.needs_uvs = bool(textures) or self.needs_tangents
 
     def fill(self, out: dict[str, np.ndarray], samples: Samples) -> None:
-        """Write colours and optional fields, and bend the shading normals that are there already.
+        """Write colours and optional fields, and apply normal maps to the shading normals already in `out`.
 
-        out: fields of `Surfels` -> their rows of these samples. A value that is not finite becomes its channel's own.
+        out: fields of `Surfels` -> their rows of these samples. Non-finite values are replaced by the channel's
+            constant.
         """
         if len(self._surfaces) == 1:
             return self._fill(out, slice(None), self._surfaces[0], samples)
@@ -73,7 +74,7 @@ class MaterialSampler:
     def _fill(self, out, at, surface: Surface, samples: Samples) -> None:
         looked_up: dict = {}
         colors = self._values(surface.color, samples, looked_up)
-        # numpy is many times slower in spreading a row of four
+        # numpy is many times slower at broadcasting a row of four
         if colors.ndim == 1:
             out["colors"].view(_ROW)[at] = colors.view(_ROW)
         else:
@@ -91,9 +92,9 @@ class MaterialSampler:
             out["normals"][at] = bent(out["normals"][at], surface.normal_map, color, samples.tangents)
 
     def _values(self, channel: Channel, samples: Samples, looked_up: dict, fallback=None) -> np.ndarray:
-        """(n, k) float32, or (k,) where nothing varies. looked_up: what this surface's channels have in common.
+        """(n, k) float32, or (k,) if nothing varies. looked_up: lookups shared by the channels of this surface.
 
-        fallback: where what varies is not there or not finite; None: the channel's own value.
+        fallback: used where the varying value is missing or not finite; None: use the channel's constant.
         """
         constant = np.asarray(channel.value, np.float32)
         factors = [self._factor(factor, len(constant), samples, looked_up) for factor in channel.factors]
@@ -106,7 +107,7 @@ class MaterialSampler:
         return values if finite.all() else np.where(finite.all(axis=1, keepdims=True), values, fallback)
 
     def _factor(self, factor, count: int, samples: Samples, looked_up: dict) -> np.ndarray | None:
-        """(n, count) values of a factor, None where the mesh has not its layer."""
+        """(n, count) values of a factor; None if the mesh lacks its layer."""
         rgba = _READERS[type(factor)](self, factor, samples, looked_up)
         if rgba is None:
             return None
@@ -139,7 +140,7 @@ _READERS = {VertexColors: MaterialSampler._vertex_colors, Texture: MaterialSampl
 
 
 def placed(texture: Texture, samples: Samples) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """(2, n) coordinates in the texture's image and their (2, 2, n) steps; None where the mesh has not its layer."""
+    """(2, n) coordinates in the texture's image and their (2, 2, n) steps; None if the mesh lacks its layer."""
     uvs, steps = (_layer(a, texture.layer, _UV) for a in (samples.uvs, samples.uv_steps))
     if uvs is None:
         return None, None
@@ -152,11 +153,12 @@ def placed(texture: Texture, samples: Samples) -> tuple[np.ndarray | None, np.nd
 
 
 def bent(normals: np.ndarray, normal_map: NormalMap, color: np.ndarray, tangents: np.ndarray | None) -> np.ndarray:
-    """(n, 3) unit normals with the detail of a normal map, as Blender's Normal Map node has it.
+    """(n, 3) unit normals with a normal map applied, as Blender's Normal Map node does.
 
-    normals: (n, 3) unit. color: (n, 3) or (3,), averaged: the mean direction of a footprint is that of its mean vector.
-    tangents: (4 layers, n), or None, which leaves a tangent-space map out. So does a vector that vanishes.
-    In tangent space the strength multiplies what is across the normal; in object space it mixes with the normal.
+    normals: (n, 3) unit. color: (n, 3) or (3,), averaged: the mean direction over a footprint is the direction of its
+        mean vector.
+    tangents: (4 layers, n), or None. Without tangents, or where a tangent vanishes, a tangent-space map is ignored. In
+        tangent space the strength scales the tangential components; in object space it blends with the normal.
     """
     vector = 2 * np.broadcast_to(color, normals.shape) - 1
     strength = normal_map.strength
@@ -182,20 +184,20 @@ def _varies(channel: Channel | None) -> bool:
 
 
 def _layer(rows: np.ndarray | None, layer: int, width: int) -> np.ndarray | None:
-    """Those of one layer, from (..., layers * width, n); None where there is none."""
+    """One layer of an array (..., layers * width, n); None if it does not exist."""
     if rows is None or rows.shape[-2] < (layer + 1) * width:
         return None
     return rows[..., layer * width : (layer + 1) * width, :]
 
 
 def _on_black(rgba: np.ndarray) -> np.ndarray:
-    """(n, 4) as they are seen where alpha is not looked at."""
+    """(n, 4) colours composited on black, as they appear where alpha is ignored."""
     alpha = rgba[:, 3:]
     return rgba if (alpha == 1).all() else np.concatenate([rgba[:, :3] * alpha, np.ones_like(alpha)], axis=1)
 
 
 def _texels_between(uv_steps: np.ndarray, size: tuple[int, int]) -> np.ndarray:
-    """(n,) pixels of a (width, height) image from a sample to its farther neighbour in the grid."""
+    """(n,) pixels of a (width, height) image between a sample and its more distant neighbour in the grid."""
     width, height = size
     columns, rows = (np.hypot(du * width, dv * height) for du, dv in uv_steps)
     return np.maximum(columns, rows)

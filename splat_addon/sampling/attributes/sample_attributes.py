@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Gives the samples of one layered depth image their position, ellipse, normal, material and what it is made of.
+"""Gives the samples of one layered depth image their position, ellipse, normal and material values.
 
-Everything that varies is linear along a span. So the barycentric weights are worked out at a span's two ends, in
-float64 and clamped into the triangle, and a sample costs one multiply and add a component, in float32; its height in
-float64, rounded once.
+Everything that varies is linear along a span. Barycentric weights are therefore computed at the two ends of a span, in
+float64 and clamped into the triangle. Each sample then costs one multiply and add per component in float32; its height
+is computed in float64 and rounded once.
 """
 
 from __future__ import annotations
@@ -19,26 +19,28 @@ from .material_sampler import MaterialSampler, Samples
 from .texture_mapping import BORDER, axis_steps, fill_uvs
 from .texture_seams import border_lines
 
-#: A projected triangle this much smaller than its snapped twin, or turned over, has no usable barycentrics of its own.
+#: A projected triangle that is smaller than its snapped twin by this factor, or flipped, has no usable barycentrics of
+#: its own.
 _LEAST_AREA_RATIO = 1e-6
 
-#: Squared lengths between these are safe to divide by in float32.
+#: Squared lengths in this range are safe divisors in float32.
 _USABLE_SQUARES = (1e-30, 1e30)
 
 
-#: Up to so many spans a triangle, working out a triangle for each of its spans costs less than handing on what it is.
+#: Up to this many spans per triangle, recomputing triangle values for each span is cheaper than indexing shared ones.
 _FEW_SPANS = 1.3
 
-#: What a mesh stores at its corners may be infinite or NaN; the result is looked at, so the way there need not warn.
+#: Corner values of a mesh may be infinite or NaN; the result is checked, so intermediate warnings are suppressed.
 _quietly = np.errstate(over="ignore", invalid="ignore")
 
 
 class SampleFiller:
-    """Fills the rows of preallocated arrays, span after span.
+    """Fills rows of preallocated arrays, span by span.
 
-    mesh: usable. coordinates: (3, V) float64, of its vertices on the grid. half_size: of a splat, object units.
-    sampler: of the mesh. bends: two (T,), as `blend_depths` takes them, or None.
-    tangents: (T, 3, 4 layers) at its corners, as `Samples` has them, or None.
+    mesh: usable triangles. coordinates: (3, V) float64 grid coordinates of its vertices. half_size: of a splat, object
+        units.
+    sampler: evaluates the mesh's materials. bends: two (T,) arrays for `blend_depths`, or None.
+    tangents: (T, 3, 4 layers) at its corners, in the layout of `Samples`, or None.
     arrays: field of `Surfels` -> array to fill.
     """
 
@@ -60,7 +62,7 @@ class SampleFiller:
         self._centres = [grid.centres(axis) for axis in range(3)]
 
     def fill(self, spans: Spans, axis: int, rows: slice):
-        """Writes the samples of these spans of the image along `axis` to `rows` of the arrays."""
+        """Write the samples of these spans of the image along `axis` to `rows` of the arrays."""
         out = {name: array[rows] for name, array in self._arrays.items()}
         triangles, of_span = _grouped(spans.triangles)
         first, edges, normals = self._sound_triangles(triangles, axis)
@@ -126,7 +128,7 @@ class SampleFiller:
     def _samples(
         self, corner_values: np.ndarray, triangles: np.ndarray, weights: _SpanWeights, line: _Lines
     ) -> np.ndarray:
-        """(c, n) float32 interpolated values of (T, 3, c) ones at the corners."""
+        """(c, n) float32 values interpolated from (T, 3, c) corner values."""
         components = _at_corners(corner_values, triangles)
         result = np.empty((len(components), line.count), np.float32)
         for (a, b, c), row in zip(components, result, strict=True):
@@ -134,10 +136,12 @@ class SampleFiller:
         return result
 
     def _sound_triangles(self, triangles: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """(3, t) first corners on the grid, (3, 2, t) edges from there to the others and (3, t) normals of any length.
+        """Per triangle: (3, t) first corners on the grid, (3, 2, t) edges to the other corners and (3, t) normals of
+        any length.
 
-        A triangle that projects to (nearly) nothing can open up once its corners are snapped; its own barycentrics
-        would be infinite (facts/sampling.md section 1, the trap). There all is of the snapped corners.
+        A triangle that projects to (nearly) nothing can gain area once its corners are snapped, and its own
+        barycentrics would be infinite (facts/sampling.md section 1, the trap). For such triangles everything is
+        computed from the snapped corners.
         """
         corners = corners_at(self._coordinates, corner_indices(self._mesh.triangles.take(triangles, axis=0)))
         edges = corners[:, 1:] - corners[:, :1]
@@ -150,8 +154,8 @@ class SampleFiller:
         return corners[:, 0], edges, normals
 
     def _poor(self, corners: np.ndarray, edges: np.ndarray, areas: np.ndarray, axis: int) -> np.ndarray:
-        """The triangles whose (t,) area in the image is lost beside what snapping does to it, or turned over by it."""
-        # No component of an edge changes by more than 1 / subcells, so most are seen to be sound from afar.
+        """The triangles whose (t,) projected area is dwarfed by the error of snapping, or flipped by it."""
+        # Snapping changes no component of an edge by more than 1 / subcells, so most triangles pass this cheap test.
         longest = max(np.abs(edges[(axis + k) % 3]).max(initial=0) for k in (1, 2))
         poor = np.flatnonzero(~(np.abs(areas) * (self._grid.subcells / 2) > 4 * longest + 1))
         if not len(poor):
@@ -163,12 +167,12 @@ class SampleFiller:
 
 
 class _SpanWeights:
-    """Barycentric weights of corners 1 and 2 at each span's first sample, and their change from one sample to the next.
+    """Barycentric weights of corners 1 and 2 at each span's first sample, and their change per sample.
 
-    first, edges, areas: of t triangles, as `_sound_triangles` gives them; the last is the normals' component along the
-    axis. of_span: (n,) each span's triangle among the t, as `_grouped` has it.
-    Both ends are moved into the triangle, to where it is nearest: on the snapped outline a sample can lie 0.71 of a
-    sub-cell outside the real one. Clamping the weights themselves would move it any distance along a sliver.
+    first, edges, areas: results of `_sound_triangles` for t triangles; areas is the normals' component along the axis.
+        of_span: (n,) index of each span's triangle, from `_grouped`.
+    Both ends are moved to the nearest point of the triangle: on the snapped outline a sample can lie 0.71 of a sub-cell
+    outside the real triangle. Clamping the weights themselves could move it arbitrarily far along a sliver.
     """
 
     def __init__(
@@ -206,9 +210,9 @@ class _SpanWeights:
         self._rounded = self._first.astype(np.float32), self._step.astype(np.float32)
 
     def interpolate(self, value: np.ndarray, *rises: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) first value and (n,) step along each span, in the type of the values.
+        """(n,) first value and (n,) step along each span, in the values' dtype.
 
-        value: (t,) float32 or float64, at corner 0. rises: (t,) twice, from there to the corners 1 and 2.
+        value: (t,) float32 or float64, at corner 0. rises: two (t,) arrays, the differences to corners 1 and 2.
         """
         firsts, steps = (self._first, self._step) if value.dtype == np.float64 else self._rounded
         value, second, third = (_spread(row, self._of_span) for row in (value, *rises))
@@ -224,19 +228,20 @@ class _SpanWeights:
         return np.stack([1 - second - third, second, third])
 
     def changes(self, steps: np.ndarray, triangle: np.ndarray) -> np.ndarray:
-        """(3, 2, n) change of the weights along the half-axes, which are (2, 2, n) `steps` of columns and rows."""
+        """(3, 2, n) change of the weights along the half-axes, which are given as (2, 2, n) `steps` in columns and
+        rows."""
         per_step = np.stack([self._per_column, self._per_row]).take(triangle, axis=2)
         rest = np.einsum("akn,kwn->wan", steps, per_step)
         return np.concatenate([-rest.sum(axis=0, keepdims=True), rest])
 
     def gradients(self, corners: np.ndarray) -> np.ndarray:
-        """(2, c, t) change of (3, c, t) corner values from one column, and from one row, to the next."""
+        """(2, c, t) change of (3, c, t) corner values per column and per row."""
         first, second = corners[1] - corners[0], corners[2] - corners[0]
         return np.stack([first * w[0] + second * w[1] for w in (self._per_column, self._per_row)])
 
 
 class _Lines:
-    """The samples of spans: which span each belongs to, and its place along it."""
+    """The samples of spans: the span each belongs to, and its index along the span."""
 
     def __init__(self, span: np.ndarray, step: np.ndarray):
         self.count = len(span)
@@ -252,8 +257,8 @@ class _Lines:
 
 
 def _grouped(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
-    """The distinct values of an ascending array, and which of them each entry is; where few repeat, the array itself
-    and None: each its own."""
+    """The distinct values of an ascending array, and the index of each entry among them. If few values repeat, the
+    array itself and None, meaning that each entry stands for itself."""
     is_new = np.empty(len(ordered), bool)
     is_new[:1] = True
     np.not_equal(ordered[1:], ordered[:-1], out=is_new[1:])
@@ -265,12 +270,12 @@ def _grouped(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
 
 
 def _spread(values: np.ndarray, owner: np.ndarray | None) -> np.ndarray:
-    """(..., n) of (..., t) values, as `_grouped` has their owners; not to be changed."""
+    """(..., n) values expanded from (..., t) by the owners of `_grouped`; the result must not be modified."""
     return values if owner is None else values.take(owner, axis=-1)
 
 
 def _at_corners(values: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(c, 3, t) float32: of (T, 3, c) values at corners those of t triangles, each component contiguous."""
+    """(c, 3, t) float32: corner values of t triangles from (T, 3, c), each component contiguous."""
     rows = values.reshape(len(values), -1).take(triangles, axis=0)
     return np.ascontiguousarray(rows.T.reshape(3, -1, len(triangles)).swapaxes(0, 1), np.float32)
 
@@ -278,10 +283,11 @@ def _at_corners(values: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 def _moved_inside(
     weights: np.ndarray, column: np.ndarray, row: np.ndarray, sides: tuple[np.ndarray, ...], owner: np.ndarray | None
 ) -> np.ndarray:
-    """(2, n) barycentric weights, in place: of the nearest point of the triangle where they lie outside.
+    """Move (2, n) barycentric weights that lie outside to the nearest point of the triangle, in place.
 
-    column, row: (n,) where in the image, from corner 0. sides: (t,) each, u and v of the edges from there to the other
-    two corners. owner: (n,) each one's triangle, as `_grouped` has it.
+    column, row: (n,) place in the image, relative to corner 0.
+    sides: (t,) each, u and v of the edges from corner 0 to the other two corners.
+    owner: (n,) each sample's triangle, from `_grouped`.
     """
     w1, w2 = weights
     outside = np.flatnonzero((w1 < 0) | (w2 < 0) | (w1 + w2 > 1))
@@ -299,7 +305,8 @@ def _moved_inside(
 
 
 def _nearest_on_segment(x: np.ndarray, y: np.ndarray, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Share of the way from (0, 0) to (u, v) at which (x, y) is nearest, and its squared distance from there."""
+    """Fraction of the way from (0, 0) to (u, v) at which (x, y) is nearest, and its squared distance from that
+    point."""
     share = np.clip((x * u + y * v) / np.maximum(u * u + v * v, np.finfo(np.float64).tiny), 0, 1)
     return share, (x - share * u) ** 2 + (y - share * v) ** 2
 
@@ -317,7 +324,8 @@ def _write_rows(rows: np.ndarray, owner: np.ndarray, out: np.ndarray):
 
 
 def _write_unit(vectors: np.ndarray, fallbacks: np.ndarray, owner: np.ndarray, out: np.ndarray):
-    """Normalises (3, n) vectors into (n, 3) `out`; one of no usable length becomes its owner's of (3, t) fallbacks."""
+    """Normalise (3, n) vectors into (n, 3) `out`; vectors without usable length become their owner's of (3, t)
+    fallbacks."""
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         squares = _squares(vectors)
         inverse = 1 / np.sqrt(squares)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a material is made of, as far as surfels keep it: each input of a Principled shader as a `Channel`.
+"""Describes a material as far as surfels can store it: each input of a Principled shader as a `Channel`.
 
-A channel is a product of a constant, textures and vertex colours: what importers and painters make. `sampler` gives its
-value at samples of the surface.
+A channel is a product of a constant, textures and vertex colours, which is what importers and painters produce.
+`sampler` evaluates it at samples of the surface.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ import numpy as np
 
 from ...images import Image
 
-#: What a renderer makes of a colour where one number is asked for: luminance of Rec. 709.
+#: Weights that turn a colour into a single number: Rec. 709 luminance.
 LUMINANCE = (0.2126, 0.7152, 0.0722, 0.0)
 RED, GREEN, BLUE, ALPHA = ((*np.eye(4)[k].tolist(),) for k in range(4))
 
 
-#: name -> what a coordinate becomes: where an image repeats along one side and not along the other.
+#: name -> wrapping of a coordinate, for images that repeat in one direction but not in the other.
 WRAPS = {
     "REPEAT": lambda coordinate: coordinate - np.floor(coordinate),
     "MIRROR": lambda coordinate: 1 - np.abs(coordinate - 2 * np.floor(coordinate / 2) - 1),
@@ -30,10 +30,11 @@ WRAPS = {
 class Texture:
     """An image on the surface.
 
-    layer: which of the mesh's texture coordinates. placement: (2, 3) matrix from those to the image's, None: the same.
-    wraps: how the image's u and v are brought to 0..1 before it is looked up, names in `WRAPS`; None: they are not.
-    weights: of r, g, b, a, whose sum is the factor of a channel of one number; None: the components themselves.
-    uses_alpha: False: the alpha is not looked at, so that what lies outside a clipped image is black and not clear.
+    layer: index of the mesh's texture coordinates. placement: (2, 3) matrix from those to the image's coordinates;
+        None: identity.
+    wraps: how the image's u and v are wrapped to 0..1 before the lookup, names in `WRAPS`; None: no wrapping.
+    weights: for r, g, b, a, to reduce the pixel to a single factor; None: use the components themselves.
+    uses_alpha: if False, alpha is ignored, so that the outside of a clipped image is black instead of transparent.
     """
 
     image: Image
@@ -55,7 +56,10 @@ class Texture:
 
 @dataclass(frozen=True)
 class VertexColors:
-    """Colours at the mesh's corners. layer: which of them. weights: as a `Texture`'s. uses_alpha: False: alpha is 1."""
+    """Colours at the mesh's corners.
+
+    layer: index of the colour layer. weights: as in `Texture`. uses_alpha: if False, alpha is taken as 1.
+    """
 
     layer: int = 0
     weights: tuple[float, float, float, float] | None = None
@@ -64,9 +68,10 @@ class VertexColors:
 
 @dataclass(frozen=True, eq=False)
 class Channel:
-    """A quantity of the surface. value: 1, 3 or 4 numbers, times each of the factors whose layer the mesh has.
+    """A material quantity: a constant times factors.
 
-    factors: one or several. A factor without weights gives as many of its components as the value has.
+    value: 1, 3 or 4 numbers, multiplied by each factor whose layer the mesh has.
+    factors: any number; a factor without weights supplies as many components as the value has.
     """
 
     value: tuple[float, ...]
@@ -79,15 +84,15 @@ class Channel:
         object.__setattr__(self, "factors", (self.factors,) if is_one else tuple(self.factors))
 
 
-#: How the colour of a normal map's pixel is read.
+#: How the colour of a normal map's pixel is interpreted.
 SPACES = ("TANGENT", "OBJECT")
 
 
 @dataclass(frozen=True, eq=False)
 class NormalMap:
-    """Detail of the shading normal: twice the colour less one, in the frame of `tangents` or in object space.
+    """Detail of the shading normal: 2 * colour - 1, in the frame of `tangents` or in object space.
 
-    layer: of the texture coordinates whose directions the tangents follow. strength: 0 leaves the normal as it is.
+    layer: the texture coordinates whose directions the tangents follow. strength: 0 leaves the normal unchanged.
     """
 
     color: Channel
@@ -107,8 +112,8 @@ class Surface:
     """One material.
 
     color: scene-linear r, g, b, a. opacity: one number that multiplies the colour's alpha. roughness, metallic: one
-    number. emission: scene-linear radiance. None: not given, which is no opacity but the colour's own, Principled's
-    default of the others, and no normal map.
+        number. emission: scene-linear radiance. A channel of None is not given: opacity is then the colour's own alpha,
+        the others take Principled's defaults, and there is no normal map.
     """
 
     color: Channel = Channel((0.8, 0.8, 0.8, 1.0))
@@ -126,13 +131,13 @@ class Surface:
 
     @property
     def color_texture(self) -> Texture | None:
-        """The one image whose colours, times a constant, are the surface's; None where there is more or less to it."""
+        """The single image that, times a constant, gives the surface's colours; None if the colour is anything else."""
         factors = self.color.factors
         is_one = len(factors) == 1 and isinstance(factors[0], Texture) and factors[0].weights is None
         return factors[0] if is_one else None
 
     def channels(self) -> dict[str, Channel]:
-        """Those that are given, by name; that of the normal map as "normal_map"."""
+        """The channels that are given, by name; the one of the normal map is called "normal_map"."""
         given = {name: getattr(self, name) for name in _COUNTS if getattr(self, name) is not None}
         return given if self.normal_map is None else given | {"normal_map": self.normal_map.color}
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tangents of a mesh's texture coordinates, in which normal maps are painted: MikkTSpace, as Blender and glTF have it.
+"""Tangents of a mesh's texture coordinates, the frame of normal maps: MikkTSpace, which Blender and glTF use.
 
-Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008: a corner's tangent is the mean, weighted by angles, of its
-triangles' directions of growing u, each flattened against the corner's normal, over the triangles that share the
-corner's position, normal and texture coordinates and whose texture is not mirrored to the other's.
+Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008: each triangle's direction of growing u is projected onto
+the plane perpendicular to the corner's normal. A corner's tangent is the mean of these directions, weighted by angle,
+over the triangles that share the corner's position, normal and texture coordinates and whose texture has the same
+handedness.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from ..mesh.triangle_mesh import TriangleMesh
 
 
 def layered_tangents(mesh: TriangleMesh) -> np.ndarray | None:
-    """(T, 3, 4 layers) float32: `corner_tangents` of each layer of texture coordinates; None where there is none."""
+    """(T, 3, 4 layers) float32: `corner_tangents` for each layer of texture coordinates; None if there is no layer."""
     if mesh.corner_uvs is None:
         return None
     layers = (mesh.corner_uvs[..., k : k + 2] for k in range(0, mesh.corner_uvs.shape[2], 2))
@@ -37,7 +38,7 @@ def corner_tangents(mesh: TriangleMesh, uvs: np.ndarray) -> np.ndarray:
         normals = np.where(np.isfinite(given).all(axis=2, keepdims=True), given, face_normals[:, None])
     along_u, mirrored = _directions(corners, uvs)
     flattened = _unit(_flattened(along_u[:, None], normals))
-    # The angle between a corner's edges, both flattened against its normal.
+    # The angle between a corner's edges, both projected perpendicular to its normal.
     next_edge, last_edge = (_unit(_flattened(np.roll(corners, -k, axis=1) - corners, normals)) for k in (1, 2))
     angles = np.arccos(np.clip((next_edge * last_edge).sum(axis=2), -1, 1))
     weighted = np.nan_to_num(flattened * angles[..., None], posinf=0, neginf=0)
@@ -49,7 +50,8 @@ def corner_tangents(mesh: TriangleMesh, uvs: np.ndarray) -> np.ndarray:
 
 
 def _directions(corners: np.ndarray, uvs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(T, 3) unit directions on the surface in which u grows and v stays, and (T,) whether the texture is mirrored."""
+    """(T, 3) unit directions on the surface in which u grows and v is constant, and (T,) whether the texture is
+    mirrored."""
     (du1, dv1), (du2, dv2) = ((uvs[:, k] - uvs[:, 0]).T for k in (1, 2))
     p1, p2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     area = du1 * dv2 - du2 * dv1
@@ -57,7 +59,7 @@ def _directions(corners: np.ndarray, uvs: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _groups(triangles: np.ndarray, normals: np.ndarray, uvs: np.ndarray, mirrored: np.ndarray) -> np.ndarray:
-    """(3 T,) integers that are equal for corners that share everything."""
+    """(3 T,) integers that are equal for corners that share position, normal and texture coordinates."""
     columns = [
         triangles.reshape(-1, 1),
         np.ascontiguousarray(normals, np.float32).reshape(-1, 3).view(np.int32),

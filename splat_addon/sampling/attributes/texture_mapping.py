@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Texture coordinates for surfels that look their colour up when they are rendered: at the centre, and their change
-along the half-axes (the view-independent paper, section 4.4).
+"""Texture coordinates for surfels whose colour is looked up at render time: at the centre, and their change along the
+half-axes (the view-independent paper, section 4.4).
 
-The change belongs to the sample's own triangle: where a splat reaches over an edge to another chart of the UV map, it
-shows what lies beside its own chart in the image.
+The change is that of the sample's own triangle, so where a splat reaches over an edge to another chart of the UV map,
+it shows the image beside its own chart.
 """
 
 from __future__ import annotations
@@ -14,23 +14,23 @@ from ...surfels import quaternion_axes
 from .material_sampler import Samples, placed
 from .surfaces import Surface
 
-#: The fields of `Surfels` that are filled.
+#: The fields of `Surfels` that are filled here.
 UV_FIELDS = ("uvs", "uv_along_x", "uv_along_y")
-#: And the one that says where the map ends: `texture_seams`.
+#: The field that says where the chart ends, see `texture_seams`.
 BORDER = "uv_border"
 
 
 def is_texture_mapped(surfaces: tuple[Surface, ...]) -> bool:
-    """Whether some surface's colour is one image, that can be looked up later."""
+    """Whether any surface's colour is a single image, which can be looked up at render time."""
     return any(surface.color_texture is not None for surface in surfaces)
 
 
 def fill_uvs(out: dict[str, np.ndarray], surfaces: tuple[Surface, ...], samples: Samples, steps: np.ndarray) -> None:
-    """Write `UV_FIELDS`; zeros, which say that the surfel's own colour is meant, where a surface's colour is not one
-    image, the mesh has not its layer, or the coordinates are not finite.
+    """Write `UV_FIELDS`. Zeros, which mean that the surfel's own colour is shown, are written if the surface's colour
+    is not a single image, the mesh lacks its layer, or the coordinates are not finite.
 
-    out: fields of `Surfels` -> their rows of n samples. steps: (2, 2, n) how many of the steps of `samples.uv_steps`
-    (axis 1) the local x and y half-axis (axis 0) are.
+    out: fields of `Surfels` -> their rows of n samples. steps: (2, 2, n) the local x and y half-axis (axis 0) in units
+        of the steps of `samples.uv_steps` (axis 1).
     """
     for name in UV_FIELDS:
         out[name][...] = 0
@@ -51,9 +51,9 @@ def fill_uvs(out: dict[str, np.ndarray], surfaces: tuple[Surface, ...], samples:
 
 
 def axis_steps(arrays: dict[str, np.ndarray], axes: np.ndarray | int, spacing: float) -> np.ndarray:
-    """(2, 2, n) how many columns and rows (axis 1) of an image the local x and y half-axis (axis 0) of surfels are.
+    """(2, 2, n): the local x and y half-axis (axis 0) of surfels, in columns and rows (axis 1) of an image.
 
-    axes: (n,) along which each was sampled, or one for all.
+    axes: (n,) the axis along which each was sampled, or one for all.
     """
     rows = np.arange(len(arrays["scales"]))
     directions = quaternion_axes(arrays["rotations"], 2)[:2]
@@ -64,28 +64,29 @@ def axis_steps(arrays: dict[str, np.ndarray], axes: np.ndarray | int, spacing: f
 
 
 def uv_planes(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> np.ndarray:
-    """(n, 2, 3) float64 coordinates at the centres, their change per column and per row; (n, 0, 3) without any."""
+    """(n, 2, 3) float64 coordinates at the centres and their change per column and per row; (n, 0, 3) without
+    coordinates."""
     if "uvs" not in arrays:
         return np.empty((len(arrays["scales"]), 0, 3))
     (xc, xr), (yc, yr) = axis_steps(arrays, axes, spacing).astype(np.float64)[..., None]
     along_x, along_y = (arrays[name].astype(np.float64) for name in UV_FIELDS[1:])
-    # The axes lie in a plane that faces the image, so that this is never 0.
+    # The axes lie in a plane that faces the image, so this is never 0.
     area = xc * yr - xr * yc
     per_column, per_row = (along_x * yr - along_y * xr) / area, (along_y * xc - along_x * yc) / area
     return np.stack([arrays["uvs"], per_column, per_row], axis=2)
 
 
 def from_uv_planes(planes: np.ndarray, arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> dict:
-    """`UV_FIELDS` of the surfels of `arrays`, the inverse of `uv_planes`."""
+    """`UV_FIELDS` of the surfels in `arrays`; the inverse of `uv_planes`."""
     steps = axis_steps(arrays, axes, spacing)
     along = (planes[:, :, 1] * c[:, None] + planes[:, :, 2] * r[:, None] for c, r in steps)
-    # The map goes on around a merged disc.
+    # The chart continues around a merged disc.
     values = (planes[:, :, 0], *along, np.zeros((len(planes), 2)))
     return {name: value.astype(np.float32) for name, value in zip((*UV_FIELDS, BORDER), values, strict=True)}
 
 
 def slips(difference: np.ndarray, planes: np.ndarray) -> np.ndarray:
-    """(n,) how many cells a texture of these (n, 2, 3) planes must slip for a (n, 2) difference of coordinates."""
+    """(n,) how many cells a texture with these (n, 2, 3) planes must slip to change its coordinates by (n, 2)."""
     if not planes.shape[1]:
         return np.zeros(len(planes))
     change = np.hypot(planes[:, :, 1], planes[:, :, 2])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the charts of a UV map end: a texture-mapped splat that reaches over such an edge must not show what lies
-beside its chart in the image.
+"""Finds where the charts of a UV map end, because a texture-mapped splat that reaches over such an edge must not show
+the image beside its chart.
 
-Each surfel keeps the nearest edge of its own triangle at which the map breaks off, as a line in its ellipse.
+Each surfel stores the nearest chart edge of its own triangle, as a line in its ellipse.
 """
 
 from __future__ import annotations
@@ -12,19 +12,19 @@ import numpy as np
 from ..mesh.places import vertex_hashes
 from ..mesh.triangle_mesh import TriangleMesh
 
-#: Lines farther from the centre than this, in half-axes, limit nothing that is looked up.
+#: Lines farther from the centre than this, in half-axes, have no effect.
 FARTHEST = 1.5
-#: A line through the centre is taken as this far from it.
+#: A line through the centre is treated as if it were this far from it.
 _NEAREST = 1e-3
 
 
 def seam_edges(mesh: TriangleMesh) -> np.ndarray:
-    """(T, 3) bool: whether the edge opposite each corner is shared with no triangle of the same material that has the
-    same texture coordinates there."""
+    """(T, 3) bool: whether the edge opposite each corner is a seam, which no triangle of the same material shares with
+    the same texture coordinates."""
     places = mesh.places[mesh.triangles]
     uvs = np.asarray(mesh.corner_uvs, np.float32)
     corners = places ^ vertex_hashes(uvs.reshape(-1, uvs.shape[2]).astype(np.float64)).reshape(places.shape)
-    # a sum names an edge alike from both sides
+    # a sum identifies an edge from either side
     edges = corners[:, [1, 2, 0]] + corners[:, [2, 0, 1]]
     if mesh.materials is not None:
         edges = edges ^ (mesh.materials.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15))[:, None]
@@ -33,10 +33,10 @@ def seam_edges(mesh: TriangleMesh) -> np.ndarray:
 
 
 def border_lines(seams: np.ndarray, weights: np.ndarray, changes: np.ndarray) -> np.ndarray:
-    """(n, 2) float32 m of the nearest seam m . q = 1 in each ellipse's own coordinates q; 0 where none is near.
+    """(n, 2) float32 m of the nearest seam m . q = 1 in each ellipse's own coordinates q; 0 if none is near.
 
-    seams: (n, 3) of each sample's triangle. weights: (3, n) barycentric, at the centre. changes: (3, 2, n) their change
-    along the two half-axes.
+    seams: (n, 3), result of `seam_edges` for each sample's triangle. weights: (3, n) barycentric weights at the centre.
+        changes: (3, 2, n) their change along the two half-axes.
     """
     lines = np.zeros((len(seams), 2), np.float32)
     nearest = np.full(len(seams), FARTHEST)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels in the coordinates of their triangles, from which they are rebuilt when the triangles have moved.
+"""Binds surfels to their triangles, so that they can be rebuilt after the triangles have moved.
 
-Each keeps its triangle, its place and its two half-axes in terms of the triangle's edges and normal. Inside a triangle
-a deformation is an affine map, which maps ellipses to ellipses.
+Each surfel stores its triangle, and its position and two half-axes in terms of the triangle's edges and normal. Within
+a triangle a deformation is an affine map, which maps ellipses to ellipses.
 """
 
 from __future__ import annotations
@@ -14,31 +14,31 @@ from ...surfels import Surfels, axes_quaternions
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners, triangle_chunks
 from ..sample import Sampling, sample_surface
 
-#: Surfels whose longer axis has grown by more than this show less detail than was asked for.
+#: Surfels whose longer axis has grown beyond this factor show less detail than requested.
 LARGEST_STRETCH = 2.5
 
-#: A half-axis shrinks to this share of what it was, and not to nothing.
+#: A half-axis shrinks at most to this share of its original length, never to nothing.
 _LEAST_SHRINKING = 1e-3
 
-#: Stands for the area of a mesh that has none.
+#: Stands in for the area of a mesh that has none.
 _LEAST_AREA = 1e-300
 
-#: A mapped normal that is this far from the interpolated one is meant.
+#: A shading normal that differs this much from the interpolated one comes from a normal map.
 _BENT = 1e-3
 
 
 class Binding:
     """Each surfel in the coordinates of its triangle.
 
-    Coordinates are those of the basis (edge 1, edge 2, normal as long as the root of its own length), so that the third
-    grows with the others. Samples of one triangle and one axis follow one another and share their ellipse: what goes by
-    these *runs* is worked out once a run, by columns, in float64.
+    The basis is (edge 1, edge 2, normal divided by the root of its length), so that all three scale alike. Samples of
+    one triangle and one axis are consecutive and share an ellipse. Values shared by such a *run* are computed once per
+    run, in float64.
     """
 
     def __init__(self, mesh: TriangleMesh, sampling: Sampling, options: dict):
         surfels = sampling.surfels
         self._middle = mesh.positions.mean(axis=0)
-        # Sampled once more with the triangle's number for a material: the order of samples depends on the shape alone.
+        # Sample once more with triangle numbers as materials: the order of samples depends on the shape alone.
         named = TriangleMesh(mesh.positions, mesh.triangles, materials=np.arange(len(mesh), dtype=np.int32))
         alike = {name: value for name, value in options.items() if name not in ("crease_angle", "fits_blending")}
         triangles = sample_surface(named, **alike).surfels.materials
@@ -68,12 +68,13 @@ class Binding:
         self.repaint(mesh, surfels)
 
     def repaint(self, mesh: TriangleMesh, surfels: Surfels):
-        """Take over what the same samples have been given anew."""
+        """Take over newly sampled attributes of the same samples."""
         self._surfels = surfels
         self._bends = self._bends_of(mesh, surfels)
 
     def arrays_on(self, mesh: TriangleMesh) -> tuple[dict[str, np.ndarray], np.ndarray, float]:
-        """What of the surfels' arrays changes, their origin, and the share of them or of the area that grew too far."""
+        """The arrays that change, their origin, and the share of the surfels, or of the area if that is larger, that
+        grew too far."""
         rest, finite = self._surfels, np.isfinite(mesh.positions).all(axis=1)
         shift = mesh.positions.mean(axis=0) - self._middle
         origin = rest.origin + np.where(np.isfinite(shift), shift, 0.0)
@@ -112,12 +113,13 @@ class Binding:
         return out, origin, max(stretched / max(len(rest), 1), self._grown_share(mesh))
 
     def _grown_share(self, mesh: TriangleMesh) -> float:
-        """The share of the present area on triangles that have grown too much; from nothing, they have no surfel."""
+        """Share of the current area on triangles that have grown too much; triangles that grew from nothing have no
+        surfels."""
         areas = _areas(mesh)
         return float(areas[areas > LARGEST_STRETCH**2 * self._areas].sum() / max(areas.sum(), _LEAST_AREA))
 
     def _rows(self, chunk: slice) -> tuple[slice, np.ndarray]:
-        """The rows of the surfels in a chunk of runs, and which of these runs each is in."""
+        """The rows of the surfels in a chunk of runs, and the run that each belongs to."""
         starts = self._starts[chunk.start : chunk.stop + 1]
         return slice(starts[0], starts[-1]), np.repeat(np.arange(len(starts) - 1), np.diff(starts))
 
@@ -133,7 +135,7 @@ class Binding:
         )
 
     def _normals(self, mesh, basis: _Basis, triangles, rows: slice, of_run: np.ndarray) -> np.ndarray:
-        """(3, n) float32 unit shading normals, with what a normal map adds to them."""
+        """(3, n) float32 unit shading normals, including the detail of a normal map."""
         normals = _interpolated(mesh, basis, triangles, self._place[:2, rows], of_run)
         if self._bends is None:
             return normals
@@ -142,7 +144,8 @@ class Binding:
         return _unit(normals + added, normals)
 
     def _bends_of(self, mesh: TriangleMesh, surfels: Surfels) -> np.ndarray | None:
-        """(3, n) what a normal map adds to each interpolated normal, in its triangle's frame; None for nothing."""
+        """(3, n) what a normal map adds to each interpolated normal, in the triangle's frame; None if it adds
+        nothing."""
         bends = np.zeros((3, len(surfels)), np.float32)
         for chunk in triangle_chunks(len(self._triangles)):
             rows, of_run = self._rows(chunk)
@@ -154,7 +157,7 @@ class Binding:
 
 
 def _areas(mesh: TriangleMesh) -> np.ndarray:
-    """(T,) twice the area of each triangle; 0 where it is not finite."""
+    """(T,) twice the area of each triangle; 0 if it is not finite."""
     components, areas = np.ascontiguousarray(mesh.positions.T), np.empty(len(mesh))
     for chunk in triangle_chunks(len(mesh)):
         normals = doubled_areas(gather_corners(components, mesh.triangles[chunk]))
@@ -163,7 +166,10 @@ def _areas(mesh: TriangleMesh) -> np.ndarray:
 
 
 class _Basis:
-    """Of r triangles. corner: (3, r), the first ones. columns: (3, 3, r): both edges from there, and the normal."""
+    """Bases of r triangles.
+
+    corner: (3, r) first corners. columns: (3, 3, r) both edges from there, and the normal.
+    """
 
     def __init__(self, mesh: TriangleMesh, triangles: np.ndarray):
         components = np.ascontiguousarray(mesh.positions.T)
@@ -175,17 +181,17 @@ class _Basis:
         self.columns = np.stack([corners[:, 1] - self.corner, corners[:, 2] - self.corner, scaled])
 
     def times(self, coordinates: np.ndarray) -> np.ndarray:
-        """(3, r) vectors of (3, r) coordinates."""
+        """(3, r) vectors from (3, r) coordinates in the basis."""
         return sum(column * coordinate for column, coordinate in zip(self.columns, coordinates, strict=True))
 
     def inverse(self) -> np.ndarray:
-        """(3, 3, r): the rows of the inverse."""
+        """(3, 3, r): the rows of the inverse basis."""
         a, b, c = self.columns
         rows = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)])
         return rows / _dot(a, rows[0])
 
     def frame(self) -> np.ndarray:
-        """(3, 3, r) orthonormal axes: along the first edge, across it, the normal; 0 where there is none."""
+        """(3, 3, r) orthonormal axes: along the first edge, across it, the normal; 0 for degenerate triangles."""
         x, z = _unit(self.columns[0]), _unit(self.columns[2])
         return np.stack([x, _cross(z, x), z])
 
@@ -194,13 +200,13 @@ class _Ellipse:
     """r ellipses with the conjugate half-diameters p and q, (3, r) each.
 
     Principal half-axes are p cos t + q sin t and q cos t - p sin t where tan 2t = 2 p.q / (p.p - q.q). sizes: (r, 2)
-    how long they are, no less than `least`, (r, 1). sized: what they shrink from.
+    their lengths, at least `least`, (r, 1). sized: the original lengths, which shrinking is relative to.
     """
 
     def __init__(self, p: np.ndarray, q: np.ndarray, sized: np.ndarray):
         pp, qq, pq = _dot(p, p), _dot(q, q), _dot(p, q)
         angle = np.arctan2(2 * pq, pp - qq) / 2
-        # Axes that are still at right angles, as after a rotation, stay the axes, whichever is longer.
+        # Axes that are still at right angles, as after a rotation, are kept in their order, whichever is longer.
         angle[np.abs(pq) < 1e-6 * np.sqrt(pp * qq)] = 0
         self.cosine, self.sine = np.cos(angle), np.sin(angle)
         long = p * self.cosine + q * self.sine
@@ -211,7 +217,7 @@ class _Ellipse:
         self.has_plane = _dot(self._normal, self._normal) > 0
 
     def rotations(self, which: np.ndarray) -> np.ndarray:
-        """(w, 4) unit quaternions of those that have a plane."""
+        """(w, 4) unit quaternions of the ellipses that have a plane."""
         x, z = _unit(self._long[:, which]), _unit(self._normal[:, which])
         return axes_quaternions(x.T, _cross(z, x).T, z.T)
 
@@ -225,7 +231,7 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _unit(vectors: np.ndarray, fallback: np.ndarray | float = 0.0) -> np.ndarray:
-    """(3, n) of unit length; the fallback where there is no length."""
+    """(3, n) unit vectors; the fallback for vectors without length."""
     length = np.sqrt(_dot(vectors, vectors))
     usable = (length > 0) & np.isfinite(length)
     if usable.all():
@@ -234,11 +240,11 @@ def _unit(vectors: np.ndarray, fallback: np.ndarray | float = 0.0) -> np.ndarray
 
 
 def _interpolated(mesh: TriangleMesh, basis: _Basis, triangles, place: np.ndarray, of_run: np.ndarray) -> np.ndarray:
-    """(3, n) float32 unit shading normals at (2, n) coordinates; the triangle's own where the corners have none."""
+    """(3, n) float32 unit shading normals at (2, n) coordinates; the triangle's own normal if the corners have none."""
     own = _unit(basis.columns[2]).astype(np.float32)
     if mesh.corner_normals is None:
         return own.take(of_run, axis=1)
-    # clamped into the triangle, as the samples on its outline are
+    # clamped into the triangle, as for samples on its outline
     second, third = np.clip(place, 0, 1)
     third = np.minimum(third, 1 - second)
     corners = np.ascontiguousarray(np.moveaxis(mesh.corner_normals[triangles], 0, 2), np.float32)
@@ -248,9 +254,9 @@ def _interpolated(mesh: TriangleMesh, basis: _Basis, triangles, place: np.ndarra
 
 
 def _stretch(p: np.ndarray, q: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """(r,) largest factor by which a direction of each ellipse's plane has grown.
+    """(r,) largest factor by which any direction in each ellipse's plane has grown.
 
-    p, q: (3, r) images of the half-axes, which were `sizes`, (r, 2), long.
+    p, q: (3, r) images of the half-axes, whose lengths were `sizes`, (r, 2).
     """
     p, q = p / sizes[:, 0], q / sizes[:, 1]
     pp, qq, pq = _dot(p, p), _dot(q, q), _dot(p, q)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels that follow a deforming mesh: the same ones in the same order as long as it has the same triangles.
+"""Surfels that follow a deforming mesh: the same surfels in the same order as long as the mesh keeps its triangles.
 
-The mesh is sampled once; then each surfel goes with its triangle (`binding`). What was covered stays covered: only at
-the edges between triangles that stretch differently can the cover thin out.
+The mesh is sampled once; afterwards each surfel moves with its triangle (`binding`). Covered areas stay covered, except
+that coverage can thin out at edges between triangles that stretch differently.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..sample import sample_surface
 from .binding import Binding
 
-#: Where more than this share of the surfels is stretched too far, the mesh should be sampled anew.
+#: If more than this share of the surfels is stretched too far, the mesh should be sampled again.
 STRETCHED_SHARE = 0.01
 
 
 class DeformingSurfels:
-    """The surfels of one sampling, and where they go.
+    """The surfels of one sampling, and their current positions.
 
-    mesh: as it is sampled; options: of `sample_surface`. What it holds of this moment: `mesh`, `sampling`.
+    mesh: the mesh as sampled. options: those of `sample_surface`. `mesh` and `sampling` hold the current state.
     """
 
     def __init__(self, mesh: TriangleMesh, **options):
@@ -37,16 +37,17 @@ class DeformingSurfels:
         self._binding = None
 
     def has_triangles_of(self, mesh: TriangleMesh) -> bool:
-        """Whether the mesh has as many vertices and the same triangles over them."""
+        """Whether the mesh has the same number of vertices and the same triangles."""
         has_as_many = len(mesh.positions) == len(self.mesh.positions)
         return has_as_many and np.array_equal(mesh.triangles, self.mesh.triangles)
 
     def at(self, mesh: TriangleMesh) -> tuple[Surfels, float]:
-        """The surfels on the mesh as it is now, and the share of them or of its area that grew too far (`binding`).
+        """The surfels on the mesh in its current shape, and the share of surfels or of area that grew too far
+        (`binding`).
 
-        mesh: the same triangles over as many vertices. Its colours and other values at corners may have changed, which
-        costs a second sampling. Raises ValueError for another topology; non-finite vertices leave their surfels where
-        they were, as dots.
+        mesh: must have the same triangles and number of vertices. Changed colours or other corner values cost a second
+            sampling. Raises ValueError for another topology; surfels at non-finite vertices stay where they were,
+            shrunk to dots.
         """
         if not self.has_triangles_of(mesh):
             raise ValueError("The mesh has other triangles than the one that was sampled; sample it anew.")
@@ -65,12 +66,12 @@ class DeformingSurfels:
         return self._last[1]
 
     def _repaint(self, mesh: TriangleMesh):
-        """The same samples with the values that `mesh` has at its corners; the shape alone decides where they are."""
+        """Sample again with the corner values of `mesh`; the positions depend on the shape alone and stay."""
         self.mesh = replace(mesh, positions=self.mesh.positions, corner_normals=self.mesh.corner_normals)
         self.sampling = sample_surface(self.mesh, **self._options)
         self._surfels = replace(self.sampling.surfels, is_solid=self._surfels.is_solid)
         if self._binding is not None and len(self.sampling.surfels) != self._binding.count:
-            self._binding = None  # other colours have other borders, and gaps beside them
+            self._binding = None  # other colours make other borders, and other gaps beside them
         if self._binding is not None:
             self._binding.repaint(self.mesh, self.sampling.surfels)
 

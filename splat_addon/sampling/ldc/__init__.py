@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The layered depth cube: an exact grid, scan conversion onto it, and which samples a reduction keeps."""
+"""The layered depth cube: an exact grid, scan conversion onto it, and the reductions that decide which samples stay."""

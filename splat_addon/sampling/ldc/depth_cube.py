@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The layered depth cube: the spans of samples that each of three orthogonal layered depth images keeps.
+"""The layered depth cube: three orthogonal layered depth images, each stored as spans of samples.
 
-Only spans are held here, 16 bytes for a whole run of samples; `attributes` gives the samples their values.
+Only spans are stored here, 16 bytes for a whole run of samples; `attributes` gives the samples their values.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from ..refine.missed_components import SampledSurface
 from .grid import Grid
 from .scan_conversion import Spans, scan_convert
 
-#: Rows of an array index surfels with 32 bits elsewhere; nobody means to make more.
+#: Surfel rows are indexed with 32 bits elsewhere, which is far beyond practical counts.
 MAX_SAMPLES = 2**31 - 1
 
-#: Triangles at a time: more than elsewhere, as few come through to where most is done with each.
+#: Triangles per batch: larger than elsewhere, because few triangles reach the expensive steps.
 _CHUNK = 24576
 
-#: Bits of a packed cell for each component: more than the cells along an edge, 2^19, and a sign.
+#: Bits per component of a packed cell: room for the cells along an edge, 2^19, and a sign.
 _CELL_BITS = 21
 
 
@@ -37,12 +37,12 @@ def depth_cube(
 ) -> tuple[Spans, Spans, Spans]:
     """One `Spans` for the image along each of x, y, z.
 
-    coordinates: (3, V) float64, of the vertices on the grid. triangles: (T, 3).
+    coordinates: (3, V) float64 grid coordinates of the vertices. triangles: (T, 3).
     keeps: (3, t) absolute normal components -> the (3, t) images that sample a triangle.
-    surface: of the same vertices; is told which triangles are sampled.
-    share: of the rows of each image only those of one block: its number, from 0, and how many blocks there are.
+    surface: is told which triangles are sampled; has the same vertices.
+    share: number of one block of rows, from 0, and the number of blocks, to sample that block only.
     report: called with the finished share, 0 to 1. The axis is chosen from the snapped corners, whose normal is exact.
-    Raises ValueError with one sentence where there would be more samples than `MAX_SAMPLES`.
+        Raises ValueError with one sentence if there would be more than `MAX_SAMPLES` samples.
     """
     snapped, cells = np.empty_like(coordinates), np.empty(coordinates.shape[1], np.int64)
     for chunk in triangle_chunks(len(cells)):
@@ -66,7 +66,7 @@ def depth_cube(
         picked = [np.flatnonzero(row) for row in kept]
         places = candidates.take(np.concatenate(picked))
         ends = np.cumsum([len(part) for part in picked])
-        # All images at once: numpy is slow on small arrays.
+        # All images at once, because numpy is slow on small arrays.
         rows = None if bands is None else np.repeat(bands, [len(part) for part in picked], axis=1)
         for found in scan_convert(*(_seen(corners, picked, k) for k in (1, 2)), grid.subcells, rows):
             stops = np.searchsorted(found.triangles, ends)
@@ -84,7 +84,7 @@ def depth_cube(
 
 
 def surface_of(triangles: np.ndarray, images: tuple[Spans, ...], vertices: int) -> SampledSurface:
-    """What `depth_cube` tells a surface while it makes these spans, all of them."""
+    """Tell a surface which triangles these spans sample, as `depth_cube` does while it makes them."""
     surface, is_sampled = SampledSurface(vertices), np.zeros(len(triangles), bool)
     for spans in images:
         is_sampled[spans.triangles] = True
@@ -96,19 +96,19 @@ def surface_of(triangles: np.ndarray, images: tuple[Spans, ...], vertices: int) 
 
 
 def _bands(snapped: np.ndarray, grid: Grid, number: int, blocks: int) -> np.ndarray:
-    """(2, 3) float64: the first row of this block in each image and that of the next; half-open, in whole numbers."""
+    """(2, 3) float64: the first row of this block in each image, and the first row of the next block."""
     ends = np.ceil(snapped.max(axis=1) / grid.subcells)[[2, 0, 1]].astype(np.int64)
     return np.stack([ends * number // blocks, ends * (number + 1) // blocks]).astype(np.float64)
 
 
 def _reaches(corners: np.ndarray, bands: np.ndarray) -> np.ndarray:
-    """(3, t) bool: whether a triangle may have a row of the image's band. bands: (2, 3), in sub-cells."""
+    """(3, t) bool: whether a triangle may have a row in the image's band. bands: (2, 3), in sub-cells."""
     rows = corners[[2, 0, 1]]
     return (rows.min(axis=1) < bands[1, :, None]) & (rows.max(axis=1) > bands[0, :, None])
 
 
 def _seen(corners: np.ndarray, picked: list[np.ndarray], k: int) -> np.ndarray:
-    """(3, n) component axis + k of the corners of the triangles that are picked for each image, one after another."""
+    """(3, n) component axis + k of the corners of the triangles that each image samples, one image after another."""
     seen, start = np.empty((3, sum(map(len, picked)))), 0
     for axis, triangles in enumerate(picked):
         for values, row in zip(corners[(axis + k) % 3], seen, strict=True):
@@ -118,7 +118,7 @@ def _seen(corners: np.ndarray, picked: list[np.ndarray], k: int) -> np.ndarray:
 
 
 def _packed_cells(snapped: np.ndarray, subcells: int) -> np.ndarray:
-    """(V,) int64 that hold, for each component of (3, V) snapped coordinates, the first cell centre at or after it."""
+    """(V,) int64 that pack the first cell centre at or after each component of (3, V) snapped coordinates."""
     packed = np.zeros(snapped.shape[1], np.int64)
     for component in snapped:
         packed <<= _CELL_BITS
@@ -127,10 +127,10 @@ def _packed_cells(snapped: np.ndarray, subcells: int) -> np.ndarray:
 
 
 def _images_with_samples(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """(3, t) bool, for each image and triangle with its corners in these cells: whether any of the image's rays goes
+    """(3, t) bool, for each image and triangle with corners in these cells: whether any of the image's rays passes
     through the triangle's box.
 
-    Between corners with the same first cell centre lies none, half-open as in the scan conversion.
+    There is no ray between corners that have the same first cell centre, half-open as in the scan conversion.
     """
     differ = a ^ b
     differ |= a ^ c

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The grid that all three layered depth images share: where it starts, how fine it is, and its exact sub-cells."""
+"""The grid shared by all three layered depth images: its origin, its spacing, and its exact sub-cells."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import numpy as np
 
 from ..mesh.triangle_mesh import CHUNK, TriangleMesh
 
-#: Cells along the longest edge times sub-cells a cell: up to this every step of the scan conversion is exact in
-#: float64 (proved for a product below 2^26.5, measured at 2^26; facts/sampling.md section 1).
+#: Maximum number of cells along the longest edge times sub-cells per cell: up to this every step of the scan conversion
+#: is exact in float64 (proved for a product below 2^26.5, measured at 2^26; facts/sampling.md section 1).
 EXACT_BOUND = 2**25
 
-#: Sub-cells a cell; fewer put what is sampled 0.01 cell beside its triangle.
+#: Minimum sub-cells per cell; with fewer, samples lie up to 0.01 cell beside their triangle.
 MIN_SUBCELLS = 64
 
-#: Half-axes are stored as float32, whose normal numbers end at 1e-38.
+#: Half-axes are stored as float32, whose normal range ends at 1e-38.
 MIN_SPACING = 1e-35
 
 
-#: Cells along an edge of the largest blocks that adaptive sampling merges.
+#: Edge, in cells, of the largest blocks that adaptive sampling merges.
 BLOCK = 8
 
 
@@ -30,9 +30,10 @@ class Grid:
     """Cells of edge `spacing` from `origin`; samples lie at the cell centres.
 
     In *grid coordinates* the sample points are the integers: world = origin + spacing * (grid + 1/2).
-    subcells: parts of a cell, a power of two, to which corners are snapped.
+    subcells: parts of a cell, a power of two, that corners are snapped to.
     size: cells along the longest edge, rounded up.
-    middle: (3,) whole cells from `origin` to where surfels are measured from: half as far, float32 rounds half as much.
+    middle: (3,) whole cells from `origin` to the origin of the surfels: from the middle distances are half as long, so
+        float32 rounds half as much.
     """
 
     origin: np.ndarray
@@ -43,7 +44,7 @@ class Grid:
 
     @property
     def surfel_origin(self) -> np.ndarray:
-        """(3,) float64, object units: what positions of surfels are relative to."""
+        """(3,) float64, object units: the origin that surfel positions are relative to."""
         return self.origin + self.middle * self.spacing
 
     def coordinates(self, positions: np.ndarray) -> np.ndarray:
@@ -57,23 +58,23 @@ class Grid:
         return coordinates
 
     def snapped(self, coordinates: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
-        """Grid coordinates in whole sub-cells: integers held in float64."""
+        """Grid coordinates in whole sub-cells: integers stored as float64."""
         snapped = np.multiply(coordinates, self.subcells, out=out)
         return np.rint(snapped, out=snapped)
 
     def places(self, coordinates: np.ndarray, axis: int) -> np.ndarray:
-        """Positions of surfels along an axis, object units, of grid coordinates."""
+        """Positions of surfels along an axis, object units, from grid coordinates."""
         return (coordinates + (0.5 - self.middle[axis])) * self.spacing
 
     def centres(self, axis: int) -> np.ndarray:
-        """(size + 1,) float32: those of the columns or rows along the axis."""
+        """(size + 1,) float32: centres of the columns or rows along the axis."""
         return self.places(np.arange(self.size + 1), axis).astype(np.float32)
 
 
 def make_grid(mesh: TriangleMesh, spacing: float) -> Grid:
     """The grid of a usable, non-empty mesh; it starts at the corner of the mesh's box.
 
-    Raises ValueError with one sentence where the spacing is too fine to stay exact.
+    Raises ValueError with one sentence if the spacing is too fine to stay exact.
     """
     if not spacing >= MIN_SPACING:
         raise ValueError(f"A spacing of {spacing:g} is below {MIN_SPACING:g}; scale the object up first.")
@@ -84,15 +85,15 @@ def make_grid(mesh: TriangleMesh, spacing: float) -> Grid:
             f"The grid would have {cells:,.0f} cells along its longest edge and is exact up to {finest:,}; "
             f"use a spacing of at least {longest_edge(mesh) / finest:g}."
         )
-    # as many sub-cells as stay exact: what snapping moves is then below what float32 leaves of a position
+    # use as many sub-cells as stay exact, so that snapping moves a corner by less than float32 rounds a position
     subcells = 2 ** math.floor(math.log2(EXACT_BOUND / max(cells, 1.0)))
     low, high = mesh.bounds()
-    # The half cell: whole resolutions are met within rounding, which must not choose the block.
+    # The half cell absorbs rounding at whole resolutions, which must not decide the block.
     middle = np.floor(((high - low) / spacing + 0.5) / (2 * BLOCK)) * BLOCK
     return Grid(low, float(spacing), subcells, math.ceil(cells), middle)
 
 
 def longest_edge(mesh: TriangleMesh) -> float:
-    """Of the box around a usable mesh, object units."""
+    """Longest edge of the box around a usable mesh, object units."""
     low, high = mesh.bounds()
     return float((high - low).max())

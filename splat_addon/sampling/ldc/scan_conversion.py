@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Exact scan conversion of triangles onto one axis's grid: which cell centres lie inside which triangle.
 
-Corners are whole sub-cells held in float64. With L the largest coordinate in sub-cells, every product and sum
-below stays under 2 L^2 <= 2^51 and is exact; the one division is correctly rounded, and a quotient that is no integer
-lies at least 1/L away from one, more than the rounding, so its `ceil` is right. Rows and columns are half-open, so two
+Corners are whole sub-cells stored as float64. With L the largest coordinate in sub-cells, every product and sum below
+stays under 2 L^2 <= 2^51 and is exact; the only division is correctly rounded, and a quotient that is not an integer is
+at least 1/L away from one, which exceeds the rounding, so its `ceil` is right. Rows and columns are half-open, so two
 triangles that share an edge never share or lose a sample (facts/sampling.md section 1).
 """
 
@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-#: Rows, or samples, that are expanded at a time.
+#: Rows, or samples, that are expanded per batch.
 BATCH = 65536
 
 
@@ -38,7 +38,7 @@ class Spans:
 
     @staticmethod
     def joined(parts: list[Spans]) -> Spans:
-        """One after the other; no parts make no spans."""
+        """Spans concatenated in order; an empty list gives no spans."""
         if not parts:
             return Spans(*(np.zeros(0, np.int32) for _ in fields(Spans)))
         return Spans(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Spans)))
@@ -48,8 +48,8 @@ def scan_convert(u: np.ndarray, v: np.ndarray, subcells: int, band: np.ndarray |
     """The samples of t triangles, numbered from 0, as spans.
 
     u, v: (3, t) float64, the corners' image coordinates in whole sub-cells.
-    band: (2, t) float64, the first row that is wanted of each triangle and the first that is not; None: all.
-    The edge A-B meets row j, the line v = y = j S, at column ceil((uA (vB - vA) + (y - vA)(uB - uA)) / ((vB - vA) S)).
+    band: (2, t) float64, the half-open range of rows wanted of each triangle; None: all. The edge A-B meets row j, the
+        line v = y = j S, at column ceil((uA (vB - vA) + (y - vA)(uB - uA)) / ((vB - vA) S)).
     """
     u, v = _sorted_by_row(u, v)
     first, turn, last = np.ceil(v * (1 / subcells))
@@ -60,7 +60,8 @@ def scan_convert(u: np.ndarray, v: np.ndarray, subcells: int, band: np.ndarray |
     rows_of = (last - first).astype(np.intp)
     for part in batches(rows_of, BATCH):
         owner, row = _rows(part, first, rows_of)
-        # Each row meets the long edge, and below the middle corner's row the lower short one, from there the upper.
+        # Each row meets the long edge and one short edge: the lower one below the middle corner's row, else the upper
+        # one.
         edge = np.empty((2, len(owner)), np.intp)
         edge[0] = owner
         np.multiply(row >= turn.take(owner), len(first), out=edge[1])
@@ -82,14 +83,15 @@ def scan_convert(u: np.ndarray, v: np.ndarray, subcells: int, band: np.ndarray |
 
 
 def expand(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """For runs of these lengths: which run each element belongs to, and its place in it, both (sum of counts,) intp."""
+    """For runs of these lengths: the run of each element and its index within the run, both (sum of counts,) intp."""
     owner = np.repeat(np.arange(len(counts)), counts)
     before = np.cumsum(counts, dtype=np.intp) - counts
     return owner, np.arange(len(owner)) - before.take(owner)
 
 
 def batches(counts: np.ndarray, limit: int) -> Iterator[slice]:
-    """Slices of neighbouring entries whose counts sum up to at most `limit`; an entry above it comes alone."""
+    """Slices of consecutive entries whose counts add up to at most `limit`; an entry above the limit gets its own
+    slice."""
     if 0 < len(counts) and counts.sum(dtype=np.int64) <= limit:
         yield slice(0, len(counts))
         return
@@ -102,14 +104,15 @@ def batches(counts: np.ndarray, limit: int) -> Iterator[slice]:
         start = stop
 
 
-#: Two whole numbers up to 2^25 either way, one times this plus the other, are one float64 without rounding.
+#: Two integers of magnitude up to 2^25, one of them multiplied by this and added to the other, fit one float64 exactly.
 _PACKING = 2.0**27
 
 
 def _sorted_by_row(u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The corners of each triangle by rising v: u and v, both (3, t).
 
-    Sorted as single numbers that hold both: numpy finds a minimum ten times as fast as it follows a mask.
+    Both are packed into single numbers for sorting, because numpy computes minima ten times as fast as it applies
+    masks.
     """
     a, b, c = v * _PACKING + u
     a, b = np.minimum(a, b), np.maximum(a, b)
@@ -124,9 +127,9 @@ def _sorted_by_row(u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _edges(u: np.ndarray, v: np.ndarray, subcells: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Base, slope and divisor, (3, t) each, of the long edge and the lower and the upper short one.
+    """Base, slope and divisor, (3, t) each, of the long edge, the lower and the upper short edge.
 
-    u, v: (3, t), by rising v. An edge meets row j at column ceil((base + j slope) / divisor).
+    u, v: (3, t), sorted by v. An edge meets row j at column ceil((base + j slope) / divisor).
     """
     base, slope, divisor = (np.empty_like(u) for _ in range(3))
     for edge, (low, high) in enumerate(((0, 2), (0, 1), (1, 2))):
@@ -140,7 +143,8 @@ def _edges(u: np.ndarray, v: np.ndarray, subcells: int) -> tuple[np.ndarray, np.
 
 
 def _rows(part: slice, first: np.ndarray, counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The rows of these triangles: (n,) intp triangle and (n,) float64 row; `first` row and `counts` by triangle."""
+    """The rows of these triangles: (n,) intp triangle and (n,) float64 row, from the `first` row and `counts` per
+    triangle."""
     counts = counts[part]
     owner = np.repeat(np.arange(part.start, part.stop), counts)
     offset = first[part] + counts

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh as plain arrays, and what is asked of it before it is sampled: usable triangles, parts, solidity."""
+"""A mesh as plain arrays, and what sampling needs to know about it: usable triangles, parts, solidity."""

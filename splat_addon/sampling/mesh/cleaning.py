@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Leaves out the triangles that cannot be sampled, and counts them by reason; the first step of sampling."""
+"""The first step of sampling: drops triangles that cannot be sampled, and counts them by reason."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ import numpy as np
 from .survey import survey
 from .triangle_mesh import TriangleMesh
 
-#: Beyond this the square of an area leaves float32's range; no scene is that large, but broken files are.
+#: Coordinates beyond this make squared areas overflow float32; no scene is that large, but broken files are.
 MAX_COORDINATE = 1e18
 
 
 def drop_unusable(mesh: TriangleMesh) -> tuple[TriangleMesh, dict[str, int]]:
-    """The mesh without its unusable triangles and unused vertices, and how many triangles went, by reason.
+    """The mesh without its unusable triangles and unused vertices, and how many triangles were dropped, by reason.
 
-    Each triangle is counted once, under the first reason that applies. Triangles that share the positions
-    of all three corners with an earlier one, in either orientation, are dropped: they would double every sample.
-    A mesh in which all is usable is returned as it is.
+    Each triangle is counted once, under the first reason that applies. Triangles that share the positions of all three
+    corners with an earlier one, in either orientation, are dropped: they would double every sample. A mesh without
+    unusable triangles is returned unchanged.
     """
     if mesh.known_usable:
         return mesh, {}
@@ -46,7 +46,8 @@ def drop_unusable(mesh: TriangleMesh) -> tuple[TriangleMesh, dict[str, int]]:
 
 
 def _without(bad: dict[str, np.ndarray], mesh: TriangleMesh, dropped: dict[str, int]) -> TriangleMesh:
-    """The mesh without the triangles of each reason, which are counted in `dropped`; itself where there are none."""
+    """The mesh without the triangles of each reason, which are counted in `dropped`; the same mesh if there are
+    none."""
     dropped |= {reason: len(rows) for reason, rows in bad.items() if len(rows)}
     rows = np.concatenate(list(bad.values()))
     if not len(rows):
@@ -65,7 +66,7 @@ def _repeats_index(triangles: np.ndarray) -> np.ndarray:
 
 
 def _repeating(mesh: TriangleMesh, suspects: np.ndarray) -> np.ndarray:
-    """All but the first of the triangles with the same three corner positions in any order.
+    """All but the first of the triangles that have the same three corner positions, in any order.
 
     suspects: (k,) the triangles to compare, ascending.
     """
@@ -77,7 +78,7 @@ def _repeating(mesh: TriangleMesh, suspects: np.ndarray) -> np.ndarray:
 
 
 def _equal_rows(rows: np.ndarray) -> np.ndarray:
-    """(n,) integers that are equal exactly where two rows of (n, 3) are."""
+    """(n,) integers that are equal exactly where two rows of (n, 3) are equal."""
     order = np.lexsort(rows.T)
     differs = (rows[order[1:]] != rows[order[:-1]]).any(axis=1)
     label = np.empty(len(rows), np.intp)
@@ -85,7 +86,7 @@ def _equal_rows(rows: np.ndarray) -> np.ndarray:
     return label
 
 
-#: reason -> function of (V, 3) positions giving the bad values.
+#: reason -> function of (V, 3) positions that returns the bad vertices.
 _BAD_VERTICES = {
     "with a non-finite vertex": lambda p: ~np.isfinite(p),
     f"with a vertex beyond {MAX_COORDINATE:g}": lambda p: np.isfinite(p) & (np.abs(p) > MAX_COORDINATE),

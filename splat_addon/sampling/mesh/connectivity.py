@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which triangles hang together: vertices at one place become one, and each connected part gets a number."""
+"""Finds which triangles are connected: vertices at the same position become one, and each connected part gets a
+number."""
 
 from __future__ import annotations
 
@@ -7,14 +8,14 @@ import numpy as np
 
 from .triangle_mesh import corner_indices, triangle_chunks
 
-#: Bits of a hash that sort out the few that others may equal.
+#: Bits of a hash used for a first, quick test of which entries may match.
 _SIEVE_BITS = 16
 
 
 def twins(keys: np.ndarray) -> np.ndarray | None:
-    """(V,) intp: for each vertex the first at its place; None where each is alone.
+    """(V,) intp: for each vertex the first vertex at its position; None if no position is shared.
 
-    keys: (V,) of the places, by `vertex_hashes`, so right but by an accident of 2^-64.
+    keys: (V,) from `vertex_hashes`, so the result is right except for a hash collision with probability 2^-64.
     """
     ordered = np.sort(keys)
     shared = ordered[1:][ordered[1:] == ordered[:-1]]
@@ -28,7 +29,7 @@ def twins(keys: np.ndarray) -> np.ndarray | None:
 
 
 def among(keys: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Where in (n,) hashes those are that are among the (m,) wanted ones, both uint64; fast where these are few."""
+    """Indices of those of (n,) hashes that occur among the (m,) wanted ones, both uint64; fast if few match."""
     mask = np.uint64((1 << _SIEVE_BITS) - 1)
     is_wanted = np.zeros(1 << _SIEVE_BITS, bool)
     is_wanted[(wanted & mask).view(np.intp)] = True
@@ -37,12 +38,12 @@ def among(keys: np.ndarray, wanted: np.ndarray) -> np.ndarray:
 
 
 def part_labels(corners: np.ndarray, labels: np.ndarray | None = None) -> np.ndarray:
-    """(V,) intp: for each vertex the lowest vertex of its part, where the (t, 3) corners of triangles connect them.
+    """(V,) intp: for each vertex the lowest vertex of its part; the (t, 3) corners of triangles connect vertices.
 
-    labels: (V,) intp, of vertices that are one beforehand, as `twins` gives them; None: of none.
+    labels: (V,) intp from `twins`, for vertices to be merged beforehand; None: merge none.
     Roots are hooked onto lower ones along two edges of each triangle, and the paths halved (Shiloach & Vishkin 1982).
-    Of several lower ones any will do, so the last one written stays; what that leaves apart is joined in the same way,
-    as triangles between the few roots.
+    If several lower roots are possible, any will do, so the last one written stays; parts that remain separate are
+    joined in the next round, which has triangles between the few roots only.
     """
     labels = np.arange(int(corners.max(initial=-1)) + 1) if labels is None else labels.copy()
     for chunk in triangle_chunks(len(corners)):
@@ -68,7 +69,7 @@ def part_labels(corners: np.ndarray, labels: np.ndarray | None = None) -> np.nda
 
 
 def _shortened(labels: np.ndarray) -> np.ndarray:
-    """Every vertex with the root of its path."""
+    """For every vertex the root of its path."""
     while True:
         shorter = labels.take(labels)
         if np.array_equal(shorter, labels):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a mesh is made of at the corners of its triangles: for a mesh that is drawn as polygons and not sampled."""
+"""Material values at the corners of triangles, for a mesh that is drawn as polygons and not sampled."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from .triangle_mesh import TriangleMesh
 def corner_values(mesh: TriangleMesh) -> dict[str, np.ndarray]:
     """field -> (3 T, columns) or (3 T,) float32: colors, and roughness, metallic and emission where they vary.
 
-    Textures are averaged over about the triangle. Where a surface's color is one image, it is only its constant, and
-    "uvs", (3 T, 2), say where the image is to be looked up. Normal maps, which need more than corners, are left out.
+    Textures are averaged over about the area of the triangle. If a surface's color is a single image, colors hold only
+    its constant, and "uvs", (3 T, 2), are the coordinates at which to look up the image. Normal maps are left out,
+    because values at corners cannot represent them.
     """
     count = 3 * len(mesh)
     materials = np.zeros(count, int) if mesh.materials is None else np.repeat(mesh.materials, 3)
@@ -35,24 +36,24 @@ def corner_values(mesh: TriangleMesh) -> dict[str, np.ndarray]:
 
 
 def _rows(layers: np.ndarray | None) -> np.ndarray | None:
-    """(columns, 3 T) of (T, 3, columns)."""
+    """(columns, 3 T) from (T, 3, columns)."""
     return None if layers is None else layers.reshape(-1, layers.shape[2]).T
 
 
 def _across(uvs: np.ndarray) -> np.ndarray:
-    """(2, rows, 3 T) half of the change from each corner to the triangle's two others."""
+    """(2, rows, 3 T) half of the difference between each corner and the triangle's two other corners."""
     corners = uvs.reshape(len(uvs), -1, 3)
     return np.stack([(np.roll(corners, k, axis=2) - corners).reshape(uvs.shape) / 2 for k in (1, 2)])
 
 
 def _looked_up_later(surface: Surface) -> Surface:
-    """Without what is not looked up at corners."""
+    """The surface without the channels that are not evaluated at corners."""
     color = surface.color if surface.color_texture is None else Channel(surface.color.value)
     return replace(surface, color=color, normal_map=None)
 
 
 def _texture_coordinates(surfaces: tuple[Surface, ...], samples: Samples) -> np.ndarray:
-    """(3 T, 2) float32; 0 where nothing is looked up, or the coordinates are not finite."""
+    """(3 T, 2) float32; 0 where there is no image or the coordinates are not finite."""
     found = np.zeros((len(samples.materials), 2), np.float32)
     indices = np.minimum(samples.materials, len(surfaces) - 1)
     for index in np.unique(indices):
@@ -67,9 +68,9 @@ def _texture_coordinates(surfaces: tuple[Surface, ...], samples: Samples) -> np.
 
 
 def _wrapped(texture: Texture, uvs: np.ndarray) -> np.ndarray:
-    """(2, n) with each triangle as a whole brought to where its middle's coordinates are wrapped to.
+    """(2, n) coordinates, with each triangle moved as a whole so that its middle is wrapped into the image.
 
-    A triangle that lies across a border of the image goes on beyond it, where the image's extension is seen.
+    A triangle across a border of the image continues beyond it, where the image's extension applies.
     """
     if texture.wraps is None:
         return uvs

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes moved by affine maps, and several of them as one; before `cleaning`."""
+"""Moves meshes by affine maps and joins several into one; used before `cleaning`."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from .triangle_mesh import TriangleMesh
 
 
 def transformed(mesh: TriangleMesh, matrix: np.ndarray) -> TriangleMesh:
-    """The mesh under a (4, 4) affine map that flattens nothing.
+    """The mesh under a (4, 4) affine map of full rank.
 
-    Normals go by the inverse transpose. A map that mirrors turns the triangles over, so that what was counter-clockwise
-    from outside still is. The identity hands back the mesh itself.
+    Normals are transformed by the inverse transpose. A mirroring map also flips the winding, so triangles stay
+    counter-clockwise seen from outside. The identity returns the mesh itself.
     """
     matrix = np.asarray(matrix, np.float64)
     if np.array_equal(matrix, np.eye(4)):
@@ -34,10 +34,10 @@ def transformed(mesh: TriangleMesh, matrix: np.ndarray) -> TriangleMesh:
 
 
 def joined(meshes: Sequence[TriangleMesh]) -> TriangleMesh:
-    """One mesh of several, in their order, over the first one's `surfaces`; one of one is itself.
+    """Several meshes joined in order, with the `surfaces` of the first; a single mesh is returned unchanged.
 
-    What only some of them have is 0 in the others, which for `corner_normals` means the triangle's own normal; so are
-    layers of texture coordinates and colours that only some have.
+    Fields and layers that only some meshes have are filled with 0 for the others; for `corner_normals` 0 means the
+    triangle's own normal.
     """
     if len(meshes) == 1:
         return meshes[0]
@@ -53,7 +53,7 @@ def joined(meshes: Sequence[TriangleMesh]) -> TriangleMesh:
 
 
 def _values(mesh: TriangleMesh, name: str, like: np.ndarray) -> np.ndarray:
-    """A field of the mesh, one entry a triangle as those of `like` are; zeros where it has none."""
+    """A field of the mesh, with one entry per triangle shaped like those of `like`; zeros if the mesh lacks it."""
     array = getattr(mesh, name)
     if array is None:
         return np.zeros((len(mesh), *like.shape[1:]), like.dtype)
@@ -62,7 +62,8 @@ def _values(mesh: TriangleMesh, name: str, like: np.ndarray) -> np.ndarray:
 
 
 def have_same_values(a, b) -> bool:
-    """Whether two values mean the same, field by field and, where they are not one array, number by number."""
+    """Whether two dataclass values are equal, field by field; arrays are compared by identity first, then element by
+    element."""
     if a is b:
         return True
     if isinstance(a, np.ndarray):

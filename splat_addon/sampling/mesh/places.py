@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which vertices lie at one place: a hash of each position, for importers split vertices at seams."""
+"""Finds vertices at the same position by hashing: importers split vertices at seams."""
 
 from __future__ import annotations
 
 import numpy as np
 
-#: Vertices at a time: what is made of them on the way stays in the processor's cache.
+#: Vertices per batch, few enough for temporaries to stay in the processor's cache.
 _CHUNK = 16384
 
 
 def vertex_hashes(positions: np.ndarray) -> np.ndarray:
-    """(V,) uint64 that are equal for equal positions; adding 0.0 turns -0.0 into 0.0."""
+    """(V,) uint64 hashes, equal for equal positions; adding 0.0 turns -0.0 into 0.0."""
     keys = np.empty(len(positions), np.uint64)
     for start in range(0, len(keys), _CHUNK):
         rows = positions[start : start + _CHUNK]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether a mesh bounds a solid, so that no viewer outside it ever sees the back of its surface.
+"""Tells whether a mesh bounds a solid, so that no viewer outside ever sees the back of its surface.
 
-Where that holds, `Surfels.is_solid` lets the renderer leave backs out: half the splats, and silhouettes without
-the rim of those that stick out from behind.
+If so, `Surfels.is_solid` lets the renderer skip splats that face away: half of the splats, and no rim of them along
+silhouettes.
 """
 
 from __future__ import annotations
@@ -15,28 +15,29 @@ from .triangle_mesh import TriangleMesh
 
 
 def is_solid(mesh: TriangleMesh) -> bool:
-    """Whether every triangle's edges are met by others running the other way, and every part turns outwards.
+    """Whether every edge is shared with a triangle that traverses it the other way, and every part faces outwards.
 
-    Vertices at one place count as one, as importers split them at seams. Then a ray from outside enters before it
-    leaves: first hits are always fronts. Parts are joined by vertices; one with a negative or no volume (turned
-    inside out, a cavity) makes the answer False, which costs speed and never a picture.
+    Vertices at the same position count as one, because importers split them at seams. A ray from outside then always
+    hits a front face first. Parts are connected by vertices; a part with negative or no volume (inside out, or a
+    cavity) makes the answer False, which costs speed but is never wrong in the picture.
     """
     return SolidShape(mesh).is_solid_at(mesh.positions)
 
 
 class SolidShape:
-    """What `is_solid` looks at, for a mesh whose vertices move: what hangs together is found once."""
+    """The topology that `is_solid` needs, computed once for a mesh whose vertices move."""
 
     def __init__(self, mesh: TriangleMesh):
         self._mesh = mesh
         self._is_closed = bool(len(mesh)) and bool(np.isfinite(mesh.bounds()).all()) and survey(mesh).is_closed
         if self._is_closed:
-            #: For each vertex, the first at its place; None: no place has several.
+            #: For each vertex the first one at its position; None: no position is shared.
             self._twins = twins(mesh.places)
             self._parts = part_labels(mesh.triangles, self._twins).take(mesh.triangles[:, 0])
 
     def is_solid_at(self, positions: np.ndarray) -> bool:
-        """positions: (V, 3) of the same vertices. False too where vertices that were at one place have parted."""
+        """Whether the mesh is solid with these (V, 3) positions of the same vertices. False also if vertices that
+        coincided have moved apart."""
         if not self._is_closed or not np.isfinite(positions).all():
             return False
         if positions is self._mesh.positions:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One look at all triangles of a mesh: what leaving out the unusable ones and telling solids both ask of each.
+"""One pass over all triangles of a mesh that collects what both the removal of unusable triangles and the test for
+solids need.
 
-The corners are fetched once for all of it, which costs more than the questions.
+Fetching the corners costs more than the tests, so it is done once.
 """
 
 from __future__ import annotations
@@ -15,11 +16,12 @@ from .triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_are
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """flat: (k,) intp, ascending: the triangles of no area. facing_area: of all, as `TriangleMesh` has it.
-    suspects: (m,) intp, ascending: all triangles that may have the three places of another, in any order.
-    is_used: (V,) bool, by a triangle with an area.
-    is_closed: whether the triangles' boundary vanishes, with vertices at one place taken as one. volumes: (T,) float64,
-    those that `signed_volumes` would give, None where it is open.
+    """flat: (k,) intp, ascending: triangles of zero area.
+    facing_area: total area, see `TriangleMesh`.
+    suspects: (m,) intp, ascending: all triangles that may have the same three positions as another, in any order.
+    is_used: (V,) bool: whether a triangle of non-zero area uses the vertex.
+    is_closed: whether the boundary of the triangles vanishes, with coincident vertices merged.
+    volumes: (T,) float64 from `signed_volumes`; None if the mesh is open.
     """
 
     flat: np.ndarray
@@ -31,18 +33,18 @@ class Survey:
 
 
 def survey(mesh: TriangleMesh) -> Survey:
-    """That of the mesh, made once; vertices that are not finite make no sense of it."""
+    """The survey of the mesh, computed once; its result is meaningless if vertices are not finite."""
     if mesh.surveyed is None:
         object.__setattr__(mesh, "surveyed", _survey(mesh))
     return mesh.surveyed
 
 
 def _survey(mesh: TriangleMesh) -> Survey:
-    """The fields one after another, from the corners of a chunk at a time.
+    """The fields of `Survey` in order, computed chunk by chunk.
 
     is_closed: directed edges are added up under an antisymmetric weight of the hashes f of their ends' places, modulo
-    2^64: f g (g - f), which for the three edges of a triangle is the product of the differences. The sum of a chain
-    with a boundary is 0 but for an accident of some 2^-50, and degenerate triangles cancel by themselves.
+        2^64: f g (g - f), which for the three edges of a triangle is the product of the differences. The sum of a chain
+        with a boundary is 0 only with a probability of about 2^-50, and degenerate triangles cancel out.
     """
     keys, count = mesh.places, len(mesh)
     flat, sums, volumes = [np.empty(0, np.intp)], np.empty(count, np.uint64), np.empty(count)
@@ -80,8 +82,8 @@ def _survey(mesh: TriangleMesh) -> Survey:
 
 
 def signed_volumes(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(T,) float64: six times what lies between each triangle and (0, 0, 0), above 0 where the triangle turns away from
-    there. Of a closed surface they add up to six times its volume. positions: (V, 3)."""
+    """(T,) float64: six times the signed volume between each triangle and (0, 0, 0), positive if the triangle faces
+    away from it. For a closed surface they add up to six times its volume. positions: (V, 3)."""
     components, volumes = np.ascontiguousarray(positions.T), np.empty(len(triangles))
     for chunk in triangle_chunks(len(triangles)):
         corners = corners_at(components, corner_indices(triangles[chunk]))
@@ -97,7 +99,7 @@ def _volumes(first: np.ndarray, normals: np.ndarray, out: np.ndarray):
 
 
 def _suspects(sums: np.ndarray, mesh: TriangleMesh) -> np.ndarray:
-    """The triangles that share their sum of places with another. sums: (T,), which are put in order."""
+    """The triangles whose sum of hashed positions equals that of another triangle. sums: (T,), sorted in place."""
     sums.sort()
     shared = sums[1:][sums[1:] == sums[:-1]]
     if not len(shared):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The input of sampling: triangles as plain arrays. `cleaning` makes them usable, `sample` turns them into surfels."""
+"""The input of sampling: triangles as plain arrays. `cleaning` drops unusable ones; `sample` turns them into
+surfels."""
 
 from __future__ import annotations
 
@@ -12,10 +13,10 @@ import numpy as np
 from ..attributes.surfaces import Surface
 from .places import vertex_hashes
 
-#: Triangles, or vertices, handled at a time: few enough that their temporaries stay in the processor's cache.
+#: Triangles, or vertices, per batch: few enough for temporaries to stay in the processor's cache.
 CHUNK = 16384
 
-#: field -> shape of one triangle's entry, of one layer where it may have several, and dtype.
+#: field -> shape of one triangle's entry (of one layer if there may be several), and dtype.
 _PER_TRIANGLE = {
     "corner_normals": ((3, 3), np.floating),
     "corner_colors": ((3, 4), np.floating),
@@ -27,18 +28,18 @@ _LAYERED = ("corner_colors", "corner_uvs")
 
 @dataclass(frozen=True, eq=False)
 class TriangleMesh:
-    """T triangles over V vertices; arrays are viewed where they are of the form below, and must not change afterwards.
+    """T triangles over V vertices. Arrays that have the form below are not copied, and must not change afterwards.
 
-    positions: (V, 3) float64 in Fortran's order, object units; values that are not finite are allowed, `drop_unusable`
-        sorts them out.
+    positions: (V, 3) float64 in Fortran order, object units; non-finite values are allowed, and `drop_unusable` removes
+        them.
     triangles: (T, 3) integer vertex indices, counter-clockwise seen from outside.
     corner_normals: (T, 3, 3) shading normals of any length; None or zero: the triangle's own normal.
-    corner_colors: (T, 3, 4) scene-linear. corner_uvs: (T, 3, 2). Both may have several layers, one behind the other in
-        the last dimension.
+    corner_colors: (T, 3, 4) scene-linear. corner_uvs: (T, 3, 2). Both may have several layers, concatenated in the last
+        dimension.
     materials: (T,) integer index into `surfaces` and into the object's material slots; None: all 0.
     surfaces: what each material is made of; an index past the end uses the last.
-    known_usable, facing_area: set by `drop_unusable` alone. The latter is the area as the images see it that each
-        triangle faces most, object units squared. surveyed: what `survey` found, kept by it alone.
+    known_usable, facing_area: set only by `drop_unusable`. The latter is the area projected onto the image that each
+        triangle faces most, object units squared. surveyed: result of `survey`, set only by it.
 
     Raises ValueError with one sentence for a wrong shape or type or an index out of range.
     """
@@ -55,7 +56,7 @@ class TriangleMesh:
     surveyed: object = field(default=None, init=False, repr=False)
 
     def __post_init__(self):
-        # each component contiguous, as nearly all that is asked of them goes by components
+        # each component contiguous, because almost all computations go component by component
         positions = np.asfortranarray(self.positions, np.float64)
         if positions.ndim != 2 or positions.shape[1] != 3:
             raise ValueError(f"Mesh positions must have shape (V, 3), not {positions.shape}.")
@@ -84,7 +85,7 @@ class TriangleMesh:
         return len(self.triangles)
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Two (3,) float64 corners of the box around all vertices; meaningful for a usable mesh."""
+        """Two (3,) float64 corners of the box around all vertices; meaningful only for a usable mesh."""
         return self._bounds
 
     @cached_property
@@ -93,16 +94,16 @@ class TriangleMesh:
 
     @cached_property
     def places(self) -> np.ndarray:
-        """(V,) uint64: `vertex_hashes`, equal for vertices at one place."""
+        """(V,) uint64: `vertex_hashes`, equal for coincident vertices."""
         return vertex_hashes(self.positions)
 
     def share_places_with(self, other: TriangleMesh):
-        """For a mesh over the same vertices: what is known of these need not be found again."""
+        """Share cached hashes with a mesh over the same vertices."""
         for name in ("_bounds", "places"):
             object.__setattr__(self, name, getattr(other, name))
 
     def per_triangle(self) -> dict[str, np.ndarray]:
-        """The arrays that hold one entry a triangle, by field name."""
+        """The arrays that hold one entry per triangle, by field name."""
         names = ("triangles", *_PER_TRIANGLE)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
 
@@ -113,31 +114,31 @@ def triangle_chunks(count: int, size: int = CHUNK) -> Iterator[slice]:
 
 
 def gather_corners(components: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(3, 3, t): component, corner, triangle, from (3, V) components and (t, 3) vertex indices."""
+    """(3, 3, t) by component, corner and triangle, from (3, V) components and (t, 3) vertex indices."""
     return corners_at(components, corner_indices(triangles))
 
 
 def corner_indices(triangles: np.ndarray) -> np.ndarray:
-    """(3, t) intp: the vertex of each corner of (t, 3) triangles, in the form in which many arrays are taken from."""
+    """(3, t) intp: the vertex at each corner of (t, 3) triangles, in the layout that is fastest for gathering."""
     return np.ascontiguousarray(triangles.T, np.intp)
 
 
 def corners_at(components: np.ndarray, indices: np.ndarray) -> np.ndarray:
-    """(3, 3, t): component, corner, triangle, from (3, V) components and `corner_indices`."""
+    """(3, 3, t) by component, corner and triangle, from (3, V) components and `corner_indices`."""
     corners = np.empty((3, *indices.shape), components.dtype)
     for component, row in zip(components, corners, strict=True):
-        # "clip" because only it writes to `out` directly; the indices were checked at the mesh's door
+        # mode "clip", because only it writes directly to `out`; the indices were validated when the mesh was made
         component.take(indices, out=row, mode="clip")
     return corners
 
 
 def doubled_areas(corners: np.ndarray) -> np.ndarray:
-    """(3, t): the normal of each triangle, as long as twice its area, from (3, 3, t) corners."""
+    """(3, t) normal of each triangle from (3, 3, t) corners; its length is twice the area."""
     return crossed(corners[:, 1:] - corners[:, :1])
 
 
 def crossed(edges: np.ndarray) -> np.ndarray:
-    """(3, t) cross products of the two edges in each of (3, 2, t)."""
+    """(3, t) cross products of the two edges of each triangle in (3, 2, t)."""
     (x1, x2), (y1, y2), (z1, z2) = edges
     products = np.empty((3, *x1.shape), x1.dtype)
     for product, (a, b, c, d) in zip(products, ((y1, z2, z1, y2), (z1, x2, x1, z2), (x1, y2, y1, x2)), strict=True):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bare points become surfels: what a scan lacks, normals, radii and axes, is estimated from each point's neighbours.
+"""Turns bare points into surfels: normals, radii and axes that a scan lacks are estimated from each point's neighbours.
 
-Flow: `cleanup` -> `neighbours` (over `cells`) -> `normals` -> `orientation` -> `footprints` -> `Surfels`;
-`from_points` puts them in order, `report` counts what was skipped and estimated.
+Flow: `cleanup` -> `neighbours` (over `cells`) -> `normals` -> `orientation` -> `footprints` -> `Surfels`; `from_points`
+runs these steps, `report` counts what was skipped and estimated.
 """
 
 from .from_points import DEFAULT_COLOR, DEFAULT_NEIGHBOURS, ISOLATED_CHOICES, MAX_NEIGHBOURS, surfels_from_points

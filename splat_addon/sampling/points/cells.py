@@ -1,27 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points sorted into cubic cells, and the candidates in the 27 cells around one: what `neighbours` searches."""
+"""Sorts points into cubic cells, and finds the candidates in the 27 cells around one, for the search in
+`neighbours`."""
 
 from __future__ import annotations
 
 import numpy as np
 
-#: Cell numbers up to here can be added and multiplied in int64 without a thought.
+#: Cell numbers up to this can be added and multiplied in int64 without overflow.
 _MAX_KEY = 2**62
 
-#: The cells this far from the origin hold all that lies beyond as well, so that a point far from all others does not
-#: make everyone's cells large. Two numbers of 53 bits that are larger than this many cells differ by many cells.
+#: Cells this far from the origin also hold everything beyond, so that one distant point does not make everyone's cells
+#: large. The limit ensures that 53-bit coordinates in these last cells that differ at all differ by many cells.
 _LAST_CELL = 2**60
 
-#: Below this, numbers lose their digits.
+#: Below this, coordinates lose digits.
 _LEAST_SIZE = 1e-290
 
 
 class Cells:
-    """N points in cells of one size, and which of them are asked for.
+    """N points in cells of one size, and the queries among them.
 
-    order: (N,) int32 points, cell by cell; a *place* is an index into it. columns: x, y and z by place in units of
-    the cell, each with an infinite one at the end for the place N of no point. queries: (Q,) the points asked for, in
-    ascending order of the points; cell_of_query, place_of_query: (Q,); is_far: (Q,) whether it is in the last cells.
+    order: (N,) int32 points, cell by cell; a *place* is an index into it. columns: x, y and z by place in units of the
+        cell, each with a final infinite entry at place N, which stands for "no point". queries: (Q,) the queried
+        points, ascending; cell_of_query, place_of_query: (Q,); is_far: (Q,) whether it lies in the last cells.
     """
 
     def __init__(self, positions: np.ndarray, size: float, queries: np.ndarray):
@@ -45,11 +46,11 @@ class Cells:
         self._starts, self._counts = self._rows_of_blocks()
 
     def candidate_counts(self) -> np.ndarray:
-        """(C,) points in the block around each cell that holds a query."""
+        """(C,) number of points in the block around each cell that holds a query."""
         return self._counts.sum(axis=1)
 
     def candidates(self, cells: np.ndarray) -> np.ndarray:
-        """(c, m) places of the points in the blocks around cells (by `cell_of_query`), filled up with N."""
+        """(c, m) places of the points in the blocks around cells (by `cell_of_query`), padded with N."""
         starts, counts = self._starts[cells].ravel(), self._counts[cells].ravel()
         sums = self._counts[cells].sum(axis=1)
         begins = np.cumsum(counts) - counts
@@ -59,7 +60,8 @@ class Cells:
         return places
 
     def certain_squares(self, queries: np.ndarray) -> np.ndarray:
-        """(q,) squared distance, in cells, within which the block misses no point; a little less for rounding."""
+        """(q,) squared distance, in cells, up to which the block is certain to hold every point; slightly reduced for
+        rounding."""
         walls = np.full(len(queries), np.inf)
         for column in self.query_columns:
             inside = column[queries] % 1.0
@@ -79,10 +81,10 @@ class Cells:
 
 
 def fine_cell_size(positions: np.ndarray, wanted: float) -> float:
-    """A cell size at which an average point shares its cell with about `wanted` points, itself included, or fewer.
+    """A cell size at which an average point shares its cell with at most about `wanted` points, itself included.
 
-    positions: (N, 3), pairwise different. The average is over points, so one dense cluster counts; those in the last
-    cells do not. The size is a power of two: coordinates in units of it keep every bit.
+    positions: (N, 3), pairwise different. The average is over points, so that a dense cluster counts; points in the
+        last cells are excluded. The size is a power of two: coordinates in units of it keep every bit.
     """
     size = _power_of_two(4 * float(np.ptp(positions, axis=0).max()) / np.sqrt(len(positions)))
     while True:
@@ -92,22 +94,22 @@ def fine_cell_size(positions: np.ndarray, wanted: float) -> float:
         company = np.square(counts, dtype=np.float64).sum() / max(len(keys), 1)
         if company <= 1.5 * wanted or size < _LEAST_SIZE:
             return size
-        # On a surface the number grows with the square of the size.
+        # On a surface the count grows with the square of the size.
         size = _power_of_two(size * np.sqrt(wanted / company))
 
 
 def _power_of_two(size: float) -> float:
-    """The next one below, or the number itself."""
+    """The largest power of two that is not above the number."""
     return 2.0 ** np.floor(np.log2(size))
 
 
 def _beyond_last(scaled: list[np.ndarray]) -> np.ndarray:
-    """(N,) bool: which points lie in the last cells along some axis, from columns in units of the cell."""
+    """(N,) bool: which points lie in the last cells along some axis, from columns in cell units."""
     return np.logical_or.reduce([np.abs(column) >= _LAST_CELL for column in scaled])
 
 
 def _cell_keys(scaled: list[np.ndarray]) -> tuple[np.ndarray, tuple[int, int]]:
-    """(N,) int64 number of each point's cell, and how much it grows a cell along x and along y (1 along z)."""
+    """(N,) int64 cell number of each point, and its increments per cell along x and y (1 along z)."""
     cells = [np.clip(np.floor(column), -_LAST_CELL, _LAST_CELL).astype(np.int64) for column in scaled]
     cells = [column - (column.min() - 1) for column in cells]
     lengths = [int(column.max()) + 2 for column in cells]
@@ -119,15 +121,16 @@ def _cell_keys(scaled: list[np.ndarray]) -> tuple[np.ndarray, tuple[int, int]]:
 
 
 def _without_gaps(column: np.ndarray) -> np.ndarray:
-    """Cell numbers along one axis, renumbered so that neighbours stay neighbours and any gap is a single cell."""
+    """Cell numbers along one axis, renumbered so that neighbours stay neighbours and every gap shrinks to a single
+    cell."""
     used, inverse = np.unique(column, return_inverse=True)
     return np.cumsum(np.minimum(np.diff(used, prepend=0), 2))[inverse]
 
 
 def spatial_order(positions: np.ndarray) -> np.ndarray:
-    """(N,) order in which points that are close in space are close in memory; (N, 3), finite.
+    """(N,) order that places points close in space close in memory, from (N, 3) finite positions.
 
-    Gathering neighbours of points in random order waits for memory most of the time.
+    With points in random order, gathering neighbours is bound by memory latency.
     """
     corner = positions.min(axis=0)
     extent = float((positions - corner).max())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which points cannot be used, or stand alone: not finite, repeated, isolated."""
+"""Finds points that cannot be used or that stand alone: non-finite, duplicate and isolated points."""
 
 from __future__ import annotations
 
@@ -7,27 +7,28 @@ import numpy as np
 
 from ..mesh.cleaning import MAX_COORDINATE
 
-#: A point is isolated if its neighbours are this many times as far from it as theirs are from them. On scans of even
-#: density the ratio stays below 2, at a step to a quarter of the density it is 2.
+#: A point is isolated if its neighbours are this many times as far from it as they are from theirs. In scans of even
+#: density the ratio stays below 2; at a step to a quarter of the density it is 2.
 ISOLATED_RATIO = 3.0
 
-#: So is one of a few stray points together, if its neighbours are this many times as far as those of the middle point
-#: of all. A scanner's spacing grows with the distance, to several times its median at most.
+#: A small group of stray points is isolated too, if its neighbours are this many times as far as those of the median
+#: point. A scanner's spacing grows with distance, to several times its median at most.
 ISOLATED_FROM_ALL_RATIO = 20.0
 
 
 def finite_points(positions: np.ndarray) -> np.ndarray:
-    """(N,) bool: all three coordinates are numbers that a scene can have; positions (N, 3)."""
+    """(N,) bool: whether all three coordinates are finite and of a usable magnitude; positions (N, 3)."""
     return np.logical_and.reduce([np.abs(column) <= MAX_COORDINATE for column in positions.T])
 
 
 def first_of_each(positions: np.ndarray) -> np.ndarray:
-    """(M,) ascending indices of the points that do not repeat an earlier one exactly; positions (N, 3), finite."""
+    """(M,) ascending indices of the points that are not exact duplicates of an earlier one; positions (N, 3),
+    finite."""
     order = np.argsort(positions[:, 0], kind="stable")
     same_x = np.diff(positions[order, 0]) == 0
     in_a_run = np.append(same_x, False) | np.insert(same_x, 0, False)
     suspects = np.sort(order[in_a_run])
-    # lexsort is stable: among equal points the first comes first
+    # lexsort is stable, so the first of equal points stays first
     suspects = suspects[np.lexsort(positions[suspects].T)]
     repeats = (np.diff(positions[suspects], axis=0) == 0).all(axis=1)
     keep = np.ones(len(positions), bool)
@@ -36,9 +37,10 @@ def first_of_each(positions: np.ndarray) -> np.ndarray:
 
 
 def isolated_points(neighbours: np.ndarray, distances: np.ndarray) -> np.ndarray:
-    """(N,) bool: points far from their neighbours, which are close to others; (N, k) indices and distances.
+    """(N,) bool: points that are far from their neighbours while these are close to others; (N, k) indices and
+    distances.
 
-    Only ratios are compared, so a sparse part of a scan is not isolated, only what stands before or beside it.
+    Only ratios are compared, so a sparse region of a scan does not count as isolated.
     """
     mean = distances.mean(axis=1, dtype=np.float64)
     away_from_neighbours = mean > ISOLATED_RATIO * np.median(mean[neighbours], axis=1)

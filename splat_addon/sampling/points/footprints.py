@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The ellipse of a bare point: in its tangent plane, over the region that is nearer to it than to its neighbours.
 
-Splats that cover their own Voronoi regions leave no hole between them. The region is known by how far it reaches in
-16 directions; its second moments give the ellipse's axes, and its farthest reach the least size.
+Splats that cover their own Voronoi regions leave no hole between them. The region is represented by its extent in 16
+directions; its second moments give the ellipse's axes, and its largest extent the minimum size.
 """
 
 from __future__ import annotations
@@ -13,26 +13,26 @@ import numpy as np
 
 from .normals import CHUNK
 
-#: Directions in which a region's reach is found; even, so that each has an opposite.
+#: Directions in which a region's extent is measured; an even number, so that each has an opposite.
 DIRECTIONS = 16
 
-#: A direction is open, at a border or a gap, where no neighbour lies within this cosine of it (60 degrees).
+#: A direction is open (at a border or a gap) if no neighbour lies within this cosine of it (60 degrees).
 _OPEN_COSINE = 0.5
 
-#: A neighbour that lies steeper than this over the tangent plane, or whose normal differs by more than this cosine,
-#: is on another sheet and bounds nothing.
+#: A neighbour that is steeper than this above the tangent plane, or whose normal differs by more than this cosine, lies
+#: on another sheet and is ignored.
 _STEEPEST_SLOPE = 2.0
 _SAME_SHEET_COSINE = 0.3
 
-#: What a region reaches is held to this many spacings: what is farther is a gap in the scan. A rectangle of 1 by 8
-#: reaches 2.5, counting as spacing what `_spacings` does, the regions of random points seldom more than 1.5.
+#: A region's extent is limited to this many spacings; anything farther is a gap in the scan. A 1 by 8 rectangle has an
+#: extent of 2.5 (with the spacing of `_spacings`); the regions of random points seldom exceed 1.5.
 _LONGEST = 2.5
 
-#: The spacing around a point is that of its neighbours up to this one or more, whichever is least, so that a few stray
-#: points together are not taken for a sparse surface.
+#: The spacing around a point is the smallest estimate from this many neighbours or more, so that a small group of stray
+#: points is not mistaken for a sparse surface.
 _FEWEST = 4
 
-#: No ellipse is longer than this many times its width, in case a point's neighbours lie on one line.
+#: Maximum ratio of an ellipse's axes, in case a point's neighbours lie on one line.
 _MAX_STRETCH = 8.0
 
 
@@ -43,11 +43,13 @@ def tangent_ellipses(
     splat_size: float,
     report: Callable[[float], None] = lambda share: None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The ellipses' longer axes, (N, 3) float64 unit vectors, their half-axes, (N, 2) float64, and which are known.
+    """The ellipses' longer axes, (N, 3) float64 unit vectors, their half-axes, (N, 2) float64, and which of them are
+    known.
 
     positions, normals: (N, 3) float64, normals unit. neighbours: (n, k) indices of the first n points' neighbours.
-    splat_size: half-axis in units of the spacing, which is the edge of a square or rectangular region. An ellipse
-    that would not cover its region is enlarged until it does. Known, (n,) bool, are those with a neighbour beside them.
+    splat_size: half-axis in units of the spacing, which is the edge of a square or rectangular region. An ellipse that
+        would not cover its region is enlarged until it does. Ellipses are known, (n,) bool, if the point has a
+        neighbour beside it.
     report: called with the finished share.
     """
     count = len(neighbours)
@@ -79,7 +81,8 @@ def tangent_frames(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _spacings(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) edge of the square that each point of a disc around it has on average, and whether there is a neighbour.
+    """(n,) spacing: the edge of a square with the average area per point in a disc around it, and whether there is a
+    neighbour.
 
     A disc that reaches to the j-th neighbour holds j + 1 points. u, v, bounds: (k, n), nearest first.
     """
@@ -94,14 +97,14 @@ def _spacings(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> tuple[np.ndar
 def _reaches(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     """(D, n) distance to the region's border in each direction.
 
-    u, v: (k, n) neighbours in the tangent plane, in spacings. bounds: (k, n) which of them count. The border towards
-    a neighbour at d is the bisector, met in direction e at |d|^2 / (2 d.e). An open direction takes its opposite's
-    reach, so that a splat at a border does not bulge into the open.
+    u, v: (k, n) neighbours in the tangent plane, in spacings. bounds: (k, n) which of them count. The border towards a
+        neighbour at d is the bisector, which direction e meets at |d|^2 / (2 d.e). An open direction takes the distance
+        of the opposite direction, so that a splat at a border does not bulge outwards.
     """
     u, v = np.float32(u), np.float32(v)
     square = u * u + v * v
     bounds = bounds & (square > 0)
-    # Inverse reach, so that a neighbour sideways or behind gives 0 or less and the largest wins.
+    # Inverse distance, so that neighbours sideways or behind give 0 or less and the largest value wins.
     inverse, unit = (np.divide(bounds, w, out=np.zeros_like(u), where=bounds) for w in (square / 2, np.sqrt(square)))
     half = DIRECTIONS // 2
     reach, cosine = np.empty((DIRECTIONS, u.shape[1]), np.float32), np.empty((DIRECTIONS, u.shape[1]), np.float32)
@@ -119,9 +122,9 @@ def _reaches(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> np.ndarray:
 def _ellipses(reach: np.ndarray, splat_size: float) -> tuple[np.ndarray, np.ndarray]:
     """(n,) angle of the longer axis in the tangent plane, and (n, 2) half-axes, from (D, n) reaches.
 
-    Second moments of the region over its area: the integral of r^4 / 4 e e^T over r^2 / 2. A rectangle has
-    edge^2 / 12 along each edge, so sqrt(12 moment) is the spacing. A region that reaches farther to one side counts as
-    one of the same width around the point; only the cover is asked for the side itself.
+    Second moments of the region over its area: the integral of r^4 / 4 e e^T over r^2 / 2. A rectangle has edge^2 / 12
+    along each edge, so sqrt(12 moment) is the spacing. A lopsided region is treated as one of the same width centred on
+    the point; only the minimum size considers each side separately.
     """
     angles = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
     cosine, sine = np.float32(np.cos(angles)), np.float32(np.sin(angles))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bare points become surfels: sort out, find neighbours, then estimate what is missing. The door of this room."""
+"""Turns bare points into surfels: cleans up, finds neighbours, then estimates what is missing. The entry point of
+`sampling.points`."""
 
 from __future__ import annotations
 
@@ -19,19 +20,19 @@ from .normals import plane_normals
 from .orientation import consistent_signs, facing_outward, facing_viewpoint
 from .report import PointsReport
 
-#: Neighbours of each point: enough to average noise away, few enough to follow the surface; on a grid the two
-#: rings around a point and a little more.
+#: Neighbours per point: enough to average out noise, few enough to follow the surface; on a grid these are a little
+#: more than the two rings around a point.
 DEFAULT_NEIGHBOURS = 16
 _FEWEST_NEIGHBOURS = 3
-#: Their indices and distances are held for all points at once: 2 GB for a million points.
+#: Upper limit, because indices and distances are stored for all points at once: 2 GB for a million points.
 MAX_NEIGHBOURS = 256
 
 DEFAULT_COLOR = (0.8, 0.8, 0.8, 1.0)
 
-#: What the steps take of the time, from when to when.
+#: The start and end of each step as shares of the total time.
 _STAGES = {"neighbours": (0.05, 0.6), "normals": (0.6, 0.7), "sides": (0.7, 0.85), "ellipses": (0.85, 1.0)}
 
-#: What becomes of points that stand alone.
+#: How isolated points are treated.
 ISOLATED_CHOICES = {
     "drop": "Leave them out, since most are errors of the scanner",
     "keep": "Keep them, with the size of their nearest neighbours",
@@ -54,12 +55,13 @@ def surfels_from_points(
 
     positions: (N, 3), object units. normals: (N, 3) of any length, used where they are finite and not zero.
     radii: (N,) object units, used as both half-axes where they are finite and above 0. colors: (N, 3) or (N, 4)
-    scene-linear, used where they are finite. neighbours: of each point, from which the rest is estimated.
+        scene-linear, used where they are finite. neighbours: number of neighbours from which missing values are
+        estimated.
     splat_size: half-axis of an estimated splat, in spacings. isolated: a name in `ISOLATED_CHOICES`.
     viewpoint: (3,), object units, where the scanner stood: estimated normals face it; None: they face outward.
-    progress: called now and then with the finished share, 0 to 1; where it returns False, `SamplingCancelled` rises.
+    progress: called regularly with the finished share, 0 to 1; if it returns False, `SamplingCancelled` is raised.
 
-    Raises ValueError with one sentence for wrong shapes or settings, and for too few usable points.
+    Raises ValueError with one sentence for wrong shapes or settings, or for too few usable points.
     """
     given = _checked(positions, normals, radii, colors)
     _check_settings(neighbours, splat_size, isolated, viewpoint)
@@ -83,14 +85,14 @@ def surfels_from_points(
 
 
 def _middle(positions: np.ndarray) -> np.ndarray:
-    """(3,) the median coordinates, each that of some point; of none, 0. Relative to it most points keep their digits,
-    however far away a few others are, which would pull the mean or the middle of the bounds along."""
+    """(3,) the median of each coordinate, or 0 without points. Relative to it most points keep their digits however far
+    away a few others are; the mean or the middle of the bounds would be pulled along."""
     half = len(positions) // 2
     return np.array([np.partition(column, half)[half] for column in positions.T]) if len(positions) else np.zeros(3)
 
 
 def _estimate(given, neighbours, splat_size, isolated, viewpoint, report, progress):
-    """Fields of `Surfels` but the positions, indices of the points to keep, and the report."""
+    """Fields of `Surfels` except the positions, indices of the points to keep, and the report."""
     positions = given["positions"]
     positions = positions - _middle(positions)
     missing_normals, missing_radii = ~_usable_normals(given), ~_usable_radii(given)
@@ -128,7 +130,7 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, report, progre
 
 
 def _normals(given, positions, missing, nearest, viewpoint, progress) -> tuple[np.ndarray, int]:
-    """(N, 3) float64 unit normals, and the connected parts that were oriented."""
+    """(N, 3) float64 unit normals, and the number of connected parts that were oriented."""
     if not missing.any():
         return _unit(given["normals"]), 0
     normals = plane_normals(positions, nearest, stage(progress, *_STAGES["normals"]))
@@ -154,7 +156,7 @@ def _ellipses(
     axes, scales, known = tangent_ellipses(
         positions, normals, nearest, splat_size, stage(progress, *_STAGES["ellipses"])
     )
-    # Nothing beside it in its own plane, or nothing near it at all: it is as large as the nearest that is better off.
+    # A point with no neighbour in its own plane, or none nearby, takes its size from the nearest point that has one.
     stray = alone | ~known | ~_are_sizes(scales).all(axis=1)
     at = np.flatnonzero(stray)
     example = nearest[at, (~stray[nearest[at]]).argmax(axis=1)]
@@ -166,7 +168,7 @@ def _ellipses(
 
 
 def _colors(given, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """(N, 4) float32 colours, and (N,) which of them are the default."""
+    """(N, 4) float32 colours, and (N,) bool, which of them are the default."""
     colors = np.tile(np.float32(DEFAULT_COLOR), (count, 1))
     if "colors" not in given:
         return colors, np.zeros(count, bool)
@@ -190,20 +192,20 @@ def _usable_radii(given) -> np.ndarray:
 
 
 def _are_sizes(values: np.ndarray) -> np.ndarray:
-    """Which of them are half-axes that surfels can have, in float32."""
+    """Which values are valid half-axes in float32."""
     with np.errstate(over="ignore"):
         values = values.astype(np.float32)
     return np.isfinite(values) & (values > 0)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
-    # By the largest component first: squares of very short or long vectors leave the range.
+    # Divide by the largest component first: squares of very short or long vectors would leave float's range.
     vectors = vectors / np.abs(vectors).max(axis=1, keepdims=True)
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 def _checked(positions, normals, radii, colors) -> dict[str, np.ndarray | None]:
-    """The arrays as float64, colours as float32; raises ValueError for a wrong shape."""
+    """The arrays as float64, colours as float32. Raises ValueError for a wrong shape."""
     count = len(positions)
     shapes = {
         "positions": (positions, [(count, 3)], np.float64),

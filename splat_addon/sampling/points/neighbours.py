@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The k nearest neighbours of every point, exactly, in numpy: what a kd-tree gives, for all points at once.
+"""Exact k nearest neighbours of all points at once, in numpy: the same result as a k-d tree.
 
-Points are sorted into cubic cells; a point's neighbours are sought in its own cell and the 26 around it. They are
-right once the k-th is no farther than the nearest wall of that block. Points for which it is farther go on to cells
-twice as large: dense regions are finished while the cells are small, sparse ones when they have become large.
+Points are sorted into cubic cells; a point's neighbours are sought in its own cell and the 26 around it. They are final
+if the k-th is no farther than the nearest face of that block. The remaining points go on to cells twice as large, so
+dense regions finish with small cells and sparse ones with large cells.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ import numpy as np
 
 from .cells import Cells, fine_cell_size
 
-#: Distances computed at a time: their temporaries stay in the processor's cache.
+#: Distances computed per batch, few enough for temporaries to stay in the processor's cache.
 _BLOCK = 1 << 17
 
-#: A block of cells with fewer candidates than this many times k is not worth the look: on a surface about a third of
-#: the block's points lie in the ball that is certain.
+#: A block of cells with fewer candidates than this many times k is skipped: on a surface about a third of the block's
+#: points lie in the ball that is certain to be complete.
 _WORTH_LOOKING = 2.5
 
-#: The last few points, mostly far from all others, are compared with every point, which is cheaper than to look for
-#: the cells that hold their neighbours: so many points at least and at most, and so many comparisons in between.
+#: The last few points, usually far from all others, are compared with every point, which is cheaper than searching
+#: larger cells: at least and at most this many points, and this many comparisons in between.
 _FEW, _MORE = 16, 256
 _FEW_COMPARISONS = 1 << 23
 
@@ -30,12 +30,12 @@ _FEW_COMPARISONS = 1 << 23
 def nearest_neighbours(
     positions: np.ndarray, count: int, report: Callable[[float], None] = lambda share: None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(N, k) int32 indices and (N, k) float32 distances of each point's nearest others, nearest first.
+    """(N, k) int32 indices and (N, k) float32 distances of each point's nearest neighbours, nearest first.
 
     positions: (N, 3) float64, finite and pairwise different. count: k, at most N - 1. Distances are compared in
-    float32, so the order of neighbours that are equally far to 7 digits is arbitrary. report: called with the share of
-    the points that are finished.
-    Raises ValueError where there are too few points.
+        float32, so the order of neighbours whose distances agree to 7 digits is arbitrary. report: called with the
+        share of the points that are finished.
+    Raises ValueError if there are too few points.
     """
     total = len(positions)
     if not 1 <= count < total:
@@ -57,14 +57,14 @@ def nearest_neighbours(
 def _search(
     cells: Cells, count: int, neighbours: np.ndarray, distances: np.ndarray, report: Callable[[int], None]
 ) -> np.ndarray:
-    """Fills the rows of the cells' queries that are certain, and says which of them are, (Q,) bool.
+    """Fill the rows of those queries whose neighbours are certain; returns which they are, (Q,) bool.
 
-    report: called with how many are, now and then.
+    report: called regularly with their number.
     """
     candidates = cells.candidate_counts()
     certain = np.zeros(len(cells.queries), bool)
     worth = min(_WORTH_LOOKING * (count + 1), len(cells.order))
-    # Those in the last cells may be far from what shares the cell with them.
+    # Points in the last cells may be far from others in the same cell.
     queries = np.flatnonzero((candidates[cells.cell_of_query] >= worth) & ~cells.is_far)
     queries = queries[np.argsort(candidates[cells.cell_of_query[queries]], kind="stable")]
     found_so_far = 0
@@ -95,7 +95,7 @@ def _blocks(costs: np.ndarray):
 
 def _nearest_in_block(cells: Cells, queries: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """(q, k) point indices and (q, k) float32 squared distances, in cells, of the nearest candidates."""
-    # Queries of one cell are consecutive and share their candidates.
+    # Queries of one cell are consecutive and share candidates.
     changes = np.flatnonzero(np.diff(cells.cell_of_query[queries], prepend=-1))
     repeats = np.diff(changes, append=len(queries))
     candidates = cells.candidates(cells.cell_of_query[queries[changes]])
@@ -111,9 +111,9 @@ def _nearest_in_block(cells: Cells, queries: np.ndarray, count: int) -> tuple[np
 
 
 def _smallest(squared: np.ndarray, places: np.ndarray, own: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """The `count` places with the smallest squares of each row, ascending, without `own`; squared is (q, m).
+    """The `count` places with the smallest squared distance in each row, ascending, without `own`; squared is (q, m).
 
-    A float32 that is not negative orders like its bits, so square and place sort as one 64-bit integer.
+    Non-negative float32 values sort like their bits, so square and place sort as one 64-bit integer.
     """
     with np.errstate(over="ignore"):
         squared = squared.astype(np.float32)
@@ -124,7 +124,7 @@ def _smallest(squared: np.ndarray, places: np.ndarray, own: np.ndarray, count: i
     keys.sort(axis=1)
     found = (keys & np.uint64(0xFFFFFFFF)).astype(np.intp)
     squares = (keys >> np.uint64(32)).astype(np.uint32).view(np.float32)
-    # A point is its own nearest; where others are as near, it may stand behind them.
+    # A point is its own nearest neighbour; points at the same distance may come before it.
     found[np.arange(len(own)), (found == own[:, None]).argmax(axis=1)] = found[:, 0]
     return found[:, 1:], squares[:, 1:]
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Normals of bare points: the direction in which a point and its neighbours vary least.
+"""Estimates normals of bare points: the direction in which a point and its neighbours vary least.
 
-Hoppe et al. 1992, section 3.2. Up to sign; `orientation` chooses the side.
+Hoppe et al. 1992, section 3.2. The sign is undetermined; `orientation` chooses it.
 """
 
 from __future__ import annotations
@@ -10,10 +10,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-#: Points handled at a time: their temporaries stay in the processor's cache.
+#: Points per batch, few enough for temporaries to stay in the processor's cache.
 CHUNK = 8192
 
-#: Below this sine of the angle between rows of the shifted matrix, its kernel is left to an iterative solver.
+#: If the sine of the angle between rows of the shifted matrix is below this, its kernel is found by an iterative
+#: solver.
 _DOUBTFUL = 1e-6
 
 
@@ -24,7 +25,7 @@ def plane_normals(
 
     positions: (N, 3) float64. neighbours: (n, k) indices of the first n points' neighbours; n may be below N.
     report: called with the finished share.
-    Neighbours on one line have no plane: then any direction across the line is returned.
+    Collinear neighbours have no unique plane; any direction perpendicular to the line is returned.
     """
     normals = np.empty((len(neighbours), 3))
     columns = np.ascontiguousarray(positions.T)
@@ -36,7 +37,7 @@ def plane_normals(
 
 
 def _covariances(columns: np.ndarray, neighbours: np.ndarray, part: slice) -> np.ndarray:
-    """(6, n) xx, yy, zz, yz, xz, xy of each point with its neighbours, scaled to a trace of about 1."""
+    """(6, n) covariances xx, yy, zz, yz, xz, xy of each point with its neighbours, scaled to a trace of about 1."""
     away = [column[neighbours] - column[part, None] for column in columns]
     members = neighbours.shape[1] + 1
     means = [a.sum(axis=1) / members for a in away]
@@ -52,9 +53,9 @@ def _covariances(columns: np.ndarray, neighbours: np.ndarray, part: slice) -> np
 def _least_directions(moments: np.ndarray) -> np.ndarray:
     """(n, 3) unit eigenvectors of the least eigenvalue of symmetric 3 x 3 matrices.
 
-    The eigenvalue by Smith's trigonometric formula (1961), the vector as the longest cross product of two rows of
-    the matrix less the eigenvalue; a tenth of the time of LAPACK on small matrices. Where all three cross products
-    are short, because two eigenvalues are nearly equal, LAPACK does it.
+    The eigenvalue comes from Smith's trigonometric formula (1961), the vector is the longest cross product of two rows
+    of the matrix minus the eigenvalue; this takes a tenth of LAPACK's time for small matrices. If all three cross
+    products are short, because two eigenvalues are nearly equal, LAPACK is used.
     """
     xx, yy, zz, yz, xz, xy = moments
     shift = (xx + yy + zz) / 3

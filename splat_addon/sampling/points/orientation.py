@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which side of the surface a normal is on: one choice for each connected part, carried from neighbour to neighbour.
+"""Decides which side of the surface each normal is on, consistently within each connected part.
 
-Hoppe et al. 1992, section 3.3, with the flip criterion of Xie et al. 2003 at sharp edges: along the minimum spanning
-tree of the neighbour graph, where an edge is cheap if the two tangent planes agree. The tree is grown by Boruvka's
-rounds instead of Prim's queue: in each, every part takes its best edge to another part, all at once in numpy.
+Hoppe et al. 1992, section 3.3, with the flip criterion of Xie et al. 2003 at sharp edges: the choice is propagated
+along the minimum spanning tree of the neighbour graph, where an edge is cheap if the two tangent planes agree. The tree
+is grown by Boruvka's rounds instead of Prim's queue: in each round every part takes its best edge to another part, all
+at once in numpy.
 """
 
 from __future__ import annotations
@@ -12,10 +13,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-#: Neighbours that the graph connects: more cost time, and bridge thin gaps.
+#: Neighbours that the graph connects; more would cost time and bridge thin gaps.
 GRAPH_NEIGHBOURS = 8
 
-#: Edges handled at a time.
+#: Edges per batch.
 _CHUNK = 1 << 16
 
 
@@ -25,14 +26,14 @@ def consistent_signs(
     neighbours: np.ndarray,
     report: Callable[[float], None] = lambda share: None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(N,) int8 signs, 1 or -1, that turn neighbouring normals to one side, and the (N,) connected part of each point.
+    """(N,) int8 signs, 1 or -1, that make neighbouring normals consistent, and the (N,) connected part of each point.
 
     positions, normals: (N, 3) float64. neighbours: (N, k) indices. Parts are numbered from 0 without gaps.
-    report: called with the share of the edges that are dealt with.
+    report: called with the share of processed edges.
     """
     ends = _edges(neighbours[:, :GRAPH_NEIGHBOURS])
     agreement = _agreement(positions, normals, ends)
-    # 16 bits tell a good edge from a bad one, and are sorted by radix.
+    # 16 bits are enough to tell good edges from bad ones, and allow a radix sort.
     order = np.argsort((65535 * (1 - np.minimum(np.abs(agreement), 1))).astype(np.uint16), kind="stable")
     ends, turned = ends[:, order], (agreement[order] < 0)
     part = np.arange(len(positions))
@@ -48,10 +49,10 @@ def consistent_signs(
 
 
 def facing_outward(positions: np.ndarray, normals: np.ndarray, part: np.ndarray) -> np.ndarray:
-    """(N,) int8 signs, one for each part, so that its normals point away from the part's middle on the whole.
+    """(N,) int8 signs, constant per part, so that the part's normals on the whole point away from its middle.
 
-    The sum over (p - middle) . n is, for evenly spread points of a closed surface, proportional to its volume. On a
-    plane it is 0 and says nothing; there a part's mean normal points up, or failing that along y or x.
+    For evenly spread points of a closed surface, the sum of (p - middle) . n is proportional to its volume. On a plane
+    it is 0 and decides nothing; there a part's mean normal is made to point up, or failing that along y or x.
     """
     sizes = np.bincount(part)
     middles = np.stack([np.bincount(part, column) / sizes for column in positions.T], axis=1)
@@ -64,7 +65,7 @@ def facing_outward(positions: np.ndarray, normals: np.ndarray, part: np.ndarray)
 
 
 def facing_viewpoint(positions: np.ndarray, normals: np.ndarray, part: np.ndarray, viewpoint) -> np.ndarray:
-    """(N,) int8 signs, one for each part, so that most of its normals face `viewpoint`, (3,) in the points' units."""
+    """(N,) int8 signs, constant per part, so that most of its normals face `viewpoint`, (3,) in the points' units."""
     towards = np.asarray(viewpoint, np.float64) - positions
     length = np.linalg.norm(towards, axis=1)
     cosines = np.einsum("ij,ij->i", towards, normals) / np.where(length > 0, length, 1)
@@ -72,7 +73,7 @@ def facing_viewpoint(positions: np.ndarray, normals: np.ndarray, part: np.ndarra
 
 
 def _edges(neighbours: np.ndarray) -> np.ndarray:
-    """(2, E) int32 pairs of neighbours; a pair that is found from both ends is kept once."""
+    """(2, E) int32 pairs of neighbours; a pair found from both ends is kept once."""
     count = len(neighbours)
     own, other = np.arange(count, dtype=np.int64)[:, None], neighbours.astype(np.int64)
     keys = (np.minimum(own, other) * count + np.maximum(own, other)).ravel()
@@ -82,11 +83,12 @@ def _edges(neighbours: np.ndarray) -> np.ndarray:
 
 
 def _agreement(positions: np.ndarray, normals: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """(E,) from 1 for neighbours in one plane with the same normal to -1 for opposite ones; near 0 tells little.
+    """(E,) from 1 for neighbours in one plane with the same normal to -1 for opposite normals; values near 0 are
+    uncertain.
 
-    Where the normals are within 60 degrees of one line, their cosine, the less the steeper the edge stands on the
-    planes: a steep one is noise, or leads to another sheet. Else the points are across a sharp edge, and half the
-    cosine after the second normal is reflected in the plane halfway between them tells.
+    If the normals are within 60 degrees of parallel or antiparallel, this is their cosine, reduced if the edge is steep
+    relative to the planes: a steep edge is noise or leads to another sheet. Otherwise the points lie across a sharp
+    edge, and it is half the cosine after reflecting the second normal in the plane halfway between them.
     """
     agreement = np.empty(ends.shape[1], np.float32)
     for start in range(0, ends.shape[1], _CHUNK):
@@ -102,15 +104,16 @@ def _agreement(positions: np.ndarray, normals: np.ndarray, ends: np.ndarray) -> 
 
 
 def _merge(parts: np.ndarray, turned: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Joins every part to another along its best edge.
+    """Join every part to another along its best edge.
 
-    parts: (2, E) different parts at the ends of each edge, best edge first. turned: (E,) whether their normals
-    disagree across it. Returns (count,) the root of each part, and (count,) whether it flips to agree with the root.
+    parts: (2, E) different parts at the ends of each edge, best edge first.
+    turned: (E,) whether their normals disagree across it.
+    Returns (count,) the root of each part, and (count,) whether it must flip to agree with the root.
     """
     best = np.full(count, parts.shape[1])
     for end in parts:
         first = np.full(count, parts.shape[1])
-        # Of several assignments to one part the last stays: the best edge, when they come in reverse.
+        # With several assignments to one part the last one stays: the best edge, because they come in reverse order.
         first[end[::-1]] = np.arange(parts.shape[1])[::-1]
         best = np.minimum(best, first)
     joined = np.flatnonzero(best < parts.shape[1])
@@ -118,7 +121,7 @@ def _merge(parts: np.ndarray, turned: np.ndarray, count: int) -> tuple[np.ndarra
     parent, flip = np.arange(count), np.zeros(count, bool)
     parent[joined] = parts[0, edge] + parts[1, edge] - joined
     flip[joined] = turned[edge]
-    # Two parts that chose the same edge point at each other: the smaller is the root.
+    # Two parts that chose the same edge point at each other; the smaller one becomes the root.
     root = (parent[parent] == np.arange(count)) & (np.arange(count) < parent)
     parent[root], flip[root] = np.flatnonzero(root), False
     while True:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What happened to bare points on their way to surfels: nothing is left out or made up in silence."""
+"""Reports what happened to bare points on their way to surfels, so that nothing is dropped or invented silently."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class PointsReport:
-    """points: given; surfels: made. non_finite, duplicates: left out. isolated: found, and left out unless
-    `kept_isolated`. estimated_normals, estimated_radii, default_colors: surfels whose own value was missing or
-    unusable. parts: connected parts, each oriented as a whole; 0 where no normal was estimated.
+    """points: number given. surfels: number made.
+    non_finite, duplicates: left out.
+    isolated: found, and left out unless `kept_isolated`.
+    estimated_normals, estimated_radii, default_colors: surfels whose own value was missing or unusable.
+    parts: connected parts, each oriented as a whole; 0 if no normal was estimated.
     """
 
     points: int
@@ -25,7 +27,7 @@ class PointsReport:
     parts: int = 0
 
     def skipped(self) -> dict[str, int]:
-        """reason -> points left out for it; only reasons that occurred."""
+        """reason -> number of points left out for it; only reasons that occurred."""
         reasons = {
             "that are not finite": self.non_finite,
             "that repeat another": self.duplicates,
@@ -34,7 +36,7 @@ class PointsReport:
         return {reason: count for reason, count in reasons.items() if count}
 
     def notes(self) -> tuple[str, ...]:
-        """A sentence for what was left out, and one for each thing that was estimated."""
+        """One sentence about what was left out, and one about each kind of estimate."""
         skipped = ", ".join(f"{count:,} points {reason}" for reason, count in self.skipped().items())
         made_up = {
             f"normals of {self.estimated_normals:,} points from their neighbours, in {self.parts:,} connected parts": (

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Adaptive sampling: where the surface is flat, one larger surfel takes the place of 4, 16 or 64.
+"""Adaptive sampling: where the surface is flat, one larger surfel replaces 4, 16 or 64.
 
-On the quadtree of each layered depth image four blocks become one where their surfels lie in one plane within a
-tolerance, with like normals and colours (facts/sampling.md section 8). Only whole blocks merge, so every cell stays
-covered, and a large disc is only laid where the same plane goes on around its block, so that it never sticks out over
-an edge: towards creases and borders the surfels become small again.
+On the quadtree of each layered depth image, four blocks merge into one if their surfels lie in one plane within a
+tolerance, with similar normals and colours (facts/sampling.md section 8). Only whole blocks merge, so every cell stays
+covered. A large disc is only placed where the same plane continues all around its block, so that it never sticks out
+over an edge: surfels become smaller towards creases and borders.
 """
 
 from __future__ import annotations
@@ -21,33 +21,37 @@ from ..attributes.ellipses import ellipse_rotations, ellipse_scales
 from ..attributes.texture_mapping import BORDER, UV_FIELDS, from_uv_planes, is_mapped, slips, uv_planes
 from ..ldc.grid import BLOCK
 
-#: Doublings of the spacing. The renderer tells surfaces apart at half a splat's radius, so larger discs would show
-#: what lies several spacings behind them.
+#: Maximum doublings of the spacing. The renderer separates surfaces that are half a splat's radius apart, so larger
+#: discs would blend with surfaces several spacings behind them.
 LEVELS = int(math.log2(BLOCK))
 
-#: Half-axis of a merged disc in edges of its block, whose corners lie at 0.707.
+#: Half-axis of a merged disc relative to the edge of its block, whose corners are at 0.707.
 MERGED_SIZE = 0.75
 
-#: Bits of a block's coordinate in a key; a grid has at most 2^19 cells along an edge, and half of what fits is added to
-#: stay above 0.
+#: Bits of a block's coordinate in a key; a grid has at most 2^19 cells along an edge, and an offset of half the range
+#: keeps coordinates positive.
 _BITS = 21
 _FIRST = 1 << (_BITS - 1)
 
-#: Four blocks of one layer meet over their middle within this many tolerances: one to each side, and sqrt(3) for tilt.
+#: Four blocks of one layer meet within this many tolerances above their middle: one to each side, and sqrt(3) for tilt.
 _SPREAD = 2 * math.sqrt(3)
 
-#: Of texture coordinates in float32, in cells.
+#: Rounding error of texture coordinates in float32, in cells.
 _ROUNDING = 1e-3
 
-#: Layers of surface over one block that a search looks at.
+#: Maximum number of surface layers over one block that a search considers.
 _LAYERS = 4
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """distance: from the sampled planes, object units. angle: between shading normals, radians. color: the largest
-    difference of a component, scene-linear, where no texture takes its place, and of any optional field of `Surfels`.
-    A texture may slip by the distance."""
+    """When samples count as alike.
+
+    distance: from the sampled planes, object units. Textures may slip by the same distance.
+    angle: between shading normals, radians.
+    color: maximum difference of a colour component, scene-linear, unless a texture replaces it, and of any optional
+        field of `Surfels`.
+    """
 
     distance: float
     angle: float = math.radians(8)
@@ -62,14 +66,14 @@ class Tolerance:
 
 @dataclass(frozen=True, eq=False)
 class _Nodes:
-    """n blocks of one level in the order of their keys, each full of one layer of surface.
+    """n blocks of one level, sorted by key, each fully covered by one layer of surface.
 
     keys: (n,) int64: image, side and block. planes: (n, 3): depth over the block's middle and its change per column and
-    row, in cells. shading: (n, 3) unit. colors: (n, 4 or more): what is averaged, the optional fields of `Surfels`
-    after the colour. materials: (n,). errors, bends, tints: (n,) bounds of what its samples differ by from it: depth in
-    cells, radians, colour. uvs: (n, 2, 3) texture coordinates over the block's middle and their change per column and
-    row, (n, 0, 3) without any; slips: (n,) bound of how far they are off, in cells. children: (n, 4) rows of the level
-    below.
+        row, in cells. shading: (n, 3) unit. colors: (n, 4 or more): averaged values, colour first, then optional fields
+        of `Surfels`. materials: (n,). errors, bends, tints: (n,) bounds on how much samples differ from the block:
+        depth in cells, radians, colour. uvs: (n, 2, 3) texture coordinates over the block's middle and their change per
+        column and row, (n, 0, 3) without any; slips: (n,) bound on their error, in cells. children: (n, 4) rows of the
+        level below.
     """
 
     keys: np.ndarray
@@ -91,7 +95,8 @@ class _Nodes:
 def merge_flat(
     arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float, tolerance: Tolerance
 ) -> tuple[dict[str, np.ndarray], float]:
-    """The surfels that are left, those that were not merged first, and the largest error in object units.
+    """Merge flat regions; returns the remaining surfels, the mask of those that were not merged first, and the largest
+    error in object units.
 
     arrays: by field of `Surfels`, positions relative to a corner of a cell. axes: (N,) the image of each sample.
     """
@@ -121,7 +126,7 @@ def merge_flat(
 
 
 def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
-    """The samples as nodes of one cell, and the (N,) surfel of each."""
+    """The samples as nodes of one cell each, and the (N,) surfel of each."""
     position = arrays["positions"].astype(np.float64) / spacing
     normal = quaternion_axes(arrays["rotations"])[2].astype(np.float64)
     rows = np.arange(len(axes))
@@ -133,7 +138,7 @@ def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
     tints = zeros.copy()
     for name in CLIP_FIELDS:
         if name in arrays:
-            # What ends at an edge is like nothing else.
+            # Samples with clip lines are treated as unlike all others.
             tints[arrays[name][:, 1] > 0] = np.inf
     colors = np.column_stack([arrays["colors"], *_averaged(arrays).values()])
     uvs = uv_planes(arrays, axes, spacing)
@@ -144,14 +149,14 @@ def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
 
 
 def _averaged(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The optional fields of which a merged disc has the mean."""
+    """The optional fields that merged discs average."""
     others = (*LAYOUT, *UV_FIELDS, BORDER, *CLIP_FIELDS, "blend_depth")
     return {name: array for name, array in arrays.items() if name not in others}
 
 
 def _edge_fields(arrays, made, tolerance: Tolerance) -> dict[str, np.ndarray]:
-    """Clip lines and blend depths of merged discs, where `arrays` have such: the surface goes on around them, and stays
-    within the tolerance of their planes, as do their neighbours."""
+    """Clip lines and blend depths of merged discs, if `arrays` has such: the surface continues around them and stays
+    within the tolerance of their planes, and so do their neighbours."""
     count = len(made["scales"])
     fields = {name: np.zeros((count, 2), np.int16) for name in CLIP_FIELDS if name in arrays}
     if "blend_depth" in arrays:
@@ -165,13 +170,13 @@ def _key(side: np.ndarray, column: np.ndarray, row: np.ndarray) -> np.ndarray:
 
 
 def _block(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What `_key` was made of."""
+    """The inverse of `_key`."""
     mask = (1 << _BITS) - 1
     return keys >> 2 * _BITS, (keys >> _BITS & mask) - _FIRST, (keys & mask) - _FIRST
 
 
 def _parents(nodes: _Nodes, edge: int, spacing: float, tolerance: Tolerance) -> _Nodes:
-    """The blocks of 2 x 2 `nodes`, whose edge is given in cells, that stay within the tolerance."""
+    """The blocks of 2 x 2 `nodes` that stay within the tolerance; their edge is given in cells."""
     side, column, row = _block(nodes.keys)
     keys = _key(side, column >> 1, row >> 1)
     corner = (column & 1) | (row & 1) << 1
@@ -219,7 +224,8 @@ def _parents(nodes: _Nodes, edge: int, spacing: float, tolerance: Tolerance) -> 
 
 
 def _plane_of_four(values: np.ndarray, edge: float) -> np.ndarray:
-    """(n, 3) value over a block's middle and its change per column and row, from (n, 4) values at its quarters."""
+    """(n, 3) value over a block's middle and its change per column and row, from (n, 4) values at the middles of its
+    quarters."""
     along_u = (values[:, 1] - values[:, 0] + values[:, 3] - values[:, 2]) / (2 * edge)
     along_v = (values[:, 2] - values[:, 0] + values[:, 3] - values[:, 1]) / (2 * edge)
     return np.stack([values.mean(axis=1), along_u, along_v], axis=1)
@@ -236,33 +242,36 @@ def _uvs_of_four(children: np.ndarray, edge: float) -> tuple[np.ndarray, np.ndar
 
 
 def _most_slip(spacing: float, tolerance: Tolerance) -> float:
-    """How many cells a texture may lie beside its place: as far as the surface may, but for rounding."""
+    """Maximum slip of a texture, in cells: the tolerance of the surface plus rounding."""
     return max(tolerance.distance / spacing, _ROUNDING)
 
 
 def _every_fourth(whole: np.ndarray) -> np.ndarray:
-    """(n,) bool: of each run of True the 1st, 5th, 9th, so that no two windows of four share an element."""
+    """(n,) bool: the 1st, 5th, 9th ... of each run of True, so that no two windows of four overlap."""
     place = np.arange(len(whole))
     starts = np.where(whole, 0, place + 1)
     return whole & ((place - np.maximum.accumulate(starts)) % 4 == 0)
 
 
 def _plane_distances(planes: np.ndarray, children: np.ndarray, edge: int) -> np.ndarray:
-    """(n, 4) largest difference in depth of (n, 4, 3) children's planes from their (n, 3) parent's in their blocks."""
+    """(n, 4) largest difference in depth between (n, 4, 3) children's planes and their (n, 3) parent's plane over their
+    blocks."""
     corner = np.arange(4)
     centre = edge / 2 * (2 * np.stack([corner & 1, corner >> 1], axis=1) - 1)
     middle = children[:, :, 0] - planes[:, None, 0] - (planes[:, None, 1:] * centre).sum(axis=2)
-    # a difference of planes is largest at a corner: half an edge along both axes
+    # a difference of planes is largest at a corner, half an edge away along both axes
     return np.abs(middle) + edge / 2 * np.abs(children[:, :, 1:] - planes[:, None, 1:]).sum(axis=2)
 
 
 def _cosines(planes: np.ndarray) -> np.ndarray:
-    """(n,) distance from a plane over difference in depth; also the normal's component along the image's axis."""
+    """(n,) ratio of distance from a plane to difference in depth, which is the normal's component along the image's
+    axis."""
     return 1 / np.sqrt(1 + planes[:, 1] ** 2 + planes[:, 2] ** 2)
 
 
 def _goes_on_around(nodes: _Nodes, level: int, finer: _Nodes, spacing: float, tolerance: Tolerance) -> np.ndarray:
-    """(n,) bool: whether the ring of blocks of the level of `finer` around each block is whole and like it."""
+    """(n,) bool: whether the ring of blocks around each block, on the level of `finer`, is complete and similar to
+    it."""
     count = min(4, 2**level)
     share = 2**level / count
     side, column, row = _block(nodes.keys)
@@ -289,7 +298,7 @@ def _goes_on_around(nodes: _Nodes, level: int, finer: _Nodes, spacing: float, to
 
 
 def _are_alike(a: _Nodes, i: np.ndarray, b: _Nodes, k: np.ndarray, tolerance: Tolerance) -> np.ndarray:
-    """(n,) bool: whether rows i of a and k of b have one material and nearly one shading normal and colour."""
+    """(n,) bool: whether rows i of a and k of b have the same material and similar shading normals and colours."""
     alike = a.materials[i] == b.materials[k]
     alike &= sum(a.shading[i, c] * b.shading[k, c] for c in range(3)) >= math.cos(tolerance.angle)
     mapped = is_mapped(a.uvs[i])
@@ -300,7 +309,7 @@ def _are_alike(a: _Nodes, i: np.ndarray, b: _Nodes, k: np.ndarray, tolerance: To
 
 
 def _unstacked(columns: np.ndarray, like: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """(n, k) columns as arrays of the names, widths and types of `like`, in its order."""
+    """Split (n, k) columns into arrays with the names, widths and types of `like`, in its order."""
     made, start = {}, 0
     for name, array in like.items():
         width = math.prod(array.shape[1:])
@@ -310,12 +319,12 @@ def _unstacked(columns: np.ndarray, like: dict[str, np.ndarray]) -> dict[str, np
 
 
 def _discs(nodes: _Nodes, level: int, spacing: float) -> dict[str, np.ndarray]:
-    """The arrays of `Surfels` of merged blocks."""
+    """The arrays of `Surfels` for merged blocks."""
     count, edge = len(nodes.keys), 2**level
     side, column, row = _block(nodes.keys)
     cosines = _cosines(nodes.planes)
     sign = np.where(side & 1, 1.0, -1.0)
-    # in the image's own order u, v, axis
+    # in the image's own axis order u, v, axis
     positions = np.stack([(column + 0.5) * edge, (row + 0.5) * edge, nodes.planes[:, 0]]) * spacing
     normals = np.stack([-nodes.planes[:, 1], -nodes.planes[:, 2], np.ones(count)]) * cosines * sign
     made = {

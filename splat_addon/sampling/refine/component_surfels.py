@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One surfel for each part that no ray meets: a disc at its centroid, as large as the part is seen from there."""
+"""Makes one surfel for each part that no ray hits: a disc at its centroid with the projected area of the part."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ..attributes.texture_mapping import BORDER, UV_FIELDS, fill_uvs
 from ..ldc.grid import Grid
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
 
-#: Half-axis of the smallest disc, in spacings: dust of no measurable area is still a surfel.
+#: Half-axis of the smallest disc, in spacings: specks without measurable area still get a surfel.
 _LEAST_RADIUS = 1e-3
 
-#: Added to all areas, cells squared, so that a part without measurable area has a centroid too.
+#: Added to all areas, cells squared, so that parts without measurable area have a centroid too.
 _TINY_AREA = 1e-100
 
 
@@ -33,12 +33,12 @@ def component_surfels(
 ) -> dict[str, np.ndarray]:
     """The arrays of `Surfels` of p parts, positions relative to the grid's middle.
 
-    coordinates: (3, V) float64, of the mesh's vertices on the grid. lost: what `missed_components` found.
-    largest_radius: of a disc, in spacings. sampler, tangents: as a `SampleFiller` has them.
-    texture_mapped: the surfels get texture coordinates too.
-    The disc lies at the area-weighted centroid, faces the way that most of the area faces, and has the area that is
-    seen from there. The shading normal is the mean over the triangles on its front; the material and what it is made of
-    are those of the largest triangle.
+    coordinates: (3, V) float64 grid coordinates of the mesh's vertices. lost: result of `missed_components`.
+    largest_radius: of a disc, in spacings. sampler, tangents: as in `SampleFiller`.
+    texture_mapped: whether the surfels get texture coordinates.
+    The disc lies at the area-weighted centroid, faces the direction that most of the area faces, and has the area
+    projected onto that direction. The shading normal is the mean over the triangles on its front; material and material
+    values are those of the largest triangle.
     """
     triangles, part = lost
     corners = gather_corners(coordinates, mesh.triangles[triangles])
@@ -75,9 +75,9 @@ def component_surfels(
 
 
 def axis_steps_of(corners: np.ndarray, arrays: dict[str, np.ndarray]) -> np.ndarray:
-    """(2, 2, p) how many of the two edges from a triangle's first corner the discs' half-axes are, in its plane.
+    """(2, 2, p): the discs' half-axes in units of the two edges from a triangle's first corner, in its plane.
 
-    corners: (3, 3, p), object units. By the dual basis of the edges; not finite for a triangle without area.
+    corners: (3, 3, p), object units. Uses the dual basis of the edges; not finite for a triangle without area.
     """
     first, second = (np.moveaxis(corners[:, k] - corners[:, 0], 0, 1) for k in (1, 2))
     normal = np.cross(first, second)
@@ -96,9 +96,9 @@ def _sums(part: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def _main_normals(part: np.ndarray, vectors: np.ndarray, areas: np.ndarray) -> np.ndarray:
-    """(3, p) unit normals of the planes that see most of each part's area, turned to the side that has more of it.
+    """(3, p) unit directions from which most of each part's area is visible, on the side that has more of it.
 
-    The largest eigenvector of sum n n^T A: on a closed part the mean normal is 0, but this is not.
+    This is the principal eigenvector of sum n n^T A; unlike the mean normal, it does not vanish on closed parts.
     """
     outer = (vectors[:, None] * vectors[None] / areas).reshape(9, -1)
     _, axes = np.linalg.eigh(_sums(part, outer).T.reshape(-1, 3, 3))
@@ -109,7 +109,8 @@ def _main_normals(part: np.ndarray, vectors: np.ndarray, areas: np.ndarray) -> n
 
 @np.errstate(over="ignore", invalid="ignore", divide="ignore")
 def _shading_normals(mesh, triangles, part, weights, normals) -> np.ndarray:
-    """(p, 3) float32: the weighted mean of the corners' shading normals; the disc's own where that has no length."""
+    """(p, 3) float32: the weighted mean of the corners' shading normals; the disc's own normal if that has no
+    length."""
     result = normals.T.astype(np.float32)
     if mesh.corner_normals is None:
         return result
@@ -125,7 +126,7 @@ def _shading_normals(mesh, triangles, part, weights, normals) -> np.ndarray:
 def _samples(
     mesh: TriangleMesh, sampler: MaterialSampler, tangents, triangles: np.ndarray, materials: np.ndarray
 ) -> Samples:
-    """The middle of these triangles; a texture is averaged over the triangle's own edges."""
+    """The middle of each triangle, with a texture footprint spanned by the triangle's own edges."""
     colors = uvs = uv_steps = None
     if sampler.needs_colors and mesh.corner_colors is not None:
         colors = np.asarray(mesh.corner_colors[triangles], np.float32).mean(axis=1).T

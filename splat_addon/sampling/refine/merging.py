@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The 3-to-1 reduction: surfels of all three images move to a common lattice, and one stays on each node.
+"""The 3-to-1 reduction: surfels of all three images are snapped to a common lattice, and one stays at each node.
 
 After Pfister et al. 2000, who resample the three images of a cube into one with the nearest surfel's attributes. The
-lattice is that of the cell centres, where the rays of all three images cross. Two sheets that lie closer than a cell
-share their nodes and become one: that is the reduction's known failure (docs/evidence/conversion.md).
+lattice nodes are the cell centres, where the rays of all three images cross. Two sheets less than a cell apart share
+nodes and become one, a known failure of this reduction (docs/evidence/conversion.md).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..attributes.texture_mapping import moved
 
 
 def nearest_to_lattice(arrays: dict[str, np.ndarray], spacing: float) -> dict[str, np.ndarray]:
-    """Of the surfels around each lattice node the nearest, standing on the node; in the order that they had.
+    """The nearest of the surfels around each lattice node, moved onto the node, in the original order.
 
     arrays: by field of `Surfels`, positions relative to a corner of a cell. spacing: of the grid, object units.
     """
@@ -23,7 +23,7 @@ def nearest_to_lattice(arrays: dict[str, np.ndarray], spacing: float) -> dict[st
     centres = (cells + 0.5) * spacing
     distances = np.abs(arrays["positions"].T - centres).max(axis=0)
     nodes = _numbered(cells)
-    # The first of each run of equal nodes is the nearest; a stable sort leaves ties to the lower index.
+    # The first of each run of equal nodes is the nearest; the stable sort resolves ties by index.
     order = np.lexsort((distances, nodes))
     nodes = nodes[order]
     is_first = np.ones(len(order), bool)
@@ -40,6 +40,7 @@ def nearest_to_lattice(arrays: dict[str, np.ndarray], spacing: float) -> dict[st
 
 
 def _numbered(cells: np.ndarray) -> np.ndarray:
-    """(n,) int64 that are equal exactly where (3, n) cells are; 2^20 cells an edge fit, twice what a grid may have."""
+    """(n,) int64 keys that are equal exactly where (3, n) cells are equal; 2^20 cells per edge fit, twice a grid's
+    maximum."""
     x, y, z = cells - cells.min(axis=1, keepdims=True) if cells.shape[1] else cells
     return (x << 42) | (y << 21) | z

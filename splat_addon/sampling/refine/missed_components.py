@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finds the connected parts of a mesh that lie between all rays: bolts, wires, dust smaller than a cell.
 
-Cheap where nothing is lost: only triangles without a sample are looked at, and the sampled surface grows over nearly
-all of them in a few steps. Only what it does not reach is welded and labelled.
+This is cheap if nothing was missed: only triangles without a sample are considered, and the sampled surface grows over
+nearly all of them in a few steps. Only triangles that it does not reach are welded and labelled.
 """
 
 from __future__ import annotations
@@ -12,15 +12,15 @@ import numpy as np
 from ..mesh.connectivity import among, part_labels
 from ..mesh.triangle_mesh import TriangleMesh
 
-#: The sampled surface stops growing when a step takes less than this share of what is left, and this many triangles
-#: cost a step next to nothing; labels do the rest.
+#: The sampled surface stops growing when a step takes less than this share of the rest, or when the rest is below this
+#: number of triangles; labelling handles the remainder.
 _WORTHWHILE_SHARE, _FEW = 0.1, 4096
 
 
 class SampledSurface:
-    """Grows from the triangles that have samples over those that share a vertex, while the mesh is gone through once.
+    """Grows from the triangles that have samples to those that share a vertex with them, in passes over the mesh.
 
-    reached: (V,) bool, the vertices.
+    reached: (V,) bool, reached vertices.
     """
 
     def __init__(self, vertices: int):
@@ -28,11 +28,11 @@ class SampledSurface:
         self._rest: list[np.ndarray] = []
 
     def add(self, indices: np.ndarray, sampled: np.ndarray):
-        """Of the triangles with vertices `indices`, (3, t), these have samples."""
+        """Record that the triangles with vertices `indices`, (3, t), have samples."""
         self.reached[indices.take(sampled, axis=1).ravel()] = True
 
     def grow(self, indices: np.ndarray, start: int):
-        """Takes a step over the triangles with vertices `indices`, (3, t), which are numbered from `start`."""
+        """Grow one step over the triangles with vertices `indices`, (3, t), which are numbered from `start`."""
         a, b, c = self.reached.take(indices)
         touched = a | b | c
         grown = np.flatnonzero(touched & ~(a & b & c))
@@ -40,15 +40,16 @@ class SampledSurface:
         self._rest.append(np.flatnonzero(~touched) + start)
 
     def rest(self) -> np.ndarray:
-        """(m,) the triangles that it has not grown over; those beside others that came after them are among them."""
+        """(m,) triangles not yet reached; this includes neighbours of triangles that were reached later in the same
+        pass."""
         return np.concatenate(self._rest)
 
 
 def missed_components(mesh: TriangleMesh, surface: SampledSurface) -> tuple[np.ndarray, np.ndarray]:
-    """The triangles of all parts without a sample, and the part of each: two (m,) intp arrays. Parts are numbered from
-    0 in the order of their first triangles.
+    """The triangles of all parts without a sample, and each one's part: two (m,) intp arrays. Parts are numbered from 0
+    in the order of their first triangles.
 
-    surface: what is sampled of the mesh. Triangles that share the position of a corner are one part.
+    surface: the sampled surface of the mesh. Triangles with a common corner position belong to one part.
     """
     rest, reached = surface.rest(), surface.reached
     corners, rest = _unreached(mesh.triangles.take(rest, axis=0), rest, reached)
@@ -63,14 +64,14 @@ def missed_components(mesh: TriangleMesh, surface: SampledSurface) -> tuple[np.n
     part = labels[corners[:, 0]]
     lost = ~is_found[part]
     _, first, number = np.unique(part[lost], return_index=True, return_inverse=True)
-    # by their first triangles: the labels are hashes' order
+    # in the order of their first triangles, because labels follow the order of hashes
     return rest[lost], np.argsort(np.argsort(first))[number.reshape(-1)]
 
 
 def _welded(hashes: np.ndarray, corners: np.ndarray, reached: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(m, 3) corners that name places instead of vertices, and the (p,) places where a reached vertex is.
+    """(m, 3) corners that index positions instead of vertices, and the (p,) positions of reached vertices.
 
-    hashes: (V,) of the vertices' places.
+    hashes: (V,) of the vertices' positions.
     """
     places, named = np.unique(hashes.take(corners.ravel()), return_inverse=True)
     at = among(hashes, places)
@@ -80,7 +81,7 @@ def _welded(hashes: np.ndarray, corners: np.ndarray, reached: np.ndarray) -> tup
 
 
 def _unreached(corners: np.ndarray, rest: np.ndarray, reached: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What the reached vertices, (V,) bool, do not grow over of (m, 3) corners and their (m,) triangles."""
+    """The (m, 3) corners and (m,) triangles that the reached vertices, (V,) bool, do not grow over."""
     while len(rest) and not reached.all():
         a, b, c = reached.take(corners).T
         touched = a | b | c
