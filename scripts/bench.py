@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures something, or draws a figure of the docs.
+"""Runs a benchmark, or draws a figure for the docs.
 
     python3 scripts/bench.py --list
     python3 scripts/bench.py NAME [--help] [--quick] [--out DIR] [--turns N] [...]
 
-Runs on whatever Python starts it: makes the environment of the tests on first use, and hands over to `measuring` there,
-which leaves NAME.md, tables, plots and pictures in build/bench/NAME.
+Runs on whatever Python starts it: creates the test environment on first use and continues in `measuring` there, which
+leaves NAME.md, tables, plots and pictures in build/bench/NAME.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from measuring.registry import modules, summary
 
 @environment.exit_with_problems
 def main(arguments: list) -> int:
-    """The exit code of the measurement; 2 for a name that is not there."""
+    """The exit code of the benchmark; 2 for an unknown name."""
     parser = argparse.ArgumentParser(prog="bench.py", description=__doc__.split("\n")[0])
     parser.add_argument("--list", action="store_true", help="what there is, a line each")
     parser.add_argument("--bpy", choices=sorted(environment.PYTHON_FOR_BPY), help="the wheel of Blender to take")

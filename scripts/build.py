@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds the extension's zip with Blender's own builder, and has Blender's own validator read it.
+"""Builds the extension's zip with Blender's own builder, and checks it with Blender's own validator.
 
     python3 scripts/build.py [--out DIR] [--index]
 
-One checkout gives the same bytes everywhere. The builder is plain Python that comes with every Blender: here that of
-the demo's environment.
+The same checkout gives the same bytes everywhere. The builder is plain Python that comes with every Blender; this
+script uses the one in the demo's environment.
 """
 
 import argparse
@@ -17,25 +17,25 @@ from pathlib import Path
 import environment
 from environment import ROOT, Problem
 
-#: In Blender's folder of scripts.
+#: Path in Blender's scripts folder.
 BUILDER = Path("addons_core/bl_pkg/cli/blender_ext.py")
 TAGS = Path("modules/_bpy_internal/extensions/tags.py")
 
 
-#: What the builder calls them.
+#: File name that the builder gives a package.
 ZIPS = "surfel_splatting-*.zip"
 
 
 def build(python: Path, blender_scripts: Path, out: Path) -> Path:
-    """The new zip in `out`, built and validated.
+    """Build and validate the new zip in `out`.
 
     python: any interpreter. blender_scripts: the folder `scripts` of a Blender.
-    Raises Problem with the tool's own words where the extension is refused.
+    Raises Problem with the tool's own message if the extension is rejected.
     """
     out.mkdir(parents=True, exist_ok=True)
     tags = f"--valid-tags={blender_scripts / TAGS}"
     tool = [str(python), str(blender_scripts / BUILDER)]
-    # An earlier zip stays until the new one is whole.
+    # An earlier zip stays until the new one is complete.
     with tempfile.TemporaryDirectory(dir=out, prefix=".build-") as unfinished:
         _run([*tool, "build", tags, f"--source-dir={ROOT}", f"--output-dir={unfinished}"])
         (made,) = Path(unfinished).glob(ZIPS)
@@ -48,20 +48,20 @@ def build(python: Path, blender_scripts: Path, out: Path) -> Path:
 
 
 def write_reproducibly(package: Path) -> None:
-    """Write a zip anew: names in order, one date and mode for all, nothing compressed, for what that gives depends on
-    the library.
-    """
+    """Rewrite a zip reproducibly: sorted names, one date and mode for all, no compression, because its result depends
+    on the library."""
     with zipfile.ZipFile(str(package)) as built:
         contents = {name: built.read(name) for name in sorted(built.namelist()) if not name.endswith("/")}
     with zipfile.ZipFile(str(package), "w", zipfile.ZIP_STORED) as anew:
         for name, content in contents.items():
             entry = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
-            entry.create_system, entry.external_attr = 3, 0o100644 << 16  # a plain file of Unix, wherever it is built
+            entry.create_system, entry.external_attr = 3, 0o100644 << 16  # a plain Unix file, wherever the zip is built
             anew.writestr(entry, content)
 
 
 def write_index(python: Path, blender_scripts: Path, out: Path) -> Path:
-    """`index.json` beside the zips in `out`: what Blender reads of a repository of extensions. Raises Problem."""
+    """Write `index.json` beside the zips in `out`, which Blender reads as a repository of extensions. Raises
+    Problem."""
     _run([str(python), str(blender_scripts / BUILDER), "server-generate", f"--repo-dir={out}"])
     return out / "index.json"
 
@@ -73,7 +73,7 @@ def _run(command: list) -> None:
 
 
 def wheel_scripts(folder: Path) -> Path:
-    """Blender's folder of scripts in an environment."""
+    """Blender's scripts folder in an environment."""
     for builder in sorted(folder.glob(f"**/site-packages/bpy/*/scripts/{BUILDER.as_posix()}")):
         return builder.parents[len(BUILDER.parts) - 1]
     raise Problem(f"The environment {folder} holds no extension builder: delete it and run this again.")
@@ -81,7 +81,7 @@ def wheel_scripts(folder: Path) -> Path:
 
 @environment.exit_with_problems
 def main(arguments: list) -> int:
-    """Exit code 0, or 1 after one sentence."""
+    """Exit code 0, or 1 after printing one sentence."""
     parser = argparse.ArgumentParser(prog="build.py", description="Builds and validates the extension's zip.")
     parser.add_argument("--out", type=Path, default=ROOT / "build", help="the folder for the zip")
     parser.add_argument("--index", action="store_true", help="also the index.json of a repository that holds it")

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Converts a model to surfels, renders it with the engine, and leaves a picture and a .blend.
+"""Converts a model to surfels, renders it with the engine, and saves a picture and a .blend.
 
     python3 scripts/demo.py [MODEL] [--resolution R] [--size WxH] [--out DIR]
 
-Runs on whatever Python starts it: makes an environment with Blender in it on first use, and hands over to
-`demonstration` there. Written so that an old Python gets as far as the sentence in `environment`.
+Runs on whatever Python starts it: creates an environment with Blender on first use and continues in `demonstration`
+there. The syntax is simple enough for an old Python to reach the error message in `environment`.
 """
 
 import argparse
@@ -21,22 +21,22 @@ from environment.module import module_process
 #: Cells along the longest side of each object in the model.
 RESOLUTIONS = 2, 8192
 DEFAULT_RESOLUTION = 640
-#: Pixels along a side of the picture; Blender's own limits.
+#: Pixels along a side of the picture; these are Blender's own limits.
 PIXELS = 4, 65536
 DEFAULT_SIZE = "1280x960"
-#: Blender's wheel prints this three times when its graphics start on Mesa; it means nothing and reads like a failure.
+#: Blender's wheel prints this three times when graphics start on Mesa; it is harmless but reads like a failure.
 NOISE = b"EGL_BAD_MATCH"
 
 
 class Parser(argparse.ArgumentParser):
-    """Says one sentence where argparse would print its usage too."""
+    """Prints one sentence where argparse would also print its usage."""
 
     def error(self, message: str):
         raise Problem(message.rstrip(".") + f" (see {self.prog} --help).", exit_code=2)
 
 
 def parse(arguments: list) -> argparse.Namespace:
-    """The checked arguments; raises Problem with exit code 2 for one that cannot be used."""
+    """The validated arguments. Raises Problem with exit code 2 for an invalid one."""
     parser = Parser(prog="demo.py", description="Converts a model to surfels and renders it inside Blender.")
     parser.add_argument(
         "model", nargs="?", type=model, help=f"{', '.join(IMPORTERS)}, each also .gz; a painted Suzanne"
@@ -50,7 +50,7 @@ def parse(arguments: list) -> argparse.Namespace:
 
 
 def model(text: str) -> Path:
-    """An existing file of a kind that Blender imports."""
+    """An existing file of a type that Blender imports."""
     path = Path(text)
     if not path.exists():
         raise argparse.ArgumentTypeError(f"there is no file {text}")
@@ -81,7 +81,7 @@ def size(text: str) -> tuple:
 
 
 def folder(text: str) -> Path:
-    """A folder, or the name of one to make."""
+    """A folder, or the name of one to create."""
     path = Path(text).resolve()
     if path.exists() and not path.is_dir():
         raise argparse.ArgumentTypeError(f"{text} is a file, and a folder is needed")
@@ -89,9 +89,9 @@ def folder(text: str) -> Path:
 
 
 def run_without_noise(**command) -> int:
-    """The exit code of a process (`args`, `env`), whose stderr is handed on without NOISE.
+    """Run a process (`args`, `env`), pass its stderr on without NOISE, and return its exit code.
 
-    Raises MissingError where it failed because something that it imports is not there.
+    Raises MissingError if it failed because an import is missing.
     """
     process = subprocess.Popen(**command, stderr=subprocess.PIPE)
     missing = b""
@@ -108,12 +108,12 @@ def run_without_noise(**command) -> int:
 
 
 class MissingError(Exception):
-    """What the environment lacks, in Python's words."""
+    """The missing import, in Python's words."""
 
 
 @environment.exit_with_problems
 def main(arguments: list) -> int:
-    """Exit code: 0, 1 where the demo failed, 2 for wrong arguments."""
+    """Exit code: 0, 1 if the demo failed, 2 for wrong arguments."""
     options = parse(arguments)
     made = environment.make("demo")
     options.out.mkdir(parents=True, exist_ok=True)

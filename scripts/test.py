@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs every test, in two processes or more, because moderngl and Blender take each other's graphics context away.
+"""Runs every test, in at least two processes, because moderngl and Blender take each other's graphics context away.
 
     python3 scripts/test.py [--quick] [--bpy VERSION] [--blender PATH [--gpu-backend NAME]] [PYTEST ARGUMENTS]
 
-Group "plain" draws on the standalone device; group "blender" draws inside Blender: in its wheel, or with --blender
-inside a program, a process for each folder, which needs the plain group's pictures to compare with and nothing else of
-it. Outside of a program pytest-xdist runs as many processes as there are cores; -n 0 runs one.
+Group "plain" draws on the standalone device; group "blender" draws inside Blender's wheel. With --blender the second
+group runs inside a Blender program, in one process per folder; of the first group only the pictures that it compares
+with are drawn. Otherwise pytest-xdist runs as many processes as there are cores; -n 0 runs one.
 """
 
 import argparse
@@ -22,15 +22,15 @@ from testing.groups import BLENDER, PLAIN, QUICK, by_folder, paths_by_group, spl
 #: pytest's exit codes.
 PASSED, NO_TESTS = 0, 5
 
-#: A process for each core, of which each takes a gigabyte; an idle one takes tests from a busy one.
+#: One process per core, each of which takes a gigabyte; an idle process takes tests from a busy one.
 PARALLEL = ("-n", "auto", "--maxprocesses", "8", "--dist", "worksteal")
 
-#: Cores that run tests have none left for a library's own threads.
+#: All cores run tests, so a library's own threads would only compete.
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "LP_NUM_THREADS": "1"}
 
 
 def parse(arguments: list) -> tuple:
-    """Our options, and the rest for pytest."""
+    """Our options, and the remaining ones for pytest."""
     parser = argparse.ArgumentParser(
         prog="test.py",
         description="Runs the tests; what is not listed here goes to pytest.",
@@ -47,25 +47,25 @@ def parse(arguments: list) -> tuple:
 
 
 def wheel_command(python: Path, device: str, arguments: list) -> list:
-    """pytest in the environment; with the device "blender" inside Blender's wheel."""
+    """pytest in the environment; with the device "blender", inside Blender's wheel."""
     return [str(python), "-m", "pytest", "--device", device, *PARALLEL, *arguments]
 
 
 def blender_command(options: argparse.Namespace, python: Path, arguments: list) -> list:
-    """pytest inside Blender: its wheel, or the program."""
+    """pytest inside Blender: in its wheel or in the program."""
     if not options.blender:
         return wheel_command(python, "blender", arguments)
     return program.test_command(options.blender, options.gpu_backend, ["--device", "blender", *arguments])
 
 
 def run(name: str, command: list, **variables) -> int:
-    """pytest's exit code for one group, announced before it starts."""
+    """Announce and run one group; returns pytest's exit code."""
     print(f"\n== group {name}: {' '.join(command)}", flush=True)
     return subprocess.run(command, cwd=str(ROOT), env={**os.environ, **variables}).returncode
 
 
 def verdict(codes: dict) -> int:
-    """One exit code for both groups; a group in which nothing matched is well where the other ran something."""
+    """One exit code for both groups; a group without matching tests is fine if the other ran some."""
     failed = [code for code in codes.values() if code not in (PASSED, NO_TESTS)]
     if failed:
         return 1
@@ -74,7 +74,8 @@ def verdict(codes: dict) -> int:
 
 @environment.exit_with_problems
 def main(arguments: list) -> int:
-    """Exit code: 0 where everything passed, 1 where something failed, 2 for wrong arguments, 5 for no test at all."""
+    """Exit code: 0 if everything passed, 1 if something failed, 2 for wrong arguments, 5 if there were no tests at
+    all."""
     options, rest = parse(arguments)
     paths, pytest_arguments = split_arguments([*(QUICK if options.quick else ()), *rest])
     groups = paths_by_group(paths, only_pictures=bool(options.blender))

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `scripts/bench.py NAME` measures, a module each: tables, and plots of them."""
+"""Benchmarks that `scripts/bench.py NAME` runs, one module each: tables, and plots of them."""

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What chunks of an animation cost on a farm, and what is left where workers are killed at random moments.
+"""Overhead of splitting an animation into chunks on a render farm, and what remains when workers are killed at random
+moments.
 
-The efficiency of four workers is simulated: what each task costs is measured in seconds of one processor, as a process
-of its own that starts and opens the file, and the tasks are handed out in order to whoever is free. That is what four
-machines of one core do that share nothing but a disk.
+The efficiency of four workers is simulated: each task's cost is measured in processor seconds, as a process of its own
+that starts up and opens the file, and tasks are handed out in order to the first free worker. This is what four
+single-core machines that share only a disk would do.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ def run(options, report) -> None:
 
 
 def _kill(folder: Path, seconds: float, options, report) -> None:
-    """At each moment a new chunk is killed, looked at, and given again."""
+    """Start a chunk, kill it at each of the moments, check the output, and start it again."""
     moments, half_written, wrong = random.Random(18), 0, 0
     for turn in range(options.kills):
         command = _command(folder, f"killed{turn}_", 1, options.chunk)
@@ -83,7 +84,7 @@ def _kill(folder: Path, seconds: float, options, report) -> None:
 
 
 def _is_same(folder: Path, path: Path, name: str) -> bool:
-    """Whether a picture is the whole run's, pixel by pixel."""
+    """Whether a picture equals the one of the uninterrupted run, pixel by pixel."""
     try:
         return np.array_equal(_pixels(path), _pixels(folder / path.name.replace(name, "whole_")))
     except RuntimeError:
@@ -99,7 +100,7 @@ def _pixels(path: Path) -> np.ndarray:
 
 
 def _makespan(tasks: list[float], workers: int) -> float:
-    """When the last is done, where each worker takes the next task as soon as it is free."""
+    """The finishing time when each worker takes the next task as soon as it is free."""
     free = [0.0] * workers
     for seconds in tasks:
         free[free.index(min(free))] += seconds
@@ -107,7 +108,7 @@ def _makespan(tasks: list[float], workers: int) -> float:
 
 
 def _timed(command: list[str]) -> float:
-    """Seconds of one processor. Raises CalledProcessError."""
+    """Processor seconds of a command. Raises CalledProcessError."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     one_thread = {**os.environ, "LP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=one_thread)
@@ -122,7 +123,7 @@ def _command(folder: Path, name: str, first: int, chunk: int, last: int | None =
 
 
 def _saved_scene(file: Path, options) -> int:
-    """A ball of surfels that moves; how many."""
+    """Save a scene with a moving ball of surfels; returns the number of surfels."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = lit_scene(options.size, (0.3, 0.3, 0.3), (0.6, 0.4, 0.0), 2.0)
     scene.camera.location, scene.camera.rotation_euler = (0, -6, 0), (np.pi / 2, 0, 0)

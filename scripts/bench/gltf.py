@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A model as surfels beside the same model as meshes in EEVEE or Cycles: pictures, and how far they differ.
+"""Renders a model as surfels and as meshes in EEVEE or Cycles, and compares the pictures.
 
-Both pictures have one sun without shadows and an even world, which is what both renderers can do. The picture: surfels,
+Both scenes have one sun without shadows and a uniform world, which both renderers support. The figure shows surfels,
 meshes, and four times the difference.
 """
 
@@ -22,7 +22,7 @@ from splat_addon.reference.metrics import psnr, srgb
 from splat_addon.rendering.presets import PRESETS
 
 BACKGROUND = 0.18
-#: Of the difference, in the picture.
+#: Amplification of the difference in the figure.
 MAGNIFIED = 4
 QUICK = {"size": (32, 24), "pixels": 4.0, "engine": "CYCLES", "samples": 1}
 
@@ -72,7 +72,7 @@ def run(options, report) -> None:
 
 
 def framed(meshes: list[bpy.types.Object], options) -> bpy.types.Scene:
-    """A sun without shadow, a grey world, and a camera that sees all of the meshes."""
+    """A sun without shadow, a grey world, and a camera that frames all meshes."""
     turn = math.radians(options.angle)
     scene = lit_scene(options.size, (0.28, 0.31, 0.35), (math.radians(40), math.radians(25), turn), 1.6)
     scene.objects["Sun"].data.use_shadow = False
@@ -89,7 +89,7 @@ def framed(meshes: list[bpy.types.Object], options) -> bpy.types.Scene:
 
 
 def picture(scene: bpy.types.Scene, hidden: list[bpy.types.Object]) -> tuple[np.ndarray, float]:
-    """(h, w, 4) without these objects, and its seconds."""
+    """(h, w, 4) picture without these objects, and its time in seconds."""
     for one in bpy.data.objects:
         one.hide_render = one in hidden
     started = time.perf_counter()

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tables of the four papers in shape, on our models: ratios of times in one turn, beside those that are printed.
+"""The tables of the four papers, reproduced with our models: ratios of times within one turn, beside the printed
+ratios.
 
-Rates of 2003 to 2007 and of a processor without a graphics card say nothing of one another; what a choice costs beside
-another does. Surfels are the models' at several resolutions; none is marked solid, so that backs are drawn.
+Absolute rates of 2003 to 2007 cannot be compared with those of a processor without a graphics card; the relative cost
+of a choice can. Surfels are our models at several resolutions; none is marked solid, so back faces are drawn.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ MODELS = ("armadillo.obj.gz", "bunny.obj.gz")
 ONE = Settings(supersampling=1, shading="phong", shadow_resolution=0, outputs=("color", "depth"))
 QUADS = replace(ONE, method="quad")
 
-#: table -> (name of the one that times are in, {name: settings}, the printed ratios, why ours are others)
+#: table -> (reference choice, {name: settings}, printed ratios, reason why ours differ)
 TABLES = {
     "Botsch and Kobbelt 2003, table 1": (
         "unfiltered",
@@ -66,7 +67,7 @@ TABLES = {
         "Ren's corners took 74 instructions a vertex there; here fragments are what takes time, and his are more.",
     ),
 }
-#: As if a pass were free: the printed frames a second with it switched off, over those with it.
+#: As if a pass were free: printed frames per second with the pass switched off, divided by those with it.
 PRINTED_OFF = {"ours": "1.7 to 2.1, 1.6 to 1.8, 1.0 to 1.2", "Ren et al.": "1.1 to 1.3, 4.6 to 5.5, 1.0 to 1.1"}
 
 
@@ -108,7 +109,7 @@ def _rows(renderer: Renderer, case, unit: str, choices: dict, options, report):
 
 
 def _without(renderer: Renderer, case, options):
-    """1 / (1 - the share of a pass), of both methods of the paper."""
+    """1 / (1 - the pass's share of the time), for both methods of the paper."""
     name, resolution = case
     scene, camera = _scene(options.models / name, resolution, options.size)
     for label, method in (("ours", "quad"), ("Ren et al.", "ewa_object")):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Table 2 of view-independent object-space splatting for real models, and where each reduction fails.
+"""Table 2 of view-independent object-space splatting for real models, and the failures of each reduction.
 
-Surfels (and their share of the original); bare surface at the default splat size, and distance of the surfels from the
-surface (rms); and what adaptive sampling leaves.
+It shows the number of surfels (and its ratio to the original), the bare surface at the default splat size, the rms
+distance of surfels from the surface, and what adaptive sampling saves.
 """
 
 from __future__ import annotations
@@ -35,17 +35,17 @@ MODELS = (
     "armadillo.obj.gz", "bunny.obj.gz", "dragon_vrip.ply.gz", "spot.obj.gz", "fandisk.obj.gz", "truck.obj.gz",
     "CesiumMilkTruck.glb", "phoenix_bird.glb",
 )  # fmt: skip
-#: The models whose errors are measured, for each kind of failure one.
+#: The models whose errors are measured, one for each kind of failure.
 ERROR_MODELS = ("armadillo.obj.gz", "fandisk.obj.gz", "truck.obj.gz", "phoenix_bird.glb")
 ADAPTIVE_MODELS = ("fandisk.obj.gz", "CesiumMilkTruck.glb", "truck.obj.gz", "spot.obj.gz", "armadillo.obj.gz")
 TOLERANCES = (0.05, 0.25)
-#: The paper's Table 2: original, 3-to-1, Zwicker's, ours (the normal-based reduction).
+#: The paper's Table 2: original, 3-to-1, Zwicker's, the normal-based reduction.
 PUBLISHED = {
     "Tiny": (311_028, 180_947, 271_682, 177_782),
     "Tiger": (206_064, 140_203, 180_282, 136_143),
     "Butterfly": (251_897, 212_943, 251_480, 224_144),
 }
-#: The table's order.
+#: Order of the rows.
 COLUMNS = {"none": "original", "three_to_one": "3-to-1", "grazing": "Zwicker's (70 deg)", "normal": "normal"}
 ADAPTIVE = "model", "tolerance", "surfels", "times fewer", "error reported", "largest distance found", "bare"
 
@@ -69,7 +69,7 @@ def run(options, report) -> None:
 
 
 def counts(meshes: dict, options):
-    """The paper's table with our models below its own."""
+    """The paper's table, and below it our models."""
     for name, published in PUBLISHED.items():
         yield f"*published: {name}*", *with_ratio(published)
     for name, mesh in meshes.items():
@@ -78,12 +78,12 @@ def counts(meshes: dict, options):
 
 
 def with_ratio(numbers) -> list[str]:
-    """The first as it is, the others with their share of it."""
+    """The first number as it is, the others with their ratio to it."""
     return [f"{numbers[0]:,}", *(f"{number:,} ({number / numbers[0]:.3f})" for number in numbers[1:])]
 
 
 def errors(meshes: dict, options):
-    """What the counts cost: bare surface, and surfels off the surface."""
+    """The price of each reduction: bare surface, and surfels off the surface."""
     for name in (n for n in ERROR_MODELS if n in meshes):
         mesh, cells = meshes[name], []
         spacing = grid_spacing(mesh, resolution=options.resolution)
@@ -100,13 +100,14 @@ def bare(mesh: TriangleMesh, surfels: Surfels, spacing: float, options) -> float
 
 
 def distances(mesh: TriangleMesh, surfels: Surfels, rows) -> np.ndarray:
-    """Of some surfels' centres from the mesh."""
+    """Distances of a subset of the surfels' centres from the mesh."""
     exact = trimesh.Trimesh(mesh.positions, mesh.triangles, process=False)
     return trimesh.proximity.closest_point(exact, surfels.origin + surfels.positions[rows].astype(np.float64))[1]
 
 
 def adaptive(meshes: dict, options):
-    """Surfels left by adaptive sampling of the normal reduction, the bound it reports, and what is true of it."""
+    """Surfels left by adaptive sampling of the normal-based reduction, the error bound that it reports, and the
+    measured error."""
     for name in (n for n in ADAPTIVE_MODELS if n in meshes):
         mesh = meshes[name]
         spacing = grid_spacing(mesh, resolution=options.resolution)
@@ -121,14 +122,14 @@ def adaptive(meshes: dict, options):
 
 
 def sampled(mesh: TriangleMesh, resolution: float, reduction: str) -> Surfels:
-    """Without the surfels of parts that no ray meets."""
+    """Samples without the surfels of parts that no ray hits."""
     made = sample_surface(mesh, resolution=resolution, reduction=reduction)
     rows = slice(len(made.surfels) - made.small_parts)
     return replace(made.surfels, **{name: array[rows] for name, array in made.surfels.arrays().items()})
 
 
 def draw(meshes: dict, renderer: Renderer, report) -> None:
-    """Where reductions fail, side by side; and the same mesh sampled plainly and adaptively."""
+    """Draw the failures of reductions side by side, and the same mesh sampled plainly and adaptively."""
     if "phoenix_bird.glb" in meshes:
         bird = colored_by_side(meshes["phoenix_bird.glb"])
         view = bird.bounds(), (0.3, 0.8, 0.5), (0, 1, 0), 0.75
@@ -149,7 +150,7 @@ def draw(meshes: dict, renderer: Renderer, report) -> None:
 
 
 def draw_points(path, renderer: Renderer, report) -> None:
-    """A range map's bare points, and the surfels made from them."""
+    """Draw a range map's bare points, and the surfels made from them."""
     points = load_any(path).vertices
     facing, dark = np.tile((0.0, 0.0, 1.0), (len(points), 1)), np.full((len(points), 4), (0.05, 0.05, 0.05, 1))
     bare, *_ = surfels_from_points(points, facing, np.full(len(points), 0.12), dark)
@@ -169,7 +170,7 @@ def colored_by_side(mesh: TriangleMesh) -> TriangleMesh:
 
 
 def render(renderer: Renderer, surfels: Surfels, box, toward, up, distance: float, sun: bool = False) -> np.ndarray:
-    """(400, 400, 4) of the surfels in their own colours, or under a sun. distance: in the box's diagonals."""
+    """(400, 400, 4) picture of the surfels in their own colours, or under a sun. distance: in diagonals of the box."""
     eye = 2 * distance * np.array(toward) / np.linalg.norm(toward)
     scene, camera = in_view(surfels, 400, eye, fov=0.6, up=up, box=box)
     lights = (Light("sun", energy=2.0, direction=(-0.7, -0.8, -0.4)),) if sun else ()

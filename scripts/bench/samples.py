@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How fast a picture converges with the samples that it is the mean of, and what they make.
+"""How fast a picture converges with the number of samples, and figures of multi-sample effects.
 
-PSNR is of sRGB: of still pictures from `render_exact` with 16 x 16 rays a pixel, of blurred ones from the mean of 1024
-samples, of panoramas from the means of 8 x 8 pixels of a larger one by Quads. Pictures: turning tori still, in 4
-moments and in one for each of 8 samples; balls all around, equirectangular, equidistant and equisolid.
+PSNR is measured in sRGB. The reference for still pictures is `render_exact` with 16 x 16 rays per pixel, for motion
+blur the mean of 1024 samples, for panoramas the means of 8 x 8 pixels of a larger panorama drawn with Quads. Figures:
+turning tori at rest, with 4 shutter steps and with one for each of 8 samples; balls all around the camera as
+equirectangular, equidistant and equisolid panoramas.
 """
 
 from __future__ import annotations
@@ -77,7 +78,8 @@ def quality(renderer: Renderer, options):
 
 
 def turning(renderer: Renderer, scene, camera, places, count: int, method: str = "mip") -> np.ndarray:
-    """The picture of so many samples while the scene turns a twelfth around z, with a moment at each of the places."""
+    """The mean of this many samples while the scene turns a twelfth around z, with one moment at each of the given
+    times."""
 
     def moments():
         for place in places:

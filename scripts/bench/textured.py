@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What texture-mapped surfels gain and cost, beside surfels of one colour each: a globe covered with text.
+"""Benefit and cost of texture-mapped surfels, compared with surfels of one colour each: a globe covered with text.
 
-The truth is the texture itself on the analytic sphere, looked up by float64 rays, 12 x 12 a pixel; PSNR is of sRGB
-values where the sphere is seen less than 75 degrees from its normal. Unlit; the two kinds of surfels are timed in turn:
-processor time of all threads. The picture: a colour each, as many texture-mapped, 64 times as many with a colour each.
+The reference is the texture itself on the analytic sphere, looked up by float64 rays, 12 x 12 per pixel; PSNR is
+measured in sRGB where the sphere is seen at less than 75 degrees from its normal. The scene is unlit; both kinds of
+surfels are timed alternately, in processor time of all threads. The figure: surfels of one colour, as many
+texture-mapped ones, and 64 times as many of one colour.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from splat_addon.sampling import Channel, Image, Surface, Texture, TriangleMesh,
 
 DEVICES = ("standalone",)
 QUICK = {"size": 32, "resolutions": [8, 16]}
-#: name -> settings and the pixel filter of its truth
+#: name -> settings and the pixel filter of the reference
 METHODS = {
     "mip": (Settings(method="mip", supersampling=1, shading="flat"), "gaussian"),
     "quad, 2 x 2": (Settings(method="quad", supersampling=2, shading="flat"), "box"),
@@ -64,7 +65,7 @@ def run(options, report) -> None:
 
 
 def on_sphere(eye: np.ndarray, rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where rays meet the unit sphere: longitude and latitude, and whether it is well seen."""
+    """Where rays hit the unit sphere: longitude and latitude, and whether the angle is small enough to be measured."""
     along = -rays @ eye
     inside = along**2 - eye @ eye + 1
     points = eye + rays * (along - np.sqrt(np.maximum(inside, 0)))[:, None]
@@ -74,7 +75,7 @@ def on_sphere(eye: np.ndarray, rays: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def text_image() -> Image:
-    """Dark letters on paper that changes its colour from pole to pole; four texels a dot."""
+    """Dark letters on paper whose colour changes from pole to pole; four texels per dot."""
     ink = np.kron(page(60, 20), np.ones((4, 4)))[..., None]
     share = np.linspace(0, 1, len(ink))[:, None, None]
     paper = share * (0.85, 0.75, 0.45) + (1 - share) * (0.4, 0.65, 0.85)
@@ -82,7 +83,7 @@ def text_image() -> Image:
 
 
 def globe(image: Image, rows: int = 256) -> TriangleMesh:
-    """The unit sphere with texture coordinates of longitude and latitude, its seam closed."""
+    """The unit sphere with longitude and latitude as texture coordinates, and a closed seam."""
     lon, lat = np.meshgrid(np.linspace(0, 1, 2 * rows + 1), np.linspace(0, 1, rows + 1))
     angle, height = 2 * np.pi * lon, np.pi * (lat - 0.5)
     points = np.stack([np.cos(height) * np.cos(angle), np.cos(height) * np.sin(angle), np.sin(height)], axis=2)

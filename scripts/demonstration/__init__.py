@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What scripts/demo.py runs inside Blender: models are read, converted, lit, framed and rendered."""
+"""The part of scripts/demo.py that runs inside Blender: reads, converts, lights, frames and renders models."""

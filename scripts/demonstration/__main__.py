@@ -28,7 +28,7 @@ FULL_DISK = "the disk is full, or the folder's quota used up; free some space an
 
 @exit_with_problems
 def main(arguments: list) -> int:
-    """Exit code 0, or 1 after one sentence."""
+    """Exit code 0, or 1 after printing one sentence."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--model", type=Path)
     parser.add_argument("--resolution", type=int)
@@ -67,7 +67,7 @@ def main(arguments: list) -> int:
 
 @contextmanager
 def step(doing: str):
-    """Shows that a long step runs, and afterwards what it took."""
+    """Show that a long step is running, and how long it took."""
     started = perf_counter()
     with CONSOLE.status(f"{doing} ..."):
         yield
@@ -75,13 +75,13 @@ def step(doing: str):
 
 
 def triangle_count(meshes: list) -> int:
-    """Triangles of the objects with their modifiers."""
+    """Number of triangles in the objects, with their modifiers applied."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
     return sum(sum(len(p.vertices) - 2 for p in m.evaluated_get(depsgraph).data.polygons) for m in meshes)
 
 
 def render(picture: Path) -> None:
-    """F12 into a file."""
+    """Render a still picture to a file."""
     scene = bpy.context.scene
     scene.render.filepath = str(picture)
     scene.render.image_settings.file_format = "PNG"
@@ -94,9 +94,9 @@ def render(picture: Path) -> None:
 
 
 def save(blend: Path) -> None:
-    """The file as a .blend; an earlier one is replaced once the new one has been read back.
+    """Save the file as a .blend; an earlier one is replaced only after the new one has been read back.
 
-    Blender 5.2 says that a file is saved of which only a part is on a full disk.
+    Blender 5.2 reports success even if a full disk holds only a part of the file.
     """
     unfinished = blend.with_name(f".{blend.stem}-{os.getpid()}.blend")
     try:
@@ -124,7 +124,7 @@ def timed_frame() -> dict:
 
 
 def summary(options, triangles: int, surfels: list, seconds: float, stats: dict) -> Table:
-    """What was made and what it took."""
+    """Summary of what was made and how long it took."""
     count = sum(len(o.data.vertices) for o in surfels)
     table = Table(show_header=False, title="Surfel Splatting", title_justify="left")
     table.add_row("Model", options.model.name if options.model else "Suzanne, subdivided and painted, and a nut")

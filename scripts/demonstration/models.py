@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A model file becomes mesh objects, through Blender's own importers, and these become surfels.
+"""Imports a model file as mesh objects with Blender's own importers, and converts these to surfels.
 
 Gzipped files are unpacked first.
 """
@@ -20,7 +20,7 @@ from environment import Problem
 #: suffix -> the operator `bpy.ops.MODULE.NAME` that reads it, and its options.
 IMPORTERS = {
     ".obj": ("wm", "obj_import", {}),
-    # Scanners write PLY with Y up and say so nowhere.
+    # Scanners write PLY with Y up, but the file does not say so.
     ".ply": ("wm", "ply_import", {"forward_axis": "NEGATIVE_Z", "up_axis": "Y"}),
     ".stl": ("wm", "stl_import", {}),
     ".glb": ("import_scene", "gltf", {}),
@@ -29,13 +29,13 @@ IMPORTERS = {
 
 
 def model_suffix(path: Path) -> str:
-    """The kind of a model file, in lower case and without .gz."""
+    """File type of a model, in lower case and without .gz."""
     name = path.name.lower()
     return Path(name[: -len(".gz")] if name.endswith(".gz") else name).suffix
 
 
 def import_model(path: Path) -> list:
-    """The mesh objects with faces that the file holds. Raises Problem where it cannot be read or has none."""
+    """The mesh objects with faces in the file. Raises Problem if it cannot be read or has none."""
     import bpy
 
     module, name, options = IMPORTERS[model_suffix(path)]
@@ -51,7 +51,8 @@ def import_model(path: Path) -> list:
 
 
 def convert(meshes: list, **options) -> tuple[list, float]:
-    """The surfel objects made from `meshes` by the add-on's operator with its options, and the seconds that it took."""
+    """Convert `meshes` to surfel objects with the add-on's operator and its options; returns them and the time in
+    seconds."""
     import bpy
 
     for one in bpy.context.view_layer.objects:
@@ -67,7 +68,7 @@ def convert(meshes: list, **options) -> tuple[list, float]:
 
 
 def call(failure: str, operator, **options) -> None:
-    """An operator, whose error report becomes a Problem."""
+    """Call an operator, and turn its error report into a Problem."""
     try:
         operator(**options)
     except RuntimeError as error:
@@ -75,7 +76,7 @@ def call(failure: str, operator, **options) -> None:
 
 
 def unpack(path: Path, folder: Path) -> Path:
-    """The file without .gz, in `folder`, beside copies of the files that it names (materials, textures, buffers)."""
+    """Unpack a .gz file into `folder`, and copy the files that it refers to (materials, textures, buffers)."""
     target = folder / path.name[: -len(".gz")]
     try:
         with gzip.open(path) as packed, target.open("wb") as plain:
@@ -87,7 +88,7 @@ def unpack(path: Path, folder: Path) -> Path:
 
 
 def _copy_named_files(text_file: Path, source: Path, folder: Path) -> None:
-    """Copies what a file names from `source` to `folder`; a material library names textures in its turn."""
+    """Copy the files that a file names from `source` to `folder`; a material library names textures in turn."""
     pattern = _NAMED_FILES.get(text_file.suffix.lower())
     text = text_file.read_text(encoding="utf-8", errors="replace") if pattern else ""
     for name in re.findall(pattern, text, re.MULTILINE) if pattern else ():
@@ -100,7 +101,7 @@ def _copy_named_files(text_file: Path, source: Path, folder: Path) -> None:
             _copy_named_files(copy, source, folder)
 
 
-#: suffix -> where a text of that kind names another file.
+#: suffix -> pattern with which such a file names another file.
 _NAMED_FILES = {
     ".obj": r"^mtllib[ \t]+(\S.*?)\s*$",
     ".mtl": r"^\s*(?:map_\w+|bump|norm|refl)[ \t](?:.*[ \t])?(\S+)\s*$",
@@ -109,7 +110,7 @@ _NAMED_FILES = {
 
 
 def _keep_images() -> None:
-    """Packs every image into the .blend, before a temporary folder that it lies in goes away."""
+    """Pack all images into the .blend before the temporary folder is deleted."""
     import bpy
 
     for image in bpy.data.images:

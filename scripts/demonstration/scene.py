@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stands around the surfels in the demo: a painted Suzanne where no model is given, lights, world, camera."""
+"""The surroundings of the surfels in the demo: a painted Suzanne if no model is given, lights, world, camera."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import bpy
 import mathutils
 import numpy as np
 
-#: Where the camera stands as seen from the model: in front, to the right and a little above.
+#: Direction from the model to the camera: in front, to the right and slightly above.
 VIEW_FROM = mathutils.Vector((0.55, -1.0, 0.22)).normalized()
 #: The share of the picture that the model may fill.
 FILL = 0.86
@@ -42,9 +42,9 @@ def painted_material():
 
 
 def painted_pixels(size: int) -> np.ndarray:
-    """(size, size, 4) float32 in sRGB: warm and cool bands that wave, with fine checks in every other one."""
+    """(size, size, 4) float32 in sRGB: wavy warm and cool bands, with fine checks in every other one."""
     v, u = np.mgrid[0:size, 0:size].astype(np.float32) / size
-    # Suzanne's halves lie mirrored in the image.
+    # The halves of Suzanne are mirrored in the image.
     u = np.abs(u - 0.5)
     wave = 14 * v + 0.8 * np.sin(2 * math.pi * 3 * u) + 0.4 * np.sin(2 * math.pi * (7 * u + 2 * v))
     warm, cool, ink = (np.array(c, np.float32) for c in ((0.95, 0.52, 0.20), (0.13, 0.55, 0.62), (0.98, 0.90, 0.74)))
@@ -56,7 +56,7 @@ def painted_pixels(size: int) -> np.ndarray:
 
 
 def dress(surfel_objects: list, size: tuple[int, int]) -> None:
-    """Lights, a mid-grey world, and a camera that holds all surfels; `size` is the picture's, in pixels."""
+    """Add lights, a mid-grey world, and a camera that frames all surfels; `size` is the picture's, in pixels."""
     scene = bpy.context.scene
     scene.render.resolution_x, scene.render.resolution_y = size
     scene.render.resolution_percentage = 100
@@ -68,14 +68,15 @@ def dress(surfel_objects: list, size: tuple[int, int]) -> None:
     scene.world = even_world((0.2, 0.2, 0.2))
     key = add_light("SUN", 2.2, (1.0, 0.95, 0.88))
     key.rotation_euler = mathutils.Vector((-0.5, -0.7, 0.9)).to_track_quat("Z", "Y").to_euler()
-    # A cool fill light, whose power grows with the square of the model's size: every size is lit alike.
+    # The power of the cool fill light grows with the square of the model's size, so that models of all sizes are lit
+    # alike.
     fill = add_light("POINT", 30 * reach**2, (0.75, 0.87, 1.0))
     fill.location = middle + reach * mathutils.Vector((1.6, -0.9, 0.6))
     scene.camera = framing_camera(points, reach, size)
 
 
 def world_positions(surfel_objects: list) -> np.ndarray:
-    """(N, 3) float64 positions of all surfels in the world."""
+    """(N, 3) float64 world positions of all surfels."""
     parts = []
     for surfel_object in surfel_objects:
         local = np.empty(3 * len(surfel_object.data.vertices), np.float32)
@@ -86,7 +87,7 @@ def world_positions(surfel_objects: list) -> np.ndarray:
 
 
 def framing_camera(points: np.ndarray, reach: float, size: tuple[int, int]):
-    """A camera in three-quarter view, as near as lets `points`, (N, 3), fill FILL of the picture."""
+    """A camera in three-quarter view, close enough that `points`, (N, 3), fill FILL of the picture."""
     data = bpy.data.cameras.new("Camera")
     camera = bpy.data.objects.new("Camera", data)
     bpy.context.collection.objects.link(camera)
@@ -116,7 +117,7 @@ def add_light(kind: str, energy: float, color: tuple[float, float, float]) -> bp
 
 
 def even_world(color: tuple[float, float, float]):
-    """A world of one colour, linear."""
+    """A world of one linear colour."""
     world = bpy.data.worlds.new("Even")
     with_nodes(world)
     background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
@@ -125,6 +126,6 @@ def even_world(color: tuple[float, float, float]):
 
 
 def with_nodes(owner) -> None:
-    """Gives a material or world its default nodes: Blender 5 does so by itself and warns when it is asked to."""
+    """Give a material or world its default nodes; Blender 5 creates them itself and warns if asked to."""
     if bpy.app.version < (5, 0):
         owner.use_nodes = True

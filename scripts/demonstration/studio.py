@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The demo's own scene: each model twice, as the mesh that it is and as surfels, on a studio's floor in soft light."""
+"""The demo's default scene: each model twice, as a mesh and as surfels, on a studio floor in soft light."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ import numpy as np
 
 from .scene import add_light, even_world, painted_suzanne, with_nodes
 
-#: From the mesh to its surfels.
+#: Offset from a mesh to its surfels.
 APART = mathutils.Vector((2.7, 0, 0))
 FLOOR_COLOR, STEEL_COLOR, LABEL_COLOR = (0.50, 0.49, 0.47), (0.55, 0.57, 0.60), (0.03, 0.03, 0.035)
 
 
 def models() -> list:
-    """What is converted: a painted Suzanne who looks up a little, and a nut before her."""
+    """The models to convert: a painted Suzanne tilted upwards, and a nut in front of her."""
     (suzanne,) = painted_suzanne()
     suzanne.location, suzanne.rotation_euler = (-APART.x / 2, 0.35, 0), (-0.42, 0, 0.12)
     part = nut()
@@ -29,14 +29,14 @@ def models() -> list:
 
 
 def put_down(made: bpy.types.Object) -> None:
-    """Onto the floor, with its modifiers."""
+    """Place an object on the floor, taking its modifiers into account."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
     evaluated = made.evaluated_get(depsgraph)
     made.location.z -= min((evaluated.matrix_world @ vertex.co).z for vertex in evaluated.data.vertices)
 
 
 def copies(meshes: list) -> list:
-    """The same meshes once more, to stay meshes where they are."""
+    """Copies of the meshes, which remain meshes."""
     made = [mesh.copy() for mesh in meshes]
     for one in made:
         bpy.context.collection.objects.link(one)
@@ -44,7 +44,7 @@ def copies(meshes: list) -> list:
 
 
 def set_up(surfels: list, size: tuple[int, int]) -> None:
-    """The surfels beside their meshes; floor, labels, lights and camera. size: of the picture, in pixels."""
+    """Place surfels beside their meshes; add floor, labels, lights and camera. size: of the picture, in pixels."""
     for one in surfels:
         one.location += APART
     scene = bpy.context.scene
@@ -63,10 +63,10 @@ def set_up(surfels: list, size: tuple[int, int]) -> None:
 
 
 def nut() -> bpy.types.Object:
-    """A hexagonal nut: bevelled edges, flat sides, a round hole."""
+    """A hexagonal nut with bevelled edges, flat sides and a round hole."""
     around = [k * math.pi / 48 for k in range(96)]
     outer = [0.42 / math.cos((a + math.pi / 6) % (math.pi / 3) - math.pi / 6) for a in around]
-    #: radius as a share of the outer one, or of the hole, and height
+    #: radius relative to the outer one, or to the hole, and height
     rings = (
         [(0.97, 0.16), (1.0, 0.13), (1.0, -0.13), (0.97, -0.16)],
         [(1.12, -0.16), (1.0, -0.13), (1.0, 0.13), (1.12, 0.16)],
@@ -83,7 +83,7 @@ def nut() -> bpy.types.Object:
 
 
 def backdrop() -> bpy.types.Object:
-    """A floor that bends up into a wall."""
+    """A floor that curves up into a wall."""
     turn = np.linspace(0, math.pi / 2, 25)
     profile = [(-14.0, 0.0), *zip(4 + 3 * np.sin(turn), 3 - 3 * np.cos(turn), strict=True), (7.0, 14.0)]
     points = [(x, y, z) for y, z in profile for x in (-16.0, 16.0)]
@@ -108,7 +108,7 @@ def _object(name: str, points, faces, material) -> bpy.types.Object:
 
 
 def label(text: str, location) -> None:
-    """Words that lie on the floor."""
+    """Text that lies on the floor."""
     data = bpy.data.curves.new(text, "FONT")
     data.body, data.size, data.align_x = text, 0.40, "CENTER"
     data.materials.append(plain_material("Label", LABEL_COLOR, 0.8))
@@ -118,7 +118,7 @@ def label(text: str, location) -> None:
 
 
 def plain_material(name: str, color, roughness: float):
-    """A Principled material of one colour, linear."""
+    """A Principled material of one linear colour."""
     material = bpy.data.materials.new(name)
     with_nodes(material)
     inputs = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED").inputs
@@ -127,7 +127,7 @@ def plain_material(name: str, color, roughness: float):
 
 
 def lamp(size: float, energy: float, color, location) -> bpy.types.Object:
-    """An area light that looks at the models."""
+    """An area light that points at the models."""
     made = add_light("AREA", energy, color)
     made.data.size, made.location = size, location
     made.rotation_euler = (
@@ -137,7 +137,7 @@ def lamp(size: float, energy: float, color, location) -> bpy.types.Object:
 
 
 def camera(size: tuple[int, int]) -> bpy.types.Object:
-    """Before the models and a little above; it moves back where the picture is narrow."""
+    """A camera in front of the models and slightly above; it moves back if the picture is narrow."""
     data = bpy.data.cameras.new("Camera")
     data.sensor_fit, data.lens = "HORIZONTAL", 63
     made = bpy.data.objects.new("Camera", data)

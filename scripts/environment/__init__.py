@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the virtual environment that the scripts run in; the first thing that demo, test and build import.
+"""Creates the virtual environment that the scripts run in; demo, test and build import it first.
 
-Needs nothing but a Python of 3.8 or newer; the environment's own Python may be another one.
+Needs only Python 3.8 or newer; the environment may use another version.
 """
 
 import sys
 
-# In syntax that every Python can read.
+# In syntax that any Python can parse.
 if sys.version_info < (3, 8):  # noqa: UP036
     sys.exit(
         "The scripts start with Python 3.8 or newer, and this is {}.{}: call them as `python3 scripts/NAME.py`, "

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Turns what pip or the system's loader prints into one sentence with the remedy.
+"""Turns the output of pip or the system's loader into one sentence that names the remedy.
 
-Each table is a list of (pattern in the text, sentence); the first that matches speaks.
+Each table is a list of (pattern in the text, sentence); the first match is used.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ INSTALL_PROBLEMS = (
 
 
 def _known_problem(table, text: str) -> str | None:
-    """The sentence for what a failed process printed; None where nothing that the table knows is in it."""
+    """The sentence for the output of a failed process; None if no pattern matches."""
     for pattern, sentence in table:
         match = re.search(pattern, text)
         if match:
@@ -68,11 +68,11 @@ def _known_problem(table, text: str) -> str | None:
     return None
 
 
-#: Text -> sentence: of a failed `import bpy`, and of a failed `pip install`.
+#: Text -> sentence, for a failed `import bpy` and for a failed `pip install`.
 import_problem, install_problem = (partial(_known_problem, table) for table in (IMPORT_PROBLEMS, INSTALL_PROBLEMS))
 
 
 def last_line(text: str) -> str:
-    """The last line that says something, for errors that no table knows."""
+    """The last non-empty line, for errors that no table covers."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     return lines[-1].rstrip(".") if lines else "it printed nothing"

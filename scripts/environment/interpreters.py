@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds a Python of a given version on this machine: step one of making an environment.
+"""Finds a Python of a given version on this machine, the first step of creating an environment.
 
-A wheel of bpy runs on exactly one Python version, and the Python that started the script is often another.
-A candidate counts only when it runs and says what it is: a pyenv shim or a Windows store link may be
-on the PATH and refuse.
+A wheel of bpy runs on exactly one Python version, and the Python that started the script is often another. A candidate
+counts only if it runs and reports its version: a pyenv shim or a Windows store link on the PATH may fail to start.
 """
 
 from __future__ import annotations
@@ -16,7 +15,8 @@ from typing import Iterable, Iterator
 
 from .problem import Problem
 
-#: What a candidate prints about itself: a mark, its version, its kind, and whether it can make an environment.
+#: What a candidate prints about itself: a marker, its version, implementation and word size, and whether it can create
+#: an environment.
 PROBE = (
     "import importlib.util, platform, sys; "
     "print('surfel', '%d.%d' % sys.version_info[:2], platform.python_implementation(), sys.maxsize > 2**32, "
@@ -33,10 +33,10 @@ INSTALL_REMEDY = (
 
 
 def find_interpreter(version: str, candidates: Iterable[list[str]] | None = None) -> list[str] | None:
-    """The command of the first candidate that is a 64-bit CPython `version` ("3.13") able to make an
-    environment, or None.
+    """The command of the first candidate that is a 64-bit CPython `version` ("3.13") able to create an environment, or
+    None.
 
-    Raises Problem when the version is there, but without the venv module (Debian packs it apart).
+    Raises Problem if the version exists but lacks the venv module, which Debian packages separately.
     """
     bare = None
     for command in candidate_commands(version) if candidates is None else candidates:
@@ -54,7 +54,7 @@ def find_interpreter(version: str, candidates: Iterable[list[str]] | None = None
 
 
 def probe(command: list[str]) -> tuple[str, ...]:
-    """What the interpreter says about itself (version, implementation, 64-bit, has venv); empty when it refuses."""
+    """What the interpreter reports (version, implementation, 64-bit, has venv); empty if it does not run."""
     try:
         answer = subprocess.run(
             [*command, "-c", PROBE],
@@ -70,16 +70,16 @@ def probe(command: list[str]) -> tuple[str, ...]:
 
 
 def candidate_commands(version: str) -> Iterator[list[str]]:
-    """Commands that may be a Python `version`, likeliest first, none twice."""
+    """Commands that may be a Python `version`, likeliest first, without duplicates."""
     running = [[sys.executable]] if "%d.%d" % sys.version_info[:2] == version else []  # noqa: UP031
-    # The launcher knows the installations of Windows that are not on the PATH.
+    # On Windows the launcher knows installations that are not on the PATH.
     launcher = [["py", f"-{version}"]] if WINDOWS else []
     found = (*running, *on_path(version), *launcher, *pyenv(version))
     yield from map(list, dict.fromkeys(map(tuple, found)))
 
 
 def on_path(version: str) -> Iterator[list[str]]:
-    """Every such name in every folder of PATH: the first one may be a shim that refuses, a later one real."""
+    """All files of this name on the PATH: the first may be a shim that does not run, a later one real."""
     suffix = ".exe" if WINDOWS else ""
     folders = [Path(folder) for folder in os.environ.get("PATH", "").split(os.pathsep) if folder]
     for name in (f"python{version}", "python3", "python"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The way out of a process that has loaded Blender, of which some versions hang or crash while the interpreter ends."""
+"""Ends a process that has loaded Blender, because some versions hang or crash while the interpreter shuts down."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import NoReturn
 
 
 def run_and_leave(main: Callable[[], int | None]) -> NoReturn:
-    """Ends the process with what main returns, or with 1 after the traceback of what it raised."""
+    """Exit with the result of main, or with 1 after printing the traceback of its exception."""
     exit_code: int = 1
     try:
         exit_code = main() or 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One process at a time: a second first run waits for the environment that another one makes."""
+"""A lock between processes: a second first run waits while another creates the environment."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ if os.name == "nt":
 else:
     import fcntl
 
-#: Seconds between two tries.
+#: Seconds between two attempts.
 _PAUSE = 0.2
 
 
 @contextmanager
 def alone(path: Path, waiting: str) -> Iterator[None]:
-    """No other process is in this context for the same file meanwhile; the system lets go of it when a process dies.
+    """Hold the lock in this context; the system releases it if the process dies.
 
-    path: of the lock, which is made where it is not there, and stays. waiting: printed once where another is first.
+    path: of the lock file, which is created if necessary, and stays. waiting: printed once if another process holds the
+        lock.
     """
     with open(path, "ab") as stream:
         if not _locked(stream, True):
@@ -36,7 +37,7 @@ def alone(path: Path, waiting: str) -> Iterator[None]:
 
 
 def _locked(stream: BinaryIO, is_wanted: bool) -> bool:
-    """Takes the lock, or lets go of it; False where another process has it."""
+    """Take or release the lock; False if another process has it."""
     try:
         if os.name == "nt":
             stream.seek(0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a command that takes minutes and shows that it lives: plain lines, since nothing is installed yet."""
+"""Runs a command that takes minutes and shows progress in plain lines, since nothing is installed yet."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import threading
 import time
 from typing import Callable
 
-#: Seconds between two signs of life.
+#: Seconds between two progress lines.
 PATIENCE = 15
 
 
 def run_showing(command: list[str], pick: Callable[[str], str | None]) -> tuple[int, str]:
-    """Exit code and whole output (stdout and stderr as they came) of a command.
+    """Exit code and output (stdout and stderr interleaved) of a command.
 
-    pick: makes the line to show from a line of output; None leaves it out.
+    pick: turns a line of output into the line to show, or None to show nothing.
     """
     started, shown, is_over = time.monotonic(), ["Starting"], threading.Event()
 

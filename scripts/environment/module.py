@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a module of scripts/ in an environment, where it finds the other scripts and the extension by their names."""
+"""Runs a module of scripts/ in an environment, with the other scripts and the extension importable."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from .virtual_environment import ROOT
 
 
 def module_process(python: str | Path, module: str, *arguments: object) -> dict:
-    """What `subprocess.run` or `Popen` takes to run `python -m module arguments` from any folder."""
+    """Arguments for `subprocess.run` or `Popen` to run `python -m module arguments` from any folder."""
     paths = os.pathsep.join((str(ROOT), str(ROOT / "scripts")))
-    # -P: the folder that the user happens to be in is not searched.
+    # -P: do not search the current folder for modules.
     command = [str(python), "-P", "-m", module, *map(str, arguments)]
     return {"args": command, "env": {**os.environ, "PYTHONPATH": paths}}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An error that the person at the keyboard can mend: one sentence instead of a traceback."""
+"""An error that the user can fix: one sentence instead of a traceback."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from typing import Callable
 
 
 class Problem(Exception):
-    """Its text is one sentence: what, which value, what to do. `exit_code` 2 means wrong arguments, 1 anything else."""
+    """An error message of one sentence: what failed, with which value, and what to do.
+
+    `exit_code` 2 means wrong arguments, 1 anything else.
+    """
 
     def __init__(self, sentence: str, exit_code: int = 1):
         super().__init__(sentence)
@@ -18,7 +21,7 @@ class Problem(Exception):
 
 
 def exit_with_problems(main: Callable[..., int]) -> Callable[..., int]:
-    """`main` with a Problem, a full disk or Ctrl-C turned into a sentence on stderr and an exit code."""
+    """Wrap `main` so that a Problem, a full disk or Ctrl-C becomes a sentence on stderr and an exit code."""
 
     @functools.wraps(main)
     def guarded(*arguments) -> int:
@@ -38,6 +41,6 @@ def exit_with_problems(main: Callable[..., int]) -> Callable[..., int]:
 
 
 def program_name() -> str:
-    """The name of the running script or module, to open its error sentences with."""
+    """The name of the running script or module, which error messages start with."""
     folder, name = os.path.split(sys.argv[0])
     return os.path.basename(folder) if name == "__main__.py" else name

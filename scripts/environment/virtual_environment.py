@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes `.venv-bpy-VERSION` in the clone, once: a venv with a wheel of Blender and a script's requirements.
+"""Creates `.venv-bpy-VERSION` in the checkout: a venv with a Blender wheel and a script's requirements.
 
-A stamp, written last, holds the hashes of what was installed and the names of what lies where packages lie: with it
-the next run starts at once; without it, or where one of these is gone, the environment is made anew.
+A stamp, written last, holds the hashes of the requirements and the names of the installed packages. If it is complete,
+the next run starts at once; if it or one of the packages is missing, the environment is created again.
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ from .problem import Problem
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
-#: bpy -> the one Python that its wheel runs on.
+#: bpy version -> the one Python version that its wheel runs on.
 PYTHON_FOR_BPY = {"5.2.3": "3.13", "5.0.1": "3.11", "4.5.15": "3.11"}
 
-#: What is tried, in this order, when no version is asked for.
+#: Versions to try, in this order, if none is requested.
 DEFAULT_BPY = ("5.2.3", "5.0.1")
 
 #: purpose -> the purposes whose requirements its own file includes, itself among them.
 PURPOSES = {"demo": ("demo",), "test": ("demo", "test")}
 
-#: Begins a stamp's lines that name what was installed.
+#: Prefix of a stamp's lines that name installed packages.
 _PACKAGE = "package "
 
-#: Where a venv keeps its interpreter.
+#: Location of the interpreter in a venv.
 PROGRAM = Path("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
-#: Leaves by os._exit, because some wheels hang or crash on their way out. The graphics libraries are
-#: loaded by name, as Blender itself does only when it renders.
+#: Exits by os._exit, because some wheels hang or crash at exit. The graphics libraries are loaded by name, as Blender
+#: itself does when it renders.
 IMPORT_CHECK = """
 import ctypes, os, sys
 if sys.platform == "linux":
@@ -52,7 +52,7 @@ os._exit(0)
 
 @dataclass(frozen=True)
 class Environment:
-    """python: the environment's interpreter. bpy_version: the wheel in it. folder: where it lies."""
+    """python: the environment's interpreter. bpy_version: the installed wheel. folder: its location."""
 
     python: Path
     bpy_version: str
@@ -60,10 +60,9 @@ class Environment:
 
 
 def make(purpose: str, bpy_version: str | None = None) -> Environment:
-    """The environment for a purpose ("demo" or "test"), made first where it is not there yet.
+    """The environment for a purpose ("demo" or "test"), created if it does not exist yet.
 
-    bpy_version: a key of PYTHON_FOR_BPY; None takes the first of DEFAULT_BPY that this machine has a Python for.
-    Raises Problem with one sentence when there is no Python for it, or when it cannot be downloaded or run.
+    Raises Problem with one sentence if there is no Python for it, or if it cannot be downloaded or run.
     """
     for version in (bpy_version,) if bpy_version else DEFAULT_BPY:
         environment = _environment(version)
@@ -89,7 +88,7 @@ def _environment(version: str) -> Environment:
 
 
 def requirements_hash(path: Path) -> str:
-    """sha256 of a requirements file and of those that it includes by `-r`."""
+    """sha256 of a requirements file and the files that it includes by `-r`."""
     text = path.read_text(encoding="utf-8")
     included = re.findall(r"^-r\s+(\S+)", text, re.MULTILINE)
     parts = [text, *(requirements_hash(path.parent / name) for name in included)]
@@ -113,13 +112,13 @@ def _is_ready(environment: Environment, purpose: str) -> bool:
 
 
 def _stamp_lines(environment: Environment) -> list[str]:
-    """Of the stamp, whatever is in it; none where there is no stamp."""
+    """The lines of the stamp; none if there is no stamp."""
     stamp = _stamp(environment)
     return stamp.read_text(encoding="utf-8", errors="replace").splitlines() if stamp.is_file() else []
 
 
 def _is_whole(environment: Environment) -> bool:
-    """Whether all that the stamp names is there."""
+    """Whether everything that the stamp names exists."""
     lines = _stamp_lines(environment)
     named = {line[len(_PACKAGE) :] for line in lines if line.startswith(_PACKAGE)}
     has_python = environment.python.is_file() and (environment.folder / "pyvenv.cfg").is_file()
@@ -127,18 +126,18 @@ def _is_whole(environment: Environment) -> bool:
 
 
 def _packages(environment: Environment) -> set[str]:
-    """The names of the files and folders where packages lie."""
+    """The names of files and folders in the packages folder."""
     folders = environment.folder.glob("Lib/site-packages" if os.name == "nt" else "lib/python*/site-packages")
     return {path.name for folder in folders for path in folder.iterdir() if path.name != "__pycache__"}
 
 
 def distrust(environment: Environment) -> None:
-    """Let the next run make the environment anew: something in it was found to be broken."""
+    """Have the next run create the environment again, because something in it was found to be broken."""
     _stamp(environment).unlink(missing_ok=True)
 
 
 def _install(environment: Environment, purpose: str, command: list[str]) -> None:
-    """Makes the venv, or adds to a whole one whose requirements grew, and stamps it."""
+    """Create the venv, or add to a complete one whose requirements have grown, and stamp it."""
     folder, stamp = environment.folder, _stamp(environment)
     if stamp.is_file() and not _is_whole(environment):
         print(f"Something is gone from {folder.name}, so it is made anew.", flush=True)
@@ -168,7 +167,7 @@ def _make_venv(folder: Path, command: list[str]) -> None:
 
 
 def pip_line(line: str) -> str | None:
-    """pip's own lines, less the many about dependencies that are there already."""
+    """pip's own lines, except the many about dependencies that are already satisfied."""
     if "Retrying" in line:
         return "Waiting for the package index, which does not answer"
     match = re.match(r"\s*(Collecting \S+|Downloading \S+.*\(.*\)|Installing collected packages)", line)
@@ -176,7 +175,7 @@ def pip_line(line: str) -> str | None:
 
 
 def _check_import(environment: Environment) -> None:
-    """Tries `import bpy` in a process of its own, until it has worked once in this environment."""
+    """Try `import bpy` in a separate process, until it has worked once in this environment."""
     passed = environment.folder / "imported.txt"
     if passed.is_file():
         return

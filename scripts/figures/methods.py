@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A picture of each method, and of the truth.
+"""A picture of each method and of the reference.
 
-Each shows a part of a checker plane at 6 degrees, a torus and a sphere of large splats, three times enlarged, one
-sample a pixel; `exact` is the float64 reference under the pixel's Gaussian. `facing`: discs that face the viewer, one
-on the axis exactly, by Homogeneous and as printed.
+Each shows crops of a checker plane at 6 degrees, a torus and a sphere of large splats, enlarged three times, with one
+sample per pixel; `exact` is the float64 reference under the pixel's Gaussian. `facing`: discs that face the viewer, one
+exactly on the axis, by Homogeneous and as printed.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def arguments(parser) -> None:
 
 
 def shots():
-    """Scene and camera, and the corner (column, row from the bottom) of the part that is shown."""
+    """Scene, camera, and the corner (column, row from the bottom) of the crop."""
     yield scenes.checker_plane(40, 40_000, 6, SIZE), (96, 94)
     yield scenes.torus(60_000, SIZE), (40, 128)
     yield scenes.sphere(2_000, SIZE), (20, 150)
@@ -56,7 +56,7 @@ def part(frame, corner) -> np.ndarray:
 
 
 def beside(parts: list[np.ndarray]) -> list[np.ndarray]:
-    """With a white line between them."""
+    """Pictures side by side, separated by white lines."""
     line = np.ones((PART, 1, 3))
     return [shown for one in parts for shown in (one, line)][:-1]
 

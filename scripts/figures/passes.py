@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Contact sheets of all passes of one picture, and of the shading models, three of them with lines.
 
-Depth and position are brought into 0 to 1 by what is there, indices and names get colours by their numbers; of the
-number of splats over a sample the square root is shown, white at 64; all else is shown as it is, in sRGB.
+Depth and position are scaled to the range 0 to 1, and indices and names are shown as distinct colours. Overdraw is
+shown as the square root of the splats per sample, white at 64; everything else is shown unchanged, in sRGB.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from splat_addon.rendering.shading_models import SHADING_MODELS
 
 DEVICES = ("standalone",)
 QUICK = {"width": 24}
-#: Of indices and names, black for 0.
+#: Colours for indices and names, black for 0.
 PALETTE = np.array([(0, 0, 0), (0.9, 0.3, 0.2), (0.2, 0.6, 0.9), (0.95, 0.8, 0.2), (0.3, 0.75, 0.4), (0.6, 0.4, 0.8)])
 
 
@@ -50,7 +50,7 @@ def run(options, report) -> None:
 
 
 def still_life(size: tuple[int, int]) -> tuple[Scene, Camera]:
-    """Two tori of splats in a floor and beside a glowing ball, both of polygons; each has a name and numbers."""
+    """Two tori of splats in a floor and beside a glowing ball, both polygons; each has a name and numbers."""
     (scene, camera), (among, _) = scenes.torus(60_000, size), scenes.polygons()
     floor, ball = among.polygons
     place = np.diag((0.4, 0.4, 0.4, 1.0))
@@ -66,7 +66,7 @@ def still_life(size: tuple[int, int]) -> tuple[Scene, Camera]:
 
 
 def models():
-    """Every model on the two tori, and three with lines."""
+    """Every shading model on the two tori, and three with lines."""
     plain, shot = Settings(method="mip", supersampling=2, matcap=ball()), scenes.torus(size=(150, 112))
     for name in SHADING_MODELS:
         yield shot, replace(plain, shading=name)
@@ -75,7 +75,7 @@ def models():
 
 
 def shown(frame: Frame) -> list[np.ndarray]:
-    """(h, w, 3) of 0 to 1 each, as they are shown."""
+    """(h, w, 3) from 0 to 1, as displayed."""
     hit, names = frame.depth < EMPTY_DEPTH, frame.cryptomatte.names
     near, far = frame.depth[hit].min(), frame.depth[hit].max()
     depth = np.where(hit, 1 - 0.9 * (frame.depth - near) / (far - near), 0)

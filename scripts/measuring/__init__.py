@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all of scripts/bench and scripts/figures share.
+"""Shared by all of scripts/bench and scripts/figures.
 
-`registry`: which there are. `__main__`: runs one. `timing`, `drawing`: jobs and pictures in turn. `report`: what is
-printed and left in a folder. `devices`: where a device can be opened. `models`, `blender_scene`: what is drawn.
+`registry` lists the modules, and `__main__` runs one. `timing` and `drawing` run jobs and pictures in turn. `report`
+writes what is printed and left in a folder. `devices` finds out where a device can be opened. `models` and
+`blender_scene` provide scenes.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs one module of scripts/bench or scripts/figures in the environment: its arguments, its device, its report."""
+"""Runs one module of scripts/bench or scripts/figures in the environment, with its arguments, device and report."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from measuring.report import Report
 
 
 def parse(name: str, arguments: list[str]) -> argparse.Namespace:
-    """The checked options of one module, those that all have among them."""
+    """The validated options of one module, including the common ones."""
     module = import_module(modules()[name])
     devices = getattr(module, "DEVICES", ())
     parser = argparse.ArgumentParser(
@@ -39,7 +39,7 @@ def parse(name: str, arguments: list[str]) -> argparse.Namespace:
 
 
 def measure(name: str, options: argparse.Namespace, command: str) -> None:
-    """Runs it where its device can be opened; the report is whole up to the last row that was measured."""
+    """Run the module where its device can be opened; the report is complete up to the last measured row."""
     module = import_module(modules()[name])
     with Report(name, module.__doc__, command, options.out, options.pictures or options.out) as report:
         run_on(options.device, lambda: module.run(options, report))
@@ -47,7 +47,7 @@ def measure(name: str, options: argparse.Namespace, command: str) -> None:
 
 @exit_with_problems
 def main(arguments: list[str]) -> int:
-    """Exit code 0, or 1 or 2 after one sentence."""
+    """Exit code 0, or 1 or 2 after printing one sentence."""
     name, *rest = arguments
     measure(name, parse(name, rest), shlex.join(["python3", "scripts/bench.py", *arguments]))
     return 0

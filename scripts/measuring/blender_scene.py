@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scenes of Blender's, lit alike for every engine, and their pictures as arrays."""
+"""Blender scenes with the same lighting for every engine, and their pictures as arrays."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from demonstration.scene import add_light, even_world
 
 
 def lit_scene(size: tuple[int, int], world, sun_turned, sun_energy: float) -> bpy.types.Scene:
-    """The current scene with an even world, a sun, a transparent film and a camera, which stands at the origin.
+    """The current scene with a uniform world, a sun, a transparent film and a camera at the origin.
 
     world: linear colour. sun_turned: its Euler angles.
     """

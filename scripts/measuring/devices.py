@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a job where a device can be opened: Blender's only inside a render, for in background mode there is a graphics
-context nowhere else.
-"""
+"""Runs a job where a device can be opened: for Blender's device that is inside a render, because background mode has a
+graphics context nowhere else."""
 
 from __future__ import annotations
 
@@ -9,7 +8,7 @@ from collections.abc import Callable
 
 
 def run_on(device: str | None, job: Callable[[], None]) -> None:
-    """The job, where `open_device(device)` works. Raises what the job raised."""
+    """Run the job where `open_device(device)` works. Raises what the job raises."""
     if device != "blender":
         return job()
     import bpy

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures in turn, with the milliseconds that each frame says it took."""
+"""Draws pictures in turn and records the milliseconds that each frame reports."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from splat_addon.rendering import Frame, Settings
 def draw_in_turn(
     draw: Callable[[Settings], Frame], choices: Mapping[Hashable, Settings] | Iterable[Settings], turns: int, **options
 ) -> Turns:
-    """Each of the settings, by its name or by itself where it has none."""
+    """Draw with each of the settings, by name if they have one."""
     named = choices if isinstance(choices, Mapping) else {settings: settings for settings in choices}
     stored = None
 
     def job(settings: Settings) -> Frame:
         nonlocal stored
         if settings.storage != stored:
-            draw(settings)  # takes the time to pack and upload surfels, which other frames do not
+            draw(settings)  # packs and uploads the surfels, which later frames need not do
             stored = settings.storage
         return draw(settings)
 
@@ -30,5 +30,5 @@ def draw_in_turn(
 
 
 def holes(drawn: Frame, exact: Frame) -> int:
-    """Pixels that the truth covers whole and the frame not at all."""
+    """Number of pixels that the reference covers fully and the frame not at all."""
     return int(np.count_nonzero((exact.coverage > 0.999) & (drawn.coverage == 0)))

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What scripts/bench.py can run: every module of scripts/bench and scripts/figures. Needs no environment.
+"""Lists what scripts/bench.py can run: every module of scripts/bench and scripts/figures. Needs no environment.
 
-Such a module has a docstring that says what it measures or draws, and `run(options, report)`; it may have
-`arguments(parser)` with options of its own, `QUICK`, the defaults of a tiny run, and `DEVICES`, those that it draws on.
+Such a module has a docstring that says what it measures or draws, and a function `run(options, report)`. It may have
+`arguments(parser)` with its own options, `QUICK`, the defaults of a tiny run, and `DEVICES`, the devices that it draws
+on.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ FOLDERS = ("bench", "figures")
 
 
 def modules() -> dict[str, str]:
-    """Name on the command line -> dotted name, in the order of the folders, then by name."""
+    """Name on the command line -> dotted module name, ordered by folder, then by name."""
     found = {}
     for folder in FOLDERS:
         for path in sorted((SCRIPTS / folder).iterdir()):
@@ -25,7 +26,7 @@ def modules() -> dict[str, str]:
 
 
 def summary(module: str) -> str:
-    """The first line of the docstring, read without importing what the module needs."""
+    """The first line of the docstring, read without importing the module."""
     path = SCRIPTS.joinpath(*module.split("."))
     source = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     return ast.get_docstring(ast.parse(source.read_text(encoding="utf-8"))).split("\n")[0]

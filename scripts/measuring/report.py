@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one form of what is measured: a page NAME.md with tables, CSV files, pictures and plots in a folder.
+"""Writes measurements in one form: a page NAME.md with tables, CSV files, pictures and plots in a folder.
 
-A terminal shows tables and progress by rich; a pipe gets the page's own Markdown.
+A terminal shows tables and progress with rich; a pipe gets the page's Markdown.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from splat_addon.reference.metrics import srgb
 
 
 class Report:
-    """A context in which progress is shown. out: the folder of page and tables. pictures: of pictures and plots."""
+    """A context that shows progress. out: folder of the page and tables. pictures: folder of pictures and plots."""
 
     def __init__(self, name: str, about: str, command: str, out: Path, pictures: Path):
         title, _, rest = about.strip().partition("\n")
@@ -48,21 +48,22 @@ class Report:
         self._write()
 
     def steps(self, items: Iterable, doing: str = "") -> Iterable:
-        """The items, while a bar shows how many are left."""
+        """The items, with a progress bar."""
         return self.progress.track(list(items), description=doing)
 
     def header(self, device=None, how: str = "") -> None:
-        """Machine, driver, versions, date and commit, and how it was measured."""
+        """Write machine, driver, versions, date and commit, and the method of measurement."""
         self.say("; ".join(filter(None, (machine(device), how))) + ".")
 
     def say(self, text: str) -> None:
-        """A paragraph of the page."""
+        """Add a paragraph to the page."""
         self.parts.append(text)
         self._write()
         self.console.print(f"\n{text}", soft_wrap=True, markup=False, highlight=False)
 
     def table(self, columns: Sequence[str], rows: Iterable[Sequence], title: str = "") -> None:
-        """rows: of cells, numbers or strings; an iterator's are on the page as soon as they are measured."""
+        """Add a table. rows: lists of cells, numbers or strings; rows of an iterator are written as soon as they are
+        measured."""
         at, lines = len(self.parts), []
         self.parts.append(title)
         for row in rows:
@@ -83,7 +84,7 @@ class Report:
     def picture(self, name: str, pictures: Iterable, columns: int = 0, encode=srgb, enlarged: int = 1, colors: int = 0):
         """Pictures (h, w, 3 or 4) with row 0 at the bottom, side by side or in rows of `columns`, as one PNG.
 
-        encode: of scene-linear values, or None where they are to be shown as they are. colors: of its palette, if any.
+        encode: for scene-linear values, or None to show values unchanged. colors: size of a palette, if any.
         """
         shown = [np.clip((encode or np.asarray)(picture[::-1, :, :3]), 0, 1) for picture in pictures]
         across = columns or len(shown)
@@ -95,7 +96,7 @@ class Report:
         image.save(self._file(name), optimize=True)
 
     def plot(self, name: str, figure) -> None:
-        """A figure of matplotlib."""
+        """Save a matplotlib figure."""
         from matplotlib import pyplot
 
         figure.savefig(self._file(name))
@@ -116,7 +117,7 @@ def markdown(columns: Sequence[str], lines: Iterable[Sequence[str]]) -> str:
 
 
 def machine(device=None) -> str:
-    """What it was measured on, without the machine's name."""
+    """Description of the machine, without its name."""
     git = ["git", "describe", "--always", "--dirty"]
     commit = subprocess.run(git, cwd=ROOT, capture_output=True, text=True).stdout.strip() or "unknown"
     where = [f"{processor()}, {os.cpu_count()} cores"]
@@ -129,7 +130,7 @@ def machine(device=None) -> str:
 
 
 def processor() -> str:
-    """The processor's model, or its architecture where the system does not tell."""
+    """The processor's model, or its architecture if the system does not tell."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Jobs in turn: whatever else the machine does meets all of them alike, so the ratios of one turn can be trusted.
+"""Runs jobs in turn: other load on the machine affects all of them alike, so ratios within a turn are reliable.
 
 The first turn warms up (shaders, caches, memory) and is not counted. Quote medians of the turns' ratios.
 """
@@ -18,7 +18,7 @@ Job = Callable[[], object]
 
 
 class Spread(NamedTuple):
-    """Median, least and most of some numbers."""
+    """Median, minimum and maximum of some numbers."""
 
     median: float
     least: float
@@ -39,20 +39,20 @@ def _timed(clock: Callable[[], float], job: Job) -> tuple[float, object]:
     return clock() - started, result
 
 
-#: Ways to measure a job, each of which gives (number, what the job returned): seconds on the clock, seconds of all
-#: processors, which other work on the machine does not lengthen, and the milliseconds that a frame says it took.
+#: Ways to measure a job; each returns (number, result of the job). The number is seconds on the clock, processor
+#: seconds (which other load does not lengthen), or the milliseconds that a frame reports.
 wall = partial(_timed, time.perf_counter)
 processor = partial(_timed, time.process_time)
 
 
 def both(job: Job) -> tuple[tuple[float, float], object]:
-    """(seconds on the clock, seconds of all processors)."""
+    """(seconds on the clock, processor seconds)."""
     on_clock, (work, result) = wall(lambda: processor(job))
     return (on_clock, work), result
 
 
 def peak_bytes(job: Job) -> tuple[int, object]:
-    """The most that was allocated above what was there before, the result included."""
+    """The peak of allocated bytes above what was allocated before, including the result."""
     tracemalloc.start()
     result = job()
     _, peak = tracemalloc.get_traced_memory()
@@ -67,7 +67,7 @@ def frame(job: Job) -> tuple[float, object]:
 
 @dataclass(frozen=True)
 class Turns:
-    """values: name -> what was measured of a job in every counted turn. results: what it returned last."""
+    """values: name -> measurements of a job in every counted turn. results: its last results."""
 
     values: dict
     results: dict
@@ -76,7 +76,7 @@ class Turns:
         return Spread.of(self.values[name])
 
     def ratios(self, name, unit) -> list[float]:
-        """The job's number over that of another in the same turn."""
+        """Measurements of a job divided by those of another in the same turn."""
         return [own / other for own, other in zip(self.values[name], self.values[unit])]
 
     def ratio(self, name, unit) -> Spread:
@@ -90,9 +90,10 @@ class Turns:
 def in_turn(
     jobs: Mapping, turns: int, measure: Callable = wall, limits: Mapping | None = None, steps: Callable = iter, warm=1
 ) -> Turns:
-    """Every job once a turn. limits: name -> turns of a job that is too slow for all of them. steps: shows progress.
+    """Run every job once per turn. limits: name -> number of turns for jobs too slow for all of them. steps: shows
+    progress.
 
-    What a job has as its attribute `after` is called after it, untimed.
+    A job's attribute `after` is called after it, untimed.
     """
     made = Turns({name: [] for name in jobs}, {})
     for turn in steps(range(turns + warm)):

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What scripts/test.py is made of: which test belongs to which process, and Blender programs."""
+"""Parts of scripts/test.py: assigns tests to processes, and runs them in Blender programs."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which test belongs to which of the two processes that scripts/test.py starts."""
+"""Assigns tests to the two processes that scripts/test.py starts."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from environment import ROOT
 
 PLAIN, BLENDER = "plain", "blender"
 
-#: Folders that only Blender can run; a window's tests need a screen, and run only where they are named.
+#: Folders that only Blender can run; tests of a window need a screen and run only if named.
 ONLY_IN_BLENDER = ("tests/blender", "tests/extension")
 ONLY_IN_A_WINDOW = ("tests/window",)
-#: Folders whose tests draw, on whichever device they are given.
+#: Folders whose tests draw on the device that they are given.
 ON_ANY_DEVICE = ("tests/rendering", "tests/extremes")
-#: Tests that leave pictures on the standalone device, which are compared with Blender's.
+#: Tests that save pictures of the standalone device, which are compared with Blender's.
 LEAVES_PICTURES = (
     "tests/rendering/test_agreement.py",
     "tests/rendering/test_identity.py",
     "tests/rendering/test_outputs.py",
 )
 
-#: What tells a developer within a minute whether a change broke something: the data, a picture of each kind on both
+#: A selection that shows within a minute whether a change broke something: the data, one picture of each kind on both
 #: devices, and Blender's operators.
 QUICK = (
     "tests/test_architecture.py",
@@ -43,7 +43,7 @@ QUICK = (
     "tests/blender/engine/test_materials.py",
 )
 
-#: pytest's options whose value is the next word and could look like a path.
+#: pytest options whose value is the next word and could look like a path.
 VALUE_OPTIONS = ("-k", "-m", "-p", "-c", "-o", "-n", "-W", "-r", "--deselect", "--ignore", "--rootdir", "--confcutdir",
                  "--basetemp", "--junitxml", "--maxfail", "--durations", "--tb", "--timeout", "--dist")  # fmt: skip
 
@@ -58,9 +58,9 @@ def split_arguments(arguments: list[str]) -> tuple[list[str], list[str]]:
 
 
 def paths_by_group(paths: list[str], only_pictures: bool = False) -> dict[str, list[str]]:
-    """group -> the arguments that name its tests; everything where no path is given.
+    """group -> the arguments that name its tests; all tests if no path is given.
 
-    only_pictures: the plain group's other tests have nothing to say to the Blender that is tested.
+    only_pictures: skip the plain group's other tests, which do not concern the tested Blender.
     """
     if not paths:
         plain = list(LEAVES_PICTURES) if only_pictures else ["tests", *_ignored()]
@@ -79,9 +79,8 @@ def paths_by_group(paths: list[str], only_pictures: bool = False) -> dict[str, l
 
 
 def by_folder(paths: list[str]) -> list[list[str]]:
-    """The paths of each folder of tests, for a program: Blender 5.2 in background mode on Vulkan keeps one piece of
-    memory for every draw until it ends, and Linux gives a process of Mesa's software Vulkan 65,530 of them.
-    """
+    """The test paths by folder, for a program: on Vulkan in background mode Blender 5.2 keeps one memory mapping per
+    draw until it ends, and Linux limits a process to 65,530 mappings."""
     folders = {}
     for path in paths:
         folders.setdefault(_file(path).relative_to(ROOT).parts[:2], []).append(path)
@@ -102,5 +101,5 @@ def _is_within(path: str, folders: tuple[str, ...]) -> bool:
 
 
 def _file(argument: str) -> Path:
-    """The file or folder of a test path; relative ones start at the checkout, where pytest runs."""
+    """The file or folder of a test path; relative paths start at the checkout, where pytest runs."""
     return (ROOT / argument.split("::")[0]).resolve()

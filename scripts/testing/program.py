@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs the tests inside a Blender program, whose Python is its own and may lack what they need.
+"""Runs the tests inside a Blender program, whose own Python may lack the packages they need.
 
-The missing packages are put into a folder of the build, from outside, and tests/run_in_blender.py looks there
-after the program's own: Blender's numpy is never shadowed, and nothing is installed into Blender.
+Missing packages are installed into a build folder from outside, and tests/run_in_blender.py searches it after the
+program's own packages: Blender's numpy is never shadowed, and nothing is installed into Blender.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from environment.virtual_environment import pip_line, requirements_hash
 
 REQUIREMENTS = ROOT / "requirements" / "program.txt"
 
-#: The variable by which tests/run_in_blender.py learns of the folder.
+#: The environment variable that tells tests/run_in_blender.py about the folder.
 PACKAGES_VARIABLE = "SURFEL_TEST_PACKAGES"
 
 MARK = "surfel-python"
@@ -27,7 +27,8 @@ ASK_VERSION = f"import sys; print('{MARK}', '%d.%d' % sys.version_info[:2], flus
 
 
 def program_file(name: str) -> str:
-    """What starts the program: a name on the PATH stays, a file is made absolute, of a macOS .app it is the inside."""
+    """The program to start: a name on the PATH stays, a file becomes absolute, and of a macOS .app the inner executable
+    is used."""
     path = Path(name)
     if path.suffix == ".app":
         path = path / "Contents" / "MacOS" / "Blender"
@@ -35,9 +36,10 @@ def program_file(name: str) -> str:
 
 
 def prepare(program: str, python: Path) -> dict[str, str]:
-    """The environment variables for a test run in the program, after its packages are there.
+    """Install the missing packages; returns the environment variables for a test run in the program.
 
-    python: of an environment with pip. Raises Problem where the program does not run or a package cannot be had.
+    python: interpreter of an environment with pip.
+    Raises Problem if the program does not run or a package cannot be installed.
     """
     version = _python_version(program)
     folder = ROOT / "build" / f"packages-{version}"

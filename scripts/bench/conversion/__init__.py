@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seconds and memory of converting meshes and bare points, against a cost model and other ways to sample a mesh.
+"""Time and memory of converting meshes and bare points, compared with a cost model and with other ways to sample a
+mesh.
 
-The cost model is 0.25 us a triangle + 0.1 us a surfel. The others: trimesh, Geometry Nodes, Open3D where it is
-installed, and our operator as a whole. Meshes are smooth-shaded, without colours. Sampling includes the
-check at the door of Surfels. Extra bytes: the peak while sampling, above the cleaned mesh and the result. Others: how
-many times longer they take than our sampling, without cleaning; with its tree: in work, with the building of a tree.
+The cost model is 0.25 us per triangle + 0.1 us per surfel. The alternatives are trimesh, Geometry Nodes, Open3D if it
+is installed, and our operator as a whole. Meshes are smooth-shaded, without colours. Sampling includes the validation
+of Surfels. Extra bytes: the peak while sampling, above the cleaned mesh and the result. Alternatives: how many times
+longer they take than our sampling, without cleaning; with its tree: in processor time, including the building of a
+tree.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from measuring.timing import Spread, Turns, both, in_turn, peak_bytes, processor
 from splat_addon.sampling import TriangleMesh, drop_unusable, sample_mesh, surfels_from_points
 from splat_addon.surfels import LAYOUT
 
-#: The cost model: seconds a triangle, seconds a surfel.
+#: The cost model: seconds per triangle, seconds per surfel.
 TRIANGLE_COST, SURFEL_COST = 0.25e-6, 0.1e-6
 SURFEL_BYTES = sum(columns * np.dtype(dtype).itemsize for columns, dtype in LAYOUT.values())
 ARMADILLO, DRAGON = "armadillo.obj.gz", "dragon_vrip.ply.gz"
@@ -68,7 +70,7 @@ def run(options, report) -> None:
 
 
 def from_points(options, report):
-    """Of a range map and of random points of a sphere, in random order: the worst that a memory cache can meet."""
+    """Times a range map and random points on a sphere, both in random order: the worst case for a memory cache."""
     scan = np.asarray(load_any(options.models / "rangemap_lato315.ply.gz").vertices)
     ball = np.random.default_rng(0).normal(size=(options.points, 3))
     clouds = {"range map": scan, "sphere": ball / np.linalg.norm(ball, axis=1, keepdims=True)}
@@ -83,17 +85,17 @@ def from_points(options, report):
 
 
 def ours(mesh: TriangleMesh, resolution: int) -> dict:
-    """Cleaning, and sampling the clean mesh of the same turn, which gives the number of surfels."""
+    """Times cleaning, and sampling the mesh cleaned in the same turn; returns the number of surfels."""
     clean = {}
 
     def cleaning():
-        clean["mesh"], _ = drop_unusable(replace(mesh))  # a new one: a mesh keeps what is once found of it
+        clean["mesh"], _ = drop_unusable(replace(mesh))  # a new mesh, because a mesh caches what was computed about it
 
     return {"cleaning": cleaning, "sampling": lambda: len(sample_mesh(clean["mesh"], resolution=resolution))}
 
 
 def cells(taken: Turns, triangles: int) -> list[str]:
-    """Of our own row."""
+    """Table cells of our own sampling."""
     clock, work = (taken.part(lambda pair, k=k: pair[k]) for k in (0, 1))
     count, sampling = taken.results["sampling"], work.values["sampling"]
     model = TRIANGLE_COST * triangles + SURFEL_COST * count
@@ -103,7 +105,8 @@ def cells(taken: Turns, triangles: int) -> list[str]:
 
 
 def ratios(taken: Turns, other: str, preparation: float) -> list[str]:
-    """Samples and seconds of another, and its times over ours: clock, work, work for a sample, work with its tree."""
+    """Samples and seconds of an alternative, and its times relative to ours: clock, processor, processor per sample,
+    processor including its tree."""
     clock, work = (taken.part(lambda pair, k=k: pair[k]) for k in (0, 1))
     count, mine = taken.results[other], taken.results["sampling"]
     each = Spread.of(ratio * mine / count for ratio in work.ratios(other, "sampling"))
@@ -114,14 +117,14 @@ def ratios(taken: Turns, other: str, preparation: float) -> list[str]:
 
 
 def extra_bytes(mesh: TriangleMesh, resolution: int) -> float:
-    """Peak bytes a surfel while sampling, above the cleaned mesh and the result."""
+    """Peak bytes per surfel while sampling, above the cleaned mesh and the result."""
     mesh, _ = drop_unusable(mesh)
     peak, surfels = peak_bytes(lambda: sample_mesh(mesh, resolution=resolution))
     return peak / len(surfels) - SURFEL_BYTES
 
 
 def prepared_rivals(mesh: TriangleMesh, resolution: int) -> dict:
-    """name -> function that samples the same mesh and returns its number of samples; only those that are installed."""
+    """name -> function that samples the same mesh and returns its number of samples; only installed alternatives."""
     usable, _ = drop_unusable(mesh)
     count = len(sample_mesh(usable, resolution=resolution))
     return {name: job for name, prepare in RIVALS.items() if (job := prepare(usable, resolution, count)) is not None}

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Other ways to sample a mesh, ready to be timed beside ours, and our own operator as a whole.
+"""Other ways to sample a mesh, prepared for timing beside ours, and our own operator as a whole.
 
-Each takes a usable mesh, a resolution and the number of surfels that we make of it, and gives a function to time that
-returns its number of samples; or None where it is not installed or would take too long. `SLOW` ones are not worth every
-turn. Of a function, `preparation` is what it took to build its tree, in processor seconds; `after` clears up behind it.
+Each function takes a usable mesh, a resolution and the number of surfels that we make from it. It returns a function to
+time, which returns its number of samples; or None if the package is not installed or would take too long. `SLOW` ones
+run only in the first turns. A function's attribute `preparation` is the processor time, in seconds, of building its
+tree; `after` cleans up after it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import trimesh
 from measuring.timing import processor
 from splat_addon.sampling import grid_spacing, sample_mesh
 
-#: Beyond this many samples trimesh's thinning is left out.
+#: With more samples than this, trimesh's thinning is skipped.
 FEW = 500_000
 
 
@@ -30,7 +31,7 @@ def linked_object(mesh, is_smooth: bool = False) -> bpy.types.Object:
 
 
 def our_operator(mesh, resolution, count):
-    """From a smooth-shaded mesh object to a surfel object: reading, cleaning, sampling, and writing of attributes."""
+    """From a smooth-shaded mesh object to a surfel object: reading, cleaning, sampling, and writing attributes."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     source = linked_object(mesh, is_smooth=True)
 
@@ -55,7 +56,8 @@ def our_operator(mesh, resolution, count):
 
 
 def open3d_intersections(mesh, resolution, count):
-    """All hits of the same three grids of rays, with positions and interpolated normals, as our full cube has them."""
+    """All hits of the same three grids of rays, with positions and interpolated normals, like our full layered depth
+    cube."""
     try:
         import open3d
     except ImportError:
@@ -66,7 +68,7 @@ def open3d_intersections(mesh, resolution, count):
     def build():
         triangles = np.ascontiguousarray(mesh.triangles, np.uint32)
         scene.add_triangles(np.ascontiguousarray(mesh.positions, np.float32), triangles)
-        scene.cast_rays(rays[:1])  # the tree is built with the first ray
+        scene.cast_rays(rays[:1])  # the first ray builds the tree
 
     def job():
         hits = scene.list_intersections(rays)
@@ -81,7 +83,7 @@ def open3d_intersections(mesh, resolution, count):
 
 
 def hitting_rays(mesh, resolution) -> np.ndarray:
-    """(n, 6) float32 origins and directions of the rays of our three grids that meet the mesh at all."""
+    """(n, 6) float32 origins and directions of the rays in our three grids that hit the mesh."""
     spacing = grid_spacing(mesh, resolution=resolution)
     low = mesh.bounds()[0]
     surfels = sample_mesh(mesh, spacing=spacing, reduction="none")
@@ -100,13 +102,14 @@ def hitting_rays(mesh, resolution) -> np.ndarray:
 
 
 def trimesh_points(sample, most, mesh, resolution, count):
-    """Random points, which clump, or thinned until none are too close."""
+    """Random points, which clump, or points thinned to a minimum distance."""
     shape = trimesh.Trimesh(mesh.positions, mesh.triangles, process=False)
     return (lambda: len(sample(shape, count, seed=0)[0])) if count < most else None
 
 
 def blender_poisson(mesh, resolution, count):
-    """Geometry Nodes' Distribute Points on Faces, Poisson disc, for as many points within a few in 100."""
+    """Geometry Nodes' Distribute Points on Faces, Poisson disc, with the same number of points to within a few
+    percent."""
     source = linked_object(mesh)
     group = bpy.data.node_groups.new("rival", "GeometryNodeTree")
     for direction in ("INPUT", "OUTPUT"):
@@ -116,7 +119,7 @@ def blender_poisson(mesh, resolution, count):
     spread.distribute_method = "POISSON"
     a, b, c = np.moveaxis(mesh.positions[mesh.triangles], 1, 0)
     area = float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()) / 2
-    # a Poisson disc sampling holds about 0.7 points a squared distance
+    # a Poisson disc sampling has about 0.7 points per squared distance
     distance = (0.7 * area / count) ** 0.5
     spread.inputs["Density Max"].default_value = 10 * count / area
     group.links.new(enter.outputs[0], spread.inputs["Mesh"])
@@ -125,7 +128,7 @@ def blender_poisson(mesh, resolution, count):
     modifier.node_group, modifier.show_viewport = group, False
 
     def job():
-        # only this one is evaluated: an object that waits for its turn shall not cost another's
+        # show only this object, so that waiting objects do not add to its cost
         modifier.show_viewport = True
         bpy.context.view_layer.update()
         evaluated = source.evaluated_get(bpy.context.evaluated_depsgraph_get())
@@ -141,7 +144,7 @@ def blender_poisson(mesh, resolution, count):
     return job
 
 
-#: Blender comes first: its libraries cannot be loaded after Open3D's.
+#: Blender must be loaded first: its libraries cannot be loaded after Open3D's.
 RIVALS = {
     "our operator, as a whole": our_operator,
     "Geometry Nodes, Poisson disc": blender_poisson,

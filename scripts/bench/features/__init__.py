@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each feature costs.
+"""The cost of each feature.
 
-Made by a command, not by hand: a picture with the feature beside the same one without. *Time* is the median ratio of
-both in one turn (least to most); *more* is what comes to the frame without, and what the plan adds: passes and what
-shaders do, textures and tables that are read, with a minus where something goes, and the MiB of textures that passes
-write. What a scene does not have costs nothing: no pass, no texture and no line of a shader is there for it
-(`tests/rendering/test_plan_table.py`).
+This page is generated. Each row renders a picture with the feature and the same picture without it. *Time* is the
+median ratio of the two in one turn (minimum to maximum). *More* lists what the feature adds to the frame: passes and
+their shader parts, textures and tables that are read, with a minus sign for what it removes, and the MiB of textures
+that passes write. A feature that a scene does not use costs nothing: it adds no pass, no texture and no line of shader
+code (`tests/rendering/test_plan_table.py`).
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def run(options, report) -> None:
 
 
 def wanted(options) -> list[Feature]:
-    """Raises Problem where there is none."""
+    """The selected features. Raises Problem if a name does not exist."""
     if not options.only:
         return [f for f in FEATURES if f.is_quick or not options.quick]
     chosen = [f for f in FEATURES if any(word in f"{f.group} {f.name}" for word in options.only)]
@@ -58,9 +58,9 @@ def wanted(options) -> list[Feature]:
 
 
 def measure(feature: Feature, base: Shot, device, turns: int) -> dict:
-    """One row. ms: without the feature. bytes: of the plan's textures, more than without.
+    """Measure one row. ms: time without the feature. bytes: additional size of the plan's textures.
 
-    Each side has a renderer of its own, so that neither makes room for the other's textures.
+    Each side has its own renderer, so that neither evicts the other's textures.
     """
     shots = {"without": feature.absent(base), "with": feature.present(base)}
     renderers = {side: Renderer(device) for side in shots}
@@ -83,7 +83,7 @@ def measure(feature: Feature, base: Shot, device, turns: int) -> dict:
 
 
 def cells(row: dict) -> tuple:
-    """A row of the table for readers."""
+    """A row of the published table."""
     time = f"{row['ratio']:.2f} ({row['ratio_min']:.2f} to {row['ratio_max']:.2f})"
     space = f"{row['bytes'] / 2**20:.2f}" if row["bytes"] else ""
     more = f"{row['ms_more']:.1f} on {row['ms']:.1f}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What one plan has that another has not: passes, what shaders do, textures and the bytes that those take."""
+"""The difference between two plans: passes, shader parts, textures and their size in bytes."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import math
 from splat_addon.rendering import FramePlan
 from splat_addon.rendering.features import INPUTS
 
-#: format -> bytes a texel
+#: format -> bytes per texel
 BYTES = {"RGBA32F": 16, "RGBA16F": 8, "RGBA16": 8, "RG32F": 8, "R32F": 4, "DEPTH32F": 4}
 
 
 def planned_bytes(plan: FramePlan) -> int:
-    """Of the textures that passes write, for the first tile with its margin."""
+    """Bytes of the textures that passes write, for the first tile including its margin."""
     _, _, width, height = plan.tiles[0]
     pixels = width + 2 * plan.margin, height + 2 * plan.margin
     return sum(
@@ -23,7 +23,7 @@ def planned_bytes(plan: FramePlan) -> int:
 
 
 def added(without: FramePlan, present: FramePlan) -> tuple[str, str]:
-    """What comes, and with a minus what goes: passes and what shaders do, and textures and tables."""
+    """Added passes, shader parts, textures and tables; removed ones have a minus sign."""
     return _difference(_done(without), _done(present)), _difference(_read(without), _read(present))
 
 

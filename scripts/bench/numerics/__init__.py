@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The picture at the extremes of arithmetic, for every method: numbers and plots.
+"""Pictures at the numerical extremes, for every method: numbers and plots.
 
-Scenes are 64 x 64 pixels of 2 x 2 samples; the truth is `render_exact` with the same samples, PSNR is of sRGB, 160 dB
-stands for equal. A method that filters is not that truth's picture: its line shows by being level that the extreme
-changes nothing. An empty pixel, a cross in the plots, is one that the truth covers whole and the method not at all.
+Scenes are 64 x 64 pixels with 2 x 2 samples; the reference is `render_exact` with the same samples, PSNR is measured in
+sRGB, and 160 dB means equal. A method that filters cannot match that reference: for it, a level line shows that the
+extreme has no effect. An empty pixel, a cross in the plots, is fully covered in the reference and not at all by the
+method.
 """
 
 from __future__ import annotations
@@ -38,9 +39,13 @@ DEPTH_FORMAT = import_module("splat_addon.rendering.features.depth_format")
 
 @dataclass(frozen=True)
 class Panel:
-    """name: of its column. x: the axis's label. shots: what is rendered, the same for every method.
-    least: what tests/extremes hold quads to. against: "truth", or "itself" where the first shot is what the others must
-    equal. is_log: of the x axis. limits: constants of the plan that are changed, to show what it avoids.
+    """One plot.
+
+    name: title of its column. x: label of the axis. shots: what is rendered, the same for every method.
+    least: the bound for Quads in tests/extremes.
+    against: "truth", or "itself" to compare with the first shot.
+    is_log: logarithmic x axis.
+    limits: constants of the plan that are changed, to show what they protect against.
     """
 
     name: str
@@ -90,7 +95,7 @@ FIGURES = {
 
 
 def measure(panel: Panel, renderers: dict, most: int) -> dict[str, list[dict]]:
-    """method -> what was found at each of the first `most` x: PSNR, empty pixels, numbers that are not finite."""
+    """method -> results for each of the first `most` values of x: PSNR, empty pixels, non-finite numbers."""
     results, firsts = {method: [] for method in METHODS}, {}
     with ExitStack() as changed:
         for name, value in panel.limits.items():
@@ -110,7 +115,7 @@ def measure(panel: Panel, renderers: dict, most: int) -> dict[str, list[dict]]:
 
 
 def plot_panels(panels: tuple[Panel, ...], results: dict):
-    """Panels side by side, every method a line; crosses where pixels are empty."""
+    """Panels side by side, with one line per method; crosses mark empty pixels."""
     size = (4.5 * len(panels), 3)
     figure, axes = pyplot.subplots(1, len(panels), figsize=size, sharey=True, layout="constrained")
     for axis, panel in zip(axes, panels):
@@ -129,7 +134,7 @@ def plot_panels(panels: tuple[Panel, ...], results: dict):
 
 
 def cell(found: list[dict]) -> str:
-    """The least PSNR, and where there are any the empty pixels and what is not finite in all shots."""
+    """The lowest PSNR, and if there are any, the numbers of empty pixels and non-finite values in all shots."""
     counts = {name: sum(f[name] for f in found) for name in ("empty", "NaN")}
     least = f"{min(f['dB'] for f in found):.0f}"
     return ", ".join([least, *(f"{count} {name}" for name, count in counts.items() if count)])

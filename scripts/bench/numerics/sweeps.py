@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An extreme step by step: from where arithmetic has room to where it has none.
+"""Approaches each extreme step by step, from comfortable values to the limits of arithmetic.
 
-Each yields x, a scene, a camera and what differs from the default settings; pictures are small, for the truth is slow.
+Each sweep yields x, a scene, a camera and deviations from the default settings; pictures are small because the
+reference is slow.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ def near() -> Shots:
 
 
 def span() -> Shots:
-    """A parallel camera, and one disc far behind the rest."""
+    """A parallel camera, and one disc far behind the others."""
     scene, _ = scenes.torus(6000, SIZE)
     matrix = look_at((0.3, -3.6, 2.2), (0, 0, 0))
     for exponent in np.arange(1, 6.1, 0.5):
@@ -93,7 +94,7 @@ def off_axis() -> Shots:
 
 
 def ratio() -> Shots:
-    """Ellipses longer and longer, at an angle."""
+    """Increasingly elongated ellipses, seen at an angle."""
     for exponent in np.arange(0, 6.1, 0.5):
         yield 10.0**exponent, lit(extremes.stripes(0.08 * 10.0**exponent, 0.08, 1.0)), origin_camera(), {}
 
@@ -121,7 +122,7 @@ def epsilon() -> Shots:
 
 
 def gap() -> Shots:
-    """A red sheet before a green one; epsilon is 0.5 radii."""
+    """A red sheet in front of a green one; epsilon is 0.5 radii."""
     front = sheet(20, 1.0, 0, 3.0, (1, 0, 0))
     for radii in (1e-6, 1e-3, 0.01, 0.1, 0.2, 0.3, 0.4, 0.45, 0.55, 0.6, 0.8, 1, 2):
         back = sheet(20, 1.0, 0, 3.0 + radii * float(front.radius[0]), (0, 1, 0))

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Representation error: how true pictures of surfels are to the mesh that they came from.
+"""Representation error: how close pictures of surfels are to the mesh that they were made from.
 
-The truth is the mesh's triangles in float64 with 8 x 8 samples a pixel, which shares no code with surfels, under the
-Gaussian of 0.7071 pixels. Meshes are coloured by their normals, split at creases over 30 degrees, unlit, over grey of
-0.05, and seen three times from 1.4 diagonals of their boxes. "engine": surfels as the operator makes them, drawn by the
-device; "whole": such without clip lines and blend depths. The others are exact pictures (--exact): "now" of whole ones;
-"clip" of ones that end at clip lines; "blend" of ones that blend as deep as their surface asks for; "both". PSNR is of
-sRGB; a pixel is wrong where a component is off by more than 0.15; bare where the mesh covers it whole and the surfels
-not by 0.98; spilled where they cover 0.02 of it and the mesh nothing. Conversion: the median ratio of processor seconds
-to surfels without edges.
+The reference is rendered from the mesh's triangles in float64 with 8 x 8 samples per pixel and a Gaussian filter of
+sigma 0.7071 pixels; it shares no code with surfels. Meshes are coloured by their normals, split at creases over 30
+degrees, unlit, on a grey background of 0.05, and seen from three directions at 1.4 diagonals of their boxes. "engine":
+surfels as the operator makes them, drawn by the device; "whole": the same without clip lines and blend depths. The
+others are exact pictures (--exact): "now" of whole splats; "clip" with clip lines; "blend" with a blend depth per
+surfel; "both". PSNR is measured in sRGB. A pixel is wrong if a component differs by more than 0.15; bare if the mesh
+covers it fully and the surfels less than 0.98; spilled if the surfels cover more than 0.02 of it and the mesh nothing.
+Conversion: median ratio of processor time to conversion without edges.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def converted(mesh, density: dict, kind: str):
 
 
 def densities(mesh, cameras, options) -> dict[str, dict]:
-    """Name -> how fine: resolutions, and spacings of so many pixels in the nearest of all views."""
+    """name -> fineness: resolutions, and spacings of so many pixels in the closest of all views."""
     found, surface = {str(resolution): {"resolution": resolution} for resolution in options.resolution}, outline(mesh)
     for pixels in options.pixels:
         near = min(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far a picture is from the mesh's own."""
+"""Measures how far a picture is from that of the mesh."""
 
 from __future__ import annotations
 
@@ -11,18 +11,22 @@ from scipy import ndimage
 
 from splat_addon.reference.metrics import psnr, srgb
 
-#: Scene-linear grey behind everything: Blender's world when it is new.
+#: Scene-linear grey of the background, the colour of Blender's default world.
 BACKGROUND = 0.05
 
-#: Of sRGB, beyond which a pixel is wrong; of coverage, below which one is bare and above which one is spilled.
+#: In sRGB, the difference beyond which a pixel is wrong; the coverage below which it is bare, and above which it is
+#: spilled.
 WRONG, BARE, SPILLED = 0.15, 0.98, 0.02
 
 
 @dataclass(frozen=True, eq=False)
 class PictureError:
-    """psnr: dB of sRGB. flip, flip_99: mean and 99th percentile of FLIP (Andersson et al. 2020) at 67 pixels a degree.
-    blob: pixels of the largest connected blob of wrong ones. wrong, bare, spilled: pixels. difference: (h, w, 3) linear
-    values that show four times the difference of sRGB."""
+    """psnr: dB in sRGB.
+    flip, flip_99: mean and 99th percentile of FLIP (Andersson et al. 2020) at 67 pixels per degree.
+    blob: pixels in the largest connected blob of wrong ones.
+    wrong, bare, spilled: number of pixels.
+    difference: (h, w, 3) linear values that show four times the sRGB difference.
+    """
 
     psnr: float
     flip: float

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes coloured by their normals, and the views that they are seen in."""
+"""Meshes coloured by their normals, and the views that show them."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from splat_addon.sampling import Channel, Surface, TriangleMesh, VertexColors
 
 CREASE = np.radians(30)
 
-#: Directions from the middle to the eye.
+#: Directions from the model's middle to the camera.
 VIEWS = np.array(((1.2, 0.7, 2.6), (-2.0, 1.1, 0.9), (0.8, -1.4, -1.9)))
 
 
 def load_colored(folder: Path, name: str) -> TriangleMesh:
-    """A model of the folder, or the drilled plate, split at creases and coloured by its normals."""
+    """Load a model from the folder, or make the drilled plate; split it at creases and colour it by its normals."""
     if name == "plate":
         return colored(*drilled_plate())
     mesh = load(folder / name)
@@ -29,7 +29,7 @@ def load_colored(folder: Path, name: str) -> TriangleMesh:
 
 
 def view(mesh: TriangleMesh, number: int, size: int) -> Camera:
-    """From 1.4 diagonals of the box, with a field of view of 0.6."""
+    """The camera at 1.4 diagonals of the box, with a field of view of 0.6."""
     low, high = mesh.bounds()
     middle, diagonal = (low + high) / 2, float(np.linalg.norm(high - low))
     eye = middle + 1.4 * diagonal * VIEWS[number] / np.linalg.norm(VIEWS[number])
@@ -44,7 +44,8 @@ def colored(positions: np.ndarray, triangles: np.ndarray) -> TriangleMesh:
 
 
 def split_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(T, 3, 3) unit: at each corner the mean, weighted by angles, over the triangles around it up to the creases."""
+    """(T, 3, 3) unit normals: at each corner the angle-weighted mean over the surrounding triangles up to the
+    creases."""
     _, places = np.unique(positions, axis=0, return_inverse=True)
     places = places.reshape(-1)[triangles]
     corners = positions[triangles]
@@ -76,13 +77,13 @@ def split_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 def drilled_plate() -> tuple[np.ndarray, np.ndarray]:
-    """A plate with holes of many sizes, as positions and triangles: a machined part of nothing but edges."""
+    """Positions and triangles of a plate with holes of many sizes: a machined part that consists mostly of edges."""
     holes = [(0.0, 0.0, 0.22)] + [(0.62 * np.cos(a), 0.62 * np.sin(a), 0.09) for a in np.arange(6) * np.pi / 3 + 0.3]
     holes += [(0.85 * np.cos(a), 0.85 * np.sin(a), 0.02) for a in np.arange(20) * np.pi / 10]
     rings = [_ring(0, 0, 1.0, 96)] + [_ring(*hole, 48 if hole[2] > 0.05 else 12) for hole in holes]
     flat = np.concatenate(rings)
     faces = Delaunay(flat).simplices
-    # What has all corners on one hole's rim lies in the hole.
+    # A triangle with all corners on one hole's rim fills the hole.
     ring = np.repeat(np.arange(len(rings)), [len(points) for points in rings])[faces]
     faces = faces[(ring != ring[:, :1]).any(axis=1) | (ring[:, 0] == 0)]
     (x1, y1), (x2, y2) = ((flat[faces[:, k]] - flat[faces[:, 0]]).T for k in (1, 2))

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The trade of speed for accuracy: scenes x methods x settings, each against the float64 reference.
+"""The trade of speed for accuracy: scenes x methods x settings, each compared with the float64 reference.
 
-PSNR is of sRGB values; the pixel filters are the Gaussian of sigma 0.7071 px and the box. A time's ratio is the median
-over the turns of it and the yardstick's in the same turn. `to_float32`: PSNR to the same without 16-bit formats.
-A quick run draws the promised scenes at half the size with a quarter of the splats and a coarser truth.
+PSNR is measured in sRGB; the pixel filters are the Gaussian of sigma 0.7071 pixels and the box. A ratio of times is the
+median over the turns of a choice's time divided by the yardstick's in the same turn. `to_float32`: PSNR relative to the
+same choice without 16-bit formats. A quick run draws the promised scenes at half the size with a quarter of the splats
+and a coarser reference.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ def run(options, report) -> None:
 
 
 def measure(case, renderer: Renderer, chosen: list[Settings], options, report) -> list[dict]:
-    """The rows of one scene, whose plot and pictures are left in the folder."""
+    """The rows of one scene; its plot and pictures are left in the folder."""
     scene, camera = case.build(View(options.size, options.models))
     lit = replace(YARDSTICK, shading=case.shading)
     truth = partial(remembered(render_exact), scene, camera, lit, samples=options.samples)
@@ -89,7 +90,7 @@ def measure(case, renderer: Renderer, chosen: list[Settings], options, report) -
 
 
 def accuracy(frame, exact: dict) -> dict:
-    """Columns of a row: PSNR of sRGB and mean FLIP under each filter, holes, and pixels that are no numbers."""
+    """Columns of a row: PSNR in sRGB and mean FLIP under each filter, holes, and non-finite pixels."""
     row = {}
     for name, truth in exact.items():
         row[f"psnr_{name}"] = round(psnr(frame.color, truth.color), 2)
@@ -99,7 +100,7 @@ def accuracy(frame, exact: dict) -> dict:
 
 
 def summary(rows: list[dict], chosen: list[Settings], name: str):
-    """A line for each choice; the time is the geometric mean over the scenes, and its range."""
+    """One line per choice: the geometric mean of its times over the scenes, and their range."""
     for settings in chosen:
         wanted = columns(settings).items()
         mine = [row for row in rows if wanted <= row.items()]

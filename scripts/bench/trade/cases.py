@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is drawn: the scenes that accuracy is promised on, and other poses that it should hold in too.
+"""The scenes: those that accuracy is promised on, and further poses in which it should hold too.
 
-Counts are for 256 x 256 pixels and go with the picture's area, so that a smaller picture shows splats of the same size.
+Counts are for 256 x 256 pixels and scale with the picture's area, so that a smaller picture has splats of the same size
+in pixels.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ FULL = 256
 
 @dataclass(frozen=True)
 class View:
-    """size: pixels along each side. models: the folder of test models."""
+    """size: pixels along each side. models: folder of test models."""
 
     size: int
     models: Path
@@ -33,18 +34,21 @@ class View:
         return self.size, self.size
 
     def along(self, count: int) -> int:
-        """What goes with the picture's side."""
+        """Scale a number with the picture's side."""
         return max(round(count * self.size / FULL), 1)
 
     def over(self, count: int) -> int:
-        """What goes with the picture's area."""
+        """Scale a number with the picture's area."""
         return max(round(count * (self.size / FULL) ** 2), 1)
 
 
 @dataclass(frozen=True)
 class Case:
-    """build: raises FileNotFoundError where its model is missing. is_promised: the project's bounds hold on it, and
-    --quick measures it."""
+    """A scene of the trade.
+
+    build: raises FileNotFoundError if its model is missing.
+    is_promised: whether the project's bounds hold on it; --quick measures these only.
+    """
 
     name: str
     about: str
@@ -76,7 +80,7 @@ def _sphere(count: int):
 
 @lru_cache(maxsize=1)
 def _armadillo_surfels(view: View):
-    """The armadillo converted, with fields of two colours through its body."""
+    """The armadillo as surfels, with bands of two colours through its body."""
     surfels = sample_mesh(load(view.models / "armadillo.obj.gz"), resolution=view.along(256))
     low, high = surfels.local_bounds
     fields = np.floor((surfels.positions - low) / (high - low).max() * view.along(24)).sum(axis=1) % 2

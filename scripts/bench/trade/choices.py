@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How it is drawn: a table of settings, in which a new axis or value is one line."""
+"""The settings to compare, as a table in which a new axis or value is one line."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from itertools import product
 from splat_addon.rendering import Settings
 from splat_addon.rendering.methods import METHODS
 
-#: What every time is divided by.
+#: The yardstick: every time is divided by its time.
 YARDSTICK = Settings(method="quad", supersampling=1, shading="flat")
 
-#: Settings that a table shows beside method and samples -> their names in a few letters, the usual one's first.
+#: Settings that a table shows beside method and samples -> abbreviations of their values, the default first.
 FORMATS = {
     "multisampling": {0: "", 4: "4 hardware samples"},
     "sample_shading": {False: "", True: "each shaded"},
@@ -43,7 +43,7 @@ ALL = [
     *settings_of(("quad",), multisampling=(4,), edge_threshold=(0.25,)),
 ]
 
-#: Of transparent surfaces. As many as the deepest of a scene lose nothing.
+#: Layers of transparent surfaces. As many as the deepest place of a scene lose nothing.
 LAYERS = [
     YARDSTICK,
     *settings_of(("quad",), supersampling=(2,), layers=(2, 3, 6, 8)),
@@ -52,17 +52,17 @@ LAYERS = [
 ]
 CHOICES = {"methods": METHODS_ALONE, "all": ALL, "layers": LAYERS}
 
-#: What is shown beside the truth.
+#: The choices shown beside the reference.
 PICTURED = frozenset([*settings_of(EVERY), replace(YARDSTICK, supersampling=2), *LAYERS[-2:]])
 
 
 def choices(name: str = "all", multisample_counts: tuple[int, ...] = ()) -> list[Settings]:
-    """Those of `CHOICES` that the device, by its counts, can draw; the yardstick is among them."""
+    """Those of `CHOICES` that the device's sample counts allow, including the yardstick."""
     return [settings for settings in CHOICES[name] if settings.multisampling in (0, *multisample_counts)]
 
 
 def columns(settings: Settings) -> dict:
-    """The settings that tell choices apart, as the table shows them."""
+    """The settings that distinguish choices, as the table shows them."""
     return {
         "method": settings.method,
         "samples": f"{settings.supersampling} x {settings.supersampling}",
@@ -71,7 +71,7 @@ def columns(settings: Settings) -> dict:
 
 
 def label(settings: Settings) -> str:
-    """For plots: what differs from float32 is named."""
+    """Label for plots; differences from float32 are named."""
     formats = [names[getattr(settings, name)] for name, names in FORMATS.items()]
     samples = f"{settings.supersampling} x {settings.supersampling}"
     return ", ".join([METHODS[settings.method].label, samples, *filter(None, formats)])

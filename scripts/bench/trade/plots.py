@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""FLIP against time, a panel for each scene: what lies towards the lower left is better, the line is the frontier of
-what is worth its time. And what the numbers look like: the truth beside some choices, with the map of FLIP under each.
-"""
+"""Plots FLIP against time, one panel per scene: lower left is better, and the line is the Pareto frontier. Also draws
+the reference beside some choices, with the FLIP map under each."""
 
 from __future__ import annotations
 
@@ -23,7 +22,7 @@ def by_scene(rows: list[dict]) -> dict[str, list[dict]]:
 
 
 def frontier(rows: list[dict], error: str = "flip_gaussian", cost: str = "ratio") -> list[dict]:
-    """The rows of a scene that no other one beats in both, the fastest first; of equal ones, the first."""
+    """The rows of a scene that no other row beats in both time and FLIP, fastest first; of equal rows the first."""
     kept = []
     for row in sorted(rows, key=lambda row: (row[cost], row[error])):
         if not kept or row[error] < kept[-1][error]:
@@ -32,7 +31,7 @@ def frontier(rows: list[dict], error: str = "flip_gaussian", cost: str = "ratio"
 
 
 def plot_overview(rows: list[dict]):
-    """Every scene under the Gaussian, against the yardstick's time."""
+    """All scenes under the Gaussian, with times relative to the yardstick."""
     scenes = by_scene(rows)
     across = min(len(scenes), 3)
     down = -(-len(scenes) // across)
@@ -44,7 +43,7 @@ def plot_overview(rows: list[dict]):
         _panel(axis, mine, "flip_gaussian", "ratio")
         axis.set_title(scene, fontsize=9)
         axis.tick_params(labelsize=7, which="both")
-    # Beside the panels: within one it would hide points.
+    # Beside the panels, because inside one it would hide points.
     figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside upper center", ncols=8, fontsize=6)
     figure.supxlabel("time in that of quads with one sample", fontsize=9)
     figure.supylabel("mean FLIP, Gaussian filter", fontsize=9)
@@ -73,7 +72,7 @@ def _panel(axis, rows: list[dict], error: str, cost: str) -> None:
 
 
 def draw_differences(name: str, frames: dict, truth, report) -> None:
-    """The truth, then a column for each of the frames that are shown, with the map of FLIP under it."""
+    """The reference, then one column for each chosen frame, with its FLIP map below."""
     shown = {label(settings): frame.color[..., :3] for settings, frame in frames.items() if settings in PICTURED}
     truth = truth.color[..., :3]
     labels = (f"{label} {mean_flip(color, truth):.4f}" for label, color in shown.items())
