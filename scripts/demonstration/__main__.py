@@ -111,8 +111,8 @@ def save(blend: Path) -> None:
 
 
 def timed_frame() -> dict:
-    """The statistics of the second of two frames of one sample, rendered as an animation: its shaders are compiled and
-    its surfels on the device, as in every frame but the first. It changes the scene, so save that before."""
+    """Statistics of the second of two frames of an animation, with one sample; its shaders are compiled and its surfels
+    uploaded already, as in every frame but the first. This changes the scene, so save it before."""
     from splat_addon.blender.engine.final_render import last_frame_stats
 
     scene = bpy.context.scene
