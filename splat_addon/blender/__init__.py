@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The only folder that imports bpy: conversion, storage, engine and interface, each a module with its own pair
-`register`, `unregister`."""
+"""The only folder that imports bpy: conversion, storage, engine and interface. Each module has its own functions
+`register` and `unregister`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .ui import (
     view_layer_panels,
 )
 
-#: In the order of registration: what others refer to comes first.
+#: In registration order: modules come before those that refer to them.
 MODULES = (
     properties,
     render_passes,

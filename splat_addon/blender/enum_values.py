@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Choices that a .blend holds and this version does not have, such as a later version saved: they read as empty."""
+"""Detects enum values in a .blend that this version lacks, for example from a later version: Blender returns them as
+empty."""
 
 from __future__ import annotations
 
@@ -7,9 +8,9 @@ import bpy
 
 
 def check_choices(settings: bpy.types.PropertyGroup, place: str) -> None:
-    """Raises ValueError, with a sentence that names it, where one of its enumerations holds none of its items.
+    """Raise ValueError, with a sentence that names the property, if any enum property has no valid item.
 
-    place: where the user finds them.
+    place: where the user finds the properties.
     """
     for known in settings.bl_rna.properties:
         if known.type == "ENUM" and not known.is_enum_flag and not getattr(settings, known.identifier):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every name that Blender, a .blend file or a user's script knows us by, in one place.
+"""Every name that Blender, a .blend file or a user's script refers to, in one place.
 
-Renaming one of these breaks saved files, key maps or scripts, so nothing else in the add-on spells them out.
-Imports nothing, stands at the bottom of `blender/`.
+Renaming one of these breaks saved files, key maps or scripts, so nothing else in the add-on spells them out. This
+module imports nothing and is at the bottom of `blender/`.
 """
 
 from __future__ import annotations
@@ -24,35 +24,35 @@ SIDEBAR_TAB = "Surfels"
 SIDEBAR_PANEL = "VIEW3D_PT_surfels_from_mesh"
 POINTS_PANEL = "VIEW3D_PT_surfels_from_points"
 
-#: Custom property of a surfel mesh: true where no back is ever seen from outside (`Surfels.is_solid`). Geometry
+#: Custom property of a surfel mesh: true if back faces are never visible from outside (`Surfels.is_solid`). Geometry
 #: Nodes drop it, which is right: what they make may be open.
 SOLID = "surfels_solid"
 
-#: The node group that bends surfels with their source.
+#: The node group that deforms surfels with their source.
 SHAPE_GROUP = "Follow Shape"
 
-#: The node group by which other engines and shadings see a surfel object, and the material that it has there.
+#: The node group that shows a surfel object in other engines and shading modes, and the material that it has there.
 POINTS_GROUP = "Surfels as Points"
 POINTS_MATERIAL = "Surfels as Points"
 
-#: How a picture is rendered: `scene.surfel_splatting`.
+#: Render settings: `scene.surfel_splatting`.
 RENDER_SETTINGS = "surfel_splatting"
 
-#: The passes that only this engine has: `view_layer.surfel_splatting`.
+#: Passes that only this engine has: `view_layer.surfel_splatting`.
 LAYER_SETTINGS = "surfel_splatting"
 
-#: What an object says about its rendering: `object.surfel_splatting`.
+#: An object's render settings: `object.surfel_splatting`.
 OBJECT_SETTINGS = "surfel_splatting"
 
-#: What a surfel object was made of, and how: `object.surfel_record`.
+#: What a surfel object was made from, and how: `object.surfel_record`.
 SURFEL_RECORD = "surfel_record"
 
-#: Where the sidebar keeps what it will convert with: `scene.surfel_conversion`.
+#: The sidebar's conversion settings: `scene.surfel_conversion`.
 CONVERSION_SETTINGS = "surfel_conversion"
 
 
 class PointAttribute(NamedTuple):
-    """How one column of surfels lies on a mesh: its name, Blender's type, and what `foreach_set` takes."""
+    """How one column of surfels is stored on a mesh: its name, Blender's type, and what `foreach_set` takes."""
 
     name: str
     data_type: str
@@ -60,9 +60,9 @@ class PointAttribute(NamedTuple):
     columns: int
 
 
-#: field of `Surfels` (or derived from it) -> the point attribute that stores it.
-#: The material is not called "material_index": on a mesh Blender keeps that name for faces; 4.5 and 5.0 refuse it
-#: on points, and in 5.2 it does not outlive a visit to edit mode.
+#: field of `Surfels` (or a derived one) -> the point attribute that stores it. The material is not called
+#: "material_index": on a mesh Blender reserves that name for faces; 4.5 and 5.0 refuse it on points, and in 5.2 it is
+#: lost in edit mode.
 POINT_ATTRIBUTES = {
     "positions": PointAttribute("position", "FLOAT_VECTOR", "vector", 3),
     "rotations": PointAttribute("rotation", "QUATERNION", "value", 4),
@@ -71,7 +71,7 @@ POINT_ATTRIBUTES = {
     "colors": PointAttribute("Col", "FLOAT_COLOR", "color", 4),
     "radius": PointAttribute("radius", "FLOAT", "value", 1),
     "materials": PointAttribute("material", "INT", "value", 1),
-    # Optional ones. Emission is a vector: as a colour it would be one more that may become the active one.
+    # Optional fields. Emission is a vector, because another colour attribute could become the active one.
     "roughness": PointAttribute("roughness", "FLOAT", "value", 1),
     "metallic": PointAttribute("metallic", "FLOAT", "value", 1),
     "emission": PointAttribute("emission", "FLOAT_VECTOR", "vector", 3),
@@ -84,6 +84,6 @@ POINT_ATTRIBUTES = {
     "blend_depth": PointAttribute("blend_depth", "FLOAT", "value", 1),
 }
 
-#: Where each surfel was when its frame was right. Blender moves positions alone, in edit mode, by Apply, Mirror or
-#: Join; from the difference the frames are moved after them. Who moves both can take this attribute away.
+#: The position that belongs to each surfel's frame. Blender's edit mode, Apply, Mirror and Join move positions alone;
+#: the frames are updated from the difference. Scripts that move both may remove this attribute.
 REST = PointAttribute("surfel_rest", "FLOAT_VECTOR", "vector", 3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How meshes that are no surfels are rendered: the scene's settings in the render properties, and an object's own."""
+"""How meshes that are not surfels are rendered: scene settings in the render properties, and each object's own."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .geometry.sources import asked_of, has_surfaces
 from .ids import OBJECT_SETTINGS, RENDER_SETTINGS
 from .ui.engine_panel import EnginePanel
 
-#: density -> the property of `MeshSamplingProperties` that holds the number, and the kind of density that it is.
+#: density -> the property of `MeshSamplingProperties` that holds its number, and the kind of density.
 _FINENESS = {
     "AUTOMATIC": ("mesh_pixels", "automatic"),
     "RESOLUTION": ("mesh_resolution", "resolution"),
@@ -24,12 +24,12 @@ _FINENESS = {
 
 
 def _read_again(settings, context) -> None:
-    """A 3D view reads the scene only when Blender tells it of a change; it is not told of one that a script makes."""
+    """Make a 3D view read the scene again; Blender does not report changes that a script makes."""
     settings.id_data.update_tag()
 
 
 def _meant(density: str):
-    """Of a number that shows only with its own density: a script that sets it means that one."""
+    """Choose the density that a number belongs to when a script sets the number."""
 
     def update(settings, context) -> None:
         if settings.mesh_density == "AUTOMATIC":
@@ -39,7 +39,7 @@ def _meant(density: str):
     return update
 
 
-#: The numbers are those of a .blend's earlier on and off.
+#: The numbers match an earlier on/off property in old files.
 _MESH_ITEMS = (
     (
         "POLYGONS",
@@ -58,14 +58,14 @@ _MESH_ITEMS = (
     ("HIDDEN", "Nothing", "Leave them out", 2),
 )
 
-#: The numbers of earlier files, in which nothing was found by itself.
+#: The numbers match earlier files, which had no automatic density.
 _NUMBERS = {"RESOLUTION": 0, "SPACING": 1, "CAMERA": 2, "AUTOMATIC": 3}
 
 _DENSITY_ITEMS = [(name, DENSITIES[name].label, DENSITIES[name].description, _NUMBERS[name]) for name in _FINENESS]
 
 
 class MeshSamplingProperties:
-    """A mix-in of the scene's render settings."""
+    """A mix-in for the scene's render settings."""
 
     render_meshes: EnumProperty(
         name="Render Meshes as",
@@ -132,14 +132,15 @@ def are_meshes_texture_mapped(scene: bpy.types.Scene) -> bool:
 
 
 def mesh_fineness(scene: bpy.types.Scene) -> dict[str, float]:
-    """How fine meshes are sampled: {"resolution" | "spacing" (world units) | "pixels" | "automatic": number}."""
+    """The density at which meshes are sampled: {"resolution" | "spacing" (world units) | "pixels" | "automatic":
+    number}."""
     properties = getattr(scene, RENDER_SETTINGS)
     name, kind = _FINENESS[properties.mesh_density]
     return {kind: getattr(properties, name)}
 
 
 class SurfelObjectSettings(bpy.types.PropertyGroup):
-    """What an object has to say: `object.surfel_splatting`."""
+    """An object's own settings: `object.surfel_splatting`."""
 
     render_as: EnumProperty(
         name="Render as",
@@ -195,8 +196,12 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
 
 
 class Form(NamedTuple):
-    """As what a mesh is rendered. kind: one of the items of `render_as`. split: distance from the camera up to which it
-    is polygons. group: vertex group whose weights say where it is. is_default: its object leaves that to the scene.
+    """How a mesh is rendered.
+
+    kind: one of the items of `render_as`.
+    split: distance from the camera up to which it is polygons.
+    group: vertex group whose weights decide between polygons and splats.
+    is_default: whether its object leaves the choice to the scene.
     """
 
     kind: str
@@ -214,14 +219,14 @@ class Form(NamedTuple):
 
     @property
     def of_transparent(self) -> Form:
-        """Of a mesh that is transparent in places: polygons are opaque, so it is drawn as such only if it must."""
+        """The form of a partly transparent mesh: polygons are opaque, so it is only drawn as polygons if the object
+        demands it."""
         return self._replace(kind="SURFELS") if self.is_default and self.kind == "POLYGONS" else self
 
 
 def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) -> Form:
-    """Of an instance its instancer says it; of one from a collection the object in there comes first, unless either of
-    them is hidden. Raises ValueError where what it says is not whole.
-    """
+    """The form of an instance. Its instancer decides; for an instance from a collection the object inside comes first,
+    unless one of them is hidden. Raises ValueError if the settings are incomplete."""
     asked = [getattr(each, OBJECT_SETTINGS) for each in asked_of(entry)]
     for settings in asked:
         check_choices(settings, "object properties")
@@ -245,7 +250,7 @@ class RENDER_PT_surfel_meshes(EnginePanel, bpy.types.Panel):
         properties = getattr(context.scene, RENDER_SETTINGS)
         super().draw(context)
         self.layout.prop(properties, "render_meshes")
-        # Also of objects that are surfels by their own choice, or because they are transparent.
+        # Also for objects that are surfels by their own choice, or because they are transparent.
         self.layout.prop(properties, "mesh_density")
         self.layout.prop(properties, _FINENESS[properties.mesh_density][0])
         self.layout.prop(properties, "mesh_textures")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`blender FILE.blend --command surfels convert|render|merge|info`: for farms, pipelines and scripts.
 
-Each command may be stopped at any moment and given again: what is there stays, what is missing is made, and a file
-has its name only when it is whole. Exit codes: 0 done, 1 failed, after one sentence, 2 wrong arguments.
+Each command may be stopped at any moment and run again: existing results are kept, missing ones are made, and a file
+gets its name only once it is complete. Exit codes: 0 done, 1 failed, after one sentence, 2 wrong arguments.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ _COMMANDS = {"convert": convert, "render": render, "merge": merge, "info": info}
 
 
 def run(arguments: list[str]) -> int:
-    """The exit code of the command line after the name."""
+    """Run the command line after the command's name; returns the exit code."""
     try:
         options = _parser().parse_args(arguments)
-    except SystemExit as leaving:  # argparse leaves after --help and after wrong arguments
+    except SystemExit as leaving:  # argparse exits after --help and after wrong arguments
         return int(leaving.code or 0)
     try:
         for path in _COMMANDS[options.command].run(options):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`surfels convert`: objects of the file become surfels, in a new file; or one block of them, for `surfels merge`."""
+"""`surfels convert`: converts objects of the file to surfels and saves a new file; or converts one block, for `surfels
+merge`."""
 
 from __future__ import annotations
 
@@ -34,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def add_conversion_arguments(parser: argparse.ArgumentParser) -> None:
-    """What `merge` is told too."""
+    """Add the arguments that `merge` needs too."""
     parser.add_argument("--objects", nargs="+", help="names; without them everything visible that has surfaces")
     parser.add_argument("--blocks", type=int, help="how many blocks of the sampling grid machines share")
     density = parser.add_mutually_exclusive_group()
@@ -43,7 +44,8 @@ def add_conversion_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
-    """Yields the file. Raises ValueError or OSError; nothing is saved where one object cannot be converted."""
+    """Convert, and yield the written file. Raises ValueError or OSError; nothing is saved if any object cannot be
+    converted."""
     if (options.block is None) != (options.blocks is None):
         raise ValueError("A block needs both --block and --blocks.")
     out = result(options)
@@ -73,7 +75,7 @@ def _write_block(batch: ConversionBatch, file: Path, number: int, count: int) ->
 
 
 def result(options: argparse.Namespace) -> Path:
-    """Raises ValueError for one that is no .blend."""
+    """The path of the result. Raises ValueError if it is not a .blend."""
     out = Path(options.out).absolute()
     if out.suffix != ".blend":
         raise ValueError(f"The result is a .blend, not {out.name!r}.")
@@ -81,18 +83,18 @@ def result(options: argparse.Namespace) -> Path:
 
 
 def block_file(out: Path, number: int, count: int) -> Path:
-    """number: from 1."""
+    """The file of one block. number: from 1."""
     return out.with_name(f"{out.name}.block-{number}-of-{count}.npz")
 
 
 def new_batch(options: argparse.Namespace, sampler: Callable[..., Sampling] = sample_surface) -> ConversionBatch:
-    """sampler: gives what `sample_surface` does, of the same arguments."""
+    """A batch with the chosen settings. sampler: replaces `sample_surface`, with the same arguments."""
     sources, chosen = sources_of(options.objects), choices(settings_of(options))
     return ConversionBatch(sources, chosen, bpy.context.view_layer.objects.active, sampler)
 
 
 def settings_of(options: argparse.Namespace):
-    """The file's own, with what is asked for here."""
+    """The settings stored in the file, overridden by the command's arguments."""
     settings = getattr(bpy.context.scene, CONVERSION_SETTINGS)
     for name in ("resolution", "spacing", "count"):
         if getattr(options, name) is not None:
@@ -102,7 +104,7 @@ def settings_of(options: argparse.Namespace):
 
 
 def sources_of(names: list[str] | None) -> list[bpy.types.Object]:
-    """Raises ValueError for a name that is not there, or has no surface."""
+    """The objects to convert. Raises ValueError for a name that does not exist or an object without a surface."""
     if not names:
         found = [each for each in bpy.context.view_layer.objects if each.visible_get() and has_surfaces(each)]
         if not found:
@@ -118,13 +120,13 @@ def sources_of(names: list[str] | None) -> list[bpy.types.Object]:
 
 
 def refuse(batch: ConversionBatch) -> None:
-    """Raises ValueError where something cannot be converted."""
+    """Raise ValueError if any object cannot be converted."""
     if batch.refused:
         raise ValueError("; ".join(f"{name}: {sentence}" for name, sentence in batch.refused))
 
 
 def place(batch: ConversionBatch, settings) -> None:
-    """The surfel objects, tied to their sources, which are hidden. Raises ValueError where something was refused."""
+    """Add the surfel objects, tied to their hidden sources. Raises ValueError if any object was refused."""
     refuse(batch)
     for conversion, made in batch.place_all(bpy.context):
         print(f"{conversion.name}: {conversion.summary()}", flush=True)

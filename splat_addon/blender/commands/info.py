@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`surfels info`: what a file holds, for people, or as JSON for programs."""
+"""`surfels info`: prints what a file contains, as text or as JSON."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
-    """Writes no file."""
+    """Print the information; writes no file."""
     facts = _facts(bpy.context.scene)
     if options.json:
         print(json.dumps(facts), flush=True)

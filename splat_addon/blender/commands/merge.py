@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`surfels merge`: what several workers made becomes the result, or it is said what is missing."""
+"""`surfels merge`: joins the results of several workers, or reports what is missing."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
-    """Yields the files as they are written. Raises ValueError, RuntimeError or OSError."""
+    """Yield the files as they are written. Raises ValueError, RuntimeError or OSError."""
     if options.blocks is not None:
         yield from _blocks(options)
         return
@@ -111,7 +111,7 @@ def _blocks(options: argparse.Namespace) -> Iterator[Path]:
 
 
 def _blocks_of(files: list[Path], turn: int) -> Iterator[Block]:
-    """Of one object, the `turn`th that is converted."""
+    """The blocks of one object, the `turn`th that is converted."""
     for file in files:
         blocks = read_blocks(file)
         if turn >= len(blocks):

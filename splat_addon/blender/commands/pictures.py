@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What commands about frames have in common: which frames, which tiles, and where their files lie."""
+"""Shared by commands about frames: frame numbers, tiles, and the paths of their files."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from ..export.camera import picture_size, rendered_part
 from ..ids import ENGINE
 from ..operators.file_paths import absolute
 
-#: A to B in steps of C, as Blender writes it (1..9), as farms do (1-9), and as Open Job Description does (1-9:2).
+#: A to B in steps of C, as Blender writes it (1..9), as farms do (1-9), or as Open Job Description does (1-9:2).
 _RANGE = re.compile(r"(-?\d+)(?:(?:-|\.\.)(-?\d+)(?::(\d+))?)?")
 
 
 def frame_list(text: str) -> list[int]:
-    """ "1-3,7..9,20-30:5" -> the frames, in that order, each once."""
+    """ "1-3,7..9,20-30:5" -> the frames in that order, without duplicates."""
     frames: dict[int, None] = {}
     for part in text.split(","):
         match = _RANGE.fullmatch(part.strip())
@@ -51,7 +51,7 @@ def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def frames_of(options: argparse.Namespace) -> list[int]:
-    """Raises ValueError where it is not clear which are meant."""
+    """The frames to render. Raises ValueError if the arguments are ambiguous."""
     if options.first is None:
         return options.frames or [bpy.context.scene.frame_current]
     if options.frames or not (options.chunk and options.chunk > 0):
@@ -64,7 +64,7 @@ def frames_of(options: argparse.Namespace) -> list[int]:
 
 
 def prepare_scene(out: str | None) -> bpy.types.Scene:
-    """The scene of the file, for this engine. Raises ValueError for a file without a path, and for a film."""
+    """The file's scene, set up for this engine. Raises ValueError for a file without a path, or for video output."""
     scene = bpy.context.scene
     scene.render.engine = ENGINE
     if out:
@@ -76,7 +76,7 @@ def prepare_scene(out: str | None) -> bpy.types.Scene:
 
 
 def files_of(scene: bpy.types.Scene, frame: int) -> list[Path]:
-    """Of the picture: one, or one for each view. The first has no view's name, or none of the others'."""
+    """The files of a picture: one, or one per view. The first may lack a view's name."""
     render = scene.render
     views = [view.name for view in render.views if view.use] if render.use_multiview else []
     if render.image_settings.views_format != "INDIVIDUAL":
@@ -85,7 +85,7 @@ def files_of(scene: bpy.types.Scene, frame: int) -> list[Path]:
 
 
 def picture_file(scene: bpy.types.Scene, frame: int) -> Path:
-    """What Blender is told to write, to whose name it adds those of views."""
+    """The path given to Blender, which adds the names of views to it."""
     return Path(scene.render.frame_path(frame=frame))
 
 
@@ -94,13 +94,14 @@ def is_there(scene: bpy.types.Scene, frame: int) -> bool:
 
 
 def tile_file(picture: Path, tile: tuple[int, int], tiles: tuple[int, int]) -> Path:
-    """tile: column and row, from 1, from the bottom left."""
+    """The file of a tile. tile: column and row, from 1, from the bottom left."""
     (column, row), (columns, rows) = tile, tiles
     return picture.with_name(f"{picture.name}.tile-{column}-{row}-of-{columns}x{rows}.npz")
 
 
 def tile_place(scene: bpy.types.Scene, tile: tuple[int, int], tiles: tuple[int, int]) -> tuple[int, int, int, int]:
-    """x, y, width, height in pixels: half-open parts of the whole frame. Raises ValueError for a tile of no pixel."""
+    """x, y, width, height in pixels of a half-open part of the whole frame. Raises ValueError for a tile without
+    pixels."""
     if scene.render.use_border:
         raise ValueError("The scene has a render border, which tiles take the place of; switch it off.")
     ends = []
@@ -116,11 +117,11 @@ def tile_place(scene: bpy.types.Scene, tile: tuple[int, int], tiles: tuple[int, 
 
 @contextmanager
 def look_through(scene: bpy.types.Scene, place: tuple[int, int, int, int]) -> Iterator[None]:
-    """Let Blender render that part of the picture alone, as it is drawn: no compositor, no sequencer."""
+    """Make Blender render only this part of the picture, without compositor and sequencer."""
     render = scene.render
     (width, height), (x, y, across, up) = picture_size(render), place
     before = {name: getattr(render, name) for name in _OF_A_TILE}
-    # in the middle of a pixel, so that Blender's float32 is cut off to that pixel
+    # in the middle of a pixel, so that Blender's float32 truncates to that pixel
     render.border_min_x = (x + 0.5) / width if x else 0.0
     render.border_min_y = (y + 0.5) / height if y else 0.0
     render.border_max_x = (x + across + 0.5) / width if x + across < width else 1.0
@@ -136,5 +137,5 @@ def look_through(scene: bpy.types.Scene, place: tuple[int, int, int, int]) -> It
             setattr(render, name, value)
 
 
-#: What is another thing while a tile is drawn.
+#: Settings that differ while a tile is rendered.
 _OF_A_TILE = ("use_border", "use_crop_to_border", "use_compositing", "use_sequencer")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`surfels render`: frames, or one tile of each, that are not there yet."""
+"""`surfels render`: renders missing frames, or a missing tile of each."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
-    """Yields the files as they are written. Raises ValueError, RuntimeError or OSError."""
+    """Yield the files as they are written. Raises ValueError, RuntimeError or OSError."""
     if bool(options.tile) != bool(options.tiles):
         raise ValueError("A tile needs both --tile and --tiles.")
     scene, frames = prepare_scene(options.out), frames_of(options)
@@ -56,14 +56,15 @@ def _frames(scene: bpy.types.Scene, frames: list[int], again: bool) -> Iterator[
         if frame not in missing:
             print(f"there already: {', '.join(map(str, files_of(scene, frame)))}", flush=True)
             continue
-        # What lies on the device serves the next frame; the last lets it go, for it must not be left to Blender's end.
+        # Data on the device is reused for the next frame; the last frame frees it, because it must not outlive the
+        # render.
         scene.render.use_persistent_data = frame != missing[-1]
         write_picture(scene, frame)
         yield from files_of(scene, frame)
 
 
 def write_picture(scene: bpy.types.Scene, frame: int) -> None:
-    """The frame's files, all whole or none. Raises RuntimeError with Blender's words."""
+    """Write the frame's files, either all or none. Raises RuntimeError with Blender's message."""
     place, pattern = picture_file(scene, frame), scene.render.filepath
     scene.frame_set(frame)
     try:
@@ -90,7 +91,7 @@ def _tiles(scene: bpy.types.Scene, frames: list[int], options: argparse.Namespac
 
 
 def _drawn() -> dict[tuple[str, str], Frame]:
-    """What the engine draws now, by the names of view layer and view."""
+    """Collect what the engine draws, by view layer and view."""
     drawn = {}
     final_render.kept = lambda layer, view, frame: drawn.update({(layer, view): frame})
     try:
@@ -101,7 +102,7 @@ def _drawn() -> dict[tuple[str, str], Frame]:
 
 
 def _render(**options) -> None:
-    """Raises RuntimeError with Blender's words, without the word that it puts before them."""
+    """Render. Raises RuntimeError with Blender's message, without the prefix that Blender adds."""
     try:
         bpy.ops.render.render(**options)
     except RuntimeError as error:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that appear under their names only when they are whole, whatever happens to the process that writes them.
+"""Writes files that appear under their names only once they are complete, even if the writing process is killed.
 
-They are written in a hidden folder beside their place, which is on the same disk, and renamed when all are there. What
-a process leaves that was killed is removed by the next that makes the same result.
+They are written in a hidden folder beside their destination, on the same disk, and renamed when all are complete.
+Leftovers of a killed process are removed by the next one that makes the same result.
 """
 
 from __future__ import annotations
@@ -17,9 +17,8 @@ from pathlib import Path
 
 @contextmanager
 def unfinished(result: Path) -> Iterator[Path]:
-    """A folder for `result` and what belongs to it, each of which gets to the folder of `result` when the context ends
-    without an error. Raises OSError, and ValueError where nothing was written.
-    """
+    """A folder for `result` and files that belong to it; they are moved to the folder of `result` if the context ends
+    without an error. Raises OSError, and ValueError if nothing was written."""
     result.parent.mkdir(parents=True, exist_ok=True)
     remove_leftovers(result)
     folder = Path(tempfile.mkdtemp(prefix=_prefix(result), dir=result.parent))
@@ -37,7 +36,7 @@ def unfinished(result: Path) -> Iterator[Path]:
 
 
 def remove_leftovers(result: Path) -> None:
-    """Those of processes that were killed while they made `result`."""
+    """Remove what killed processes left while making `result`."""
     if result.parent.is_dir():
         for path in result.parent.iterdir():
             if path.name.startswith(_prefix(result)):
@@ -49,6 +48,6 @@ def _prefix(result: Path) -> str:
 
 
 def _flush(file: Path) -> None:
-    """To the disk itself, before the name says that it is whole."""
+    """Flush a file to the disk before its name declares it complete."""
     with open(file, "rb+") as stream:
         os.fsync(stream.fileno())

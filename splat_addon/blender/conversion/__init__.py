@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the converting operators do: gather, sample, bake, place; the settings and the predicted count."""
+"""The steps of conversion: gather, sample, bake, place; also the settings and the predicted count."""

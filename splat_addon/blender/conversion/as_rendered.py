@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects as a final render sees them, while a conversion reads them: shown, and with their modifiers' render levels.
+"""Shows objects as in a final render while a conversion reads them: visible, and with their modifiers' render levels.
 
-Blender makes a render's evaluation only in a render. So the viewport's settings take the render's values, and have
-their own again afterwards.
+Blender creates the render's evaluation only during a render. So the viewport settings are set to the render's values
+and restored afterwards.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from contextlib import contextmanager
 
 import bpy
 
-#: type of a modifier -> its viewport's setting, and the render's
+#: modifier type -> its viewport property and its render property
 _MODIFIERS = {
     "SUBSURF": ("levels", "render_levels"),
     "MULTIRES": ("levels", "render_levels"),
@@ -22,7 +22,7 @@ _MODIFIERS = {
 
 @contextmanager
 def as_rendered(sources: Iterable[bpy.types.Object], context: bpy.types.Context) -> Iterator[bpy.types.Depsgraph]:
-    """The view layer's evaluation, in which the sources, and what is in collections that they show, are as rendered."""
+    """The view layer's evaluation with the sources, and the collections that they instance, as in a render."""
     changed = []
     try:
         for source in sources:
@@ -45,7 +45,7 @@ def as_rendered(sources: Iterable[bpy.types.Object], context: bpy.types.Context)
 
 
 def differing_levels(owner: bpy.types.Object) -> str | None:
-    """The name of a modifier that gives an object other vertices in the viewport than in a render, or None."""
+    """The name of a modifier whose viewport and render levels give different vertices, or None."""
     for modifier in owner.modifiers:
         if modifier.type in _MODIFIERS and (modifier.show_viewport or modifier.show_render):
             name, render_name = _MODIFIERS[modifier.type]
@@ -56,7 +56,7 @@ def differing_levels(owner: bpy.types.Object) -> str | None:
 
 
 def _settings(owner: bpy.types.Object) -> Iterator[tuple[object, str, object]]:
-    """The viewport's settings of an object, and the values that they have in a render."""
+    """An object's viewport settings, with the values they have in a render."""
     yield owner, "hide_viewport", owner.hide_viewport and owner.hide_render
     for modifier in owner.modifiers:
         yield modifier, "show_viewport", modifier.show_render

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The density that nobody needs to choose: as fine as the scene's camera needs it, within bounds, and why it is so.
+"""Automatic density: as fine as the scene's camera needs, within limits, with the reason in words.
 
-Where the camera or what it looks at moves, its distance on the current frame is not the nearest one, so surfels lie
-closer together by a margin. Without a camera that sees the object the density is a resolution.
+If the camera or the object moves, the distance on the current frame is not the shortest one, so surfels are placed
+closer together by a margin. If no camera sees the object, the density is a resolution.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from mathutils import Matrix
 from ...sampling import NotSeenError, Outline
 from .camera_density import without_camera
 
-#: Cells along the longest edge where no camera sees the object, and the fewest where one sees it from afar.
+#: Cells along the longest edge if no camera sees the object, and the minimum if a camera sees it from afar.
 FALLBACK_RESOLUTION, LEAST_RESOLUTION = 256, 16
 
-#: Surfels that one object becomes at most: 0.6 GB while it is converted. Who wants more chooses another density.
+#: Maximum number of surfels per object: 0.6 GB during conversion. For more, users choose another density.
 MOST_SURFELS = 4_000_000
 
-#: By so much closer may something that moves come before its surfels are wider apart than asked.
+#: A moving object may come this much closer before its surfels are farther apart than requested.
 MOTION_MARGIN = 1.25
 
 
 class Automatic(NamedTuple):
-    """spacing: in the units of the result. reason: why it is that, for people; "" where there is nothing to sample."""
+    """spacing: in the units of the result. reason: an explanation for the user; "" if there is nothing to sample."""
 
     spacing: float
     reason: str
@@ -44,12 +44,12 @@ def automatic_spacing(
     sources: Iterable[bpy.types.Object] = (),
     detail: float = 1.0,
 ) -> Automatic:
-    """pixels: that surfels are to lie apart where the camera sees the object closest, before `detail`, how many times
-    closer together they are asked for.
+    """pixels: desired distance between surfels where the object is closest to the camera. `detail` divides it.
 
-    surface: gives the outline of the object. area: of it as the images see it. longest_edge: of its box. All in the
-    units of the result. sources: the objects that it is made of; where one of them moves, or the camera, the margin
-    applies.
+    surface: returns the outline of the object.
+    area: its projected area.
+    longest_edge: of its box. All in the units of the result.
+    sources: the objects that it is made from; if one of them or the camera moves, the margin applies.
     """
     if not (area > 0 and longest_edge > 0 and pixels > 0):
         return Automatic(0.0, "")
@@ -76,7 +76,7 @@ def automatic_spacing(
 
 
 def is_moving(source: bpy.types.Object | None) -> bool:
-    """Whether an object, or one that it hangs on, has animation, drivers, constraints or a rigid body."""
+    """Whether an object or one of its parents has animation, drivers, constraints or a rigid body."""
     while source is not None:
         animation = source.animation_data
         if animation is not None and (animation.action or animation.drivers or animation.nla_tracks):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Several sources, one after another: what a converting operator drives, from `execute` or from its modal timer.
+"""Converts several sources in turn, driven by a converting operator from `execute` or from its modal timer.
 
-Nothing is added to the file until every source is sampled, so that a cancelled batch leaves no trace, and a source
-with nothing usable does not stop the others.
+Nothing is added to the file until every source is sampled, so a cancelled batch leaves no trace, and an unusable source
+does not stop the others.
 """
 
 from __future__ import annotations
@@ -24,9 +24,10 @@ from .surfel_objects import refill, select_only
 
 
 class Batch(ABC):
-    """Groups of objects on their way, each to one surfel object: read, sample, place, which subclasses do.
+    """Groups of objects, each of which becomes one surfel object: read, sample, place. Subclasses implement these
+    steps.
 
-    refused: (object name, sentence) of each group that could not be converted. share: finished part, 0 to 1.
+    refused: (object name, sentence) of each group that could not be converted. share: finished share, 0 to 1.
     """
 
     def __init__(self, groups: list[list[bpy.types.Object]]):
@@ -50,7 +51,7 @@ class Batch(ABC):
         return bool(self._sampled)
 
     def prepared(self, context: bpy.types.Context) -> Iterator:
-        """The usable ones, each read from Blender when it is asked for; give it to `sample` before the next."""
+        """Yield the usable sources, each read from Blender on demand; pass each to `sample` before taking the next."""
         for sources in self._groups:
             self._begun, self._part = self._begun + 1, 0.0
             try:
@@ -61,7 +62,7 @@ class Batch(ABC):
                 self.refused.append((sources[0].name, str(error)))
 
     def sample(self, conversion, report=lambda share: None) -> None:
-        """Sample one source; may run in another thread. report: called with `share` now and then."""
+        """Sample one source; may run in another thread. report: called regularly with `share`."""
 
         def progress(part: float) -> bool:
             self._part = part
@@ -79,7 +80,7 @@ class Batch(ABC):
             self._sampled.append(conversion)
 
     def place_all(self, context: bpy.types.Context) -> list[tuple[object, bpy.types.Object]]:
-        """Add the surfel objects to the file; they are selected, and the last is active."""
+        """Add the surfel objects to the file, select them and make the last one active."""
         made = [(conversion, self._placed(conversion, context)) for conversion in self._sampled]
         select_only(context, [new for _, new in made])
         return made
@@ -93,7 +94,7 @@ class Batch(ABC):
         return made
 
     def replace(self, made: bpy.types.Object, context: bpy.types.Context) -> list:
-        """Give a surfel object the surfels of the one source that was sampled, or of several that were joined."""
+        """Give a surfel object new surfels, from a single source or from several that were joined."""
         for conversion in self._sampled:
             start, record = time.perf_counter(), record_of(made)
             self._finish(conversion, context)
@@ -105,7 +106,7 @@ class Batch(ABC):
         return self._sampled
 
     def _finish(self, conversion, context: bpy.types.Context) -> None:
-        """What is left to do with the surfels and may ask Blender."""
+        """Finish the surfels; may access Blender."""
         conversion.surfels = at_origin_of_source(conversion.surfels)
 
     @abstractmethod
@@ -114,15 +115,15 @@ class Batch(ABC):
 
     @abstractmethod
     def _sample(self, conversion, progress) -> None:
-        """Touches nothing of Blender's. Raises what sampling does."""
+        """Sample without accessing Blender. Raises the exceptions of sampling."""
 
     @abstractmethod
     def _place(self, conversion, context: bpy.types.Context) -> bpy.types.Object:
-        """The new surfel object, in the file."""
+        """Add the new surfel object to the file."""
 
 
 class ConversionBatch(Batch):
-    """Of surfaces. active: whose place a joined result takes. sampler: gives what `sample_surface` does."""
+    """A batch of surfaces. active: the object whose place a joined result takes. sampler: replaces `sample_surface`."""
 
     def __init__(
         self,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sources that were hidden when they were converted come back when their surfels have been deleted."""
+"""Shows sources again that were hidden by a conversion, once their surfels have been deleted."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from bpy.app.handlers import persistent
 
 from .source_record import record_of, sources_in
 
-#: How many objects the file had when it was last looked through.
+#: Number of objects in the file at the last check.
 _objects = 0
 
 
 def hide_source(source: bpy.types.Object) -> None:
-    """Hide an object, in the viewport and in renders, for as long as it has surfels."""
+    """Hide an object in the viewport and in renders for as long as it has surfels."""
     source.hide_set(True)
     source.hide_render = True
     record_of(source).is_hidden_source = True
 
 
 def bring_back() -> None:
-    """Show all hidden sources of which no surfels are left."""
+    """Show all hidden sources that have no surfels left."""
     hidden = [owner for owner in bpy.data.objects if record_of(owner).is_hidden_source]
     needed = set().union(*map(sources_in, bpy.data.scenes)) if hidden else set()
     for source in hidden:
@@ -35,7 +35,7 @@ def bring_back() -> None:
 
 @persistent
 def _after_update(scene, depsgraph) -> None:
-    """Look through the file when objects have come or gone."""
+    """Check the file when the number of objects has changed."""
     global _objects
     count = len(bpy.data.objects)
     if count != _objects:

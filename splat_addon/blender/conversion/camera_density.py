@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How fine to sample for the scene's camera and resolution: `sampling.camera_spacing` asked with Blender's camera."""
+"""Finds the spacing for the scene's camera and resolution: calls `sampling.camera_spacing` with Blender's camera."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from ..export.camera import final_camera
 def without_camera(
     density: dict[str, float], surface: Callable[[], Outline], matrix_world: Matrix, depsgraph: bpy.types.Depsgraph
 ) -> dict[str, float]:
-    """The same density in terms that sampling knows: {"pixels": p} becomes a spacing in object units.
+    """Convert a density that refers to the camera: {"pixels": p} becomes a spacing in object units.
 
-    surface: gives the outline of the object, and is called only if it is needed. matrix_world: of the object.
-    Raises ValueError with a sentence where there is no camera, or none that sees the object.
+    surface: returns the outline of the object, and is called only if needed. matrix_world: of the object. Raises
+        ValueError with a sentence if there is no camera, or it does not see the object.
     """
     if "pixels" not in density:
         return density

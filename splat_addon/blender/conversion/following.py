@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels go where their source goes: as its child, with its parent, animation and constraints."""
+"""Makes surfels follow their source: as its child, with its parent, animation and constraints."""
 
 from __future__ import annotations
 
@@ -11,18 +11,20 @@ from mathutils import Matrix
 
 from ...surfels import Surfels
 
-#: A surfel may be moved by this share of the smaller half-axis of the middle surfel, which nobody sees.
+#: The error in a surfel's position that is acceptable, as a share of the smaller half-axis of the median surfel; nobody
+#: sees it.
 _HARMLESS = 1e-3
 
 #: Relative rounding of float32.
 _ROUNDING = 2.0**-24
 
-#: Kinds of instancing in which children are put on the vertices or faces of their parent.
+#: Kinds of instancing that place children on the vertices or faces of their parent.
 _REPEATING = ("VERTS", "FACES")
 
 
 def at_origin_of_source(surfels: Surfels) -> Surfels:
-    """The surfels with the source's own origin; as they are where that is so far away that they would lose digits."""
+    """The surfels relative to the source's own origin, or unchanged if that is so far away that precision would be
+    lost."""
     if not len(surfels):
         return surfels
     farthest = float(np.abs(surfels.origin).max() + np.abs(surfels.positions).max())
@@ -32,13 +34,14 @@ def at_origin_of_source(surfels: Surfels) -> Surfels:
 
 
 def follow(made: bpy.types.Object, source: bpy.types.Object, matrix_world: Matrix, unit: float) -> None:
-    """Tie a surfel object to its source and leave it where it is.
+    """Make a surfel object follow its source, without moving it.
 
-    matrix_world: of `made`, whose own may not be up to date. unit: half-axis of the surfels, world units.
+    matrix_world: of `made`, whose own matrix may be outdated. unit: half-axis of the surfels, world units.
     """
     inverse = source.matrix_world.inverted_safe()
     made.matrix_basis = matrix_world
-    # As Blender's own parenting, so that it stays in its place without its parent; far from the origin that rounds.
+    # Like Blender's own parenting, so that the object keeps its place if the parent is removed; far from the origin
+    # this rounds.
     off = np.array(source.matrix_world @ (inverse @ made.matrix_basis)) - np.array(matrix_world)
     if np.abs(off).max() > _HARMLESS * unit:
         inverse = inverse @ matrix_world
@@ -52,11 +55,11 @@ def follow(made: bpy.types.Object, source: bpy.types.Object, matrix_world: Matri
 
 
 def follows(made: bpy.types.Object, source: bpy.types.Object) -> bool:
-    """Whether a surfel object is tied to its source."""
+    """Whether a surfel object follows its source."""
     ties = (each for each in made.constraints if each.type == "CHILD_OF")
     return made.parent == source or any(each.target == source for each in ties)
 
 
 def _moves_children(source: bpy.types.Object) -> bool:
-    """Whether an object puts its children elsewhere: on its vertices or faces, or along its path."""
+    """Whether an object moves its children: onto its vertices or faces, or along its path."""
     return source.instance_type in _REPEATING or (source.type == "CURVE" and source.data.use_path)

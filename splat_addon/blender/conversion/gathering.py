@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One or several objects -> the one mesh that is sampled, in the space of the surfel object that it becomes.
+"""Gathers one or several objects into the single mesh that is sampled, in the space of the resulting surfel object.
 
-Instances are made real: to sample a copy takes half as long as to move the surfels of another, and each copy has the
-right density, whatever its scale.
+Instances are made real: sampling a copy takes half as long as transforming the surfels of another, and each copy gets
+the right density, whatever its scale.
 """
 
 from __future__ import annotations
@@ -23,9 +23,12 @@ from .placement import relative, without_scale, without_shear
 
 @dataclass(frozen=True, eq=False)
 class Gathered:
-    """mesh: of all sources, in the space of `matrix_world`. materials: what its material indices mean. unread:
-    inputs of materials that could not be read. notes: a sentence for each kind of thing that was left out. others:
-    session_uids of the objects besides the sources that it has something of."""
+    """mesh: of all sources, in the space of `matrix_world`.
+    materials: the materials that its indices refer to.
+    unread: inputs of materials that could not be read.
+    notes: one sentence for each kind of thing that was left out.
+    others: session_uids of further objects that contribute to it.
+    """
 
     mesh: TriangleMesh
     matrix_world: Matrix
@@ -36,7 +39,7 @@ class Gathered:
 
 
 def frame_of(source: bpy.types.Object, in_world_units: bool) -> Matrix:
-    """The transform of the surfel object that stands in the place of `source`: with the same scale, or with none.
+    """The transform of the surfel object that replaces `source`, with the same scale or without.
 
     Raises ValueError with a sentence for a transform that is not finite or flattens the object.
     """
@@ -46,9 +49,9 @@ def frame_of(source: bpy.types.Object, in_world_units: bool) -> Matrix:
 def gather(
     sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, in_world_units: bool, read: Reader = read_mesh
 ) -> Gathered:
-    """The surfaces of all sources as one mesh in the frame of the first. read: gives an `ExtractedMesh`.
+    """The surfaces of all sources as one mesh in the frame of the first. read: returns an `ExtractedMesh`.
 
-    Raises ValueError with a sentence where there is no face at all, or for an impossible transform.
+    Raises ValueError with a sentence if there are no faces, or for an impossible transform.
     """
     frames = [frame_of(source.evaluated_get(depsgraph), in_world_units) for source in sources]
     shown = [shown_by(source, depsgraph, read) for source in sources]
@@ -78,10 +81,10 @@ def _why_nothing(sources: list[bpy.types.Object], shown: list[Shown]) -> str:
 def _with_shared_slots(
     pieces: list[Piece],
 ) -> tuple[list[tuple[TriangleMesh, Piece]], tuple[bpy.types.Material | None, ...]]:
-    """The pieces' meshes over one list of slots, and the materials in these.
+    """The pieces' meshes with one shared list of slots, and its materials.
 
-    One mesh keeps its slots as they are. Of several, the slots that faces use are put together; a material that gives
-    two meshes different colours, as one without the texture's UV map, has a slot for each.
+    A single mesh keeps its slots. For several meshes, the slots that faces use are combined; a material that gives two
+    meshes different colours, for example because one lacks the texture's UV map, gets a slot for each.
     """
     if len(pieces) == 1:
         return [(pieces[0].content.triangles, pieces[0])], pieces[0].content.materials
@@ -96,7 +99,7 @@ def _with_shared_slots(
 
 
 def _slot_indices(content: ExtractedMesh, slots: list) -> np.ndarray:
-    """(T,) index into `slots` of each triangle; slots that are not there yet are added."""
+    """(T,) index into `slots` for each triangle; missing slots are appended."""
     mesh = content.triangles
     own = np.zeros(len(mesh), np.int32) if mesh.materials is None else mesh.materials
     used = np.unique(own)
@@ -116,6 +119,6 @@ def _slot_indices(content: ExtractedMesh, slots: list) -> np.ndarray:
 def groups(
     sources: Iterable[bpy.types.Object], active: bpy.types.Object | None, join: bool
 ) -> list[list[bpy.types.Object]]:
-    """The sources of each surfel object: one each, or all for one, the active object first."""
+    """The sources of each surfel object: one each, or all for one, with the active object first."""
     ordered = sorted(sources, key=lambda source: source != active) if join else list(sources)
     return [ordered] if join and ordered else [[source] for source in ordered]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One object, or several joined, becomes one surfel object, in four steps: prepare, sample, bake, place.
+"""Converts one object, or several joined, to one surfel object in four steps: prepare, sample, bake, place.
 
-Only `sample` leaves Blender's data alone, so it may run in a thread of its own while the window lives.
+Only `sample` does not access Blender's data, so it may run in a thread while the window stays responsive.
 """
 
 from __future__ import annotations
@@ -39,23 +39,29 @@ from .camera_density import without_camera
 from .gathering import gather
 from .surfel_objects import add_surfel_object, collections_of
 
-#: How far a surfel's surface may be above or below it, in spacings: a bend within its cell, or a move to a lattice.
+#: How far the surface may be above or below its surfel, in spacings: because of curvature within the cell, or a move to
+#: a lattice.
 _REACH, _LATTICE_REACH = 0.25, 1.0
 
-#: About 20 GB while converting; a slip in the resolution must not freeze the machine.
+#: About 20 GB during conversion; a typo in the resolution must not freeze the machine.
 MAX_SURFELS = 100_000_000
 
 
 @dataclass(frozen=True)
 class Choices:
-    """density: one keyword and value: "resolution", "spacing" or "count" as sampling takes them, "pixels" that a
-    surfel may cover for the scene's camera, or "automatic", the same pixels within bounds (`automatic_density`).
-    reduction, grazing_angle: as sampling takes them. splat_size: half-axis of a splat, in spacings. tolerance: how far
-    from flat, object units, where surfels may become larger, or None. texture_mapped: colours that are one image are
-    looked up in it when rendered. crease_angle: radians, beyond which splats end at edges and blend as deep as the
-    surface asks for, or None. space: "object" or "world", whose units lengths are in and which the surfels are even in.
-    join: all sources become one, in world units. bake: what materials cannot be read for comes from Blender's own
-    bake."""
+    """The user's settings for a conversion.
+
+    density: one keyword and value: "resolution", "spacing" or "count" as in sampling; "pixels" that a surfel may cover
+        in the scene's camera; or "automatic", the same pixels within limits (`automatic_density`).
+    reduction, grazing_angle: as in sampling.
+    splat_size: half-axis of a splat, in spacings.
+    tolerance: how far from flat, in object units, the surface may be where surfels become larger, or None.
+    texture_mapped: whether colours that are a single image are looked up at render time.
+    crease_angle: radians, beyond which splats end at edges and get their own blend depth, or None.
+    space: "object" or "world": the space whose units lengths are in and in which surfels are evenly spaced.
+    join: whether all sources become one, in world units.
+    bake: whether inputs of materials that cannot be read come from Blender's own bake.
+    """
 
     density: dict[str, float]
     splat_size: float = DEFAULT_SPLAT_SIZE
@@ -79,10 +85,12 @@ class Choices:
 
 @dataclass(eq=False)
 class Conversion:
-    """The sources of one surfel object on their way, and what there is to tell about them.
+    """The sources of one surfel object during conversion, and what will be reported about them.
 
-    sources: the first gives the place. whole: as it was read; mesh: without its unusable triangles.
-    unread: inputs of materials that are to be baked. reason: why the density is what it is, where it was found.
+    sources: the first one determines the place.
+    whole: the mesh as it was read. mesh: without unusable triangles.
+    unread: inputs of materials that need to be baked.
+    reason: explanation of an automatic density.
     """
 
     sources: list[bpy.types.Object]
@@ -105,11 +113,11 @@ class Conversion:
         return self.sources[0].name
 
     def is_warning(self, note: str) -> bool:
-        """They all tell of what is not as it was asked for."""
+        """Whether something is not as requested."""
         return True
 
     def summary(self) -> str:
-        """What was made, in one line."""
+        """A one-line summary of what was made."""
         parts, saved = self.sampling.small_parts, self.sampling.saved
         objects = f"{len(self.sources)} objects, " if len(self.sources) > 1 else ""
         why = f" ({self.reason})" if self.reason else ""
@@ -128,7 +136,7 @@ class Conversion:
 def prepare(
     sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, choices: Choices, images: dict | None = None
 ) -> Conversion:
-    """Read the sources, evaluated with their modifiers, with the instances that they make.
+    """Read the sources, evaluated with their modifiers and instances.
 
     images: keeps the textures' pixels for the next call.
     Raises ValueError with a sentence: no faces, nothing usable, an impossible density or transform.
@@ -183,9 +191,9 @@ def sample(
     progress: Callable[[float], bool | None] | None = None,
     sampler: Callable[..., Sampling] = sample_surface,
 ) -> None:
-    """Make the surfels; touches nothing of Blender's. sampler: gives what `sample_surface` does, of the same arguments.
+    """Make the surfels, without accessing Blender. sampler: replaces `sample_surface`, with the same arguments.
 
-    Raises SamplingCancelled where `progress` returned False, ValueError for a choice that sampling cannot meet.
+    Raises SamplingCancelled if `progress` returns False, ValueError for settings that sampling cannot use.
     """
     start = time.perf_counter()
     sampling = sampler(conversion.mesh, progress=progress, **sampling_options(conversion))
@@ -198,7 +206,7 @@ def sample(
 
 
 def sampling_options(conversion: Conversion) -> dict:
-    """What `sample_surface` is asked for."""
+    """The options for `sample_surface`."""
     choices = conversion.choices
     return {
         "spacing": conversion.spacing,
@@ -213,7 +221,7 @@ def sampling_options(conversion: Conversion) -> dict:
 
 
 def bake(conversion: Conversion, depsgraph: bpy.types.Depsgraph) -> None:
-    """Give the surfels what their materials could not be read for, where that is chosen. Raises ValueError."""
+    """If chosen, bake the material inputs that could not be read into the surfels. Raises ValueError."""
     if not conversion.unread:
         return
     start, choices = time.perf_counter(), conversion.choices
@@ -234,10 +242,10 @@ def bake(conversion: Conversion, depsgraph: bpy.types.Depsgraph) -> None:
 
 
 def place(conversion: Conversion, fallback: bpy.types.Collection) -> bpy.types.Object:
-    """The new object "<name> surfels" over its sources, in the collections of the first and with its pass index, with
-    their materials.
+    """Add the new object "<name> surfels" over its sources, in the collections of the first and with its pass index,
+    with their materials.
 
-    fallback: where it goes when every collection of that source belongs to a linked library.
+    fallback: the collection to use if all collections of that source belong to a linked library.
     """
     collections = collections_of(conversion.sources[0], fallback)
     name, matrix_world = f"{conversion.name} surfels", conversion.matrix_world

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The conversion's settings: the same properties on the operator and, for the sidebar, on the scene."""
+"""Conversion settings: the same properties on the operator and, for the sidebar, on the scene."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .mesh_conversion import Choices
 
 
 class Density(NamedTuple):
-    """A way to say how close surfels lie: for people, the property that holds the number, and what a .blend keeps."""
+    """A way to specify the density: its label, the property that holds the number, and the value stored in a .blend."""
 
     label: str
     description: str
@@ -206,12 +206,12 @@ class ConversionProperties:
     )
 
 
-#: What the operator and the scene both have.
+#: Properties that the operator and the scene share.
 PROPERTY_NAMES = tuple(ConversionProperties.__annotations__)
 
 
 def choices(properties: ConversionProperties) -> Choices:
-    """What the properties ask for."""
+    """The properties as `Choices`."""
     return Choices(
         density=_density(properties),
         splat_size=properties.splat_size,
@@ -227,7 +227,8 @@ def choices(properties: ConversionProperties) -> Choices:
 
 
 def _density(properties: ConversionProperties) -> dict[str, float]:
-    """The kind of density and its number. A script that gives the operator a number, and not its kind, means that."""
+    """The kind of density and its number. If a script gives the operator a number without a kind, the number
+    decides."""
     chosen = properties.density
     if isinstance(properties, bpy.types.Operator) and not properties.properties.is_property_set("density"):
         is_set = properties.properties.is_property_set
@@ -262,7 +263,7 @@ def draw_properties(layout: bpy.types.UILayout, properties: ConversionProperties
 
 
 class SurfelConversionSettings(ConversionProperties, bpy.types.PropertyGroup):
-    """What the sidebar will convert with."""
+    """The settings of the sidebar for the next conversion."""
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory((SurfelConversionSettings,))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a new surfel object stands, so that it lies exactly over its source.
+"""Places a new surfel object exactly over its source.
 
-An object of its own can be moved, turned and scaled, but not sheared, as a child of a turned and unevenly scaled
-parent is. What its transform leaves over goes into the mesh before it is sampled.
+An object can be moved, rotated and scaled, but not sheared as a child of a rotated and unevenly scaled parent is. The
+part that its transform cannot express is applied to the mesh before sampling.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _ROUNDING = 1e-5
 
 
 def without_shear(matrix_world: Matrix) -> tuple[Matrix, np.ndarray | None]:
-    """The nearest matrix that location, rotation and scale can make, and the (3, 3) float64 rest, None for none.
+    """The nearest matrix without shear, and the (3, 3) float64 remainder, None if there is none.
 
     Their product is `matrix_world`. Raises ValueError for a matrix that is not finite or flattens the object.
     """
@@ -27,22 +27,23 @@ def without_shear(matrix_world: Matrix) -> tuple[Matrix, np.ndarray | None]:
     plain = Matrix.LocRotScale(*matrix_world.decompose())
     made = np.array(plain, np.float64)
     if np.abs(made - whole)[:3, :3].max() <= _ROUNDING * np.abs(whole[:3, :3]).max():
-        # a copy: an object's own matrix is a view of its memory, which an evaluated object may lose
+        # a copy: an object's own matrix is a view of memory that an evaluated object may free
         return matrix_world.copy(), None
     return plain, np.linalg.solve(made[:3, :3], whole[:3, :3])
 
 
 def without_scale(matrix_world: Matrix) -> Matrix:
-    """Its location and rotation alone, so that lengths in it are world units. Raises as `without_shear`."""
+    """Location and rotation only, so that lengths are in world units. Raises as `without_shear`."""
     location, rotation, _ = without_shear(matrix_world)[0].decompose()
     return Matrix.LocRotScale(location, rotation, None)
 
 
 def relative(matrix_world: np.ndarray, frame: Matrix) -> np.ndarray:
-    """(4, 4) float64 map from the space of `matrix_world` to that of `frame`; exactly 1 where they are the same."""
+    """(4, 4) float64 map from the space of `matrix_world` to that of `frame`; exactly the identity if they are
+    equal."""
     frame, result = np.array(frame, np.float64), np.eye(4)
     if not np.array_equal(matrix_world, frame):
         result[:3, :3] = np.linalg.solve(frame[:3, :3], matrix_world[:3, :3])
-        # the difference first: both may be far from the world's origin
+        # subtract first: both may be far from the world's origin
         result[:3, 3] = np.linalg.solve(frame[:3, :3], matrix_world[:3, 3] - frame[:3, 3])
     return result

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The points of an object on their way to a surfel object: the twin of `conversion` for what has no surface."""
+"""Converts the points of an object to a surfel object: the counterpart of `mesh_conversion` for objects without a
+surface."""
 
 from __future__ import annotations
 
@@ -21,9 +22,9 @@ from .surfel_objects import add_surfel_object, collections_of
 
 @dataclass(eq=False)
 class PointsConversion:
-    """One source, what was read of it, and what there is to tell about it in the end.
+    """One source, the points read from it, and what will be reported.
 
-    viewpoint: (3,) which normals face, in the space of the points, or None.
+    viewpoint: (3,) point that normals face, in the space of the points, or None.
     """
 
     source: bpy.types.Object
@@ -51,17 +52,20 @@ class PointsConversion:
         return list(self.report.notes())
 
     def is_warning(self, note: str) -> bool:
-        """Whether it tells of something that was left out."""
+        """Whether anything was left out."""
         return note.startswith("Skipped")
 
     def summary(self) -> str:
-        """What was made, in one line."""
+        """A one-line summary of what was made."""
         return f"{self.report.points:,} points -> {len(self.surfels):,} surfels in {self.seconds:.1f} s"
 
 
 class PointsBatch(Batch):
-    """options: of `surfels_from_points`, but the viewpoint. viewpoint: gives that in the world, or None, or raises a
-    ValueError."""
+    """A batch of point objects.
+
+    options: for `surfels_from_points`, without the viewpoint.
+    viewpoint: returns the viewpoint in world space or None, or raises a ValueError.
+    """
 
     def __init__(self, sources: list[bpy.types.Object], options: dict, viewpoint: Callable[[], Vector | None]):
         super().__init__([[source] for source in sources])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings with which bare points become surfels: on the operator that converts them and on the PLY import."""
+"""Settings for turning bare points into surfels, shared by the converting operator and the PLY import."""
 
 from __future__ import annotations
 
@@ -54,17 +54,17 @@ class PointsProperties:
     )
 
 
-#: What `surfels_from_points` takes, by the properties' own names.
+#: Arguments of `surfels_from_points` that are properties of the same name.
 _KEYWORDS = {"neighbours": int, "splat_size": float, "isolated": str.lower}
 
 
 def keywords(properties: PointsProperties) -> dict:
-    """The keyword arguments for `surfels_from_points`, but the viewpoint."""
+    """Keyword arguments for `surfels_from_points`, without the viewpoint."""
     return {name: kind(getattr(properties, name)) for name, kind in _KEYWORDS.items()}
 
 
 def viewpoint(properties: PointsProperties, context: bpy.types.Context) -> Vector | None:
-    """Where normals shall face, in the world; None: outward. Raises ValueError where the scene has no camera."""
+    """The point that normals face, in world space; None: outward. Raises ValueError if the scene has no camera."""
     if properties.facing == "CURSOR":
         return context.scene.cursor.location.copy()
     if properties.facing == "CAMERA":

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many surfels something will become, known before the conversion and cheap enough for the sidebar.
+"""Predicts how many surfels a conversion will make, cheaply enough for the sidebar.
 
-The count is a projected area over the spacing squared, so only the area and the longest edge of each evaluated mesh
-are kept, and a coarse outline where a camera is to decide. They are measured by a timer shortly after they are first
-asked for, never while drawing, and forgotten when the depsgraph tells that the geometry changed.
+The count is a projected area over the spacing squared, so only the area and the longest edge of each evaluated mesh are
+kept, and a coarse outline if a camera decides the density. A timer measures them shortly after they are first needed,
+never while drawing, and they are forgotten when the depsgraph reports a change of geometry.
 """
 
 from __future__ import annotations
@@ -22,14 +22,17 @@ from .gathering import frame_of, gather
 from .mesh_conversion import Choices
 from .placement import relative
 
-#: Waiting this long gathers the changes of a stroke or a drag into one measurement.
+#: Delay that combines the changes of a stroke or a drag into one measurement.
 _DELAY_SECONDS = 0.2
 
 
 @dataclass(frozen=True, eq=False)
 class Extent:
-    """area: projected area. longest_edge: of the bounding box. In units of the result, both 0 for nothing usable.
-    surface: its outline, where the choices need it. others: session_uids of objects that are part of it besides."""
+    """area: projected area.
+    longest_edge: of the bounding box. Both are in units of the result, and 0 if nothing is usable.
+    surface: its outline, if the settings need it.
+    others: session_uids of further objects that are part of it.
+    """
 
     area: float
     longest_edge: float
@@ -37,13 +40,13 @@ class Extent:
     others: frozenset[int] = frozenset()
 
     def predict(self, density: dict[str, float]) -> tuple[int, float]:
-        """(surfels, spacing) for a resolution, spacing or count; both 0 where that is 0 or nothing is usable."""
+        """(surfels, spacing) for a resolution, spacing or count; both 0 if that is 0 or nothing is usable."""
         ((kind, value),) = density.items()
         spacing = _SPACINGS[kind](self, value) if value > 0 else 0.0
         return (round(self.area / spacing**2), spacing) if spacing > 0 else (0, 0.0)
 
 
-#: The extent of what cannot be converted.
+#: The extent of an object that cannot be converted.
 NOTHING = Extent(0.0, 0.0, Outline(np.zeros((0, 3)), 0.0))
 
 #: kind of density -> spacing from the extent and a value above 0
@@ -55,7 +58,7 @@ _SPACINGS = {
 
 
 def measure(sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, choices: Choices) -> Extent:
-    """The extent of what the sources become together; not fast: 0.3 s for a million triangles."""
+    """The extent of all sources together; this is slow: 0.3 s for a million triangles."""
     try:
         gathered = gather(sources, depsgraph, choices.in_world_units, read_triangles)
     except ValueError:
@@ -69,7 +72,7 @@ def measure(sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, cho
 
 
 def known_extents(groups: list[list[bpy.types.Object]], choices: Choices) -> list[Extent] | None:
-    """Those of all groups of sources, or None while some are still to be measured, for which the timer is started."""
+    """The extents of all groups of sources, or None while some still have to be measured, which starts the timer."""
     keys = [_key(sources, choices) for sources in groups]
     missing = [key for key in keys if key not in _extents]
     if not missing:
@@ -81,7 +84,7 @@ def known_extents(groups: list[list[bpy.types.Object]], choices: Choices) -> lis
 
 
 def _key(sources: list[bpy.types.Object], choices: Choices) -> tuple:
-    """The sources' session_uids, and what of their transforms and of the choices makes a difference to the extent."""
+    """The sources' session_uids, and those parts of their transforms and settings that affect the extent."""
     try:
         frame = frame_of(sources[0], choices.in_world_units)
         maps = (relative(np.array(source.matrix_world, np.float64), frame) for source in sources)
@@ -93,10 +96,10 @@ def _key(sources: list[bpy.types.Object], choices: Choices) -> tuple:
     return uids, places, *how
 
 
-#: key of sources and choices -> their extent, as long as that is true
+#: key of sources and settings -> their extent, until it becomes outdated
 _extents: dict[tuple, Extent] = {}
 
-#: keys that the sidebar asked for, and the choices that they were made of
+#: keys that the sidebar needs, and the settings that they belong to
 _wanted: dict[tuple, Choices] = {}
 
 
@@ -116,11 +119,11 @@ def _measure_wanted() -> None:
 
 @persistent
 def forget_changed(scene, depsgraph):
-    """Drop what a depsgraph update made untrue."""
+    """Drop the extents that a depsgraph update invalidates."""
     updates = [update for update in depsgraph.updates if isinstance(update.id, bpy.types.Object)]
     changed = {update.id.original.session_uid for update in updates if update.is_updated_geometry}
     touched = changed | {update.id.original.session_uid for update in updates if update.is_updated_transform}
-    # what a collection instance shows changes with the collection's members too
+    # collection instances also change with the collection's members
     is_regrouped = any(isinstance(update.id, bpy.types.Collection) for update in depsgraph.updates)
     for key, extent in list(_extents.items()):
         if changed & set(key[0]) or touched & extent.others or (is_regrouped and extent.others):
@@ -129,7 +132,7 @@ def forget_changed(scene, depsgraph):
 
 @persistent
 def forget_all(*_):
-    """Drop everything: another file, or another point in its history."""
+    """Drop everything after loading another file, undo or redo."""
     _extents.clear()
 
 

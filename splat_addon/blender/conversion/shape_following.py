@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels are bent with their source: by its armature, its shape keys and whatever else deforms it.
+"""Makes surfels follow their source's deformation by armatures, shape keys and other modifiers.
 
-Each is bound to the triangle that it lies on: place, half-axes and shading normal are kept in terms of the triangle's
-edges and normal, as attributes, and a Geometry Nodes modifier makes them anew of the triangle as it is. That is the
-twin of `sampling.deform.binding`, which does the same for meshes that are sampled as they are rendered. As Blender
-evaluates it, every engine sees it, and a source that is hidden is evaluated too.
+Each surfel is bound to the triangle that it lies on: position, half-axes and shading normal are stored as attributes,
+relative to the triangle's edges and normal, and a Geometry Nodes modifier rebuilds them from the deformed triangle.
+`sampling.deform.binding` does the same for meshes that are sampled at render time. Because Blender evaluates the
+modifier, every engine sees the result, even if the source is hidden.
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ _PLACE, _ALONG_X, _ALONG_Y, _NORMAL = (f"surfel_bound_{name}" for name in ("plac
 #: Custom property of the node group.
 _MAKE, _VERSION = "surfels_shape", 1
 
-#: A half-axis shrinks to this share of what it was, and not to nothing.
+#: A half-axis shrinks at most to this share of its original length, never to nothing.
 _LEAST_SHRINKING = 1e-3
 
-#: How far a source's own space may be from that of its surfels, relative.
+#: Maximum relative difference between a source's space and that of its surfels.
 _ROUNDING = 1e-5
 
 
 def is_deformed(source: bpy.types.Object) -> bool:
-    """Whether something may move the vertices of an object from frame to frame."""
+    """Whether an object's vertices may move from frame to frame."""
     has_keys = getattr(source.data, "shape_keys", None) is not None
     return has_keys or source.parent_type == "ARMATURE" or any(m.type in _DEFORMING for m in source.modifiers)
 
 
 def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgraph) -> str | None:
-    """Bind the surfels of `made` to the one source that they were just made of, where that is deformed.
+    """Bind the surfels of `made` to the single source that they were made from, if it is deformed.
 
-    Gives the end of a sentence where they are not bound, None where they are or where there is nothing to follow.
+    Returns the end of a sentence if they cannot be bound; None if they are bound or there is nothing to follow.
     """
     [source, *others] = conversion.sources
     _unbind(made)
@@ -68,7 +68,7 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
 
 
 def is_bent(made: bpy.types.Object) -> bool:
-    """Whether the surfels of an object follow the shape of a source."""
+    """Whether the surfels of an object follow the deformation of a source."""
     return any(map(_is_ours, made.modifiers))
 
 
@@ -82,7 +82,7 @@ def _unbind(made: bpy.types.Object) -> None:
 
 
 def _pinned(made: bpy.types.Object) -> int:
-    """How many modifiers stay behind a new one."""
+    """Number of modifiers that stay behind a new one."""
     return sum(modifier.use_pin_to_last for modifier in made.modifiers)
 
 
@@ -97,7 +97,7 @@ def _give(modifier: bpy.types.NodesModifier, name: str, value) -> None:
 
 
 def _is_own_mesh(source: bpy.types.Object, mesh, depsgraph: bpy.types.Depsgraph) -> bool:
-    """Whether a mesh has the vertices of the source's own, in their order."""
+    """Whether a mesh has the vertices of the source's own mesh, in their order."""
     vertices = source.evaluated_get(depsgraph).data.attributes.get("position")
     if vertices is None or len(vertices.data) != len(mesh.positions):
         return False
@@ -107,7 +107,7 @@ def _is_own_mesh(source: bpy.types.Object, mesh, depsgraph: bpy.types.Depsgraph)
 
 
 def _bind(mesh: bpy.types.Mesh, surfels: Surfels, vertices: np.ndarray, triangles: np.ndarray) -> None:
-    """Keep the surfels in terms of the nearest of the triangles, as attributes."""
+    """Store the surfels relative to the nearest triangle, as attributes."""
     tree = BVHTree.FromPolygons(vertices.tolist(), triangles.tolist(), all_triangles=True)
     nearest = np.array([tree.find_nearest(position)[2] for position in surfels.positions.tolist()], np.int64)
     corners = triangles[nearest]
@@ -158,7 +158,7 @@ def _new_group() -> bpy.types.NodeTree:
     basis = edge_1, edge_2, normal
     place = m.vector("ADD", a, m.combined(basis, m.attribute(_PLACE, "FLOAT_VECTOR")))
     u, v = (m.combined(basis, m.attribute(name, "FLOAT_VECTOR")) for name in (_ALONG_X, _ALONG_Y))
-    # the dual basis takes normals where the edges take vectors
+    # the dual basis transforms normals, the edges transform vectors
     dual = (
         m.vector("SCALE", m.vector("CROSS_PRODUCT", edge_2, normal), scale=m.number("DIVIDE", 1.0, area)),
         m.vector("SCALE", m.vector("CROSS_PRODUCT", normal, edge_1), scale=m.number("DIVIDE", 1.0, area)),
@@ -166,8 +166,8 @@ def _new_group() -> bpy.types.NodeTree:
     )
     shading = m.vector("NORMALIZE", m.combined(dual, m.attribute(_NORMAL, "FLOAT_VECTOR")))
 
-    # u and v are conjugate half-diameters of the new ellipse; turned by t they are its half-axes. Textures and clip
-    # lines go by the axes: where a surfel has them it is not turned, and a sheared one is as long as u and v
+    # u and v are conjugate half-diameters of the new ellipse; rotated by t they become its half-axes. Textures and clip
+    # lines refer to the axes: surfels that have them are not rotated, and if sheared they are as long as u and v
     crossed = m.number("MULTIPLY", m.dot(u, v), 2.0)
     t = m.number("MULTIPLY", m.number("ARCTAN2", crossed, m.number("SUBTRACT", m.dot(u, u), m.dot(v, v))), 0.5)
     t = m.number("MULTIPLY", t, given.outputs["Turns"])
@@ -191,7 +191,7 @@ def _new_group() -> bpy.types.NodeTree:
     link(stored, moved.inputs["Geometry"])
     link(place, moved.inputs["Position"])
 
-    # where the source has other vertices, as with other levels of subdivision, the surfels stay as they are
+    # if the source has other vertices, for example at another subdivision level, the surfels stay as they are
     size, same, switch = (
         group.nodes.new(kind)
         for kind in ("GeometryNodeAttributeDomainSize", "FunctionNodeCompare", "GeometryNodeSwitch")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a surfel object keeps of its conversion, `object.surfel_record`: its sources and the settings.
+"""What a surfel object remembers about its conversion, `object.surfel_record`: its sources and the settings.
 
-By that it can be converted again, and while it is in a scene its sources are left out of what the engine draws there.
-Nothing leads from a source to its surfels: that would keep them in the file after they were deleted.
+This makes it possible to convert again, and excludes the sources from rendering while the surfels are in the scene.
+Sources have no reference to their surfels, because that would keep deleted surfels in the file.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from .points_settings import PointsProperties
 
 
 class SurfelPointsSettings(PointsProperties, bpy.types.PropertyGroup):
-    """With which points were converted."""
+    """The settings of a points conversion."""
 
 
 class SurfelSource(bpy.types.PropertyGroup):
@@ -58,7 +58,7 @@ def record_of(owner: bpy.types.Object) -> SurfelRecord:
 
 
 def keep_record(made: bpy.types.Object, sources: Iterable[bpy.types.Object], kind: str, settings) -> None:
-    """Note in a new surfel object what it was made of. settings: with the properties of that kind."""
+    """Record in a new surfel object what it was made from. settings: an object with the properties of that kind."""
     record = record_of(made)
     record.kind = kind
     record.sources.clear()
@@ -70,12 +70,12 @@ def keep_record(made: bpy.types.Object, sources: Iterable[bpy.types.Object], kin
 
 
 def sources_of(made: bpy.types.Object) -> list[bpy.types.Object]:
-    """What a surfel object was made of, without what has been taken out of the file."""
+    """The objects that surfels were made from, except those removed from the file."""
     return [each.object for each in record_of(made).sources if each.object is not None]
 
 
 def sources_in(scene: bpy.types.Scene) -> set[bpy.types.Object]:
-    """The sources of all surfel objects of a scene in the file, and of the collections that it places as instances."""
+    """The sources of all surfel objects in a scene, and in the collections that it instances."""
     found, seen, waiting = set(), set(), [scene.objects]
     while waiting:
         for made in waiting.pop():
@@ -89,7 +89,7 @@ def sources_in(scene: bpy.types.Scene) -> set[bpy.types.Object]:
 
 
 def is_stood_in(owner: bpy.types.Object, sources: set[bpy.types.Object]) -> bool:
-    """Whether surfels stand in the place of an object in the file, which says nothing else of itself."""
+    """Whether surfels replace an object in the file."""
     return owner in sources and getattr(owner, OBJECT_SETTINGS).render_as == "SCENE"
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A new object that stores surfels, wherever they come from: a mesh, bare points or a file."""
+"""Creates objects that store surfels, whether they come from a mesh, bare points or a file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def add_surfel_object(
     collections: Iterable[bpy.types.Collection],
     materials: Iterable[bpy.types.Material | None] = (),
 ) -> bpy.types.Object:
-    """The new object in `collections`; matrix_world: of the space in which `surfels.origin` is given."""
+    """Add a new object to `collections`; matrix_world: the space in which `surfels.origin` is given."""
     mesh = write_surfels(name, surfels)
     for material in materials:
         mesh.materials.append(material)
@@ -33,7 +33,7 @@ def add_surfel_object(
 
 
 def refill(made: bpy.types.Object, surfels: Surfels, materials: Iterable[bpy.types.Material | None]) -> None:
-    """Other surfels in place of those that an object has; all objects that share its mesh have them too."""
+    """Replace the surfels of an object, and of all objects that share its mesh."""
     fill(made.data, surfels)
     made.data.materials.clear()
     for material in materials:
@@ -41,13 +41,13 @@ def refill(made: bpy.types.Object, surfels: Surfels, materials: Iterable[bpy.typ
 
 
 def collections_of(source: bpy.types.Object, fallback: bpy.types.Collection) -> list[bpy.types.Collection]:
-    """Those that `source` is in and that can be changed; `fallback` where all belong to a linked library."""
+    """The collections of `source` that can be changed; `fallback` if all belong to a linked library."""
     return [collection for collection in source.users_collection if collection.library is None] or [fallback]
 
 
 def select_only(context: bpy.types.Context, made: list[bpy.types.Object]) -> None:
-    """Select the new objects and nothing else; the last is active."""
-    # a command line has no window, whose context would name them
+    """Select only the new objects; the last one becomes active."""
+    # on a command line there is no window, and so no context
     for selected in list(context.view_layer.objects.selected):
         selected.select_set(False)
     for new in made:

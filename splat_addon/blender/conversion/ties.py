@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A new surfel object is tied to what it was made of: it knows it, follows it, and stands in its place."""
+"""Ties a new surfel object to its sources: it records them, follows them, and replaces them in renders."""
 
 from __future__ import annotations
 
@@ -17,8 +17,13 @@ from .source_record import keep_record, record_of
 
 
 def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, hides: bool) -> list[str]:
-    """conversion: placed as `made`. kind, settings: of the record. follows: it goes where its source goes. hides: its
-    sources are hidden for as long as it is there. Gives a sentence for each thing in which it does not follow.
+    """Tie an object to its sources.
+
+    conversion: placed as `made`.
+    kind, settings: of the record.
+    follows: whether it follows its source.
+    hides: whether its sources are hidden for as long as it exists.
+    Returns a sentence for each respect in which it does not follow.
     """
     notes = []
     keep_record(made, conversion.sources, kind, settings)
@@ -29,7 +34,7 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
         follow(made, conversion.sources[0], matrix_world, unit)
         notes = tie_shape(conversion, made, kind)
     for source in conversion.sources:
-        # what was chosen for its earlier form does not keep it beside its surfels
+        # an earlier choice about how to render the source must not show it beside its surfels
         getattr(source, OBJECT_SETTINGS).render_as = "SCENE"
         if hides:
             hide_source(source)
@@ -37,12 +42,12 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
 
 
 def keep_unread(made: bpy.types.Object, conversion) -> None:
-    """Note in a surfel object what could be baked for it."""
+    """Record in a surfel object which inputs could be baked."""
     record_of(made).unread = "\n".join(filter(is_unread, conversion.notes))
 
 
 def tie_shape(conversion, made: bpy.types.Object, kind: str) -> list[str]:
-    """Let the surfels that an object was just given be bent with their source; sentences as of `tie`."""
+    """Make the surfels follow the deformation of their source; returns sentences like `tie`."""
     if kind != "MESH":
         return []
     [source, *_] = conversion.sources

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""F12, animations and `blender --background`: a depsgraph becomes a RenderResult."""
+"""F12, animations and `blender --background`: turns a depsgraph into a RenderResult."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from ..properties import final_settings, stops_where_broken
 from .motion_blur import motion_blur_notes, moving_time, shutter_times
 from .render_passes import hand_over, outputs_of
 
-#: Statistics of the last frame that was rendered, for scripts: see `Renderer`, plus `notes`, and as `live_meshes` the
-#: counts of `LiveMeshes`.
+#: Statistics of the last rendered frame, for scripts: see `Renderer`, plus `notes`, and in `live_meshes` the counts of
+#: `LiveMeshes`.
 last_frame_stats: dict = {}
 
-#: Told of each frame that is drawn, by the names of its view layer and view: a tile is kept as it is.
+#: Called with each drawn frame and the names of its view layer and view; used to keep tiles.
 kept: Callable[[str, str, Frame], None] | None = None
 
-#: Gives the frame of a view layer and view that others have drawn, instead of drawing it: tiles that were joined.
+#: Returns a frame for a view layer and view instead of drawing it; used for tiles that were joined.
 given: Callable[[str, str], Frame | None] | None = None
 
 
@@ -54,7 +54,7 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
 
 
 def _hand_over_given(engine, depsgraph) -> None:
-    """Raises ValueError where what was drawn is not what the view layer asks for."""
+    """Use a given frame. Raises ValueError if it does not match what the view layer requests."""
     layer = depsgraph.view_layer
     for view in [view.name for view in engine.get_result().views]:
         frame = given(layer.name, view)
@@ -66,7 +66,7 @@ def _hand_over_given(engine, depsgraph) -> None:
 
 
 def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int, int]) -> tuple[Frame, Notes]:
-    """Of the engine's active view, the `turn[0]`th of `turn[1]`."""
+    """Draw the picture of the engine's active view, number `turn[0]` of `turn[1]`."""
     scene, notes = depsgraph.scene, Notes()
     times = shutter_times(scene, depsgraph.view_layer, settings.samples)
 
@@ -102,7 +102,7 @@ def _left_out_sentence(left_out: list[str]) -> str:
 
 
 def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
-    """What the user and scripts are told of a picture."""
+    """Report on a picture to the user and to scripts."""
     notes.add(_FLATTENED, frame.stats["instances_degenerate"])
     notes.add(_COARSE, frame.stats["surfels_coarse"])
     if why := dict(frame.stats["plan"].skipped).get("transparency"):
@@ -128,13 +128,14 @@ def _read(depsgraph, resources: _Resources):
 
 
 def report_failure(engine: bpy.types.RenderEngine, error: Exception) -> None:
-    """Tell Blender, which then writes no file, renders no further frame and exits with 1 in background mode."""
+    """Report an error to Blender, which then writes no file, stops the animation and exits with 1 in background
+    mode."""
     _release_resources()
     engine.report({"ERROR"}, f"Surfel render failed: {sentence_of(error)}")
 
 
 def sentence_of(error: Exception) -> str:
-    """What is said of an error. One that is not meant for users goes to the console too, with where it happened."""
+    """The message of an error. Errors not meant for users are also printed to the console with a traceback."""
     if isinstance(error, ValueError | RuntimeError):
         return str(error)
     traceback.print_exception(error)
@@ -144,13 +145,12 @@ def sentence_of(error: Exception) -> str:
 
 
 class _Resources:
-    """What the frames and view layers of one render share.
+    """Resources shared by the frames and view layers of one render.
 
-    It belongs to this module and not to the engine's instance, which Blender frees without a graphics context, as it
-    calls its handlers. Textures that go then abort Blender 4.5, and spoil the next render on 5.2's OpenGL; so they go
-    in `render`, with the last picture, unless the scene's Persistent Data keeps them for the next render. A render that
-    ends before its scene's last frame, by Esc between two frames or because the operator was given a shorter range,
-    leaves them to the next one too.
+    They belong to this module and not to the engine's instance, because Blender frees the instance, and calls handlers,
+    without a graphics context. Freeing textures then aborts Blender 4.5 and spoils the next render on 5.2's OpenGL. So
+    they are freed in `render` after the last picture, unless the scene's Persistent Data keeps them. A render that ends
+    before the scene's last frame, because of Esc or a shorter range, also leaves them to the next render.
     """
 
     def __init__(self):
@@ -184,7 +184,7 @@ def _is_last_of_render(engine, depsgraph) -> bool:
     return scene.render.use_single_layer or depsgraph.view_layer.name in layers[-1:]
 
 
-#: `blender --background -f 1,5` calls each of its frames an animation, and none of them the last.
+#: `blender --background -f 1,5` treats each of its frames as an animation, and none as the last.
 _ARE_FRAMES_NAMED = bool({"-f", "--render-frame"} & set(sys.argv))
 
 

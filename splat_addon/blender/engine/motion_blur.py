@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Motion blur: the moments of an open shutter at which a final render evaluates the scene anew."""
+"""Motion blur: the times during an open shutter at which a final render evaluates the scene."""
 
 from __future__ import annotations
 
@@ -13,16 +13,17 @@ import numpy as np
 from ...rendering.accumulation import moment_places
 from ..ids import RENDER_SETTINGS
 
-#: position -> when the shutter opens, as a share of the time that it is open
+#: position -> when the shutter opens relative to the frame, as a share of the exposure time
 _OPENS = {"START": 0.0, "CENTER": -0.5, "END": -1.0}
 
 _CURVE_STEPS = 256
 
 
 def shutter_times(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, samples: int) -> list[float]:
-    """Frames, with fractions, at which a final render of so many samples sees the scene; empty without motion blur.
+    """Frames, with fractions, at which a final render of this many samples evaluates the scene; empty without motion
+    blur.
 
-    They lie as close as the shutter's curve is high (importance sampling, as Cycles'), so that each counts the same.
+    Their density follows the shutter's curve (importance sampling, as in Cycles), so that all have equal weight.
     """
     render = scene.render
     if not (render.use_motion_blur and view_layer.use_motion_blur) or samples == 1:
@@ -36,7 +37,7 @@ def shutter_times(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, sampl
 
 @contextmanager
 def moving_time(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> Iterator:
-    """go(time) evaluates the depsgraph at a frame with a fraction; the frame is restored in the end."""
+    """Yields go(time), which evaluates the depsgraph at a fractional frame; the frame is restored at the end."""
     scene = depsgraph.scene
     now = scene.frame_current + scene.frame_subframe
     moved = False
@@ -54,13 +55,13 @@ def moving_time(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) 
 
 
 def motion_blur_notes(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, samples: int) -> Iterator[str]:
-    """Why a scene that asks for motion blur will not show any."""
+    """Reasons why a scene that requests motion blur will not show any."""
     if scene.render.use_motion_blur and view_layer.use_motion_blur and samples == 1:
         yield "Motion blur needs more than one of the render properties' Samples: this picture is sharp all over"
 
 
 def _under_curve(curve: bpy.types.CurveMapping, places: list[float]) -> np.ndarray:
-    """Shares of the area under the curve -> shares of its length; a curve of nothing counts as even."""
+    """Maps shares of the area under the curve to shares of its length; a curve without area counts as constant."""
     curve.initialize()
     steps = (np.arange(_CURVE_STEPS) + 0.5) / _CURVE_STEPS
     heights = np.array([max(curve.evaluate(curve.curves[0], step), 0.0) for step in steps])

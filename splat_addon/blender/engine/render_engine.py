@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The RenderEngine that Blender sees: one-line callbacks over `final_render` and `viewport`."""
+"""The RenderEngine class: one-line callbacks into `final_render` and `viewport`."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ class SurfelSplattingEngine(bpy.types.RenderEngine):
     bl_idname = ENGINE
     bl_label = ENGINE_LABEL
     bl_use_gpu_context = True
-    # Previews are rendered by a thread of their own, at the same time as F12, and the textures of a render can only be
-    # let go of where its context is current (`final_render._Resources`): on 4.5 that aborts Blender.
+    # Previews render in their own thread during F12, and a render's textures can only be freed while its context is
+    # current (`final_render._Resources`); on 4.5 previews would abort Blender.
     bl_use_preview = False
     bl_use_eevee_viewport = True
     bl_use_shading_nodes_custom = False
@@ -23,7 +23,7 @@ class SurfelSplattingEngine(bpy.types.RenderEngine):
         render_passes.register_passes(self, scene, renderlayer)
 
     def render(self, depsgraph):
-        # Blender ignores an exception in here: only a report fails the operator and the process.
+        # Blender ignores an exception here: only a report fails the operator and the process.
         try:
             final_render.render(self, depsgraph)
         except Exception as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The passes of a view layer: their names as Cycles and EEVEE have them, and the arrays of a `Frame` that fill them."""
+"""The passes of a view layer: named as in Cycles and EEVEE, and filled from the arrays of a `Frame`."""
 
 from __future__ import annotations
 
@@ -12,17 +12,18 @@ from bpy.props import BoolProperty, PointerProperty
 from ...rendering import Cryptomatte, Frame
 from ..ids import LAYER_SETTINGS
 
-#: From 5.0 on passes have the names that users read.
+#: Since 5.0, passes have the names that users read.
 _HAS_LONG_NAMES = bpy.app.version >= (5, 0, 0)
 
 
-#: Of a Cryptomatte pass: the names in each of its layers.
+#: Names in each layer of a Cryptomatte pass.
 _RANKS_PER_LAYER = 2
 
 
 class RenderPass(NamedTuple):
-    """output: the array of `Frame` that fills it. flag: the view layer's property that asks for it, if any.
-    is_ours: that property is one of `ViewLayerPasses`.
+    """output: the array of `Frame` that fills it.
+    flag: the view layer's property that enables it, if any.
+    is_ours: whether that property belongs to `ViewLayerPasses`.
     """
 
     name: str
@@ -33,7 +34,7 @@ class RenderPass(NamedTuple):
     is_ours: bool = False
 
 
-#: The name of the matte's layers, before their numbers.
+#: Name of the Cryptomatte layers, before their numbers.
 _MATTE = "CryptoObject"
 
 
@@ -70,7 +71,7 @@ class ViewLayerPasses(bpy.types.PropertyGroup):
 
 
 def asked_for(view_layer: bpy.types.ViewLayer) -> list[RenderPass]:
-    """What is switched on in the view layer, in the order of `RENDER_PASSES`, and the layers of its matte."""
+    """The passes enabled in the view layer, in the order of `RENDER_PASSES`, and its Cryptomatte layers."""
     ours = getattr(view_layer, LAYER_SETTINGS)
     passes = [p for p in RENDER_PASSES if p.flag is None or getattr(ours if p.is_ours else view_layer, p.flag)]
     return passes + [RenderPass(name, "rgba", "COLOR", "cryptomatte") for name in _matte_layers(view_layer)]
@@ -84,18 +85,18 @@ def _matte_layers(view_layer: bpy.types.ViewLayer) -> list[str]:
 
 
 def outputs_of(view_layer: bpy.types.ViewLayer) -> tuple[str, ...]:
-    """Names of the arrays that fill them."""
+    """Names of the arrays that fill these passes."""
     return tuple(dict.fromkeys(p.output for p in asked_for(view_layer)))
 
 
 def register_passes(engine: bpy.types.RenderEngine, scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
-    """Tell Blender of every pass that the view layer asks for."""
+    """Register every pass that the view layer requests with Blender."""
     for p in asked_for(view_layer):
         engine.register_pass(scene, view_layer, p.name, len(p.letters), p.letters, p.kind)
 
 
 def hand_over(engine: bpy.types.RenderEngine, view_layer: bpy.types.ViewLayer, view: str, frame: Frame) -> None:
-    """Fill the view layer's passes, of one view of a stereo render or the only one."""
+    """Fill the view layer's passes for one view of a stereo render, or for the only view."""
     height, width = frame.color.shape[:2]
     result = engine.begin_result(0, 0, width, height, layer=view_layer.name, view=view)
     targets = result.layers[0].passes
@@ -111,7 +112,7 @@ def hand_over(engine: bpy.types.RenderEngine, view_layer: bpy.types.ViewLayer, v
 
 
 def _fill_matte(targets: bpy.types.RenderPasses, layers: list[str], matte: Cryptomatte) -> None:
-    """Two names and their shares a layer, the largest first."""
+    """Fill Cryptomatte: two names and their coverage per layer, largest first."""
     ranks = matte.ranks(_RANKS_PER_LAYER * len(layers))
     for number, name in enumerate(layers):
         _fill(targets[name], ranks[:, :, _RANKS_PER_LAYER * number : _RANKS_PER_LAYER * (number + 1)])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rendered mode of the 3D view: `update` reads what changed, `draw` only draws."""
+"""Rendered mode of the 3D view: `update` reads what changed, `draw` only draws."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from ..export.scene import SurfelStore, export_scene
 from ..properties import viewport_settings
 from .final_render import sentence_of
 
-#: What the 3D view that was read last has to say of its scene.
+#: Notes on the scene of the 3D view that was read last.
 last_notes: list[str] = []
 
 
 def guarded(engine: bpy.types.RenderEngine, callback, context, depsgraph) -> None:
-    """Call one of the functions below; what it raises is said once in the view, and must not reach Blender."""
+    """Call one of the functions below; errors are shown once in the view and must not reach Blender."""
     try:
         callback(engine, context, depsgraph)
     except Exception as error:
@@ -42,14 +42,14 @@ def update(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph
     state.live_meshes.begin_frame(changed)
     state.scene, notes = export_scene(depsgraph, state.store, state.live_meshes)
     state.store.forget_unused()
-    # A multilayer matcap is read through a data-block, which Blender lets nobody make while it draws.
+    # A multilayer matcap is read through a data-block, which Blender does not allow to be created while drawing.
     viewport_settings(depsgraph.scene)
     last_notes[:] = notes.sentences()
     engine.update_stats("", "; ".join(last_notes))
 
 
 def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
-    """Draw what `update` read, through the view's camera; while nothing changes, again and better."""
+    """Draw what `update` read, through the view's camera; while nothing changes, refine."""
     state = _state(engine)
     if state.scene is None:
         update(engine, context, depsgraph)
@@ -68,7 +68,7 @@ def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: 
 
 
 def _show(shown: Shown) -> None:
-    """Pixels onto the region, over what is there by their alpha."""
+    """Draw the pixels onto the region, composited by alpha."""
     import gpu
     from gpu_extras.batch import batch_for_shader
 
@@ -93,12 +93,12 @@ def _show(shown: Shown) -> None:
     gpu.state.blend_set("NONE")
 
 
-#: Seconds without a change before a view refines: one that is turned or edited is never kept waiting for a sample.
+#: Seconds without a change before a view refines, so that interaction never waits for a sample.
 _REST = 0.2
 
 
 class _State:
-    """What one 3D view keeps: the scene as last read, and what lies on the device."""
+    """State of one 3D view: the scene as last read, and the data on the device."""
 
     def __init__(self):
         self.store = SurfelStore()
@@ -109,18 +109,18 @@ class _State:
         self._is_waiting = False
 
     def redraw_when_at_rest(self, engine: bpy.types.RenderEngine) -> None:
-        """Ask for a redraw once no change has been drawn for a while."""
+        """Request a redraw once no change has been drawn for a while."""
         self._changed = monotonic()
         if not self._is_waiting:
             self._is_waiting = True
             bpy.app.timers.register(partial(self._redraw, engine), first_interval=_REST)
 
     def _redraw(self, engine: bpy.types.RenderEngine) -> float | None:
-        """The timer's function: seconds until it is called again, or None."""
+        """The timer's function: seconds until its next call, or None to stop."""
         if (left := self._changed + _REST - monotonic()) > 0.01:
             return left
         self._is_waiting = False
-        # the view may have been closed in the meantime, and its engine freed
+        # the view may have been closed meanwhile, and its engine freed
         with suppress(ReferenceError):
             engine.tag_redraw()
         return None

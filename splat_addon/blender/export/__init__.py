@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A depsgraph becomes what the renderer draws: scene, camera, lights, world, and what is passed over."""
+"""Turns a depsgraph into what the renderer draws: scene, camera, lights, world, and notes on unsupported settings."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's cameras and views -> `rendering.Camera`, in float64 as early as Blender allows."""
+"""Converts Blender's cameras and views to `rendering.Camera`, in float64 as early as Blender allows."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from ...rendering import Camera, EquidistantFisheye, Equirectangular, EquisolidF
 
 
 def picture_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
-    """Width and height in pixels of the whole frame, percentage applied."""
+    """Width and height of the whole frame in pixels, with the percentage applied."""
     share = render.resolution_percentage
     return max(render.resolution_x * share // 100, 1), max(render.resolution_y * share // 100, 1)
 
 
 def border(render: bpy.types.RenderSettings) -> tuple[int, int, int, int]:
-    """x, y, width, height in pixels of what is to be rendered: the border, or the whole frame."""
+    """x, y, width, height in pixels of the rendered region: the border, or the whole frame."""
     width, height = picture_size(render)
     if not render.use_border:
         return 0, 0, width, height
-    # multiplied in float32 and truncated as Blender does it: it shows no picture of another size, and says nothing
+    # multiplied in float32 and truncated as in Blender, which silently shows no picture of any other size
     low = np.float32((render.border_min_x, render.border_min_y)) * np.float32((width, height))
     high = np.float32((render.border_max_x, render.border_max_y)) * np.float32((width, height))
     (left, bottom), (right, top) = low.astype(int).tolist(), high.astype(int).tolist()
@@ -33,7 +33,7 @@ def border(render: bpy.types.RenderSettings) -> tuple[int, int, int, int]:
 def final_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object | None) -> Camera | Panorama:
     """The camera of a final render, looking through the border if there is one.
 
-    Raises ValueError where the scene has no camera, or one of a kind that cannot be rendered, or no border to speak of.
+    Raises ValueError if the scene has no camera, an unsupported camera, or an empty border.
     """
     part = rendered_part(depsgraph.scene.render)
     whole = _whole_camera(depsgraph, camera_object)
@@ -41,7 +41,8 @@ def final_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object
 
 
 def rendered_part(render: bpy.types.RenderSettings) -> tuple[int, int, int, int] | None:
-    """The border, x, y, width, height in pixels; None for the whole frame. Raises ValueError for one of no pixel."""
+    """The border: x, y, width, height in pixels; None for the whole frame. Raises ValueError if it contains no
+    pixel."""
     x, y, width, height = border(render)
     if width < 1 or height < 1:
         raise ValueError("The render border is less than a pixel; draw a larger one or switch it off.")
@@ -49,7 +50,7 @@ def rendered_part(render: bpy.types.RenderSettings) -> tuple[int, int, int, int]
 
 
 def _whole_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object | None) -> Camera | Panorama:
-    """The camera of a final render, whatever its border. Raises ValueError as `final_camera`."""
+    """The camera of a final render, ignoring the border. Raises ValueError as `final_camera`."""
     scene = depsgraph.scene
     if camera_object is None:
         raise ValueError(f"The scene {scene.name!r} has no camera; add one, or make one the active camera.")
@@ -62,7 +63,7 @@ def _whole_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Objec
 
 
 def _flat_camera(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Camera:
-    """A perspective or orthographic camera, of the whole picture."""
+    """A perspective or orthographic camera for the whole picture."""
     data, render = camera_object.data, depsgraph.scene.render
     width, height = picture_size(render)
     projection = camera_object.calc_matrix_camera(
@@ -73,7 +74,7 @@ def _flat_camera(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph
 
 
 def _panorama(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Panorama:
-    """A panoramic camera, of the whole picture. Raises ValueError for one of a type that is not drawn."""
+    """A panoramic camera for the whole picture. Raises ValueError for an unsupported type."""
     data, render = camera_object.data, depsgraph.scene.render
     if data.panorama_type not in _PROJECTIONS:
         names = data.bl_rna.properties["panorama_type"].enum_items
@@ -84,7 +85,7 @@ def _panorama(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -
         )
     projection = _PROJECTIONS[data.panorama_type](data, render)
     matrix_world = np.array(camera_object.matrix_world, np.float64)
-    # as in Cycles, shares of the picture's own edges, and what lies beyond them is shown
+    # as in Cycles: fractions of the picture's own edges, and the area beyond them is rendered
     window = data.shift_x, 1 + data.shift_x, data.shift_y, 1 + data.shift_y
     return Panorama(matrix_world, projection, picture_size(render), data.clip_start, data.clip_end, window)
 
@@ -111,7 +112,7 @@ _PROJECTIONS = {
     "FISHEYE_EQUISOLID": _equisolid,
 }
 
-#: panorama type -> what the camera says of it, in the order in which a panel shows it
+#: panorama type -> the camera properties it uses, in the order in which a panel shows them
 PANORAMA_PROPERTIES = {
     "EQUIRECTANGULAR": ("latitude_min", "latitude_max", "longitude_min", "longitude_max"),
     "FISHEYE_EQUIDISTANT": ("fisheye_fov",),
@@ -123,8 +124,8 @@ _KINDS = {"PERSP": _flat_camera, "ORTHO": _flat_camera, "PANO": _panorama}
 
 
 def view_camera(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> Camera | Panorama:
-    """The camera of a final render's active view, of the whole frame: each eye's of a stereo camera, in its place and
-    with its shift.
+    """The camera of a final render's active view, for the whole frame. For a stereo camera this is one eye, with its
+    position and shift.
 
     Raises ValueError as `final_camera`.
     """
@@ -142,7 +143,7 @@ def view_camera(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) 
 
 
 def _fitted_pixels(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> float:
-    """Of the whole picture's edge that the sensor is fitted to, in pixels as wide as they are: a shift is a share."""
+    """Length in pixels of the picture's edge that the sensor is fitted to; shifts are fractions of it."""
     width, height = picture_size(render)
     aspect_x, aspect_y = render.pixel_aspect_x, render.pixel_aspect_y
     is_wide = width * aspect_x >= height * aspect_y
@@ -151,7 +152,7 @@ def _fitted_pixels(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> 
 
 
 def depth_of_field_notes(camera_object: bpy.types.Object, samples: int) -> Iterator[str]:
-    """Why a camera that asks for depth of field will not show any."""
+    """Reasons why a camera that requests depth of field will not show any."""
     if not camera_object.data.dof.use_dof:
         return
     if camera_object.data.type != "PERSP":
@@ -161,7 +162,8 @@ def depth_of_field_notes(camera_object: bpy.types.Object, samples: int) -> Itera
 
 
 def _lens(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Lens | None:
-    """Of a perspective camera with depth of field, as Cycles reads it: millimetres of focal length over the F-stop."""
+    """The lens of a perspective camera with depth of field, as in Cycles: millimetres of focal length divided by the
+    F-stop."""
     data, dof = camera_object.data, camera_object.data.dof
     if not dof.use_dof or data.type != "PERSP":
         return None
@@ -173,7 +175,7 @@ def _lens(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Le
 
 
 def _distance_along_view(camera_object: bpy.types.Object, target: bpy.types.Object, bone: str) -> float:
-    """Of an object, or a bone of it, along the camera's axis, on either side."""
+    """Distance of an object, or one of its bones, along the camera's axis, in front or behind."""
     matrix = np.array(target.matrix_world, np.float64)
     if target.pose and bone in target.pose.bones:
         matrix = matrix @ np.array(target.pose.bones[bone].matrix, np.float64)
@@ -183,9 +185,8 @@ def _distance_along_view(camera_object: bpy.types.Object, target: bpy.types.Obje
 
 
 def viewport_camera(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> Camera:
-    """The camera that the 3D view in `context` looks through; of a panoramic one, what Blender shows of it: a part, as
-    through its lens.
-    """
+    """The camera that the 3D view in `context` looks through; for a panoramic camera, the perspective part that Blender
+    shows."""
     view, space, region = context.region_data, context.space_data, context.region
     near, far, lens = space.clip_start, space.clip_end, None
     if view.view_perspective == "CAMERA" and space.camera and space.camera.type == "CAMERA":
@@ -199,10 +200,10 @@ def viewport_camera(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) 
 
 
 def camera_of_matrices(matrix_world, projection, size, near: float, far: float) -> Camera:
-    """A camera from its placement and an OpenGL projection matrix, of which only the window is taken."""
+    """A camera from its matrix and an OpenGL projection matrix, of which only the window is used."""
     p = np.array(projection, np.float64)
     is_orthographic = p[3, 3] != 0
-    # the x and y that the projection maps to -1 and 1, on the plane at distance 1 or anywhere
+    # the x and y that the projection maps to -1 and 1, on the plane at distance 1, or anywhere if orthographic
     offset = -p[:2, 3] if is_orthographic else p[:2, 2]
     low, high = ((offset + side) / (p[0, 0], p[1, 1]) for side in (-1, 1))
     window = low[0], high[0], low[1], high[1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's light linking -> sets of objects that share their lights: `Instance.light_set`, `Light.receivers`."""
+"""Converts Blender's light linking to sets of objects with the same lights: `Instance.light_set`, `Light.receivers`."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from ...rendering.scene.light import MAX_LIGHT_SETS
 
 
 class Receivers(NamedTuple):
-    """included: names of the objects that a light lights, or None for all. excluded: of those that it does not."""
+    """included: names of the objects that a light lights, or None for all. excluded: names of objects that it does not
+    light."""
 
     included: frozenset[str] | None
     excluded: frozenset[str]
 
     def has(self, names: tuple[str, ...]) -> bool:
-        """names: of an object, and of what makes an instance of it."""
+        """Whether the light reaches an instance. names: of the object, and of the objects that make the instance."""
         if self.excluded.intersection(names):
             return False
         return self.included is None or bool(self.included.intersection(names))
@@ -28,7 +29,7 @@ EVERYTHING = Receivers(None, frozenset())
 
 
 def receivers_of(light: bpy.types.Object) -> Receivers:
-    """What a light object's receiver collection says; an empty one says nothing."""
+    """The receivers from a light object's receiver collection; an empty collection has no effect."""
     collection = light.light_linking.receiver_collection if light.light_linking else None
     if collection is None:
         return EVERYTHING
@@ -41,7 +42,7 @@ def receivers_of(light: bpy.types.Object) -> Receivers:
 
 
 class LightSets:
-    """Numbers the sets of lights that objects receive, as far as the renderer can tell them apart."""
+    """Numbers the sets of lights that objects receive, limited to what the renderer can distinguish."""
 
     def __init__(self, lights: Iterable[bpy.types.Object], notes):
         self._receivers = [receivers_of(light) for light in lights]
@@ -49,7 +50,7 @@ class LightSets:
         self._notes = notes
 
     def of_instance(self, entry: bpy.types.DepsgraphObjectInstance) -> int:
-        """The number of what an entry of the depsgraph receives."""
+        """The set number for an entry of the depsgraph."""
         names = (entry.object.original.name, *((entry.parent.original.name,) if entry.is_instance else ()))
         lit_by = tuple(receivers.has(names) for receivers in self._receivers)
         if lit_by not in self._numbers and len(self._numbers) == MAX_LIGHT_SETS:
@@ -58,6 +59,6 @@ class LightSets:
         return self._numbers.setdefault(lit_by, len(self._numbers))
 
     def lit_by(self, light: int) -> tuple[int, ...] | None:
-        """Numbers of the sets that the light of that index lights; None for all."""
+        """Numbers of the sets that the light with this index lights; None for all."""
         lit = tuple(number for lit_by, number in self._numbers.items() if lit_by[light])
         return None if len(lit) == len(self._numbers) else lit

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes that are rendered without a conversion: as polygons, or sampled when they are first seen, and then followed
-from frame to frame.
+"""Meshes that are rendered without a conversion: as polygons, or sampled when first seen and followed from frame to
+frame.
 
-A mesh is read anew in every frame of a final render, which tells of no change, and in the viewport when it changed.
-Unchanged values give the same `Surfels` or `Polygons`, by which the renderer knows what lies on the device already.
+Each frame of a final render reads a mesh again, because Blender reports no changes there; the viewport reads it when it
+changed. Unchanged values give the same `Surfels` or `Polygons` object, by which the renderer recognises data already on
+the device.
 """
 
 from __future__ import annotations
@@ -45,16 +46,16 @@ from . import passed_over
 from .object_detail import finer
 from .shading import shading_material
 
-#: A sampling is kept until it is coarser or finer than asked for by more than this.
+#: A sampling is kept until it is coarser or finer than requested by more than this factor.
 _TOO_COARSE, _TOO_FINE = 1.26, 2.5
 
-#: For an object that the camera does not see, but its light or its shadow may.
+#: Detail of an object outside the camera's view, whose light or shadow may still be visible.
 _UNSEEN_RESOLUTION = 64
 
 
 class Place(NamedTuple):
-    """Where a mesh stands. fields: of its instance, by name. form: as what it is rendered, of `form_of`. detail: of the
-    object that it belongs to."""
+    """One place of a mesh. fields: of its instance, by name. form: how it is rendered, see `form_of`. detail: of its
+    object."""
 
     matrix: np.ndarray
     fields: dict
@@ -64,9 +65,9 @@ class Place(NamedTuple):
 
 @dataclass(eq=False)
 class _LiveMesh:
-    """One evaluated mesh, wherever it stands. said: sentences on its materials and its object.
+    """One evaluated mesh, with all its places. said: sentences about its materials and its object.
 
-    key: of `mesh_key`, of the evaluation that was read. shown: a sampling, and the sets that it is drawn in.
+    key: result of `mesh_key` for the evaluation that was read. shown: a sampling, and the surfels drawn from it.
     """
 
     key: tuple = ()
@@ -104,12 +105,12 @@ class _LiveMesh:
 
     @property
     def matrices(self) -> list[np.ndarray]:
-        """Of the places where it is sampled."""
+        """The matrices of the places where it is sampled."""
         return [place.matrix for place in self.sampled_at]
 
     @property
     def detail(self) -> float:
-        """As its neediest place asks."""
+        """The highest detail that any of its places requests."""
         return max(place.detail for place in self.sampled_at)
 
     def kept_textures(self) -> tuple[SurfaceTexture | None, ...]:
@@ -117,7 +118,8 @@ class _LiveMesh:
         return self.textures
 
     def spacing_for(self, density: dict[str, float], depsgraph: bpy.types.Depsgraph) -> float:
-        """In the mesh's own units: as fine as its neediest place asks, or as it is where that is near enough."""
+        """Spacing in the mesh's own units: as fine as its most demanding place requests, or unchanged if that is close
+        enough."""
         if density != self.density:
             self.deforming = None
         ((kind, value),) = density.items()
@@ -131,9 +133,9 @@ class _LiveMesh:
 class LiveMeshes:
     """The meshes of one render or one 3D view.
 
-    counts: what the last frame did: "polygon_meshes" that were drawn as such, and their "triangles"; "meshes" that were
-    sampled, and their "surfels"; of the latter, how many were "sampled", how many
-    "followed" an earlier sampling, and how many of the former because they had "stretched" too far.
+    counts: about the last frame. "polygon_meshes" and their "triangles": drawn as polygons; "meshes" and their
+        "surfels": sampled meshes. Of the sampled meshes, "sampled" were sampled in this frame and "followed" an earlier
+        sampling; "stretched" counts those sampled again because they had stretched too far.
     """
 
     def __init__(self):
@@ -145,11 +147,12 @@ class LiveMeshes:
         self.counts: Counter = Counter()
 
     def begin_frame(self, changed: set[str] | None = None) -> None:
-        """Meshes named in `changed` (None: all), and those that were evaluated anew, are read when they are added."""
+        """Start a frame. Meshes named in `changed` (None: all), and meshes that were evaluated again, are read when
+        they are added."""
         self._changed, self._frame, self._names, self.counts = changed, {}, {}, Counter()
 
     def forget_images(self) -> None:
-        """Read the pixels of textures again: an image or a material was edited."""
+        """Read textures again after an image or a material was edited."""
         self._images.clear()
 
     def add(
@@ -160,9 +163,9 @@ class LiveMeshes:
         notes,
         override: bpy.types.Material | None = None,
     ) -> None:
-        """An entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry lives.
+        """Add an entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry is valid.
 
-        override: the material that it has in this view layer, whatever its own are.
+        override: the material override of this view layer.
         """
         key = *mesh_key(evaluated), override and override.session_uid, place.form.group
         if key not in self._frame:
@@ -177,7 +180,7 @@ class LiveMeshes:
     def instances(
         self, depsgraph: bpy.types.Depsgraph, density: dict[str, float], texture_mapped: bool, notes
     ) -> tuple[list[Instance], list[PolygonInstance]]:
-        """All that were added to this frame; the places of one mesh share its surfels or polygons."""
+        """All instances added to this frame; the places of one mesh share its surfels or polygons."""
         sampled, drawn = [], []
         for live in self._frame.values():
             for sentence in (*live.content.notes, *live.said):
@@ -226,9 +229,9 @@ class LiveMeshes:
         ]
 
     def _lasting_key(self, evaluated: bpy.types.Object, group: str) -> tuple:
-        """By which the same mesh is known in the next frame, when it has been evaluated anew.
+        """A key that identifies the same mesh in the next frame, after it has been evaluated again.
 
-        Geometry Nodes may put several meshes of one name into an object; they are told apart by their order.
+        Geometry Nodes may put several meshes of the same name into an object; they are told apart by their order.
         """
         name = evaluated.original.session_uid, evaluated.data.name_full, group
         number = 0
@@ -238,7 +241,7 @@ class LiveMeshes:
         return (*name, number)
 
     def _read(self, live: _LiveMesh, evaluated: bpy.types.Object, group: str, override) -> None:
-        # said anew each frame, as the mesh is not read anew each frame
+        # repeated each frame, because the mesh itself is not read each frame
         live.said = list(passed_over.of_object(evaluated.original))
         notes = SimpleNamespace(add=live.said.append)
         with readable_mesh(evaluated) as mesh:
@@ -253,7 +256,7 @@ class LiveMeshes:
     def _sampled(
         self, live: _LiveMesh, depsgraph: bpy.types.Depsgraph, density: dict[str, float], texture_mapped: bool
     ) -> Surfels:
-        """Raises ValueError with a sentence where nothing can be sampled."""
+        """The sampling of a mesh. Raises ValueError with a sentence if it cannot be sampled."""
         if texture_mapped != live.texture_mapped:
             live.deforming, live.texture_mapped = None, texture_mapped
         mesh, spacing = live.sampled_part, live.spacing_for(density, depsgraph)
@@ -278,7 +281,7 @@ def _deforming(mesh: TriangleMesh, spacing: float, texture_mapped: bool) -> Defo
 
 
 def _by_resolution(live: _LiveMesh, resolution: float, depsgraph) -> float:
-    # what is bent or grows keeps its surfels, unless they are stretched too far
+    # deforming meshes keep their surfels, unless they are stretched too far
     return live.spacing if live.deforming else grid_spacing(live.content.triangles, resolution=resolution)
 
 
@@ -302,16 +305,17 @@ def _by_camera(live: _LiveMesh, pixels: float, depsgraph) -> float:
 
 
 def _by_itself(live: _LiveMesh, pixels: float, depsgraph) -> float:
-    """As the neediest place asks, within the bounds of `automatic_density`; sampled anew when that changes much."""
+    """The spacing that the most demanding place needs, within the limits of `automatic_density`; kept until it changes
+    much."""
     mesh = live.content.triangles
     if live.surface is None or live.surface[0] is not mesh:
         live.surface = mesh, outline(mesh)
     shape = projected_area(mesh), grid_spacing(mesh, resolution=1)
-    # The detail is in the pixels already, but counts where no camera sees the mesh too.
+    # The detail is already in the pixels, but it also counts if no camera sees the mesh.
     what, detail = (pixels * live.detail, lambda: live.surface[1], *shape), live.detail
     found = (automatic_spacing(*what, matrix, depsgraph, detail=detail).spacing for matrix in live.matrices)
     return live.kept_if_near(min(found))
 
 
-#: kind of density -> function of a mesh, the number and the depsgraph
+#: kind of density -> function of a mesh, the number and the depsgraph that returns the spacing
 _SPACINGS = {"resolution": _by_resolution, "spacing": _by_spacing, "pixels": _by_camera, "automatic": _by_itself}

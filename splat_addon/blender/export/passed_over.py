@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender's other engines show and this one does not: said, in a warning of the render and in the 3D view, where
-a scene asks for it.
+"""Settings of Blender's other engines that this engine does not support. If a scene uses one, a warning in the render
+and in the 3D view says so.
 
-Each entry is a setting with the value at which it does nothing. What is in no table here is honoured.
+Each entry is a setting with the value at which it has no effect. Settings that appear in no table are supported.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from typing import Any
 
 import bpy
 
-#: type of a shader node -> its sockets that are passed over, and the value at which each does nothing. What depends on
-#: one of them, as a coat's roughness on its weight, is not named besides.
+#: shader node type -> unsupported sockets, and the value at which each has no effect. Sockets that only matter together
+#: with another, such as a coat's roughness with its weight, are not listed.
 SOCKETS = {
     "BSDF_PRINCIPLED": {
         "Thin Wall": False,
@@ -29,12 +29,13 @@ SOCKETS = {
     "BSDF_DIFFUSE": {"Roughness": 0.0},
 }
 
-#: Sockets of a material's output besides its surface.
+#: Sockets of a material output other than its surface.
 _OUTPUTS = ("Volume", "Displacement", "Thickness")
 
 
 def of_material(material: bpy.types.Material, shader: bpy.types.Node) -> Iterator[str]:
-    """A sentence on what `shader`, at the material's output, and the output itself ask for in vain."""
+    """A sentence about unsupported settings of `shader`, connected to the material's output, and of the output
+    itself."""
     neutral = SOCKETS.get(shader.type, {})
     sockets = {socket.name: socket for socket in shader.inputs if socket.enabled}
     names = [name for name, value in neutral.items() if name in sockets and not _does_nothing(sockets[name], value)]
@@ -51,7 +52,7 @@ def _does_nothing(socket: bpy.types.NodeSocket, neutral: Any) -> bool:
     return tuple(value) == neutral if isinstance(neutral, tuple) else value == neutral
 
 
-#: kind of thing -> a function that tells whether it is asked for, and the end of the sentence about its owner
+#: kind of thing -> a function that tells whether it is used, and the end of the sentence about its owner
 _Rules = tuple[tuple[Callable[[Any], bool], str], ...]
 
 _OBJECTS: _Rules = (
@@ -62,7 +63,7 @@ _OBJECTS: _Rules = (
     ),
 )
 
-#: Lights send out one light for all kinds of rays here.
+#: In this engine, a light affects all kinds of rays alike.
 _LIGHT_RAYS = ("visible_diffuse", "visible_glossy")
 
 _LIGHTS: _Rules = (
@@ -94,22 +95,22 @@ _WORLDS: _Rules = (
 
 
 def of_object(owner: bpy.types.Object) -> Iterator[str]:
-    """Sentences on what an object that is drawn asks for in vain."""
+    """Sentences about the unsupported settings of an object that is drawn."""
     return _said(_OBJECTS, owner, owner.name)
 
 
 def of_light(owner: bpy.types.Object) -> Iterator[str]:
-    """Sentences on what the object of a light asks for in vain."""
+    """Sentences about the unsupported settings of a light object."""
     return _said(_LIGHTS, owner, owner.name)
 
 
 def of_world(world: bpy.types.World) -> Iterator[str]:
-    """Sentences on what a world asks for in vain."""
+    """Sentences about the unsupported settings of a world."""
     return _said(_WORLDS, world, f"The world {world.name!r}")
 
 
 def of_scene(scene: bpy.types.Scene) -> Iterator[str]:
-    """Sentences on what a scene asks for in vain."""
+    """Sentences about the unsupported settings of a scene."""
     if scene.render.use_freestyle:
         yield "Freestyle is switched on, which this engine does not have; use its own Lines in the render properties"
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A depsgraph -> `rendering.Scene`: surfels, meshes, instances, lights, world; what cannot be drawn is counted."""
+"""Converts a depsgraph to `rendering.Scene`: surfels, meshes, instances, lights, world; what cannot be drawn is
+counted."""
 
 from __future__ import annotations
 
@@ -32,8 +33,8 @@ from .world import WorldStore
 
 @dataclass
 class Notes:
-    """What the user should hear about a scene: sentence -> how often. left_out: those that name an object or a light
-    that should be seen and is not."""
+    """Messages about a scene: sentence -> how often. left_out: messages about objects or lights that should be visible
+    but are not."""
 
     counts: Counter = field(default_factory=Counter)
     left_out: list[str] = field(default_factory=list)
@@ -43,12 +44,12 @@ class Notes:
             self.counts[sentence] += count
 
     def leave_out(self, name: str, error: ValueError) -> None:
-        """An object or a light of this name cannot be drawn."""
+        """Record that an object or light of this name cannot be drawn."""
         self.left_out.append(f"{name} is left out: {error}")
         self.add(self.left_out[-1])
 
     def sentences(self) -> list[str]:
-        """One sentence each, with its count where it happened more than once."""
+        """One sentence each, with its count if it occurred more than once."""
         return [text if count == 1 else f"{text} ({count} times)" for text, count in self.counts.items()]
 
 
@@ -61,13 +62,13 @@ class _Kept(NamedTuple):
 
 
 class SurfelStore:
-    """Keeps the `Surfels` of meshes between frames, the same object as long as the values are the same.
+    """Keeps the `Surfels` of meshes between frames: the same object as long as the values are unchanged.
 
-    What is drawn from is cached by that identity. The values are compared, since a final render tells of no
-    change: reading and comparing a million surfels takes a tenth of packing and uploading them again.
+    Device data is cached by that identity. The values are compared, because Blender reports no changes in a final
+    render: reading and comparing a million surfels takes a tenth of the time of packing and uploading them.
 
-    A mesh is known by its session_uid: objects that share a mesh and differ in modifiers have evaluated meshes of
-    one name, and a new evaluation by modifiers is a new mesh of the old name.
+    A mesh is identified by its session_uid: objects that share a mesh but differ in modifiers have evaluated meshes of
+    the same name, and each evaluation by modifiers makes a new mesh of the same name.
     """
 
     def __init__(self):
@@ -79,10 +80,10 @@ class SurfelStore:
         self._followed: dict = {}
 
     def get(self, points: Points, key: int, name: str, is_solid: bool = False) -> tuple[tuple[Surfels, ...], int, int]:
-        """As `attributes.read_stored`, in parts that the renderer can hold; once a mesh and frame.
+        """The result of `attributes.read_stored`, in portions that the renderer can hold; read once per mesh and frame.
 
-        key: session_uid of the mesh, or of that which the points were made beside. name: by which it is known in the
-        next evaluation.
+        key: session_uid of the mesh, or of the mesh that the points were made beside. name: identifies it in the next
+            evaluation.
         """
         if key not in self._current:
             surfels, skipped, strayed = read_stored(points, self._followed, name, is_solid)
@@ -94,22 +95,22 @@ class SurfelStore:
         return kept.parts, kept.skipped, kept.strayed
 
     def begin_frame(self, changed: set[str] | None = None, are_materials_edited: bool = False) -> None:
-        """Meshes named in `changed` (None: all) are read again the next time they are asked for."""
+        """Start a frame: meshes named in `changed` (None: all) are read again when next requested."""
         self.overridden.begin_frame()
         self.textures.begin_frame(are_materials_edited, is_told=changed is not None)
         self._current = {k for k in self._current if changed is not None and self._kept[k].name not in changed}
 
     def forget_unused(self) -> None:
-        """Let go of meshes that this frame did not ask for."""
+        """Drop meshes that this frame did not request."""
         self._kept = {key: kept for key, kept in self._kept.items() if key in self._current}
         names = {kept.name for kept in self._kept.values()}
         self._followed = {name: before for name, before in self._followed.items() if name in names}
 
 
 def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes: LiveMeshes) -> tuple[Scene, Notes]:
-    """Everything in the depsgraph that the renderer knows how to draw, and notes on what it does not.
+    """Everything in the depsgraph that the renderer can draw, and notes on what it cannot.
 
-    live_meshes: keeps the meshes that are no surfels.
+    live_meshes: keeps the meshes that are not surfels.
     """
     notes, bpy_scene, view_layer = Notes(), depsgraph.scene, depsgraph.view_layer_eval
     override = override_of(depsgraph)
@@ -158,7 +159,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
 
 
 def _world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
-    """That of the view layer, which from Blender 5.0 on may have one of its own, or none to see at all."""
+    """The world of the view layer, which from Blender 5.0 on may have its own, or None."""
     view_layer = depsgraph.view_layer_eval
     if not view_layer.use_sky:
         return None
@@ -166,7 +167,8 @@ def _world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
 
 
 def _is_seen(entry: bpy.types.DepsgraphObjectInstance, depsgraph: bpy.types.Depsgraph, notes: Notes) -> bool:
-    """Whether the camera sees it. What it does not see casts no shadow here either, which is said."""
+    """Whether the camera sees it. Objects hidden from the camera cast no shadow in this engine either; a note says
+    so."""
     owner = owner_of(entry)
     is_indirect = owner.indirect_only_get(view_layer=depsgraph.view_layer)
     if entry.object.visible_camera and owner.visible_camera and not is_indirect:
@@ -177,7 +179,7 @@ def _is_seen(entry: bpy.types.DepsgraphObjectInstance, depsgraph: bpy.types.Deps
 
 
 def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], LightSets]:
-    """All that give light, and what they light."""
+    """All lights that emit, and the objects that they light."""
     lights, objects = [], []
     for entry in depsgraph.object_instances:
         if entry.object.type == "LIGHT" and entry.show_self:
@@ -194,10 +196,11 @@ def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], 
     return lights, LightSets(objects, notes)
 
 
-#: Of what has no faces.
+#: Types without faces.
 _NO_FORM = Form("HIDDEN")
 
-#: Blender's type -> its name, of what could be seen but is no mesh. Curves and texts come as meshes.
+#: Blender's type -> its name, for things that other engines show and that are not meshes. Curves and texts arrive as
+#: meshes.
 _NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "volume", "GREASEPENCIL": "grease pencil"}
 
 
@@ -205,10 +208,10 @@ _BARE_POINTS = "Meshes of points without faces are not drawn; convert them with 
 
 
 def _content(entry: bpy.types.DepsgraphObjectInstance) -> tuple[str, ...]:
-    """What an entry has of "surfels", "faces" and "points", and of surfels that are "shown" as points."""
+    """Which of "surfels", "faces" and "points" an entry has, and whether its surfels are "shown" as points."""
     object_ = entry.object
     if object_.type == "POINTCLOUD":
-        # those of a surfel object are met with its mesh
+        # the points of a surfel object are read together with its mesh
         return () if shows_as_points(object_.original) or not has_surfels(object_.data) else ("surfels",)
     if object_.type != "MESH":
         return ()
@@ -225,16 +228,16 @@ def _content(entry: bpy.types.DepsgraphObjectInstance) -> tuple[str, ...]:
     with shown_points(source) as points:
         if points is None or not has_surfels(points):
             return own
-    # the points are all that was not part of a face
+    # points are the vertices that belong to no face
     return (*(kind for kind in own if kind == "faces"), "shown")
 
 
 def _instances(
     object_, kept, depsgraph, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes: Notes, override
 ) -> list[Instance]:
-    """Of an object that has surfels; one, unless it has more than the renderer holds in one.
+    """Instances of an object that has surfels; one, unless it has more than the renderer holds in one instance.
 
-    kept: of the store. Raises ValueError for broken attributes or an unusable matrix.
+    kept: the surfel store. Raises ValueError for broken attributes or an unusable matrix.
     """
     parts, skipped, strayed = kept
     if skipped:
@@ -251,7 +254,7 @@ def _instances(
         parts = tuple(store.overridden.get(part, override, notes) for part in parts)
         return [Instance(part, matrix_world, materials, **fields) for part in parts]
     own = parts[0].arrays().keys()
-    # a point cloud that modifiers made has no slots of its own
+    # a point cloud made by modifiers has no slots of its own
     slots = object_.original.evaluated_get(depsgraph).material_slots
     materials = tuple(shading_material(slot.material, notes, own) for slot in slots)
     textures = tuple(store.textures.get(slot.material, notes) for slot in slots) if parts[0].has_uvs else ()
@@ -260,7 +263,8 @@ def _instances(
 
 @contextmanager
 def _attributes_of(object_: bpy.types.Object) -> Iterator[Points]:
-    """An evaluated object's mesh, in edit mode too, where its data is empty, or its point cloud."""
+    """The attributes of an evaluated object: those of its mesh (also in edit mode, where its data is empty) or point
+    cloud."""
     if object_.type == "POINTCLOUD":
         yield object_.data
         return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's lights and materials -> the renderer's, as far as it models them."""
+"""Converts Blender's lights and materials to the renderer's, as far as it supports them."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from ...rendering.upload.packing import reflectance
 from ..materials.node_products import linked
 from . import passed_over
 
-#: Blender's light type -> its emitting area, which multiplies the energy of a light that is not normalised (as
-#: Cycles measures it: a sun's disc at distance 1, a point's sphere, or 4 for one without size).
+#: Blender's light type -> its emitting area, by which the energy of a non-normalised light is multiplied, as in Cycles:
+#: the area of a sun's disc at distance 1 or of a point light's sphere, or 4 for a light without size.
 _AREAS = {
     "SUN": lambda light: math.pi * math.sin(light.angle / 2) ** 2,
     "POINT": lambda light: 4 * (math.pi * light.shadow_soft_size**2 or 1),
@@ -25,7 +25,7 @@ _AREAS = {
 
 
 def light_of(light: bpy.types.Light, matrix_world: np.ndarray, notes) -> Light | None:
-    """None for a lamp without extent. matrix_world: (4, 4), of the light's object."""
+    """The light, or None for an area light without extent. matrix_world: (4, 4), of the light's object."""
     color = np.array(light.color, np.float64) * _emission(light, notes)
     if light.use_temperature:
         color = color * np.array(light.temperature_color, np.float64)
@@ -67,7 +67,7 @@ _SHAPES = {
 
 
 def _emission(light: bpy.types.Light, notes) -> np.ndarray:
-    """(3,) colour times strength of the light's Emission node, which scales the light's own; 1 without nodes."""
+    """(3,) colour times strength of the light's Emission node, which multiplies the light's own; 1 without nodes."""
     if not light.use_nodes:
         return np.ones(3)
     node = output_source(light.node_tree, "OUTPUT_LIGHT", "EMISSION")
@@ -78,19 +78,19 @@ def _emission(light: bpy.types.Light, notes) -> np.ndarray:
 
 
 def color_times_strength(node: bpy.types.Node, owner: str, notes) -> tuple[float, float, float]:
-    """Of a Background or an Emission node. owner: the subject of a sentence."""
+    """Colour times strength of a Background or Emission node. owner: the subject of a sentence."""
     color, strength = node.inputs["Color"], node.inputs["Strength"]
     if color.is_linked or strength.is_linked:
         notes.add(f"{owner} is textured; its {node.bl_label} node's plain colour and strength are used")
     return tuple(c * strength.default_value for c in color.default_value[:3])
 
 
-#: What a world or a material sends out at most, in a channel: more would leave float32 once it falls on something.
+#: Maximum radiance of a world or a material per channel: more would overflow float32 after lighting.
 MAX_RADIANCE = 1e30
 
 
 def finite_radiance(radiance: tuple[float, float, float], owner: str, notes) -> tuple[float, float, float]:
-    """The radiance itself; where pictures cannot hold it, black, and a note. owner: the subject of a sentence."""
+    """The radiance; if pictures cannot represent it, black and a note. owner: the subject of a sentence."""
     if all(abs(channel) <= MAX_RADIANCE for channel in radiance):
         return radiance
     red, green, blue = radiance
@@ -99,9 +99,9 @@ def finite_radiance(radiance: tuple[float, float, float], owner: str, notes) -> 
 
 
 def shading_material(material: bpy.types.Material | None, notes, own: Collection[str] = ()) -> Material:
-    """How the shader at the material's output answers light, and what it sends out; the default one without a material.
+    """The reflectance and emission of the shader at the material's output; the default material if there is none.
 
-    own: fields that the surfels have themselves, whose textures are not missed here.
+    own: fields that the surfels have themselves, so that missing textures for them are not reported.
     """
     if material is None or not material.use_nodes:
         return Material(index=material.pass_index if material else 0)
@@ -137,8 +137,8 @@ def _sent(plain: dict, color: str, strength: str) -> tuple[float, float, float]:
     return tuple(c * plain[strength] for c in plain[color][:3])
 
 
-#: type of a shader node -> its sockets and the field of surfels that takes the place of each, or "", and a function
-#: from their plain values to a `Material`
+#: shader node type -> its sockets with the field of surfels that replaces each, or "", and a function from their plain
+#: values to a `Material`
 _SHADERS = {
     "BSDF_PRINCIPLED": (
         {
@@ -161,7 +161,7 @@ _SHADERS = {
 
 
 def _levelled(ior: float, level: float) -> float:
-    """The index whose reflectance at normal incidence is that of `ior` times 2 `level`, as Cycles takes it."""
+    """The index of refraction whose reflectance at normal incidence is that of `ior` times 2 `level`, as in Cycles."""
     root = min(2 * level * reflectance(ior), 0.999) ** 0.5
     return (1 + root) / (1 - root)
 

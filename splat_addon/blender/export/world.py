@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's world -> the renderer's even radiance and, where its background is a picture, its environment."""
+"""Converts Blender's world to a uniform radiance, or to an environment if its background is an image."""
 
 from __future__ import annotations
 
@@ -20,13 +20,14 @@ BLACK = (0.0, 0.0, 0.0)
 
 
 class WorldStore:
-    """Keeps the `Environment` of a world between frames, the same object while picture and rotation are the same."""
+    """Keeps the `Environment` of a world between frames: the same object while image and rotation are unchanged."""
 
     def __init__(self):
         self._kept: tuple[tuple, Environment] | None = None
 
     def read(self, world: bpy.types.World | None, notes) -> tuple[Color, Environment | None]:
-        """What the radiance of every direction is, and a picture that it then multiplies; black without a world."""
+        """The radiance of the background, and an image that is multiplied by it if there is one; black without a
+        world."""
         if world is None:
             return BLACK, None
         node = output_source(world.node_tree, "OUTPUT_WORLD", "BACKGROUND") if world.use_nodes else None
@@ -46,7 +47,7 @@ class WorldStore:
 
     def _environment(self, picture: _Picture, notes) -> Environment | None:
         image = picture.image
-        # No user may change pixels between two frames of one render without the image being marked dirty.
+        # Users cannot change pixels between two frames of one render without marking the image dirty.
         key = image.session_uid, tuple(image.size), image.is_dirty, picture.rotation.tobytes()
         if self._kept is None or self._kept[0] != key or image.is_dirty:
             try:
@@ -70,21 +71,21 @@ class WorldStore:
 
 
 def _reduced(pixels: np.ndarray, down: int, across: int) -> np.ndarray:
-    """The means over blocks of so many rows and columns; what fills no block is left out."""
+    """Means over blocks of this many rows and columns; incomplete blocks are dropped."""
     rows, columns = pixels.shape[0] // down, pixels.shape[1] // across
     whole = pixels[: rows * down, : columns * across]
     return whole.reshape(rows, down, columns, across, 3).mean(axis=(1, 3))
 
 
 class _Picture(NamedTuple):
-    """rotation: (3, 3), from the world's directions to the picture's."""
+    """rotation: (3, 3), from world directions to the image's directions."""
 
     image: bpy.types.Image
     rotation: np.ndarray
 
 
 def _picture(socket: bpy.types.NodeSocket, world: bpy.types.World, notes) -> _Picture | None:
-    """The equirectangular image that feeds a colour, turned by a Mapping node at most."""
+    """The equirectangular image that feeds a colour, possibly rotated by a Mapping node."""
     node = socket.links[0].from_node if socket.is_linked else None
     if node is None or node.type != "TEX_ENVIRONMENT" or node.image is None:
         return None

@@ -1,2 +1,3 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's geometry and ours: objects to triangles, polygons or points; surfels to point attributes and back."""
+"""Converts between Blender's geometry and ours: objects to triangles, polygons or points; surfels to point attributes
+and back."""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels as ordinary point attributes of a vertex-only mesh, and back; also from a point cloud, which modifiers make
-of such a mesh.
+"""Stores surfels as ordinary point attributes of a vertex-only mesh and reads them back, also from a point cloud that
+modifiers made from such a mesh.
 
-The store that works in every supported version, that Geometry Nodes, Cycles, EEVEE and the exporters read, and
-that a .blend keeps bit for bit. The conversion operator writes it; the engine reads it, evaluated with modifiers.
+This storage works in every supported version; Geometry Nodes, Cycles, EEVEE and the exporters can read it, and a .blend
+keeps it bit for bit. The conversion operator writes it; the engine reads it, evaluated with modifiers.
 
 Everything goes through `attributes[name].data.foreach_set` and `foreach_get` on flat arrays of the exact type:
 `vertices.foreach_set("co")` takes a hundred times as long.
@@ -20,23 +20,23 @@ from ...interchange import followed
 from ...surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
 from ..ids import POINT_ATTRIBUTES, REST, SOLID, PointAttribute
 
-#: What can hold points that are surfels.
+#: Data-blocks whose points can be surfels.
 Points = bpy.types.Mesh | bpy.types.PointCloud
 
-#: An attribute by either name on a mesh without faces says "these points are surfels".
+#: An attribute with either name on a mesh without faces marks the points as surfels.
 MARKS = tuple(POINT_ATTRIBUTES[field].name for field in ("rotations", "scales"))
 
 
-#: Of the attributes that hold no floats.
+#: The attributes that are not floats.
 _TYPES = {"INT": np.int32, "INT16_2D": np.int16}
 
 
 def has_surfels(mesh: Points) -> bool:
-    """Whether `mesh` is meant as surfels: no faces, and at least one of the attributes `rotation` and `scale`.
+    """Whether `mesh` is meant as surfels: it has no faces, and at least one of the attributes `rotation` and `scale`.
 
-    One of them is enough, so that surfels which lost the other are met with the sentence of `read_surfels`
-    and not passed over in silence. A point cloud that this extension did not make needs both: others use one of these
-    names for purposes of their own.
+    One of them is enough, so that surfels that lost the other are reported by `read_surfels` instead of being ignored
+    silently. A point cloud that this extension did not make needs both, because others use one of these names for other
+    purposes.
     """
     if isinstance(mesh, bpy.types.PointCloud):
         return REST.name in mesh.attributes or all(name in mesh.attributes for name in MARKS)
@@ -44,19 +44,19 @@ def has_surfels(mesh: Points) -> bool:
 
 
 def has_surfels_beside_faces(mesh: bpy.types.Mesh) -> bool:
-    """Whether surfels and an ordinary mesh were joined to `mesh`; only surfels that this extension wrote are told."""
+    """Whether `mesh` combines surfels and an ordinary mesh; only surfels written by this extension are recognised."""
     return bool(mesh.polygons) and REST.name in mesh.attributes
 
 
 def write_surfels(name: str, surfels: Surfels) -> bpy.types.Mesh:
-    """A new vertex-only mesh that stores `surfels`; `surfels.origin` is left to the object's location."""
+    """A new vertex-only mesh that stores `surfels`; `surfels.origin` must become the object's location."""
     mesh = bpy.data.meshes.new(name)
     fill(mesh, surfels)
     return mesh
 
 
 def fill(mesh: bpy.types.Mesh, surfels: Surfels) -> None:
-    """Store `surfels` in a mesh, in place of all that it has."""
+    """Replace the contents of a mesh by surfels."""
     mesh.clear_geometry()
     mesh.vertices.add(len(surfels))
     for field, layout in POINT_ATTRIBUTES.items():
@@ -73,19 +73,20 @@ def fill(mesh: bpy.types.Mesh, surfels: Surfels) -> None:
 
 
 def _write(mesh: bpy.types.Mesh, layout: PointAttribute, values: np.ndarray) -> None:
-    # "position" is there as soon as there are vertices, and its name is reserved.
+    # "position" exists as soon as there are vertices, and its name is reserved.
     attribute = mesh.attributes.get(layout.name) or mesh.attributes.new(layout.name, layout.data_type, "POINT")
     attribute.data.foreach_set(layout.property, _padded(values, layout.columns))
 
 
 def read_surfels(mesh: Points) -> tuple[Surfels, int]:
-    """The surfels that `mesh` stores, and how many unusable points were left out, as `read_stored` has them."""
+    """The surfels stored in `mesh`, and the number of unusable points left out, see `read_stored`."""
     return read_stored(mesh)[:2]
 
 
 class Stored(NamedTuple):
-    """skipped: unusable points, which were left out. strayed: surfels that were moved one by one, so that it is not
-    known how their frames should lie."""
+    """skipped: number of unusable points, which were left out.
+    strayed: number of surfels that were moved individually, so that their frames are unknown.
+    """
 
     surfels: Surfels
     skipped: int
@@ -98,17 +99,16 @@ def read_stored(
     name: str = "",
     is_solid: bool = False,
 ) -> Stored:
-    """The surfels that `mesh` stores, with origin (0, 0, 0); beside faces, the points that belong to none.
+    """The surfels stored in `mesh`, with origin (0, 0, 0); in a mesh with faces, the points that belong to no face.
 
-    Where their centres have been moved together since they were written, their frames are moved along
-    (`interchange.followed`), which takes seconds a million: known keeps what came of it, by the name given (the mesh's
-    own, if none is), for as long as the values are the same.
-    is_solid: true where the mesh does not say so itself, but what it was made of does.
+    If centres have moved together since they were written, their frames are moved too (`interchange.followed`). This
+    takes seconds per million surfels, so known caches the result by name (by default the mesh's) for as long as the
+    values stay the same.
+    is_solid: True if the mesh does not say so itself, but its source does.
 
-    Attributes are found by name; optional ones need not be there. Raises ValueError where another is missing or one is
-    not of the stored type, and for a mesh in edit mode, whose points are not in its attributes then
-    (`Object.to_mesh()` has them); NaN, zero and negative sizes and the like only cost their own point (see
-    `valid_surfels`).
+    Attributes are found by name; optional ones may be missing. Raises ValueError if a required one is missing or has
+    the wrong type, and for a mesh in edit mode, whose attributes do not contain the points (`Object.to_mesh()` does).
+    NaN, zero or negative sizes and the like only drop the point concerned (see `valid_surfels`).
     """
     if getattr(mesh, "is_editmode", False):
         raise ValueError(
@@ -146,7 +146,7 @@ def _count(mesh: Points) -> int:
 
 
 def _loose_points(mesh: Points) -> np.ndarray | None:
-    """(n,) the points that belong to no face, of a mesh with faces; None: all points are surfels."""
+    """(n,) points that belong to no face of a mesh with faces; None: all points are surfels."""
     if isinstance(mesh, bpy.types.PointCloud) or not mesh.polygons:
         return None
     is_loose = np.ones(len(mesh.vertices), bool)
@@ -157,14 +157,14 @@ def _loose_points(mesh: Points) -> np.ndarray | None:
 
 
 def have_same_values(a: Surfels, b: Surfels) -> bool:
-    """Whether two sets have the same fields with the same numbers in them."""
+    """Whether two sets of surfels have the same fields with the same values."""
     mine, other = a.arrays(), b.arrays()
     same_fields = a.is_solid == b.is_solid and mine.keys() == other.keys()
     return same_fields and all(np.array_equal(mine[name], other[name]) for name in mine)
 
 
 def _padded(values: np.ndarray, columns: int) -> np.ndarray:
-    """`values` flat, each row filled up to `columns` with zeros."""
+    """`values` flattened, with each row padded to `columns` with zeros."""
     rows = values if values.ndim == 2 else values[:, None]
     if rows.shape[1] < columns:
         rows = np.pad(rows, ((0, 0), (0, columns - rows.shape[1])))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A Blender object, evaluated with its modifiers -> `sampling.TriangleMesh`.
+"""Reads a Blender object, evaluated with its modifiers, as a `sampling.TriangleMesh`.
 
-Only the fast ways in: attributes and `loop_triangle_polygons` copy whole arrays, where `vertices.co`,
-`loops.vertex_index`, `polygons.material_index` and the legacy UV data take a hundred times as long. And rows are taken
-with `take`, in a quarter of the time of an index in brackets.
+It uses only the fast interfaces: attributes and `loop_triangle_polygons` copy whole arrays, whereas `vertices.co`,
+`loops.vertex_index`, `polygons.material_index` and the legacy UV data take a hundred times as long. Rows are gathered
+with `take`, which takes a quarter of the time of indexing.
 """
 
 from __future__ import annotations
@@ -21,8 +21,10 @@ from ..materials.material_surfaces import ATTRIBUTE_TYPES, MeshLayers, Unread, m
 
 @dataclass(frozen=True, eq=False)
 class ExtractedMesh:
-    """triangles: in the object's own space. materials: of the object's slots, as they are in the file, None where
-    a slot is empty. unread: inputs of these materials that could not be read."""
+    """triangles: in the object's own space.
+    materials: of the object's slots, as in the file, None for an empty slot.
+    unread: inputs of these materials that could not be read.
+    """
 
     triangles: TriangleMesh
     materials: tuple[bpy.types.Material | None, ...]
@@ -30,29 +32,33 @@ class ExtractedMesh:
 
     @property
     def notes(self) -> list[str]:
-        """A sentence for each input that could not be read."""
+        """One sentence for each input that could not be read."""
         return unread_sentences(self.unread)
 
 
 def unread_sentences(unread: Iterable[tuple[bpy.types.Material, Unread]]) -> list[str]:
-    """What is said of inputs that are not baked."""
+    """Sentences about inputs that are not baked."""
     return [f"The material {owner.name!r}'s {what}{_USED}" for owner, what in unread]
 
 
-#: How each of them ends.
+#: The common ending of these sentences.
 _USED = "; the plain value of its socket is used"
 
 
 def is_unread(sentence: str) -> bool:
-    """Whether it is one of `unread_sentences`, about something that could be baked."""
+    """Whether this is one of `unread_sentences`, about something that could be baked."""
     return sentence.endswith(_USED)
 
 
 @dataclass(frozen=True, eq=False)
 class Topology:
-    """What stays while a mesh deforms. corner_vertices: (C,). faces: how many. corners: (T, 3) face corners of its
-    triangles, and face_of: (T,) the faces that these are of; None, both: each face is a triangle. They are those of the
-    mesh as it was first seen; of a face that has been bent since, Blender may make other ones."""
+    """What stays constant while a mesh deforms.
+
+    corner_vertices: (C,).
+    faces: number of faces.
+    corners: (T, 3) face corners of the triangles, face_of: (T,) their faces; both None if every face is a triangle.
+        They come from the mesh as first seen; Blender may triangulate a bent face differently later.
+    """
 
     corner_vertices: np.ndarray
     faces: int
@@ -63,16 +69,16 @@ class Topology:
         return self.faces if self.face_of is None else len(self.face_of)
 
     def at_corners(self, values: np.ndarray) -> np.ndarray:
-        """(T, 3, ...) of (C, ...) values at face corners."""
+        """(T, 3, ...) from (C, ...) values at face corners."""
         return values.reshape(-1, 3, *values.shape[1:]) if self.corners is None else values.take(self.corners, axis=0)
 
     def on_faces(self, values: np.ndarray) -> np.ndarray:
-        """(T, ...) of values of the faces."""
+        """(T, ...) from values of the faces."""
         return values if self.face_of is None else values.take(self.face_of, axis=0)
 
 
 def read_topology(mesh: bpy.types.Mesh, known: Topology | None = None) -> Topology:
-    """That of the mesh; `known` itself where it still is the same."""
+    """The topology of the mesh; `known` itself if it is unchanged."""
     vertices = _corner_vertices(mesh)
     if known is not None and known.faces == len(mesh.polygons) and np.array_equal(known.corner_vertices, vertices):
         return known
@@ -86,7 +92,7 @@ def read_mesh(
     images: dict | None = None,
     slots: list[bpy.types.Material | None] | None = None,
 ) -> ExtractedMesh:
-    """Everything that sampling needs of an evaluated object's mesh; no triangles where it has no faces.
+    """Everything that sampling needs from an evaluated object's mesh; without triangles if it has no faces.
 
     topology: the mesh's, if it is known. images: keeps the textures' pixels from one call to the next. slots: the
     materials, None: its own.
@@ -110,7 +116,7 @@ def read_mesh(
 
 
 def read_triangles(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> ExtractedMesh:
-    """Only the positions and triangles, for predictions."""
+    """Only positions and triangles, for predictions."""
     topology = read_topology(mesh)
     return ExtractedMesh(TriangleMesh(_positions(mesh), topology.at_corners(topology.corner_vertices)), ())
 
@@ -119,7 +125,7 @@ def read_triangles(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> Extract
 def evaluated_mesh(
     source: bpy.types.Object, depsgraph: bpy.types.Depsgraph
 ) -> Iterator[tuple[bpy.types.Object, bpy.types.Mesh]]:
-    """The evaluated object and its mesh, which is gone when the context ends."""
+    """The evaluated object and its mesh, which is freed when the context ends."""
     evaluated = source.evaluated_get(depsgraph)
     try:
         yield evaluated, evaluated.to_mesh()
@@ -147,7 +153,7 @@ def _corner_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def _triangle_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """(T, 3) int32 face corners of the triangles, and the (T,) faces they are of; None, both: each face is one."""
+    """(T, 3) int32 face corners of the triangles, and their (T,) faces; both None if every face is a triangle."""
     if len(mesh.loops) == 3 * len(mesh.polygons):
         return None, None
     mesh.calc_loop_triangles()
@@ -157,7 +163,7 @@ def _triangle_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray | None, np.ndarr
 
 
 def _corner_normals(mesh: bpy.types.Mesh, topology: Topology) -> np.ndarray | None:
-    """(T, 3, 3) shading normals; None where every triangle is flat, so that its own normal is meant."""
+    """(T, 3, 3) shading normals; None if every triangle is flat and has its own normal."""
     if not len(topology) or (mesh.normals_domain == "FACE" and len(topology) == len(mesh.polygons)):
         return None
     return topology.at_corners(_read(mesh.corner_normals, "vector", 3, len(mesh.loops)))
@@ -173,7 +179,7 @@ def _material_indices(mesh: bpy.types.Mesh, topology: Topology, slots: int) -> n
 
 
 def slot_materials(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> list[bpy.types.Material | None]:
-    """The mesh's materials, which Geometry Nodes may have set, and over them those of slots that the object owns."""
+    """The mesh's materials, which Geometry Nodes may have set, overridden by slots that the object owns."""
     slots = evaluated.material_slots
     materials = list(mesh.materials) + [slot.material for slot in slots[len(mesh.materials) :]]
     return [slots[k].material if k < len(slots) and slots[k].link == "OBJECT" else m for k, m in enumerate(materials)]
@@ -182,7 +188,7 @@ def slot_materials(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> list[bp
 def _surfaces(
     slots: list[bpy.types.Material | None], used: np.ndarray, layers: MeshLayers
 ) -> tuple[tuple[Surface, ...], list[tuple[bpy.types.Material, Unread]]]:
-    """One surface a slot, at least one, plain in slots that no face uses, and what could not be read."""
+    """One surface per slot, at least one, plain for slots that no face uses; and what could not be read."""
     surfaces, all_unread = [], []
     for index, material in enumerate(slots or [None]):
         surface, unread = material_surface(material, layers) if index in used else (Surface(), [])
@@ -192,13 +198,14 @@ def _surfaces(
 
 
 def _layered(read, names: list[str]) -> np.ndarray | None:
-    """(T, 3, width * layers) of `read`, a function of a layer's name giving (T, 3, width) values; None for none."""
+    """(T, 3, width * layers) from `read`, a function of a layer's name that returns (T, 3, width); None without
+    layers."""
     layers = [read(name) for name in names]
     return (np.concatenate(layers, axis=2) if len(layers) > 1 else layers[0]) if layers else None
 
 
 def _color_reader(mesh: bpy.types.Mesh, topology: Topology):
-    """Function of an attribute's name giving (T, 3, 4): what it is as a colour, as shaders have it."""
+    """A function of an attribute's name that returns (T, 3, 4), the attribute as a colour as in shaders."""
 
     def read(name: str) -> np.ndarray:
         attribute = mesh.attributes[name]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh as Blender has it -> `rendering.Polygons`, and what of its materials polygons do not show."""
+"""Converts a Blender mesh to `rendering.Polygons`, and lists properties of its materials that polygons do not
+support."""
 
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ from ...surfels import OPAQUE
 
 
 def mesh_polygons(mesh: TriangleMesh) -> tuple[Polygons, ...]:
-    """Its triangles, in parts that the renderer can hold; without those whose numbers are not finite."""
+    """The mesh's triangles, in portions that the renderer can hold; triangles with non-finite values are dropped."""
     good = np.isfinite(mesh.positions).all(axis=1)[mesh.triangles].all(axis=1)
     if not good.all():
         mesh = taken(mesh, np.flatnonzero(good))
@@ -24,7 +25,7 @@ def mesh_polygons(mesh: TriangleMesh) -> tuple[Polygons, ...]:
 
 
 def taken(mesh: TriangleMesh, rows) -> TriangleMesh:
-    """Those of its triangles, over the same vertices."""
+    """A subset of the triangles, over the same vertices."""
     return replace(mesh, **{name: values[rows] for name, values in mesh.per_triangle().items()})
 
 
@@ -42,7 +43,7 @@ def _part(mesh: TriangleMesh) -> Polygons:
 
 
 def left_out_of_polygons(owner: str, mesh: TriangleMesh) -> Iterator[str]:
-    """A sentence for each thing of its materials that polygons do not have."""
+    """One sentence for each material property that polygons do not support."""
     if any(surface.normal_map is not None for surface in _used(mesh)):
         yield f"{owner} has a normal map, which polygons do not show; render it as surfels to see it"
     if is_transparent(mesh):
@@ -50,19 +51,20 @@ def left_out_of_polygons(owner: str, mesh: TriangleMesh) -> Iterator[str]:
 
 
 def is_transparent(mesh: TriangleMesh) -> bool:
-    """Whether some of its triangles may be seen through."""
+    """Whether some triangles may be transparent."""
     return any(_shows_through(surface) for surface in _used(mesh))
 
 
 def _shows_through(surface: Surface) -> bool:
-    """By an opacity of its own or its colour's alpha: a constant one, or that of an image, as cards of leaves have."""
+    """Whether its opacity or its colour's alpha is below 1, whether constant or from an image, as for cards of
+    leaves."""
     images = [factor.image for factor in surface.color.factors if isinstance(factor, Texture) and factor.uses_alpha]
     is_clear = surface.opacity is not None or surface.color.value[3] < OPAQUE
     return is_clear or not all(image.is_opaque for image in images)
 
 
 def _used(mesh: TriangleMesh) -> list[Surface]:
-    """The surfaces that some triangle has."""
+    """The surfaces that triangles use."""
     if mesh.materials is None:
         return [mesh.surfaces[0]]
     return [mesh.surfaces[k] for k in np.unique(np.minimum(mesh.materials, len(mesh.surfaces) - 1))]

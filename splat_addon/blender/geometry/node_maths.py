@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Formulas as Geometry Nodes: each function adds a node and gives the socket of its result."""
+"""Formulas as Geometry Nodes: each function adds a node and returns its output socket."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ Socket = bpy.types.NodeSocket
 
 
 def enabled(sockets, name: str) -> Socket:
-    """Of sockets of one name, a kind of value each, the one that the node uses."""
+    """The active one among sockets that share a name, one for each data type."""
     return next(socket for socket in sockets if socket.enabled and socket.name == name)
 
 
 class Maths:
-    """group: where the nodes go."""
+    """group: the node group to add nodes to."""
 
     def __init__(self, group: bpy.types.NodeTree):
         self._new, self._link = group.nodes.new, group.links.new
@@ -65,14 +65,14 @@ class Maths:
         return tuple(node.outputs)
 
     def joined(self, *numbers: Socket) -> Socket:
-        """A vector; 0 where a number is not given."""
+        """A vector; 0 for missing components."""
         node = self._new("ShaderNodeCombineXYZ")
         for socket, number in zip(node.inputs, numbers, strict=False):
             self._link(number, socket)
         return node.outputs[0]
 
     def combined(self, basis: tuple[Socket, Socket, Socket], coordinates: Socket) -> Socket:
-        """The vector that has these coordinates."""
+        """The vector with these coordinates."""
         parts = [
             self.vector("SCALE", axis, scale=factor)
             for axis, factor in zip(basis, self.separated(coordinates), strict=True)
@@ -80,7 +80,7 @@ class Maths:
         return self.vector("ADD", self.vector("ADD", parts[0], parts[1]), parts[2])
 
     def rotation(self, x: Socket, y: Socket) -> Socket:
-        """Of the frame with these axes, which need not be unit vectors."""
+        """The rotation of the frame with these axes, which need not be unit vectors."""
         node = self._new("FunctionNodeAxesToRotation")
         node.primary_axis, node.secondary_axis = "X", "Y"
         self._link(x, node.inputs[0])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The points of a Blender object, evaluated: a mesh's vertices or a point cloud, with what attributes they have.
+"""Reads the points of an evaluated Blender object, a mesh's vertices or a point cloud, with their attributes.
 
-The twin of `mesh_extraction` for things without a surface; `sampling.surfels_from_points` takes what it gives.
+The counterpart of `mesh_extraction` for objects without a surface; its result goes to `sampling.surfels_from_points`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from .attributes import has_surfels
 from .mesh_extraction import evaluated_mesh
 
-#: Blender's attribute type -> what `foreach_get` takes, and numbers a value. "color" is scene-linear for both.
+#: Blender's attribute type -> what `foreach_get` takes, and values per point. "color" is scene-linear for both.
 _READS = {
     "FLOAT": ("value", 1),
     "FLOAT_VECTOR": ("vector", 3),
@@ -22,14 +22,15 @@ _READS = {
     "BYTE_COLOR": ("color", 4),
 }
 _COLOR_TYPES = ("FLOAT_COLOR", "BYTE_COLOR")
-#: Names under which importers and add-ons keep a point's colour, the usual one first.
+#: Names that importers and add-ons use for a point's colour, the most common first.
 _COLOR_NAMES = ("Col", "color", "Color")
 
 
 @dataclass(frozen=True, eq=False)
 class ExtractedPoints:
     """positions: (N, 3) float32; normals: (N, 3), radii: (N,), colors: (N, 4) float32 or None. Object units.
-    materials: the object's, None where a slot is empty."""
+    materials: the object's, None for an empty slot.
+    """
 
     positions: np.ndarray
     normals: np.ndarray | None
@@ -39,12 +40,12 @@ class ExtractedPoints:
 
 
 def has_points(source: bpy.types.Object) -> bool:
-    """Whether `extract_points` reads this kind of object: a point cloud, or a mesh that is not surfels already."""
+    """Whether `extract_points` can read this object: a point cloud, or a mesh that is not surfels already."""
     return source.type == "POINTCLOUD" or (source.type == "MESH" and not has_surfels(source.data))
 
 
 def extract_points(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> ExtractedPoints:
-    """The points of an object as its modifiers make them."""
+    """The points of an object, as its modifiers make them."""
     evaluated = source.evaluated_get(depsgraph)
     materials = tuple(slot.material and slot.material.original for slot in evaluated.material_slots)
     # The geometry set owns its point cloud, so it must live until the points are copied.
@@ -60,7 +61,7 @@ def extract_points(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> 
 
 
 def sheared(points: ExtractedPoints, linear: np.ndarray) -> ExtractedPoints:
-    """The points under a (3, 3) linear map; normals go by its inverse transpose, radii stay."""
+    """The points under a (3, 3) linear map; normals use its inverse transpose, radii stay."""
     normals = points.normals
     return replace(
         points,
@@ -70,7 +71,7 @@ def sheared(points: ExtractedPoints, linear: np.ndarray) -> ExtractedPoints:
 
 
 def _evaluated_geometry(evaluated: bpy.types.Object) -> bpy.types.GeometrySet | None:
-    """What Geometry Nodes made of a mesh whose own vertices are gone; None for anything else."""
+    """What Geometry Nodes made of a mesh that has no vertices left; None for anything else."""
     if evaluated.type != "MESH" or len(evaluated.data.vertices) or not hasattr(evaluated, "evaluated_geometry"):
         return None
     return evaluated.evaluated_geometry()

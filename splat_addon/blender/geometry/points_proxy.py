@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A surfel object as everybody else sees it: a modifier makes points of its surfels, with their size and colour.
+"""Shows a surfel object outside this engine: a modifier turns its surfels into points with their size and colour.
 
-So it is seen, and can be clicked on, in Solid, Material Preview, EEVEE and Cycles, where a mesh of vertices alone is
-nothing but Blender's black dots. The points share the mesh's attributes, so they cost no memory, and the engine reads
-the surfels from them. Faces that were joined to the surfels stay as they are, and other kinds of geometry too.
+This makes it visible and clickable in Solid, Material Preview, EEVEE and Cycles, where a mesh of vertices alone is only
+black dots or invisible. The points share the mesh's attributes, so they cost no memory, and the engine reads the
+surfels from them. Joined faces and other kinds of geometry stay as they are.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ import bpy
 
 from ..ids import POINT_ATTRIBUTES, POINTS_GROUP, POINTS_MATERIAL, SOLID
 
-#: Custom property of the node group, by which a group of this make is told from others of its name.
+#: Custom property of the node group, which distinguishes our groups from others of the same name.
 _MAKE, _VERSION = "surfels_points", 1
 
 
 def show_as_points(made: bpy.types.Object) -> bpy.types.Modifier:
-    """Give a surfel object the modifier, which stays behind all that are added later."""
+    """Give a surfel object the modifier, which stays behind all modifiers added later."""
     modifier = made.modifiers.new(POINTS_GROUP, "NODES")
     modifier.node_group = _group()
-    # In edit mode the vertices themselves are to be seen.
+    # In edit mode the vertices themselves must be visible.
     modifier.show_in_editmode = False
     modifier.use_pin_to_last = True
     modifier.show_expanded = False
@@ -37,7 +37,7 @@ def shows_as_points(owner: bpy.types.Object) -> bool:
 
 @contextmanager
 def points_of(evaluated: bpy.types.Object) -> Iterator[list[bpy.types.Mesh | bpy.types.PointCloud]]:
-    """Everything of an evaluated object whose points may be surfels, for as long as the context lives."""
+    """All data of an evaluated object whose points may be surfels, for as long as the context lives."""
     if evaluated.type == "POINTCLOUD":
         yield [evaluated.data]
     elif evaluated.type == "MESH":
@@ -53,22 +53,23 @@ def points_of(evaluated: bpy.types.Object) -> Iterator[list[bpy.types.Mesh | bpy
 
 @contextmanager
 def shown_points(evaluated: bpy.types.Object) -> Iterator[bpy.types.PointCloud | None]:
-    """What the modifiers of an evaluated mesh object made points of, for as long as the context lives.
+    """The points that the modifiers of an evaluated mesh object made, for as long as the context lives.
 
-    It is asked for here, and not waited for among the depsgraph's instances: there it is missing in a render, where the
-    object is hidden and seen only as an instance.
+    They are read here and not from the depsgraph's instances, which lack them in a render if the object itself is
+    hidden and visible only as an instance.
     """
     geometry = evaluated.evaluated_geometry()
     yield geometry.pointcloud
 
 
 def is_solid(owner: bpy.types.Object) -> bool:
-    """Whether the points of an object in the file are as solid as its mesh says: nothing else has changed them."""
+    """Whether the points of an object in the file are as solid as its mesh; true if no other modifier has changed
+    them."""
     return bool(owner.data.get(SOLID)) and all(map(is_points_modifier, owner.modifiers))
 
 
 def is_points_modifier(modifier: bpy.types.Modifier) -> bool:
-    """Whether a modifier is one of `show_as_points`."""
+    """Whether a modifier was added by `show_as_points`."""
     return modifier.type == "NODES" and modifier.node_group is not None and _MAKE in modifier.node_group
 
 
@@ -118,12 +119,12 @@ def _new_group() -> bpy.types.NodeTree:
 
 
 def _enabled(sockets, name: str) -> bpy.types.NodeSocket:
-    """Of sockets of one name, a kind of value each, the one that the node uses."""
+    """The active one among sockets that share a name, one for each data type."""
     return next(socket for socket in sockets if socket.enabled and socket.name == name)
 
 
 def _material() -> bpy.types.Material:
-    """Shows the surfels' own colours, opacities and emission."""
+    """A material that shows the surfels' own colours, opacities and emission."""
     known = bpy.data.materials.get(POINTS_MATERIAL)
     if known is not None and known.get(_MAKE) == _VERSION:
         return known

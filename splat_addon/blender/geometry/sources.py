@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an object shows of surfaces: its own evaluated mesh, and every mesh that it puts somewhere as an instance.
+"""The surfaces that an object shows: its own evaluated mesh, and every mesh that it instances.
 
-The depsgraph's list of instances has it all, in every supported version: the mesh of a curve, a text or a family of
-metaballs is an instance that its object makes of itself, as are what Geometry Nodes place and what an empty takes from
-its collection.
+The depsgraph's list of instances contains all of them in every supported version: the mesh of a curve, a text or a
+family of metaballs is an instance that its object makes of itself, and so are instances of Geometry Nodes and
+collections.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ import numpy as np
 from .attributes import has_surfels
 from .points_proxy import shows_as_points
 
-#: Types whose evaluated geometry is, or may be, a mesh; of the latter, only with modifiers that could make one.
+#: Types whose evaluated geometry is, or may be, a mesh; the latter only with modifiers that could make one.
 _SURFACES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
 _SURFACES_BY_MODIFIERS = frozenset({"POINTCLOUD", "CURVES"})
 
 
 def has_surfaces(source: bpy.types.Object) -> bool:
-    """Whether `Shown` may find a surface in this kind of object; surfels are none."""
+    """Whether `Shown` may find a surface in this kind of object; surfels have none."""
     if source.type == "EMPTY":
         return source.instance_type == "COLLECTION" and source.instance_collection is not None
     if source.type in _SURFACES_BY_MODIFIERS:
@@ -40,7 +40,7 @@ def is_surfel_object(source: bpy.types.Object) -> bool:
 
 @dataclass(eq=False)
 class Piece:
-    """One mesh, as it was read, and the (4, 4) float64 matrices from its space to the world, of its every place."""
+    """One mesh, as it was read, and the (4, 4) float64 matrices of all its places, from its space to the world."""
 
     content: Any
     matrices: list[np.ndarray] = field(default_factory=list)
@@ -50,8 +50,9 @@ class Piece:
 class Shown:
     """What one object shows.
 
-    others: session_uids of the objects that it shows something of, so that it changes when they do. skipped: sentence
-    -> how many instances cannot be sampled, and why. types: of what else it shows.
+    others: session_uids of further objects that it shows, so that it changes when they do.
+    skipped: sentence -> number of instances that cannot be sampled.
+    types: types of other things that it shows.
     """
 
     pieces: list[Piece] = field(default_factory=list)
@@ -63,11 +64,11 @@ class Shown:
         self.skipped[sentence] = self.skipped.get(sentence, 0) + 1
 
     def notes(self) -> list[str]:
-        """A sentence for each kind of thing that was left out."""
+        """One sentence for each kind of thing that was left out."""
         return [sentence.format(count, "s" * (count > 1)) for sentence, count in self.skipped.items()]
 
 
-#: What is done with a mesh while it can be read.
+#: Function that reads a mesh while it is valid.
 Reader = Callable[[bpy.types.Object, bpy.types.Mesh], Any]
 
 _FLATTENED = "Left out {} instance{} with a scale of 0 on some axis"
@@ -75,7 +76,8 @@ _SURFELS = "Left out {} instance{} of surfels, which are not sampled again"
 
 
 def shown_by(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, read: Reader) -> Shown:
-    """Every mesh that the source shows in the depsgraph; `read` is called once a mesh, however often it is there."""
+    """Every mesh that the source shows in the depsgraph; `read` is called once per mesh, however often it is
+    instanced."""
     shown, pieces = Shown(), {}
     for entry in depsgraph.object_instances:
         if owner_of(entry) != source or not entry.show_self:
@@ -111,25 +113,27 @@ def shown_by(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, read: Rea
 
 
 def owner_of(entry: bpy.types.DepsgraphObjectInstance) -> bpy.types.Object:
-    """The object in the file that an entry of `depsgraph.object_instances` belongs to: an instance's instancer."""
+    """The object in the file that an entry of `depsgraph.object_instances` belongs to: for an instance, its
+    instancer."""
     return (entry.parent if entry.is_instance else entry.object).original
 
 
 def asked_of(entry: bpy.types.DepsgraphObjectInstance) -> tuple[bpy.types.Object, ...]:
-    """The objects in the file that say how an entry is drawn: of a collection's instance the object in there, too."""
+    """The objects in the file that determine how an entry is drawn: for a collection instance, also the object inside
+    it."""
     owner = owner_of(entry)
     return (entry.object.original, owner) if owner.instance_type == "COLLECTION" else (owner,)
 
 
 def mesh_key(evaluated: bpy.types.Object) -> tuple:
-    """Equal for what has one evaluated mesh and the same materials on it, within one evaluation."""
+    """A key that is equal for entries with the same evaluated mesh and materials, within one evaluation."""
     slots = (slot.material.session_uid if slot.material else 0 for slot in evaluated.material_slots)
     return evaluated.data.session_uid, *slots
 
 
 @contextmanager
 def readable_mesh(evaluated: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
-    """The mesh of an evaluated mesh object or instance, subdivided on the graphics card or not."""
+    """The mesh of an evaluated mesh object or instance, whether or not it is subdivided on the graphics card."""
     try:
         yield evaluated.to_mesh()
     finally:
@@ -137,7 +141,7 @@ def readable_mesh(evaluated: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
 
 
 def metaball_family(source: bpy.types.Object) -> list[bpy.types.Object]:
-    """All metaball objects that flow together with this one: Blender tells them by their names up to the number."""
+    """All metaball objects that merge with this one; Blender groups them by name, ignoring the number."""
     stem = _stem(source.name)
     return [other for other in bpy.data.objects if other.type == "META" and _stem(other.name) == stem]
 
@@ -148,7 +152,7 @@ def _stem(name: str) -> str:
 
 
 def why_nothing(source: bpy.types.Object, shown: Shown, points: int) -> str:
-    """The sentence for a source without a face. points: how many vertices its meshes have."""
+    """The sentence for a source without faces. points: number of vertices in its meshes."""
     if source.type == "META":
         family = sorted(other.name for other in metaball_family(source) if other != source)
         if family:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh in two parts by a vertex group: polygons where its weights are 1/2 or more, splats elsewhere."""
+"""Splits a mesh by a vertex group: polygons where its weights are 1/2 or more, splats elsewhere."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from .mesh_polygons import taken
 
 
 class MeshParts(NamedTuple):
-    """Of one mesh, over the same vertices. near: drawn as polygons. far: sampled."""
+    """Two parts of one mesh, over the same vertices. near: drawn as polygons. far: sampled."""
 
     near: TriangleMesh
     far: TriangleMesh
 
 
 def parts_by_group(evaluated: bpy.types.Object, mesh: bpy.types.Mesh, triangles: TriangleMesh, group: str) -> MeshParts:
-    """A triangle belongs where the mean of its corners' weights does.
+    """Assign each triangle by the mean weight of its corners.
 
-    Raises ValueError with the end of a sentence where the object does not have the group.
+    Raises ValueError with the end of a sentence if the object does not have the group.
     """
     found = evaluated.vertex_groups.get(group)
     if found is None:
@@ -33,7 +33,7 @@ def parts_by_group(evaluated: bpy.types.Object, mesh: bpy.types.Mesh, triangles:
 
 
 def _weights(mesh: bpy.types.Mesh, index: int) -> np.ndarray:
-    """(V,) of one vertex group, 0 outside of it. Blender hands them out one by one: half a second a million."""
+    """(V,) weights of one vertex group, 0 outside. Blender returns them one at a time: half a second per million."""
     weights = np.zeros(len(mesh.vertices))
     for vertex in mesh.vertices:
         for element in vertex.groups:
@@ -43,7 +43,7 @@ def _weights(mesh: bpy.types.Mesh, index: int) -> np.ndarray:
 
 
 def with_edge_samples(surfels: Surfels, parts: MeshParts, spacing: float) -> Surfels:
-    """The far part's surfels, and more along the edges to the near part."""
+    """The far part's surfels, with more surfels along the edges to the near part."""
     if not (len(parts.near) and len(transition_edges(*parts)[0])):
         return surfels
     edges = edge_samples(*parts, spacing, float(np.median(surfels.scales)), surfels.origin)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators, one a file."""
+"""The operators, one per file."""
 
 from __future__ import annotations
 

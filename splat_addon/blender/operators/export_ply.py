@@ -18,7 +18,7 @@ from ..ids import EXPORT_PLY
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 
-#: The operator's choice -> function of path, surfels and whether to write text.
+#: The operator's choice -> function that writes surfels to a path, optionally as text.
 _WRITERS = {
     "SURFELS": write_ply,
     "GAUSSIANS": lambda path, surfels, ascii: write_gaussian_ply(path, surfels),
@@ -86,7 +86,8 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
 
 
 def _world_surfels(candidates: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> tuple[list[Surfels], int]:
-    """The surfels of those objects that are surfels, in the world, each with materials of its own, and the unusable."""
+    """The surfels of those objects that are surfels, in world space, each set with its own materials; and the number of
+    unusable ones."""
     parts, unusable, slots = [], 0, 0
     for candidate in candidates:
         evaluated = candidate.evaluated_get(depsgraph)

@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Paths as Blender's file browser and its scripts give them, and what is said of files that cannot be used."""
+"""Paths from Blender's file browser and from scripts, and messages about files that cannot be used."""
 
 from __future__ import annotations
 
 import bpy
 from bpy.props import StringProperty
 
-#: Blender 5.2 warns scripts that hand // to a path that does not say that it takes it.
+#: Blender 5.2 warns scripts that pass // to a path that does not declare support for it.
 _OPTIONS = {"SKIP_PRESET"} | ({"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 2, 0) else set())
 
 
 def path_property(way: str, is_forgotten: bool = False):
-    """The operator's `filepath`, as Blender's helpers have it. way: "reading from" or "writing to".
-    is_forgotten: it is empty each time the operator is invoked, so that it then says whether a file was dropped.
+    """The operator's `filepath`, like that of Blender's helpers. way: "reading from" or "writing to".
+
+    is_forgotten: it is cleared each time the operator is invoked, so that a value means that a file was dropped.
     """
     description = f"Filepath used for {way} the file"
     options = _OPTIONS | ({"SKIP_SAVE"} if is_forgotten else set())
@@ -20,9 +21,9 @@ def path_property(way: str, is_forgotten: bool = False):
 
 
 def absolute(filepath: str) -> str:
-    """The path with its leading // replaced by the folder of the .blend, which these stand for in Blender.
+    """The path with a leading // replaced by the folder of the .blend, as in Blender.
 
-    Raises ValueError where the .blend has none yet.
+    Raises ValueError if the .blend has not been saved yet.
     """
     if filepath.startswith("//") and not bpy.data.filepath:
         raise ValueError(
@@ -33,7 +34,7 @@ def absolute(filepath: str) -> str:
 
 
 def file_sentence(error: Exception) -> str:
-    """What is said of an error: a ValueError's own sentence, and an OSError's reason without its number."""
+    """The message for an error: a ValueError's own sentence, or an OSError's reason without its number."""
     if isinstance(error, OSError):
         return f"{error.strerror or error}."
     return str(error) or "The memory does not suffice; use fewer surfels."

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""File > Import > Surfels (.ply): a file of surfels, of Gaussian splats or of bare points becomes a surfel object."""
+"""File > Import > Surfels (.ply): turns a file of surfels, Gaussian splats or bare points into a surfel object."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
     def invoke(self, context, event):
         if not self.filepath:
             return super().invoke(context, event)
-        # dropped: the settings, and no file browser
+        # dropped: show the settings without a file browser
         return context.window_manager.invoke_props_dialog(self, title=Path(self.filepath).name, confirm_text="Import")
 
     def draw(self, context):
@@ -105,7 +105,7 @@ def _from_points(contents: Points, properties, context) -> tuple[Surfels, list[s
     return surfels, list(report.notes())
 
 
-#: What a file can hold -> function of it, the operator and the context, giving surfels and notes.
+#: What a file can contain -> function of it, the operator and the context that returns surfels and notes.
 _READERS = {StoredSurfels: _from_surfels, Gaussians: _from_gaussians, Points: _from_points}
 
 
@@ -114,7 +114,8 @@ def draw_menu_entry(menu, context):
 
 
 class IO_FH_surfels_ply(bpy.types.FileHandler):
-    """A file that is dropped on the 3D view or the Outliner; Blender asks where its own importer takes it too."""
+    """Handles files dropped on the 3D view or the Outliner; Blender asks which importer to use if its own accepts them
+    too."""
 
     bl_idname = "IO_FH_surfels_ply"
     bl_label = "Surfels (.ply)"

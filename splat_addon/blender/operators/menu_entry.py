@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An operator that stands in one of Blender's menus comes and goes with its entry there."""
+"""Registers an operator together with its entry in one of Blender's menus."""
 
 from __future__ import annotations
 
@@ -11,9 +11,8 @@ import bpy
 def with_menu_entry(
     operator: type[bpy.types.Operator], menu: type[bpy.types.Menu], draw: Callable, others: tuple[type, ...] = ()
 ) -> tuple:
-    """The functions `register` and `unregister` of an operator's module. draw(menu, context): adds the entry.
-    others: classes that come and go with it.
-    """
+    """The functions `register` and `unregister` of an operator's module. draw(menu, context): adds the entry. others:
+    further classes to register."""
     register_class, unregister_class = bpy.utils.register_classes_factory((operator, *others))
 
     def register():

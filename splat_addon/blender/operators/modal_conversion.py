@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the converting operators share: from a button or a menu the sampling runs in a thread, so that the window shows
-progress and Esc cancels; from a script, in background and from the redo panel it runs to its end in `execute`."""
+"""Shared by the converting operators: from a button or a menu, sampling runs in a thread, so that the window shows
+progress and Esc cancels; from a script, in background mode or from the redo panel, `execute` runs it to the end."""
 
 from __future__ import annotations
 
@@ -32,20 +32,21 @@ def follow_property():
 
 
 def was_converted(context: bpy.types.Context) -> bool:
-    """Whether surfels that know their sources are selected: Adjust Last Operation asks, before it takes them back."""
+    """Whether surfels that know their sources are selected; used by Adjust Last Operation before it undoes the
+    conversion."""
     return any(sources_of(made) for made in context.selected_objects if made.type == "MESH")
 
 
 class ModalConversion:
-    """A mix-in for operators that have the property `source`, "KEEP" or "HIDE", and `follow`."""
+    """A mix-in for operators that have the properties `source` ("KEEP" or "HIDE") and `follow`."""
 
     follow: follow_property()
 
     def _new_batch(self, context: bpy.types.Context) -> Batch:
-        """Of what is selected, as the properties say. Raises ValueError with a sentence."""
+        """A batch for the selection, according to the properties. Raises ValueError with a sentence."""
         raise NotImplementedError
 
-    #: As what the record knows the conversion.
+    #: The kind under which the record stores the conversion.
     kind = ""
 
     def execute(self, context):
@@ -86,7 +87,7 @@ class ModalConversion:
         return {"RUNNING_MODAL"}
 
     def cancel(self, context):
-        """Blender is closing or loading another file."""
+        """Blender calls this when it closes or loads another file."""
         self._batch.is_cancelled = True
         self._end_modal(context)
 
@@ -127,7 +128,7 @@ class ModalConversion:
                 self.report({"WARNING"}, note)
         if made and context.scene.render.engine != ENGINE:
             self.report({"INFO"}, f"Choose the render engine {ENGINE_LABEL} to see the surfels")
-        # An error fails a script's call; where others were converted, that would hide them from it.
+        # An error makes a script's call fail, which would hide from it that other objects were converted.
         for name, sentence in batch.refused:
             self.report({"WARNING" if made else "ERROR"}, f"{name}: {sentence}")
         return {"FINISHED"} if made else {"CANCELLED"}

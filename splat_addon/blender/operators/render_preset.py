@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operator that puts a measured preset into the render settings, and the buttons that call it."""
+"""The operator that applies a measured preset to the render settings, and the buttons that call it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class RENDER_OT_surfel_preset(bpy.types.Operator):
 
 
 def draw_presets(layout: bpy.types.UILayout, settings) -> None:
-    """A row of buttons, of which the one whose values are set is pressed."""
+    """A row of buttons; the one whose values are set is shown pressed."""
     row = layout.row(align=True)
     for preset in PRESETS.values():
         button = row.operator(RENDER_PRESET, text=preset.label, depress=preset.is_in(settings))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One click from a conversion to its picture: the render engine, and the 3D view's shading."""
+"""Shows converted surfels with one click: sets the render engine and the 3D view's shading."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..ids import ENGINE, ENGINE_LABEL, SHOW_SURFELS
 
 
 def shows_surfels(context: bpy.types.Context) -> bool:
-    """Whether the engine is chosen and the 3D view, where the context has one, renders with it."""
+    """Whether the engine is active and the 3D view, if the context has one, renders with it."""
     space = context.space_data
     is_rendered = space is None or space.type != "VIEW_3D" or space.shading.type == "RENDERED"
     return context.scene.render.engine == ENGINE and is_rendered

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Object > Convert to Surfels: what is selected becomes surfel objects in the same place."""
+"""Object > Convert to Surfels: converts the selection to surfel objects in the same place."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .modal_conversion import ModalConversion, was_converted
 
 
 def selected_sources(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """What the operator converts: everything that may show a surface and is not surfels already."""
+    """The objects that the operator converts: everything that may show a surface and is not surfels already."""
     return [source for source in context.selected_objects if has_surfaces(source)]
 
 

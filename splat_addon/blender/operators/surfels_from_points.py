@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Object > Convert Points to Surfels: the points of each selected mesh or point cloud become a surfel object."""
+"""Object > Convert Points to Surfels: turns the points of each selected mesh or point cloud into a surfel object."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .modal_conversion import ModalConversion, was_converted
 
 
 def selected_points(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """What the operator converts: point clouds, and meshes that are not surfels already."""
+    """The objects that the operator converts: point clouds, and meshes that are not surfels already."""
     return [source for source in context.selected_objects if has_points(source)]
 
 

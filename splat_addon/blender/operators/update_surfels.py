@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Object > Update Surfels from Source: the sources of surfel objects are converted again, with the settings kept."""
+"""Object > Update Surfels from Source: converts the sources of surfel objects again, with the recorded settings."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class OBJECT_OT_surfels_update(bpy.types.Operator):
 
 
 def _batch(made: bpy.types.Object, context: bpy.types.Context) -> Batch:
-    """Of the sources of a surfel object. Raises ValueError where one of them cannot be seen any more."""
+    """A batch of a surfel object's sources. Raises ValueError if one of them is no longer visible."""
     sources, record = sources_of(made), record_of(made)
     for source in sources:
         if source.name not in context.view_layer.objects:
