@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from . import commands, mesh_sampling_settings, operators, properties
+from . import commands, mesh_sampling_settings, operators, preferences, properties, translations
 from .conversion import bring_back, mesh_settings, prediction, source_record
 from .engine import render_engine, render_passes
 from .ui import (
@@ -13,6 +13,7 @@ from .ui import (
     object_panels,
     passes_panel,
     points_panel,
+    preset_panels,
     render_panels,
     report_panel,
     sidebar,
@@ -24,6 +25,7 @@ MODULES = (
     properties,
     render_passes,
     render_engine,
+    preset_panels,
     render_panels,
     report_panel,
     passes_panel,
@@ -33,6 +35,7 @@ MODULES = (
     view_layer_panels,
     mesh_sampling_settings,
     mesh_settings,
+    preferences,
     source_record,
     bring_back,
     operators,
@@ -40,6 +43,7 @@ MODULES = (
     sidebar,
     points_panel,
     commands,
+    translations,
 )
 
 

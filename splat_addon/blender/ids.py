@@ -17,8 +17,13 @@ SURFELS_FROM_POINTS = "object.surfels_from_points"
 EXPORT_PLY = "export_scene.surfels_ply"
 IMPORT_PLY = "import_scene.surfels_ply"
 RENDER_PRESET = "render.surfel_preset"
+ADD_RENDER_PRESET = "render.surfel_preset_add"
+ADD_CONVERSION_PRESET = "object.surfel_conversion_preset_add"
 UPDATE_SURFELS = "object.surfels_update"
 SHOW_SURFELS = "view3d.surfels_show"
+
+#: The context of texts that mean something else in Blender, whose own translations come before an extension's.
+TEXTS = "Surfel Splatting"
 
 SIDEBAR_TAB = "Surfels"
 SIDEBAR_PANEL = "VIEW3D_PT_surfels_from_mesh"

@@ -23,7 +23,7 @@ def test_unregistering_takes_everything_away_and_registering_brings_it_back():
     finally:
         splat_addon.register()
     assert hasattr(bpy.types, ids.SIDEBAR_PANEL) and hasattr(bpy.types.Scene, ids.CONVERSION_SETTINGS)
-    assert len(handlers()) == 6
+    assert len(handlers()) == 7
 
 
 def test_the_operator_and_the_sidebar_have_the_same_settings_with_the_same_defaults():

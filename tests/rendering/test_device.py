@@ -3,8 +3,12 @@
 
 import gc
 
+import numpy as np
+import pytest
+
 from splat_addon.reference import scenes
 from splat_addon.rendering import Renderer, Settings
+from splat_addon.rendering.device.interface import texture_bytes
 
 SIZE = (32, 24)
 
@@ -51,3 +55,29 @@ def test_frames_of_other_sizes_and_methods_leave_no_more_than_the_last_needs(on_
 
     first, second, quad, last = on_device(textures)
     assert first == second == last and 0 < quad <= first
+
+
+def test_no_picture_takes_more_than_the_device_may(on_device):
+    """A frame lets textures go before it ends, so twice what is left suffices."""
+
+    def bounded(device):
+        scene, camera = scenes.torus(count=500, size=SIZE)
+        renderer = Renderer(device)
+        color = renderer.render(scene, camera).color
+        needed = texture_bytes(device.textures)
+        renderer.release()
+        gc.collect()
+        try:
+            device.most_bytes = 2 * needed
+            same = np.array_equal(renderer.render(scene, camera).color, color)
+            renderer.release()
+            gc.collect()
+            device.most_bytes = texture_bytes(device.textures) + needed // 2
+            with pytest.raises(ValueError, match="most that the add-on's preferences let it take"):
+                renderer.render(scene, camera)
+            return same
+        finally:
+            device.most_bytes = None
+            renderer.release()
+
+    assert on_device(bounded)

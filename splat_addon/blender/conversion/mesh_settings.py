@@ -10,7 +10,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 from ...sampling import DEFAULT_CREASE_ANGLE, DEFAULT_GRAZING_ANGLE, DEFAULT_SPLAT_SIZE, LEAST_GRAZING_ANGLE, REDUCTIONS
-from ..ids import CONVERSION_SETTINGS
+from ..ids import CONVERSION_SETTINGS, TEXTS
 from .automatic_density import FALLBACK_RESOLUTION, MOST_SURFELS
 from .mesh_conversion import Choices
 
@@ -105,6 +105,7 @@ class ConversionProperties:
     )
     space: EnumProperty(
         name="Space",
+        translation_context=TEXTS,
         description="The space in which surfels are spaced evenly and lengths are measured",
         items=(
             ("OBJECT", "Object", "The object's own space, so that its scale also scales the spacing"),

@@ -13,6 +13,7 @@ from ...rendering import Frame, RenderCancelled, Renderer, open_device
 from ..export.camera import depth_of_field_notes, rendered_part, view_camera
 from ..export.live_meshes import LiveMeshes
 from ..export.scene import Notes, SurfelStore, export_scene
+from ..preferences import most_bytes
 from ..properties import final_settings, stops_where_broken
 from .motion_blur import motion_blur_notes, moving_time, shutter_times
 from .render_passes import hand_over, outputs_of
@@ -165,6 +166,7 @@ _resources: _Resources | None = None
 def _acquire_resources() -> _Resources:
     global _resources
     _resources = _resources or _Resources()
+    _resources.renderer.device.most_bytes = most_bytes()
     return _resources
 
 

@@ -14,6 +14,7 @@ from ...rendering import Refinement, Renderer, Shown, open_device
 from ..export.camera import viewport_camera
 from ..export.live_meshes import LiveMeshes
 from ..export.scene import SurfelStore, export_scene
+from ..preferences import most_bytes
 from ..properties import viewport_settings
 from .final_render import sentence_of
 
@@ -53,6 +54,7 @@ def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: 
     state = _state(engine)
     if state.scene is None:
         update(engine, context, depsgraph)
+    state.refinement.renderer.device.most_bytes = most_bytes()
     settings = viewport_settings(depsgraph.scene)
     if context.screen and context.screen.is_animation_playing:
         settings = replace(settings, samples=1)

@@ -24,7 +24,7 @@ meshes, curves, texts, metaballs, and the instances of Geometry Nodes and collec
 
     bl_idname = SURFELS_FROM_MESH
     bl_label = "Convert to Surfels"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads a set
+    bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 - Blender reads a set
 
     @classmethod
     def poll(cls, context):

@@ -25,7 +25,7 @@ directions, is estimated from neighbouring points"""
 
     bl_idname = SURFELS_FROM_POINTS
     bl_label = "Convert Points to Surfels"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads a set
+    bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 - Blender reads a set
 
     source: EnumProperty(
         name="Source",

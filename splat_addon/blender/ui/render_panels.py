@@ -8,10 +8,11 @@ from collections.abc import Iterator
 import bpy
 
 from ...rendering.methods import get_method
-from ..ids import ENGINE, RENDER_SETTINGS
+from ..ids import ENGINE, RENDER_SETTINGS, TEXTS
 from ..operators.render_preset import draw_presets
 from ..properties import blurs, is_coarser_than_viewport
 from .engine_panel import EnginePanel
+from .preset_panels import RENDER_PT_surfel_presets
 
 
 class _RenderPanel(EnginePanel):
@@ -27,13 +28,16 @@ class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
     properties = ("method",)
 
+    def draw_header_preset(self, context):
+        RENDER_PT_surfel_presets.draw_panel_header(self.layout)
+
     def draw(self, context):
         properties = getattr(context.scene, RENDER_SETTINGS)
         draw_presets(self.layout, properties)
         super().draw(context)
-        for name, label in (("supersampling", "Supersampling Render"), ("samples", "Samples Render")):
+        for name in ("supersampling", "samples"):
             column = self.layout.column(align=True)
-            column.prop(properties, name, text=label)
+            column.prop(properties, name)
             column.prop(properties, f"viewport_{name}", text="Viewport")
             if name == "samples":
                 column.prop(properties, "blur_samples", text="Blur at Least")
@@ -89,6 +93,7 @@ class RENDER_PT_surfel_matcap(_RenderPanel, bpy.types.Panel):
 
 class RENDER_PT_surfel_lines(_RenderPanel, bpy.types.Panel):
     bl_label = "Lines"
+    bl_translation_context = TEXTS
     bl_options = frozenset({"DEFAULT_CLOSED"})
     properties = ("line_width", "line_color", "line_crease_angle", "line_depth_threshold")
 

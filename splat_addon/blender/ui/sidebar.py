@@ -26,6 +26,7 @@ from ..ids import (
 from ..operators.show_surfels import shows_surfels
 from ..operators.surfels_from_mesh import selected_sources
 from ..operators.update_surfels import updatable
+from .preset_panels import VIEW3D_PT_surfel_conversion_presets
 from .wrapped_text import write
 
 
@@ -35,6 +36,9 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = SIDEBAR_TAB
+
+    def draw_header_preset(self, context):
+        VIEW3D_PT_surfel_conversion_presets.draw_panel_header(self.layout)
 
     def draw(self, context):
         settings = getattr(context.scene, CONVERSION_SETTINGS)

@@ -12,7 +12,7 @@ from weakref import WeakSet
 
 import numpy as np
 
-from .interface import FORMATS, PROGRAMS, PipelineDescription, check_texture_size
+from .interface import FORMATS, PROGRAMS, PipelineDescription, check_memory, check_texture_size
 
 _FORMAT_NAMES = {"DEPTH32F": "DEPTH_COMPONENT32F"}
 _BLEND_NAMES = {"none": "NONE", "add": "ADDITIVE_PREMULT"}
@@ -23,6 +23,7 @@ class BlenderDevice:
 
     kind = "blender"
     multisample_counts = ()
+    most_bytes = None
 
     def __init__(self):
         try:
@@ -52,6 +53,7 @@ class BlenderDevice:
         if samples:
             raise ValueError("Blender's gpu module has no multisampled textures.")
         check_texture_size(size, self._gpu.capabilities.max_texture_size_get())
+        check_memory(self, size, format)
         made = _Texture(self._gpu, size, format, data)
         self.textures.add(made)
         return made

@@ -32,10 +32,11 @@ _CHANNEL_BYTES = {"RGBA16F": 2, "RGBA16": 2}
 
 def texture_bytes(textures: Iterable[Texture]) -> int:
     """What these textures hold, without what a driver adds."""
-    return sum(
-        t.size[0] * t.size[1] * FORMATS[t.format] * _CHANNEL_BYTES.get(t.format, 4) * max(t.samples, 1)
-        for t in textures
-    )
+    return sum(_bytes_of(t.size, t.format, t.samples) for t in textures)
+
+
+def _bytes_of(size: tuple[int, int], format: str, samples: int) -> int:
+    return size[0] * size[1] * FORMATS[format] * _CHANNEL_BYTES.get(format, 4) * max(samples, 1)
 
 
 def check_texture_size(size: tuple[int, int], largest: int) -> None:
@@ -44,6 +45,19 @@ def check_texture_size(size: tuple[int, int], largest: int) -> None:
         raise ValueError(
             f"A picture of {size[0]:,} x {size[1]:,} pixels does not fit on this graphics device, which holds up to "
             f"{largest:,} along an edge; scale it down."
+        )
+
+
+def check_memory(device: Device, size: tuple[int, int], format: str, samples: int = 0) -> None:
+    """Raises ValueError where one more such texture is more than the device may take."""
+    if device.most_bytes is None:
+        return
+    needed = texture_bytes(device.textures) + _bytes_of(size, format, samples)
+    if needed > device.most_bytes:
+        raise ValueError(
+            f"The picture needs more than {device.most_bytes / 1e6:,.0f} MB of the graphics device, the most that the "
+            "add-on's preferences let it take; raise that, draw fewer surfels or a smaller picture, or choose 16-bit "
+            "as Surfel Storage."
         )
 
 
@@ -103,7 +117,7 @@ class Pipeline(Protocol):
 class Device(Protocol):
     """kind: its name in `DEVICES`. backend: "OpenGL", "Vulkan" ... renderer, version: what the driver calls itself.
     multisample_counts: the samples a texel that its textures can have beside one. max_samplers: textures that a shader
-        may read. textures: those that are there.
+        may read. textures: those that are there. most_bytes: what they may take together; None for no limit.
     """
 
     kind: str
@@ -113,10 +127,12 @@ class Device(Protocol):
     multisample_counts: tuple[int, ...]
     max_samplers: int
     textures: WeakSet[Texture]
+    most_bytes: int | None
 
     def texture(self, size: tuple[int, int], format: str, data: np.ndarray | None = None, samples: int = 0) -> Texture:
         """data: (h, w, channels) float32, row 0 first; without it the contents are undefined.
         samples: one of `multisample_counts`, of a texture without data that only targets and shaders use.
+        Raises ValueError where it is too large, or more than `most_bytes` allow.
         """
 
     def target(self, colors: list[Texture], depth: Texture | None = None) -> Target:

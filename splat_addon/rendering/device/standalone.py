@@ -10,7 +10,7 @@ from weakref import WeakSet
 
 import numpy as np
 
-from .interface import FORMATS, PROGRAMS, PipelineDescription, check_texture_size
+from .interface import FORMATS, PROGRAMS, PipelineDescription, check_memory, check_texture_size
 
 _GL_TEXTURE_2D_MULTISAMPLE, _GL_TEXTURE_SAMPLES, _GL_SAMPLE_SHADING = 0x9100, 0x9106, 0x8C36
 _GL_TEXTURE_2D, _GL_DEPTH_COMPONENT, _GL_FLOAT, _GL_DEPTH_COMPONENT32F = 0x0DE1, 0x1902, 0x1406, 0x8CAC
@@ -26,6 +26,7 @@ class StandaloneDevice:
     """A context of its own. Raises RuntimeError where none can be made."""
 
     kind = "standalone"
+    most_bytes = None
     backend = "OpenGL"
 
     def __init__(self):
@@ -54,6 +55,7 @@ class StandaloneDevice:
 
     def texture(self, size, format, data=None, samples=0):
         check_texture_size(size, self._context.info["GL_MAX_TEXTURE_SIZE"])
+        check_memory(self, size, format, samples)
         made = _Texture(self._context, size, format, data, samples)
         self.textures.add(made)
         return made

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The add-on's preferences: what a picture may take of the graphics device, what the sidebar converts with where a
+scene was told nothing, and what is known of the device.
+
+Every picture asks for them, so they may change between two; without preferences (a script that registers the package
+by itself) the defaults hold.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import bpy
+from bpy.props import IntProperty, PointerProperty
+
+from ..rendering import open_device
+from .conversion.mesh_settings import PROPERTY_NAMES, SurfelConversionSettings, draw_properties
+from .ids import CONVERSION_SETTINGS
+
+#: The package that Blender knows the add-on by: the extension, or in a checkout `splat_addon`.
+ROOT = __package__.removesuffix(".blender").removesuffix(".splat_addon")
+
+MEGABYTE = 1_000_000
+
+
+class SurfelPreferences(bpy.types.AddonPreferences):
+    bl_idname = ROOT
+
+    most_megabytes: IntProperty(
+        name="Memory of a Picture",
+        description=(
+            "Megabytes that a final render, and each 3D view, may take of the graphics device. A picture that needs "
+            "more stops and says so. 0 sets no limit"
+        ),
+        min=0,
+        soft_max=64_000,
+        default=0,
+    )
+    conversion: PointerProperty(name="Conversion", type=SurfelConversionSettings)
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "most_megabytes")
+        device = layout.box()
+        device.label(text="Graphics Device", icon="SYSTEM")
+        for line in device_lines():
+            device.label(text=line)
+        conversion = layout.box()
+        conversion.label(text="Conversion in New Scenes", icon="OUTLINER_OB_POINTCLOUD")
+        draw_properties(conversion, self.conversion)
+
+
+def preferences() -> SurfelPreferences | None:
+    """None where the package was registered by a script, and is no add-on of this Blender."""
+    add_on = bpy.context.preferences.addons.get(ROOT)
+    return add_on.preferences if add_on else None
+
+
+def most_bytes() -> int | None:
+    """What a picture may take of the graphics device; None for no limit."""
+    chosen = preferences()
+    return chosen.most_megabytes * MEGABYTE if chosen and chosen.most_megabytes else None
+
+
+def device_lines() -> tuple[str, ...]:
+    """What draws, for people; in background Blender 4.5 to 5.1 know it within a render alone."""
+    try:
+        return _known_device()
+    except RuntimeError as reason:
+        return (str(reason),)
+
+
+@cache
+def _known_device() -> tuple[str, ...]:
+    device = open_device("blender")
+    return device.renderer, f"{device.backend}, {device.version}"
+
+
+def use_defaults(scene: bpy.types.Scene) -> None:
+    """The preferences' conversion settings in a scene whose own were never touched."""
+    chosen, settings = preferences(), getattr(scene, CONVERSION_SETTINGS)
+    if chosen is None or any(settings.is_property_set(name) for name in PROPERTY_NAMES):
+        return
+    for name in PROPERTY_NAMES:
+        if chosen.conversion.is_property_set(name):
+            setattr(settings, name, getattr(chosen.conversion, name))
+
+
+@bpy.app.handlers.persistent
+def _after_load(*_):
+    for scene in bpy.data.scenes:
+        use_defaults(scene)
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((SurfelPreferences,))
+
+
+def register():
+    _register_classes()
+    bpy.app.handlers.load_post.append(_after_load)
+
+
+def unregister():
+    bpy.app.handlers.load_post.remove(_after_load)
+    _unregister_classes()

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The interface in other languages: a file a language, registered with Blender, which looks texts up as it draws them.
+
+`blender --command surfels template FILE` writes the template for another one.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+from ..ids import TEXTS
+from .german import GERMAN
+from .messages import DEFAULT, OPERATOR, Message
+
+#: Blender's name of a language -> what each text is in it; a text has one meaning in all contexts here.
+LANGUAGES = {"de_DE": GERMAN, "de": GERMAN}
+
+
+def catalogue() -> dict[str, dict[Message, str]]:
+    """As Blender takes it."""
+    return {
+        language: {(context, text): said for text, said in texts.items() for context in (DEFAULT, OPERATOR, TEXTS)}
+        for language, texts in LANGUAGES.items()
+    }
+
+
+def register():
+    bpy.app.translations.register(__package__, catalogue())
+
+
+def unregister():
+    bpy.app.translations.unregister(__package__)

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The interface in other languages: no text is missing, none is left over, and no figure changes on the way."""
+
+import re
+
+import bpy
+import pytest
+
+from splat_addon.blender import commands, translations
+from splat_addon.blender.translations.german import GERMAN
+from splat_addon.blender.translations.messages import DEFAULT, OPERATOR, messages
+
+
+def figures(text: str) -> list[str]:
+    """Its numbers, without separators."""
+    return sorted(re.sub("[.,]", "", number) for number in re.findall(r"\d(?:[\d.,]*\d)?", text))
+
+
+def test_what_is_shown_is_found():
+    found = messages()
+    assert {
+        (OPERATOR, "Convert to Surfels"),
+        (DEFAULT, "Surfels"),  # the sidebar's tab
+        (DEFAULT, "Blur at Least"),  # a label in a panel's source
+        (DEFAULT, "Tint"),  # one of two
+        (DEFAULT, "How a splat is drawn and filtered"),
+        (DEFAULT, "Leave them out, since most are errors of the scanner"),  # of an operator's choice
+        (OPERATOR, "Bake Materials"),  # a button
+    } <= found
+
+
+def test_every_text_is_there_in_german_and_no_other():
+    texts = {text for _, text in messages()}
+    assert {"missing": texts - set(GERMAN), "left over": set(GERMAN) - texts} == {"missing": set(), "left over": set()}
+    assert all(said.strip() and not said.endswith(".") for said in GERMAN.values())
+
+
+def test_german_has_the_figures_of_the_english():
+    assert {text: said for text, said in GERMAN.items() if figures(text) != figures(said)} == {}
+
+
+def test_short_names_stay_short():
+    """A name of two words must fit where the English does."""
+    long = {text: said for text, said in GERMAN.items() if len(text) <= 20 and len(said) > 32}
+    assert not long
+
+
+def test_blender_says_it_in_german():
+    if "de_DE" not in bpy.app.translations.locales and "de" not in bpy.app.translations.locales:
+        pytest.skip("this Blender was built without other languages, as its wheels are")
+    view = bpy.context.preferences.view
+    kept = view.language
+    view.language = "de_DE" if "de_DE" in bpy.app.translations.locales else "de"
+    try:
+        assert bpy.app.translations.pgettext_iface("Convert to Surfels", OPERATOR) == "In Surfels umwandeln"
+        assert bpy.app.translations.pgettext_tip("Which samples of the three axes become surfels").startswith("Welche")
+    finally:
+        view.language = kept
+
+
+def test_the_template_has_each_text_once(tmp_path):
+    file = tmp_path / "surfels.pot"
+    assert commands.run(["template", str(file)]) == 0
+    entries = file.read_text(encoding="utf-8").split("\n\n")[1:]
+    assert len(entries) == len(messages())
+    assert 'msgctxt "Operator"\nmsgid "Convert to Surfels"\nmsgstr ""' in [entry.strip() for entry in entries]
+
+
+def test_blender_takes_the_catalogue():
+    for texts in translations.catalogue().values():
+        assert all(isinstance(key, tuple) and isinstance(said, str) for key, said in texts.items())
