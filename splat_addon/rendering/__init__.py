@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels, camera and lights become a frame: `plan` decides the passes, `Renderer` runs them on a device.
+"""Renders surfels with a camera and lights to a frame: `plan` decides the passes, `Renderer` runs them on a device.
 
 scene, camera, settings -> plan -> view -> passes on a device -> Frame
 """

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The mean of frames whose cameras differ a little (Haeberli & Akeley, "The accumulation buffer", 1990).
+"""Averages frames whose cameras differ slightly (Haeberli & Akeley, "The accumulation buffer", 1990).
 
-The cameras follow sequences of low discrepancy that may stop anywhere, so more samples are always better. Places in the
-pixel: additive recurrence by the generalised golden ratio (Roberts, "The unreasonable effectiveness of quasirandom
-sequences", 2018). Places on the lens: Halton 1960, bases 2 and 3; two more of Roberts' nearly repeat every 13 samples.
-Times of an open shutter: base 5. Times that run with the number are a little better on average, but at some speeds (2.3
-pixels a picture of 16 samples) what moves keeps pace with the places in the pixel.
+The camera offsets follow low-discrepancy sequences that may stop anywhere, so more samples always improve the mean.
+Positions in the pixel: additive recurrence with the generalised golden ratio (Roberts, "The unreasonable effectiveness
+of quasirandom sequences", 2018). Positions on the lens: Halton 1960, bases 2 and 3, because two more of Roberts'
+dimensions nearly repeat every 13 samples. Times of an open shutter: base 5. Times that grow with the sample number are
+slightly better on average, but at some speeds (2.3 pixels for a picture of 16 samples) motion then aliases with the
+positions in the pixel.
 """
 
 from __future__ import annotations
@@ -23,15 +24,14 @@ from .settings import NEAREST, OUTPUTS
 #: Arrays of a frame that are means over its samples.
 _MEANS = tuple(name for name in OUTPUTS if name not in (*NEAREST, "cryptomatte"))
 
-#: The root above 1 of x^5 = x + 1. Of its powers, the first two serve pixels better than those of x^3 = x + 1: the
-#: error along random edges with 16 samples is a third less.
+#: The root above 1 of x^5 = x + 1. Its first two powers suit pixels better than those of x^3 = x + 1: with 16 samples
+#: the error along random edges is a third smaller.
 _RATIO = 1.1673039782614187
 
 
 def sample_points(count: int, first: int = 0) -> np.ndarray:
-    """(count, 4) float64 in [0, 1): two coordinates in the pixel, two on the lens, of samples number `first` and on.
-    Number 0 is the middle of both.
-    """
+    """(count, 4) float64 in [0, 1): two coordinates in the pixel and two on the lens, for samples starting at number
+    `first`. Sample 0 is the middle of both."""
     number = np.arange(first, first + count)
     in_pixel = number[:, None] * _RATIO ** -np.array((1.0, 2.0))
     on_lens = np.stack([_mirrored(number, base) for base in (2, 3)], axis=1)
@@ -39,7 +39,7 @@ def sample_points(count: int, first: int = 0) -> np.ndarray:
 
 
 def _mirrored(number: np.ndarray, base: int) -> np.ndarray:
-    """(n,) whole numbers -> float64 in [0, 1): their digits in that base, mirrored at the point."""
+    """(n,) integers -> float64 in [0, 1): their digits in that base, mirrored at the radix point (radical inverse)."""
     value, place = np.zeros(len(number)), 1.0
     while number.any():
         place /= base
@@ -49,10 +49,10 @@ def _mirrored(number: np.ndarray, base: int) -> np.ndarray:
 
 
 def sample_camera(camera: Camera, number: int) -> Camera:
-    """The camera of a sample: a pinhole at that sample's place on the lens of `camera`, whose pixel centres lie at
-    that sample's place in its pixels.
+    """The camera of one sample: a pinhole at the sample's point on the lens of `camera`, with pixel centres at the
+    sample's point in each pixel.
 
-    Evenly over the pixel: the mean is that of a box filter one pixel wide.
+    Offsets are uniform over the pixel, so the mean has a box filter one pixel wide.
     """
     ((x, y, *on_lens),) = sample_points(1, number)
     moved = _moved(camera, x - 0.5, y - 0.5)
@@ -60,9 +60,8 @@ def sample_camera(camera: Camera, number: int) -> Camera:
 
 
 def sample_blocks(samples: int, moments: int) -> list[list[int]]:
-    """The numbers of the samples that are taken at each moment of an open shutter, in the order of time, as many at
-    each as can be. Raises ValueError for more moments than samples.
-    """
+    """The sample numbers for each time of an open shutter, in temporal order, spread as evenly as possible. Raises
+    ValueError for more times than samples."""
     if not 1 <= moments <= samples:
         raise ValueError(f"The moments of an open shutter must be 1 to {samples}, one a sample, not {moments}.")
     in_time = np.argsort(_mirrored(np.arange(samples), 5)).tolist() if moments > 1 else list(range(samples))
@@ -71,16 +70,16 @@ def sample_blocks(samples: int, moments: int) -> list[list[int]]:
 
 
 def moment_places(samples: int, moments: int) -> list[float]:
-    """When each block's moment is, 0 to 1 of the time that the shutter is open: the middle of its samples' share."""
+    """The time of each block, as a fraction of the exposure: the middle of its samples' share."""
     ends = np.cumsum([0, *(len(block) for block in sample_blocks(samples, moments))]) / samples
     return ((ends[1:] + ends[:-1]) / 2).tolist()
 
 
 def mean_frame(frames: Iterable[Frame]) -> Frame:
-    """Means of what is a mean over a pixel's samples; depth, position and indices of the nearest; times added up, other
-    statistics of the last frame.
+    """The mean frame: arrays that are means are averaged; depth, position and indices come from the nearest sample;
+    times are added up; other statistics come from the last frame.
 
-    Holds one sum and one frame at a time, in float32: a thousand frames round to about 1e-6.
+    Only one sum and one frame are held at a time, in float32: after a thousand frames rounding is about 1e-6.
     """
     count, sums, nearest, matte, milliseconds, passes, stats = 0, {}, {}, None, 0.0, {}, {}
     for frame in frames:
@@ -102,7 +101,7 @@ def mean_frame(frames: Iterable[Frame]) -> Frame:
 
 
 def _nearer(kept: dict[str, np.ndarray], arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Of two sets of arrays with a depth, in each pixel that of the lesser one."""
+    """Per pixel, the values of the set with the smaller depth."""
     if not kept:
         return arrays
     if "depth" not in arrays:
@@ -115,14 +114,14 @@ def _nearer(kept: dict[str, np.ndarray], arrays: dict[str, np.ndarray]) -> dict[
 
 
 def _moved(camera: Camera, x: float, y: float) -> Camera:
-    """The camera with its window moved by pixels."""
+    """The camera with its window shifted by pixels."""
     left, right, bottom, top = camera.window
     dx, dy = x * (right - left) / camera.size[0], y * (top - bottom) / camera.size[1]
     return replace(camera, window=(left + dx, right + dx, bottom + dy, top + dy))
 
 
 def _through(camera: Camera, place: np.ndarray) -> Camera:
-    """The camera at a place on its lens, its window moved so that what is in focus stays where it was."""
+    """The camera at a point on its lens, with the window shifted so that the focus plane stays fixed."""
     left, right, bottom, top = camera.window
     dx, dy = place / camera.lens.focus_distance
     matrix = camera.matrix_world.copy()

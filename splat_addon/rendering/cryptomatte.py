@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whose each pixel is, by shares: Friedman and Jones, "Fully Automatic ID Mattes with Support for Motion Blur and
-Transparency", 2015, and the Cryptomatte specification 1.2.0 (how names become numbers, and what files say of them).
-"""
+"""Cryptomattes, the coverage of each pixel by object: Friedman and Jones, "Fully Automatic ID Mattes with Support for
+Motion Blur and Transparency", 2015, and the Cryptomatte specification 1.2.0 (hashing of names, and metadata in
+files)."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ def _rotated(value: int, bits: int) -> int:
 
 
 def name_hash(name: str) -> int:
-    """The bits of the float32 that stands for a name; never those of zero, a denormal number, infinity or NaN."""
+    """The bits of the float32 that represents a name; never zero, denormal, infinite or NaN."""
     bits = murmur3_32(name.encode("utf-8"))
     return bits ^ 1 << 23 if bits >> 23 & 0xFF in (0, 0xFF) else bits
 
 
 @dataclass(frozen=True, eq=False)
 class Cryptomatte:
-    """Which share of each pixel belongs to whom; what nothing covers is left out.
+    """The coverage of each pixel by name; uncovered parts are omitted.
 
-    size: width, height. keys: (n,) uint64, sorted, pixel (row by row from the bottom left) times 2^32 plus hash of the
-    name. shares: (n,) float64. names: of all that may be there, to their hashes.
+    size: width, height. keys: (n,) uint64, sorted: pixel (row by row from the bottom left) times 2^32 plus hash of the
+        name. shares: (n,) float64. names: all names that may occur -> their hashes.
     """
 
     size: tuple[int, int]
@@ -52,12 +52,12 @@ class Cryptomatte:
     names: dict[str, int]
 
     def plus(self, other: Cryptomatte) -> Cryptomatte:
-        """The sums of both, for pictures of one size."""
+        """The sum of two mattes of the same size."""
         keys, shares = added_up(np.concatenate([self.keys, other.keys]), np.concatenate([self.shares, other.shares]))
         return Cryptomatte(self.size, keys, shares, self.names | other.names)
 
     def looked_up(self, size: tuple[int, int], pixels: np.ndarray, sources: np.ndarray) -> Cryptomatte:
-        """A picture of another size, whose `pixels` (n,), by number, hold what `sources` (n,) do here."""
+        """A matte of another size, whose `pixels` (n,), by number, get the contents of `sources` (n,) of this one."""
         own = (self.keys >> np.uint64(32)).astype(np.int64)
         first = np.searchsorted(own, sources, "left")
         counts = np.searchsorted(own, sources, "right") - first
@@ -67,13 +67,12 @@ class Cryptomatte:
         return Cryptomatte(size, keys[order], self.shares[entry][order], self.names)
 
     def over(self, count: int) -> Cryptomatte:
-        """Each share divided by a number."""
+        """All shares divided by a number."""
         return Cryptomatte(self.size, self.keys, self.shares / count, self.names)
 
     def ranks(self, count: int) -> np.ndarray:
-        """(h, w, count, 2) float32: hash, as the bits of a number, and share of the `count` largest in each pixel, the
-        largest first; 0, 0 after the last.
-        """
+        """(h, w, count, 2) float32: hash (as the bits of a float) and share of the `count` largest in each pixel, the
+        largest first; unused entries are 0, 0."""
         width, height = self.size
         pixels = (self.keys >> np.uint64(32)).astype(np.int64)
         order = np.lexsort((-self.shares, pixels))
@@ -94,7 +93,7 @@ class Cryptomatte:
         return matte.reshape(self.size[::-1])
 
     def metadata(self, layer: str) -> dict[str, str]:
-        """What a file that holds the matte says of it. layer: name of the channels before the numbers."""
+        """File metadata for the matte. layer: name of the channels before the numbers."""
         prefix = f"cryptomatte/{murmur3_32(layer.encode('utf-8')):08x}"[:19]
         manifest = {name: f"{bits:08x}" for name, bits in self.names.items()}
         return {
@@ -106,7 +105,7 @@ class Cryptomatte:
 
 
 def added_up(keys: np.ndarray, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Sorted keys, each once, and the sums of their shares."""
+    """Sorted unique keys, and the sums of their shares."""
     order = np.argsort(keys, kind="stable")
     keys = keys[order]
     starts = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]])) if len(keys) else np.zeros(0, np.int64)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a render gives back."""
+"""The result of a render."""
 
 from __future__ import annotations
 
@@ -9,18 +9,19 @@ import numpy as np
 
 from .cryptomatte import Cryptomatte
 
-#: Depth where nothing was hit, as Cycles writes it.
+#: Depth of pixels where nothing was hit, as in Cycles.
 EMPTY_DEPTH = 1e10
 
 
 def _held(texture: str, where: int | slice) -> dict:
-    """Of an array that a texture of pixels holds on the device: its name, and where in its texels."""
+    """A field for an array that a pixel texture stores on the device: the texture's name, and the place in its
+    texels."""
     return {"held_by": (texture, where)}
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """float32 arrays, row 0 at the bottom; None where `Settings.outputs` left one out.
+    """float32 arrays, row 0 at the bottom; None for those that `Settings.outputs` leaves out.
 
     color: (h, w, 4) scene-linear, premultiplied.
     depth: (h, w) distance along the camera's -Z, world units, of the nearest sample in the pixel;
@@ -29,17 +30,16 @@ class Frame:
         empty ones counting as 0.
     coverage: (h, w) share of the pixel's samples that hit a splat.
     position: (h, w, 3) world-space point of that depth, seen through the pixel's centre; 0 where nothing was hit.
-    diffuse_color: (h, w, 3) the surface's own colour, unlit; of models that look at materials without what is metal.
-    emission: (h, w, 3) the part of `color` that surfaces send out themselves; 0 of models that do not look at
-        materials.
-    shadow: (h, w, 3) share of the lights' irradiance that shadows leave, of each colour; 0 where none comes from the
-        front, and of models that do not look at lights; 1 beside all surfaces.
-    overdraw: (h, w) splats that a sample is the mean of.
-        These four are means over the pixel's samples, as `color`, empty ones counting as 0.
-    object_index, material_index: (h, w) of what is nearest in the pixel, never mixed; 0 where nothing was hit.
-    cryptomatte: which share of each pixel belongs to which name; of what is opaque they add up to the coverage.
-        What is transparent has all of its samples, or nothing, by `Settings.alpha_threshold`, as the indices.
-    stats: what was drawn, and milliseconds by pass where `Settings.profile` asked for them.
+    diffuse_color: (h, w, 3) the surface's own colour, unlit; for models that use materials, without the metallic part.
+    emission: (h, w, 3) the part of `color` that surfaces emit; 0 for models that do not use materials.
+    shadow: (h, w, 3) share of the lights' irradiance that is not shadowed, per colour channel; 0 where no light comes
+        from the front, and for models that do not use lights; 1 beside all surfaces.
+    overdraw: (h, w) number of splats that a sample averages. These four are means over the pixel's samples, as `color`,
+        empty ones counting as 0.
+    object_index, material_index: (h, w) of the nearest sample in the pixel, never mixed; 0 where nothing was hit.
+    cryptomatte: the share of each pixel that belongs to each name; for opaque surfaces the shares add up to the
+        coverage. As for the indices, a transparent sample counts fully or not at all, by `Settings.alpha_threshold`.
+    stats: statistics, and with `Settings.profile` milliseconds per pass.
     """
 
     color: np.ndarray | None = field(default=None, metadata=_held("combined", slice(0, 4)))
@@ -59,5 +59,5 @@ class Frame:
 
 #: Names of the arrays, in order.
 OUTPUTS = tuple(f.name for f in fields(Frame) if f.name != "stats")
-#: array -> the texture of pixels that holds it, and where in its last axis
+#: array -> the pixel texture that stores it, and its place in the last axis
 HELD_BY = {f.name: f.metadata["held_by"] for f in fields(Frame) if f.metadata}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts of one picture that several machines drew: each is a file of its exact numbers, and all become one `Frame`.
+"""Parts of one picture that several machines drew: each is a file of exact values, and all are joined to one `Frame`.
 
 A file is numpy's .npz: an array for each output of each frame (a picture has several, by view layer and view), and
-`about`, JSON in UTF-8. Nothing in it is run when it is read.
+`about`, JSON in UTF-8. Reading it executes nothing.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _VERSION = 1
 @dataclass(frozen=True)
 class Part:
     """size: width and height of the whole picture in pixels. place: x, y, width and height of this part of it.
-    number: of the picture among others of its scene, which parts must agree in.
+    number: frame number, which must be the same for all parts.
     """
 
     size: tuple[int, int]
@@ -34,7 +34,7 @@ class Part:
 
 
 def write_part(path: str | os.PathLike, part: Part, frames: dict[tuple[str, str], Frame]) -> None:
-    """frames: by the names of view layer and view. Raises OSError."""
+    """Write a part. frames: by the names of view layer and view. Raises OSError."""
     arrays, names = {}, []
     for number, frame in enumerate(frames.values()):
         names.append({})
@@ -58,11 +58,7 @@ def write_part(path: str | os.PathLike, part: Part, frames: dict[tuple[str, str]
 
 
 def joined_parts(paths: Iterable[str | os.PathLike], size: tuple[int, int], number: int) -> dict[tuple, Frame]:
-    """The whole picture, by the names of view layer and view.
-
-    size, number: what it must be. Raises ValueError with one sentence for a file that is damaged or of another picture,
-    and where the parts do not cover each pixel once.
-    """
+    """The whole picture, by the names of view layer and view."""
     covered = np.zeros(size[::-1], np.uint8)
     wholes: dict[tuple[str, str], dict] = {}
     for path in paths:
@@ -96,7 +92,7 @@ def _check(path, about: dict, size, number: int, wholes: dict) -> None:
 
 
 def _put(whole: dict, arrays, turn: int, place, size: tuple[int, int], names: dict[str, int]) -> None:
-    """Copies the part's arrays to their place in those of the whole."""
+    """Copy the part's arrays into those of the whole picture."""
     x, y, width, height = place
     for output in OUTPUTS:
         if f"{turn}.{output}" in arrays:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Who is seen: every material slot of every instance has a number, which the visibility pass leaves beside its depth.
+"""Object identity: every material slot of every instance has a number, which the visibility pass writes with its depth.
 
-No filter mixes numbers. The nearest of a pixel's samples says whose it is; and by the weights under which silhouettes
-are filtered, all samples around say whose it is by which share (`Cryptomatte`).
+Numbers are never filtered. The nearest sample of a pixel gives its indices; for Cryptomatte, the weights of the
+silhouette filter turn the numbers of all samples around into shares.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from .scene import Placed, Scene
 
 INDICES = ("object_index", "material_index")
 
-#: The arrays of a frame that need numbers.
+#: The arrays of a frame that need these numbers.
 NUMBERED = (*INDICES, "cryptomatte")
 
-#: Of the Gaussian of shaders/hosts/resolve.frag.glsl, in samples; and what columns weigh there.
+#: Sigma of the Gaussian in shaders/hosts/resolve.frag.glsl, in samples; and the weights of columns.
 _FILTER_VARIANCE = 0.5
 _COLUMN_WEIGHTS = np.array([1.0, 2.0, 1.0])
 
-#: Pixels at a rim that are looked at in one go.
+#: Pixels at silhouettes that are processed at once.
 _CHUNK = 50_000
 
 
 @dataclass(frozen=True, eq=False)
 class Identities:
-    """What the numbers of a scene mean. 0 is nothing."""
+    """The meaning of a scene's numbers. 0 means nothing."""
 
     scene: Scene
 
@@ -51,30 +51,31 @@ class Identities:
         return numbers
 
     def slots(self, placed: Placed) -> tuple[int, int]:
-        """The number of its first slot and how many more it has; what holds out is nothing."""
+        """The number of an instance's first slot, and how many more slots it has; holdouts count as nothing."""
         return (0, 0) if placed.is_holdout else (self.firsts[placed], len(placed.materials) - 1)
 
     @cached_property
     def indices(self) -> dict[str, np.ndarray]:
-        """(n,) float32 pass index of each number's object and of its material."""
+        """(n,) float32 pass index of each number's object, and of its material."""
         objects = [0, *(instance.index for instance in self.firsts for _ in instance.materials)]
         materials = [0, *(material.index for instance in self.firsts for material in instance.materials)]
         return {"object_index": np.array(objects, np.float32), "material_index": np.array(materials, np.float32)}
 
     @cached_property
     def names(self) -> dict[str, int]:
-        """Of all instances, to their hashes."""
+        """Names of all instances -> their hashes."""
         return {name: name_hash(name) for name in dict.fromkeys(placed.name for placed in self._placed)}
 
     @cached_property
     def hashes(self) -> np.ndarray:
-        """(n,) uint32 of each number's name; 0 is nothing's."""
+        """(n,) uint32 hash of each number's name; 0 for nothing."""
         of_numbers = (self.names[instance.name] for instance in self.firsts for _ in instance.materials)
         return np.array([0, *of_numbers], np.uint32)
 
 
 class Identified:
-    """The arrays of a frame that need numbers, tile by tile; those of `outputs`, empty where no tile has been added."""
+    """Collects the arrays of a frame that need numbers, tile by tile: those in `outputs`, empty until tiles are
+    added."""
 
     def __init__(self, scene: Scene, size: tuple[int, int], outputs: tuple[str, ...]):
         self._identities = Identities(scene)
@@ -84,9 +85,8 @@ class Identified:
             self.arrays["cryptomatte"] = Cryptomatte(size, *nothing, self._identities.names)
 
     def add(self, tile: tuple[int, int, int, int], seen: np.ndarray, plan: FramePlan) -> None:
-        """A tile's x, y, width, height in pixels; and number and depth as the plan's texture of numbers has them,
-        (rows, columns, 2) float32, with its margin.
-        """
+        """Add a tile: x, y, width, height in pixels; and the plan's texture of numbers and depths, (rows, columns, 2)
+        float32, with its margin."""
         x, y, width, height = tile
         indices = [name for name in INDICES if name in self.arrays]
         numbers = nearest_numbers(seen[:: plan.facts["identity_rows"]], plan) if indices else None
@@ -97,7 +97,7 @@ class Identified:
 
 
 def nearer(seen: np.ndarray, *others: np.ndarray) -> np.ndarray:
-    """(rows, columns, 2) number and depth of what is nearest at each sample."""
+    """(rows, columns, 2) number and depth of the nearest surface at each sample."""
     for other in others:
         is_nearer = (other[..., 0] > 0) & ((seen[..., 0] == 0) | (other[..., 1] < seen[..., 1]))
         seen = np.where(is_nearer[..., None], other, seen)
@@ -107,7 +107,7 @@ def nearer(seen: np.ndarray, *others: np.ndarray) -> np.ndarray:
 def nearest_numbers(seen: np.ndarray, plan: FramePlan) -> np.ndarray:
     """(h, w) number of the nearest sample of each pixel.
 
-    seen: (rows, columns, 2) float32, number and depth of a tile's samples, with its margin.
+    seen: (rows, columns, 2) float32, number and depth of a tile's samples, including its margin.
     """
     across = plan.samples
     edge = plan.margin * across
@@ -119,7 +119,7 @@ def nearest_numbers(seen: np.ndarray, plan: FramePlan) -> np.ndarray:
 
 
 def tile_matte(seen: np.ndarray, tile, size: tuple[int, int], plan: FramePlan, identities: Identities) -> Cryptomatte:
-    """What a tile, x, y, width and height in a picture of that size, holds of whom. seen: as in `Identified.add`."""
+    """The Cryptomatte of a tile, x, y, width and height in a picture of that size. seen: as in `Identified.add`."""
     x, y, width, height = tile
     between = plan.facts["identity_rows"]
     away = np.arange(-FILTER_MARGIN * between, FILTER_MARGIN * between + 1) / between
@@ -141,8 +141,8 @@ def _key(x: np.ndarray, y: np.ndarray, size: tuple[int, int], hashes: np.ndarray
 
 @dataclass(frozen=True, eq=False)
 class _Axis:
-    """kernel: weights under a pixel of what numbers are known of along it. step: from a pixel to the next.
-    reached: of a tile with its margin, what its pixels' kernels reach."""
+    """One axis of the filter. kernel: weights under a pixel at the positions where numbers are known. step: from one
+    pixel to the next. reached: the part of a tile with its margin that its pixels' kernels reach."""
 
     kernel: np.ndarray
     step: int
@@ -150,9 +150,7 @@ class _Axis:
 
     @classmethod
     def of(cls, plan: FramePlan, pixels: int, between: int, weights: np.ndarray) -> _Axis:
-        """pixels: of the tile. between: how many numbers there are to a sample. weights: of what is around a sample,
-        where silhouettes are filtered.
-        """
+        """pixels: of the tile. between: numbers per sample. weights: around a sample, if silhouettes are filtered."""
         step = plan.samples * between
         kernel = np.zeros(step - between + 1)
         kernel[::between] = 1 / plan.samples
@@ -164,7 +162,7 @@ class _Axis:
 
 
 def _window_extreme(values: np.ndarray, axes: list[_Axis], extreme) -> np.ndarray:
-    """Least or greatest value of what every pixel's kernels reach."""
+    """Minimum or maximum of the values that every pixel's kernel reaches."""
     for axis in axes:
         reach = len(axis.kernel)
         last = len(values) - reach + 1
@@ -173,7 +171,7 @@ def _window_extreme(values: np.ndarray, axes: list[_Axis], extreme) -> np.ndarra
 
 
 def _mixed(hashes: np.ndarray, places: np.ndarray, axes: list[_Axis]):
-    """Hashes, shares, rows and columns of what pixels with more than one thing in their window hold, pixel by pixel."""
+    """Hashes, shares, rows and columns for pixels with more than one number in their window, pixel by pixel."""
     weights = np.outer(axes[0].kernel, axes[1].kernel).ravel()
     up, along = (np.arange(len(axis.kernel)) for axis in axes)
     steps = [axis.step for axis in axes]

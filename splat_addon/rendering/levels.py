@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Levels of detail: which surfels of an instance a view draws, or merged ones in their place.
+"""Levels of detail: which surfels of an instance a view draws, or which merged surfels instead.
 
-A view is told to the object's hierarchy in the object's own space; what it draws is a list of numbers, of surfels first
-and then of merged nodes, as they are stored.
+The view is transformed into the object's space and passed to the object's hierarchy; the result is a list of indices,
+of surfels first and then of merged nodes, in storage order.
 """
 
 from __future__ import annotations
@@ -17,33 +17,33 @@ from ..surfels import Surfels
 from .scene import Instance
 from .scene.camera import Camera
 
-#: Of fewer surfels than this a cut saves less than it takes.
+#: For fewer surfels than this a cut saves less than it costs.
 LEAST_SURFELS = 4096
 
-#: A method's filter shows splats that lie less than this beside the picture, pixels.
+#: A method's filter may show splats that are less than this many pixels outside the picture.
 _BESIDE = 8.0
 
-#: At most this many spacings is the error of the finest merged surfels that are worth a hierarchy.
+#: The error of the finest merged surfels that are worth a hierarchy, in spacings, at most.
 _FINEST_ERROR = 2.0
 
 _BUILT: WeakKeyDictionary[Surfels, Hierarchy] = WeakKeyDictionary()
 
 
 def hierarchy_of(surfels: Surfels) -> Hierarchy:
-    """That of a set, built when it is first asked for and kept as long as the set is."""
+    """The hierarchy of a set of surfels, built on first use and kept as long as the set."""
     if surfels not in _BUILT:
         _BUILT[surfels] = build_hierarchy(surfels)
     return _BUILT[surfels]
 
 
 def has_levels(instance: Instance) -> bool:
-    """Whether it may be drawn as merged surfels: opaque ones, of which there are many. What is split by its distance
-    from the camera is polygons where it is near, and surfels beyond that are told apart by where they lie."""
+    """Whether an instance may be drawn as merged surfels: it needs many, opaque surfels. Objects that are split by
+    distance from the camera are excluded, because their surfels are selected by position."""
     return len(instance.surfels) >= LEAST_SURFELS and not instance.is_transparent and instance.split is None
 
 
 def may_merge(instance: Instance, camera: Camera, tolerance: float) -> bool:
-    """Whether, seen from its farthest corner, merged surfels may be within the tolerance, as far as some tell."""
+    """Whether, seen from its farthest corner, merged surfels may be within the tolerance, judged from a sample."""
     if not tolerance or not has_levels(instance):
         return False
     if instance.surfels in _BUILT:
@@ -57,7 +57,7 @@ def may_merge(instance: Instance, camera: Camera, tolerance: float) -> bool:
 
 
 def sight(instance: Instance, camera: Camera, hides_backs: bool, tolerance: float) -> Sight:
-    """A camera's view of an instance. tolerance: pixels of the camera's picture."""
+    """A camera's view of an instance. tolerance: in pixels of the camera's picture."""
     matrix = instance.model_view(camera)
     x, y, depth = matrix[0], matrix[1], -matrix[2]
     left, right, bottom, top = camera.window
@@ -82,6 +82,6 @@ def sight(instance: Instance, camera: Camera, hides_backs: bool, tolerance: floa
 
 
 def _pixels(camera: Camera) -> float:
-    """How many a unit of the world is at distance 1, or anywhere of a parallel view."""
+    """Pixels per world unit at distance 1, or anywhere for a parallel view."""
     left, right, bottom, top = camera.window
     return max(camera.size[0] / (right - left), camera.size[1] / (top - bottom))

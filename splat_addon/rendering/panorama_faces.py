@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A panorama from six views (Greene, "Environment mapping and other applications of world projections", 1986).
 
-Each view is a perspective picture of one face of a cube around the camera, and a little more, so that a filter finds
-its neighbours; only what the panorama shows of a face is drawn.
+Each view is a perspective picture of one face of a cube around the camera, plus a border for filters; only the part of
+a face that the panorama shows is drawn.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from .settings import NEAREST, OUTPUTS, Settings, held_arrays
 #: (a sample's camera, the one that shadow maps are fitted to, settings, progress) -> Frame
 Draw = Callable[[Camera, Camera, Settings, object], Frame]
 
-#: Pixels of a face along the panorama's finest pixel, where the face is coarsest.
+#: Pixels of a face per finest pixel of the panorama, where the face is coarsest.
 DENSITY = 2.0
-#: Pixels of a face that a look needs around it; views begin at multiples of some, so that samples have them in common.
+#: Pixels of a face around a lookup; views begin at multiples of some number, so that samples share them.
 _REACH, _STEP = 3, 16
 #: Pixels whose directions are held at once.
 _BLOCK = 1 << 18
 
-#: axes x, y, z of each face's view: it looks down its -z
+#: x, y, z axes of each face's view, which looks down its -z
 _FACES = np.array(
     [
         [(1, 0, 0), (0, 1, 0), (0, 0, 1)],
@@ -44,9 +44,8 @@ _FACES = np.array(
 
 @dataclass(frozen=True, eq=False)
 class _Face:
-    """camera: its view. pixels: (n,) numbers of the panorama's that look through it. looks: (n, 2) where, in pixels of
-    the view.
-    """
+    """camera: its view. pixels: (n,) numbers of the panorama's pixels that use this face. looks: (n, 2) their
+    positions, in pixels of the view."""
 
     camera: Camera
     pixels: np.ndarray
@@ -54,13 +53,13 @@ class _Face:
 
 
 def panorama_frame(panorama: Panorama, number: int, settings: Settings, draw: Draw, progress=None) -> Frame:
-    """Sample `number` of a panorama: its faces, drawn and looked up.
+    """Sample `number` of a panorama: draws its faces and resamples them.
 
-    The pixels of a face and the places in the panorama's pixels move by their own sequences (`sample_points`), so
-    that the mean over samples depends on neither grid. Pixels that look nowhere are an opaque black, as Cycles', and
-    as deep as nothing. Depths are distances from the camera; they and what no filter may mix (`NEAREST`, Cryptomatte)
-    are those of the nearest pixel of the face. The rest is interpolated: bilinearly where there is one sample, which
-    smooths it to about a pixel.
+    Both the pixels of a face and the positions in the panorama's pixels are jittered (`sample_points`), so that the
+    mean over samples depends on neither grid. Pixels outside the projection are opaque black as in Cycles, with empty
+    depth. Depths are distances from the camera. Depths and values that must not be filtered (`NEAREST`, Cryptomatte)
+    come from the nearest pixel of the face. Everything else is interpolated: bilinearly if there is only one sample,
+    which smooths by about a pixel.
     """
     x, y, *place = sample_points(1, number)[0]
     faces = _faces(panorama, place)
@@ -90,7 +89,7 @@ def panorama_frame(panorama: Panorama, number: int, settings: Settings, draw: Dr
 
 
 def _in_pixels_of_faces(settings: Settings) -> Settings:
-    """The same choices where a length in pixels is one of a face's."""
+    """The same settings, with lengths in pixels converted to pixels of a face."""
     lines = settings.lines
     if lines is None:
         return settings
@@ -99,7 +98,7 @@ def _in_pixels_of_faces(settings: Settings) -> Settings:
 
 
 def _nothing(name: str, size: tuple[int, int], shape: tuple[int, ...]) -> np.ndarray:
-    """What pixels hold that look nowhere."""
+    """The values of pixels outside the projection."""
     values = np.zeros((size[0] * size[1], *shape), np.float32)
     if name == "depth":
         values[:] = EMPTY_DEPTH
@@ -111,12 +110,12 @@ def _nothing(name: str, size: tuple[int, int], shape: tuple[int, ...]) -> np.nda
 
 
 def _share(progress, turn: int, count: int):
-    """What the `turn`th of `count` faces tells."""
+    """Progress of face `turn` of `count` as a share of the whole."""
     return progress and (lambda done, step: progress((turn + done) / count, step))
 
 
 def _faces(panorama: Panorama, place) -> list[_Face]:
-    """Those that something is seen through. place: in each of the panorama's pixels."""
+    """The faces that are visible. place: in each of the panorama's pixels."""
     found = [([], []) for _ in _FACES]
     width, height = panorama.size
     rows = max(_BLOCK // width, 1)
@@ -136,7 +135,7 @@ def _faces(panorama: Panorama, place) -> list[_Face]:
 
 
 def cube_views(panorama: Panorama, density: float) -> list[Camera]:
-    """The six whole faces. density: their pixels along the panorama's finest, where faces are coarsest."""
+    """The six whole faces. density: pixels per finest pixel of the panorama, where faces are coarsest."""
     side = int(np.ceil(2 * density / panorama.pixel_angle()))
     views = []
     for axes in _FACES:
@@ -147,7 +146,7 @@ def cube_views(panorama: Panorama, density: float) -> list[Camera]:
 
 
 def _face(whole: Camera, pixels: np.ndarray, looks: np.ndarray) -> _Face:
-    """What the pixels look at, of a face. looks: (n, 2) on the plane at distance 1, -1 to 1."""
+    """The pixels that see a face. looks: (n, 2) on the plane at distance 1, -1 to 1."""
     looks = (looks + 1) * (whole.size[0] / 2)
     low = np.floor((looks.min(axis=0) - _REACH) / _STEP).astype(int) * _STEP
     high = np.ceil((looks.max(axis=0) + _REACH) / _STEP).astype(int) * _STEP
@@ -155,23 +154,22 @@ def _face(whole: Camera, pixels: np.ndarray, looks: np.ndarray) -> _Face:
 
 
 def _bilinear(values: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
-    """(n, ...) of an array of a face's frame. looks: (n, 2) in pixels of `camera`."""
+    """(n, ...) bilinear samples of an array of a face's frame. looks: (n, 2) in pixels of `camera`."""
     return sum(
         along * up * pixels for along, up, pixels in _around(values, camera, looks, lambda t: (1 - t, t), first=0)
     )
 
 
 def _cubic(values: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
-    """As `_bilinear`, by Keys' cubic convolution (1981), which does not widen the filter of many samples; within what
-    the four nearest pixels hold, so that nothing rings.
-    """
+    """As `_bilinear`, with Keys' cubic convolution (1981), which does not widen the filter of many samples; clamped to
+    the range of the four nearest pixels, so that nothing rings."""
     inner = [pixels for _, _, pixels in _around(values, camera, looks, lambda t: (1 - t, t), first=0)]
     mixed = sum(along * up * pixels for along, up, pixels in _around(values, camera, looks, _keys, first=-1))
     return np.clip(mixed, np.minimum.reduce(inner), np.maximum.reduce(inner))
 
 
 def _keys(t: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Weights of the pixels before, at, after and beyond, t beyond the second."""
+    """Weights of the pixels before, at, after and beyond, at a distance t past the second."""
     return (
         t * (-0.5 + t * (1 - 0.5 * t)),
         1 + t * t * (1.5 * t - 2.5),
@@ -181,7 +179,8 @@ def _keys(t: np.ndarray) -> tuple[np.ndarray, ...]:
 
 
 def _around(values: np.ndarray, camera: Camera, looks: np.ndarray, weights, first: int) -> Iterator:
-    """(weight across, weight up, values (n, ...)) of each of the pixels around looks, `first` the lowest."""
+    """(weight across, weight up, values (n, ...)) of each of the pixels around the lookups, `first` being the
+    lowest."""
     corner = np.floor(looks - 0.5).astype(int)
     shape = (-1, *[1] * (values.ndim - 2))
     across, up = ([w.reshape(shape) for w in weights(t)] for t in (looks - 0.5 - corner).astype(np.float32).T)
@@ -191,18 +190,18 @@ def _around(values: np.ndarray, camera: Camera, looks: np.ndarray, weights, firs
 
 
 def _nearest(values: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
-    """As `_bilinear`, of what no filter may mix."""
+    """As `_bilinear`, but the nearest value, for arrays that must not be filtered."""
     return values.reshape(-1, *values.shape[2:])[_pixel_numbers(camera, looks)]
 
 
 def _pixel_numbers(camera: Camera, looks: np.ndarray) -> np.ndarray:
-    """(n,) of the pixels looked at, row by row."""
+    """(n,) numbers of the pixels at the lookups, row by row."""
     column, row = np.floor(looks).astype(int).T
     return row * camera.size[0] + column
 
 
 def _distance(depth: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
-    """(n,) distances from the camera, of the pixels looked at."""
+    """(n,) distances from the camera of the pixels at the lookups."""
     row, column = np.divmod(_pixel_numbers(camera, looks), camera.size[0])
     left, right, bottom, top = camera.window
     across = left + (column + 0.5) / camera.size[0] * (right - left)
@@ -212,7 +211,7 @@ def _distance(depth: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarra
 
 
 def _added(stats: dict, more: dict) -> dict:
-    """Times and numbers of splats added up, the largest of other counts."""
+    """Statistics combined: times and numbers of splats added up, the maximum of other counts."""
     if not stats:
         return dict(more)
     sums = {name: stats[name] + more[name] for name in ("milliseconds", "splats", "instances")}

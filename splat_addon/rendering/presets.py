@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Three settings that are worth their time: each on the frontier of accuracy and speed (docs/evidence/trade.md)."""
+"""Three presets that are worth their time: each is on the frontier of accuracy and speed (docs/evidence/trade.md)."""
 
 from __future__ import annotations
 
@@ -10,10 +10,8 @@ from .settings import Settings
 
 @dataclass(frozen=True)
 class Preset:
-    """values: the fields of `Settings` that it decides; figures are of these. samples: pictures that a final render in
-    Blender is the mean of, so that no edge has steps which the viewport does not have. summary: what it is for, and
-    what was measured.
-    """
+    """values: the fields of `Settings` that it sets; figures refer to these. samples: number of samples of a final
+    render in Blender, enough to make edges as smooth as in the viewport. summary: its purpose and measurements."""
 
     name: str
     label: str
@@ -23,7 +21,7 @@ class Preset:
 
     @property
     def render_values(self) -> dict:
-        """`values`, and what Blender's final render has besides."""
+        """`values`, and what Blender's final render has in addition."""
         return {**self.values, "samples": self.samples}
 
     def of(self, settings: Settings) -> Settings:

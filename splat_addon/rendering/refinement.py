@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A picture that gets better while nothing changes, for viewports: one sample at once, then one more at a time."""
+"""Progressive refinement for viewports: a picture with one sample at once, then one more sample at a time."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from .shadow import ShadowMap
 
 
 class Refinement:
-    """What one view shows, with one renderer of its own.
+    """The state of one view, with its own renderer.
 
-    samples: how many the shown picture is the mean of; 0 for the first one, which no sum holds, so that a view that
-    moves costs no more than without.
+    samples: number of samples in the shown picture; 0 for the first, which is not stored in a sum, so that a moving
+        view costs no more than without refinement.
     """
 
     def __init__(self, renderer: Renderer):
@@ -28,10 +28,10 @@ class Refinement:
         self._refines = False
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
-        """The parts of the picture to be shown now: drawn with one sample where anything changed, with one more where
-        nothing did, and not drawn again where it is the mean of `settings.samples`.
+        """Yield the parts of the picture to show now: with one sample if anything changed, with one more sample if
+        nothing did, and unchanged once it has `settings.samples`.
 
-        A part is good until the next is asked for. Raises as `Renderer.draw`.
+        A part is valid until the next is requested. Raises as `Renderer.draw`.
         """
         if not self._is_of(scene, camera, settings):
             self._of, self.samples, self._maps = (scene, camera, settings), 0, None
@@ -51,7 +51,7 @@ class Refinement:
 
     @property
     def wants_more(self) -> bool:
-        """Whether drawing the same again makes the picture better."""
+        """Whether drawing again improves the picture."""
         return self._refines and self.samples < self._of[2].samples
 
     def _is_of(self, scene: Scene, camera: Camera, settings: Settings) -> bool:

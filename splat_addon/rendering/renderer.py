@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a frame's plan on a device, and keeps on the device what the next frame can use again."""
+"""Runs a frame's plan on a device, and keeps there what the next frame can reuse."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from .view import build_view, clip_range
 #: x, y, width, height in pixels.
 Tile = tuple[int, int, int, int]
 
-#: Told the share done (0 to 1) and what comes next; returning False cancels.
+#: Called with the finished share (0 to 1) and the next step; returning False cancels.
 Progress = Callable[[float, str], bool]
 
 
@@ -42,7 +42,7 @@ class RenderCancelled(Exception):
 
 
 class Shown(NamedTuple):
-    """Pixels to show. place: where. texture, part: what, in its pixels. scale: what they are multiplied by."""
+    """Pixels to show. place: where. texture, part: the texture, and the region in it. scale: factor for the values."""
 
     place: Tile
     texture: DeviceTexture
@@ -51,7 +51,7 @@ class Shown(NamedTuple):
 
 
 class Renderer:
-    """Draws scenes on one device. What the next frame can use stays there (`Resources`) until `release`."""
+    """Draws scenes on one device. What the next frame can reuse stays there (`Resources`) until `release`."""
 
     def __init__(self, device: Device):
         self.device = device
@@ -67,8 +67,8 @@ class Renderer:
     ) -> Frame:
         """The whole picture in numpy arrays, or a part of it.
 
-        part: x, y, width, height in pixels. What all of the picture shares is as if it were drawn whole; where the
-        part's tiles are tiles of the whole picture too, its pixels are the same bit by bit.
+        part: x, y, width, height in pixels. Values shared by the whole picture are computed as if it were drawn whole;
+            if the part's tiles are also tiles of the whole picture, its pixels are bit-identical.
         Raises ValueError for settings that do not fit, RuntimeError where the device fails, RenderCancelled.
         """
         return self.render_moments([(scene, camera)], 1, settings, progress, part)
@@ -81,9 +81,9 @@ class Renderer:
         progress: Progress | None = None,
         part: Tile | None = None,
     ) -> Frame:
-        """The mean over the time that a shutter is open: of `count` moments, each with its share of the samples.
+        """The mean over the time of an open shutter: `count` scenes, each with its share of the samples.
 
-        moments: each is asked for when the one before is drawn; `accumulation.moment_places` says when they are.
+        moments: each is requested when the previous one has been drawn; `accumulation.moment_places` gives their times.
         part: as in `render`.
         Raises as `render`, and ValueError for more moments than samples.
         """
@@ -104,9 +104,9 @@ class Renderer:
     def _samples(
         self, scene, camera, settings, numbers: list[int], turns: Iterator, part: Tile | None
     ) -> Iterator[Frame]:
-        """The pictures of these samples; those that would draw the same shadow maps share them.
+        """The pictures of these samples; samples that would draw the same shadow maps share them.
 
-        Maps are fitted to what the camera sees through its pixels' centres, unless a lens moves the eye.
+        Maps are fitted to the camera's view through pixel centres, unless a lens moves the eye.
         """
         maps = None
 
@@ -128,7 +128,8 @@ class Renderer:
     def _frame(
         self, scene, camera: Camera, settings, progress, frame_plan: FramePlan, are_shared_done: bool, part: Tile | None
     ) -> Frame:
-        """The picture of one sample. are_shared_done: what all tiles share is still there, of the sample before."""
+        """The picture of one sample. are_shared_done: whether results shared by all tiles are left from the previous
+        sample."""
         left, bottom, *size = part or (0, 0, *camera.size)
         stats = self._new_stats(frame_plan)
         started = perf_counter()
@@ -150,12 +151,12 @@ class Renderer:
         return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)
 
     def _read_whole(self, texture: Texture, tile: Tile, frame_plan: FramePlan) -> np.ndarray:
-        """A texture of the plan, with the tile's margin."""
+        """A texture of the plan, including the tile's margin."""
         key = texture_key(texture, _drawn(tile, frame_plan)[2:], frame_plan)
         return self.device.target([self.resources.texture(key)]).read(0)
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
-        """For a viewport, one sample: yields the tiles. A texture is good until the next tile is asked for."""
+        """For a viewport, one sample: yields the tiles. A texture is valid until the next tile is requested."""
         self._check(settings)
         frame_plan = plan(scene, camera, settings)
         if not frame_plan.passes:
@@ -175,10 +176,10 @@ class Renderer:
     def add_sample(
         self, scene: Scene, moved: Camera, fitted: Camera, settings: Settings, is_first: bool, maps
     ) -> tuple[ShadowMap, ...] | None:
-        """Add the picture of one sample to the sum of those before, whose shadow maps were `maps`; None for none.
+        """Add the picture of one sample to the sum of the previous ones, whose shadow maps were `maps`; None for none.
 
-        moved: the sample's camera. fitted: whose view shadow maps are fitted to. Gives this sample's maps, or None
-        where the picture is its background and there is nothing to add.
+        moved: the sample's camera. fitted: the camera that shadow maps are fitted to. Returns this sample's maps, or
+            None if the picture is only background and there is nothing to add.
         """
         frame_plan = plan(scene, moved, settings, shadow_camera=fitted, is_added_up=True)
         if not frame_plan.passes:
@@ -195,14 +196,14 @@ class Renderer:
         return frame_plan.facts["shadow_maps"]
 
     def shown_sum(self, size: tuple[int, int], samples: int) -> Shown:
-        """The mean of the samples that were added."""
+        """The mean of the samples added so far."""
         return Shown((0, 0, *size), self._sum(size), (0, 0, *size), 1.0 / samples)
 
     def _sum(self, size: tuple[int, int]) -> DeviceTexture:
         return self.resources.texture((SUM.name, *size, SUM.format, 0))
 
     def release(self) -> None:
-        """Let go of everything on the device."""
+        """Free everything on the device."""
         self.resources.release()
 
     def _check(self, settings: Settings) -> None:
@@ -273,7 +274,7 @@ class Renderer:
         del stats["tile"]
 
     def _watching(self, settings, frame_plan, stats, progress):
-        """What is called before each pass and after it."""
+        """Callbacks before and after each pass."""
         started = 0.0
 
         def told(p, step):
@@ -293,7 +294,7 @@ class Renderer:
 
 
 def _share(progress: Progress, turn: int, count: int) -> Progress:
-    """What the `turn`th of `count` samples tells."""
+    """Progress of sample `turn` of `count` as a share of the whole."""
     return lambda done, step: progress((turn + done) / count, f"sample {turn + 1}/{count}: {step}")
 
 
@@ -303,7 +304,7 @@ def background_pixel(scene: Scene, settings: Settings) -> tuple[float, float, fl
 
 
 def _background(scene: Scene, size, settings: Settings) -> dict[str, np.ndarray]:
-    """The arrays of a picture without a single splat."""
+    """The arrays of a picture without splats."""
     width, height = size
     pixels = {"color": background_pixel(scene, settings), "depth": EMPTY_DEPTH, "shadow": 1.0}
     arrays = {}
@@ -315,18 +316,18 @@ def _background(scene: Scene, size, settings: Settings) -> dict[str, np.ndarray]
 
 
 def _drawn(tile: Tile, frame_plan: FramePlan) -> Tile:
-    """A tile with its margin."""
+    """A tile, including its margin."""
     (x, y, width, height), margin = tile, frame_plan.margin
     return x - margin, y - margin, width + 2 * margin, height + 2 * margin
 
 
 def _read_arrays(outputs: tuple[str, ...]) -> tuple[str, ...]:
-    """Those that the device holds as they are."""
+    """Read the arrays that the device stores directly."""
     return tuple(name for name in held_arrays(outputs) if name in HELD_BY)
 
 
 def _read(target, frame_plan: FramePlan, outputs: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """The wanted arrays of one tile, without its margin."""
+    """Read the requested arrays of one tile, without its margin."""
     kept = slice(frame_plan.margin, -frame_plan.margin or None)
     names, held = _read_arrays(outputs), [texture.name for texture in frame_plan.passes[-1].colors]
     textures = {HELD_BY[name][0] for name in names}
@@ -339,14 +340,14 @@ def _read(target, frame_plan: FramePlan, outputs: tuple[str, ...]) -> dict[str, 
 
 
 def _positions(camera: Camera, depth: np.ndarray, corner: tuple[int, int]) -> np.ndarray:
-    """(h, w, 3) float32, 0 where nothing was hit. corner: the pixel of the picture that the depths begin with."""
+    """(h, w, 3) float32, 0 where nothing was hit. corner: the picture's pixel at which the depths begin."""
     is_hit = depth < EMPTY_DEPTH
     points = camera.points_at(np.where(is_hit, depth, 0.0), corner)
     return np.where(is_hit[..., None], points, 0.0).astype(np.float32)
 
 
 def _assembled(tiles, size) -> dict[str, np.ndarray]:
-    """One picture from its tiles; a single one is it already."""
+    """One picture from its tiles; a single tile is returned as it is."""
     if len(tiles) == 1:
         return tiles[0][1]
     width, height = size

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a picture is to be made: one frozen set of choices that the Blender properties mirror."""
+"""Render settings: one frozen set of choices that the Blender properties mirror."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ MAX_SAMPLES = 4096
 
 MAX_TOON_STEPS = 16
 
-#: Samples a pixel that hardware may offer; 0 is none of its own.
+#: Hardware samples per pixel; 0 for none.
 MULTISAMPLING = (0, 2, 4, 8)
 
-#: Eight maps of that size beside one another are the widest texture that every tested backend has.
+#: Eight maps of this size side by side make the widest texture that every tested backend supports.
 MAX_SHADOW_RESOLUTION = 2048
 
 MAX_LAYERS = 64
 
-#: Those that follow the nearest sample of a pixel.
+#: Outputs that follow the nearest sample of a pixel.
 NEAREST = ("depth", "position", "object_index", "material_index")
 
 
 def held_arrays(outputs: tuple[str, ...]) -> tuple[str, ...]:
-    """The arrays of a frame that has these outputs: what follows the nearest sample brings its depth."""
+    """The arrays of a frame with these outputs; outputs that follow the nearest sample include its depth."""
     return tuple(name for name in OUTPUTS if name in outputs or (name == "depth" and set(outputs) & set(NEAREST)))
 
 
@@ -50,10 +50,10 @@ class Settings:
     toon_steps: levels of each light in the toon model, at least 2. toon_softness: width of their edges, as a share of a
         level's.
     matcap: what that model looks up.
-    lines: drawn along silhouettes and creases, whatever the shading; None for none.
-    supersampling: N x N samples a pixel, averaged with a box filter.
-    samples: pictures that a render is the mean of, each seen through another place in the pixel, a box filter one
-        pixel wide over what the method draws, and through another place on the camera's lens, if it has one.
+    lines: drawn along silhouettes and creases, with any shading; None for none.
+    supersampling: N for N x N samples per pixel, averaged with a box filter.
+    samples: number of pictures that are averaged, each with a different offset in the pixel (a box filter one pixel
+        wide on top of the method's own filter) and a different point on the camera's lens, if it has one.
     multisampling: samples that the hardware tests for depth in each of those, for methods that work in space; a device
         has what its `multisample_counts` name, and Blender's has none.
     sample_shading: of multisampling, evaluate splats and light at every sample, not once a pixel.
@@ -63,23 +63,23 @@ class Settings:
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
     detail_tolerance: of opaque surfels that are too small to be seen one by one, merged ones are drawn that are off by
         at most this many pixels, in each view (the camera's, and each shadow map's in its texels); 0 draws all.
-    shadow_resolution: texels along the side of a shadow map; 0 leaves shadows out.
-    ambient_occlusion: up to this distance, in units of the scene, surfaces keep the world's light from one another, as
-        far as the picture shows them; 0 leaves it out.
-    layers: of transparent surfaces behind one another, the most that each pixel is made of. blends_rest: the last of
-        them is all that is left, unordered and as if lit at each splat; else what lies behind the last is lost.
-    alpha_threshold: the least opacity of a surface that the depth and the normal are taken from.
-    transparent_film: leave the background out and keep its alpha at 0.
-    outputs: which arrays of the `Frame` are wanted; the others are None and cost nothing. A position and
-        an index bring the depth that they belong to.
+    shadow_resolution: texels along the side of a shadow map; 0 disables shadows.
+    ambient_occlusion: distance, in scene units, up to which visible surfaces block the world's light from one another;
+        0 disables it.
+    layers: maximum number of transparent surfaces behind one another per pixel. blends_rest: the last layer blends all
+        remaining surfaces without order, each splat lit by itself; otherwise they are lost.
+    alpha_threshold: minimum opacity of the surface that depth and normal are taken from.
+    transparent_film: omit the background and leave its alpha at 0.
+    outputs: the requested arrays of the `Frame`; the others are None and cost nothing. A position and an index bring
+        the depth that they belong to.
     lights_splats: light each splat where it stands and blend their colours, as Botsch and Kobbelt 2003 do, instead of
         lighting the sample that they blend to.
-    culls_backs: leave out splats whose backs are seen, of open surfaces too (Botsch and Kobbelt 2003, section 4).
+    culls_backs: skip splats that face away, also for open surfaces (Botsch and Kobbelt 2003, section 4).
     as_printed: follow the papers where this project has rules of its own: backs are drawn as fronts, where else they
         weigh little beside one; and the last transparent layer hides as one surface does, not as all that it holds.
-    storage: the form in which surfels lie on the device, a name in `upload.storages`.
+    storage: the format of surfels on the device, a name in `upload.storages`.
     accumulation: of the sums of colour and material, a name in `ACCUMULATIONS`.
-    profile: wait for the device after each pass, so that the frame's statistics hold a time for each.
+    profile: wait for the device after each pass, so that the frame's statistics contain the time of each.
     """
 
     method: str = "mip"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shadow maps: the cameras through which lights see what casts shadows, and how shaders find places in them.
+"""Shadow maps: the cameras from which lights see shadow casters, and the data with which shaders look up the maps.
 
 Sources: Williams 1978, "Casting Curved Shadows on Curved Surfaces"; Botsch et al. 2005, section 6 (splats
 seen by a light are a visibility pass from there).
@@ -17,24 +17,24 @@ from .scene.camera import Camera, look_at
 from .scene.light import MAX_SUN_HALF_ANGLE, Light
 from .view import View, sees_any, visible_corners
 
-#: More maps than this do not fit into the atlas; the lights that come last then cast no shadow.
+#: Maximum number of maps in the atlas; the last lights cast no shadow if there are more.
 MAX_MAPS = 64
 
-#: A face of a light that shines all around sees a little more than its sixth, so that a filter finds its neighbours.
+#: A face of an omnidirectional light has a margin for filters.
 FACE_WINDOW = 1.05
-#: A wider spot is seen through faces, like a point.
+#: Wider spots use cube faces like a point light.
 MAX_SPOT_WINDOW = 2.5
-#: fields of `Scene` that hold what casts shadows
+#: fields of `Scene` that contain shadow casters
 _KINDS = ("surfels", "polygons")
-#: Of the farthest caster's distance: nearer ones cast no shadow.
+#: As a fraction of the farthest caster's distance: closer casters cast no shadow.
 NEAREST = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
 class ShadowMap:
-    """light: number in the scene. camera: what the light sees. place: (x, y) of the picture in the atlas, in texels.
+    """light: number in the scene. camera: the light's view. place: (x, y) of the map in the atlas, in texels.
 
-    is_face: whether it is one of a cube's around a lamp; what it sees goes on in those beside it.
+    is_face: whether it is one face of a cube around a light, and continues in the adjacent faces.
     """
 
     light: int
@@ -44,7 +44,7 @@ class ShadowMap:
 
 
 def shadow_maps(scene: Scene, camera: Camera, resolution: int) -> tuple[tuple[ShadowMap, ...], int]:
-    """The maps that a picture needs, and how many lights had to go without. resolution: texels along a map's side."""
+    """The maps that a picture needs, and the number of lights left without. resolution: texels along a map's side."""
     if not any(light.casts_shadow for light in scene.lights):
         return (), 0
     casters = casting(scene)
@@ -68,7 +68,7 @@ def shadow_maps(scene: Scene, camera: Camera, resolution: int) -> tuple[tuple[Sh
 
 
 def same_maps(some: tuple[ShadowMap, ...], others: tuple[ShadowMap, ...]) -> bool:
-    """Whether, of one scene, they hold the same."""
+    """Whether two sets of maps have the same contents, for the same scene."""
     return len(some) == len(others) and all(
         a.light == b.light and a.place == b.place and a.camera.is_same(b.camera)
         for a, b in zip(some, others, strict=True)
@@ -86,7 +86,7 @@ def atlas_size(maps: tuple[ShadowMap, ...]) -> tuple[int, int]:
 
 
 def casting(scene: Scene) -> Scene:
-    """The instances that cast shadows, alone."""
+    """The scene with only the instances that cast shadows."""
     kinds = {name: tuple(i for i in getattr(scene, name) if i.casts_shadow and len(i.shape)) for name in _KINDS}
     return replace(scene, **kinds, lights=())
 
@@ -128,7 +128,7 @@ def _beside(made: ShadowMap, maps, depths) -> np.ndarray:
 
 
 def map_ranges(maps: tuple[ShadowMap, ...], lights: int) -> np.ndarray:
-    """(lights, 2) number of each light's first map, and of how many it has."""
+    """(lights, 2) the first map of each light, and the number of its maps."""
     owners = np.array([m.light for m in maps], int)
     counts = np.bincount(owners, minlength=lights)
     return np.stack([np.concatenate([[0], np.cumsum(counts)[:-1]]), counts], axis=1)
@@ -138,10 +138,9 @@ def map_ranges(maps: tuple[ShadowMap, ...], lights: int) -> np.ndarray:
 
 
 def _sun(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
-    """One parallel camera over what is both in the picture and in the scene, and over what softens its shadows from
-    beside, up to as much again; it looks back to the farthest caster over that, and no deeper: depths are stored as
-    shares of the length, in 24 bits.
-    """
+    """One parallel camera for a sun. It covers what is both in the picture and in the scene, plus casters beside it
+    that soften its shadows, up to as much again. It extends back to the farthest caster above that and no farther,
+    because depths are stored as 24-bit fractions of its length."""
     frame = look_at((0, 0, 0), light.direction)
     to_light = frame[:3, :3].T
     if seen is None:
@@ -167,7 +166,7 @@ def _sun(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camer
 
 
 def _nearest_over(boxes: np.ndarray, middle: np.ndarray, half: float) -> float | None:
-    """The highest place of the boxes (n, 8, 3) of which a part is over a square; None where none is."""
+    """The highest point of the boxes (n, 8, 3) that overlap a square; None if none does."""
     least, most = boxes.min(axis=1)[:, :2], boxes.max(axis=1)[:, :2]
     is_over = ((least <= middle + half) & (most >= middle - half)).all(axis=1)
     return boxes[is_over, :, 2].max() if is_over.any() else None
@@ -185,7 +184,7 @@ def _point(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Cam
 
 
 def _area(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
-    """Its front, and the halves of its sides that it shines to."""
+    """The front of an area light, and the halves of the sides that it illuminates."""
     axes = look_at((0, 0, 0), light.direction)[:3, :3].T
     return _faces(light, corners, resolution, axes)[:-1]
 

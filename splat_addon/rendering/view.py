@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the camera sees, made well-conditioned for float32: camera-relative, scaled, culled; all in float64.
+"""The camera's view, prepared for float32: camera-relative, scaled and culled, all in float64.
 
-World positions are subtracted from the camera's before anything is rounded, and the view is scaled by a power of
-two (exact in floating point) so that the median depth is about 1. The clip range is narrowed to what is there.
+The camera's position is subtracted before anything is rounded, and the view is scaled by a power of two (exact in
+floating point) so that the median depth is about 1. The clip range is narrowed to the visible objects.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ import numpy as np
 from .scene import Instance, Placed, PolygonInstance, Scene
 from .scene.camera import Camera
 
-#: The clip range reaches this share of its ends (a parallel camera's, of its length or window) further than the bounds,
-#: so that rounding clips nothing, be they as near to one another as they may.
+#: The clip range extends beyond the bounds by this fraction of its ends (for a parallel camera, of its length or
+#: window), so that rounding clips nothing.
 _MARGIN = 1e-3
 
-#: Steps of the depth's resolution by which visibility moves every splat back at least: rounding in the rasteriser's
-#: interpolation is one or two.
+#: Visibility moves every splat back by at least this many steps of the depth buffer: rounding in the rasteriser's
+#: interpolation is one or two steps.
 _LEAST_STEPS = 16
 
-#: Radii of the largest splat that splats of a split object reach over its polygons: one less has full weights.
+#: Splats of a split object overlap its polygons by this many radii of the largest splat: one less has full weights.
 SPLIT_OVERLAP = 1.5
 
 
@@ -32,10 +32,10 @@ SPLIT_OVERLAP = 1.5
 class DrawItem:
     """model_view: (4, 4) float64, positions (without origin) to scaled view space.
     normal_matrix: (3, 3) float64, its inverse transpose up to a positive factor.
-    hides_backs: splats or polygons that show their back are left out.
-    is_whole: as far as some of its places tell, the camera sees all of it.
+    hides_backs: splats or polygons that face away are skipped.
+    is_whole: the camera sees all of it, judged from a sample.
     overlap: of polygons, how far behind them splats still count, view units.
-    setback: what a visibility pass moves it back by at least, beside `View.least_offset` and in its unit.
+    setback: minimum distance by which a visibility pass moves it back, beside `View.least_offset` and in its unit.
     split: of polygons the farthest distance, of splats the least of their centres, view units; 0: no limit.
     """
 
@@ -54,10 +54,10 @@ class View:
     """scale: world to view units, a power of two. near: the camera's, scaled; the clip range may be narrower.
     first, far: the clip range, scaled.
     projection: (4, 4) float64 for scaled view space. outside: instances that cannot touch the picture.
-    degenerate: instances whose matrix flattens space, which have no normals.
+    degenerate: instances whose matrix flattens space, so that they have no normals.
     depth_span: how many times the resolution of float32 the hardware's depth resolves at its farthest: far / near, of
         an orthographic camera far - near in view units.
-    polygons: those among the splats. contact: how deep polygons may lie behind splats and be their surface's still.
+    polygons: draw items of polygons. contact: maximum depth of polygons behind splats of the same surface.
     """
 
     scale: float
@@ -73,14 +73,13 @@ class View:
     contact: float = 0.0
 
     def least_offset(self, linear_depth: bool) -> float:
-        """What moves a splat back by a few steps of the depth's resolution: a share of its distance, or for an
-        orthographic camera a length in view units.
-        """
+        """The offset that moves a splat back by a few steps of the depth buffer: a fraction of its distance, or for an
+        orthographic camera a length in view units."""
         return _LEAST_STEPS / 2**24 * (1.0 if linear_depth else self.depth_span)
 
 
 class ClipRange(NamedTuple):
-    """near, far: depths that are stored, world units. scale: what these are multiplied by first."""
+    """near, far: stored range of depths, world units. scale: factor applied to depths first."""
 
     near: float
     far: float
@@ -88,7 +87,7 @@ class ClipRange(NamedTuple):
 
 
 def clip_range(scene: Scene, camera: Camera, epsilon: float) -> ClipRange:
-    """That of all that the camera sees."""
+    """The clip range of everything that the camera sees."""
     return _clipped(camera, _seen(scene, camera)[0], epsilon)
 
 
@@ -98,10 +97,10 @@ def _clipped(camera: Camera, seen, epsilon: float) -> ClipRange:
 
 
 def build_view(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | None = None) -> View:
-    """The scene's instances as this camera sees them. epsilon: how far visibility moves splats back, in radii.
+    """The scene's instances as seen by this camera. epsilon: how far visibility moves splats back, in radii.
 
-    whole: of the camera that this one is cropped from, if it is; depths are stored for all that it sees, so that they,
-    and what is compared with them, are rounded alike in all its parts.
+    whole: clip range of the camera that this one is cropped from, if any, so that depths are rounded alike in all parts
+        of a picture.
     """
     seen, outside, degenerate = _seen(scene, camera)
     near, far, scale = whole or _clipped(camera, seen, epsilon)
@@ -142,7 +141,7 @@ def _split(instance: Placed) -> float:
 
 
 def overlapping_radii(scene: Scene) -> dict[PolygonInstance, float]:
-    """Of polygons whose box touches that of surfels: the largest of these surfels' radii, in the world."""
+    """For polygons whose box touches that of surfels: the largest radius of these surfels, in world units."""
     if not scene.polygons or not scene.surfels:
         return {}
     splats = [(*_world_box(instance), instance.radius) for instance in scene.surfels if len(instance.surfels)]
@@ -162,12 +161,12 @@ def _world_box(instance: Placed) -> tuple[np.ndarray, np.ndarray]:
 
 
 def sees_any(scene: Scene, camera: Camera) -> bool:
-    """Whether some instance may touch the camera's picture."""
+    """Whether any instance may be in the camera's picture."""
     return bool(_seen(scene, camera)[0])
 
 
 def visible_corners(scene: Scene, camera: Camera) -> tuple[np.ndarray, np.ndarray] | None:
-    """World corners (n, 3) of the boxes of what the camera sees, and (8, 3) of the part of space that it sees it in."""
+    """World corners (n, 3) of the boxes of visible objects, and (8, 3) corners of the visible part of space."""
     seen, _, _ = _seen(scene, camera)
     if not seen:
         return None
@@ -201,11 +200,11 @@ class DepthExtent:
 
 
 def depth_extent(scene: Scene, camera: Camera, epsilon: float) -> DepthExtent:
-    """Of what may touch the picture."""
+    """The depth extent of objects that may be in the picture."""
     seen, _, _ = _seen(scene, camera)
     near, far = _clip_range(camera, seen, epsilon)
     radius = max((radius for *_, radius in seen), default=0.0)
-    # By a radius more: a method may lengthen the shorter half-axis.
+    # Add a radius, because a method may lengthen the shorter half-axis.
     reaches_near = any(float(depths.min()) - reach <= camera.near for _, depths, reach in seen if reach)
     left, right, bottom, top = camera.window
     unit, length = (max(right - left, top - bottom), far - near) if camera.is_orthographic else (near, far)
@@ -224,9 +223,8 @@ def scaled_projection(camera: Camera, near: float, far: float, scale: float) -> 
 
 
 def _seen(scene: Scene, camera: Camera) -> tuple[list, int, int]:
-    """(instance, depths of its box's corners, its largest splat's radius) of what may touch the picture; the numbers
-    of instances that cannot, and of those that flatten space.
-    """
+    """(instance, depths of its box's corners, radius of its largest splat) for objects that may be in the picture; and
+    the numbers of instances that are not, and of those that flatten space."""
     shown = scene.shown
     firm = [instance for instance in shown if not instance.is_flattened]
     if not firm:
@@ -239,7 +237,7 @@ def _seen(scene: Scene, camera: Camera) -> tuple[list, int, int]:
 
 
 def _beyond(corners: np.ndarray, camera: Camera) -> np.ndarray:
-    """(6, n) of each plane of the camera's view volume, which of n places in view space lie beyond it."""
+    """(6, n) for each plane of the camera's view volume, which of n points in view space are beyond it."""
     x, y, depth = corners[:, 0], corners[:, 1], -corners[:, 2]
     left, right, bottom, top = camera.window
     spread = 1.0 if camera.is_orthographic else depth
@@ -270,7 +268,7 @@ def _clip_range(camera: Camera, seen, epsilon: float) -> tuple[float, float]:
 
 
 def _power_of_two_scale(camera: Camera, seen, near: float) -> float:
-    """2^-k that brings the median depth, weighted by surfel count, into 0.7 to 1.4."""
+    """The factor 2^-k that brings the median depth, weighted by surfel count, into 0.7 to 1.4."""
     if not seen:
         return 1.0
     depths = np.array([_median_depth(instance, camera, near) for instance, *_ in seen])
@@ -284,7 +282,7 @@ def _power_of_two_scale(camera: Camera, seen, near: float) -> float:
 
 
 def _median_depth(instance: Placed, camera: Camera, near: float) -> float:
-    """Of some places between the clip planes: stray ones far away do not count for more."""
+    """The median depth of a sample between the clip planes; distant outliers count no more than others."""
     depths = -instance.some_places(camera)[:, 2]
     depths = depths[(depths > near) & (depths < camera.far)]
     return float(np.median(depths)) if len(depths) else near

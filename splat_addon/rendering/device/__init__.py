@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The graphics devices: one interface (`interface.py`), two makers that know a graphics API.
+"""Graphics devices: one interface (`interface.py`) and two implementations for different graphics APIs.
 
-`blender_gpu` draws through Blender's `gpu` module (OpenGL, Vulkan, Metal), `standalone` through moderngl on EGL
-in a process of its own: moderngl takes Blender's context away when both live in one.
+`blender_gpu` draws through Blender's `gpu` module (OpenGL, Vulkan, Metal), `standalone` through moderngl on EGL. The
+latter needs its own process, because moderngl takes over Blender's context if both run in one.
 """
 
 from .interface import Device
 
-#: name -> module and class; the module is imported only when it is asked for.
+#: name -> module and class; the module is imported only when needed.
 DEVICES = {
     "blender": ("blender_gpu", "BlenderDevice"),
     "standalone": ("standalone", "StandaloneDevice"),
@@ -17,7 +17,7 @@ DEVICES = {
 def open_device(name: str) -> Device:
     """A device by name: "blender" (inside Blender's render or draw callbacks) or "standalone" (no Blender).
 
-    Raises ValueError for another name and RuntimeError where the device cannot be opened here.
+    Raises ValueError for an unknown name and RuntimeError if the device cannot be opened.
     """
     from importlib import import_module
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The device inside Blender: its `gpu` module, on whichever backend Blender runs (OpenGL, Vulkan, Metal).
 
-Two habits of that module shape this file: it keeps nothing alive that Python lets go of before the device has
+Two properties of that module shape this file: it does not keep resources alive that Python frees before the device has
 drawn (Vulkan then crashes), and its state leaks into Blender's own drawing.
 """
 
@@ -19,7 +19,8 @@ _BLEND_NAMES = {"none": "NONE", "add": "ADDITIVE_PREMULT"}
 
 
 class BlenderDevice:
-    """Usable inside RenderEngine callbacks, in the window, and (from 5.2) after gpu.init(); else RuntimeError."""
+    """Works inside RenderEngine callbacks, in the window, and (from 5.2) after gpu.init(); otherwise raises
+    RuntimeError."""
 
     kind = "blender"
     multisample_counts = ()
@@ -65,7 +66,7 @@ class BlenderDevice:
         if not triangles:
             return
         if self._triangles[0] < first + triangles:
-            # The next power of two: it then grows only a few times.
+            # Round up to a power of two, so that it grows only a few times.
             size = 1 << max(first + triangles - 1, 1023).bit_length()
             self._triangles = size, _batch(self._gpu, size)
         self._draw(pipeline, target, blocks, textures, self._triangles[1], (3 * first, 3 * triangles), viewport)
@@ -105,7 +106,7 @@ class BlenderDevice:
                 batch.draw_range(shader, elem_start=vertices[0], elem_count=vertices[1])
 
     def _uniform(self, block):
-        """The uniform buffer of an array, which stays alive with it."""
+        """The uniform buffer of an array; both live equally long."""
         if id(block) not in self._uniforms:
             self._uniforms[id(block)] = block, self._gpu.types.GPUUniformBuf(np.ascontiguousarray(block, np.float32))
         return self._uniforms[id(block)][1]
@@ -146,7 +147,7 @@ class _Target:
         return self._read(slot, width, height, FORMATS[self._colors[slot].format])
 
     def read_one(self):
-        """One pixel: the device must finish to hand it over."""
+        """Read one pixel, which waits for the device to finish."""
         if self._colors:
             self._read(0, 1, 1, FORMATS[self._colors[0].format])
         else:
@@ -154,7 +155,7 @@ class _Target:
                 self.framebuffer.read_depth(0, 0, 1, 1)
 
     def _read(self, slot, width, height, channels):
-        # a Buffer over numpy memory: no copy, and free of the strides bug of Blender 4.5 to 5.1
+        # a Buffer over numpy memory: no copy, and it avoids the stride bug of Blender 4.5 to 5.1
         pixels = np.empty((height, width, channels), np.float32)
         with self.framebuffer.bind():
             self.framebuffer.read_color(
@@ -199,13 +200,13 @@ class _Pipeline:
 
 @lru_cache(PROGRAMS)
 def _shared_pipeline(description: PipelineDescription) -> _Pipeline:
-    """Blender's contexts share programs, so every device of the process does, and every render."""
+    """Blender's contexts share programs, so all devices and renders of the process share them too."""
     import gpu
 
     return _Pipeline(gpu, description)
 
 
 def _batch(gpu, triangles):
-    """A batch without attributes: the vertex shader pulls its data from textures."""
+    """A batch without attributes: the vertex shader fetches its data from textures."""
     types = gpu.types
     return types.GPUBatch(type="TRIS", buf=types.GPUVertBuf(types.GPUVertFormat(), 3 * triangles))

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the renderer asks of a graphics API: four nouns, no hidden state.
+"""The graphics interface that the renderer uses: four nouns, no hidden state.
 
-*Device* makes the other three. *Texture*: pixels on the device. *Target*: textures to draw into.
-*Pipeline*: a program together with its complete state, so no draw can be disturbed by another.
-A pipeline is described once (`PipelineDescription`); each device declares its inputs and outputs in its own
-way, and the GLSL text of `main` and its functions is the same, word for word, on both.
+*Device* makes the other three. *Texture*: pixels on the device. *Target*: textures to draw into. *Pipeline*: a
+program with its complete state, so that draws do not affect one another. A pipeline is described once
+(`PipelineDescription`); each device declares inputs and outputs in its own way, and the GLSL text of `main` and its
+functions is identical on both.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from weakref import WeakSet
 
 import numpy as np
 
-#: format -> channels; RGBA16 holds 0 to 1 in multiples of 1 / 65535
+#: format -> channels; RGBA16 stores 0 to 1 in multiples of 1 / 65535
 FORMATS = {"RGBA32F": 4, "RGBA16F": 4, "RGBA16": 4, "RG32F": 2, "R32F": 1, "DEPTH32F": 1}
 
-#: Programs that a device keeps: some twenty make a picture, but an animated setting may make new ones each frame.
+#: Programs that a device keeps: about twenty make a picture, but an animated setting may need new ones each frame.
 PROGRAMS = 512
 
-#: blend mode -> what happens to a fragment
+#: blend mode -> its effect on a fragment
 BLENDS = ("none", "add")
 
 
-#: format -> bytes of a channel, where it is not 4
+#: format -> bytes per channel, if not 4
 _CHANNEL_BYTES = {"RGBA16F": 2, "RGBA16": 2}
 
 
@@ -40,7 +40,7 @@ def _bytes_of(size: tuple[int, int], format: str, samples: int) -> int:
 
 
 def check_texture_size(size: tuple[int, int], largest: int) -> None:
-    """Raises ValueError where a device whose textures have at most `largest` texels along an edge has none so large."""
+    """Raise ValueError if a texture exceeds `largest`, the device's maximum number of texels along an edge."""
     if max(size) > largest:
         raise ValueError(
             f"A picture of {size[0]:,} x {size[1]:,} pixels does not fit on this graphics device, which holds up to "
@@ -65,13 +65,13 @@ def check_memory(device: Device, size: tuple[int, int], format: str, samples: in
 class PipelineDescription:
     """name: for error messages. vertex, fragment: GLSL without declarations of the inputs and outputs below.
     blocks: (struct name, instance name, ((type, field), ...)) of each uniform block, std140: mat4, vec4, vec2, float.
-    samplers: names of 2D float textures, in slot order. multisampled: those with several samples a texel.
+    samplers: names of 2D float textures, in slot order. multisampled: names of those with several samples per texel.
     varyings: (interpolation "smooth" | "flat", type, name) from vertex to fragment.
     outputs: (type, name) in slot order; empty for depth only.
-    defines: (name, value) that the text uses as constants, which drivers fold.
-    blend: "none" or "add" (all channels summed). depth_test: less or equal. fragment_depth: the fragment
-        shader says what the depth is (gl_FragDepth). sample_shading: of a multisampled target, the fragment shader
-        runs at each sample and not once a pixel.
+    defines: (name, value) of constants that the text uses and drivers fold.
+    blend: "none" or "add" (all channels summed). depth_test: less or equal. fragment_depth: the fragment shader writes
+        gl_FragDepth. sample_shading: on a multisampled target, the fragment shader runs once per sample instead of once
+        per pixel.
     """
 
     name: str
@@ -91,7 +91,7 @@ class PipelineDescription:
 
 
 class Texture(Protocol):
-    """size: width, height. format: a name in `FORMATS`. samples: of a texel, 0 for one."""
+    """size: width, height. format: a name in `FORMATS`. samples: per texel, 0 for a single-sample texture."""
 
     size: tuple[int, int]
     format: str
@@ -99,7 +99,7 @@ class Texture(Protocol):
 
 
 class Target(Protocol):
-    """Textures to draw into, all of one size."""
+    """Textures to draw into, all of the same size."""
 
     size: tuple[int, int]
 
@@ -136,13 +136,13 @@ class Device(Protocol):
         """
 
     def target(self, colors: list[Texture], depth: Texture | None = None) -> Target:
-        """Colour slots in order, and a depth texture. Make one per frame: framebuffers belong to one context."""
+        """A target with colour textures in slot order, and a depth texture. Make one per frame: framebuffers belong to
+        one context."""
 
     def pipeline(self, description: PipelineDescription) -> Pipeline:
-        """Compiled and linked when it is first asked for, and shared by all who ask for an equal description.
+        """A pipeline, compiled and linked on first use, and shared by all equal descriptions.
 
-        The last `PROGRAMS` that were asked for are kept. Raises RuntimeError with the pipeline's name where the driver
-        refuses.
+        The last `PROGRAMS` used are kept. Raises RuntimeError with the pipeline's name if the driver rejects it.
         """
 
     def draw_triangles(
@@ -155,10 +155,10 @@ class Device(Protocol):
         viewport=None,
         first=0,
     ) -> None:
-        """Draw so many triangles from number `first` on, in order: vertex 3 t + c is corner c of triangle t.
+        """Draw `count` triangles from number `first` on, in order: vertex 3 t + c is corner c of triangle t.
 
-        blocks: each uniform block's float32 values as std140 has them. An array that is given again is not copied again
-            before `restore`.
+        blocks: float32 values of each uniform block in std140 layout. The same array is not uploaded twice before
+            `restore`.
         viewport: x, y, width, height in pixels of the part of the target to draw into; None for all of it.
         """
 
@@ -168,7 +168,7 @@ class Device(Protocol):
         """Draw one triangle of three vertices, 0 to 2, that `fullscreen.vert.glsl` stretches over the viewport."""
 
     def finish(self, target: Target) -> None:
-        """Wait until what was drawn into the target is done."""
+        """Wait until drawing into the target is complete."""
 
     def restore(self) -> None:
-        """Give the graphics state back as it was found and let go of what only drawing needed."""
+        """Restore the graphics state and free what only drawing needed."""

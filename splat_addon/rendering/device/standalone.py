@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The device outside Blender: moderngl, on EGL where the platform has it; for scripts, measurements and tests."""
+"""The device outside Blender: moderngl, on EGL where available; for scripts, measurements and tests."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .interface import FORMATS, PROGRAMS, PipelineDescription, check_memory, che
 _GL_TEXTURE_2D_MULTISAMPLE, _GL_TEXTURE_SAMPLES, _GL_SAMPLE_SHADING = 0x9100, 0x9106, 0x8C36
 _GL_TEXTURE_2D, _GL_DEPTH_COMPONENT, _GL_FLOAT, _GL_DEPTH_COMPONENT32F = 0x0DE1, 0x1902, 0x1406, 0x8CAC
 
-#: format -> moderngl's name and the data's numbers as it takes them, where those are not float32
+#: format -> moderngl's name, and the data type that it expects if not float32
 _STORED = {
     "RGBA16F": ("f2", np.float16),
     "RGBA16": ("nu2", lambda data: np.rint(np.multiply(data, 65535.0)).astype(np.uint16)),
@@ -23,7 +23,7 @@ _STORED = {
 
 
 class StandaloneDevice:
-    """A context of its own. Raises RuntimeError where none can be made."""
+    """Creates its own context. Raises RuntimeError if that fails."""
 
     kind = "standalone"
     most_bytes = None
@@ -94,7 +94,8 @@ class StandaloneDevice:
             self._uniform(slot, block).bind_to_uniform_block(slot)
 
     def _uniform(self, slot, block):
-        """A buffer with the block's values: what was in it was drawn with, or is the same."""
+        """A buffer with the block's values; an existing one is reused if it was drawn already or holds the same
+        values."""
         data = np.ascontiguousarray(block, np.float32).tobytes()
         buffer, held = self._uniforms.get((slot, len(data)), (None, None))
         if held != data:
@@ -126,7 +127,7 @@ class _Target:
         self.framebuffer = context.framebuffer([c.handle for c in colors], depth and depth.handle)
 
     def clear(self, color=None, depth=None):
-        # moderngl clears everything at once and honours the write masks, so each half is masked by hand.
+        # moderngl clears everything at once but honours write masks, so each half is masked by hand.
         framebuffer = self.framebuffer
         framebuffer.depth_mask = depth is not None
         if self._colors:
@@ -137,7 +138,7 @@ class _Target:
             framebuffer.color_mask = self._mask(True)
 
     def _mask(self, is_written):
-        """As moderngl takes it: of a single texture without a list around it."""
+        """Color mask in moderngl's format: without a list for a single texture."""
         masks = [(is_written,) * 4] * len(self._colors)
         return masks[0] if len(masks) == 1 else masks
 
@@ -185,7 +186,8 @@ def _declared(description: PipelineDescription, source: str, varying: str) -> st
 
 
 def _respecify_depth_as_32f(context, texture, samples):
-    """moderngl makes 24-bit depth, which costs up to 50 dB at a near plane of 1e-4; Blender's is 32-bit float."""
+    """moderngl creates a 24-bit depth buffer, which costs up to 50 dB at a near plane of 1e-4; Blender's is 32-bit
+    float."""
     integer, unsigned, pointer = ctypes.c_int, ctypes.c_uint, ctypes.c_void_p
     bind = _gl(context, "glBindTexture", unsigned, unsigned)
     if samples:
@@ -199,7 +201,7 @@ def _respecify_depth_as_32f(context, texture, samples):
 
 
 def _has_multisampling(context, samples) -> bool:
-    """Whether a texture that is asked to have that many samples has them, and not more."""
+    """Whether a texture with this number of samples really has them, and no more."""
     if samples > context.max_samples:
         return False
     texture, given = context.texture((1, 1), 4, samples=samples, dtype="f4"), ctypes.c_int()
@@ -210,7 +212,7 @@ def _has_multisampling(context, samples) -> bool:
 
 
 def _sample_shading(context):
-    """set(True) makes fragment shaders run at every sample (OpenGL 4.0), set(False) once a pixel."""
+    """set(True) runs fragment shaders for every sample (OpenGL 4.0), set(False) once per pixel."""
     if context.version_code < 400:
 
         def refuse(on):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a frame needs, decided before anything is allocated: a pure function from scene, camera and settings.
+"""Plans a frame before anything is allocated: a pure function of scene, camera and settings.
 
-Nothing exists on the device that the plan does not name, each entry has its reason, and what was left out has one too:
-print the plan to read them.
+Nothing exists on the device that the plan does not name. Each entry has its reason, and so does everything that was
+left out: print the plan to read them.
 """
 
 from __future__ import annotations
@@ -30,10 +30,9 @@ def plan(
 ) -> FramePlan:
     """The passes that this picture needs.
 
-    shadow_camera: to whose view shadow maps are fitted, if it is another, so that cameras which differ little share
-    them. is_added_up: the picture is one of the samples of a view that refines. part: x, y, width, height in pixels, of
-    a picture that is not drawn whole. Raises ValueError for an unknown method or storage, for multisampling with a
-    method that does not work in space, and for a picture that devices have no room for.
+    shadow_camera: the camera that shadow maps are fitted to, if different, so that similar cameras can share maps.
+        is_added_up: whether the picture is one sample of a refining view. part: x, y, width, height in pixels, if only
+        a part of the picture is drawn.
     """
     planning = Planning(scene, camera, settings, shadow_camera or camera, is_added_up)
     if settings.multisampling and planning.method.works_in != "space":
@@ -79,7 +78,7 @@ def plan(
 
 
 def _with_parts(planning: Planning, p: Pass, present: Iterable[Callable[[Planning, Pass], Iterable[Part]]]) -> Pass:
-    """A pass with what the features that are present do in it."""
+    """A pass with the parts of all features that are present."""
     if not p.host:
         return p
     planning.model = lit_splats.model_in(planning, p)

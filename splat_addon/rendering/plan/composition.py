@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shaders from hosts and features: no text is switched by a conditional, what a pass does not do has no line in it.
+"""Composes shaders from hosts and features, without conditionals: features that a pass does not use add no line to it.
 
-A *host* is a shader, or a function of several, that marks with `#hook name(arguments)` where features may act, and with
-`#parts` where their functions go. A *feature* has one file, shaders/features/<name>.glsl, of sections:
+A *host* is a shader, or a function of several, with lines `#hook name(arguments)`, where features may act, and
+`#parts`, where their functions are inserted. A *feature* has one file, shaders/features/<name>.glsl, of sections:
 
     #part HOST, WORD ...
 
-A section is in a text where all its words hold: the host's name (its file's), the stage (vertex, fragment), features
-that are present, and what else a pass says of itself (layer, opaque ...). At a hook every function of these sections is
-called whose name begins with the feature's, or with one of the section's words, and ends with the hook's: in the
-features' order. Other functions help them. Any file may have sections of its own in the same way. `#include "path"`
-takes a file once a text; {names} in a path are filled in.
+A section is used if all its words apply: the host's file name, the stage (vertex, fragment), features that are present,
+and further words of the pass (layer, opaque ...). At a hook, every function in these sections is called whose name
+starts with the feature's name or one of the section's words and ends with the hook's name, in the order of the
+features. Other functions are helpers. Any file may have such sections. `#include "path"` includes a file once per text;
+{names} in a path are substituted.
 
 `python3 -m splat_addon.rendering.plan.compose --help` tells how to print the text of a pass, with the origin of parts.
 """
@@ -33,7 +33,7 @@ _STAGES = {"vert": "vertex", "frag": "fragment"}
 _FUNCTION = re.compile(r"^\w+ (\w+)\(", re.MULTILINE)
 
 
-#: What is filled in for names in paths, where a frame chooses nothing else.
+#: Defaults for names in paths, if a frame does not choose.
 DEFAULTS = {
     "method": "mip",
     "storage": "float32",
@@ -56,7 +56,7 @@ class _Section(NamedTuple):
 
 
 class _File(NamedTuple):
-    """head: what is always there."""
+    """head: the text outside of sections."""
 
     head: str
     sections: tuple[_Section, ...]
@@ -64,17 +64,16 @@ class _File(NamedTuple):
 
 @cache
 def compose(root: str, words: tuple[str, ...] = (), names: tuple[tuple[str, str], ...] = (), origins=False) -> str:
-    """The text of shaders/hosts/`root`.glsl. words: the features that are present, in their order, and what else is
-    said of the pass. names: what is filled in for {names} in paths. origins: with a comment where each file
-    begins and ends.
+    """The text of shaders/hosts/`root`.glsl. words: the features that are present, in their order, and further words of
+    the pass. names: substitutions for {names} in paths. origins: add a comment at the beginning and end of each file.
 
-    Raises FileNotFoundError for a file that is not there and ValueError for a feature's function without a hook.
+    Raises FileNotFoundError for a missing file and ValueError for a feature's function without a hook.
     """
     return _Text(words, _STAGES[root.rpartition(".")[2]], dict(names), origins).included(f"hosts/{root}.glsl")
 
 
 class _Text:
-    """One text while it is put together; every file is in it once."""
+    """One text during composition; every file is included once."""
 
     def __init__(self, words: tuple[str, ...], stage: str, names: dict[str, str], origins: bool):
         self._words, self._stage, self._names, self._origins = words, stage, names, origins
@@ -93,7 +92,7 @@ class _Text:
         return self._marked(path, self._hosted(Path(path).stem, head, own))
 
     def _hosted(self, host: str, head: str, own: list[_Section]) -> str:
-        """A host with its own sections, then those of the features, and calls of their functions at its hooks."""
+        """A host with its own sections and those of the features, and with calls of their functions at its hooks."""
         before, after = head.split(_PARTS)
         features = {word: self._sections_at(host, word) for word in self._words}
         hooks = _HOOK.findall(head + "".join(s.text for part in (own, *features.values()) for s in part))
@@ -111,7 +110,7 @@ class _Text:
         return self._expanded(text)
 
     def _sections_at(self, host: str, feature: str) -> list[_Section]:
-        """What a feature does there; before it, what all its sections in the stage share, once a text."""
+        """A feature's section for a host; what all its sections in the stage share precedes it, once per text."""
         path = f"features/{feature}.glsl"
         if not _exists(path):
             return []
@@ -131,7 +130,7 @@ class _Text:
 
 
 def _calls(section: _Section, words: Iterable[str], hooks: list[str]) -> Iterable[tuple[str, str]]:
-    """(hook, function) of a section's functions that are called at hooks; the longest hook's name counts."""
+    """(hook, function) for each function of a section that hooks call; the longest matching hook name counts."""
     for function in _FUNCTION.findall(section.text):
         if function.startswith(tuple(f"{word}_" for word in words)):
             if hook := next((hook for hook in hooks if function.endswith(f"_{hook}")), ""):

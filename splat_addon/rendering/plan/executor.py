@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs the steps of a plan for one tile of the picture, knowing no pass and no texture by name."""
+"""Runs the steps of a plan for one tile of the picture; it knows no pass or texture by name."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from .uniforms import DRAW, VIEW, Block, std140
 
 @dataclass(frozen=True, eq=False)
 class TileContext:
-    """camera: of the tile with its margin. view: the scene as that camera sees it.
+    """camera: of the tile, including its margin. view: the scene as that camera sees it.
 
-    shadow_views: what casts shadows as the camera of each of the plan's shadow maps sees it.
+    shadow_views: the shadow casters as seen by the camera of each shadow map.
     rectangle: x, y, width, height in pixels of the tile without its margin, in the picture.
     """
 
@@ -47,16 +47,16 @@ class TileContext:
     rectangle: tuple[int, int, int, int] = (0, 0, 0, 0)
 
     def texture(self, texture: Texture, is_next: bool = False) -> DeviceTexture:
-        """One that the plan names; is_next: the second one of what is updated."""
+        """A texture of the plan; is_next: the second one of a texture that is updated."""
         return self.resources.texture(texture_key(texture, self.camera.size, self.plan, is_next))
 
     def swap(self, texture: Texture) -> None:
-        """Let what was updated take the place of what was there."""
+        """Swap the two textures of one that was updated."""
         keys = (texture_key(texture, self.camera.size, self.plan, is_next) for is_next in (False, True))
         self.resources.swap(*keys)
 
     def target(self, p: Pass) -> Target:
-        """What a pass draws into."""
+        """The target that a pass draws into."""
         depth, updated = p.depth if p.state.get("depth_test") else None, p.all("updates")
         colors = [self.texture(texture, texture in updated) for texture in p.colors]
         return self.resources.device.target(colors, depth and self.texture(depth))
@@ -66,7 +66,7 @@ class TileContext:
         return tuple(d for d in self.view.placed if all(draws(self, p, d.instance) for draws in DRAWS))
 
     def textures(self, p: Pass, program: Pipeline, placed: DrawItem | None = None) -> list[DeviceTexture]:
-        """What a program samples. placed: what is drawn."""
+        """The textures that a program samples. placed: the object being drawn."""
         called = dict(p.all("called"))
         read = {called.get(texture, texture.name): texture for texture in p.all("reads", "updates")}
         return [
@@ -79,7 +79,7 @@ class TileContext:
         ]
 
     def blocks(self, program: Pipeline, draw: np.ndarray | None = None) -> list[np.ndarray]:
-        """The values of a program's blocks. draw: of what is drawn."""
+        """The values of a program's uniform blocks. draw: of the object being drawn."""
         return [draw if block is DRAW else self._block(block) for block in program.description.blocks]
 
     @cached_property
@@ -100,15 +100,15 @@ class TileContext:
         return view.projection, to_world, self.window, view.near, is_parallel, self.depth_unit, 1.0 / view.scale
 
     def levels(self, instance: Instance) -> Hierarchy | None:
-        """The hierarchy of its surfels, where the plan has levels of detail for it."""
+        """The hierarchy of an object's surfels, if the plan has levels of detail for it."""
         return hierarchy_of(instance.surfels) if instance in self.plan.facts.get("levels", ()) else None
 
     def stored(self, instance: Instance) -> StoredSurfels:
-        """Its surfels on the device, with the merged ones if it has levels."""
+        """An object's surfels on the device, including merged ones if it has levels."""
         return self.resources.surfels(instance.surfels, get_storage(self.plan.storage), self.levels(instance))
 
     def cut(self, placed: DrawItem) -> Cut:
-        """What this view draws of an instance."""
+        """The part of an instance that this view draws."""
         instance, levels = placed.instance, self.levels(placed.instance)
         if levels is None:
             return Cut(len(instance.surfels), instance.surfels.clipped_count, None)
@@ -123,17 +123,18 @@ class TileContext:
 
     @cached_property
     def identities(self) -> Identities:
-        """What the scene's numbers mean; they tell instances apart in transparent shadows too."""
+        """The meaning of the scene's numbers; they also distinguish instances in transparent shadows."""
         return Identities(self.scene)
 
     @property
     def depth_unit(self) -> float:
-        """What turns a depth of the view into a stored linear one; 0 where the hardware's depth is stored."""
+        """Factor from view depth to stored linear depth; 0 if hardware depth is stored."""
         return 1.0 / self.view.far if self.plan.linear_depth else 0.0
 
     @cached_property
     def color_scale(self) -> float:
-        """What float16 sums multiply colours by, a power of two: the scene's brightest is then at most 1."""
+        """Factor by which float16 sums multiply colours: a power of two that brings the scene's brightest colour to at
+        most 1."""
         if self.plan.accumulation == "float32":
             return 1.0
         surfels = [instance.surfels for instance in self.scene.surfels]  # polygons are not summed
@@ -150,11 +151,11 @@ class TileContext:
         return left * units, bottom * units, (right - left) / across * units, (top - bottom) / up * units
 
     def program(self, p: Pass, vertex: str = "fullscreen.vert", *variants: str) -> Pipeline:
-        """What a pass draws with. variants: of its parts, beside those that are for all."""
+        """The program of a pass. variants: of its parts, beside those in all programs."""
         return self.resources.pipeline(describe(self.plan, p, vertex, *variants))
 
     def fill(self, p: Pass, viewport=None) -> Target:
-        """Draw over the whole of what a pass writes."""
+        """Draw over everything that a pass writes."""
         target, program = self.target(p), self.program(p)
         if p.depth and p.state.get("depth_write"):
             target.clear(depth=1.0)
@@ -164,32 +165,34 @@ class TileContext:
 
 
 def _stored(entries: np.ndarray | None, levels: Hierarchy, places: np.ndarray | None) -> np.ndarray | None:
-    """Where entries of a hierarchy are stored; None for all surfels, each in its own place."""
+    """Storage positions of a hierarchy's entries; None for all surfels in their own order."""
     if places is None:
         return entries
     return places[: levels.surfels] if entries is None else places[entries]
 
 
 def texture_key(texture: Texture, size: tuple[int, int], plan: FramePlan, is_next: bool = False) -> TextureKey:
-    """Of a texture of the plan, for a tile of `size` pixels."""
+    """The key of a plan's texture, for a tile of `size` pixels."""
     name = f"{texture.name}_next" if is_next else texture.name
     return name, *plan.size(texture, size), plan.format(texture), plan.multisamples_of(texture)
 
 
 def run_pass(tile: TileContext, p: Pass) -> Target:
-    """The target that was drawn into."""
+    """Run a pass; returns the target that it drew into."""
     return p.run(tile, p)
 
 
 class Execution:
-    """One frame's steps, tile by tile. told: called before each pass with its name. done: after it, with its target."""
+    """One frame's steps, tile by tile. told: called before each pass with its name. done: called after it, with its
+    target."""
 
     def __init__(self, is_shared_done: bool, told: Callable[[Pass, int], None], done: Callable[[Pass, Target], None]):
         self._is_shared_done, self._told, self._done = is_shared_done, told, done
         self.turns = 0
 
     def run(self, steps: tuple[Step, ...], tile: TileContext) -> Target | None:
-        """The target of the last pass. turns: how often its loops were run through, at most in any tile."""
+        """Run all steps; returns the target of the last pass. turns: maximum number of iterations of loops in any
+        tile."""
         self._number, target = 0, None
         for step in steps:
             target = self._repeat(step, tile) if isinstance(step, Loop) else self._pass(step, tile)
@@ -222,6 +225,6 @@ class Execution:
 
 
 def drawn_tiles(plan: FramePlan) -> Iterator[tuple[int, int, int, int]]:
-    """The tiles with their margins."""
+    """The tiles including their margins."""
     for x, y, width, height in plan.tiles:
         yield x - plan.margin, y - plan.margin, width + 2 * plan.margin, height + 2 * plan.margin

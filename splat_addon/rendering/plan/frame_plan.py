@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a plan is: the passes of a frame with their reasons, and the textures that they write."""
+"""The plan of a frame: its passes with their reasons, and the textures that they write."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ from functools import cached_property
 
 from .graph import Loop, Pass, Step, Texture, each_pass
 
-#: Samples that the filter of silhouettes reads up and down.
+#: Samples above and below that the silhouette filter reads.
 FILTER_MARGIN = 2
 
-#: Rows of visibility to each row of samples, where silhouettes are filtered; the first of them goes through the centres
-#: of the samples.
+#: Rows of visibility per row of samples if silhouettes are filtered; the first of them goes through the samples'
+#: centres.
 VISIBILITY_ROWS = 2
 
 
 @dataclass(frozen=True)
 class FramePlan:
-    """tiles: (x, y, width, height) in pixels, each rendered with all passes, with a margin that filters and lines read.
-    samples: N of the N x N samples a pixel. multisamples: M hardware samples of each of them, or 0.
+    """tiles: (x, y, width, height) in pixels, each rendered with all passes and a margin for filters and lines.
+    samples: N for N x N samples per pixel. multisamples: hardware samples for each of them, or 0.
     sample_shading: they are evaluated and lit one by one. method, storage, accumulation: as in the settings.
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
-    steps: passes and loops, in order. variants: those of their parts that are in every program.
+    steps: passes and loops, in order. variants: those whose parts are in every program.
     choices: (name in paths of shaders, file). margin: pixels drawn around a tile and not kept.
-    facts: what features have found out for when passes run, by name.
+    facts: values that features computed while planning, for use when passes run.
     features: (name, why), of what is present beside passes. skipped: (what, why), of what others would need.
     """
 
@@ -45,22 +45,22 @@ class FramePlan:
     skipped: tuple[tuple[str, str], ...]
 
     def has(self, feature: str) -> bool:
-        """Whether it is present beside passes."""
+        """Whether a feature is present."""
         return feature in (name for name, _ in self.features)
 
     @cached_property
     def passes(self) -> tuple[Pass, ...]:
-        """In order; those of a loop once."""
+        """All passes in order; those of a loop once."""
         return tuple(each_pass(self.steps))
 
     @cached_property
     def count(self) -> int:
-        """Of passes, those of a loop as often as they repeat at most."""
+        """Number of passes, with those of a loop counted as often as they may run."""
         return sum(len(s.body) * s.times + len(s.last) if isinstance(s, Loop) else 1 for s in self.steps)
 
     @cached_property
     def filled(self) -> dict[str, Texture]:
-        """Every texture that some pass writes, by name; of what is updated the second one too."""
+        """Every texture that some pass writes, by name; for updated textures also the second one."""
         found = {}
         for p in self.passes:
             found |= {texture.name: texture for texture in p.fills}
@@ -73,7 +73,7 @@ class FramePlan:
         return tuple(self.filled)
 
     def size(self, texture: Texture, pixels: tuple[int, int]) -> tuple[int, int]:
-        """Width and height of a texture, for a tile of so many pixels with its margin."""
+        """Width and height of a texture, for a tile of this size in pixels including its margin."""
         return texture.per(self, pixels)
 
     def format(self, texture: Texture) -> str:
@@ -81,7 +81,7 @@ class FramePlan:
         return "RGBA16F" if texture.is_sum and self.accumulation == "float16" else texture.format
 
     def multisamples_of(self, texture: Texture) -> int:
-        """Samples a texel, 0 for one."""
+        """Samples per texel, 0 for a single-sample texture."""
         return self.multisamples if texture.is_multisampled else 0
 
     def __str__(self) -> str:

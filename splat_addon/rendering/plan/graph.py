@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A frame as an ordered list of passes over typed textures, to which features add parts.
 
-Order is the list's, so nothing is scheduled, and no texture has versions: a pass that writes without reading ends the
-life of what was there, which lets passes share a texture (each transparent layer has the sums of the opaque picture).
+Passes run in list order, without scheduling, and textures have no versions: a pass that writes without reading discards
+the previous contents, so passes can share a texture (each transparent layer reuses the sums of the opaque picture).
 """
 
 from __future__ import annotations
@@ -14,26 +14,27 @@ from typing import Any, NamedTuple
 
 from ..device.interface import FORMATS
 
-#: channels -> type in a shader
+#: channels -> GLSL type
 _TYPES = {1: "float", 2: "vec2", 4: "vec4"}
 
 
 def of_samples(plan, pixels: tuple[int, int]) -> tuple[int, int]:
-    """A size: one value a sample."""
+    """A texture size: one value per sample."""
     return pixels[0] * plan.samples, pixels[1] * plan.samples
 
 
 def of_pixels(plan, pixels: tuple[int, int]) -> tuple[int, int]:
-    """A size: one value a pixel."""
+    """A texture size: one value per pixel."""
     return pixels
 
 
 @dataclass(frozen=True, eq=False)
 class Texture:
-    """What passes write. name: also of the sampler that reads it. format: a name in `device.interface.FORMATS`.
+    """A texture that passes write. name: also the name of the sampler that reads it. format: a name in
+    `device.interface.FORMATS`.
 
-    per: what it holds one value for: of the plan and a tile of so many pixels with its margin, its width and height.
-    is_multisampled: it has the frame's hardware samples. is_sum: of float16, where sums are that.
+    per: function of the plan and a tile's size in pixels, including the margin, that returns width and height.
+    is_multisampled: has the frame's hardware samples. is_sum: is float16 if the settings choose float16 sums.
     """
 
     name: str
@@ -48,24 +49,24 @@ class Texture:
 
     @property
     def type(self) -> str:
-        """In a shader that writes it."""
+        """Its GLSL type in shaders that write it."""
         return _TYPES[FORMATS[self.format]]
 
 
 class Part(NamedTuple):
     """What one feature does in a pass.
 
-    feature: its name, and that of its GLSL file. words: what else is said to the composition of shaders.
-    reads: textures that its functions read. inputs: names of samplers of what no pass writes.
-    writes: attachments that it fills. updates: of one channel set, read and written anew into a second texture, which
-        then takes the first one's place; outputs are called <name>_next.
-    tests: the depth that the hardware tests with, and leaves as it is.
+    feature: its name, and that of its GLSL file. words: further words for the composition of shaders.
+    reads: textures that its functions read. inputs: names of samplers of textures that no pass writes.
+    writes: attachments that it fills. updates: textures that it reads and rewrites into a second texture, which then
+        replaces the first; the outputs are called <name>_next.
+    tests: the depth texture that the hardware tests against without writing.
     called: textures whose sampler or output has another name in this pass.
     varyings: (interpolation, type, name). constants: (name, value). choices: (name in paths, file).
-    only: the variant of the pass's programs that it is in; "" for all. reason: told beside the pass's own.
+    only: the program variant that it belongs to; "" for all. reason: shown beside the pass's own.
 
-    A part that fills attachments lives while one of them is read later; one that fills none changes what others write,
-    and lives while the pass does, as does the first, the pass's own.
+    A part that fills attachments is kept if one of them is read later. A part that fills none changes what others write
+    and is kept as long as the pass, and so is the first part, the pass's own.
     """
 
     feature: str
@@ -87,7 +88,7 @@ class Part(NamedTuple):
         return (*self.writes, *self.updates)
 
     def without(self, dead: set[Texture]) -> Part:
-        """Without some of the attachments that it fills."""
+        """The part without some of its attachments."""
         if dead.isdisjoint(self.fills):
             return self
         writes, updates = (tuple(t for t in filled if t not in dead) for filled in (self.writes, self.updates))
@@ -95,17 +96,18 @@ class Part(NamedTuple):
 
 
 def fill(tile, p: Pass):
-    """Run a pass that is drawn over the whole of what it writes."""
+    """Run a pass that draws over everything that it writes."""
     return tile.fill(p)
 
 
 class Pass(NamedTuple):
-    """name: told to the user. reason: why the frame needs it. host: its fragment shader, which features know it by.
+    """name: shown to the user. reason: why the frame needs it. host: its fragment shader, by which features identify
+    it.
 
     run: run(tile, pass) -> the target that was drawn into. kind: "opaque", "layer", "rest", ..., for features.
-    state: of its pipelines, fields of `PipelineDescription`. adds: to what is there, which it does not clear.
-    once: what its result depends on, if it is made with the first tile for all: it is made again where `is_same` of
-        that of the last frame is False. each: a pass that it runs itself, for each instance.
+    state: of its pipelines, fields of `PipelineDescription`. adds: draws onto existing contents without clearing.
+    once: for a pass that runs once for all tiles, the value that its result depends on; it runs again if `is_same` with
+        the last frame's value is False. each: a pass that it runs itself for each instance.
     """
 
     name: str
@@ -121,7 +123,7 @@ class Pass(NamedTuple):
     each: Pass | None = None
 
     def all(self, *fields: str) -> tuple:
-        """What all parts have in these fields, once each."""
+        """The union of these fields over all parts."""
         return tuple(dict.fromkeys(item for part in self.parts for name in fields for item in getattr(part, name)))
 
     @property
@@ -135,22 +137,22 @@ class Pass(NamedTuple):
 
     @property
     def depth(self) -> Texture | None:
-        """The attachment that the hardware tests with."""
+        """The attachment used for the hardware's depth test."""
         return next((t for t in (*self.fills, *self.all("tests")) if t.is_depth), None)
 
     @property
     def reads(self) -> tuple[str, ...]:
-        """Names of all that it reads."""
+        """Names of all textures that it reads."""
         return (*(t.name for t in self.all("reads", "tests", "updates")), *self.all("inputs"))
 
     @property
     def writes(self) -> tuple[str, ...]:
-        """Names of the attachments that it fills; a second one of what it updates."""
+        """Names of the attachments that it fills; for updated textures also the second one."""
         return (*(t.name for t in self.all("writes")), *(f"{t.name}_next" for t in self.all("updates")))
 
 
 class Loop(NamedTuple):
-    """Passes that repeat `times`, or until one leaves nothing in `stop`, which is read back; `last` where none does."""
+    """Passes that repeat `times`, or until one leaves `stop`, which is read back, empty; `last` runs if none does."""
 
     name: str
     reason: str
@@ -173,7 +175,7 @@ def each_pass(steps: Iterable[Step]) -> Iterator[Pass]:
 
 
 def changed(steps: Iterable[Step], change: Callable[[Pass], Pass]) -> tuple[Step, ...]:
-    """The steps with every pass changed."""
+    """The steps with a function applied to every pass."""
 
     def one(step: Step) -> Step:
         if isinstance(step, Loop):
@@ -184,9 +186,9 @@ def changed(steps: Iterable[Step], change: Callable[[Pass], Pass]) -> tuple[Step
 
 
 def trimmed(steps: Iterable[Step], live: Iterable[Texture], stop=None, after=()) -> tuple[tuple, set[Texture]]:
-    """The steps with the parts alone that lead to `live`, and what they read that none of them wrote before.
+    """The steps reduced to the parts that contribute to `live`, and what they read that none of them wrote before.
 
-    stop, after: of a loop's body, where it may end, and what is read then.
+    stop, after: for a loop's body, the texture that may end it, and what is read afterwards.
     """
     kept, live = [], set(live)
     for step in reversed(tuple(steps)):
@@ -210,7 +212,7 @@ def trimmed(steps: Iterable[Step], live: Iterable[Texture], stop=None, after=())
 
 
 def _without(p: Pass, dead: set[Texture]) -> Pass:
-    """Without attachments that nobody reads, and parts that filled no others."""
+    """The pass without attachments that nobody reads, and without parts that only filled those."""
     if not dead:
         return p
     pairs = [(part, part.without(dead)) for part in p.parts]
@@ -218,7 +220,7 @@ def _without(p: Pass, dead: set[Texture]) -> Pass:
 
 
 def _live_before(p: Pass, live: set[Texture]) -> set[Texture]:
-    """What has to be there before a pass, where `live` has to be after it."""
+    """The textures needed before a pass, given those needed after it."""
     if not p.adds:
         live = live.difference(*[part.writes for part in p.parts])
     live = live.union(*[part.reads + part.updates + part.tests for part in p.parts])

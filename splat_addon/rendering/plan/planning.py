@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What features decide from, while a plan is made."""
+"""The information that features base their decisions on while a plan is made."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ Found = TypeVar("Found")
 
 
 class Planning:
-    """shadow_camera: to whose view shadow maps are fitted. is_added_up: the picture is a sample of a view that refines.
+    """shadow_camera: the camera that shadow maps are fitted to. is_added_up: whether the picture is a sample of a
+    refining view.
 
-    choices, facts: as a `FramePlan` has them; features add to both.
+    choices, facts: as in `FramePlan`; features add to both.
     """
 
     def __init__(self, scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera, is_added_up: bool):
@@ -33,15 +34,15 @@ class Planning:
         self._found: dict[Callable, object] = {}
 
     def find(self, fact: Callable[[Planning], Found]) -> Found:
-        """fact(self), found out once: what several features need to know, and one decides."""
+        """Return fact(self), computed once: a decision of one feature that several need."""
         if fact not in self._found:
             self._found[fact] = fact(self)
         return self._found[fact]
 
     def has(self, feature: str, why: str) -> None:
-        """Say that a feature is present, and why."""
+        """Record that a feature is present, and why."""
         self.features.append((feature, why))
 
     def skip(self, what: str, why: str) -> None:
-        """Say what is not needed, and why."""
+        """Record what is not needed, and why."""
         self.skipped.append((what, why))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The programs of a plan's passes: composed texts, and what they declare beside them."""
+"""The programs of a plan's passes: composed texts and their declarations."""
 
 from __future__ import annotations
 
@@ -62,13 +62,13 @@ def _ordered(words: Iterable[str]) -> tuple[str, ...]:
 
 
 def frame_value(name: str) -> Callable[[TileContext], object]:
-    """What gives a value of the frame's block for a tile."""
+    """The function that computes a value of the frame's block for a tile."""
     return VALUES[name][1]
 
 
 @cache
 def blocks_in(*texts: str) -> tuple[Block, ...]:
-    """The blocks that a program's texts use. Raises ValueError for a value that no feature gives."""
+    """The blocks that a program's texts use. Raises ValueError for a value that no feature provides."""
     text = "".join(texts)
     names = set(re.findall(r"\bframe\.(\w+)", text))
     if missing := names - set(VALUES):

@@ -12,9 +12,8 @@ MAX_TARGET_EDGE = 4096
 
 
 def tile_edge(planning: Planning) -> int:
-    """In pixels: along it lie the samples, and the square root of the hardware's samples in each. To filter silhouettes
-    takes half as many textures again.
-    """
+    """Edge of a tile in pixels, from the samples per pixel along it and the square root of the hardware samples.
+    Filtering silhouettes takes half as much texture memory again."""
     settings = planning.settings
     room = 2 if planning.method.filters_silhouettes else 1
     across = settings.supersampling * room * math.ceil(math.sqrt(max(settings.multisampling, 1)))
@@ -22,7 +21,7 @@ def tile_edge(planning: Planning) -> int:
 
 
 def tiles(part: tuple[int, int, int, int], edge: int) -> tuple[tuple[int, int, int, int], ...]:
-    """(x, y, width, height) of what a part of a picture is drawn by, row by row, in pixels."""
+    """(x, y, width, height) in pixels of the tiles that cover a part of a picture, row by row."""
     left, bottom, width, height = part
     return tuple(
         (left + x, bottom + y, min(edge, width - x), min(edge, height - y))

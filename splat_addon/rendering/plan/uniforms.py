@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Uniform blocks: what shaders are told by name of the view, of what is drawn, and of the frame's features.
+"""Uniform blocks: named values for shaders about the view, the object being drawn, and the frame's features.
 
-A shader has the blocks that its text uses (`programs`); that of the frame holds just the values that the text names.
+A shader has the blocks that its text uses (`programs`); the frame's block holds only the values that the text names.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ VIEW: Block = (
 #: light_set: 1 in the channel of the instance's set. orientation: -1 for a mirrored object. epsilon: how far visibility
 #: moves splats back, in radii, or polygons, in view units. least_offset: of both, as a share of the distance; of an
 #: orthographic camera a length. first_slot, more_slots: number of its first material slot, and of those after it.
-#: split: as of `DrawItem`. nowhere: the depth, between -1 and 1 in the view, at which what is not drawn collapses.
+#: split: as of `DrawItem`. nowhere: the depth, between -1 and 1 in the view, at which skipped splats collapse.
 DRAW: Block = (
     "Draw",
     "draw",
@@ -56,7 +56,7 @@ _SIZES = {"float": (1, 1), "vec2": (2, 2), "vec4": (4, 4), "mat4": (16, 4)}
 
 
 def std140(block: Block, values) -> np.ndarray:
-    """float32 values of a block's fields as they lie in it: matrices column by column, padded to whole vectors."""
+    """float32 values of a block's fields in std140 layout: matrices column by column, padded to whole vectors."""
     packed, at = np.zeros(_length(block[2]), np.float32), 0
     for (kind, _), value in zip(block[2], values, strict=True):
         size, alignment = _SIZES[kind]

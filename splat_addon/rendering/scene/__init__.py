@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is to be seen, and from where: plain values that neither passes nor devices know of."""
+"""The scene and the camera as plain values, independent of passes and devices."""
 
 from .scene import Instance, Material, Placed, PolygonInstance, Scene, SurfaceTexture
 

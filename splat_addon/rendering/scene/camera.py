@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The camera: where it stands, and the window that it looks through, in float64.
+"""The camera: its position, and the window that it looks through, in float64.
 
-Right-handed, looking down its local -Z. Pixel centres lie at +0.5 and row 0 is at the bottom.
+Right-handed, looking down its local -Z. Pixel centres are at +0.5, and row 0 is at the bottom.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from .lens import Lens
 @dataclass(frozen=True, eq=False)
 class Camera:
     """matrix_world: (4, 4) float64, camera to world, rigid (a scale in it is taken out).
-    window: left, right, bottom, top of the picture; for a perspective camera on the plane at distance 1,
-        for an orthographic one in world units.
+    window: left, right, bottom, top of the picture; for a perspective camera on the plane at distance 1, for an
+        orthographic one in world units.
     size: width, height in pixels. near, far: clip distances along -Z, world units.
-    lens: what renders of many samples look through, for perspective cameras; None is a pinhole.
+    lens: used by renders with several samples, for perspective cameras; None is a pinhole.
     """
 
     matrix_world: np.ndarray
@@ -88,7 +88,7 @@ class Camera:
         return replace(self, window=window, size=(width, height))
 
     def is_same(self, other: Camera) -> bool:
-        """Whether both show the same of every scene."""
+        """Whether both cameras show the same picture of any scene."""
         names = [f.name for f in fields(self) if f.name != "matrix_world"]
         same_values = all(getattr(self, name) == getattr(other, name) for name in names)
         return same_values and np.array_equal(self.matrix_world, other.matrix_world)
@@ -101,9 +101,8 @@ class Camera:
         return inverse
 
     def points_at(self, depths: np.ndarray, corner: tuple[int, int] = (0, 0)) -> np.ndarray:
-        """(h, w, 3) float64 points of the world that the centres of the pixels from `corner` on see, at (h, w)
-        distances along -Z.
-        """
+        """(h, w, 3) float64 world points seen at the centres of the pixels starting at `corner`, at (h, w) distances
+        along -Z."""
         left, right, bottom, top = self.window
         width, height = self.size
         depths = np.asarray(depths, np.float64)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A world that is a picture all around: the picture, and what surfaces of each roughness see of it.
+"""A world image: the image itself, and its blurred levels for surfaces of each roughness.
 
-Sources: Karis 2013, "Real Shading in Unreal Engine 4" (the picture blurred by the lobe seen straight on);
-Meyer et al. 2010, "On Floating-Point Normal Vectors" (the octahedral map that it is kept in).
+Sources: Karis 2013, "Real Shading in Unreal Engine 4" (the image blurred by the lobe for a viewer along the normal);
+Meyer et al. 2010, "On Floating-Point Normal Vectors" (the octahedral map that stores it).
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from functools import cached_property
 
 import numpy as np
 
-#: Roughnesses of the blurred levels; below the first the picture itself is mixed in. The last level is the matt one.
+#: Roughness of each blurred level; below the first, the image itself is mixed in. The last level is for matt surfaces.
 LEVELS = (0.25, 0.4, 0.6, 0.8, 1.0)
-#: Texels along the side of a level's octahedral map, without the rim of one that lets it be interpolated anywhere.
+#: Texels along the side of a level's octahedral map, without the border of one texel for interpolation.
 LEVEL_SIDE = 32
-#: Rows of the reduced picture that levels are blurred from: finer than the narrowest lobe.
+#: Rows of the reduced image that levels are blurred from: finer than the narrowest lobe.
 BLURRED_ROWS = 64
 
 
@@ -43,11 +43,12 @@ class Environment:
         object.__setattr__(self, "rotation", rotation)
 
     def image_texels(self) -> np.ndarray:
-        """(h, w, 4) float32: the picture as a device takes it."""
+        """(h, w, 4) float32: the image in the layout of a texture."""
         return np.concatenate([self.pixels, np.ones((*self.pixels.shape[:2], 1), np.float32)], axis=2)
 
     def level_texels(self) -> np.ndarray:
-        """(6 * 34, 34, 4) float32: the levels, and last what a matt surface sees over pi, one map above the other."""
+        """(6 * 34, 34, 4) float32: the levels, stacked vertically; the last is the irradiance of a matt surface over
+        pi."""
         return self._levels
 
     @cached_property
@@ -78,7 +79,7 @@ def equirectangular_directions(shape: tuple[int, int]) -> tuple[np.ndarray, np.n
 
 
 def level_directions() -> np.ndarray:
-    """(34, 34, 3) unit directions of a level's texels; those of the rim lie beyond the map's edge, folded back."""
+    """(34, 34, 3) unit directions of a level's texels; those of the border lie beyond the map's edge, folded back."""
     ticks = (np.arange(-1, LEVEL_SIDE + 1) + 0.5) / LEVEL_SIDE * 2 - 1
     x, y = np.meshgrid(ticks, ticks)
     for a, b in ((x, y), (y, x)):
@@ -93,7 +94,7 @@ def level_directions() -> np.ndarray:
 
 
 def reduced(pixels: np.ndarray, rows: int) -> np.ndarray:
-    """The picture with about `rows` rows, each pixel the mean of a block; as it is where it has no more."""
+    """The image reduced to about `rows` rows, each pixel the mean of a block; unchanged if it has no more rows."""
     step = max(pixels.shape[0] // rows, 1)
     h, w = (n // step for n in pixels.shape[:2])
     if min(h, w) == 0 or step == 1:
@@ -101,19 +102,19 @@ def reduced(pixels: np.ndarray, rows: int) -> np.ndarray:
     return pixels[: h * step, : w * step].reshape(h, step, w, step, 3).mean(axis=(1, 3), dtype=np.float64)
 
 
-#: Rows and columns that a picture is blurred from at least: in one of few pixels a surface may face none.
+#: Minimum rows and columns that an image is blurred from: with few pixels, a surface might face none.
 _FEWEST_PIXELS = (8, 16)
 
 
 def _with_pixels_all_around(pixels: np.ndarray) -> np.ndarray:
-    """The picture with each pixel repeated until there are enough."""
+    """The image with each pixel repeated until there are enough."""
     for axis, fewest in enumerate(_FEWEST_PIXELS):
         pixels = np.repeat(pixels, -(-fewest // pixels.shape[axis]), axis=axis)
     return pixels
 
 
 def _lobe(cosines: np.ndarray, roughness: float) -> np.ndarray:
-    """GGX's distribution for light at these cosines to the mirrored direction, normal and viewer along it."""
+    """GGX distribution for light at these cosines to the mirrored direction, with normal and viewer along it."""
     a2 = roughness**4
     half2 = (1 + np.clip(cosines, -1, 1)) / 2  # squared cosine of half the angle
     return a2 / (half2 * (a2 - 1) + 1) ** 2

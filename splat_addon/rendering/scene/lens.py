@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The opening that a camera looks through where it is no pinhole: a thin lens (Cook et al., "Distributed ray tracing",
-1984, section 4), with the shapes of opening that Cycles has.
-"""
+"""The aperture of a camera that is not a pinhole: a thin lens (Cook et al., "Distributed ray tracing", 1984, section
+4), with the aperture shapes of Cycles."""
 
 from __future__ import annotations
 
@@ -15,9 +14,9 @@ import numpy as np
 class Lens:
     """A thin lens at a perspective camera's place, in its plane.
 
-    radius: of the opening, world units. focus_distance: along -Z, world units: what lies there is sharp.
-    blades: corners of the opening, on its circle; below 3 it is round. rotation: of the corners, radians.
-    ratio: by which the opening is narrower than high (anamorphic lenses).
+    radius: of the aperture, world units. focus_distance: distance of the sharp plane along -Z, world units.
+    blades: corners of the aperture, on its circle; below 3 it is round. rotation: of the corners, radians.
+    ratio: height over width of the aperture (anamorphic lenses).
     """
 
     radius: float
@@ -35,14 +34,14 @@ class Lens:
             raise ValueError(f"A lens needs a ratio above 0 and a finite rotation, not {self.ratio}, {self.rotation}.")
 
     def points(self, unit: np.ndarray) -> np.ndarray:
-        """(..., 2) float64 in [0, 1) -> (..., 2) places on the opening along the camera's x and y, even by area."""
+        """(..., 2) float64 in [0, 1) -> (..., 2) points on the aperture along the camera's x and y, uniform by area."""
         u, v = np.moveaxis(np.asarray(unit, np.float64), -1, 0)
         places = _on_disc(u, v) if self.blades < 3 else _on_polygon(u, v, self.blades, self.rotation)
         return self.radius * places * (1 / self.ratio, 1.0)
 
 
 def _on_disc(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Rings of the square to rings of the unit disc (Shirley & Chiu, "A low distortion map", 1997)."""
+    """Maps concentric squares to concentric circles (Shirley & Chiu, "A low distortion map", 1997)."""
     a, b = 2 * u - 1, 2 * v - 1
     wide = np.abs(a) > np.abs(b)
     radius = np.where(wide, a, b)
@@ -52,7 +51,7 @@ def _on_disc(u: np.ndarray, v: np.ndarray) -> np.ndarray:
 
 
 def _on_polygon(u: np.ndarray, v: np.ndarray, corners: int, rotation: float) -> np.ndarray:
-    """u chooses one of the triangles around the centre and, with v, the place in it (as Cycles' regular polygon)."""
+    """u selects one of the triangles around the centre and, with v, the point in it (as Cycles' regular polygon)."""
     triangle = np.floor(u * corners)
     out = np.sqrt(u * corners - triangle)
     along = out * v

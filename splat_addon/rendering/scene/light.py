@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lights in Blender's units, and the texels in which shaders read them."""
+"""Lights in Blender's units, and the texels through which shaders read them."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-#: A sun wider than this half-angle is shaded as one of it: half a sky.
+#: Wider suns are shaded with this half-angle: half of the sky.
 MAX_SUN_HALF_ANGLE = 1.4
 
-#: How many sets of instances that differ in what lights them a picture can have: the channels of one texture.
+#: Maximum number of sets of instances with different lights: the channels of one texture.
 MAX_LIGHT_SETS = 4
 
-#: The largest irradiance, in a channel: what is lit by more may leave float32.
+#: Maximum irradiance per channel: beyond this, lit colours may overflow float32.
 MAX_IRRADIANCE = 1e30
 
-#: The largest power of a lamp, in a channel. A lamp as far away as a star needs it; float32 holds no more.
+#: Maximum power of a light per channel. A light as far away as a star needs it, and float32 holds no more.
 MAX_POWER = 3e38
 
 KINDS = ("sun", "point", "spot", "area")
@@ -26,15 +26,15 @@ KINDS = ("sun", "point", "spot", "area")
 @dataclass(frozen=True, eq=False)
 class Light:
     """kind: "sun" (energy is irradiance, W/m^2, of a surface facing it), "point" and "spot" (energy is radiant power,
-    W, sent out evenly: irradiance energy / (4 pi d^2) at distance d; a spot keeps what its cone lets through) or
-    "area" (energy is the power, W, that a flat lamp sends to its front, by Lambert's law).
+    W, sent out evenly: irradiance energy / (4 pi d^2) at distance d; a spot keeps what its cone lets through) or "area"
+    (energy is the power, W, that a flat lamp sends to its front, by Lambert's law).
 
     color: (3,) linear, multiplies energy. position: (3,) world, of all but suns.
     direction: (3,) world, the way the light of a sun, a spot's axis and an area's front travel.
     size: radians across a sun, or the radius of a point or spot; 0 is a light without size.
     spot_angle: radians across a spot's cone; spot_blend: 0 to 1, how soft its rim is.
     receivers: numbers of the sets of instances (`Instance.light_set`) that it lights, or None for all.
-    casts_shadow: whether what it meets first keeps it from what lies behind.
+    casts_shadow: whether objects block its light.
     half_axes: (2, 3) world, from an area's middle to the middles of two sides; is_round: they are an ellipse's.
     """
 
@@ -72,20 +72,20 @@ class Light:
 
     @property
     def area(self) -> float:
-        """Of an area light's lamp."""
+        """Area of an area light."""
         u, v = np.asarray(self.half_axes, np.float64)
         return float(np.linalg.norm(np.cross(u, v))) * (math.pi if self.is_round else 4.0)
 
     @property
     def is_sized(self) -> bool:
-        """Whether it is more than a point or a direction."""
+        """Whether it has an extent, unlike a point or a single direction."""
         return self.kind == "area" or self.size > 0
 
 
-#: Rows of float32 texels a light: see shaders/hosts/lights.glsl.
+#: Float32 texels per light: see shaders/hosts/lights.glsl.
 TEXELS_PER_LIGHT = 7
 
-#: A square with the area of a disc has this half-side in radii.
+#: Half-side of a square with the area of a disc, in radii of the disc.
 _SQUARED = math.sqrt(math.pi) / 2
 
 
@@ -123,7 +123,7 @@ def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: flo
     if map_ranges is not None:
         texels[:, 6, :2] = map_ranges
         texels[:, 6, 2] = [_LAMP_SIZES[light.kind](light, scale) for light in lights]
-    # a picture of a tiny scene has tiny units, in which a power may be beyond float32
+    # in a tiny scene units are tiny, so a power may exceed float32
     return np.clip(texels, -MAX_IRRADIANCE, MAX_IRRADIANCE).astype(np.float32)
 
 
@@ -142,7 +142,7 @@ def _area(light: Light, scale: float) -> tuple[float, float]:
 
 _STRENGTHS = {"sun": _sun, "point": _point, "spot": _point, "area": _area}
 
-#: Half the width of what casts soft shadows, in scaled view units; of a sun the tangent of half its angle.
+#: Half the width of a light that casts soft shadows, in scaled view units; for a sun the tangent of half its angle.
 _LAMP_SIZES = {
     "sun": lambda light, _: math.tan(min(light.size / 2, MAX_SUN_HALF_ANGLE)),
     "point": lambda light, scale: light.size * scale,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drawn lines along silhouettes and creases, over any shading model (Saito and Takahashi 1990)."""
+"""Lines along silhouettes and creases, over any shading model (Saito and Takahashi 1990)."""
 
 from __future__ import annotations
 
@@ -8,16 +8,17 @@ from dataclasses import dataclass
 
 MAX_WIDTH = 16.0
 
-#: Pixels beside a line within which a crease must have turned the normal; shaders/hosts/lines.frag.glsl has the same.
+#: A crease must turn the normal within this many pixels beside a line; shaders/hosts/lines.frag.glsl has the same
+#: value.
 CREASE_REACH = 3.0
 
 
 @dataclass(frozen=True)
 class Lines:
-    """width: in pixels, of a silhouette all on the nearer surface, of a crease half on each side.
-    color: linear rgb. crease_angle: radians between normals, above which a turn is a crease.
-    depth_threshold: how much deeper than its own slope the next surface lies beyond a silhouette, in pixels as wide
-        as they are there.
+    """width: in pixels. A silhouette is drawn on the nearer surface, a crease half on each side.
+    color: linear rgb. crease_angle: radians between normals, above which there is a crease.
+    depth_threshold: how much deeper than the extrapolated surface the next one must be at a silhouette, in units of a
+        pixel's width at that depth.
     """
 
     width: float = 1.5
@@ -38,5 +39,5 @@ class Lines:
 
     @property
     def reach(self) -> float:
-        """Pixels to each side that a line looks at."""
+        """Pixels on each side that a line looks at."""
         return self.width + 2.0 + CREASE_REACH

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A picture of a lit ball, which the matcap shading looks colours up in (Sloan et al. 2001)."""
+"""A picture of a lit ball that the matcap shading takes colours from (Sloan et al. 2001)."""
 
 from __future__ import annotations
 
@@ -23,5 +23,5 @@ class Matcap:
         object.__setattr__(self, "pixels", pixels)
 
     def texels(self) -> np.ndarray:
-        """(h, w, 4) as they lie on the device."""
+        """(h, w, 4) in the layout of the device."""
         return np.concatenate([self.pixels, np.ones((*self.pixels.shape[:2], 1), np.float32)], axis=2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panoramic cameras: which way each place of the picture looks, as Cycles' cameras of the same names do.
+"""Panoramic cameras: the direction of each point of the picture, as in Cycles' cameras of the same names.
 
 In the camera's space: right-handed, looking down -Z.
 """
@@ -14,15 +14,14 @@ import numpy as np
 
 
 class Projection(Protocol):
-    """How a picture is spread over the directions around a camera."""
+    """How a picture is mapped to the directions around a camera."""
 
     def directions(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """u: (1, w) of 0 to 1 from the left, v: (h, 1) from the bottom -> (h, w, 3) unit directions; zero where the
-        picture shows nothing.
-        """
+        """u: (1, w) of 0 to 1 from the left, v: (h, 1) from the bottom -> (h, w, 3) unit directions; zero outside the
+        projection."""
 
     def angles(self) -> tuple[float, float]:
-        """Radians along the picture's width and height, as seen where its pixels are finest."""
+        """Radians along the picture's width and height, measured where its pixels are finest."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +59,7 @@ class Equirectangular:
 
 @dataclass(frozen=True)
 class EquidistantFisheye:
-    """Angles from the axis grow evenly from the middle of the picture to an ellipse in it. field_of_view: radians."""
+    """Angles from the axis grow linearly from the middle of the picture to an ellipse in it. field_of_view: radians."""
 
     field_of_view: float
 
@@ -79,7 +78,7 @@ class EquidistantFisheye:
 
 @dataclass(frozen=True)
 class EquisolidFisheye:
-    """Equal areas show equal solid angles. focal_length and sensor (width and height) in the same unit."""
+    """Equal areas show equal solid angles. focal_length and sensor (width and height) are in the same unit."""
 
     field_of_view: float
     focal_length: float
@@ -110,8 +109,8 @@ def _around_axis(x, y, radius, angle) -> np.ndarray:
 @dataclass(frozen=True, eq=False)
 class Panorama:
     """A camera that looks all around. matrix_world: (4, 4) float64, rigid. size: width, height in pixels.
-    near, far: clip distances, world units, of the six views that it is made from: along their axes.
-    window: left, right, bottom, top of what is shown, of the whole picture from 0 to 1.
+    near, far: clip distances along the axes of the six views that it is made from, world units.
+    window: left, right, bottom, top of the visible part, from 0 to 1 of the whole picture.
     """
 
     matrix_world: np.ndarray
@@ -129,7 +128,7 @@ class Panorama:
         return replace(self, window=window, size=(width, height))
 
     def directions(self, rows: slice, place=(0.5, 0.5)) -> np.ndarray:
-        """(n, w, 3) float64 in the camera's space, of those rows of pixels, through a place in each (0 to 1)."""
+        """(n, w, 3) float64 in the camera's space, for these rows of pixels, through a point in each pixel (0 to 1)."""
         left, right, bottom, top = self.window
         width, height = self.size
         column, row = np.arange(width)[None, :], np.arange(height)[rows, None]

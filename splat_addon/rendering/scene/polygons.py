@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Polygons among the splats: triangles as the renderer takes them, and as texels, the form in which shaders pull them.
+"""Polygons among the splats: triangles as input of the renderer, and as texels that shaders fetch.
 
 Source: Guennebaud, Barthe, Paulin 2006, section 5 (splats and polygons in one rendering).
 """
@@ -13,13 +13,13 @@ import numpy as np
 
 from ...surfels import Shape
 
-#: Corners in a row of a texture, and rows that every tested backend's textures can have.
+#: Corners in a row of a texture, and the number of rows that all tested backends support.
 CORNERS_PER_ROW = 512
 MAX_ROWS = 16384
 MAX_TRIANGLES = CORNERS_PER_ROW * MAX_ROWS // 3
 TEXELS_PER_CORNER = 3
 
-#: field -> (columns, dtype) of one corner, where one column is stored flat; the last four are there where needed.
+#: field -> (columns, dtype) of one corner; one column is stored flat. The last four fields are optional.
 _LAYOUT = {
     "positions": (3, np.float32),
     "normals": (3, np.float32),
@@ -37,9 +37,9 @@ _OPTIONAL = ("roughness", "metallic", "emission", "uvs")
 class Polygons(Shape):
     """T triangles of three corners each: corner k of triangle t is row 3 t + k, counter-clockwise seen from outside.
 
-    positions: (3 T, 3) float32, object units, relative to `origin`. normals: (3 T, 3), for shading, of any length;
-    where one is zero the triangle's own is meant. colors: (3 T, 4) scene-linear; alpha is not looked at.
-    materials: (3 T,) of the instance's slots, the same at the three corners.
+    positions: (3 T, 3) float32, object units, relative to `origin`. normals: (3 T, 3), for shading, of any length; zero
+        means the triangle's own normal. colors: (3 T, 4) scene-linear; alpha is ignored.
+    materials: (3 T,) index of the instance's slot, the same at the three corners.
 
     Raises ValueError with one sentence for a wrong shape, a number that is not finite, or too many triangles.
     """
@@ -72,12 +72,12 @@ class Polygons(Shape):
 
     @property
     def triangles(self) -> int:
-        """How many."""
+        """Number of triangles."""
         return len(self.positions) // 3
 
     @property
     def has_uvs(self) -> bool:
-        """Whether textures can be looked up."""
+        """Whether there are texture coordinates."""
         return self.uvs is not None
 
     @property
@@ -87,7 +87,7 @@ class Polygons(Shape):
 
     @cached_property
     def local_bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Two (3,) float64 corners, relative to `origin`, of a box that holds them all (NaN when empty)."""
+        """Two (3,) float64 corners, relative to `origin`, of a box around all triangles (NaN if empty)."""
         if not len(self):
             return np.full(3, np.nan), np.full(3, np.nan)
         columns = self.positions.T
@@ -128,7 +128,7 @@ def _rows(shape: Polygons) -> int:
 
 
 def _unit_or_own(normals: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """(3 T, 3) of unit length; the triangle's own where there is none, which of a triangle without area is up."""
+    """(3 T, 3) unit normals; the triangle's own if there is none, and up for triangles without area."""
     length = np.linalg.norm(normals.astype(np.float64), axis=1, keepdims=True)
     if (length > 0).all():
         return (normals / length).astype(np.float32)

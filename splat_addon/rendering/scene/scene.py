@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is to be rendered: surfel objects and their instances, materials, lights and the world.
+"""The scene to render: surfel objects and their instances, materials, lights and the world.
 
-Plain values, no Blender: `blender/export/scene.py` makes a `Scene` from a depsgraph, tests make one by hand.
+Plain values without Blender: `blender/export/scene.py` makes a `Scene` from a depsgraph, tests make one by hand.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from .polygons import Polygons
 
 @dataclass(frozen=True)
 class Material:
-    """How a surface answers light; its base colour is the surfels' own.
+    """How a surface reflects and emits light; its base colour is the surfels' own.
 
-    roughness, metallic: 0 to 1. ior: index of refraction of the dielectric coat, which sets its
-    reflectance at normal incidence, ((ior - 1) / (ior + 1))^2. emission: scene-linear radiance that leaves it evenly.
+    roughness, metallic: 0 to 1. ior: index of refraction of the dielectric coat, which sets its reflectance at normal
+        incidence, ((ior - 1) / (ior + 1))^2. emission: scene-linear radiance, the same in all directions.
     index: what the frame's `material_index` shows of it.
     Surfels may have their own roughness, metallic and emission, which take the place of these.
     """
@@ -44,7 +44,7 @@ class Material:
 
 @dataclass(frozen=True, eq=False)
 class SurfaceTexture:
-    """A base colour that is looked up at every pixel, for surfels with texture coordinates.
+    """A base colour that is looked up for every pixel, for surfels with texture coordinates.
 
     factor: (3,) scene-linear, multiplies the image.
     """
@@ -62,32 +62,32 @@ class SurfaceTexture:
         return float(np.max(self.image.pixels[..., :3].max(axis=(0, 1)) * self.factor))
 
 
-#: Of how many of an object's surfels or corners decisions are made that cost time alone if they are wrong.
+#: Sample size for heuristics that affect speed, never correctness.
 _SOME = 256
 
-#: A matrix whose shortest axis is this share of its longest leaves no direction for a normal.
+#: A matrix whose shortest axis is below this share of its longest leaves no direction for a normal.
 _FLATTEST = 1e-12
 
-#: (8, 3) of each corner of a box, whether it is at the high end of each axis.
+#: (8, 3) for each corner of a box, whether it is at the high end of each axis.
 _CORNERS = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
 
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """What stands in the world: surfels by an `Instance`, polygons by a `PolygonInstance`.
+    """An object placed in the world: the common part of `Instance` (surfels) and `PolygonInstance` (polygons).
 
-    shape: what stands there.
+    shape: the surfels or polygons.
     matrix_world: (4, 4), object to world, any invertible affine map (mirrored, non-uniform, sheared).
     materials: what `shape.materials` indexes; an index past the end uses the last one.
     light_set: number of the set of instances that the same lights light (`Light.receivers`).
-    casts_shadow: whether it does where a light casts shadows.
-    textures: indexed alike; where one is None, and for shapes without texture coordinates, the shape's own colours
+    casts_shadow: whether it blocks lights that cast shadows.
+    textures: indexed like `materials`; if one is None or the shape has no texture coordinates, the shape's own colours
         are shown.
-    name: by which the frame's `cryptomatte` tells it from others; those of one name are one. index: what its
-        `object_index` shows.
+    name: identifies it in the frame's `cryptomatte`; instances with the same name count as one. index: its value in
+        `object_index`.
     split: distance from the camera, world units, up to which an object is drawn as polygons, and beyond it as surfels,
         by two instances that have the same; None: each is drawn everywhere. Shadows are cast by both.
-    is_holdout: it hides what is behind it and shows nothing: where it is seen, the picture has an alpha of 0.
+    is_holdout: it hides everything behind it and shows nothing: the picture has an alpha of 0 there.
     """
 
     shape: Surfels | Polygons
@@ -116,12 +116,13 @@ class Placed:
 
     @property
     def radius(self) -> float:
-        """How far anything may stick out of the shape's places, in the world."""
+        """How far anything may extend beyond the shape's positions, in world units."""
         raise NotImplementedError
 
     @cached_property
     def stretches(self) -> np.ndarray:
-        """(3,) by how much the matrix lengthens at most, and across that: its singular values."""
+        """(3,) the matrix's singular values: the largest factor by which it lengthens, and those perpendicular to
+        it."""
         return np.linalg.svd(self.matrix_world[:3, :3], compute_uv=False)
 
     @property
@@ -131,18 +132,18 @@ class Placed:
 
     @property
     def is_textured(self) -> bool:
-        """Whether some of its colours are to be looked up."""
+        """Whether any of its colours come from textures."""
         return self.shape.has_uvs and any(texture is not None for texture in self.textures)
 
     @property
     def is_transparent(self) -> bool:
-        """Whether something shows through it; never through what cuts a hole."""
+        """Whether anything shows through it; never true for holdouts."""
         return self.shape.is_transparent and not self.is_holdout
 
     def model_view(self, camera: Camera) -> np.ndarray:
-        """(4, 4) float64, positions (without origin) to the camera's view space.
+        """(4, 4) float64, from positions (without origin) to the camera's view space.
 
-        The camera is subtracted from the origin before anything else, so that both may be far from the world's.
+        The camera is subtracted from the origin first, so that both may be far from the world origin.
         """
         rotation, linear = camera.matrix_world[:3, :3].T, self.matrix_world[:3, :3]
         matrix = np.eye(4)
@@ -151,12 +152,12 @@ class Placed:
         return matrix
 
     def corners(self, camera: Camera) -> np.ndarray:
-        """(8, 3) float64 corners of a box around it all, in the camera's view space."""
+        """(8, 3) float64 corners of a box around it, in the camera's view space."""
         model_view = self.model_view(camera)
         return self._local_corners @ model_view[:3, :3].T + model_view[:3, 3]
 
     def world_corners(self) -> np.ndarray:
-        """(8, 3) float64 corners of a box around it all, in the world."""
+        """(8, 3) float64 corners of a box around it, in world space."""
         corners = self._local_corners + self.shape.origin
         return corners @ self.matrix_world[:3, :3].T + self.matrix_world[:3, 3]
 
@@ -166,7 +167,7 @@ class Placed:
         return np.where(_CORNERS, high, low)
 
     def some_places(self, camera: Camera) -> np.ndarray:
-        """(n, 3) of some of its surfels or corners, in the camera's view space."""
+        """(n, 3) a sample of its surfels or corners, in the camera's view space."""
         model_view = self.model_view(camera)
         return self.shape.positions[self._some] @ model_view[:3, :3].T + model_view[:3, 3]
 
@@ -175,9 +176,8 @@ class Placed:
         return slice(None, None, max(-(-len(self.shape) // _SOME), 1))
 
     def hides_backs(self, camera: Camera) -> bool:
-        """Whether no back can be seen: solid and opaque, and wholly beyond the near plane, so that the camera is
-        outside.
-        """
+        """Whether no back face can be visible: it is solid and opaque, and wholly beyond the near plane, so the camera
+        is outside."""
         is_closed = self.shape.is_solid and not self.is_transparent
         return is_closed and bool((-self.corners(camera)[:, 2] >= camera.near).all())
 
@@ -192,27 +192,27 @@ class Instance(Placed):
 
     @cached_property
     def radius(self) -> float:
-        """The largest surfel's in the world."""
+        """The largest surfel's radius in world units."""
         return self.surfels.largest * float(self.stretches[0])
 
     def shows_backs(self, camera: Camera) -> bool:
-        """Whether some surfels turn their backs to the camera and are drawn; as far as some of them tell.
+        """Whether some surfels face away from the camera and are drawn, judged from a sample.
 
-        An affine map leaves what lies before a plane before it: that is looked for in the object's own space.
+        An affine map keeps the sides of a plane, so this is tested in the object's own space.
         """
         if self.is_flattened or self.hides_backs(camera):
             return False
         return bool(self._are_backs(camera, self.surfels.positions[self._some], self._some_normals).any())
 
     def backs(self, camera: Camera) -> int:
-        """How many surfels turn their backs to the camera."""
+        """Number of surfels that face away from the camera."""
         if self.is_flattened:
             return 0
         normals = quaternion_axes(self.surfels.rotations)[2]
         return int(np.count_nonzero(self._are_backs(camera, self.surfels.positions, normals)))
 
     def _are_backs(self, camera: Camera, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
-        """(n,) bool of surfels in the object's own space."""
+        """(n,) bool for surfels in the object's own space."""
         model_view = self.model_view(camera)
         if camera.is_orthographic:
             to_eye = np.linalg.solve(model_view[:3, :3], (0.0, 0.0, 1.0))
@@ -235,17 +235,17 @@ class PolygonInstance(Placed):
 
     @property
     def radius(self) -> float:
-        """Nothing sticks out of polygons."""
+        """Nothing extends beyond polygons."""
         return 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Everything that a picture depends on but its camera and settings.
+    """Everything that a picture depends on except camera and settings.
 
-    surfels: `Instance`s, or bare `Surfels` standing at the world's origin.
-    world: (3,) scene-linear radiance that reaches every surface and fills the background.
-    environment: a picture all around, which `world` then multiplies.
+    surfels: `Instance`s, or bare `Surfels` placed at the world origin.
+    world: (3,) scene-linear radiance of the background, which lights every surface.
+    environment: an image of the surroundings, multiplied by `world`.
     polygons: `PolygonInstance`s, or bare `Polygons`, among the surfels.
     """
 
@@ -268,5 +268,5 @@ class Scene:
 
     @property
     def shown(self) -> tuple[Placed, ...]:
-        """What there is to see, of either kind."""
+        """Everything visible, of either kind."""
         return tuple(placed for placed in (*self.surfels, *self.polygons) if len(placed.shape))

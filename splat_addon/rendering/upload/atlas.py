@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The textures of one object in one image, with all their levels: a shader then needs a single draw and no sampler.
+"""The textures of one object with all their levels in one image, so that a shader needs a single draw and no sampler
+states.
 
-`gpu` of Blender 4.5 and 5.0 can neither set a texture's filter nor its levels, so shaders/lib/texture_lookup.glsl
-does both by hand. The table has a row for each material slot:
+The `gpu` module of Blender 4.5 and 5.0 can set neither a texture's filter nor its levels, so
+shaders/lib/texture_lookup.glsl does both by hand. The table has a row for each material slot:
     factor.rgb, levels (0: none)   |   extension, closest, width, height   |   x, y, width, height of each level
 """
 
@@ -15,25 +16,28 @@ import numpy as np
 from ...images import EXTENSIONS, Image, Pyramid
 from ..scene import SurfaceTexture
 
-#: Of the atlas, along each edge: what every tested backend has. Textures that do not fit lose their finest level.
+#: Maximum size of the atlas along each edge, supported by all tested backends. Textures that do not fit lose their
+#: finest level.
 MAX_EDGE = 16384
-#: Texels of the atlas: 8 bytes each.
+#: Maximum texels of the atlas, 8 bytes each.
 MAX_TEXELS = 1 << 26
 
-#: What the device stores them as, to 1 part in 2,048: a twentieth of a step of an 8-bit image. Rounded here, so that
-#: every device has the same.
+#: Storage format on the device, precise to 1 part in 2,048: a twentieth of a step of an 8-bit image. Values are rounded
+#: here, so that all devices have the same.
 FORMAT = "RGBA16F"
 LARGEST = 65504.0
 
-#: The order is the number by which the shader knows an extension.
+#: The index is the number by which the shader knows an extension.
 EXTENSION_NUMBERS = {name: number for number, name in enumerate(("REPEAT", "EXTEND", "CLIP", "MIRROR"))}
 assert EXTENSION_NUMBERS.keys() == EXTENSIONS.keys()
 
 
 @dataclass(frozen=True, eq=False)
 class Atlas:
-    """texels: (h, w, 4) float32 of numbers that float16 has, premultiplied. table: (slots, 2 + levels, 4) float32.
-    dropped: how many finest levels did not fit."""
+    """texels: (h, w, 4) float32 values that float16 can represent, premultiplied.
+    table: (slots, 2 + levels, 4) float32.
+    dropped: number of finest levels that did not fit.
+    """
 
     texels: np.ndarray
     table: np.ndarray
@@ -41,7 +45,7 @@ class Atlas:
 
 
 def make_atlas(textures: tuple[SurfaceTexture | None, ...], max_texels: int = MAX_TEXELS) -> Atlas:
-    """The atlas of these material slots' textures; slots with one image share its place.
+    """The atlas of these material slots' textures; slots with the same image share its place.
 
     max_texels: above it the largest images lose their finest levels.
     """
@@ -72,7 +76,7 @@ def _write_row(row: np.ndarray, texture: SurfaceTexture, rectangles: list[tuple[
 
 
 def _first_levels(pyramids: list[Pyramid], max_texels: int) -> list[int]:
-    """The finest level of each image that is kept."""
+    """The finest level that is kept for each image."""
     first = [0] * len(pyramids)
 
     def size(k: int) -> tuple[int, int]:
@@ -90,7 +94,7 @@ def _first_levels(pyramids: list[Pyramid], max_texels: int) -> list[int]:
 
 
 def _packed(sizes: list[tuple[int, int]]) -> tuple[list[tuple[int, int]], tuple[int, int]]:
-    """Where rectangles go on shelves, the tallest first, and the size of it all, at least 1 x 1."""
+    """Positions of rectangles packed on shelves, the tallest first, and the total size, at least 1 x 1."""
     if not sizes:
         return [], (1, 1)
     width = max(max(w for w, _ in sizes), int(sum(w * h for w, h in sizes) ** 0.5 / 1.2))

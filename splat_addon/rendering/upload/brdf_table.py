@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the principled shading needs to know of the GGX lobe, tabulated by reference/brdf_fit.py."""
+"""The table of the GGX lobe for the principled shading, fitted by reference/brdf_fit.py."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cuts on the device: the numbers of the splats that a view draws, uploaded when the view changes."""
+"""Cuts on the device: the indices of the splats that a view draws, uploaded when the view changes."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy as np
 from ..device import Device
 from ..device.interface import Texture
 
-#: Of the texture of numbers, which float32 has exactly up to 2^24.
+#: Format of the texture of indices; float32 is exact up to 2^24.
 NUMBERS_PER_ROW = 4096
 
 
 class Cut(NamedTuple):
-    """count: splats that are drawn. clipped: how many of them, the first, end at clip lines.
+    """count: splats that are drawn. clipped: number of them, at the beginning, that end at clip lines.
 
-    numbers: their texture; None where they are the first `count` that are stored.
+    numbers: texture of their indices; None: the first `count` in storage order.
     """
 
     count: int
@@ -27,7 +27,7 @@ class Cut(NamedTuple):
 
 
 class Cuts:
-    """Those that the last frames drew. uploads: how many were made."""
+    """The cuts of the last frames. uploads: number of uploads."""
 
     def __init__(self, device: Device):
         self._device = device
@@ -36,15 +36,15 @@ class Cuts:
         self.uploads = 0
 
     def begin_frame(self) -> None:
-        """Let go of those that the frame before did not use."""
+        """Free the cuts that the previous frame did not use."""
         self._kept = {key: kept for key, kept in self._kept.items() if kept[0] == self._frame}
         self._frame += 1
 
     def get(self, key: object, numbers: Callable[[], np.ndarray | None], every: int, clipped: int) -> Cut:
-        """The cut of a view and an object, which the key tells apart.
+        """The cut of a view and an object, identified by the key.
 
-        numbers: where what it draws is stored; None: the first `every`. clipped: how many are stored first that end at
-        clip lines.
+        numbers: storage indices of what it draws; None: the first `every`. clipped: number of clipped surfels, which
+            are stored first.
         """
         known = self._kept.get(key)
         cut = known[1] if known else self._made(numbers(), every, clipped)

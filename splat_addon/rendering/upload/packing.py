@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels and materials as texels, the form in which shaders pull them.
+"""Packs surfels and materials into texels, which shaders fetch.
 
 A splat is four RGBA32F texels, 512 splats a row:
     position.xyz, normal.x   |   axis u.xyz, normal.y   |   axis v.xyz, material   |   color.rgba
-where normal.xy is the octahedral form of the shading normal and the axes carry the half-axes' lengths. Surfels that
-have blend depths carry them in the fraction of the material.
+where normal.xy is the octahedral form of the shading normal and the axes carry the half-axes' lengths. Blend depths are
+stored in the fractional part of the material.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from .stored_order import clipped_first
 
 SPLATS_PER_ROW = 512
 TEXELS_PER_SPLAT = 4
-#: Of a radius in a stored blend depth.
+#: Steps per radius of a stored blend depth.
 BLEND_STEPS = 256
-#: Rows that every tested backend's textures can have.
+#: Rows that all tested backends' textures support.
 MAX_ROWS = 16384
 MAX_SPLATS = SPLATS_PER_ROW * MAX_ROWS
 
@@ -44,17 +44,15 @@ def pack_surfels(surfels: Surfels) -> np.ndarray:
 
 
 def not_blended(surfels: Surfels) -> np.ndarray:
-    """(N,) float64 whole numbers from 0 to 255: how much of the radius a splat does not blend over, in 256ths, rounded
-    towards more blending; at most 255 of them. So much fits beside a material's number, and 0 is what a set without
-    blend depths has.
-    """
+    """(N,) float64 integers from 0 to 255: the part of the radius over which a splat does not blend, in 256ths, rounded
+    towards more blending. This fits into the fraction beside a material's number; 0 means no blend depth."""
     return np.minimum(np.floor((1 - surfels.blend_depth.astype(np.float64)) * BLEND_STEPS), BLEND_STEPS - 1)
 
 
 def pack_uvs(surfels: Surfels, order=slice(None)) -> np.ndarray:
     """(rows, 1024, 4) float32, two texels a splat: uv, its change along the local x half-axis  |  along y, border.
 
-    order: in which the surfels are stored.
+    order: storage order of the surfels.
     """
     rows = row_count(surfels)
     texels = np.zeros((rows * SPLATS_PER_ROW, 2, 4), np.float32)
@@ -67,9 +65,8 @@ def pack_uvs(surfels: Surfels, order=slice(None)) -> np.ndarray:
 
 
 def pack_clip_lines(surfels: Surfels, order: np.ndarray) -> np.ndarray:
-    """(rows, 512, 4) float32 multiples of 1 / 65535: direction and cut of the first line, and of the second, of the
-    clipped surfels alone, 8 bytes each. order: in which all are stored, the clipped ones first.
-    """
+    """(rows, 512, 4) float32 multiples of 1 / 65535: direction and cut of both lines, for clipped surfels only, 8 bytes
+    each. order: storage order of all surfels, clipped ones first."""
     count = surfels.clipped_count
     texels = np.zeros((-(-count // SPLATS_PER_ROW) * SPLATS_PER_ROW, 4), np.float32)
     for number, name in enumerate(CLIP_FIELDS):
@@ -80,7 +77,7 @@ def pack_clip_lines(surfels: Surfels, order: np.ndarray) -> np.ndarray:
 
 
 def row_count(surfels: Surfels) -> int:
-    """Rows of 512 splats, one at least. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
+    """Number of rows of 512 splats, at least one. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
     count = len(surfels)
     if count > MAX_SPLATS:
         raise ValueError(
@@ -114,9 +111,9 @@ def pack_materials(materials: tuple[Material, ...], with_emission: bool = False)
 def pack_own_materials(
     surfels: Surfels, materials: tuple[Material, ...], order=slice(None), with_emission: bool = False
 ) -> np.ndarray:
-    """(rows, 512 or 1024, 4) float32: as `pack_materials`, but one of each surfel, and 1 at the end of the first texel.
+    """(rows, 512 or 1024, 4) float32: as `pack_materials`, but one per surfel, with 1 at the end of the first texel.
 
-    What the surfels do not have themselves is that of their slot. order: in which the surfels are stored.
+    Values that surfels lack come from their slot. order: storage order of the surfels.
     """
     slots = pack_materials(materials, with_emission).reshape(len(materials), -1, 4)
     rows, count = row_count(surfels), len(surfels)
@@ -132,14 +129,12 @@ def pack_own_materials(
 
 
 def reflectance(ior: float) -> float:
-    """Of a dielectric at normal incidence (Fresnel)."""
+    """Reflectance of a dielectric at normal incidence (Fresnel)."""
     return ((ior - 1) / (ior + 1)) ** 2
 
 
 def shared_material(instances: tuple[Placed, ...]) -> Material | None:
-    """The one material that all surfels of the instances answer light with, or None; its emission and its index mean
-    nothing.
-    """
+    """The material shared by all surfels of the instances, or None; its emission and index are meaningless."""
     if any(i.shape.roughness is not None or i.shape.metallic is not None for i in instances):
         return None
     given = {material for instance in instances for material in instance.materials}
@@ -148,7 +143,7 @@ def shared_material(instances: tuple[Placed, ...]) -> Material | None:
 
 
 def shared_emission(instances: tuple[Placed, ...]) -> tuple[float, float, float] | None:
-    """The one radiance that all surfels of the instances send out, or None where they differ."""
+    """The emission shared by all surfels of the instances, or None if they differ."""
     if any(instance.shape.emission is not None for instance in instances):
         return None
     emissions = {tuple(m.emission) for instance in instances for m in instance.materials}

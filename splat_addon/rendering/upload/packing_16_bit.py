@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels as 16-bit numbers: 32 bytes each instead of 64, and a table of 48 bytes for every 512.
+"""Packs surfels as 16-bit numbers: 32 bytes each instead of 64, and a table of 48 bytes for every 512.
 
 A splat is four texels of four 16-bit numbers (unsigned, normalised: the one 16-bit format that every graphics API fills
 alike; drivers differ in how they round to float16):
@@ -7,15 +7,11 @@ alike; drivers differ in how they round to float16):
 The 512 splats of a row are neighbours, and numbers are relative to that block. Its row in the table is
     low corner, longest half-axis  |  size of the box, log2 of longest over shortest half-axis  |  brightest colour, 0
 
-What each number may lose:
-    position: 2^-17 of the block's box, along each axis.
-    half-axes: 2^-17 log2(longest / shortest of the block) octaves, below 2^-10 of themselves while that ratio is below
-        2^180; equal lengths are exact. The axes turn by 2e-4 radians at most.
-    normal: 5e-5 radians.
-    colour: cube root of the share of the block's brightest in steps of 2^-15, so 5e-5 of the brightest and 1e-3 of a
-        colour a thousandth as bright. 0 is exact.
-    opacity: 2^-17 within 0 to 1. material: none up to 65,535, beyond which it is refused.
-    blend depth: what `not_blended` rounds.
+Maximum error of each value: position: 2^-17 of the block's box, along each axis. half-axes: 2^-17 log2(longest /
+shortest of the block) octaves, below 2^-10 of themselves while that ratio is below 2^180; equal lengths are exact. The
+axes turn by 2e-4 radians at most. normal: 5e-5 radians. colour: cube root of the share of the block's brightest in
+steps of 2^-15, so 5e-5 of the brightest and 1e-3 of a colour a thousandth as bright. 0 is exact. opacity: 2^-17 within
+0 to 1. material: none up to 65,535, beyond which it is refused. blend depth: what `not_blended` rounds.
 """
 
 from __future__ import annotations
@@ -26,14 +22,14 @@ from ...surfels import Surfels
 from .packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT, not_blended, octahedral, row_count
 from .stored_order import clipped_first
 
-#: A share of a splat's shorter half-axis that is seen.
+#: An error of this share of a splat's shorter half-axis is visible.
 COARSE = 1 / 8
 
 _STEPS = 65535
-#: Steps from 0 to 1 of a signed number; one of the 65,536 values is given up so that 0 is one.
+#: Steps from 0 to 1 of a signed number; one of the 65,536 values is unused so that 0 is exact.
 _SIGNED_STEPS = 32767
 
-#: Bits of each coordinate in the order along which neighbours are gathered.
+#: Bits per coordinate of the spatial order.
 _ORDER_BITS = 16
 
 
@@ -53,7 +49,7 @@ def pack_16_bit(surfels: Surfels) -> tuple[tuple[np.ndarray, np.ndarray], int]:
     table = np.zeros((rows, 3, 4), np.float32)
     if not len(surfels):
         return (texels.reshape(rows, -1, 4), table), 0
-    # the last row is filled up with its last splat, which widens no block
+    # pad the last row with its last splat, which widens no block
     order = np.pad(order_16_bit(surfels), (0, rows * SPLATS_PER_ROW - len(surfels)), "edge")
 
     def blocks(array):
@@ -93,9 +89,7 @@ def order_16_bit(surfels: Surfels) -> np.ndarray:
 
 
 def spatial_order(positions: np.ndarray) -> np.ndarray:
-    """(N,) indices that bring neighbours of (N, 3) positions together: along a Morton curve through their box, equal
-    cells in their own order.
-    """
+    """(N,) indices that order (N, 3) positions along a Morton curve through their box; equal cells keep their order."""
     low, high = positions.min(axis=0).astype(np.float64), positions.max(axis=0).astype(np.float64)
     shares = (positions - low) / max((high - low).max(), 1e-300)
     cells = np.minimum(shares * 2**_ORDER_BITS, 2**_ORDER_BITS - 1).astype(np.uint64)
@@ -115,19 +109,19 @@ def _spread(bits: np.ndarray) -> np.ndarray:
 def rotation_parameters(quaternions: np.ndarray) -> np.ndarray:
     """(..., 3) modified Rodrigues parameters, (x, y, z) / (1 + w), of (..., 4) unit quaternions w, x, y, z.
 
-    A quaternion and its negative are one rotation; the one with w >= 0 keeps the parameters within 1.
+    A quaternion and its negative are the same rotation; choosing w >= 0 keeps the parameters within 1.
     """
     w = quaternions[..., :1]
     return quaternions[..., 1:] * np.copysign(1 / (1 + np.abs(w)), w)
 
 
 def _divisor(size):
-    """What shares of a size are taken with: 1 in place of 0."""
+    """The size as a divisor: 1 in place of 0."""
     return np.where(size > 0, size, 1)
 
 
 def _steps(share):
-    """0 to 1, rounded to a multiple of 1 / 65535."""
+    """0 to 1, rounded to multiples of 1 / 65535."""
     return np.rint(share * _STEPS) / _STEPS
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a renderer keeps on its device between frames: surfels and the textures that passes write."""
+"""Resources that a renderer keeps on its device between frames: surfels, and the textures that passes write."""
 
 from __future__ import annotations
 
@@ -22,14 +22,13 @@ from .storages import Storage
 
 Uploaded = TypeVar("Uploaded")
 
-#: name, width, height, format, samples a texel (0 for one) of a texture that a pass writes.
+#: name, width, height, format, samples per texel (0 for single-sample) of a texture that a pass writes.
 TextureKey = tuple[str, int, int, str, int]
 
 
 class StoredSurfels(NamedTuple):
-    """textures: by sampler. coarse: surfels whose place the storage loses visibly. levels: with the merged nodes after
-    the surfels. places: where each is stored; None: in its own place.
-    """
+    """textures: by sampler. coarse: number of surfels whose position loses visible precision in the storage. levels:
+    whether merged nodes follow the surfels. places: storage position of each; None: in order."""
 
     textures: dict[str, Texture]
     coarse: int
@@ -38,9 +37,8 @@ class StoredSurfels(NamedTuple):
 
 
 class Resources:
-    """Surfels leave the device with their last Python reference, textures with the first frame that does not use
-    them, everything with `release`. textures: those that passes wrote last, by key.
-    """
+    """Surfels are freed with their last Python reference, textures with the first frame that does not use them, and
+    everything by `release`. textures: those that passes wrote last, by key."""
 
     def __init__(self, device: Device):
         self.device = device
@@ -50,10 +48,10 @@ class Resources:
         self.textures = {}
 
     def surfels(self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None) -> StoredSurfels:
-        """Their textures, uploaded once; another storage takes their place. levels: whose nodes lie after them."""
+        """Textures of surfels, uploaded once per storage. levels: hierarchy whose nodes are stored after them."""
         made_from, held = self._held.get(surfels, {}).get("surfels", (None, None))
         if levels is None and held is not None and made_from[0] == storage.name and held.places is None:
-            # what lies after surfels in their own places is nothing to who draws them alone
+            # data after surfels in their own order does not affect users who draw only these
             return held
 
         def stored() -> StoredSurfels:
@@ -69,19 +67,19 @@ class Resources:
         return self._once(surfels, "surfels", (storage.name, levels), stored)
 
     def polygons(self, polygons: Polygons) -> Texture:
-        """Their corners, uploaded once."""
+        """The corners of polygons, uploaded once."""
         return self._once(polygons, "corners", None, lambda: self.data(pack_polygons(polygons)))
 
     def polygon_uvs(self, polygons: Polygons) -> Texture:
-        """Their texture coordinates, uploaded once."""
+        """The texture coordinates of polygons, uploaded once."""
         return self._once(polygons, "uvs", None, lambda: self.data(pack_polygon_uvs(polygons)))
 
     def materials(
         self, instance: Placed, storage: Storage, with_emission: bool, levels: Hierarchy | None = None
     ) -> Texture:
-        """Those of its slots; where surfels, or the corners of polygons, have their own, one of each, uploaded once.
+        """The materials of an instance's slots; if surfels or corners have their own, one each. Uploaded once.
 
-        storage: of surfels, whose order it may change.
+        storage: of surfels, which may change their order.
         """
         shape, slots = instance.shape, instance.materials
         if not shape.has_own_material:
@@ -94,7 +92,7 @@ class Resources:
         return self._once(shape, "materials", (slots, storage.name, with_emission, levels), own)
 
     def surfel_uvs(self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None) -> Texture:
-        """Their texture coordinates, uploaded once."""
+        """The texture coordinates of surfels, uploaded once."""
 
         def uploaded() -> Texture:
             every = _with_nodes(surfels, levels)
@@ -103,7 +101,7 @@ class Resources:
         return self._once(surfels, "uvs", (storage.name, levels), uploaded)
 
     def clip_lines(self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None) -> Texture:
-        """The lines of those that are clipped, uploaded once."""
+        """The lines of clipped surfels, uploaded once."""
 
         def uploaded() -> Texture:
             every = _with_nodes(surfels, levels)
@@ -119,41 +117,41 @@ class Resources:
         return self._atlases[textures]
 
     def forget_atlases_but(self, wanted: set[tuple[SurfaceTexture | None, ...]]) -> None:
-        """Let go of textures that this frame does not use."""
+        """Free atlases that this frame does not use."""
         self._atlases = {key: atlas for key, atlas in self._atlases.items() if key in wanted}
 
     def data(self, texels: np.ndarray, format: str = "RGBA32F") -> Texture:
-        """A texture of (h, w, 4) float32 texels that nothing here keeps."""
+        """A texture of (h, w, 4) float32 texels that is not cached."""
         return self.device.texture(texels.shape[1::-1], format, texels)
 
     def constant(self, texels: Callable[[], np.ndarray]) -> Texture:
-        """The texture of what `texels`, a function, gives, which is always the same; uploaded once."""
+        """The texture of a constant result of the function `texels`; uploaded once."""
         return self._once(texels, "constant", None, lambda: self.data(texels()))
 
     def kept(self, owner: object, texels: Callable[[], np.ndarray]) -> Texture:
-        """The texture of what `texels`, a method of `owner`, gives; it leaves the device with the owner."""
+        """The texture of the result of `texels`, a method of `owner`; freed with the owner."""
         return self._once(owner, texels.__name__, None, lambda: self.data(texels()))
 
     def _once(self, owner: object, kind: str, made_from: object, make: Callable[[], Uploaded]) -> Uploaded:
-        """What an owner has on the device, of one kind; made anew where it was made from something else."""
+        """One kind of device data for an owner; made again if it was made from something else."""
         held = self._held.setdefault(owner, {})
         if kind not in held or held[kind][0] != made_from:
             held[kind] = made_from, make()
         return held[kind][1]
 
     def texture(self, key: TextureKey) -> Texture:
-        """The texture of that name, size and format, made when it is first asked for."""
+        """The texture of this name, size and format, created on first use."""
         if key not in self.textures:
             _, width, height, format, samples = key
             self.textures[key] = self.device.texture((width, height), format, samples=samples)
         return self.textures[key]
 
     def swap(self, key: TextureKey, other: TextureKey) -> None:
-        """Let two textures change their keys."""
+        """Swap the keys of two textures."""
         self.textures[key], self.textures[other] = self.texture(other), self.texture(key)
 
     def forget_textures_but(self, wanted: set[TextureKey]) -> None:
-        """Let go of textures of a size or kind that this frame does not use: they are not kept for one that may."""
+        """Free textures of a size or kind that this frame does not use."""
         self.textures = {key: texture for key, texture in self.textures.items() if key in wanted}
 
     def pipeline(self, description: PipelineDescription) -> Pipeline:
@@ -161,7 +159,7 @@ class Resources:
         return self.device.pipeline(description)
 
     def release(self) -> None:
-        """Let go of everything on the device but its programs."""
+        """Free everything on the device except programs."""
         self._held.clear()
         self.cuts.clear()
         self._atlases.clear()
@@ -169,12 +167,12 @@ class Resources:
 
 
 def _with_nodes(shape: Surfels | Polygons, levels: Hierarchy | None) -> Surfels | Polygons:
-    """The surfels, then the merged nodes."""
+    """The surfels, followed by the merged nodes."""
     return concatenate([shape, levels.nodes]) if levels else shape
 
 
 def _places(surfels: Surfels, storage: Storage) -> np.ndarray | None:
-    """(N,) where each is stored; None: in its own place."""
+    """(N,) storage position of each; None: in order."""
     order = storage.order(surfels)
     if isinstance(order, slice):
         return None
@@ -184,5 +182,5 @@ def _places(surfels: Surfels, storage: Storage) -> np.ndarray | None:
 
 
 def _order(shape: Surfels | Polygons, storage: Storage):
-    """The index that brings surfels into the order in which they are stored; corners of polygons keep theirs."""
+    """The index that brings surfels into storage order; corners of polygons keep theirs."""
     return storage.order(shape) if isinstance(shape, Surfels) else slice(None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The forms in which surfels lie on the device: a registry entry and a GLSL file, shaders/storage/<name>.glsl, each."""
+"""Storage formats of surfels on the device: one registry entry and one GLSL file, shaders/storage/<name>.glsl, each."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from .stored_order import clipped_first
 class Storage:
     """name: also of its GLSL file. label, summary: for users.
     textures: (sampler, format) of each texture.
-    pack: to their (h, w, 4) float32 texels, and the number of surfels whose place it loses visibly.
-    order: (N,) the surfels in the order in which they are stored, clipped ones first; a whole slice: their own.
+    pack: function that returns their (h, w, 4) float32 texels, and the number of surfels that visibly lose precision.
+    order: function that returns the (N,) storage order, clipped surfels first; a full slice keeps the order.
     """
 
     name: str
@@ -31,7 +31,7 @@ class Storage:
 
     @property
     def samplers(self) -> tuple[str, ...]:
-        """Names by which shaders know the textures."""
+        """Names of the textures' samplers."""
         return tuple(sampler for sampler, _ in self.textures)
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Clipped surfels are stored before the others, so that either are a draw of their own, and their lines beside them."""
+"""Storage order with clipped surfels first, so that both kinds are one draw each, and clip lines are stored for the
+former only."""
 
 from __future__ import annotations
 
@@ -9,9 +10,9 @@ from ...surfels import Surfels
 
 
 def clipped_first(surfels: Surfels, order: np.ndarray | None = None):
-    """The index that stores them in the given order (None: their own) but for the clipped ones, which come first.
+    """The index that applies the given order (None: unchanged), but puts clipped surfels first.
 
-    Those are turned round: where one kind ends and the other begins, neighbours in the order stay neighbours.
+    Clipped surfels are reversed, so that neighbours stay close where one kind ends and the other begins.
     """
     if not surfels.clipped_count:
         return slice(None) if order is None else order

@@ -16,7 +16,7 @@ MAX_PROBES = 24
 PROBES_PER_DEVIATION = 3.0
 AXIS_BIAS = 1e-3
 
-#: of Gaussian weights at the middles of n parts of -1 .. 1
+#: Gaussian weights at the middles of n parts of -1 .. 1
 PROBE_VARIANCES = {2: 0.25, 3: 0.2005}
 MANY_PROBES_VARIANCE = 0.1945
 
@@ -82,7 +82,7 @@ def _ellipse_sum(atlas: Atlas, slot: int, level: int, uv: np.ndarray, variance: 
 
 
 def _point_color(atlas: Atlas, slot: int, uv: np.ndarray) -> np.ndarray:
-    """Of the image itself."""
+    """Point sample of the image itself."""
     position = uv * atlas.table[slot, 2, 2:]
     if atlas.table[slot, 1, 1] > 0.5:
         return _texel(atlas, slot, 0, *np.floor(position).astype(int))
@@ -102,7 +102,7 @@ def _texel(atlas: Atlas, slot: int, level: int, x: int, y: int) -> np.ndarray:
     )
 
 
-#: by number of the extension: a texel's number inside the image, None for transparent black
+#: for each extension number: the index of a texel inside the image, None for transparent black
 EXTENSION_RULES = (
     lambda i, n: i % n,
     lambda i, n: min(max(i, 0), n - 1),
