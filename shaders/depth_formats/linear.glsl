@@ -1,8 +1,8 @@
 // References: docs/evidence/numerics.md, which measures both formats.
-// Summary: the depth buffer holds depth / far, whose float32 has 2^-24 of z at any distance. Fragments write it, and are
-//          moved back one by one.
+// Summary: the depth buffer stores depth / far, which float32 resolves to 2^-24 of z at any distance. Fragments write
+//          it and are moved back individually.
 
-const float FARTHEST_STORED = 0.9999998;  // 1 says that nothing was drawn
+const float FARTHEST_STORED = 0.9999998;  // 1 means that nothing was drawn
 
 float stored_depth(float depth) {
   return depth * view.depth_unit;

@@ -1,14 +1,14 @@
 // References: Jimenez, Wu, Pesce, Jarabo, "Practical Real-Time Strategies for Accurate Indirect Occlusion", 2016 (horizons
 //             in slices, the inner integral, light that is reflected more than once);
 //             Lagarde, de Rousiers, "Moving Frostbite to PBR", 2014, section 4.10.2 (reflections).
-// Summary: which share of the world's light other surfaces of the picture leave to a sample. Slices lead along whole steps
-//          of samples, so that what is looked at lies in the slice and a plane has its own horizon. The twin of
+// Summary: the share of the world's light that other visible surfaces leave to a sample. Slices run along whole steps
+//          of samples, so that every tap lies in the slice and a plane has its own horizon. The twin of
 //          reference/ambient_occlusion.py.
 
 #part world_light
-float open_share = 1.0;           // of the half-space around the normal, weighted by the cosine
-float open_cosine = 1.0;          // of the normal to the viewer
-vec3 open_diffuse = vec3(1.0);    // what arrives, with what the surfaces in the way reflect
+float open_share = 1.0;  // of the half-space around the normal, cosine-weighted
+float open_cosine = 1.0;  // cosine between the normal and the viewer
+vec3 open_diffuse = vec3(1.0);  // incoming light, including what occluders reflect
 
 void ambient_occlusion_diffuse(inout vec3 light) {
   light *= open_diffuse;
@@ -21,7 +21,7 @@ void ambient_occlusion_reflected(inout vec3 light, float roughness) {
 
 #part shaded_sample
 const int OCCLUSION_SLICES = 4;
-// Least cosine to the viewer that a normal counts with: a mean of normals may face away, what is seen does not.
+// Minimum cosine to the viewer: a mean normal may face away although the surface is visible.
 const float LEAST_OCCLUSION_FACING = 0.2;
 const int OCCLUSION_STEPS = 8;
 
@@ -30,8 +30,8 @@ vec3 sample_place(ivec2 texel, float depth) {
   return vec3(view.is_parallel > 0.5 ? place : place * depth, -depth);
 }
 
-// Cosine between the way to the viewer and the highest that is seen along a direction, no less than `lowest`.
-// phase: of the steps, which are the longer the farther away they lead. What is beyond half the distance counts less.
+// Cosine between the direction to the viewer and the highest horizon along a direction, at least `lowest`. phase: of
+// the steps, which grow with the distance. Occluders beyond half the distance fade out.
 float horizon_cosine(ivec2 texel, vec3 position, vec3 to_eye, ivec2 along, float reach, float phase, float lowest) {
   uvec2 size = uvec2(textureSize(occluders, 0));
   float highest = lowest, most = reach / length(vec2(along));
@@ -41,7 +41,7 @@ float horizon_cosine(ivec2 texel, vec3 position, vec3 to_eye, ivec2 along, float
     float share = (float(i) + phase) / float(OCCLUSION_STEPS);
     last = max(last + 1, int(share * share * most + 0.5));
     ivec2 at = texel + along * last;
-    if (any(greaterThanEqual(uvec2(at), size))) break;  // one below 0 is a large one of these
+    if (any(greaterThanEqual(uvec2(at), size))) break;  // a negative value is a large unsigned one
     float depth = texelFetch(occluders, at, 0).r;
     if (!(depth > 0.0)) continue;
     vec3 toward = sample_place(at, depth) - position;
@@ -52,8 +52,8 @@ float horizon_cosine(ivec2 texel, vec3 position, vec3 to_eye, ivec2 along, float
   return min(highest, 1.0);
 }
 
-// Over an angle from the viewer of that cosine, to the side where `normal.y` is, the integral of the cosine to the normal
-// times the sine: equation 7 times the normal's length, where a half of 1 - cos 2a is 1 - cosine^2.
+// Integral of the cosine to the normal times the sine, over an angle from the viewer given by its cosine, on the side
+// where `normal.y` points: equation 7 times the normal's length, where half of 1 - cos 2a is 1 - cosine^2.
 float arc(float cosine, vec2 normal) {
   float square = 1.0 - cosine * cosine;
   return 0.5 * (normal.x * square + normal.y * (acos(cosine) - cosine * sqrt(square)));
@@ -63,7 +63,7 @@ float open_share_at(ivec2 texel, vec3 position, vec3 normal, vec3 to_eye) {
   float per_sample = view.window.z * (view.is_parallel > 0.5 ? 1.0 : -position.z);
   float reach = min(frame.occlusion_distance / per_sample, frame.occlusion_reach);
   if (!(reach > 1.0)) return 1.0;
-  // One of two sets of directions 45 degrees apart on average, and one of four phases, in blocks of 4 x 4 samples.
+  // One of two sets of directions, 45 degrees apart on average, and one of four phases, in blocks of 4 x 4 samples.
   bool is_between = ((texel.x + texel.y) & 1) == 1;
   float phase = 0.25 + 0.25 * float(((texel.x >> 1) & 1) + 2 * ((texel.y >> 1) & 1));
   float open = 0.0, all = 0.0;

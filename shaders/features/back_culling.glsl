@@ -1,5 +1,5 @@
-// References: Botsch, Kobbelt 2003, section 4 (backs are dropped in the vertex stage).
-// Summary: a splat whose back is seen is not drawn.
+// References: Botsch, Kobbelt 2003, section 4 (back faces are dropped in the vertex stage).
+// Summary: splats that face away are not drawn.
 
 #part splat
 void back_culling_hide(inout Splat splat) {

@@ -1,16 +1,17 @@
-// References: Botsch et al. 2005, section 3 (splats within epsilon blend); this project (how far each needs to).
-// Summary: a splat is moved back until its plane lies its blend depth behind itself, and by no more than its epsilon; its
-//          back then weighs what a front does. In shadow maps epsilon alone counts, or surfaces would shadow themselves.
-//          Its twins are visible_depth of reference/rays.py and side_weight of reference/splats.py.
+// References: Botsch et al. 2005, section 3 (splats within epsilon blend); this project (a depth for each splat).
+// Summary: a splat is moved back until its plane lies its blend depth behind its original plane, but by no more than
+//          epsilon; its back then has the same weight as its front. Shadow maps always use epsilon, because surfaces
+//          would shadow themselves otherwise. Twins: visible_depth in reference/rays.py and side_weight in
+//          reference/splats.py.
 
 #part splat
-float blended;  // of the splat that was fetched last, in its longer half-axis
+float blended;  // of the splat that was fetched last, in longer half-axes
 
 void blend_depth_unpack(inout StoredSplat stored, int index) {
   blended = take_blend_depth(stored, index);
 }
 
-// Backs that blend as deep as their own surface asks for lie in no front's place, and fronts need no help against them.
+// Backs with a blend depth do not occupy the place of fronts, so fronts need no precedence.
 void blend_depth_hide(inout Splat splat) {
   if (blended < 1.0) splat.color_weight.w = 1.0;
 }

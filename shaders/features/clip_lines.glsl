@@ -1,9 +1,9 @@
 // References: Zwicker, Rasanen, Botsch, Dachsbacher, Pauly, "Perspective Accurate Splatting", 2004; Botsch et al. 2005,
 //             section 4 (splats clipped at lines in their plane); splat_addon/clip_lines.py, which says what is stored.
-// Summary: splats that end at up to two lines before their ellipse does. A line is (direction, c) of direction . q + c >= 0
-//          in half-axes; two make a convex corner or, in the other order, a reflex one. A filter blurs the end as it blurs
-//          the ellipse's: of kernel times pixel that share counts which lies on the line's kept side. Twins:
-//          reference/rays.py, reference/methods/clip_lines.py.
+// Summary: splats that end at up to two lines before their ellipse does. A line is (direction, c) with direction . q +
+//          c >= 0 in half-axes; two make a convex corner or, in the other order, a reflex one. A filter blurs this end
+//          as it blurs the rim: the weight is the share of kernel times pixel filter on the kept side of the line.
+//          Twins: reference/rays.py, reference/methods/clip_lines.py.
 
 #part splat_varyings
 const float TURN = 6.28318531 / 65536.0;  // of a stored direction
@@ -32,7 +32,7 @@ void of_sprites_tell(Splat splat, int index) {
 
 #part screen_space.vert, cuts_at_lines
 #include "lib/line_in_picture.glsl"
-// The method may have replaced axes: lines are the true plane's.
+// The method may have replaced axes: lines refer to the true plane.
 void clip_lines_replaced(Plane true_plane, Plane plane, bool in_space) {
   bool is_true = true_plane.a == plane.a && true_plane.b == plane.b;
   clip_in_space = in_space && is_true ? 1.0 : 0.0;
@@ -92,8 +92,8 @@ void clip_lines_bound(inout Candidate c) {
 }
 
 #part screen_space.frag, blurs_lines, depth_bounds
-// Past the line, where the face that meets this one is seen, a splat counts as far as it is seen before the line: the
-// other face may hide its plane there, and the pixel's filter reaches over the crease.
+// Beyond the line the adjacent face is visible, and may hide the splat's plane, while the pixel's filter reaches over
+// the crease. There the splat counts as much as it is visible before the line.
 void blurs_lines_bound(inout Candidate c) {
   Place place = place_at(c.plane, gl_FragCoord.xy);
   vec2 back = way_back(c.plane, place);

@@ -1,5 +1,5 @@
 // References: Botsch et al. 2005, section 4.
-// Summary: the sum of depths beside that of normals, where nothing else weighs what depths do.
+// Summary: stores the sum of depths beside the sum of normals, if both have the same weights.
 
 #part gbuffer
 void depth_in_normals_add(inout Fragment f) {

@@ -1,5 +1,5 @@
 // References: Blender manual, "Passes".
-// Summary: the colour of what is not metal, of a lit surface, as an output.
+// Summary: outputs the diffuse colour of a lit surface, without its metallic part.
 
 #part outputs
 void diffuse_color_write(Outputs values) {
@@ -17,7 +17,7 @@ void diffuse_color_hand(ivec2 pixel, inout Outputs outputs) {
 }
 
 #part shaded_sample, has_material
-// Of its diffuse colour a surface shows what is not metal.
+// The metallic part of a surface has no diffuse colour.
 void diffuse_color_outputs(inout Shaded s) {
   s.outputs.diffuse_color = s.mean.color * (1.0 - clamp(s.material.y, 0.0, 1.0));
 }

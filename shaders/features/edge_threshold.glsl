@@ -1,5 +1,5 @@
 // References: the view-independent paper, section 4.5.
-// Summary: where splats' weights sum to less than a threshold, the sample fades.
+// Summary: samples fade where the sum of the splats' weights is below a threshold.
 
 #part shaded_sample
 void edge_threshold_finish(inout Shaded s) {

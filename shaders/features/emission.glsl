@@ -1,5 +1,5 @@
 // References: Blender manual, "Principled BSDF", Emission.
-// Summary: the light that surfaces send out: the same everywhere, or of each surfel.
+// Summary: emitted light: constant, or one value per surfel.
 
 #part splat_varyings, gbuffer_emission
 #include "lib/material_place.glsl"
@@ -37,7 +37,7 @@ void emission_add() {
 #part shaded_sample, gbuffer_emission
 void emission_outputs(inout Shaded s) {
   vec4 e = SUM_AT(gbuffer_emission, s.texel, s.tap);
-  // Its own weights: those of float16 sums are scaled.
+  // Uses its own weights, because those of float16 sums are scaled.
   s.outputs.emission = e.w > 0.0 ? e.rgb / e.w : vec3(0.0);
 }
 

@@ -1,5 +1,5 @@
 // References: Blender manual, "Passes".
-// Summary: the light that a surface sends out, as an output.
+// Summary: outputs the emitted light of a surface.
 
 #part outputs
 void emission_output_write(Outputs values) {

@@ -1,5 +1,6 @@
 // References: docs/evidence/numerics.md, Formats.
-// Summary: depths and their weights apart, in float32: where sums are float16, and where colours count by opacity.
+// Summary: stores depths and their weights separately in float32, if sums are float16 or colours are weighted by
+//          opacity.
 
 #part gbuffer
 void gbuffer_depth_add(inout Fragment f) {
@@ -8,7 +9,7 @@ void gbuffer_depth_add(inout Fragment f) {
 }
 
 #part mean_surface, layer
-// Colours count by opacity there: the weights are by the depths.
+// There colours are weighted by opacity, so the weights are stored beside the depths.
 void gbuffer_depth_layer_mean(inout float weights, inout vec4 n, ivec2 texel, int tap) {
   weights = SUM_AT(gbuffer_depth, texel, tap).y;
 }

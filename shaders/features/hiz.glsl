@@ -1,5 +1,5 @@
 // References: Greene, Kass, Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993.
-// Summary: what lies behind all that is seen is not drawn.
+// Summary: splats behind everything visible are not drawn.
 
 #part screen_space.vert
 #include "lib/culling.glsl"

@@ -1,9 +1,10 @@
 // References: Blender manual, "Holdout".
-// Summary: objects that cut holes. Where one is seen first, there is a depth and nothing to shade, or nothing but what lies
-//          deeper.
+// Summary: objects that cut holes. Where a holdout is the first visible surface, there is a depth but nothing to shade,
+//          or only surfaces farther away.
 
 #part screen_space.frag
-// Before a hole is what lies before it itself; where a filter reaches over a rim, a plane seen flat runs far ahead.
+// A splat in front of a hole must itself be in front; where a filter reaches over its rim, the plane of a grazing splat
+// extends far forward.
 void holdout_keep(inout Candidate c) {
   if (!(c.seen.w > 1e38)) return;
   if (!c.in_space && c.plane.depth - length(c.plane.slope) > c.seen.z) discard;
@@ -28,7 +29,7 @@ void holdout_cut(inout MeanSurface mean, ivec2 texel) {
 }
 
 #part resolve.frag
-// What is seen and not shaded cuts a hole.
+// A visible surface that is not shaded cuts a hole.
 void holdout_cut(inout Seen s) {
   s.is_cut = s.stored < 1.0 && !(s.there.w > 0.0);
   if (s.is_cut) s.here = vec4(0.0);

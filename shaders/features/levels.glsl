@@ -1,6 +1,6 @@
 // References: Dachsbacher, Vogelgsang, Stamminger, "Sequential Point Trees", SIGGRAPH 2003 (levels in one array, of which
 //             a view draws some); rendering/upload/cuts.py, which writes the numbers.
-// Summary: which splat a triangle draws, where a view draws some of them.
+// Summary: finds the splat of a triangle if a view draws only some of the stored splats.
 
 #part splat
 void levels_choose(inout int index) {

@@ -1,5 +1,5 @@
 // References: Blender manual, "Light Linking".
-// Summary: lights that light some objects only: a sample is of each set of objects by a share.
+// Summary: lights that affect only some objects: a sample belongs to each set of objects by a share.
 
 #part gbuffer
 void light_links_add(inout Fragment f) {
@@ -7,7 +7,7 @@ void light_links_add(inout Fragment f) {
 }
 
 #part lights
-vec4 light_set;  // of the sample that is shaded: its share of each set of objects
+vec4 light_set;  // of the sample being shaded: its share of each set of objects
 
 void light_links_receive(inout LightTexels of) {
   of.strength.rgb *= dot(texelFetch(lights, ivec2(5, of.number), 0), light_set);

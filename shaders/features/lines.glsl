@@ -1,8 +1,8 @@
 // References: hosts/lines.frag.glsl.
-// Summary: lines are drawn over what is shaded.
+// Summary: draws lines over the shaded picture.
 
 #part lines.frag, depth_bounds
-// A filter reaches past silhouettes.
+// The filter reaches beyond silhouettes.
 void lines_see(ivec2 texel, inout bool is_seen) {
   is_seen = is_seen && texelFetch(depth_bounds, texel, 0).z < 1e38;
 }

@@ -1,5 +1,5 @@
 // References: Botsch, Kobbelt 2003, section 4 (lighting and colour are combined for each splat).
-// Summary: the colour of a splat is what leaves it.
+// Summary: uses the lit colour of each splat as its colour.
 
 #part splat_varyings
 void lit_splats_tell(Splat splat, int index) {

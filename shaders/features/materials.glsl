@@ -1,5 +1,5 @@
 // References: Botsch et al. 2005, section 4.
-// Summary: roughness, metallic and reflectance that differ from surfel to surfel.
+// Summary: roughness, metallic and reflectance that vary between surfels.
 
 #part splat_varyings
 #include "lib/material_place.glsl"

@@ -1,5 +1,5 @@
 // References: adj(M) for splats that straddle the near plane: Guennebaud et al. 2006, equation 5.
-// Summary: a splat that reaches the near plane is drawn in space, which the hardware clips, and is not filtered.
+// Summary: a splat that reaches the near plane is drawn in space, where the hardware clips it, without a filter.
 
 #part vertex
 const float STRADDLING_MARGIN = 1.02;
@@ -11,7 +11,7 @@ void near_clipped_clip(Splat splat, inout bool in_space) {
   in_space = reaches_near(splat);
 }
 
-// The method may have lengthened it. The first three varyings then carry its centre and half-axes.
+// The method may have lengthened it. The first three varyings then hold its centre and half-axes.
 void near_clipped_clipped(Splat splat, inout bool in_space) {
   in_space = reaches_near(splat);
   near_clipped = in_space ? 1.0 : 0.0;
@@ -29,7 +29,7 @@ void near_clipped_place(Splat splat, vec2 corner, bool in_space) {
 }
 
 #part screen_space.frag
-// Place and depth in the splat.
+// Position and depth on the splat.
 vec3 place_in_space(vec2 point) {
   bool is_orthographic = view.is_parallel > 0.5;
   vec3 forward = vec3(1.0, 1.0, -1.0);

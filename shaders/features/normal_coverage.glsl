@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: the mean normal of a pixel's samples, and the share that is covered.
+// Summary: outputs the mean normal of a pixel's samples, and their coverage.
 
 #part pixel
 void normal_coverage_pixel(vec4 normal) {

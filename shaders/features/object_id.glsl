@@ -1,6 +1,6 @@
 // References: none needed.
-// Summary: whose the samples are: the number of a splat's material slot among those of all instances,
-//          rendering/identity.py's; 0 is nothing.
+// Summary: identifies samples by the number of a splat's material slot among those of all instances, as in
+//          rendering/identity.py; 0 means nothing.
 
 #part vertex
 float slot_number(float slot) {
@@ -38,7 +38,7 @@ void object_id_write(ivec2 texel, inout float own) {
 }
 
 #part screen_space.frag, edge_ids
-// Only whose the splat is, where nothing is visible.
+// Write only the splat's number where nothing is visible.
 void object_id_keep(inout Candidate c) {
   if (texelFetch(visibility_depth, ivec2(gl_FragCoord.xy), 0).r < 1.0) discard;
 }

@@ -1,6 +1,6 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6 (lighting for each splat in the last layer); McGuire, Bavoil,
 //             "Weighted Blended Order-Independent Transparency", JCGT 2013.
-// Summary: of all that is left behind transparent layers: lit colours, and what tells how much the splats hide.
+// Summary: for everything behind the transparent layers: lit colours, and sums that determine how much the splats hide.
 
 #part splat_varyings
 void oit_tell(Splat splat, int index) {

@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: how many splats a sample is the mean of: a sum of its own, or beside the planes of shadows.
+// Summary: counts the splats that a sample averages, in a sum of its own or beside the planes of shadows.
 
 #part gbuffer, by_itself
 void overdraw_add(inout Fragment f) {

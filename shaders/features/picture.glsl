@@ -1,6 +1,6 @@
 // References: hosts/resolve.frag.glsl.
-// Summary: the opaque picture, filtered: samples of its own surface show its colour, others keep their own, empty ones have
-//          the background's.
+// Summary: the filtered opaque picture: samples on the same surface show its colour, others keep their own, and empty
+//          ones show the background.
 
 #part resolve.frag
 #include "lib/background/{background}.glsl"
@@ -23,7 +23,7 @@ void picture_pixel(vec4 color, vec4 normal, float nearest, bool is_seen_nearer, 
 }
 
 #part deferred_lighting.frag
-// Sums of weights below this are of backs, and of the ends of filters. Their depth is kept with a sign.
+// Sums of weights below this come from backs and from the tails of filters. Their depth is stored with a negative sign.
 const float FAINT = 0.004;
 
 void picture_sign(MeanSurface mean) {

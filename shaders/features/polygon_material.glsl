@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: of the polygon that is seen, its material, if polygons differ in it, and its light set.
+// Summary: material (if polygons differ in it) and light set of the visible polygon.
 
 #part polygons.frag, materials
 void materials_own(inout vec3 own) {

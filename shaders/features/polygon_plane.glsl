@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: the plane of the polygon that is seen, which shadows compare depths with and textures are looked up in.
+// Summary: plane of the visible polygon, for shadow comparisons and texture lookups.
 
 #part polygons.vert
 void polygon_plane_plane(int corner, float slot, vec3 first, vec3 outward, bool is_back) {

@@ -1,14 +1,14 @@
 // References: Guennebaud et al. 2006, section 5.1 (the sum of the splats' weights, clamped to 1, blends them with polygons
 //             of the same surface; attributes, not colours).
-// Summary: polygons among splats. Where splats lie on a polygon and their weights sum to less than 1, at their border, they
-//          go over into it; where they do not lie on it, the nearer of the two is seen.
+// Summary: polygons among splats. Where splats lie on a polygon and their weights sum to less than 1, at their border,
+//          they blend into it; elsewhere the nearer of the two is visible.
 
 #part polygons.frag, depth_bounds
-// Visibility has other rows, by which a triangle that is clipped far outside of the picture is rounded otherwise: a floor
-// of 10,000 eye heights by 5e-6.
+// Visibility has additional rows, and a triangle that is clipped far outside the picture is rounded differently there:
+// by 5e-6 for a floor of 10,000 eye heights.
 const float ROUNDING = 3e-5;
 
-// Where splats do not hide it.
+// Where no splat hides it.
 void polygons_keep() {
   float seen = texelFetch(depth_bounds, ivec2(gl_FragCoord.xy), 0).z;
   if (depth_at > seen + ROUNDING * abs(seen)) discard;
@@ -17,13 +17,14 @@ void polygons_keep() {
 #part mean_surface
 #include "lib/polygon_share/{polygon_share}.glsl"
 
-const float SAME_SURFACE = 0.7;  // least cosine between normals of one surface
+const float SAME_SURFACE = 0.7;  // minimum cosine between normals of the same surface
 
 float polygon_share(MeanSurface mean, vec3 normal, float depth) {
   float behind = depth - mean.depth;
   if (is_elsewhere(behind)) return behind > 0.0 ? 0.0 : 1.0;
   float weight = splat_weight(mean);
-  // Splats may be seen from a little behind a polygon, so that those of its own surface are; of others the nearer wins.
+  // Splats of the same surface may be slightly behind a polygon and remain visible; for other splats the nearer surface
+  // wins.
   bool is_same = dot(normal, mean.normal) > SAME_SURFACE * length(mean.normal);
   return behind < 0.0 && !is_same ? 1.0 : 1.0 - min(weight, 1.0);
 }

@@ -1,10 +1,10 @@
 // References: Blender manual, "Passes".
-// Summary: the share of the lights that arrives.
+// Summary: outputs the share of the lights that is not shadowed.
 
 #part lights
-vec3 light_arriving, light_unshadowed;  // at the sample that is shaded: sums of irradiance
+vec3 light_arriving, light_unshadowed;  // at the sample being shaded: sums of irradiance
 
-// Of each colour; 0 where no light comes from the front, as EEVEE has it.
+// Per colour channel; 0 where no light comes from the front, as in EEVEE.
 vec3 shadow_share() {
   return light_arriving / mix(light_unshadowed, vec3(1.0), equal(light_unshadowed, vec3(0.0)));
 }

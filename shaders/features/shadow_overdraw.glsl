@@ -1,5 +1,5 @@
 // References: Blender manual, "Passes".
-// Summary: the share of the lights that arrives, and the number of splats, as an output.
+// Summary: outputs the share of the lights that is not shadowed, and the number of splats.
 
 #part outputs
 void shadow_overdraw_write(Outputs values) {

@@ -1,13 +1,13 @@
 // References: lib/shadow.glsl.
-// Summary: what of each light something else keeps away. Splats are summed with their geometric normals, apart from depths
-//          or beside them: how they are moved back has its twin in reference/shadows.py.
+// Summary: the part of each light that is blocked. Splats are summed with their geometric normals, beside depths or
+//          separately; the offset of casters has its twin in reference/shadows.py.
 
 #part lights
 #include "lib/shadow.glsl"
 
 const float ROUND = 1.12837917;  // axes of an ellipse over half-sides of a rectangle of its area: sqrt(4 / pi)
 
-// What is seen of an axis of a flat light.
+// The visible part of a flat light's axis.
 vec3 turned_to(vec3 to_light, vec3 axis) {
   return axis - dot(axis, to_light) * to_light;
 }
@@ -29,9 +29,10 @@ void shadows_hide(inout Incident here, LightTexels of, vec3 position, vec3 norma
 }
 
 #part visibility.vert, shadow
-// Splats of a smooth surface reach over its edges, and lie before what is beyond them: before a plane that is turned away
-// by this bend by up to its sine in radii. They cast shadows from so far behind themselves, as that plane has it, that they
-// do not fall on it; the more, the flatter the light, up to a limit, or shadows would begin behind what casts them.
+// Splats of a smooth surface reach over its edges and lie in front of the surface beyond. In front of a plane that is
+// turned away by this angle, they do so by up to its sine in radii. Shadow casters are therefore moved back far enough
+// not to shadow that plane: the more grazing the light, the farther, up to a limit that keeps shadows attached to their
+// casters.
 const float SIN_BEND = 0.5, COS_BEND = 0.8660254;
 const float FARTHEST_BACK = 4.0;  // epsilons
 

@@ -1,16 +1,17 @@
 // References: hosts/resolve.frag.glsl.
-// Summary: where the filter reaches past a silhouette, what is seen behind it is another surface, which keeps the sample.
+// Summary: where the filter reaches beyond a silhouette, the surface behind it is a different one and keeps the sample.
 
 #part screen_space.frag
-// Its depth, moved back by up to 2 epsilon, is more than that and a radius behind this splat's. Nor is a splat of the
-// surface that is seen if it lies that far behind it, though its plane, seen flat, runs before it beyond the rim.
+// Its depth, moved back by up to 2 epsilon, is more than that and a radius behind this splat's depth. A splat that is
+// this far behind the visible surface does not belong to it either, even if its plane, at grazing angles, extends in
+// front of it beyond the rim.
 void silhouettes_keep(inout Candidate c) {
   float apart = (1.0 + 4.0 * draw.epsilon) * c.plane.radius;
   if (!c.in_space && (c.seen.w - c.compared > apart || c.plane.depth - length(c.plane.slope) - apart > c.seen.z)) discard;
 }
 
 #part depth_bounds.frag
-// Nearest and farthest of what the filter reaches in the sample's rows.
+// Minimum and maximum over the filter's reach in the sample's rows.
 void silhouettes_reach(ivec2 texel, inout vec2 row) {
   int last = textureSize(seen_depth, 0).x - 1;
   for (int x = -COLUMN_REACH; x <= COLUMN_REACH; x++) {

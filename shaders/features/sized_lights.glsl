@@ -1,5 +1,5 @@
 // References: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016.
-// Summary: lights with a size, as a square that faces the place or lies where a lamp does.
+// Summary: lights with a size, as a square that faces the lit point, or that lies where an area light does.
 
 #part lights
 void sized_lights_spread(inout Incident here, LightTexels of, float along, float open) {
@@ -15,7 +15,7 @@ void sized_lights_spread(inout Incident here, LightTexels of, float along, float
     here.half_u = facing_axis(here.to_light) * of.strength.w;
     here.half_v = cross(here.to_light, here.half_u);
     float rim = of.strength.w * inversesqrt(1.0 + of.strength.w * of.strength.w);
-    // What a sun sends is given as irradiance.
+    // The energy of a sun is given as irradiance.
     here.radiance = of.place.w > 0.5 ? spread * open * open * (3.0 - 2.0 * open)
                                      : of.strength.rgb / (4.0 * rim * atan(rim));
   }

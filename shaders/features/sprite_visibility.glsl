@@ -1,5 +1,5 @@
 // References: Botsch, Kobbelt 2003, section 3.3 (epsilon is added to the depth) and equation 4 (the depth at each pixel).
-// Summary: what hides splats that are drawn in sprites are the same sprites: both passes have one shape and one depth.
+// Summary: visibility for sprites uses the same sprites, so that both passes have the same shape and depth.
 
 #part visibility.vert
 #include "lib/plane.glsl"
@@ -12,6 +12,6 @@ void sprite_visibility_shape(Splat splat, vec2 corner, float offset, inout vec4 
   float radius = sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
   moved = splat_corner(splat.position + vec3(radius * place, 0.0), offset);
   across_offset = vec3(0.0, 0.0, offset);
-  // Linear in the picture, as the sprite is parallel to it.
+  // Linear in the picture, because the sprite is parallel to it.
   place_depth.z = sprite_depth(-splat.position.z, radius, dot(tilt, place));
 }

@@ -1,5 +1,5 @@
 // References: lib/splat_texture.glsl, lib/texture_lookup.glsl.
-// Summary: colours that are looked up in textures, of splats and of polygons.
+// Summary: texture lookups for the colours of splats and polygons.
 
 #part splat_varyings
 #include "lib/splat_texture.glsl"
@@ -8,7 +8,7 @@ void textures_tell(Splat splat, int index) {
 }
 
 #part object_space.vert
-// Coordinates change along axes that a method has widened as along the splat's own.
+// Coordinates change along widened axes as along the splat's own.
 void textures_axes(Splat splat, mat2 widened) {
   texture_axis_u = splat.axis_u;
   texture_axis_v = splat.axis_v;
@@ -26,7 +26,7 @@ void textures_color(inout vec3 color) {
 }
 
 #part screen_space.vert
-// Axes that the method replaced move in the picture as others of the true plane do.
+// Replaced axes are mapped to the picture like others in the true plane.
 void textures_replaced(Plane true_plane, Plane plane, bool in_space) {
   if (true_plane.a != plane.a || true_plane.b != plane.b) {
     mat2 to_true = inverse(mat2(true_plane.a, true_plane.b)) * mat2(plane.a, plane.b);
@@ -40,7 +40,7 @@ void textures_replaced(Plane true_plane, Plane plane, bool in_space) {
 #include "lib/splat_texture.glsl"
 void textures_color(inout Candidate c) {
   Place place = place_at(c.plane, gl_FragCoord.xy);
-  // Beyond the plane's horizon only the splat's mean can be meant.
+  // Beyond the plane's horizon only the splat's mean is meaningful.
   vec2 q = place.k > 0.0 ? place.uv : vec2(LARGEST_PIXEL);
   mat2 change = place.scale * place_turn(c.plane, place);
   if (c.in_space) {
@@ -52,7 +52,7 @@ void textures_color(inout Candidate c) {
 }
 
 #part polygons.vert
-// What the texture coordinates change along each axis of view space, in the triangle's plane.
+// Change of the texture coordinates along each axis of view space, in the triangle's plane.
 void texture_gradient(int start, vec3 first, vec3 outward) {
   vec3 along = corner_position(start + 1) - first, beside = corner_position(start + 2) - first;
   vec2 uv = texelFetch(polygon_uvs, ivec2(start % CORNERS_PER_ROW, start / CORNERS_PER_ROW), 0).xy;
@@ -77,7 +77,7 @@ void textures_plane(int corner, float slot, vec3 first, vec3 outward, bool is_ba
 
 const float LEAST_PLANE_FACING = 1e-4;
 
-// What a sample along x and y moves the texture coordinates.
+// Change of the texture coordinates per sample along x and y.
 mat2 uv_change(float depth) {
   vec2 point = view.window.xy + gl_FragCoord.xy * view.window.zw;
   bool is_orthographic = view.is_parallel > 0.5;

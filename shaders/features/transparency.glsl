@@ -1,6 +1,6 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6 (depth peeling of splats).
-// Summary: transparent layers, from the nearest: what each pass does in one (layer), and what the opaque picture is told of
-//          them all (opaque).
+// Summary: transparent layers, nearest first: their work in each pass of a layer (layer), and their effect on the
+//          opaque picture (opaque).
 
 #part splat, layer
 void transparency_hide(inout Splat splat) {
@@ -33,14 +33,14 @@ void transparency_keep() {
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/layer_ties.glsl"
 
-// As lib/peel_state.glsl has it; what is in a layer was compared as depth along the view, and is so here.
+// As in lib/peel_state.glsl; layers compare depth along the view, and so does this.
 bool is_in_nearer_layer(float depth) {
   float until = texelFetch(peel_state, ivec2(gl_FragCoord.xy), 0).x;
   return until > 0.0 && (until == 1.0 || depth <= view_depth(until));
 }
 
 void transparency_keep(inout Candidate c) {
-  // Where a filter reaches over its rim, a splat is in the layers that the rim itself is in.
+  // Where a filter reaches over its rim, a splat is in the same layers as the rim itself.
   float rim = length(c.plane.slope);
   if (!c.in_space) c.compared = clamp(c.compared, c.plane.depth - rim, c.plane.depth + rim);
   if (tied(c.compared, -0.5) > c.seen.z) discard;
@@ -48,7 +48,7 @@ void transparency_keep(inout Candidate c) {
 }
 
 #part depth_bounds.frag, layer
-// Never behind what is opaque there.
+// Never behind the opaque surface there.
 void transparency_write(ivec2 texel, inout float own) {
   own = min(own, texelFetch(visibility_depth, texel, 0).r);
 }

@@ -1,5 +1,5 @@
 // References: lib/screen_door.glsl.
-// Summary: transparent splats leave as much out of a shadow map as shows through them.
+// Summary: transparent splats leave gaps in a shadow map in proportion to the light they let through.
 
 #part splat_varyings
 void transparent_shadows_tell(Splat splat, int index) {

@@ -1,5 +1,5 @@
 // References: Botsch et al. 2005, section 4.1 (visibility splatting).
-// Summary: what methods that work in the picture compare depths with.
+// Summary: the depths that screen-space methods compare with.
 
 #part screen_space.frag, depth_bounds
 void visibility_bound(inout Candidate c) {

@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: the sum of the weights that a sample was divided by, for the model that shows it.
+// Summary: the sum of weights that a sample was divided by, for the shading model that displays it.
 
 #part shaded_sample
 void weight_output_prepare(inout Shaded s) {

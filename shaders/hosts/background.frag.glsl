@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: the picture of a world without anything in it. Hook: `pixel` what else is written.
+// Summary: the picture of an empty world. Hook: `pixel` writes further outputs.
 
 #include "hosts/outputs.glsl"
 #include "lib/background/{background}.glsl"

@@ -1,7 +1,7 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6.
-// Summary: puts what transparent layers add up to in the pixel before the opaque picture, of which they let through the
-//          part that is given: premultiplied colour, normal and coverage, nearest depth. Hooks: `before` to the normal,
-//          `hand` what else is handed on.
+// Summary: composites the transparent layers of a pixel over the opaque picture: premultiplied colour, normal and
+//          coverage, nearest depth; the transmitted share is given. Hooks: `before` for the normal, `hand` for further
+//          outputs.
 
 #include "hosts/outputs.glsl"
 

@@ -1,6 +1,6 @@
 // References: rendering/scene/polygons.py, which writes this layout.
-// Summary: the corners of polygons, pulled from their texture, and the side of a triangle that is seen. Hook:
-//          `tell`, what fragments are told beside.
+// Summary: fetches the corners of polygons from their texture, and finds the visible side of a triangle. Hook: `tell`
+//          writes further varyings.
 
 vec4 corner_texel(int corner, int number) {
   return texelFetch(polygon_corners, ivec2((corner % CORNERS_PER_ROW) * TEXELS_PER_CORNER + number, corner / CORNERS_PER_ROW), 0);
@@ -11,7 +11,7 @@ vec3 corner_position(int corner) {
   return (draw.model_view * vec4(corner_texel(corner, 0).xyz, 1.0)).xyz;
 }
 
-// Normal of the plane of a corner's triangle on its outward side, view space, of no special length.
+// Normal of the plane of a corner's triangle on its outward side, in view space, not normalised.
 vec3 triangle_normal(int corner, out vec3 first) {
   int start = corner / 3 * 3;
   first = corner_position(start);
@@ -23,7 +23,7 @@ bool shows_back(vec3 normal, vec3 first) {
 }
 
 #parts
-// What fragments are told of a corner beside its place. slot: of its material.
+// Writes the varyings of a corner. slot: of its material.
 void hand_on_corner(int corner, float slot, vec3 eye) {
   #hook tell(corner, slot, eye)
 }

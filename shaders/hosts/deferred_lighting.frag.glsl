@@ -1,6 +1,6 @@
 // References: Botsch et al. 2005, section 4.
-// Summary: shades every sample and keeps it, for methods whose silhouettes `resolve.frag.glsl` filters afterwards, and
-//          for what is transparent, premultiplied. Hooks: `cut` what is not shown, `sign` of the depth.
+// Summary: shades every sample and stores it premultiplied, for transparent layers and for methods whose silhouettes
+//          `resolve.frag.glsl` filters later. Hooks: `cut` removes samples, `sign` sets the sign of the depth.
 
 #include "shading_models/{shading}.glsl"
 #include "hosts/shaded_sample.glsl"

@@ -1,8 +1,8 @@
 // References: none needed.
-// Summary: how far each sample sees, as depth along the view: in z what hides nothing where there is nothing, in w what
-//          nothing is before. x and y are the nearest and the farthest stored depth that a filter of silhouettes reaches in
-//          the sample's rows of visibility. Hooks: `reach` of a filter, `write` what else is kept of the first of the rows,
-//          `bound` where something else is seen.
+// Summary: how far each sample sees, as depth along the view: z is a depth that hides nothing if the sample is empty, w
+//          one that nothing is in front of. x and y are the nearest and farthest stored depths that a silhouette filter
+//          reaches in the sample's rows of visibility. Hooks: `reach` of a filter, `write` further values of the first
+//          row, `bound` changes what is visible.
 
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/silhouette_filter.glsl"

@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: one triangle over the whole target, from the vertex numbers 0 to 2.
+// Summary: one triangle over the whole target, from vertex numbers 0 to 2.
 
 void main() {
   gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);

@@ -1,5 +1,5 @@
 // References: Botsch et al. 2005, sections 3 and 4 (accumulation, normalised by the sum of weights in a later pass).
-// Summary: what a splat adds to a sample's sums. Hooks: `weigh`, `add`.
+// Summary: adds a splat to a sample's sums. Hooks: `weigh`, `add`.
 
 #include "sum_formats/{sum_format}.glsl"
 
@@ -7,7 +7,7 @@ struct Fragment {
   vec3 color;
   float weight;
   float depth;
-  float opacity;  // colours count by it
+  float opacity;  // weight factor of colours
 };
 
 #parts

@@ -1,5 +1,5 @@
 // References: Greene, Kass, Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993 (one level of its pyramid).
-// Summary: of each cell of samples, and CELL_REACH around it, the farthest depth that is seen.
+// Summary: the farthest visible depth in each cell of samples and CELL_REACH around it.
 
 #include "lib/hiz_cells.glsl"
 

@@ -1,6 +1,6 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6.
-// Summary: what a transparent layer adds to a pixel, under the nearer ones, and the depth and normal of its surface where
-//          no nearer one is opaque enough to have them; of methods that filter no silhouettes.
+// Summary: composites a transparent layer under the nearer ones, with depth and normal of its surface where no nearer
+//          layer is opaque enough to provide them; for methods that do not filter silhouettes.
 
 #include "lib/layer_at.glsl"
 #include "lib/peel_state.glsl"

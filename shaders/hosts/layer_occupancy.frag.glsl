@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: of each block of the picture, whether a transparent layer has anything in it.
+// Summary: whether a transparent layer has anything in each block of the picture.
 
 void main() {
   ivec2 size = textureSize(layer_depth, 0), block = (size + BLOCKS - 1) / BLOCKS;

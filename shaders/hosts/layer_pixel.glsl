@@ -1,5 +1,6 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6.
-// Summary: writes what a transparent layer adds to a pixel from sums over its samples. Hook: `pixel` what else is written.
+// Summary: writes a transparent layer's contribution to a pixel from sums over its samples. Hook: `pixel` writes
+//          further outputs.
 
 #include "hosts/outputs.glsl"
 

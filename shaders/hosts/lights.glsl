@@ -1,20 +1,21 @@
 // References: Blender manual, "Light Objects" (units); Cycles' spot falloff (a smooth step between cosines).
-// Summary: what each light sends to a place: the texels of rendering/scene/light.py as a direction, an irradiance and, of a
-//          light with a size, four corners. A round light is a square of its area that faces the place, as Cycles takes a disc there.
-//          Hooks: `receive` what of its strength is meant for the surface, `spread` the square of a light with a size,
-//          `reach` before anything is in the way, `hide` what is, `arrive` after that.
+// Summary: the light that reaches a point from each light: decodes the texels of rendering/scene/light.py to a
+//          direction, an irradiance and, for a light with a size, four corners. A round light is a square of the same
+//          area that faces the point, as Cycles does with a disc. Hooks: `receive` scales its strength for the surface,
+//          `spread` makes the square of a light with a size, `reach` runs before shadows, `hide` computes shadows,
+//          `arrive` runs after them.
 
 struct Incident {
   vec3 to_light;    // unit
-  vec3 irradiance;  // of a surface that faces it
+  vec3 irradiance;  // of a surface that faces the light
   bool is_sized;
-  vec3 middle;      // from the place to the light, and the half-axes of its square
+  vec3 middle;  // from the point to the light; below, half-axes of its square
   vec3 half_u;
   vec3 half_v;
   vec3 radiance;    // of the square
 };
 
-const float LEAST_SIZE = 2e-3;  // half-side over distance, below which a light is a point
+const float LEAST_SIZE = 2e-3;  // minimum half-side over distance; smaller lights are points
 
 struct LightTexels {
   int number;
@@ -24,13 +25,13 @@ struct LightTexels {
   vec4 u;
 };
 
-// Unit, across the way to a light.
+// Unit vector perpendicular to the direction to a light.
 vec3 facing_axis(vec3 to_light) {
   return normalize(cross(abs(to_light.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0), to_light));
 }
 
 #parts
-// normal: of the surface that is lit.
+// normal: of the lit surface.
 Incident incident(int light, vec3 position, vec3 normal) {
   LightTexels of = LightTexels(light, texelFetch(lights, ivec2(0, light), 0), texelFetch(lights, ivec2(1, light), 0),
                                texelFetch(lights, ivec2(2, light), 0), texelFetch(lights, ivec2(3, light), 0));

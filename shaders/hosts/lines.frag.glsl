@@ -1,22 +1,24 @@
 // References: Saito and Takahashi, "Comprehensible Rendering of 3-D Shapes", SIGGRAPH 1990 (lines from discontinuities of
 //             depth and normal in the picture).
-// Summary: how much of a sample a line covers. Eight walks lead from it over its own surface. Where one comes to the
-//          background or to a drop in depth, there is a silhouette; where the normal turns between two opposite ones,
-//          and most of that in a few pixels, there is a crease, in the middle of the turn. Hook: `see`, whether a surface is seen.
+// Summary: the share of a sample that a line covers. Eight walks start from it over its own surface. Where one reaches
+//          the background or a drop in depth, there is a silhouette; where the normal changes between two opposite
+//          walks, and most of that within a few pixels, there is a crease, in the middle of the change. Hook: `see`,
+//          whether a surface is visible.
 
 #include "hosts/mean_surface.glsl"
 
 const float EMPTY = 3e38;
 const float OUTSIDE = -3e38;
 const float TURN_REACH = CREASE_REACH * float(SAMPLES);
-const float LEAST_FACING = 0.1;  // cosine to the viewer, below which a surface's slope is taken to be no steeper
+const float LEAST_FACING = 0.1;  // minimum cosine to the viewer when estimating a surface's slope
 const int RIM = SAMPLES;
 const float SLOPE_ROOM = 1.5;
-// Of an even bend, that share of the walks around its middle has that share of its turn; of a crease it has all.
+// On a uniform bend, this share of the walks around the middle has the same share of the turn; on a crease it has all
+// of it.
 const float LARGEST_SHARE = 0.7;
 
 #parts
-// Normal and depth; EMPTY where nothing is seen, OUTSIDE beyond what was drawn.
+// Normal and depth; EMPTY for no surface, OUTSIDE beyond the drawn area.
 vec4 sight_at(ivec2 texel) {
   ivec2 size = SIZE_OF(gbuffer_color);
   if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size))) return vec4(0.0, 0.0, 0.0, OUTSIDE);
@@ -28,7 +30,7 @@ vec4 sight_at(ivec2 texel) {
   return vec4(size_of_normal > 0.0 ? mean.normal / size_of_normal : vec3(0.0, 0.0, 1.0), mean.depth);
 }
 
-// By how much the depth of the sample's plane changes over that many samples.
+// Change of the depth of the sample's plane over this many samples.
 float slope(vec4 sight, ivec2 texel, ivec2 along) {
   vec2 moved = vec2(along) * view.window.zw;
   bool is_parallel = view.is_parallel > 0.5;
@@ -39,9 +41,9 @@ float slope(vec4 sight, ivec2 texel, ivec2 along) {
 }
 
 struct Walk {
-  int steps;    // to the last sample of the same surface that is not its rim
-  float drop;   // distance of the edge beyond which it is deeper, in samples
-  vec3 normal;  // of the last
+  int steps;  // number of steps to the last sample of the same surface before its rim
+  float drop;  // distance in samples to the edge beyond which it is deeper
+  vec3 normal;  // of the last sample
 };
 
 Walk walk(ivec2 texel, vec4 start, ivec2 along, float reach) {
@@ -61,7 +63,7 @@ Walk walk(ivec2 texel, vec4 start, ivec2 along, float reach) {
     }
     if (is_edge) {
       if (next.w > here.w) result.drop = (float(k) - 0.5) * stride;
-      // At the rim, splats that stick out are seen, and what they belong to may face another way.
+      // At the rim, protruding splats are visible whose surface may face another way.
       result.steps = max(result.steps - RIM, 0);
       result.normal = sight_at(texel + result.steps * along).xyz;
       break;
@@ -77,13 +79,13 @@ float turned(ivec2 texel, vec3 turn) {
   return dot(sight_at(texel).xyz, turn);
 }
 
-// Distance in samples of a crease across the walks ahead and back, 1e9 where there is none within reach.
+// Distance in samples to a crease between the walks ahead and back, 1e9 if there is none within reach.
 float crease_distance(ivec2 texel, vec3 normal, ivec2 along, Walk ahead, Walk back, float reach) {
   if (dot(ahead.normal, back.normal) >= frame.line_crease) return 1e9;
   vec3 turn = ahead.normal - back.normal;
   float middle = 0.5 * (dot(ahead.normal, turn) + dot(back.normal, turn));
   float before = dot(normal, turn) - middle;
-  // The middle of the turn lies ahead where this sample is not yet half turned.
+  // The middle of the turn is ahead if this sample has turned by less than half.
   ivec2 step_to = before < 0.0 ? along : -along;
   int farthest = before < 0.0 ? ahead.steps : back.steps;
   float stride = length(vec2(along)), at = 1e9;

@@ -1,6 +1,6 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6 (lighting for each splat in the last layer).
-// Summary: lights each splat of an instance where it stands, at the texel of its number. Hook: `prepare` before it is
-//          lit.
+// Summary: lights each splat of an instance at its own position, and writes it to the texel of its number. Hook:
+//          `prepare` runs before lighting.
 
 vec3 material;
 vec3 emission;

@@ -1,22 +1,22 @@
 // References: Botsch et al. 2005, section 4 (sums over their weights).
-// Summary: what a sample sees. Hooks: `mean` of normals and depths, `join` what else is seen.
+// Summary: the surface that a sample sees. Hooks: `mean` of normals and depths, `join` adds other surfaces.
 
 #include "lib/samples/{samples}.glsl"
 #include "sum_formats/{sum_format}.glsl"
 #include "lib/front_weight.glsl"
 
 struct MeanSurface {
-  float weight;    // sum of the splats', 0 without splats
-  float polygon;   // its share, 0 to 1
-  float coverage;  // 0 where there is neither, of a transparent layer its opacity
-  float sees;      // what polygons' texels are divided by
+  float weight;  // sum of the splats' weights, 0 without splats
+  float polygon;  // share of the polygon, 0 to 1
+  float coverage;  // 0 if there is nothing; for a transparent layer its opacity
+  float sees;  // divisor of polygons' texels
   vec3 color;
-  vec3 normal;     // as the mean left it
+  vec3 normal;  // not normalised
   float depth;
 };
 
 #parts
-// tap: which of the texel's hardware samples, 0 where it has one.
+// tap: number of the texel's hardware sample, 0 if it has only one.
 MeanSurface mean_surface(ivec2 texel, int tap) {
   MeanSurface mean = MeanSurface(0.0, 0.0, 0.0, 1.0, vec3(0.0), vec3(0.0), 0.0);
   vec4 c = SUM_AT(gbuffer_color, texel, tap);

@@ -1,6 +1,6 @@
 // References: Botsch et al. 2005, sections 3 and 4 (accumulation, normalised by the sum of weights in the next pass).
-// Summary: adds weighted attributes to their sums; the depth test keeps what is visible. Hooks: `keep` discards, `color`
-//          changes.
+// Summary: adds weighted attributes to their sums; the depth test keeps visible splats. Hooks: `keep` discards, `color`
+//          changes the colour.
 
 #include "depth_formats/{depth_format}.glsl"
 #include "hosts/gbuffer.glsl"

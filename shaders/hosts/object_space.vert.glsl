@@ -1,5 +1,5 @@
 // References: Botsch et al. 2005, section 4 (deferred shading: attributes are blended, not colours).
-// Summary: for methods that draw quads in space: each splat's corner and its attributes.
+// Summary: for methods that draw quads in space: the corner and attributes of each splat.
 
 #include "lib/nowhere.glsl"
 #include "hosts/splat.glsl"

@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: the depth of what each sample sees, 0 where it sees nothing: looked at often, it is kept in one number.
+// Summary: the depth of each sample, 0 if it is empty, in a single channel because it is read often.
 
 #include "hosts/mean_surface.glsl"
 

@@ -1,5 +1,5 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6; resolve.frag.glsl, whose filter this has.
-// Summary: what all that is left behind the transparent layers adds to a pixel, under them. Hook: `filter` of a sample.
+// Summary: composites everything behind the transparent layers under them. Hook: `filter` of a sample.
 
 #include "lib/peel_state.glsl"
 

@@ -1,7 +1,7 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6 (colours of what is left, weighted by opacity); McGuire, Bavoil,
 //             "Weighted Blended Order-Independent Transparency", JCGT 2013 (how much is hidden needs no order).
-// Summary: what is left behind the layers as one layer, premultiplied. Each surface lets the share 1 - opacity through, so
-//          that the logarithms add up. A surface is as many splats as weigh what those of the nearer layer do.
+// Summary: everything behind the layers as one layer, premultiplied. Each surface transmits the share 1 - opacity, so
+//          logarithms add up. The number of surfaces is the sum of weights relative to that of the nearer layer.
 
 #include "sum_formats/{sum_format}.glsl"
 #include "lib/front_weight.glsl"
@@ -11,7 +11,7 @@ float front_weight_at(ivec2 texel) {
   return front_weight(texelFetch(gbuffer_depth, texel, 0).y);
 }
 
-// Of the splats of the layer before; at its rim, where it falls off, of what is beside that.
+// Weight of the splats in the previous layer; at its rim, where the weight falls off, that of neighbouring samples.
 float surface_weight(ivec2 texel) {
   ivec2 last = textureSize(gbuffer_depth, 0) - 1;
   float own = front_weight_at(texel), most = own;

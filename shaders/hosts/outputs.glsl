@@ -1,11 +1,11 @@
-// References: Blender manual, "Passes" (what Cycles and EEVEE hand on beside the picture).
-// Summary: what a sample hands on beside its colour, depth and normal. Hook: `write` to the targets of those that are asked
-//          for: of samples that are still to be filtered, of pixels, or what transparent layers add to them.
+// References: Blender manual, "Passes" (the passes of Cycles and EEVEE).
+// Summary: the outputs of a sample beside colour, depth and normal. Hook: `write` to the targets of requested outputs:
+//          of samples still to be filtered, of pixels, or of transparent layers.
 
 struct Outputs {
   vec3 diffuse_color;
   vec3 emission;
-  vec4 shadow_overdraw;  // share of the lights that arrives, number of splats
+  vec4 shadow_overdraw;  // unshadowed share of the lights, number of splats
 };
 
 const Outputs NO_OUTPUTS = Outputs(vec3(0.0), vec3(0.0), vec4(0.0));
@@ -15,7 +15,7 @@ Outputs added(Outputs a, Outputs b, float weight) {
                  a.shadow_overdraw + b.shadow_overdraw * weight);
 }
 
-// Of a pixel of which that share is covered: beside it nothing is in a shadow, as EEVEE has it.
+// For a pixel with this coverage: beside it nothing is in shadow, as in EEVEE.
 Outputs before_background(Outputs values, float coverage) {
   values.shadow_overdraw.rgb += 1.0 - min(coverage, 1.0);
   return values;

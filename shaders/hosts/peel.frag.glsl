@@ -1,6 +1,6 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6; lib/peel_state.glsl, which reads the result.
-// Summary: how deep each sample is peeled after a layer, and what lies before that hides. Hooks: `start`, `peel` what else
-//          is known of the surface that depth and normal are of.
+// Summary: the depth to which each sample is peeled after a layer, and how much the nearer layers hide. Hooks: `start`,
+//          `peel` for further values of the surface that provides depth and normal.
 
 #include "lib/layer_at.glsl"
 

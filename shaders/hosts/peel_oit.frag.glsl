@@ -1,5 +1,5 @@
 // References: as peel.frag.glsl.
-// Summary: what lies before each sample's opaque picture hides, after all that is left was put there.
+// Summary: how much is hidden in front of each sample's opaque surface, including the last, unordered layer.
 
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);

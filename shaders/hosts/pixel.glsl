@@ -1,6 +1,6 @@
 // References: hosts/before_layers.glsl, hosts/outputs.glsl.
-// Summary: writes a pixel of the opaque picture from the means over its samples. Hooks: `before` what is seen before it,
-//          `pixel` what else is written.
+// Summary: writes a pixel of the opaque picture from the means over its samples. Hooks: `before` composites what is in
+//          front of it, `pixel` writes further outputs.
 
 #include "hosts/outputs.glsl"
 
@@ -8,7 +8,7 @@ const float EMPTY_DEPTH = 1e10;
 #include "lib/farthest.glsl"
 
 #parts
-// normal: in the camera's view, and coverage. nearest: FARTHEST where nothing was hit.
+// normal: in view space, and coverage. nearest: FARTHEST if nothing was hit.
 void write_pixel(vec4 color, vec4 normal, float nearest, Outputs outputs) {
   normal.xyz = mat3(view.to_world) * normal.xyz;
   #hook before(color, normal, nearest, outputs)

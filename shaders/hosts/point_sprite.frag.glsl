@@ -1,6 +1,6 @@
 // References: Botsch, Kobbelt 2003, section 5 (the level without filtering).
-// Summary: the attributes of the one splat that is nearest; shading divides by its weight. Hooks: `keep` discards, `add`
-//          fills targets beside.
+// Summary: the attributes of the nearest splat alone; shading divides by its weight. Hooks: `keep` discards, `add`
+//          fills further targets.
 
 #include "hosts/gbuffer.glsl"
 #include "methods/{method}.glsl"

@@ -1,6 +1,6 @@
 // References: Botsch, Kobbelt 2003, section 3.1 (the size of a splat is that of its bounding sphere on the axis).
-// Summary: for methods whose nearest splat wins: a triangle around each sprite, parallel to the picture, at the depth of
-//          the splat's centre; that of a back behind the fronts in its place.
+// Summary: for methods in which the nearest splat wins: a triangle around each sprite, parallel to the picture, at the
+//          depth of the splat's centre; backs are moved behind the fronts in their place.
 
 #include "lib/nowhere.glsl"
 #include "hosts/splat.glsl"

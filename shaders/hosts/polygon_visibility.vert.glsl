@@ -1,6 +1,6 @@
 // References: Guennebaud et al. 2006, section 5.1 (polygons share the depth of the splats, with a tolerance).
-// Summary: depth only, of polygons; moved back along the view ray by what splats of the same surface may lie behind them,
-//          and by no less than the depth can resolve. Its fragment shader is that of splats.
+// Summary: depth of polygons; moved back along the view ray by the distance that splats of the same surface may be
+//          behind them, and at least by what the depth can resolve. The fragment shader is that of splats.
 
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/nowhere.glsl"

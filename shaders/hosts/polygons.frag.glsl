@@ -1,5 +1,6 @@
 // References: Guennebaud et al. 2006, section 5.1.
-// Summary: the attributes of the nearest polygon. Hooks: `keep` discards, `color` changes, `add` fills targets.
+// Summary: the attributes of the nearest polygon. Hooks: `keep` discards, `color` changes the colour, `add` fills
+//          targets.
 
 #include "depth_formats/{depth_format}.glsl"
 

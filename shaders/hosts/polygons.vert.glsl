@@ -1,5 +1,6 @@
 // References: Guennebaud et al. 2006, section 5.1 (polygons are drawn into textures of their own).
-// Summary: corners of polygons and their attributes, the normal on the side that is seen. Hook: `plane` of the triangle.
+// Summary: corners of polygons and their attributes, with the normal on the visible side. Hook: `plane` of the
+//          triangle.
 
 #include "lib/nowhere.glsl"
 #include "hosts/corner.glsl"

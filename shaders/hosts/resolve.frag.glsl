@@ -1,9 +1,10 @@
 // References: this project; the idea of taking the colour of a sub-sample from the nearest pixel that sees its surface
 //             is Chajdas, McGuire, Luebke, "Subpixel Reconstruction Antialiasing", I3D 2011.
-// Summary: colours inside a surface were filtered with their splats; here its silhouettes are. Of the samples around one,
-//          and of what visibility sees halfway to the next rows, those that see its own surface take its colour, all
-//          under the pixel's Gaussian. Hooks: `background` behind them, `everywhere` where nothing may be left unfiltered,
-//          `count` by what lies before a place, `cut` what is seen and not shown, `show` the colour of what is, `pixel`.
+// Summary: filters silhouettes; colours inside a surface were filtered with their splats already. Of the neighbouring
+//          samples, and of what visibility sees halfway to the next rows, those that see this sample's surface take its
+//          colour, all under the pixel's Gaussian. Hooks: `background` behind them, `everywhere` if nothing may remain
+//          unfiltered, `count` weights by what is in front of a sample, `cut` removes visible surfaces that are not
+//          shown, `show` changes a colour, `pixel` writes further outputs.
 
 #include "hosts/sample_outputs.glsl"
 #include "depth_formats/{depth_format}.glsl"
@@ -11,35 +12,35 @@
 
 #include "lib/farthest.glsl"
 
-// The Gaussian by forward differences: its first value, first ratio of neighbours, and how the ratio changes.
+// The Gaussian by forward differences: first value, first ratio of neighbours, and change of the ratio.
 const float FIRST_WEIGHT = exp(-0.5 * float(FILTER_REACH * FILTER_REACH) / SILHOUETTE_VARIANCE);
 const float STEP = 1.0 / float(ROWS);
 const float FIRST_RATIO = exp((float(FILTER_REACH) - 0.5 * STEP) * STEP / SILHOUETTE_VARIANCE);
 const float RATIO_RATIO = exp(-STEP * STEP / SILHOUETTE_VARIANCE);
 
-// Least cosine between normals of one surface: across a sharper crease surfels of either flank stick out of the other. No
-// angle of common solids: at 60 degrees, or 63, rounding would choose.
+// Minimum cosine between normals of the same surface: across a sharper crease, surfels of either side protrude from the
+// other. The value avoids angles of common solids, such as 60 or 63 degrees, where rounding would decide.
 const float SMOOTH = 0.55;
 
-// Normal and depth of what is shaded there; where nothing is, this normal, and a depth beyond all.
+// Normal and depth of the shaded sample; if there is none, this normal and a depth beyond everything.
 vec4 surface_at(ivec2 texel, ivec2 size, vec3 normal) {
   vec4 s = texelFetch(surface, clamp(texel, ivec2(0), size - 1), 0);
   return s.w != 0.0 ? vec4(s.xyz, abs(s.w)) : vec4(normal, 1e30);
 }
 
-// What depth changes by from this sample to the next, across and up, on a plane of this normal.
+// Change of depth to the next sample across and up, on a plane with this normal.
 vec2 plane_slope(ivec2 texel, vec3 normal, float depth) {
   vec2 place = view.window.xy + (vec2(texel) + 0.5) * view.window.zw;
   float facing = view.is_parallel > 0.5 ? normal.z : (normal.z - dot(normal.xy, place)) / depth;
   return abs(normal.xy * view.window.zw) / max(abs(facing), 1e-30);
 }
 
-// What visibility sees of the surface that is seen here, within the filter: nearest and farthest. On either side of its
-// depth twice its slope, which is the lesser one of both sides and no more than its normal says: a silhouette on one
-// side does not spoil it, nor do two, of a gap or a wire. Visibility moved all of it back, by up to twice as much as here;
-// what is nearer lies before it, but for a part of that: surfels of one surface do not lie in one plane.
-// In zw with half as much again of its slope, which it may have where it is bent: if all lies within, nothing is filtered.
-// is_folded: a sample beside this one is of another flank of a crease.
+// Range of visibility depths within the filter that belong to the surface seen here. On either side of its depth the
+// range is twice its slope, which is the smaller one of both sides and at most what its normal implies, so that a
+// silhouette on one side does not spoil it, and neither do two, at a gap or a wire. Visibility moved the surface back
+// by up to twice as much as here; what is nearer is in front of it, except for a tolerance, because surfels of one
+// surface do not lie in one plane. zw is the range with 1.5 times the slope, for curved surfaces: if everything lies
+// within, nothing is filtered. is_folded: a neighbouring sample is on the other side of a crease.
 vec4 same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth, out bool is_folded) {
   float moved = abs(view_depth(texelFetch(seen_depth, ivec2(texel.x, ROWS * texel.y), 0).r) - depth);
   vec4 left = surface_at(texel - ivec2(1, 0), size, normal), below = surface_at(texel - ivec2(0, 1), size, normal);
@@ -53,7 +54,7 @@ vec4 same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth, out bool is
   return vec4(max(depth - room.x, 0.5 * depth), depth + room.y, max(depth - bent.x, 0.5 * depth), depth + bent.y);
 }
 
-// Nearest and farthest of all stored depths that the filter reaches from here.
+// Minimum and maximum of all stored depths that the filter reaches from here.
 vec2 reached_range(ivec2 texel, ivec2 size) {
   vec2 reached = vec2(1.0, 0.0);
   for (int y = -FILTER_REACH; y <= FILTER_REACH; y++) {
@@ -63,8 +64,8 @@ vec2 reached_range(ivec2 texel, ivec2 size) {
   return reached;
 }
 
-// Where a sample sees nothing and is faint, the nearest one that sees something: over an edge surfels of the far side
-// stick out, whose backs alone reach there, and what is filtered there is the near side.
+// If a sample is empty or faint, use the nearest one that sees something: over an edge, surfels of the far side
+// protrude, only their backs reach there, and the surface to filter is the near side.
 ivec2 shaded_at(ivec2 texel, ivec2 size) {
   ivec2 found = texel;
   bool is_faint = texelFetch(surface, texel, 0).w < 0.0 && texelFetch(seen_depth, ivec2(texel.x, ROWS * texel.y), 0).r == 1.0;
@@ -80,8 +81,8 @@ ivec2 shaded_at(ivec2 texel, ivec2 size) {
   return found;
 }
 
-// What a sample's surroundings add up to. coverage: what is covered and not by nearer layers. first: the share of which
-// this is the surface that depth and normal are of. is_hit: whether the texel sees such; is_behind: whether it is in a
+// Sums over a sample's surroundings. coverage: covered, and not by nearer layers. first: the share for which this
+// surface provides depth and normal. is_hit: whether the texel sees such a surface; is_behind: whether it is in a
 // nearer layer. surface: normal and depth of the first.
 struct Resolved {
   vec4 color;
@@ -93,8 +94,8 @@ struct Resolved {
   Outputs outputs;
 };
 
-// The surface of the sample that is resolved: where it is shaded, its colour and normal, 1 fold if a crease is beside it,
-// and the range of stored depths that see it, none where there is none.
+// The surface of the sample being resolved: if it is shaded, its colour and normal, fold 1 if a crease is beside it,
+// and the range of stored depths that belong to it, empty if there are none.
 struct Own {
   ivec2 texel;
   ivec2 shaded_at;
@@ -104,15 +105,15 @@ struct Own {
   vec2 range;
 };
 
-// What is seen at one place that the filter reaches.
+// One position that the filter reaches.
 struct Seen {
-  float stored;    // depth, that of `at` or of a place beside it which sees the same
+  float stored;  // depth at `at`, or at a neighbour that sees the same surface
   ivec2 at;
   vec4 there;      // what is shaded at `at`
-  bool is_smooth;  // there is no crease between this and `at`
+  bool is_smooth;  // no crease between this and `at`
   bool is_self;
-  float shown;     // its weight, by what the nearer layers let through
-  bool is_first;   // it is the surface that depth and normal are of
+  float shown;  // weight according to the nearer layers
+  bool is_first;  // whether it provides depth and normal
   bool is_cut;
   vec4 here;       // its colour
   vec4 background;
@@ -151,7 +152,7 @@ Resolved resolve_sample(ivec2 texel) {
   vec4 background = vec4(0.0);
   #hook background(background, texel)
   Resolved sum = Resolved(vec4(0.0), 0.0, 0.0, false, false, seen_surface, NO_OUTPUTS);
-  // Inside a surface and beside all surfaces there is nothing to filter: loops that have no turn to make cost nothing.
+  // Inside a surface and outside of all surfaces nothing needs filtering, so the loops run zero times.
   bool is_beside = reached.x == 1.0;
   #hook everywhere(is_inside, is_beside)
   bool is_even = is_inside || is_beside;
@@ -176,7 +177,7 @@ Resolved resolve_sample(ivec2 texel) {
       bool is_smooth = true;
       for (int turn = 0; turn < own.folds; turn++) is_smooth = dot(texelFetch(surface, at, 0).xyz, own.normal) >= SMOOTH;
       if (ROWS > 1 && y > 0) {
-        // Between two samples the surface of the one is seen, or of the other; if of both, no rounding may choose.
+        // Between two samples, the surface of either is visible; if both are, rounding must not decide.
         float between = texelFetch(seen_depth, ivec2(at.x, max(ROWS * at.y - 1, 0)), 0).r;
         bool is_before = abs(between - below) < 0.5 * abs(between - seen);
         add_seen(sum, own, between, is_before ? before : at, is_before ? shaded_before : there,

@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: what a shaded sample was to hand on; 0 where nothing was shaded. Hook: `read` what is asked for.
+// Summary: the outputs of a shaded sample; 0 where nothing was shaded. Hook: `read` the requested ones.
 
 #include "hosts/outputs.glsl"
 

@@ -1,7 +1,8 @@
 // References: as screen_space.vert.glsl.
-// Summary: asks the method for weight and depth, and adds what is not hidden at the sample's centre. Depth is compared
-//          here with the visibility pass's, since a triangle in the picture has none. Hooks: `weigh` where splats are not
-//          evaluated in the picture, `bound` how far is seen, `keep` discards, `color` changes, `add` fills targets.
+// Summary: evaluates the method's weight and depth, and adds the splat if it is not hidden at the sample's centre.
+//          Depth is compared here with that of the visibility pass, because a triangle in the picture has no depth of
+//          its own. Hooks: `weigh` for splats evaluated in space, `bound` changes how far is visible, `keep` discards,
+//          `color` changes the colour, `add` fills targets.
 
 #include "hosts/gbuffer.glsl"
 #include "lib/place.glsl"
@@ -10,11 +11,11 @@
 struct Candidate {
   Plane plane;
   bool in_space;   // evaluated in space, unfiltered
-  vec3 place;      // then where it is in the ellipse, and how deep
+  vec3 place;  // position in the ellipse and depth, if in_space
   float weight;
   float depth;
-  float compared;  // the depth that is compared with what is seen
-  vec4 seen;       // depths: of the filter's reach, of what hides, of what is hidden
+  float compared;  // compared with the visible depths
+  vec4 seen;  // depths: range of the filter, limit of what hides, limit of what is hidden
   vec3 color;
 };
 

@@ -1,7 +1,7 @@
 // References: Botsch et al. 2005, section 4; Guennebaud et al. 2006, section 3.2 (the bounds of a splat).
-// Summary: for methods that work in the picture: a triangle around the splat's footprint, and its attributes.
-//          Hooks: `clip` before the method adjusts the splat, `clipped` after that, `place` for what is not drawn in the
-//          picture; `replaced` where the method has replaced axes, `cull` what need not be drawn.
+// Summary: for screen-space methods: a triangle around the splat's footprint, and its attributes. Hooks: `clip` before
+//          the method adjusts the splat, `clipped` afterwards, `place` for splats not drawn in the picture; `replaced`
+//          if the method has replaced axes, `cull` for splats that need not be drawn.
 
 #include "lib/nowhere.glsl"
 #include "hosts/splat.glsl"
@@ -10,7 +10,7 @@
 #include "lib/plane.glsl"
 #include "methods/{method}.glsl"
 
-// What is drawn ends where the fragment shader says, not where the hardware rounds a triangle's corners to.
+// The fragment shader decides where a splat ends, not the hardware's rounding of a triangle's corners.
 const float MARGIN = 1.01;
 
 #parts
@@ -42,8 +42,8 @@ void main() {
     mat2 across = mat2(axes[0] / half_axes.x, axes[1] / half_axes.y) * transpose(axes);
     footprint_map = vec3(across[0], across[1].y);
     footprint_middle = middle - plane.center;
-    // Stretched along the axes, not turned to them: what they are of a circle, or which way they point, is rounding's.
-    // The corner is beside the splat, not above: surfaces that are seen flat change fastest upwards.
+    // Stretched along the picture's axes instead of rotated to the ellipse's, whose direction depends on rounding for
+    // circles. The corner is beside the splat, not above: surfaces at grazing angles change fastest upwards.
     vec2 pixels = axes * (half_axes * (MARGIN * corner.yx * axes));
     vec4 clip = view.projection * vec4(view.window.xy + (middle + pixels) * view.window.zw, -1.0, 1.0);
     gl_Position = vec4(clip.xy / clip.w, clamp(2.0 * stored_depth(nearest_depth(plane)) - 1.0, -1.0, 1.0), 1.0);

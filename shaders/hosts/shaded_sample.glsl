@@ -1,6 +1,6 @@
 // References: Botsch et al. 2005, section 4 (normalise, then light once).
-// Summary: a sample's sums as a lit surface; the includer has included a shading model. Hooks: `prepare` before it is
-//          lit, `outputs` what it hands on, `finish`.
+// Summary: turns a sample's sums into a lit surface; the includer has included a shading model. Hooks: `prepare` before
+//          lighting, `outputs`, `finish`.
 
 #include "hosts/outputs.glsl"
 #include "hosts/mean_surface.glsl"
@@ -8,16 +8,16 @@
 struct Shaded {
   MeanSurface mean;
   ivec2 texel;
-  int tap;         // which of the texel's hardware samples, 0 where it has one
+  int tap;  // number of the texel's hardware sample, 0 if it has only one
   vec3 normal;
   vec3 material;
   vec3 color;      // what leaves it
-  float coverage;  // below 1 only where an edge threshold is planned, or what is transparent
+  float coverage;  // below 1 only with an edge threshold or transparency
   Outputs outputs;
 };
 
 #parts
-// mean: where its coverage is above 0.
+// mean: a surface with coverage above 0.
 Shaded shaded_sample(MeanSurface mean, ivec2 texel, int tap) {
   vec2 place = view.window.xy + (vec2(texel) + 0.5) * view.window.zw;
   vec3 position = vec3(view.is_parallel > 0.5 ? place : place * mean.depth, -mean.depth);

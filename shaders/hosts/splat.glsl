@@ -1,6 +1,6 @@
 // References: Botsch et al. 2005, section 4 (what a splat blends).
-// Summary: a stored splat as the attributes that every method accumulates. Hooks: `choose` which splat a triangle
-//          draws, `unpack` what else a number holds, `hide` what is not drawn.
+// Summary: reads a stored splat as the attributes that every method accumulates. Hooks: `choose` the splat of a
+//          triangle, `unpack` further values, `hide` splats that are not drawn.
 
 #include "lib/sides.glsl"
 #include "lib/stored_splat.glsl"
@@ -9,22 +9,22 @@ struct Splat {
   vec3 position;  // view space
   vec3 axis_u;    // half-axes, view space
   vec3 axis_v;
-  vec4 color_weight;  // colour, and what the side that is seen weighs
-  vec3 normal;        // shading normal on the side that is seen, view space
+  vec4 color_weight;  // colour, and the weight of the visible side
+  vec3 normal;  // shading normal on the visible side, view space
   float material;     // index
   float opacity;
   bool is_back;
-  bool is_hidden;     // it is not drawn: the back of a solid, or of no opacity
+  bool is_hidden;  // not drawn: the back of a solid, or fully transparent
 };
 
-// The geometric normal on the side that is seen, unit, view space.
+// Unit geometric normal on the visible side, view space.
 vec3 geometric_normal(Splat splat) {
   vec3 outward = cross(splat.axis_u, splat.axis_v) * (splat.is_back ? -draw.orientation : draw.orientation);
   return outward / max(length(outward), 1e-37);
 }
 
 #parts
-// Number of the splat of a triangle.
+// Number of a triangle's splat.
 int drawn_splat(int triangle) {
   int index = triangle;
   #hook choose(index)

@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: what fragments are told of a splat beside its place. Hook: `tell`.
+// Summary: varyings of a splat other than its position. Hook: `tell`.
 
 #parts
 void hand_on(Splat splat, int index) {

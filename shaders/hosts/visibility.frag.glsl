@@ -1,6 +1,6 @@
 // References: as visibility.vert.glsl.
-// Summary: depth; what lies outside the ellipse, or before the near plane (where only the offset brought it into view),
-//          leaves none. Hooks: `keep` discards, `add` fills targets.
+// Summary: writes depth, except outside the ellipse and in front of the near plane (which only the offset moved into
+//          view). Hooks: `keep` discards, `add` fills targets.
 
 #include "depth_formats/{depth_format}.glsl"
 

@@ -1,8 +1,8 @@
 // References: Botsch, Hornung, Zwicker, Kobbelt, "High-Quality Surface Splatting on Today's GPUs", 2005, section 4.1
 //             (visibility splatting); the view-independent paper, section 5 (the offset along the view ray).
-// Summary: every splat moved away from the eye by its own epsilon, so that what lies within epsilon blends; by no less
-//          than the depth can resolve, or rounding would let a splat hide itself. Hooks: `blend` less deeply, `move` by
-//          another length, `shape` of what hides, where it is not the exact ellipse.
+// Summary: every splat is moved away from the eye by its own epsilon, so that everything within epsilon blends, and at
+//          least by what the depth can resolve, or rounding would let a splat hide itself. Hooks: `blend` reduces the
+//          depth, `move` uses another length, `shape` changes the shape from the exact ellipse.
 
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/nowhere.glsl"

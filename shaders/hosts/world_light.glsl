@@ -1,5 +1,5 @@
 // References: lib/world_light.
-// Summary: the world's light on a surface. Hooks: `diffuse` and `reflected` of what would arrive, what does.
+// Summary: the world's light on a surface. Hooks: `diffuse` and `reflected` reduce the incoming light.
 
 #include "lib/world_light/{world_light}.glsl"
 

@@ -2,7 +2,7 @@
 //             Karis, "Real Shading in Unreal Engine 4", 2013 (the albedo in two terms);
 //             Lagarde, de Rousiers, "Moving Frostbite to PBR", 2014, section 4.9.3 (the lobe's dominant direction);
 //             Turquin, "Practical multiple scattering compensation for microfacet models", 2019.
-// Summary: reads what reference/brdf_fit.py tabulated of GGX. The twin of reference/brdf.py.
+// Summary: reads the table of the GGX lobe made by reference/brdf_fit.py. The twin of reference/brdf.py.
 
 const vec2 TABLE_STEPS = vec2(31.0, 47.0);  // angles, roughnesses
 const float TABLE_LEAST_ROUGHNESS = 0.03;
@@ -19,22 +19,22 @@ vec4 table_at(float roughness, float cosine, int part) {
   return mix(below, above, share.y);
 }
 
-// What the lobe reflects of an even world, and by what factor light that it scatters more than once adds to it.
-// f90: reflectance at grazing incidence.
+// Albedo of the lobe under a uniform world, and the factor by which multiple scattering increases it. f90: reflectance
+// at grazing incidence.
 vec3 specular_albedo(vec2 terms, vec3 f0, float f90, out vec3 scattered) {
   scattered = 1.0 + f0 * (1.0 / max(terms.x + terms.y, 1e-3) - 1.0);
   return (f0 * terms.x + f90 * terms.y) * scattered;
 }
 
-// Where the lobe reflects light from on average: off the mirrored direction, the more so the rougher the surface is and
-// the flatter it is seen. The view's frame: see rendering/upload/brdf_table.py.
+// Mean direction of reflected light: off the mirrored direction, more so for rough surfaces and grazing views. The
+// view's frame: see rendering/upload/brdf_table.py.
 vec3 mean_direction(vec2 mean, vec3 to_eye, vec3 normal) {
   vec3 across = to_eye - normal * dot(to_eye, normal);
   return normalize(normal * mean.y + across * (mean.x / max(length(across), 1e-6)));
 }
 
 #part sized_lights
-// Of the great circle between two directions, its angle times the z of its normal.
+// Angle of the great circle between two directions, times the z of its normal.
 float edge(vec3 from, vec3 to) {
   vec3 a = normalize(from), b = normalize(to);
   vec3 normal = cross(a, b);
@@ -42,13 +42,13 @@ float edge(vec3 from, vec3 to) {
   return sine > 0.0 ? normal.z * atan(sine, dot(a, b)) / sine : 0.0;
 }
 
-// Half-axes over distance below which a quad counts as a point with its area: the sum over its edges, in which opposite
-// ones nearly cancel, loses its digits there.
+// Below this ratio of half-axes to distance a quad is treated as a point with its area, because the sum over its edges
+// suffers from cancellation.
 const float SMALL_QUAD = 0.02;
 
-// Share of the half-space's cosine-weighted light that comes through the quad middle +- u +- v, without what lies below
-// the horizon. Each edge counts by its part above, and so does the horizon from where the quad leaves it to where it
-// comes back.
+// Share of the half-space's cosine-weighted light that comes through the quad middle +- u +- v, without the part below
+// the horizon. Each edge counts by its part above the horizon, and so does the horizon between the points where the
+// quad crosses it.
 float form_factor(vec3 middle, vec3 u, vec3 v) {
   float distance2 = dot(middle, middle);
   if (max(dot(u, u), dot(v, v)) < SMALL_QUAD * SMALL_QUAD * distance2) {

@@ -1,21 +1,21 @@
 // References: features/clip_lines.glsl; Sheppard 1899 (two correlated normal variables, both above their means).
-// Summary: of kernel times pixel, the share on the kept side of a splat's lines, and where the nearest kept place is.
+// Summary: the share of kernel times pixel filter on the kept side of a splat's lines, and the nearest kept point.
 
 #include "lib/place.glsl"
 #include "lib/normal_share.glsl"
 #include "lib/kernel_under_pixel.glsl"
 
-const float LEAST_SHARE = 0.006;  // less is none: the approximation ends there
-const float TO_WITHIN = 0.75;     // pixels past the line, whose sample is on its kept side then but for a corner of it
+const float LEAST_SHARE = 0.006;  // smaller shares are 0: the approximation ends there
+const float TO_WITHIN = 0.75;     // pixels past the line, up to which a sample's area is at most partly beyond it
 
-// Of a Gaussian, what two lines keep both. one, other: what either keeps; correlation: of the distances to them. Exact
-// where both lines go through the middle, and of lines that are parallel or across.
+// The share of a Gaussian on the kept side of both lines. one, other: the share of each line alone; correlation: of the
+// distances to them. Exact if both lines go through the middle, and for parallel or perpendicular lines.
 float both_keep(float one, float other, float correlation) {
   float turn = asin(clamp(correlation, -1.0, 1.0)) * 0.63661977;
   return mix(one * other, turn > 0.0 ? min(one, other) : max(one + other - 1.0, 0.0), abs(turn));
 }
 
-// Of a normal distribution, what lies before x: all, from where the approximation ends.
+// Normal distribution function of x; 1 where the approximation ends.
 float share_before(float x) {
   return x < NORMAL_END ? share_beyond(-max(x, -NORMAL_END)) : 1.0;
 }
@@ -23,7 +23,7 @@ float share_before(float x) {
 float clipped_share(Plane plane, Place place) {
   vec2 middle;
   mat2 seen;
-  // Beyond the plane's horizon only the splat itself can be meant.
+  // Beyond the plane's horizon only the splat itself is meaningful.
   vec2 q = place.k > 0.0 ? place.uv : vec2(LARGEST_PIXEL);
   kernel_under_pixel(q, place.scale * place_turn(plane, place), FILTER_VARIANCE, middle, seen);
   vec2 across = seen * clip_first.xy;
@@ -35,7 +35,7 @@ float clipped_share(Plane plane, Place place) {
   return share > LEAST_SHARE ? share : 0.0;
 }
 
-// In pixels, to a place that is kept, past the line that is nearest; none from a place that is.
+// Distance in pixels past the nearest line to a kept point; 0 for kept points.
 vec2 way_back(Plane plane, Place place) {
   mat2 change = place.scale * place_turn(plane, place);
   vec2 first = clip_first.xy * change, second = clip_second.xy * change;

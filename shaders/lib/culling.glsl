@@ -1,12 +1,12 @@
 // References: Greene, Kass, Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993.
-// Summary: whether a splat lies behind all that is seen where it would be drawn. Every fragment of such a one would be
-//          discarded: the picture is the same without it.
+// Summary: whether a splat is behind everything visible in its area. All its fragments would be discarded, so the
+//          picture does not change without it.
 
 #include "lib/hiz_cells.glsl"
 
-const float MOST_REACH = 8.0;  // samples; larger splats are drawn: fetches would cost more than they save
+const float MOST_REACH = 8.0;  // samples; larger splats are drawn, because fetches would cost more than they save
 
-// middle, reach: a box around what is drawn of it, in samples. nearest: of its depths.
+// middle, reach: a box around the splat, in samples. nearest: its smallest depth.
 bool is_behind_all(vec2 middle, vec2 reach, float nearest) {
   bool is_looked_up = max(reach.x, reach.y) <= MOST_REACH;
   vec2 beyond = max(reach - float(CELL_REACH), 0.0);

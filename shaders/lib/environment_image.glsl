@@ -1,5 +1,5 @@
 // References: Blender's Environment Texture (the equirectangular map); rendering/scene/environment.py, which makes the texture.
-// Summary: the picture of the world in a direction.
+// Summary: the world image in a direction.
 
 vec3 environment_image_at(vec3 direction) {
   ivec2 size = textureSize(environment_image, 0);

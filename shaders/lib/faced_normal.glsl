@@ -1,8 +1,8 @@
 // References: none needed.
-// Summary: the geometric normal of a splat on the side that is seen, and its stereographic projection, which is smooth over
-//          all directions but the viewer's own: sums of two numbers have the mean of normals that face the viewer.
+// Summary: a splat's geometric normal on the visible side, and its stereographic projection, which is smooth for all
+//          directions except the viewer's own: sums of these two numbers have the mean of normals that face the viewer.
 
-// Of 1 + z: only at the rim of pictures far wider than 120 degrees does a seen surface's normal point away more.
+// Minimum of 1 + z: only at the border of pictures far wider than 120 degrees do visible normals point further away.
 const float LEAST_FACED = 0.05;
 
 vec3 faced_normal(vec2 projected) {

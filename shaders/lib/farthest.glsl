@@ -1,4 +1,4 @@
 // References: none needed.
-// Summary: a depth that is beyond all.
+// Summary: a depth beyond everything.
 
 const float FARTHEST = 3.4e38;

@@ -1,5 +1,5 @@
 // References: lib/sides.glsl.
-// Summary: what splats weigh in units of fronts: backs alone weigh less.
+// Summary: weight of splats relative to fronts: backs alone weigh less.
 
 #include "lib/sides.glsl"
 

@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: a number as a colour: blue, cyan, green, yellow and red in even steps from 0 to 1.
+// Summary: maps a number to a colour: blue, cyan, green, yellow and red in even steps from 0 to 1.
 
 vec3 heat(float t) {
   float at = 4.0 * clamp(t, 0.0, 1.0);

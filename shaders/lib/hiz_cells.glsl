@@ -1,5 +1,5 @@
 // References: hiz.frag.glsl.
-// Summary: how many samples a cell has along each side, and how far around it is looked; what is around a place in a cell
-//          and reaches no further needs one tap.
+// Summary: number of samples along each side of a cell, and the border around it that the cell covers; the surroundings
+//          of a point within that border need only one tap.
 
 const int CELL_REACH = 2;

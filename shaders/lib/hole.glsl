@@ -1,12 +1,12 @@
 // References: Blender manual, "Holdout".
-// Summary: where an object that cuts a hole is seen first. It has depths and nothing else: there is a depth and nothing
-//          to shade, or nothing but what lies deeper.
+// Summary: whether a holdout is the first visible surface: there is a depth but nothing to shade, or only surfaces
+//          farther away.
 
 #include "depth_formats/{depth_format}.glsl"
 
 const float SAME_DEPTH = 1e-4;
 
-// tap: which of the texel's hardware samples.
+// tap: number of the texel's hardware sample.
 bool is_hole(ivec2 texel, int tap, MeanSurface mean) {
   float seen = texelFetch(visibility_depth, texel, tap).r;
   if (seen == 1.0) return false;

@@ -1,8 +1,7 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 4: equations 8 to 10 (tangents lengthened until the splat is
 //             as large as the pixel's filter), section 3: their projections exact and perspective.
-// Summary: where a half-axis would be shorter than sqrt(2) pixels in the picture, it is replaced by one of that
-//          length, parallel to the picture; then the kernel is evaluated as ever.
-//          Its includer says whether AS_PRINTED.
+// Summary: a half-axis shorter than sqrt(2) pixels in the picture is replaced by one of that length parallel to the
+//          picture; then the kernel is evaluated as usual. The includer defines AS_PRINTED.
 
 const float FILTER_RADIUS = 1.41421356;  // pixels
 
@@ -11,7 +10,7 @@ const float FOOTPRINT_END = 1.0;
 #part vertex
 #include "lib/principal_places.glsl"
 
-// Half-axis `axis` no shorter in the picture than the filter.
+// Half-axis `axis`, lengthened to the filter's size in the picture.
 vec3 at_least_filter(vec3 axis, vec3 position, bool is_orthographic) {
   vec2 pixel = view.window.zw;
   float depth = is_orthographic ? 1.0 : -position.z;
@@ -21,10 +20,10 @@ vec3 at_least_filter(vec3 axis, vec3 position, bool is_orthographic) {
   return size < FILTER_RADIUS && size > 0.0 ? vec3(pixels / size * FILTER_RADIUS * pixel * depth, 0.0) : axis;
 }
 
-// The tangents of the paper, for discs alone: across the ray and along it, in the picture about at right angles. As
-// printed, those of a disc that faces the ray are 0 / 0, and where a tangent is replaced, depths are lost with it.
-// Repaired, they are the half-axes of the splat's own ellipse, as section 3 has it, that are at right angles in the
-// picture, which any splat has; and depths stay those of its plane.
+// The paper's tangents, for discs only: across the ray and along it, about perpendicular in the picture. As printed,
+// those of a disc that faces the ray are 0 / 0, and replacing a tangent changes depths. Repaired, they are the
+// half-axes of the splat's ellipse (section 3) that are perpendicular in the picture, which exist for every splat;
+// depths remain those of its plane.
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {
   if (AS_PRINTED) {
     vec3 normal_to_plane = normalize(cross(splat.axis_u, splat.axis_v));

@@ -1,11 +1,13 @@
 // References: Zwicker et al. 2001 (kernel and pixel filter are Gaussians, and so is their product).
-// Summary: what a pixel shows of a splat is kernel times pixel filter: a Gaussian narrower than both, in half-axes.
+// Summary: the part of a splat that a pixel shows is kernel times pixel filter: a Gaussian narrower than both, in
+//          half-axes.
 
 const float SPLAT_VARIANCE = 0.25;   // of the kernel, half-axes squared
 const float LARGEST_PIXEL = 1e8;     // variance, half-axes squared
 
-// q: the pixel's place in the ellipse; change: columns are what a pixel along x and y moves it; variance: of the pixel's
-// filter. Its middle and its variance; the kernel's where the pixel is too large for digits, or q beyond all.
+// q: the pixel's position in the ellipse; change: columns are its change per pixel along x and y; variance: of the
+// pixel's filter. Returns the middle and variance; those of the kernel if the pixel is too large for float32, or q is
+// infinite.
 void kernel_under_pixel(vec2 q, mat2 change, float variance, out vec2 middle, out mat2 seen) {
   mat2 pixel = variance * change * transpose(change);
   float size = pixel[0].x + pixel[1].y, area = variance * determinant(change);

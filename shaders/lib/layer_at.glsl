@@ -1,7 +1,7 @@
 // References: none needed.
-// Summary: the shaded sample of a transparent layer at a sample, premultiplied. The layer's rim may be
-//          seen where the shaded sample's centre does not see it: then the mean of those around that have one. What adds
-//          layers up and what peels them ask here both, so that in each sample all shares sum to 1.
+// Summary: the shaded sample of a transparent layer at a sample, premultiplied. The layer's rim may be visible although
+//          the sample's centre does not see it; then the mean of neighbours that do is used. Compositing and peeling
+//          both use this function, so that the shares in each sample sum to 1.
 
 #include "hosts/sample_outputs.glsl"
 

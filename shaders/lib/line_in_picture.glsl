@@ -1,10 +1,9 @@
 // References: as plane.glsl.
-// Summary: a line of a splat's plane, (direction, c) of direction . q + c >= 0 in half-axes, as the picture shows it.
+// Summary: maps a line of a splat's plane, (direction, c) with direction . q + c >= 0 in half-axes, to the picture.
 
 #include "lib/plane.glsl"
 
-// A line of a splat's plane as one of the picture, (direction, c) in pixels; its length means nothing. Beyond the plane's
-// horizon its sides go on.
+// Returns (direction, c) in pixels, of arbitrary length. Beyond the plane's horizon its sides continue.
 vec3 line_in_picture(vec3 line, Plane plane) {
   vec2 a = plane.a, b = plane.b;
   vec3 seen = vec3(line.x * b.y - line.y * a.y - line.z * plane.det.x, line.y * a.x - line.x * b.x - line.z * plane.det.y,

@@ -1,6 +1,6 @@
 // References: none needed.
-// Summary: where the material of a splat or a corner lies: of its slot, or its own where textures drive it; the twin of
-//          pack_materials and pack_own_materials in rendering/upload/packing.py.
+// Summary: where the material of a splat or a corner is stored: that of its slot, or its own if textures drive it. The
+//          twin of pack_materials and pack_own_materials in rendering/upload/packing.py.
 
 ivec2 material_place(int index, float slot) {
   bool is_own = texelFetch(materials, ivec2(0), 0).w > 0.5;

@@ -1,7 +1,7 @@
 // References: rendering/view.py, `DrawItem.is_whole`.
-// Summary: where all corners of what is not drawn go, so that they enclose nothing. Where the whole instance is in the
-//          picture that place is too: beyond a plane of the view it would make what is drawn beside it go through the
-//          clipping that none of it needs. Where some is clipped in any case it lies before the near plane, which ends it
-//          soonest.
+// Summary: the position of all corners of skipped splats, so that they have no area. If the whole instance is in the
+//          picture, so is this position: outside the view volume it would make the hardware clip neighbouring
+//          triangles. If some of the instance is clipped anyway, it is in front of the near plane, where it is rejected
+//          fastest.
 
 #define NOWHERE vec4(0.0, 0.0, draw.nowhere, 1.0)

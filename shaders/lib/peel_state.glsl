@@ -1,7 +1,7 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6 (depth peeling of splats).
-// Summary: what nearer transparent layers leave at each sample: `peel_state` holds the stored depth up to which
-//          splats are in them, 0 before the first and 1 where nothing is left; and the share of what lies behind that
-//          they hide, negative where one of them is opaque enough to be the surface that depth and normal are of.
+// Summary: the result of nearer transparent layers at each sample. `peel_state` stores the depth up to which splats are
+//          in them (0 before the first layer, 1 if nothing is left), and the share of the background that they hide,
+//          negative if one of them is opaque enough to provide depth and normal.
 
 bool is_peeled(float stored, ivec2 at) {
   float until = texelFetch(peel_state, at, 0).x;

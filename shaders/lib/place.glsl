@@ -1,5 +1,5 @@
 // References: as plane.glsl.
-// Summary: the pixel's place in a splat's plane, how it changes from pixel to pixel, and the depth there.
+// Summary: the pixel's position in a splat's plane, its derivative per pixel, and the depth there.
 
 #include "lib/plane.glsl"
 
@@ -27,7 +27,7 @@ mat2 place_turn(Plane plane, Place place) {
               plane.gh.y * place.d.x - plane.b.x, plane.a.x - plane.gh.x * place.d.x);
 }
 
-// Depth of the splat's plane, held near the splat: outside the ellipse the plane runs off to the horizon.
+// Depth of the splat's plane, clamped near the splat: outside the ellipse the plane continues to the horizon.
 float plane_depth(Plane plane, Place place) {
   float offset = clamp(dot(plane.slope, place.uv), -plane.reach, plane.reach);
   return plane.depth + (place.k > 0.0 ? offset : 0.0);

@@ -1,27 +1,24 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 3 (the plane's homography); written relative to the splat's
 //             centre, which keeps its digits for small and far splats where adj(M) loses them.
-// Summary: from a point of the picture to the place in a splat's plane, for perspective and parallel cameras alike.
-//          The twin of reference/methods/plane.py.
-//
-// Depth z counts forwards. Places and lengths in the picture are in pixels from its lower left corner, as
-// gl_FragCoord is. `view.window` holds that corner and the step of one pixel, on the plane at distance 1.
+// Summary: maps points of the picture to positions in a splat's plane, for perspective and parallel cameras. The twin
+//          of reference/methods/plane.py.
 
 const float FILTER_SIGMA = 0.70710678;  // of the pixel's Gaussian, in pixels
 
 struct Plane {
   vec2 center;   // of the splat in the picture
-  vec2 a;        // what one half-axis u, v moves it
+  vec2 a;        // image of one half-axis u, v
   vec2 b;
   vec2 gh;       // relative change of depth along u, v; 0 for parallel cameras
   vec2 slope;    // change of depth along u, v
   float depth;
-  float reach;   // how far from it depths lie: in the ellipse, and as far as a filter reaches over its rim
+  float reach;   // range of depths around the centre: within the ellipse, plus the filter's reach beyond its rim
   float radius;  // the longer half-axis
   vec3 det;      // of the map from the picture to the plane, times depth at the centre over depth: det.z - d . det.xy
 };
 
 #part vertex
-// Change of depth from pixel to pixel, at the centre.
+// Change of depth per pixel, at the centre.
 vec2 depth_gradient(Plane plane) {
   vec2 a = plane.a, b = plane.b, slope = plane.slope;
   return vec2(slope.x * b.y - slope.y * a.y, slope.y * a.x - slope.x * b.x) / plane.det.z;
@@ -54,7 +51,7 @@ mat2 projected_ellipse(Plane plane, out vec2 size, out vec2 middle) {
   vec2 a = plane.a * inversesqrt(d), b = plane.b * inversesqrt(d);
   vec2 on = a * a + b * b + c * c;
   float across = a.x * a.y + b.x * b.y + c.x * c.y;
-  // The determinant as Cauchy and Binet have it: nothing cancels.
+  // The determinant by the Cauchy-Binet formula, which has no cancellation.
   vec3 areas = vec3(a.x * b.y - a.y * b.x, a.x * c.y - a.y * c.x, b.x * c.y - b.y * c.x);
   float half_difference = 0.5 * (on.x - on.y), apart = length(vec2(half_difference, across));
   float longer = 0.5 * (on.x + on.y) + apart;
@@ -64,7 +61,7 @@ mat2 projected_ellipse(Plane plane, out vec2 size, out vec2 middle) {
   return mat2(along, -along.y, along.x);
 }
 
-// No method puts a part of the splat nearer.
+// No method moves any part of the splat closer than this.
 float nearest_depth(Plane plane) {
   return max(plane.depth - max(plane.reach, plane.radius), view.near);
 }

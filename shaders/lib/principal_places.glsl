@@ -1,7 +1,8 @@
 // References: none needed (the singular vectors of a 2 x 2 matrix).
-// Summary: the two places on a unit circle whose images are the axes of the ellipse that a linear map makes of it.
+// Summary: the two points of the unit circle that a linear map takes to the axes of its image ellipse.
 
-// As columns, the one of the longer axis first. lengths2: their squares. det: of the map, whose columns are a and b.
+// As columns, that of the longer axis first. lengths2: squared lengths. det: determinant of the map with columns a and
+// b.
 mat2 principal_places(vec2 a, vec2 b, float det, out vec2 lengths2) {
   float half_difference = 0.5 * (dot(a, a) - dot(b, b)), across = dot(a, b);
   float apart = length(vec2(half_difference, across)), longer = 0.5 * (dot(a, a) + dot(b, b)) + apart;

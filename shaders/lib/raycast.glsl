@@ -1,11 +1,11 @@
 // References: Botsch, Hornung, Zwicker, Kobbelt 2005, section 3 (ray casting a splat; its fragments are those of a square) and
 //             section 5 (the union of the kernel and the pixel's low-pass as an approximation of EWA).
-// Summary: the exact place in the ellipse, or the distance from the centre in pixels if that is less.
-//          Its includer says whether AS_PRINTED.
+// Summary: the exact position in the ellipse, or the distance from the centre in pixels if that is smaller. The
+//          includer defines AS_PRINTED.
 
 const float FOOTPRINT_END = 1.0;
 
-// Half the side of the paper's square, in pixels: that of the bounding sphere on the axis, no less than 1.
+// Half the side of the paper's square, in pixels: that of the bounding sphere if it were on the axis, at least 1.
 float half_square(Plane plane) {
   float scale = view.is_parallel > 0.5 ? 1.0 : 1.0 / plane.depth;
   return max(plane.radius * scale / min(view.window.z, view.window.w), 1.0);
@@ -14,7 +14,7 @@ float half_square(Plane plane) {
 #part vertex
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
-// The ellipse, and the low-pass's disc of sqrt(2) pixels, which lies around the splat's centre: beside the ellipse's.
+// The ellipse and the low-pass disc of sqrt(2) pixels around the splat's centre.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   if (AS_PRINTED) {
     middle = plane.center;
@@ -23,7 +23,7 @@ vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   return 1.05 * max(size, vec2(2.0 * FILTER_SIGMA)) + length(plane.center - middle);
 }
 #part fragment
-// Weight and depth: the plane's inside the ellipse, the centre's where only the low-pass reaches.
+// Weight and depth: that of the plane inside the ellipse, that of the centre where only the low-pass reaches.
 vec2 splat_sample(Plane plane, vec2 pixel) {
   Place place = place_at(plane, pixel);
   float inside = dot(place.uv, place.uv);

@@ -1,7 +1,7 @@
 // References: Mulder, Groen, van Wijk, "Pixel Masks for Screen-Door Transparency", Visualization 1998; Bush, "Orthogonal
 //             Arrays of Index Unity", 1952 (the array: 16 rows of five factors of 4 levels, of which any two are even).
-// Summary: which texels of a shadow map a transparent surface keeps: of each 4 x 4 as many as it is opaque, to a
-//          sixteenth. Surfaces have five masks, and of two different ones each lets its share of the other's through.
+// Summary: which texels of a shadow map a transparent surface fills: in each 4 x 4 block a share equal to its opacity,
+//          in sixteenths. Surfaces have five masks; of two different ones, each overlaps the other in proportion.
 
 int twice(int level) {  // in the field of four elements, where ^ adds
   return level == 0 ? 0 : (level == 3 ? 1 : level + 1);

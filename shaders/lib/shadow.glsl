@@ -1,17 +1,17 @@
 // References: Williams, "Casting Curved Shadows on Curved Surfaces", 1978; Reeves, Salesin, Cook, "Rendering Antialiased
 //             Shadows with Depth Maps", 1987 (compare, then filter); Fernando, "Percentage-Closer Soft Shadows", 2005.
-// Summary: which share of a light reaches a place. Depths are compared with the plane of the surface that is lit, so
-//          that a wide filter does not shadow it by itself; splats lie in the map one epsilon farther than they are.
-//          Looks of a lamp are measured along the way to it and over the disc that it turns to the place, not along a
-//          face of its cube of maps, and go on in the next face: where faces meet, shadows do not change.
+// Summary: the share of a light that reaches a point. Depths are compared with the plane of the lit surface, so that a
+//          wide filter does not cause self-shadowing; splats are one epsilon farther away in the map. Taps for a lamp
+//          are placed relative to the direction to it and over the disc facing the point, not along a face of its cube
+//          map, and continue in the next face: shadows have no seams where faces meet.
 
 const int SOFT_SAMPLES = 32;
-// Neighbouring samples of the picture tap at different places: a pixel of 2 x 2 samples has four times as many of them.
+// Neighbouring samples of the picture use different taps, so a pixel of 2 x 2 samples has four times as many.
 float shadow_turn;
-// Normal of the plane that is lit: the geometric one, from which that which is shaded differs wherever shading is smooth.
+// Normal of the lit plane: the geometric normal, which differs from the shading normal on smooth-shaded surfaces.
 vec3 shadow_plane;
 const float GOLDEN_ANGLE = 2.39996323;
-const float GRAZING = 0.02;  // least cosine that a surface's plane is followed at
+const float GRAZING = 0.02;  // minimum cosine for following a surface's plane
 
 struct ShadowPlace {
   int map;
@@ -44,9 +44,9 @@ bool shadow_place(int map, vec3 position, vec3 normal, out ShadowPlace here) {
   return all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0)));
 }
 
-// Depth of the lit surface's plane toward another place; toward.z is -1, seen from the place's own map. It is no deeper
-// than `own`, that of the place if it faced the light: what lies farther is behind what is lit, as the other wall of a
-// corner is. Near its horizon, and over it, the plane of a lamp is not followed.
+// Depth of the lit surface's plane at another point; toward.z is -1, seen from the point's own map. It is at most
+// `own`, the depth if the surface faced the light: anything farther is behind the lit surface, like the other wall of a
+// corner. Near its horizon and beyond, the plane of a lamp is not followed.
 float receiver_depth(ShadowPlace here, vec3 toward, float own) {
   if (here.atlas.w > 0.5) {
     float slope = max(abs(here.normal.z), GRAZING) * (here.normal.z < 0.0 ? -1.0 : 1.0);
@@ -87,14 +87,14 @@ float hard_share(ShadowPlace here, float bias) {
   return lit / total;
 }
 
-// What a tap meets.
+// Result of a tap.
 struct Met {
-  float depth;  // of what is in the map
+  float depth;  // of the map
   float lit;    // of the surface that is lit
-  float way;    // along the way from the lamp to what is lit, times its length; of a sun the depth
+  float way;    // distance along the direction from the lamp to the lit point, times its length; for a sun the depth
 };
 
-// toward: a place in the light's view. Where it leaves a face of a lamp's cube, the next face has it.
+// toward: a point in the light's view. If it leaves a face of a lamp's cube, the next face has it.
 Met tap_toward(ShadowPlace here, vec3 toward, int number) {
   bool is_parallel = here.atlas.w > 0.5;
   vec3 row_x = vec3(1.0, 0.0, 0.0), row_y = vec3(0.0, 1.0, 0.0), row_z = vec3(0.0, 0.0, 1.0);
@@ -124,11 +124,11 @@ Met tap_toward(ShadowPlace here, vec3 toward, int number) {
   return met;
 }
 
-// Of its way behind a lamp, where taps for what is in the way begin.
+// Fraction of the distance behind a lamp at which the search for blockers begins.
 const float NEAREST_SHARE = 0.25;
 
-// Looks go past the place by parts of the lamp, whose half-axes lamp_u and lamp_v are in the light's view (a sun's are
-// tangents): at the share t of the way from the lamp, rays to it are as wide as (1 - t) / t of it beside the place.
+// Rays pass the point towards parts of the lamp, whose half-axes lamp_u and lamp_v are in the light's view (tangents
+// for a sun): at the fraction t of the distance from the lamp, their spread is (1 - t) / t of the lamp's size.
 float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lamp_v) {
   bool is_parallel = here.atlas.w > 0.5;
   float reach = is_parallel ? min(here.depth - here.depths.y, 0.25 / (size * max(here.window.z, here.window.w)))
@@ -137,7 +137,7 @@ float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lam
   float blockers = 0.0, sum = 0.0;
   for (int i = 0; i < SEARCH_TAPS; i++) {
     vec2 tap = soft_tap(i, SEARCH_TAPS);
-    float past = tap.x * tap.x * reach;  // closer to one another in the middle, where what is near hides the lamp
+    float past = tap.x * tap.x * reach;  // denser in the middle, where close blockers hide the lamp
     Met met = tap_toward(here, here.position + past * (cos(tap.y) * lamp_u + sin(tap.y) * lamp_v), i);
     if (met.depth + bias < met.lit) {
       blockers += 1.0;
@@ -158,7 +158,7 @@ float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lam
   return lit / float(FILTER_TAPS);
 }
 
-// caster: number of the light's first map, of its maps, and its size in units of the shaded view (of a sun as it is).
+// caster: first map of the light, number of its maps, and its size in units of the shaded view (for a sun unchanged).
 // half_u, half_v: half-axes of a lamp with a size, in the shaded view.
 float lit_share(vec4 caster, vec3 half_u, vec3 half_v, vec3 position) {
   for (int i = 0; i < int(caster.y); i++) {

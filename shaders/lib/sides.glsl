@@ -1,11 +1,11 @@
 // References: this project; docs/evidence/rendering.md shows pictures with and without.
-// Summary: which side of a splat the viewer sees. A splat's back counts for little where the front of another lies
-//          in its place: behind a silhouette splats stick out by their radius, and would rim it with the light of
-//          the far side. Alone, a back is drawn as any splat. The twin of reference/splats.py.
+// Summary: which side of a splat the viewer sees. A back gets little weight if the front of another splat is in its
+//          place: behind a silhouette, splats protrude by their radius, and would give it a rim lit like the far side.
+//          Alone, a back is drawn like any splat. The twin of reference/splats.py.
 
 #include "lib/sides/{sides}.glsl"
 
-// A splat that shows less of itself is not there at all, and holds no layer.
+// A splat with a smaller visible share is not drawn at all, and belongs to no layer.
 const float LEAST_OPACITY = 1e-3;
 
 // Cosine between the splat's outward side and the direction to the viewer; orientation is -1 in a mirrored object.

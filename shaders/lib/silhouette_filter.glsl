@@ -1,5 +1,5 @@
 // References: resolve.frag.glsl.
-// Summary: how wide the filter of silhouettes is.
+// Summary: width of the silhouette filter.
 
 const float SILHOUETTE_VARIANCE = 0.5;  // of its Gaussian, in samples
 // Across, 1 2 1: the same variance from fewer columns.

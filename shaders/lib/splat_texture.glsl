@@ -1,12 +1,8 @@
 // References: "View-independent object-space surface splatting", section 4.4 (texture-mapped splats: every fragment looks
 //             the texture up under its own footprint); Zwicker et al. 2001 (kernel and pixel filter are Gaussians).
-// Summary: the colour of a texture-mapped splat at a pixel. What the pixel shows of the splat is kernel times pixel
-//          filter: a Gaussian narrower than both, and never far outside of the ellipse, under which the texture is
-//          looked up. Held to reference/textures.py by tests/rendering/test_textured.py.
-//
-// A surfel has two texels in `surfel_uvs`: uv and what half-axis x moves it; what half-axis y moves it and m of the line
-// m . q = 1 where the map ends. Where neither axis moves it, or the material has no texture, the slot is negative and
-// the surfel's own colour is meant.
+// Summary: the colour of a texture-mapped splat at a pixel. The pixel sees kernel times pixel filter: a Gaussian
+//          narrower than both, and never far outside the ellipse, under which the texture is looked up.
+//          tests/rendering/test_textured.py compares it with reference/textures.py.
 
 #part vertex
 // uv, slot.
@@ -23,15 +19,15 @@ vec3 fetch_texture_place(int index, float material, out vec4 along, out vec2 bor
 #include "lib/texture_lookup.glsl"
 #include "lib/kernel_under_pixel.glsl"
 
-// What a pixel along x and y moves the place in an ellipse with these half-axes in view space, at a point of the picture
-// whose depth is given.
+// Derivative of the position in an ellipse with these half-axes in view space, per pixel along x and y, at a point of
+// the picture with the given depth.
 mat2 space_place_change(vec3 axis_u, vec3 axis_v, vec2 point, float depth) {
   mat2 moved = view.is_parallel > 0.5 ? mat2(axis_u.xy, axis_v.xy)
       : mat2(axis_u.xy + point * axis_u.z, axis_v.xy + point * axis_v.z) / depth;
   return inverse(moved) * mat2(view.window.z, 0.0, 0.0, view.window.w);
 }
 
-// q: the pixel's place in the ellipse; change: columns are what a pixel along x and y moves it.
+// q: the pixel's position in the ellipse; change: columns are its change per pixel along x and y.
 vec3 splat_texture_color(vec3 own, vec3 place, vec4 along, vec2 border, vec2 q, mat2 change) {
   if (place.z < 0.0) return own;
   vec2 middle;
@@ -41,7 +37,7 @@ vec3 splat_texture_color(vec3 own, vec3 place, vec4 along, vec2 border, vec2 q, 
   SurfaceTexture t = surface_texture(int(place.z));
   float beyond = dot(border, middle) - 1.0;
   if (beyond > 0.0) {
-    // There lies another chart of the map, and nothing of it is to be in the footprint.
+    // Another chart of the map begins there, and must not be in the footprint.
     float texel = length(border * inverse(gradient) / t.size);
     float back = beyond + 2.0 * sqrt(dot(border, seen * border)) + 0.75 * texel;
     if (back < LARGEST_PIXEL) middle -= border * (back / dot(border, border));

@@ -1,14 +1,14 @@
 // References: Botsch, Kobbelt 2003, sections 3.1 (the size of the sprite), 3.2 (the depth offset of the disc's plane bounds its
 //             ellipse) and 3.3 (the kernel and the corrected depth, of visibility and attributes alike).
-// Summary: discs only; the offset in the picture, in radii, and the depth offset of the plane there make the place.
-//          Its includer says whether AS_PRINTED.
+// Summary: discs only; the offset in the picture, in radii, and the depth offset of the plane give the position. The
+//          includer defines AS_PRINTED.
 
 #include "lib/disc_in_sprite.glsl"
 
 const float FOOTPRINT_END = 1.0;
 
-// Equation 4 adds the offset of equation 2 to the distance. That one is in radii and towards the viewer: as printed it is
-// added as it is, in units of the scene; corrected, that many radii are taken off.
+// Equation 4 adds the offset of equation 2 to the distance. That offset is in radii and towards the viewer. As printed,
+// it is added unchanged, in scene units; corrected, this number of radii is subtracted.
 float sprite_depth(float depth, float radius, float offset) {
   return AS_PRINTED ? depth + offset / view.world_length : depth - radius * offset;
 }

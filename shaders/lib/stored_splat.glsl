@@ -1,5 +1,5 @@
 // References: rendering/upload/storages.py, which registers the ways to store splats.
-// Summary: a splat as it is stored, in its object's space; the file of the storage in use finds it in its textures.
+// Summary: a splat as stored, in its object's space; the file of the storage format reads it from its textures.
 
 struct StoredSplat {
   vec3 position;
@@ -12,8 +12,8 @@ struct StoredSplat {
 
 #include "storage/{storage}.glsl"
 
-// Corners of the triangle around the unit circle: one triangle a splat is less work than the two of a quad, unless
-// splats are many pixels large (docs/evidence/methods.md).
+// Corners of the triangle around the unit circle: one triangle per splat is less work than the two of a quad, unless
+// splats are many pixels wide (docs/evidence/methods.md).
 vec2 triangle_corner(int vertex) {
   int corner = vertex % 3;
   return corner == 0 ? vec2(0.0, 2.0) : vec2(corner == 1 ? -1.73205081 : 1.73205081, -1.0);

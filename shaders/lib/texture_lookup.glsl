@@ -1,12 +1,10 @@
 // References: "View-independent object-space surface splatting", section 4.4 (texture-mapped splats, looked up with the
 //             pixel's anisotropic footprint); Heckbert, "Fundamentals of Texture Mapping", 1989 (elliptical weighted
 //             averages of texels); McCormack et al., "Feline", 1999 (probes along a footprint).
-// Summary: a texture's colour under a footprint, given by its variances. Where it is wider than a texel, the average of
-//          the texels in an ellipse, of the level on which it is about a texel wide across; where the texture is
-//          magnified, bilinear probes. No sampler state and no derivative of the hardware: the same on every device.
-//          The twin of rendering/upload/texture_lookup.py. The layout of atlas and table is rendering/upload/atlas.py's.
-//
-// The includer declares the samplers `texture_atlas` and `texture_table`.
+// Summary: a texture's colour under a footprint given by its variances. If the footprint is wider than a texel, this is
+//          the average of the texels in an ellipse, on the level where it is about a texel wide across; for
+//          magnification, bilinear probes. It uses no sampler state and no hardware derivatives, so all devices agree.
+//          The twin of rendering/upload/texture_lookup.py. Layout of atlas and table: rendering/upload/atlas.py.
 
 const float MAGNIFIED = 0.2;     // variance across, in texels, below which bilinear lookups are needed
 const float NARROWEST = 0.6;     // variance across, in texels of the level, of the texels' weights
@@ -33,7 +31,7 @@ SurfaceTexture surface_texture(int slot) {
   return SurfaceTexture(slot, int(first.w), first.rgb, int(second.x), second.y > 0.5, second.zw);
 }
 
-// A texel's whole number as that of one inside of the image; -1: transparent black.
+// Index of a texel inside the image for a texel's integer coordinate; -1: transparent black.
 float wrapped(float index, float size, int extension) {
   if (extension == REPEAT) return index - size * floor((index + 0.5) / size);
   if (extension == MIRROR) {
@@ -48,7 +46,7 @@ vec4 texel(vec4 place, float x, float y) {
   return min(x, y) < 0.0 ? vec4(0.0) : texelFetch(texture_atlas, ivec2(place.xy) + ivec2(x, y), 0);
 }
 
-// The texture coordinate as one period of it, so that texels have small numbers; beyond 4 all is border.
+// The texture coordinate reduced to one period, so that texel numbers are small; beyond 4 everything is border.
 vec2 reduced(vec2 uv, int extension) {
   if (extension == REPEAT) return uv - floor(uv);
   if (extension == MIRROR) return uv - 2.0 * floor(0.5 * uv);
@@ -66,13 +64,14 @@ vec4 point_color(SurfaceTexture t, vec4 place, vec2 uv) {
   return mix(bottom, mix(texel(place, x, above), texel(place, right, above), share.x), share.y);
 }
 
-// Half of the length over which probes spread; of Gaussian weights at the middles of 2, 3 and more parts of -1 .. 1 the
-// variance is known.
+// Half the length over which probes are spread; the variance of Gaussian weights at the middles of 2, 3 and more parts
+// of -1 .. 1 is known.
 float probe_reach(float spread, int probes) {
   return probes == 1 ? 0.0 : spread * inversesqrt(probes == 2 ? 0.25 : probes == 3 ? 0.2005 : 0.1945);
 }
 
-// Premultiplied sum over probes and, in `weights`, that of their weights. spread: deviations along the axis and across.
+// Premultiplied sum over probes, with the sum of their weights in `weights`. spread: deviations along the axis and
+// across.
 vec4 probe_sum(SurfaceTexture t, vec4 place, vec2 uv, vec2 spread, vec2 axis, out float weights) {
   ivec2 probes = min(ivec2(1.5 + PROBES_PER_DEVIATION * spread), MAX_PROBES);
   vec2 along = axis * probe_reach(spread.x, probes.x) / t.size;
@@ -90,7 +89,7 @@ vec4 probe_sum(SurfaceTexture t, vec4 place, vec2 uv, vec2 spread, vec2 axis, ou
   return total;
 }
 
-// The same over the texels in an ellipse. variances: xx, yy, xy in texels of the level.
+// As above, over the texels in an ellipse. variances: xx, yy, xy in texels of the level.
 vec4 ellipse_sum(SurfaceTexture t, vec4 place, vec2 uv, vec3 variances, out float weights) {
   vec2 middle = reduced(uv, t.extension) * place.zw - 0.5;
   vec3 conic = vec3(variances.y, variances.x, -variances.z)
@@ -125,7 +124,7 @@ vec3 texture_color(SurfaceTexture t, vec2 uv, vec3 variances) {
     xx = yy = along = largest;
     xy = tilt = root = 0.0;
   }
-  // A round footprint has no long axis: the bias gives it one that rounding does not turn.
+  // A round footprint has no long axis: a bias chooses one independent of rounding.
   float biased = tilt + AXIS_BIAS * (xx + yy), biased_root = sqrt(biased * biased + xy * xy);
   vec2 axis = biased >= 0.0 ? vec2(biased + biased_root, xy) : vec2(xy, biased_root - biased);
   axis *= inversesqrt(max(dot(axis, axis), 1e-30));
@@ -138,8 +137,8 @@ vec3 texture_color(SurfaceTexture t, vec2 uv, vec3 variances) {
     total = probe_sum(t, place, uv, sqrt(vec2(along, across)), axis, weights);
   }
   else {
-    // The texels of level l are averages already, over a variance of (4^l - 1) / 12; what the image itself shows between
-    // its texels has 1 / 6.
+    // Texels of level l are averages with a variance of (4^l - 1) / 12; interpolation between texels of the image adds
+    // 1 / 6.
     int level = min(int(0.5 * log2(max((across + blur + 0.25) / (NARROWEST + 1.0 / 12.0), 1.0))), t.levels - 1);
     float texel2 = exp2(2.0 * float(level)), own = 0.25 - texel2 / 12.0;
     vec2 blurred = axis.yx * axis.yx * blur + own;

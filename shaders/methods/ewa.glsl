@@ -1,7 +1,7 @@
 // References: Zwicker, Pfister, van Baar, Gross, "Surface Splatting", 2001, equations 9 to 12; Ren et al. 2002; the
 //             amplitude that keeps the integral: Yu et al., "Mip-Splatting", 2024.
-// Summary: the classic yardstick: the splat's projection is taken as affine at its centre, and joined with the
-//          pixel's Gaussian in the picture. The twin of reference/methods/ewa.py.
+// Summary: the classic reference method: the splat's projection is approximated as affine at its centre and combined
+//          with the pixel's Gaussian in the picture. The twin of reference/methods/ewa.py.
 
 const float KERNEL_VARIANCE = 0.25;
 const float FILTER_VARIANCE = 0.5;  // square pixels
@@ -11,7 +11,7 @@ const float FOOTPRINT_END = 1.0;
 #part vertex
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
-// Only about what the exact ellipse covers: the affine one of a near splat can fill the picture.
+// Only around the exact ellipse: the affine one of a near splat can fill the picture.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   return 1.1 * sqrt(size * size + 4.0 * FILTER_VARIANCE);
 }
@@ -23,7 +23,7 @@ vec2 splat_sample(Plane plane, vec2 pixel) {
   float area = KERNEL_VARIANCE * plane.det.z;
   float trace = KERNEL_VARIANCE * (dot(a, a) + dot(b, b));
   float det = area * area + FILTER_VARIANCE * (trace + FILTER_VARIANCE);
-  // e V^-1 e det, as squares: seen edge-on or stretched, the differences in V^-1 have no digits left in float32.
+  // e V^-1 e det as squares: for edge-on or stretched splats, the differences in V^-1 lose all precision in float32.
   vec2 across = vec2(e.x * a.y - e.y * a.x, e.x * b.y - e.y * b.x);
   float rho2 = KERNEL_VARIANCE / det * (FILTER_VARIANCE * dot(e, e) + KERNEL_VARIANCE * dot(across, across));
   float weight = rho2 <= 1.0 ? abs(area) * inversesqrt(det) * exp(-2.0 * rho2) : 0.0;

@@ -1,8 +1,8 @@
 // References: Ren, Pfister, Zwicker, "Object Space EWA Surface Splatting", 2002, as the view-independent paper has it in
 //             section 3, equations 8 to 10; the amplitude that keeps the integral: Yu et al., "Mip-Splatting", 2024.
-// Summary: the pixel's Gaussian is taken to the splat's plane by the derivative of the projection at its centre, and joined
-//          with the kernel there: a larger quad, which the hardware draws. One that reaches the near plane stays as it is.
-//          The twin of reference/methods/ewa_object.py.
+// Summary: the pixel's Gaussian is mapped to the splat's plane by the derivative of the projection at its centre and
+//          combined with the kernel there, giving a larger quad for the hardware to draw. A quad that reaches the near
+//          plane stays unchanged. The twin of reference/methods/ewa_object.py.
 
 #include "lib/surfel_quad.glsl"
 
@@ -13,9 +13,9 @@
 
 const float KERNEL_VARIANCE = 0.25;
 const float FILTER_VARIANCE = 0.5;   // square pixels
-const float LEAST_FLATNESS2 = 0.004;  // seen flatter than 1 : 16, it is widened no more: its quad would have no end
+const float LEAST_FLATNESS2 = 0.004;  // flatter than 1 : 16, splats are not widened further, or quads would have no end
 
-// The joined half-axes, whose columns in those of the splat are given back.
+// The combined half-axes; their columns in terms of the splat's own are returned.
 mat2 widen(inout Splat splat) {
   if (reaches_near(splat)) return mat2(1.0);
   Plane plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, view.is_parallel > 0.5);
@@ -32,8 +32,8 @@ mat2 widen(inout Splat splat) {
   return joined;
 }
 
-// The clip range is that of the splats as they are: what sticks out of it is drawn nevertheless, at the depth that its
-// fragments write; what lies before the camera's near plane is not.
+// The clip range is that of the original splats: enlarged quads that exceed it are drawn anyway, at the depth that
+// their fragments write, except in front of the camera's near plane.
 vec4 quad_corner(vec3 eye) {
   vec4 corner = view.projection * vec4(eye, 1.0);
   float end = 0.999999 * corner.w;

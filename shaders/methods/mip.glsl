@@ -1,22 +1,21 @@
 // References: Zwicker et al. 2001 (the resampling filter), taken to the splat's plane with the exact Jacobian of
 //             every pixel, in the style of AA-2DGS (arXiv 2506.11252); this project.
-// Summary: the pixel's Gaussian is mapped into the splat's plane, joined with the kernel there and scaled to keep
-//          its integral: neither a vanishing splat nor a stretched one loses or gains weight. The kernel's rim is
-//          blurred as much as the pixel's Gaussian blurs it: where splats are larger than pixels, nothing else is.
-//          The twin of reference/methods/mip.py.
+// Summary: the pixel's Gaussian is mapped into the splat's plane, combined with the kernel there and scaled to preserve
+//          its integral: neither tiny nor stretched splats lose or gain weight. The kernel's rim is blurred by the
+//          pixel's Gaussian; splats larger than pixels are blurred nowhere else. The twin of reference/methods/mip.py.
 
 const float KERNEL_VARIANCE = 0.25;
 const float FILTER_VARIANCE = 0.5;  // square pixels
-const float RIM_END = 1.4;  // standard deviations beyond the rim at which nothing counts: a pixel of the filter's
+const float RIM_END = 1.4;  // standard deviations beyond the rim at which the weight becomes 0
 
-// Of the triangle around the footprint, all of which is drawn in any case, what lies within that many times the ellipse:
-// its corners, where weights are as small as nothing, stay out.
+// The triangle around the footprint is drawn in any case; pixels within this multiple of the ellipse count, and its
+// corners, where weights are negligible, do not.
 const float FOOTPRINT_END = 1.5;
 
 #part vertex
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
-// Beyond the triangle around 1.8 sigma of kernel and filter, and around 0.75 pixel from the splat's rim, nothing counts.
+// Nothing counts beyond the triangle around 1.8 sigma of kernel and filter, and 0.75 pixel around the splat's rim.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   return max(sqrt(size * size + 1.25 * 1.25), size + 0.75);
 }
@@ -29,7 +28,7 @@ vec2 splat_sample(Plane plane, vec2 pixel) {
   mat2 turn = place_turn(plane, place);
   vec2 q = place.uv, across_rim = q * turn;
   // The pixel's variance in the plane, along both axes and across: FILTER_VARIANCE J J^T with J = scale turn. det J and
-  // q x J are multiplied out: edge-on, the differences that they stand for have no digits left in float32.
+  // q x J are multiplied out, because edge-on their differences lose all precision in float32.
   float variance = FILTER_VARIANCE * place.scale * place.scale;
   float spread = FILTER_VARIANCE * place.k * place.scale;
   float det = spread * spread
@@ -37,8 +36,8 @@ vec2 splat_sample(Plane plane, vec2 pixel) {
   float amplitude = inversesqrt(det), reach2 = max(dot(q, q), 1e-30);
   float rho2 = KERNEL_VARIANCE * amplitude * amplitude
       * (KERNEL_VARIANCE * reach2 + variance * dot(place.d, place.d));
-  // The kernel ends at its rim. Along the line from the centre, kernel times pixel is a Gaussian about
-  // KERNEL_VARIANCE / both of the way: what of it lies within the rim is what the pixel sees of the splat.
+  // The kernel ends at its rim. Along the line from the centre, kernel times pixel is a Gaussian about KERNEL_VARIANCE
+  // / both of the way; the pixel sees the part of it within the rim.
   float over_reach = inversesqrt(reach2);
   float along = clamp(variance * over_reach * over_reach * dot(across_rim, across_rim), 1e-12, 1e15);
   float both = KERNEL_VARIANCE + along;

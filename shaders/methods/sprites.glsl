@@ -1,6 +1,6 @@
 // References: Botsch, Kobbelt, "High-Quality Point-Based Rendering on Modern GPUs", 2003, section 3; equation 4 corrected.
-// Summary: discs in point sprites, whose visibility has their shape and depth too.
-//          The twin of reference/methods/sprites.py.
+// Summary: discs in point sprites, with the same shape and depth for visibility. The twin of
+//          reference/methods/sprites.py.
 
 const bool AS_PRINTED = false;
 #include "lib/sprites.glsl"

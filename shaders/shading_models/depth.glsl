@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: the depth along the view, 0 at the nearest and 1 at the farthest that the plan found in view.
+// Summary: the depth along the view, 0 at the nearest and 1 at the farthest visible depth of the plan.
 
 vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
   vec2 range = frame.depth_range;

@@ -1,6 +1,6 @@
 // References: Sloan, Martin, Gooch, Gooch, "The Lit Sphere", Graphics Interface 2001; Blender's Workbench engine (the
 //             basis around the view ray, and the scale that keeps within the ball's rim).
-// Summary: the colour of a ball in a picture where it faces the same way, times the surface's own.
+// Summary: the colour of a ball in an image at the same normal, times the surface's own colour.
 
 vec3 matcap_at(vec2 place) {
   ivec2 size = textureSize(matcap, 0);

@@ -1,6 +1,6 @@
 // References: Blinn 1977; Akenine-Moeller, Haines, Hoffman, "Real-Time Rendering", 3rd edition, section 7.5.7 (its
 //             factor (n + 8) / 8 pi, which keeps the energy).
-// Summary: Lambert's diffuse light and Blinn's highlight, of the metal's colour or the reflectance; an even world.
+// Summary: Lambert's diffuse light and Blinn's highlight, in the metal's colour or the reflectance; a uniform world.
 
 #include "lib/half_vector.glsl"
 #include "hosts/world_light.glsl"

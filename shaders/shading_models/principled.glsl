@@ -1,7 +1,7 @@
 // References: Walter, Marschner, Li, Torrance, "Microfacet Models for Refraction", 2007 (GGX);
 //             Heitz, "Understanding the Masking-Shadowing Function", 2014, equation 99 (height-correlated Smith);
 //             Schlick 1994 (Fresnel); Heitz et al. 2016 (lights with a size).
-// Summary: a Principled-like surface: metal or a dielectric coat over a Lambertian base that loses what the coat
+// Summary: a surface like Principled: metal, or a dielectric coat over a Lambertian base that loses what the coat
 //          reflects, under lights and the world. The twin of reference/shading.py.
 
 #include "lib/brdf.glsl"
@@ -10,8 +10,8 @@
 const float PI = 3.14159265358979;
 const float LEAST_ROUGHNESS = 0.03;
 const float MIN_COSINE = 1e-4;
-// A coat that hardly reflects at normal incidence is hardly there, and does not shine at grazing incidence as Schlick's
-// formula has it (Lagarde & de Rousiers, "Moving Frostbite to PBR", 2014, section 3.1.1).
+// A coat with almost no reflectance at normal incidence is effectively absent, and does not reflect at grazing
+// incidence as in Schlick's formula (Lagarde & de Rousiers, "Moving Frostbite to PBR", 2014, section 3.1.1).
 const float GRAZING_GAIN = 50.0;
 
 struct Lobe {
@@ -21,9 +21,9 @@ struct Lobe {
   float roughness;
   vec3 diffuse_albedo;
   vec3 f0;  // reflectance at normal incidence
-  float f90;  // and at grazing
+  float f90;  // at grazing incidence
   vec3 specular_albedo;
-  vec3 scattered;  // what light that the coat scatters more than once adds, as a factor
+  vec3 scattered;  // factor for multiple scattering in the coat
 };
 
 #parts
@@ -61,7 +61,7 @@ vec3 from_point(Lobe lobe, vec3 to_light, vec3 irradiance) {
   vec3 halfway = normalize(lobe.to_viewer + to_light);
   float nh = clamp(dot(lobe.normal, halfway), 0.0, 1.0);
   float vh = clamp(dot(lobe.to_viewer, halfway), 0.0, 1.0);
-  vec3 sine = cross(lobe.normal, halfway);  // sin^2 + a^2 cos^2: 1 - cos^2 (1 - a^2) loses all digits on a mirror
+  vec3 sine = cross(lobe.normal, halfway);  // sin^2 + a^2 cos^2: 1 - cos^2 (1 - a^2) loses all precision on a mirror
   float d = (nh > 0.0 ? dot(sine, sine) : 1.0) + nh * nh * a2;
   float distribution = a2 / (PI * d * d);
   float masking = 0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));

@@ -1,7 +1,7 @@
 // References: Lake, Marshall, Harris, Blackstein, "Stylized Rendering Techniques for Scalable Real-Time 3D
 //             Animation", NPAR 2000 (the cosine looked up in a few steps); Blinn 1977 (what the highlight is cut from).
-// Summary: each light's cosine in even steps from 0 to 1, and a highlight where Blinn's lobe is above half, weaker the
-//          rougher the material. Steps and their softness are the frame's.
+// Summary: each light's cosine in even steps from 0 to 1, and a highlight where Blinn's lobe is above half, weaker on
+//          rough materials. Number and softness of the steps are frame values.
 
 #include "lib/half_vector.glsl"
 #include "hosts/world_light.glsl"
@@ -14,7 +14,7 @@ float soft_step(float x, float softness) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-// Each edge lies at a multiple of 1 / steps.
+// Each edge is at a multiple of 1 / steps.
 float ramp(float cosine, float steps, float softness) {
   float at = cosine * steps, edge = clamp(floor(at + 0.5), 1.0, steps - 1.0);
   return (edge - 1.0 + soft_step(at - edge, softness)) / (steps - 1.0);

@@ -1,11 +1,11 @@
 // References: rendering/upload/packing_16_bit.py, which writes this layout and says what each number may lose;
 //             Terzakis, Lourakis, Ait-Boudaoud, "Modified Rodrigues Parameters", J. Math. Imaging Vis. 2018 (rotation).
-// Summary: four texels of 16-bit numbers a splat, 512 splats a row; each row is a block with its own box, longest
+// Summary: four texels of 16-bit numbers per splat, 512 splats per row; each row is a block with its own box, longest
 //          half-axis and brightest colour, in float32.
 
 #include "lib/octahedron.glsl"
 
-// 0 to 1 to -1 to 1, with 0 met exactly.
+// 0 to 1 mapped to -1 to 1, with an exact 0.
 vec4 signed_16_bit(vec4 stored) {
   return (stored * 65535.0 - 32767.0) / 32767.0;
 }
@@ -34,7 +34,7 @@ StoredSplat stored_splat(int index) {
 }
 
 #part blend_depth
-// The share of the radius that a splat blends over.
+// The share of the radius over which a splat blends.
 float take_blend_depth(inout StoredSplat stored, int index) {
   ivec2 texel = ivec2((index % SPLATS_PER_ROW) * TEXELS_PER_SPLAT + 2, index / SPLATS_PER_ROW);
   return 1.0 - texelFetch(surfels, texel, 0).w * (65535.0 / float(BLEND_STEPS));

@@ -1,5 +1,5 @@
 // References: rendering/upload/packing.py, which writes this layout.
-// Summary: four texels of float32 a splat, 512 splats a row.
+// Summary: four texels of float32 per splat, 512 splats per row.
 
 #include "lib/octahedron.glsl"
 
@@ -14,7 +14,7 @@ StoredSplat stored_splat(int index) {
 }
 
 #part blend_depth
-// The share of the radius that a splat blends over; it leaves the material's number whole.
+// The share of the radius over which a splat blends; the integer part is the material's number.
 float take_blend_depth(inout StoredSplat stored, int index) {
   float whole = floor(stored.material), left_out = stored.material - whole;
   stored.material = whole;

@@ -1,8 +1,8 @@
 // References: docs/evidence/numerics.md, Formats.
-// Summary: sums of float32 hold weights and colours as they are.
+// Summary: sums in float32 store weights and colours unchanged.
 
 const float WEIGHT_SCALE = 1.0;
-// A mean normal shorter than this is what rounding left of normals that cancel; the surface then faces the viewer.
+// A mean normal shorter than this is rounding error of normals that cancel; the surface then faces the viewer.
 const float CANCELLED = 1e-6;
 
 float stored_weight(float weight) {

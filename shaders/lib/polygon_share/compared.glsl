@@ -1,5 +1,5 @@
 // References: features/polygons.glsl.
-// Summary: where the hardware compares depths of splats and polygons apart from one another.
+// Summary: for passes in which the hardware compares depths of splats and polygons separately.
 
 float splat_weight(MeanSurface mean) {
   return front_weight(mean.weight);

@@ -1,5 +1,5 @@
 // References: features/polygons.glsl.
-// Summary: where polygons that splats hide are not there. What is filtered has tails that weigh no more than backs.
+// Summary: for passes in which polygons hidden by splats are absent. Tails of a filter weigh no more than backs.
 
 float splat_weight(MeanSurface mean) {
   return mean.weight / WEIGHT_SCALE;

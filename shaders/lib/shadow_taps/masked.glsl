@@ -1,19 +1,20 @@
 // References: lib/screen_door.glsl, whose masks these taps meet; Vogel, "A Better Way to Construct the Sunflower
 //             Head", 1979.
-// Summary: taps into a shadow map of masked surfaces, spread over a disc. Which taps a surface hides is its mask's
-//          choice: so those of every place of a mask are a spiral of their own over the disc, and those of places that
-//          masks keep together are turned and widened unlike one another. Any mask then sees the disc evenly; taps that
-//          take their turns in the places along one spiral would have a half of them lie in some directions.
+// Summary: taps into a shadow map of masked surfaces, spread over a disc. A mask decides which taps a surface hides, so
+//          the taps for each texel of a mask form their own spiral over the disc, and those of texels that masks keep
+//          together are rotated and scaled differently. Every mask then samples the disc evenly; with a single spiral
+//          shared by all texels, half of a mask's taps would lie in few directions.
 
 #include "lib/screen_door.glsl"
 
-// The four texels around the place, and parts of a fifth: what is kept of every 4 x 4 sums to the same everywhere.
+// The four texels around the point, with weights that include part of a fifth: the kept share of every 4 x 4 block is
+// the same everywhere.
 const int FILTER_TEXELS = 6;
 vec2 hard_filter(vec2 distance) {
   return clamp(2.5 - abs(distance), 0.0, 1.0);
 }
 
-// Of which a mask hides some; and where surfaces behind one another block, their mean depth is of those it keeps.
+// A mask hides some of them; if several surfaces block, their mean depth is that of the kept ones.
 const int SEARCH_TAPS = 2 * SOFT_SAMPLES, FILTER_TAPS = 4 * SOFT_SAMPLES;
 
 // Radius and angle in the unit disc. count: a multiple of 16.
@@ -25,7 +26,7 @@ vec2 soft_tap(int number, int count) {
   return vec2(sqrt(share), (turn + shadow_turn) * GOLDEN_ANGLE + float(turned) * (6.28318531 / 16.0));
 }
 
-// The texel nearest to that place of the map which lies in the tap's place of a mask.
+// The texel nearest to that point of the map with the tap's texel of a mask.
 ivec2 soft_texel(vec2 at, int number) {
   ivec2 place = ivec2(number & 3, (number >> 2) & 3);
   return place + 4 * ivec2(floor((at - vec2(place) - 0.5) / 4.0 + 0.5));
@@ -37,7 +38,7 @@ int inside_row(int texel, int size) {
   return clamp(inside, 0, size - 1);
 }
 
-// The nearest texel of the map, size by size, in the same place of a mask: beyond its border, too, masks are whole.
+// The nearest texel of the map, size by size, with the same texel of a mask; masks are complete beyond the border too.
 ivec2 inside_map(ivec2 texel, int size) {
   return ivec2(inside_row(texel.x, size), inside_row(texel.y, size));
 }

@@ -1,5 +1,5 @@
 // References: none needed.
-// Summary: the radiance that is sent to a surface from all around, of an even world.
+// Summary: the light of a uniform world on a surface.
 
 vec3 sent_irradiance(vec3 normal) {  // over pi
   return frame.world.rgb;

@@ -1,6 +1,6 @@
 // References: Karis, "Real Shading in Unreal Engine 4", 2013 (a picture blurred by the lobe); rendering/scene/environment.py,
 //             which makes the textures; Blender's Environment Texture (the equirectangular map).
-// Summary: the radiance that is sent to a surface from all around, of a picture of the world.
+// Summary: the light of a world image on a surface.
 
 #include "lib/environment_image.glsl"
 
