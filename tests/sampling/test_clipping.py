@@ -227,3 +227,13 @@ def test_surfels_that_fill_gaps_follow_a_mesh_too():
     assert len(deforming.sampling.gap_triangles)
     surfels, _ = deforming.at(TriangleMesh(strip.positions + np.array([0, 0, 2]), strip.triangles))
     assert np.allclose(surfels.positions[:, 2] + surfels.origin[2], 2.0013)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_triangle_that_rounding_keeps_from_being_flat_gets_no_surfels(seed):
+    """Text that Blender 4.5 fills has them, and instances turn them, so that their normals point anywhere."""
+    turn = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+    flat = plate([(0, 0), (0.3, 0), (1, 0), (1, 1), (0, 1)], [(0, 2, 1), (1, 3, 4), (1, 2, 3), (0, 1, 4)])
+    turned = TriangleMesh(flat.positions @ turn, flat.triangles)
+    surfels = sample_mesh(turned, spacing=0.05, crease_angle=ANGLE)
+    assert np.abs(surfels.geometric_normals() @ turn[2]).min() > 0.999

@@ -228,15 +228,20 @@ def choices(properties: ConversionProperties) -> Choices:
 
 
 def _density(properties: ConversionProperties) -> dict[str, float]:
-    """The kind of density and its number. If a script gives the operator a number without a kind, the number
-    decides."""
+    """The kind of density and its number."""
+    chosen = chosen_density(properties)
+    name = DENSITIES[chosen].property
+    return {"automatic" if chosen == "AUTOMATIC" else name: getattr(properties, name)}
+
+
+def chosen_density(properties: ConversionProperties) -> str:
+    """A name in `DENSITIES`. If a script gives the operator a number without a kind, the number decides."""
     chosen = properties.density
     if isinstance(properties, bpy.types.Operator) and not properties.properties.is_property_set("density"):
         is_set = properties.properties.is_property_set
         given = [name for name, kind in DENSITIES.items() if kind.property != "pixels" and is_set(kind.property)]
         chosen = given[0] if len(given) == 1 else chosen
-    name = DENSITIES[chosen].property
-    return {"automatic" if chosen == "AUTOMATIC" else name: getattr(properties, name)}
+    return chosen
 
 
 def draw_properties(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:

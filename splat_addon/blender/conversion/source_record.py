@@ -20,7 +20,7 @@ from bpy.props import (
 )
 
 from ..ids import OBJECT_SETTINGS, SURFEL_RECORD
-from .mesh_settings import ConversionProperties, SurfelConversionSettings
+from .mesh_settings import ConversionProperties, SurfelConversionSettings, chosen_density
 from .points_settings import PointsProperties
 
 
@@ -67,6 +67,8 @@ def keep_record(made: bpy.types.Object, sources: Iterable[bpy.types.Object], kin
     kept = record.mesh if kind == "MESH" else record.points
     for name in _PROPERTIES[kind].__annotations__:
         setattr(kept, name, getattr(settings, name))
+    if kind == "MESH":
+        kept.density = chosen_density(settings)
 
 
 def sources_of(made: bpy.types.Object) -> list[bpy.types.Object]:

@@ -30,6 +30,10 @@ _ROUNDING = 1e-6
 _BEND = 2
 
 
+#: Of a triangle, over its longest edge: a lower one is the rounding of float32 coordinates.
+_LEAST_HEIGHT = 1e-6
+
+
 @dataclass(frozen=True, eq=False)
 class Borders:
     """B sides of border edges: an edge between two faces has two, one of each face.
@@ -80,7 +84,11 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE) -> Edg
     a, b = mesh.triangles[triangles, numbers], mesh.triangles[triangles, (numbers + 1) % 3]
     start, end = mesh.positions.take(a, axis=0), mesh.positions.take(b, axis=0)
     corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles.take(triangles, axis=0)))
-    planes = _unit(doubled_areas(corners).T)
+    doubled = doubled_areas(corners).T
+    if not (has_plane := _have_planes(corners, doubled)).all():
+        rows = triangles, numbers, edge, start, end, doubled
+        triangles, numbers, edge, start, end, doubled = (each[has_plane] for each in rows)
+    planes = _unit(doubled)
     inward = _unit(np.cross(planes, end - start))
     ends = np.stack([numbers, (numbers + 1) % 3], axis=1)
     shading = planes
@@ -95,6 +103,13 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE) -> Edg
     materials = np.zeros(len(triangles), int) if mesh.materials is None else mesh.materials[triangles]
     borders = Borders(start, end, inward, planes, edge, shading, colors, materials, triangles)
     return EdgeSurvey(borders, bends, sizes)
+
+
+def _have_planes(corners: np.ndarray, doubled: np.ndarray) -> np.ndarray:
+    """(B,) bool: false of triangles whose corners lie on a line but for rounding, so that their normals are noise and
+    there is no surface that a splat could end or be missing on. corners: (3, 3, B). doubled: (B, 3)."""
+    longest = np.maximum.reduce([((corners[:, k] - corners[:, k - 1]) ** 2).sum(axis=0) for k in range(3)])
+    return np.sqrt(_dots(doubled, doubled)) > _LEAST_HEIGHT * longest
 
 
 def _breaking(mesh: TriangleMesh, normals: np.ndarray, angle: float):

@@ -121,6 +121,12 @@ def test_it_stays_hidden_while_others_of_its_surfels_are_there(square, convert):
     assert not square.hide_render
 
 
+def test_an_update_is_as_dense_as_the_script_s_number_said(square, convert):
+    (made,) = convert(resolution=8)
+    count = len(made.data.vertices)
+    assert update(made) == {"FINISHED"} and len(made.data.vertices) == count
+
+
 def test_an_update_takes_the_source_as_it_is_now(square, convert, surfels_of):
     (made,) = convert(resolution=8, source="HIDE")
     square.data.vertices[2].co = square.data.vertices[3].co = (0, 3, 0)

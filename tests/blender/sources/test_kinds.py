@@ -40,8 +40,7 @@ def assert_covers(convert, made_real, world_surfels):
     """assert_covers(sources, **settings): the surfels lie on the surface that Blender makes real, and cover it."""
 
     def check(count=1, least_area=0.5, prepare=lambda: None, **settings) -> None:
-        # the small surfels that edges get lie where two faces are equally close
-        made = convert(density="SPACING", spacing=SPACING, clips_edges=False, **settings)
+        made = convert(density="SPACING", spacing=SPACING, **settings)
         assert len(made) == count
         positions, normals, _, _ = (np.concatenate(part) for part in zip(*map(world_surfels, made), strict=True))
         for surfels in made:

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Many frames and edits in a window leave memory flat. SURFEL_SOAK=1000,200 plays the full count, about six minutes."""
+
+import os
+import statistics
+
+import pytest
+
+FRAMES = os.environ.get("SURFEL_SOAK", "120,60")
+SECONDS = 2400
+
+#: Megabytes by which the last third may lie above the middle one; a frame's textures alone are 13.
+GROWTH = 40
+#: Blender keeps a wrapper of each geometry instance, here the surfels' points, whenever a script looks at it: in the
+#: view and in the render. One texture, plan or mesh that stayed would be dozens of objects a frame.
+OBJECTS_A_FRAME = 10
+
+
+@pytest.fixture(scope="module")
+def series(in_a_window):
+    """The figures of a run of soak.py, a dictionary for each moment."""
+    geometry = "--window-geometry", "0", "0", "520", "400"
+    report, _ = in_a_window("soak.py", SECONDS, *geometry, SURFEL_SOAK=FRAMES)
+    assert [report["frames"], report["edits"]] == [*map(int, FRAMES.split(","))]
+    return report["series"]
+
+
+def thirds(series, name):
+    """Its medians in the middle and in the last third; in the first, Blender still fills its caches."""
+    values = [moment[name] for moment in series]
+    third = len(values) // 3
+    return statistics.median(values[third : 2 * third]), statistics.median(values[2 * third :])
+
+
+@pytest.mark.parametrize(("name", "growth"), [("resident", GROWTH), ("textures", 3), ("meshes", 1)])
+def test_memory_is_flat(series, name, growth):
+    middle, last = thirds(series, name)
+    assert last <= middle + growth
+
+
+def test_python_s_objects_do_not_pile_up(series):
+    middle, last = thirds(series, "objects")
+    frames = (series[-1]["frame"] - series[0]["frame"]) / 3
+    assert last - middle <= OBJECTS_A_FRAME * frames
