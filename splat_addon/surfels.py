@@ -239,7 +239,7 @@ def concatenate(parts: list[Surfels]) -> Surfels:
     return Surfels(origin=parts[0].origin, is_solid=all(p.is_solid for p in parts), **joined)
 
 
-def split(surfels: Surfels, size: int) -> tuple[Surfels, ...]:
+def portions(surfels: Surfels, size: int) -> tuple[Surfels, ...]:
     """Consecutive runs of at most `size` surfels that share the arrays; the set itself if it is small enough."""
     if len(surfels) <= size:
         return (surfels,)

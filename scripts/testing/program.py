@@ -52,11 +52,16 @@ def prepare(program: str, python: Path) -> dict[str, str]:
     return {PACKAGES_VARIABLE: str(folder)}
 
 
-def test_command(program: str, gpu_backend: str | None, pytest_arguments: list[str]) -> list[str]:
-    """The command that runs pytest in the program in background mode."""
+def command(program: str, gpu_backend: str | None, script: Path, arguments: list[str]) -> list[str]:
+    """What runs a script in the program in background mode."""
     backend = ["--gpu-backend", gpu_backend] if gpu_backend else []
-    script = ["--python-exit-code", "1", "--python", str(ROOT / "tests" / "run_in_blender.py")]
-    return [program, "--background", "--factory-startup", *backend, *script, "--", *pytest_arguments]
+    python = ["--python-exit-code", "1", "--python", str(script)]
+    return [program, "--background", "--factory-startup", *backend, *python, "--", *arguments]
+
+
+def test_command(program: str, gpu_backend: str | None, pytest_arguments: list[str]) -> list[str]:
+    """The command that runs pytest in it."""
+    return command(program, gpu_backend, ROOT / "tests" / "run_in_blender.py", pytest_arguments)
 
 
 def _fetch(folder: Path, version: str, python: Path) -> None:

@@ -2,13 +2,13 @@
 // Summary: for an object that is split by its distance from the camera: splats with centres closer than their limit are
 //          not drawn, and neither are polygons beyond theirs. 0 means no limit.
 
-float split_distance(vec3 position) {
+float eye_distance(vec3 position) {
   return view.is_parallel > 0.5 ? -position.z : length(position);
 }
 
 #part splat
 void split_hide(inout Splat splat) {
-  splat.is_hidden = splat.is_hidden || split_distance(splat.position) < draw.split;
+  splat.is_hidden = splat.is_hidden || eye_distance(splat.position) < draw.split_distance;
 }
 
 #part corner
@@ -18,10 +18,10 @@ void split_tell(int corner, float slot, vec3 eye) {
 
 #part visibility.frag, of_polygons
 void split_keep() {
-  if (draw.split > 0.0 && split_distance(split_place) > draw.split) discard;
+  if (draw.split_distance > 0.0 && eye_distance(split_place) > draw.split_distance) discard;
 }
 
 #part polygons.frag
 void split_keep() {
-  if (draw.split > 0.0 && split_distance(split_place) > draw.split) discard;
+  if (draw.split_distance > 0.0 && eye_distance(split_place) > draw.split_distance) discard;
 }

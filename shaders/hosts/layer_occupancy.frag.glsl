@@ -2,7 +2,7 @@
 // Summary: whether a transparent layer has anything in each block of the picture.
 
 void main() {
-  ivec2 size = textureSize(layer_depth, 0), block = (size + BLOCKS - 1) / BLOCKS;
+  ivec2 size = textureSize(layer_depth, 0), block = (size + OCCUPANCY_BLOCKS - 1) / OCCUPANCY_BLOCKS;
   ivec2 first = ivec2(gl_FragCoord.xy) * block, end = min(first + block, size);
   float nearest = 1.0;
   for (int y = first.y; y < end.y; y++) {

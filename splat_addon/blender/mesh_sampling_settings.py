@@ -199,13 +199,13 @@ class Form(NamedTuple):
     """How a mesh is rendered.
 
     kind: one of the items of `render_as`.
-    split: distance from the camera up to which it is polygons.
+    split_distance: distance from the camera up to which it is polygons.
     group: vertex group whose weights decide between polygons and splats.
     is_default: whether its object leaves the choice to the scene.
     """
 
     kind: str
-    split: float | None = None
+    split_distance: float | None = None
     group: str = ""
     is_default: bool = False
 
@@ -238,8 +238,8 @@ def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) ->
     kind, settings = chosen[0].render_as, chosen[0]
     if kind == "GROUP" and not settings.split_group:
         raise ValueError("It is split by a vertex group, and none is chosen; choose one in its object properties.")
-    split = settings.split_distance if kind == "DISTANCE" else None
-    return Form(kind, split, settings.split_group if kind == "GROUP" else "")
+    distance = settings.split_distance if kind == "DISTANCE" else None
+    return Form(kind, distance, settings.split_group if kind == "GROUP" else "")
 
 
 class RENDER_PT_surfel_meshes(EnginePanel, bpy.types.Panel):

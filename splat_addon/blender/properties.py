@@ -20,12 +20,12 @@ from ..rendering.methods import METHODS
 from ..rendering.scene.lines import MAX_WIDTH, Lines
 from ..rendering.scene.matcap import Matcap
 from ..rendering.settings import (
-    ACCUMULATIONS,
     MAX_LAYERS,
     MAX_SAMPLES,
     MAX_SHADOW_RESOLUTION,
     MAX_SUPERSAMPLING,
     MAX_TOON_STEPS,
+    SUM_FORMATS,
     Settings,
 )
 from ..rendering.shading_models import SHADING_MODELS
@@ -252,11 +252,11 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         items=[(s.name, s.label, s.summary) for s in STORAGES.values()],
         default=Settings.storage,
     )
-    accumulation: EnumProperty(
+    accumulation: EnumProperty(  # `Settings.sum_format`; files know it by this name
         name="Sums",
         description="How the sums of overlapping splats are stored",
-        items=[(name, *texts) for name, texts in ACCUMULATIONS.items()],
-        default=Settings.accumulation,
+        items=[(name, *texts) for name, texts in SUM_FORMATS.items()],
+        default=Settings.sum_format,
     )
     broken_objects: EnumProperty(
         name="Broken Objects",
@@ -344,7 +344,7 @@ def _settings(scene, **choices) -> Settings:
         layers=properties.layers,
         blends_rest=properties.blends_rest,
         storage=properties.storage,
-        accumulation=properties.accumulation,
+        sum_format=properties.accumulation,
         transparent_film=scene.render.film_transparent,
         **choices,
     )

@@ -87,12 +87,12 @@ def depth_first(levels: list[Level], surfels: int) -> tuple[list[np.ndarray], li
 def make_blocks(entries: list[np.ndarray], counts: list[np.ndarray], geometry: Geometry, errors: np.ndarray) -> Blocks:
     """entries, counts: of `depth_first`. errors: (N + M, 3) of surfels and nodes."""
     offsets = np.cumsum([0, *map(len, entries)])
-    runs = [_split(np.array([0]), np.array([len(entries[-1])]))]
+    runs = [_between(np.array([0]), np.array([len(entries[-1])]))]
     families = []
     for own in counts[::-1]:
         first, last, _ = runs[-1]
         ends = np.concatenate([[0], np.cumsum(own)])
-        runs.append(_split(ends[first], ends[last]))
+        runs.append(_between(ends[first], ends[last]))
         families.append(runs[-1][2])
     families.append(np.zeros(len(runs[-1][0]), int))  # the surfels are the last
     numbers = np.cumsum([0, *(len(first) for first, _, _ in runs)])
@@ -110,7 +110,7 @@ def make_blocks(entries: list[np.ndarray], counts: list[np.ndarray], geometry: G
     return Blocks(*arrays, roots=np.array(len(runs[0][0])))
 
 
-def _split(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _between(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Runs cut into equal ones of at most `BLOCK`: starts, ends, and into how many each was cut."""
     size = last - first
     parts = -(-size // BLOCK)

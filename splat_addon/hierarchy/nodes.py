@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..clip_lines import CLIP_FIELDS, CUT
-from ..surfels import Surfels, quaternion_axes, split
+from ..surfels import Surfels, portions, quaternion_axes
 from .texture_places import gradients
 
 #: Fields of which a merged surfel has the plain mean. Colours, normals, roughness and texture coordinates have rules.
@@ -88,7 +88,7 @@ class Table:
 
 def leaves(surfels: Surfels) -> Table:
     """The surfels themselves, exact but for what their clip lines take away of them."""
-    parts = [Table.of(_leaves(part)) for part in split(surfels, PORTION)]
+    parts = [Table.of(_leaves(part)) for part in portions(surfels, PORTION)]
     return Table(parts[0].widths, np.concatenate([part.rows for part in parts]))
 
 

@@ -27,8 +27,8 @@ def matrix(columns: dict[str, np.ndarray], names: tuple[str, ...], dtype=np.floa
         return np.stack([columns[name].astype(dtype) for name in names], axis=1)
 
 
-def split(names: tuple[str, ...], values: np.ndarray) -> dict[str, np.ndarray]:
-    """(N, len(names)) split into columns."""
+def as_columns(names: tuple[str, ...], values: np.ndarray) -> dict[str, np.ndarray]:
+    """(N, len(names)) as columns."""
     return dict(zip(names, values.T, strict=True))
 
 

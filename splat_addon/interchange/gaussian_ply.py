@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..surfels import Surfels, quaternion_axes, valid_surfels
-from .columns import NORMAL, POSITION, ROTATION, has, linear_to_srgb, matrix, split, srgb_to_linear
+from .columns import NORMAL, POSITION, ROTATION, as_columns, has, linear_to_srgb, matrix, srgb_to_linear
 from .ply_file import write_vertices
 
 _COLOR = ("f_dc_0", "f_dc_1", "f_dc_2")
@@ -75,12 +75,12 @@ def write_gaussian_ply(path: str | os.PathLike, surfels: Surfels) -> None:
         logit = np.log(alpha / (1 - alpha))
     logit = np.where(alpha >= 1, _MAX_LOGIT, np.where(alpha <= 0, -_MAX_LOGIT, logit))
     columns = {
-        **split(POSITION, surfels.positions + surfels.origin),
-        **split(NORMAL, surfels.normals),
-        **split(_COLOR, (linear_to_srgb(surfels.colors[:, :3]) - 0.5) / SH_DEGREE_0),
+        **as_columns(POSITION, surfels.positions + surfels.origin),
+        **as_columns(NORMAL, surfels.normals),
+        **as_columns(_COLOR, (linear_to_srgb(surfels.colors[:, :3]) - 0.5) / SH_DEGREE_0),
         "opacity": np.clip(logit, -_MAX_LOGIT, _MAX_LOGIT),
-        **split(_SCALE, np.log(sigmas)),
-        **split(ROTATION, surfels.rotations),
+        **as_columns(_SCALE, np.log(sigmas)),
+        **as_columns(ROTATION, surfels.rotations),
     }
     write_vertices(path, {name: column.astype(np.float32) for name, column in columns.items()}, (), ascii=False)
 

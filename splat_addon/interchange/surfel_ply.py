@@ -25,7 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
-from .columns import NORMAL, POSITION, ROTATION, display_color, has, linear_to_srgb, matrix, split
+from .columns import NORMAL, POSITION, ROTATION, as_columns, display_color, has, linear_to_srgb, matrix
 from .ply_file import read_vertices, write_vertices
 
 _VERSION, _ORIGIN, _SOLID = "surfel_splatting 1", "origin", "solid"
@@ -56,19 +56,19 @@ def write_ply(path: str | os.PathLike, surfels: Surfels, ascii: bool = False) ->
     shown = np.clip(surfels.colors.astype(np.float64), 0, 1)
     shown[:, :3] = linear_to_srgb(shown[:, :3])
     columns = {
-        **split(POSITION, positions),
-        **split(NORMAL, surfels.normals),
-        **split(_DISPLAY_COLOR, np.rint(255 * shown).astype(np.uint8)),
-        **split(_COLOR, surfels.colors),
-        **split(ROTATION, surfels.rotations),
-        **split(_SCALE, surfels.scales),
+        **as_columns(POSITION, positions),
+        **as_columns(NORMAL, surfels.normals),
+        **as_columns(_DISPLAY_COLOR, np.rint(255 * shown).astype(np.uint8)),
+        **as_columns(_COLOR, surfels.colors),
+        **as_columns(ROTATION, surfels.rotations),
+        **as_columns(_SCALE, surfels.scales),
         "radius": surfels.radius,
         "material": surfels.materials,
     }
     for name, properties in _OPTIONAL.items():
         values = getattr(surfels, name)
         if values is not None:
-            columns |= split(properties, values.reshape(len(surfels), len(properties)))
+            columns |= as_columns(properties, values.reshape(len(surfels), len(properties)))
     origin = " ".join(repr(float(value)) for value in surfels.origin)
     comments = [_VERSION, *([f"{_ORIGIN} {origin}"] * has_origin), *([_SOLID] * surfels.is_solid)]
     write_vertices(path, columns, tuple(comments), ascii)

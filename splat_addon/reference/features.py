@@ -153,7 +153,7 @@ def _depth():
 
 
 def _formats():
-    yield Feature("format", "float16 sums", "float32", settings(accumulation="float16"), is_quick=True)
+    yield Feature("format", "float16 sums", "float32", settings(sum_format="float16"), is_quick=True)
     yield Feature("format", "16-bit surfels", "float32", settings(storage="16-bit"))
 
 

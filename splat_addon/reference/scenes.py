@@ -208,7 +208,7 @@ def polygons(count: int = 20_000, size=(128, 128)) -> tuple[Scene, Camera]:
 
 
 def round_polygons(rings: int) -> Polygons:
-    """A unit sphere of rings x 2 rings fields, split into triangles, with its own normals."""
+    """A unit sphere of rings x 2 rings fields, of two triangles each, with its own normals."""
     latitude, longitude = np.linspace(-math.pi / 2, math.pi / 2, rings + 1), np.linspace(0, 2 * math.pi, 2 * rings + 1)
     up, around = np.meshgrid(latitude, longitude[:-1], indexing="ij")
     points = np.stack([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)], axis=2).reshape(-1, 3)

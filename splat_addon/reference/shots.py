@@ -88,15 +88,15 @@ def a_floor() -> PolygonInstance:
     return PolygonInstance(make_polygons(corners, ((0, 1, 2), (0, 2, 3))))
 
 
-def round_one(rings: int, split: float | None = None) -> PolygonInstance:
+def round_one(rings: int, at: float | None = None) -> PolygonInstance:
     """A ball in the middle of the tori, of 4 rings^2 triangles but for its poles."""
-    return PolygonInstance(scenes.round_polygons(rings), split=split)
+    return PolygonInstance(scenes.round_polygons(rings), split_distance=at)
 
 
-def round_surfels(count: int, split: float | None = None) -> Instance:
+def round_surfels(count: int, at: float | None = None) -> Instance:
     """The same ball of surfels."""
     (instance,) = scenes.sphere(count)[0].surfels
-    return Instance(instance.surfels, split=split)
+    return Instance(instance.surfels, split_distance=at)
 
 
 def ring(count: int, **values) -> tuple[Light, ...]:

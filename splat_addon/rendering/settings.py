@@ -11,8 +11,8 @@ from .scene.lines import Lines
 from .scene.matcap import Matcap
 from .shading_models import get_shading_model
 
-#: accumulation -> (label, what it costs and gains)
-ACCUMULATIONS = {
+#: sum_format -> (label, what it costs and gains)
+SUM_FORMATS = {
     "float32": ("Float 32", "32 bytes a sample, exact with thousands of splats over a pixel"),
     "float16": (
         "Float 16",
@@ -78,7 +78,7 @@ class Settings:
     as_printed: follow the papers where this project has rules of its own: backs are drawn as fronts, where else they
         weigh little beside one; and the last transparent layer hides as one surface does, not as all that it holds.
     storage: the format of surfels on the device, a name in `upload.storages`.
-    accumulation: of the sums of colour and material, a name in `ACCUMULATIONS`.
+    sum_format: of the sums of colour and material, a name in `SUM_FORMATS`.
     profile: wait for the device after each pass, so that the frame's statistics contain the time of each.
     """
 
@@ -106,7 +106,7 @@ class Settings:
     culls_backs: bool = False
     as_printed: bool = False
     storage: str = "float32"
-    accumulation: str = "float32"
+    sum_format: str = "float32"
     profile: bool = False
 
     def __post_init__(self):
@@ -116,8 +116,8 @@ class Settings:
             raise ValueError(f"toon_steps must be 2 to {MAX_TOON_STEPS}, not {self.toon_steps}.")
         if not 0 <= self.toon_softness <= 1:
             raise ValueError(f"toon_softness must be 0 to 1, not {self.toon_softness}.")
-        if self.accumulation not in ACCUMULATIONS:
-            raise ValueError(f"accumulation must be one of {', '.join(ACCUMULATIONS)}, not {self.accumulation!r}.")
+        if self.sum_format not in SUM_FORMATS:
+            raise ValueError(f"sum_format must be one of {', '.join(SUM_FORMATS)}, not {self.sum_format!r}.")
         if int(self.supersampling) != self.supersampling or not 1 <= self.supersampling <= MAX_SUPERSAMPLING:
             raise ValueError(f"supersampling must be 1 to {MAX_SUPERSAMPLING}, not {self.supersampling}.")
         if int(self.samples) != self.samples or not 1 <= self.samples <= MAX_SAMPLES:

@@ -36,7 +36,7 @@ class DrawItem:
     is_whole: the camera sees all of it, judged from a sample.
     overlap: of polygons, how far behind them splats still count, view units.
     setback: minimum distance by which a visibility pass moves it back, beside `View.least_offset` and in its unit.
-    split: of polygons the farthest distance, of splats the least of their centres, view units; 0: no limit.
+    split_distance: of polygons the farthest distance, of splats the least of their centres, view units; 0: no limit.
     """
 
     instance: Placed
@@ -45,7 +45,7 @@ class DrawItem:
     hides_backs: bool
     is_whole: bool
     overlap: float = 0.0
-    split: float = 0.0
+    split_distance: float = 0.0
     setback: float = 0.0
 
 
@@ -113,9 +113,9 @@ def build_view(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | 
         model_view[:3] *= scale
         overlap = epsilon * radii.get(instance, 0.0) * scale
         of_kind = placed[type(instance)]
-        hides_backs, split = instance.hides_backs(camera), _split(instance) * scale
+        hides_backs, limit = instance.hides_backs(camera), _split_distance(instance) * scale
         is_whole = not _beyond(instance.some_places(camera), camera).any()
-        of_kind.append(DrawItem(instance, model_view, normal_matrix, hides_backs, is_whole, overlap, split))
+        of_kind.append(DrawItem(instance, model_view, normal_matrix, hides_backs, is_whole, overlap, limit))
     return View(
         scale=scale,
         near=camera.near * scale,
@@ -131,13 +131,13 @@ def build_view(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | 
     )
 
 
-def _split(instance: Placed) -> float:
+def _split_distance(instance: Placed) -> float:
     """Where the instance begins or ends, world units. Splats begin before polygons end: their weights then sum to 1 and
     more where polygons end (Guennebaud et al. 2006, section 5.1).
     """
-    if instance.split is None or instance.shape.is_transparent:
+    if instance.split_distance is None or instance.shape.is_transparent:
         return 0.0
-    return max(instance.split - SPLIT_OVERLAP * instance.radius, 0.0)
+    return max(instance.split_distance - SPLIT_OVERLAP * instance.radius, 0.0)
 
 
 def overlapping_radii(scene: Scene) -> dict[PolygonInstance, float]:

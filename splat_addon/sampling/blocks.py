@@ -81,8 +81,8 @@ def joined_blocks(mesh: TriangleMesh, blocks: Iterable[Block], progress: Progres
     for name in blocks[0].arrays:
         arrays[name] = np.concatenate([block.arrays[name] for block in blocks])[order]
     surface = surface_of(run.mesh.triangles, images, len(run.mesh.positions))
-    lost = missed_components(run.mesh, surface)
-    return run.finished(arrays, images, lost, stage(progress, 0.0, 1.0))
+    missed = missed_components(run.mesh, surface)
+    return run.finished(arrays, images, missed, stage(progress, 0.0, 1.0))
 
 
 def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], np.ndarray]:

@@ -119,10 +119,10 @@ def sample_surface(
         return Sampling(empty_surfels())
     surface = SampledSurface(len(run.mesh.positions))
     images = run.images(surface, stage(progress, 0.0, 0.5))
-    lost = missed_components(run.mesh, surface)
+    missed = missed_components(run.mesh, surface)
     filled = 1.0 if crease_angle is None else 0.6
     arrays = run.filled(images, stage(progress, 0.5, filled))
-    return run.finished(arrays, images, lost, stage(progress, filled, 1.0))
+    return run.finished(arrays, images, missed, stage(progress, filled, 1.0))
 
 
 class SamplingRun:
@@ -200,9 +200,9 @@ class SamplingRun:
         return arrays
 
     def finished(
-        self, arrays: dict[str, np.ndarray], images: tuple[Spans, ...], lost: tuple, report: Callable[[float], None]
+        self, arrays: dict[str, np.ndarray], images: tuple[Spans, ...], missed: tuple, report: Callable[[float], None]
     ) -> Sampling:
-        """The result after the steps that need neighbouring samples. lost: result of `missed_components` for all
+        """The result after the steps that need neighbouring samples. missed: result of `missed_components` for all
         samples."""
         mesh, grid, tangents, bends = self.mesh, self.grid, self._tangents, self._bends
         about = grid, self._splat_size, self._sampler, tangents
@@ -226,11 +226,11 @@ class SamplingRun:
             saved = total - len(arrays["positions"])
         if gaps:
             arrays = _appended(arrays, gaps)
-        small_parts = int(lost[1].max(initial=-1)) + 1
+        small_parts = int(missed[1].max(initial=-1)) + 1
         if small_parts:
             sampler, is_mapped = self._sampler, bool(self._uv_fields)
             extra = component_surfels(
-                mesh, self._coordinates, grid, lost, self._splat_size, sampler, tangents, is_mapped
+                mesh, self._coordinates, grid, missed, self._splat_size, sampler, tangents, is_mapped
             )
             arrays = _appended(arrays, extra)
         surfels = Surfels(origin=grid.surfel_origin, **arrays)

@@ -14,16 +14,16 @@ LAYERS = [
 ]
 
 
-@pytest.mark.parametrize(("accumulation", "layers", "least"), LAYERS)
-def test_many_layers_give_their_mean(accumulation, layers, least, hold, lit, camera):
-    settings = Settings(supersampling=2, accumulation=accumulation)
+@pytest.mark.parametrize(("sum_format", "layers", "least"), LAYERS)
+def test_many_layers_give_their_mean(sum_format, layers, least, hold, lit, camera):
+    settings = Settings(supersampling=2, sum_format=sum_format)
     hold({f"{layers} layers": (lit(pile(layers)), camera(size=(12, 12)), settings)}, least)
 
 
 @pytest.mark.parametrize("brightness", [1e-6, 1e6, 1e20])
 def test_float16_sums_hold_any_brightness(brightness, render_all, camera):
     colors = np.random.default_rng(2).random((100, 3))
-    settings = Settings(supersampling=2, accumulation="float16", shading="flat")
+    settings = Settings(supersampling=2, sum_format="float16", shading="flat")
     dim, bright = render_all(
         [(Scene((pile(100, colors * factor),)), camera(size=(12, 12)), settings) for factor in (1.0, brightness)]
     )

@@ -177,8 +177,8 @@ def split(scene, camera):
     uvs = floor.polygons.positions[:, :2] * 0.7
     paper = SurfaceTexture(Image(scenes.checks(64, 8)))
     floor = replace(floor, shape=replace(floor.polygons, uvs=uvs), textures=(paper,))
-    near = PolygonInstance(scenes.round_polygons(24), materials=ball.materials, split=2.6)
-    return replace(scene, surfels=(replace(ball, split=2.6),), polygons=(floor, other, near)), camera
+    near = PolygonInstance(scenes.round_polygons(24), materials=ball.materials, split_distance=2.6)
+    return replace(scene, surfels=(replace(ball, split_distance=2.6),), polygons=(floor, other, near)), camera
 
 
 #: tests/rendering/test_polygons.py compares them with the truth.
@@ -208,14 +208,14 @@ CASES = [
     *(("transparent_spheres", method, {"layers": 8, "blends_rest": False}) for method in ("quad", "mip")),
     ("transparent_shadows", "quad", {}),
     *(("torus", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
-    *(("torus", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
+    *(("torus", method, {"sum_format": "float16"}) for method in ("quad", "mip")),
     *(("torus", "mip", {"shading": shading}) for shading in UNLIT if shading != "matcap"),
     ("torus", "mip", {"shading": "matcap", "matcap": BALL}),
     *(("shadows", "quad", {"shading": shading}) for shading in ("phong", "toon")),
     *(("torus", method, {"shading": "flat", "lines": Lines(width=2.0)}) for method in ("quad", "mip")),
     *(("polygons", method, {}) for method in METHODS if method != "quad"),
     *((name, method, {}) for name in HYBRID for method in ("quad", "mip")),
-    *(("polygons", method, {"accumulation": "float16"}) for method in ("quad", "mip")),
+    *(("polygons", method, {"sum_format": "float16"}) for method in ("quad", "mip")),
     ("polygons", "mip", {"shading": "flat", "lines": Lines(width=2.0)}),
     *(("clip_lines", method, {"shading": "flat"}) for method in METHODS if method != "quad"),
     *(("clip_lines", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
@@ -239,7 +239,7 @@ def test_picture_is_the_same_on_every_device(name, method, options, render, on_b
         }
 
     def hold(here, standalone):
-        is_rough, has_layers = options.get("accumulation") == "float16", here["layers"] > 0
+        is_rough, has_layers = options.get("sum_format") == "float16", here["layers"] > 0
         tolerance = FLOAT16_TOLERANCE if is_rough else TOLERANCE
         samples = SURFACES if has_layers else 1  # each of them may tie
         filters = get_method(method).filters_silhouettes

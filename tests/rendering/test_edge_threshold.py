@@ -17,10 +17,10 @@ def place():
     return np.hypot(*np.meshgrid(x, x))
 
 
-@pytest.mark.parametrize("accumulation", ["float32", "float16"])
+@pytest.mark.parametrize("sum_format", ["float32", "float16"])
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("threshold", [0.0, 0.2, 0.5, 1.0])
-def test_one_disc_fades_by_its_kernel(threshold, side, accumulation, render):
+def test_one_disc_fades_by_its_kernel(threshold, side, sum_format, render):
     """Also where its back is seen, which weighs less and is as much a surface."""
     disc = discs((0, 0, -3), (1, 0, 0), (0, side, 0), (0.2, 0.5, 0.8))
     settings = Settings(
@@ -28,13 +28,13 @@ def test_one_disc_fades_by_its_kernel(threshold, side, accumulation, render):
         shading="flat",
         supersampling=1,
         edge_threshold=threshold,
-        accumulation=accumulation,
+        sum_format=sum_format,
         transparent_film=True,
     )
     frame = render(Scene((disc,)), CAMERA, settings)
     weight = np.where(place() <= 1, np.exp(-2 * place() ** 2), 0)
     expected = np.minimum(weight / threshold, 1) if threshold else (weight > 0).astype(float)
-    tolerance = 1e-4 if accumulation == "float32" else 2e-3
+    tolerance = 1e-4 if sum_format == "float32" else 2e-3
     np.testing.assert_allclose(frame.coverage, expected, atol=tolerance)
     np.testing.assert_allclose(frame.color[..., 3], expected, atol=tolerance)
     np.testing.assert_allclose(frame.color[..., :3], expected[..., None] * (0.2, 0.5, 0.8), atol=tolerance)

@@ -228,7 +228,7 @@ def test_a_picture_in_tiles_is_the_picture(render, monkeypatch):
     )
 
 
-@pytest.mark.parametrize("options", [{"storage": "16-bit"}, {"accumulation": "float16"}])
+@pytest.mark.parametrize("options", [{"storage": "16-bit"}, {"sum_format": "float16"}])
 def test_whatever_the_sums_and_the_storage(options, render):
     usual, other = (render(three(), CAMERA, settings(**more)) for more in ({}, options))
     for name in ("object_index", "material_index"):

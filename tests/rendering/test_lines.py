@@ -132,7 +132,7 @@ def test_no_seam_shows_between_tiles(settings, cube, darkness, monkeypatch):
 
 @pytest.mark.parametrize(
     "others",
-    [{"accumulation": "float16"}, {"multisampling": 4}, {"multisampling": 4, "sample_shading": True}],
+    [{"sum_format": "float16"}, {"multisampling": 4}, {"multisampling": 4, "sample_shading": True}],
     ids=lambda o: "-".join(o),
 )
 def test_lines_are_drawn_with_every_kind_of_sum(others, cube, darkness, request):

@@ -66,7 +66,7 @@ def test_each_surfel_sends_out_its_own_light(render):
 def test_float16_sums_keep_bright_emission(render):
     scene, camera = sphere(lights=(), world=(0, 0, 0))
     bright = with_own(scene, emission=(1e6, 1.0, 0.0))
-    frame = render(bright, camera, replace(SETTINGS, accumulation="float16"))
+    frame = render(bright, camera, replace(SETTINGS, sum_format="float16"))
     assert np.allclose(frame.color[frame.coverage == 1][:, :3], (1e6, 1, 0), rtol=1e-3)
 
 

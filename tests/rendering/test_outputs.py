@@ -208,7 +208,7 @@ def test_a_shadow_is_the_exact_one(render):
     assert np.abs(frame.shadow - exact.shadow).mean() < 0.01 and np.ptp(exact.shadow[..., 0]) > 0.5
 
 
-@pytest.mark.parametrize("options", [{"accumulation": "float16"}, {"storage": "16-bit"}])
+@pytest.mark.parametrize("options", [{"sum_format": "float16"}, {"storage": "16-bit"}])
 def test_whatever_the_sums_and_the_storage(options, render):
     scene, camera = glowing()
     frame, plain = (render(scene, camera, outputs(method="quad", **more)) for more in (options, {}))

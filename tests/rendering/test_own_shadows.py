@@ -134,7 +134,7 @@ def test_nor_does_it_scaled_and_mirrored(is_smooth, with_and_without):
         assert falsely_dark(arriving(there, light, CAMERA), *with_and_without([made], light)) < 0.02
 
 
-@pytest.mark.parametrize("settings", [{"method": "quad"}, {"accumulation": "float16"}, {"storage": "16-bit"}])
+@pytest.mark.parametrize("settings", [{"method": "quad"}, {"sum_format": "float16"}, {"storage": "16-bit"}])
 def test_nor_by_other_methods_sums_and_storages(settings, with_and_without):
     mesh = uv_sphere()
     shares = arriving(mesh, LIGHTS["sun"], CAMERA)

@@ -86,7 +86,7 @@ TABLE = {
         lit(casts_shadow=True), {}, ("shadow_maps", *PASSES), "shadow_depth gbuffer_plane", "lights shadow_maps", (),
     ),
     "shadow, float16 sums": (
-        lit(casts_shadow=True), {"accumulation": "float16"}, ("shadow_maps", *PASSES), "shadow_depth gbuffer_depth",
+        lit(casts_shadow=True), {"sum_format": "float16"}, ("shadow_maps", *PASSES), "shadow_depth gbuffer_depth",
         "lights shadow_maps", (),
     ),
     "shadow, switched off": (lit(casts_shadow=True), {"shadow_resolution": 0}, PASSES, "", "lights", ()),
@@ -98,7 +98,7 @@ TABLE = {
     "one emission": (of(GLOWING), {}, PASSES, "", "", ("EMISSION",)),
     "two emissions": (of(GLOWING, Material()), {}, PASSES, "gbuffer_emission", "", ()),
     "own roughness": (Scene([Instance(surfels(roughness=[0.1, 0.9]))]), {}, PASSES, "gbuffer_material", "", ()),
-    "float16 sums": (PLAIN, {"accumulation": "float16"}, PASSES, "gbuffer_depth", "", ()),
+    "float16 sums": (PLAIN, {"sum_format": "float16"}, PASSES, "gbuffer_depth", "", ()),
     "colour alone": (PLAIN, {"outputs": ("color",)}, PASSES, "-normal_coverage", "", ()),
     "diffuse colour": (
         PLAIN, {"outputs": ("color", "diffuse_color")}, PASSES, "-normal_coverage diffuse_color", "", ("METALS",),
@@ -118,7 +118,7 @@ TABLE = {
     "position": (PLAIN, {"outputs": ("position",)}, PASSES, "-normal_coverage", "", ()),
     "polygons": (HYBRID, {}, AMONG, AMONG_TEXTURES, "", ()),
     "split by distance": (
-        Scene([Instance(surfels(), split=2.0)], polygons=(PolygonInstance(TRIANGLE, split=2.0),)), {},
+        Scene([Instance(surfels(), split_distance=2.0)], polygons=(PolygonInstance(TRIANGLE, split_distance=2.0),)), {},
         AMONG, AMONG_TEXTURES, "", ("SPLIT",),
     ),
     "polygons in the shadow": (
@@ -231,7 +231,7 @@ def test_more_textures_than_a_target_has_are_refused_with_what_to_do():
     outputs = ("color", "overdraw")
     assert plan(full, CAMERA, Settings(outputs=outputs))
     with pytest.raises(ValueError, match=r"7 textures at once .*Overdraw.*float32"):
-        plan(full, CAMERA, Settings(outputs=outputs, accumulation="float16"))
+        plan(full, CAMERA, Settings(outputs=outputs, sum_format="float16"))
 
 
 def test_a_scene_of_nothing_gets_nothing():

@@ -194,8 +194,8 @@ def test_a_ball_split_by_distance_has_no_seam(method, camera, render):
     def shot(splats, polygons):
         return render(Scene(splats, (light,), polygons=polygons), made, Settings(method=method))
 
-    split = shot((Instance(surfels, split=2.5),), (PolygonInstance(ball, split=2.5),))
-    near = shot((), (PolygonInstance(ball, split=2.5),))
+    split = shot((Instance(surfels, split_distance=2.5),), (PolygonInstance(ball, split_distance=2.5),))
+    near = shot((), (PolygonInstance(ball, split_distance=2.5),))
     polygons, splats = shot((), (PolygonInstance(ball),)), shot((surfels,), ())
     assert 0.2 < near.coverage.sum() / polygons.coverage.sum() < 0.9
     inside = (polygons.coverage > 0.999) & (splats.coverage > 0.999)

@@ -60,7 +60,7 @@ def test_without_texture_coordinates_so_few_surfels_show_next_to_nothing(render)
     assert psnr(frame.color[inside][None, :, :3], seen[inside][None]) < 12
 
 
-@pytest.mark.parametrize("method", [name for name, m in METHODS.items() if m.works_in != "sprites"])
+@pytest.mark.parametrize("method", [name for name, m in METHODS.items() if m.rasterizer != "point_sprite"])
 def test_every_method_shows_what_the_reference_shows(method, render):
     """Methods whose silhouettes are not filtered, and sprites, are farther away."""
     least = {"mip": 36, "quad": 40, "sprites": 24, "sprites_printed": 20, "ewa": 24}.get(method, 30)

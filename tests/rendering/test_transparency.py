@@ -15,7 +15,7 @@ from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.view import build_view, clip_range
 from splat_addon.surfels import Surfels
 
-PEELING = [name for name, method in METHODS.items() if method.works_in != "sprites"]
+PEELING = [name for name, method in METHODS.items() if method.rasterizer != "point_sprite"]
 SPACES = ["quad", "mip"]
 CAMERA = Camera.perspective(look_at((0, 0, 4), (0, 0, 0), (0, 1, 0)), 0.5, (32, 32), 0.1, 50)
 WORLD = (0.2, 0.4, 0.8)
@@ -208,11 +208,11 @@ def test_coverage_is_what_is_hidden(method, render):
     assert (frame.depth == EMPTY_DEPTH).all()
 
 
-@pytest.mark.parametrize(("storage", "accumulation"), [("16-bit", "float32"), ("float32", "float16")])
-def test_smaller_formats_hold_layers(storage, accumulation, render):
+@pytest.mark.parametrize(("storage", "sum_format"), [("16-bit", "float32"), ("float32", "float16")])
+def test_smaller_formats_hold_layers(storage, sum_format, render):
     scene, camera = spheres(64)
     whole = render(scene, camera, Settings()).color
-    small = render(scene, camera, Settings(storage=storage, accumulation=accumulation)).color
+    small = render(scene, camera, Settings(storage=storage, sum_format=sum_format)).color
     assert psnr(small, whole) > 50
 
 

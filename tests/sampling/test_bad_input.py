@@ -116,7 +116,7 @@ def test_one_vertex_far_off_leaves_few_samples_and_no_error(cube):
         ({"resolution": 600_000}, "exact up to 524,288"),
     ],
 )
-def test_an_unusable_fineness_is_refused_in_a_sentence(cube, density, sentence):
+def test_an_unusable_density_is_refused_in_a_sentence(cube, density, sentence):
     with pytest.raises(ValueError, match=sentence):
         sample_mesh(cube(), **density)
 

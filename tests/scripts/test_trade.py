@@ -38,7 +38,7 @@ def test_every_quick_choice_has_a_row_with_numbers_in_order(measured):
 
 
 def test_the_default_filter_is_the_truest_under_its_own_pixel(measured):
-    rows = [r for r in rows_of(measured[1]) if r["storage"] == r["accumulation"] == "float32"]
+    rows = [r for r in rows_of(measured[1]) if r["storage"] == r["sum_format"] == "float32"]
     assert min(rows, key=lambda row: float(row["flip_gaussian"]))["method"] == "mip"
     assert min(rows, key=lambda row: float(row["flip_box"]))["method"] == "quad"
 

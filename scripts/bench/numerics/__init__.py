@@ -85,7 +85,7 @@ FIGURES = {
     ),
     "sums": (
         Panel("overdraw", "splats over every sample, float32 sums", sweeps.overdraw, 80),
-        Panel("overdraw, float16", "the same, float16 sums", partial(sweeps.overdraw, accumulation="float16"), 0),
+        Panel("overdraw, float16", "the same, float16 sums", partial(sweeps.overdraw, sum_format="float16"), 0),
     ),
     "layers": (
         Panel("epsilon", "epsilon, radii", sweeps.epsilon, 40),

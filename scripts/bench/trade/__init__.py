@@ -79,7 +79,7 @@ def measure(case, renderer: Renderer, chosen: list[Settings], options, report) -
     for settings in chosen:
         times = {"ratio": (drawn.ratio(settings, YARDSTICK), 2), "ms": (drawn.spread(settings), 1)}
         rows.append({"scene": case.name, **columns(settings), **accuracy(drawn.results[settings], exact)})
-        whole = drawn.results.get(replace(settings, storage="float32", accumulation="float32"))
+        whole = drawn.results.get(replace(settings, storage="float32", sum_format="float32"))
         to_float32 = psnr(drawn.results[settings].color, whole.color) if whole else math.inf
         rows[-1]["to_float32"] = "" if math.isinf(to_float32) else round(to_float32, 1)
         for name, (spread, digits) in times.items():

@@ -32,7 +32,7 @@ from ...sampling import (
     predict_count,
     projected_area,
 )
-from ...surfels import OPTIONAL_LAYOUT, Surfels, split
+from ...surfels import OPTIONAL_LAYOUT, Surfels, portions
 from ..conversion.automatic_density import automatic_spacing
 from ..conversion.camera_density import without_camera
 from ..conversion.mesh_conversion import MAX_SURFELS
@@ -201,12 +201,19 @@ class LiveMeshes:
         sampled = self._sampled(live, depsgraph, finer(density, live.detail), texture_mapped)
         if live.shown is None or live.shown[0] is not sampled:
             whole = with_edge_samples(sampled, live.parts, live.spacing) if live.parts else sampled
-            live.shown = sampled, split(whole, MAX_SPLATS)
+            live.shown = sampled, portions(whole, MAX_SPLATS)
         textures = live.kept_textures() if sampled.has_uvs else ()
         self.counts["meshes"] += 1
         self.counts["surfels"] += sum(map(len, live.shown[1]))
         return [
-            Instance(part, place.matrix, live.materials, split=place.form.split, textures=textures, **place.fields)
+            Instance(
+                part,
+                place.matrix,
+                live.materials,
+                split_distance=place.form.split_distance,
+                textures=textures,
+                **place.fields,
+            )
             for part in live.shown[1]
             for place in live.sampled_at
         ]
@@ -222,7 +229,12 @@ class LiveMeshes:
         textures = live.kept_textures()
         return [
             PolygonInstance(
-                part, place.matrix, live.materials, split=place.form.split, textures=textures, **place.fields
+                part,
+                place.matrix,
+                live.materials,
+                split_distance=place.form.split_distance,
+                textures=textures,
+                **place.fields,
             )
             for part in live.drawn[1]
             for place in live.drawn_at

@@ -62,7 +62,7 @@ class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):
         super().draw(context)
         properties = getattr(context.scene, RENDER_SETTINGS)
         row = self.layout.row()
-        row.active = get_method(properties.method).works_in == "space"
+        row.active = get_method(properties.method).rasterizer == "object_space"
         row.prop(properties, "edge_threshold")
 
 

@@ -107,7 +107,7 @@ def plane_depth(plane: Plane, at: Places, pixel: np.ndarray, filter_pixels: floa
     return np.where(at.k > 0, depth, plane.depth)
 
 
-def straddling_samples(position, axis_u, axis_v, points: np.ndarray, is_orthographic: bool, is_kept=None):
+def near_clipped_samples(position, axis_u, axis_v, points: np.ndarray, is_orthographic: bool, is_kept=None):
     """(M,) weights, unfiltered, and (M,) depths of a splat that reaches the near plane, wherever its centre lies.
 
     is_kept: of (M, 2) places in half-axes, (M,) bool: those that no clip line takes away.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ..plan.graph import Part
 from ..upload.storages import get_storage
-from .drawing import RASTERIZERS, SPLAT_HOSTS
+from .drawing import SPLAT_HOSTS
 
 _VARYINGS = (("flat", "vec3", "clip_first"), ("flat", "vec3", "clip_second"), ("flat", "float", "clip_is_reflex"))
 
@@ -47,11 +47,11 @@ def parts(planning, p):
 
 def _words(planning, p) -> tuple[str, ...]:
     """How lines act: on places in the ellipse or in the picture, and blurred where the method blurs rims."""
-    if p.host == f"{RASTERIZERS['sprites']}.frag":
+    if p.host == "point_sprite.frag":
         return ("of_sprites",)
     if p.host == "visibility.frag":
         is_of_sprites = planning.method.sprites_hide and p.kind in ("opaque", "layer")
         return ("of_sprites",) if is_of_sprites else ("of_ellipses",)
-    if p.host == f"{RASTERIZERS['picture']}.frag":
+    if p.host == "screen_space.frag":
         return ("blurs_lines",) if planning.method.blurs_rims else ("cuts_at_lines",)
     return ()

@@ -26,9 +26,9 @@ def bounds(planning, reason: str, seen: Texture, kind: str = "opaque") -> Pass:
 
 def passes(planning):
     method = planning.method
-    if not planning.shown or method.works_in == "sprites":
+    if not planning.shown or method.rasterizer == "point_sprite":
         return
-    if method.works_in == "space":
+    if method.rasterizer == "object_space":
         planning.skip(BOUNDS.name, f"{method.name} is tested by the hardware, with the depth of visibility")
         return
     compared = f"{method.name} computes its depths, which are compared in the shader"
@@ -38,7 +38,7 @@ def passes(planning):
 
 
 def is_present(planning) -> bool:
-    return planning.method.works_in == "picture"
+    return planning.method.rasterizer == "screen_space"
 
 
 def parts(planning, p):

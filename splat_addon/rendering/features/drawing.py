@@ -11,6 +11,7 @@ import numpy as np
 
 from ..device.interface import Pipeline
 from ..device.interface import Texture as DeviceTexture
+from ..methods.method import RASTERIZERS
 from ..plan.graph import Pass
 from ..plan.uniforms import DRAW, std140
 from ..scene.light import MAX_LIGHT_SETS
@@ -20,10 +21,8 @@ from ..view import DrawItem
 if TYPE_CHECKING:
     from ..plan.executor import TileContext
 
-#: where a method works -> the host of its shaders
-RASTERIZERS = {"space": "object_space", "picture": "screen_space", "sprites": "point_sprite"}
 #: Fragment shaders that add splats to sums.
-SPLAT_HOSTS = tuple(f"{name}.frag" for name in RASTERIZERS.values())
+SPLAT_HOSTS = tuple(f"{name}.frag" for name in RASTERIZERS)
 #: Fragment shaders that light samples.
 LIT_HOSTS = ("shading.frag", "deferred_lighting.frag")
 #: Fragment shaders that light samples, or splats one by one.
@@ -85,7 +84,7 @@ def draw_block(tile: TileContext, placed: DrawItem, epsilon: float) -> np.ndarra
         epsilon,
         max(tile.view.least_offset(tile.plan.linear_depth), placed.setback),
         *tile.identities.slots(placed.instance),
-        placed.split,
+        placed.split_distance,
         0.0 if placed.is_whole else -2.0,
     )
     return std140(DRAW, values)

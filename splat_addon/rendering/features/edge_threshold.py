@@ -15,7 +15,7 @@ def passes(planning):
         threshold = planning.settings.edge_threshold
         if threshold == 0:
             planning.skip("edge threshold", "it is 0: whatever a splat reaches is covered")
-        elif planning.method.works_in != "space":
+        elif planning.method.rasterizer != "object_space":
             planning.skip("edge threshold", f"the weights of {planning.method.name} are smaller where it filters")
         else:
             planning.has("EDGE_THRESHOLD", f"pixels whose weights sum to less than {threshold:g} fade")
@@ -23,7 +23,7 @@ def passes(planning):
 
 
 def is_present(planning) -> bool:
-    return planning.settings.edge_threshold > 0 and planning.method.works_in == "space"
+    return planning.settings.edge_threshold > 0 and planning.method.rasterizer == "object_space"
 
 
 def parts(planning, p):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture
 from . import depth_format, lit_splats, shadows, visibility
-from .drawing import LIT_HOSTS, RASTERIZERS, draw_splats
+from .drawing import LIT_HOSTS, draw_splats
 from .rasterizers import rasterized
 
 NAMES = ("gbuffer", "depth_in_normals", "gbuffer_depth")
@@ -24,7 +24,7 @@ SPRITE_DEPTH = Texture("sprite_depth", "DEPTH32F")
 
 def depths_are_apart(planning, kind: str) -> bool:
     """From normals."""
-    return kind == "layer" or planning.settings.accumulation == "float16"
+    return kind == "layer" or planning.settings.sum_format == "float16"
 
 
 def depth_sum(planning) -> Texture:
@@ -43,12 +43,12 @@ def depth_parts(planning, kind: str, **fields) -> Part:
 
 def state(planning) -> dict:
     """Of programs that add splats up."""
-    works_in, is_linear = planning.method.works_in, planning.find(depth_format.linear)[0]
-    settings, in_space = planning.settings, works_in == "space"
+    rasterizer, is_linear = planning.method.rasterizer, planning.find(depth_format.linear)[0]
+    settings, in_space = planning.settings, rasterizer == "object_space"
     return {
-        "blend": "none" if works_in == "sprites" else "add",
-        "depth_test": works_in != "picture" or not is_linear,
-        "depth_write": works_in == "sprites",
+        "blend": "none" if rasterizer == "point_sprite" else "add",
+        "depth_test": rasterizer != "screen_space" or not is_linear,
+        "depth_write": rasterizer == "point_sprite",
         "fragment_depth": in_space and is_linear,
         "sample_shading": bool(in_space and settings.multisampling and settings.sample_shading),
     }
@@ -58,18 +58,18 @@ def attributes(planning, reason: str, tests: Texture | None, kind: str = "opaque
     """The pass, tested by the hardware with a depth."""
     own = Part("gbuffer", writes=(COLOR,), tests=(tests,) if tests else ())
     own_parts = own, *rasterized(planning), depth_parts(planning, kind, writes=(NORMAL,))
-    if planning.method.works_in == "sprites":
+    if planning.method.rasterizer == "point_sprite":
         own_parts += (Part("gbuffer", writes=(SPRITE_DEPTH,)),)
-    host, lit = f"{RASTERIZERS[planning.method.works_in]}.frag", lit_splats.each(planning)
+    host, lit = f"{planning.method.rasterizer}.frag", lit_splats.each(planning)
     return Pass("attributes", reason, host, lit_splats.run if lit else run, own_parts, kind, state(planning), each=lit)
 
 
 def passes(planning):
     if not planning.shown:
         return
-    if planning.settings.accumulation != "float16":
+    if planning.settings.sum_format != "float16":
         planning.skip(DEPTH_SUM.name, "float32 sums of normals have room for depths")
-    if planning.method.works_in == "sprites":
+    if planning.method.rasterizer == "point_sprite":
         yield attributes(planning, "the nearest splat wins", None)
     else:
         yield attributes(planning, _why(planning), visibility.DEPTH)

@@ -24,7 +24,7 @@ FARTHEST = Texture("hiz", "R32F", _of_cells)
 
 def pays(planning) -> str:
     """Why hidden splats are looked for, or nothing."""
-    if planning.method.works_in != "picture":
+    if planning.method.rasterizer != "screen_space":
         return ""
     if not planning.method.culls_hidden:
         planning.skip(FARTHEST.name, f"{planning.method.name} draws hidden splats too, as its paper does")

@@ -15,7 +15,7 @@ ROW_DEPTH = Texture("row_holdout_depth", "DEPTH32F", silhouettes.of_rows)
 
 def _count(planning) -> int:
     """0 where the nearest splat wins: there is no depth but its own."""
-    if planning.method.works_in == "sprites":
+    if planning.method.rasterizer == "point_sprite":
         return 0
     return sum(instance.is_holdout for instance in planning.shown)
 
@@ -30,7 +30,7 @@ def passes(planning):
         planning.skip("holdout", f"of {planning.method.name} objects that cut holes are drawn as others are")
     elif cutting:
         planning.has("HOLDOUT", f"{cutting} of {len(planning.shown)} instances cut holes")
-    if cutting and planning.method.works_in == "picture":
+    if cutting and planning.method.rasterizer == "screen_space":
         own = visibility.own_parts(planning, _depth(planning))
         why = "a filter brings what lies behind a hole before it"
         yield visibility.drawn("holdouts", why, own, planning, "holes")._replace(run=run)

@@ -31,7 +31,7 @@ def read_back(planning) -> tuple[Texture, ...]:
 
 
 def _polygons_apart(planning) -> bool:
-    return bool(planning.scene.polygons) and planning.method.works_in == "sprites"
+    return bool(planning.scene.polygons) and planning.method.rasterizer == "point_sprite"
 
 
 def passes(planning):
@@ -49,9 +49,9 @@ def passes(planning):
             f"Hardware samples are not told apart by object: leave {', '.join(names)} out of the outputs, or set "
             "multisampling to 0 and use supersampling."
         )
-    if method.works_in == "space" and method.writes_depth:
+    if method.rasterizer == "object_space" and method.writes_depth:
         planning.skip("edge ids", f"what {method.name} spreads in space past what is visible is nobody's")
-    if method.works_in == "picture" and not method.filters_silhouettes:
+    if method.rasterizer == "screen_space" and not method.filters_silhouettes:
         why = f"{method.name} spreads splats past what is visible, which is somebody's"
         own = Part("object_id", ("edge_ids",), (visibility.DEPTH,), writes=(IDENTITY, EDGE_DEPTH), varyings=_VARYINGS)
         state = {"depth_test": True, "depth_write": True}

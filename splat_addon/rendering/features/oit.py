@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture, fill
 from . import gbuffer, lighting, lit_splats
-from .drawing import RASTERIZERS
 from .rasterizers import rasterized
 
 ACCUM = Texture("oit_accum")
@@ -18,7 +17,7 @@ def passes_of_rest(planning, peeled: Texture, layers: Texture) -> tuple[Pass, ..
     add = {"blend": "add"}
     rest = Part("oit", ("rest",), (lit_splats.LIT,), writes=(ACCUM, WEIGHT)), *rasterized(planning)
     state = gbuffer.state(planning) | {"depth_test": False}
-    host = f"{RASTERIZERS[planning.method.works_in]}.frag"
+    host = f"{planning.method.rasterizer}.frag"
     shade = Part("oit", reads=(ACCUM, WEIGHT, gbuffer.depth_sum(planning)), writes=(lighting.SHADED,))
     put = Part("oit", reads=(lighting.SHADED, peeled), writes=(layers,), constants=samples)
     peel = Part("oit", reads=(lighting.SHADED,), updates=(peeled,))

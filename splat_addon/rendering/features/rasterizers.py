@@ -6,10 +6,10 @@ from __future__ import annotations
 from ..plan.graph import Part
 from .drawing import storage_samplers
 
-#: where a method works -> what fragments are told of a splat's place
+#: rasterizer -> what fragments are told of a splat's place
 _PLACE = {
-    "space": (("smooth", "vec3", "place_depth"),),
-    "picture": (
+    "object_space": (("smooth", "vec3", "place_depth"),),
+    "screen_space": (
         ("flat", "vec4", "plane_ab"),
         ("flat", "vec4", "plane_center_gh"),
         ("flat", "vec4", "plane_depths"),
@@ -17,12 +17,12 @@ _PLACE = {
         ("flat", "vec3", "footprint_map"),
         ("flat", "vec2", "footprint_middle"),
     ),
-    "sprites": (("smooth", "vec2", "place"), ("flat", "vec3", "tilt_depth")),
+    "point_sprite": (("smooth", "vec2", "place"), ("flat", "vec3", "tilt_depth")),
 }
 _ATTRIBUTES = (("flat", "vec4", "color_weight"), ("flat", "vec3", "normal"))
 
 
 def rasterized(planning) -> tuple[Part, ...]:
     """Parts of every pass that draws splats with the method."""
-    varyings = (*_PLACE[planning.method.works_in], *_ATTRIBUTES)
+    varyings = (*_PLACE[planning.method.rasterizer], *_ATTRIBUTES)
     return (Part("rasterizers", inputs=storage_samplers(planning.settings.storage), varyings=varyings),)

@@ -110,8 +110,8 @@ def _as_cast(view: View, camera: Camera) -> View:
     """
     left, right, _, _ = camera.window
     texel = (right - left) / camera.size[0] * (view.scale if camera.is_orthographic else 1.0)
-    polygons = tuple(replace(p, split=0.0, setback=SETBACK * texel) for p in view.polygons)
-    return replace(view, placed=tuple(replace(p, split=0.0) for p in view.placed), polygons=polygons)
+    polygons = tuple(replace(p, split_distance=0.0, setback=SETBACK * texel) for p in view.polygons)
+    return replace(view, placed=tuple(replace(p, split_distance=0.0) for p in view.placed), polygons=polygons)
 
 
 def lights_texture(tile):

@@ -8,14 +8,14 @@ from .drawing import SPLAT_HOSTS
 
 
 def _count(planning) -> int:
-    return sum(placed.split is not None for placed in planning.shown)
+    return sum(placed.split_distance is not None for placed in planning.shown)
 
 
 def passes(planning):
     """None; it says whether there are any."""
     if planning.shown:
-        if split := planning.find(_count):
-            planning.has("SPLIT", f"{split} instances are polygons near the camera, or surfels beyond that")
+        if count := planning.find(_count):
+            planning.has("SPLIT", f"{count} instances are polygons near the camera, or surfels beyond that")
         else:
             planning.skip("split objects", "all are drawn whole")
     return ()

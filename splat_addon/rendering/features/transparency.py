@@ -22,12 +22,12 @@ from .drawing import SPLAT_HOSTS
 #: Samples that are read to each side of a layer's.
 LAYER_MARGIN = 1
 #: Of a picture along each side, for which `OCCUPANCY` holds one value each.
-BLOCKS = 64
-CONSTANTS = {"BLOCKS": BLOCKS}
+OCCUPANCY_BLOCKS = 64
+CONSTANTS = {"OCCUPANCY_BLOCKS": OCCUPANCY_BLOCKS}
 VALUES = {"alpha_threshold": ("float", lambda tile: tile.settings.alpha_threshold)}
 
 DEPTH = Texture("layer_depth", "DEPTH32F")
-OCCUPANCY = Texture("layer_occupancy", "R32F", lambda plan, pixels: (BLOCKS, BLOCKS))
+OCCUPANCY = Texture("layer_occupancy", "R32F", lambda plan, pixels: (OCCUPANCY_BLOCKS, OCCUPANCY_BLOCKS))
 PEELED = Texture("peel_state", "RG32F")
 COLOR = Texture("layers", per=of_pixels)
 COLOR_DEPTH = Texture("layers_depth", "R32F", of_pixels)
@@ -42,7 +42,7 @@ def layers(planning) -> int:
         planning.skip("transparent layers", "every surfel is opaque")
         return 0
     why_not = ""
-    if method.works_in == "sprites":
+    if method.rasterizer == "point_sprite":
         why_not = f"of {method.name} the nearest splat wins"
     elif planning.model.is_diagnostic:
         why_not = f"{planning.model.name} shows how splats add up"
@@ -71,7 +71,7 @@ def passes(planning):
 
 
 def _body(planning) -> tuple[Pass, ...]:
-    in_space = planning.method.works_in == "space"
+    in_space = planning.method.rasterizer == "object_space"
     own = visibility.own_parts(planning, DEPTH)
     found = visibility.drawn("visibility", "behind nearer layers, before what is opaque", own, planning, "layer")
     occupied = Part("transparency", reads=(DEPTH,), writes=(OCCUPANCY,))

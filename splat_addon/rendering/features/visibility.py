@@ -44,7 +44,7 @@ def drawn(name: str, reason: str, own: tuple[Part, ...], planning, kind: str = "
 def passes(planning):
     if not planning.shown:
         return
-    if planning.method.works_in == "sprites":
+    if planning.method.rasterizer == "point_sprite":
         planning.skip("visibility", f"of {planning.method.name} the nearest splat wins, and nothing blends")
         return
     why = f"splats may hide one another; {planning.find(depth_format.linear)[1]}"

@@ -8,6 +8,6 @@ METHOD = Method(
     label="EWA in Space",
     paper="Ren et al. 2002; view-independent object-space surface splatting, section 3, equation 10",
     summary="The same filter joined in each splat's plane, drawn as a larger quad",
-    works_in="space",
+    rasterizer="object_space",
     writes_depth=True,
 )

@@ -5,14 +5,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+#: name -> what it draws of each splat
+RASTERIZERS = {
+    "object_space": "what the hardware clips, interpolates and hides",
+    "screen_space": "a triangle around each footprint, of which every pixel is computed",
+    "point_sprite": "a square parallel to the picture; the nearest wins, in one pass, and nothing blends",
+}
+
 
 @dataclass(frozen=True)
 class Method:
     """name: also of shaders/methods/<name>.glsl. label: for users. paper: its source.
     summary: what it gains and costs.
 
-    works_in: "space" (what the hardware clips, interpolates and hides), "picture" (a triangle around each footprint,
-        every pixel computed) or "sprites" (parallel to the picture; the nearest wins, in one pass, and nothing blends).
+    rasterizer: one of `RASTERIZERS`, of shaders/hosts, which splats are drawn by.
     blurs_rims: its pixel filter blurs where a splat ends; others end sharply.
     filters_silhouettes: a resolve pass filters them as the colours are.
     culls_hidden: splats that lie behind all that is seen are found before they are drawn. The papers draw them, so do
@@ -26,7 +32,7 @@ class Method:
     label: str
     paper: str
     summary: str
-    works_in: str = "picture"
+    rasterizer: str = "screen_space"
     blurs_rims: bool = False
     filters_silhouettes: bool = False
     culls_hidden: bool = False

@@ -8,6 +8,6 @@ METHOD = Method(
     label="Quads",
     paper="View-independent object-space surface splatting, sections 4.1 to 4.3",
     summary="No filter: the fastest, and with many samples the sharpest",
-    works_in="space",
+    rasterizer="object_space",
     pixel_variance=1 / 12,
 )

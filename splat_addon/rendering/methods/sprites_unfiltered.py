@@ -8,6 +8,6 @@ METHOD = Method(
     label="Sprites, Unfiltered",
     paper="Botsch and Kobbelt 2003, sections 3.1 and 3.2",
     summary="Discs in point sprites of which the nearest is seen: nothing blends, 0.65 to 0.7 of the time of Quads",
-    works_in="sprites",
+    rasterizer="point_sprite",
     pixel_variance=1 / 12,
 )

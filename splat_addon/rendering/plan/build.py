@@ -35,7 +35,7 @@ def plan(
         a part of the picture is drawn.
     """
     planning = Planning(scene, camera, settings, shadow_camera or camera, is_added_up)
-    if settings.multisampling and planning.method.works_in != "space":
+    if settings.multisampling and planning.method.rasterizer != "object_space":
         raise ValueError(
             f"Method {planning.method.name} works in the picture, where hardware multisampling sees nothing; set "
             "multisampling to 0 and use supersampling, or method quad."
@@ -54,7 +54,7 @@ def plan(
         sample_shading=bool(settings.multisampling and settings.sample_shading),
         method=settings.method,
         storage=storage,
-        accumulation=settings.accumulation,
+        sum_format=settings.sum_format,
         linear_depth=is_linear,
         steps=steps,
         variants=frozenset(["linear"] if is_linear else []),
@@ -62,7 +62,7 @@ def plan(
             ("method", settings.method),
             ("storage", storage),
             ("shading", settings.shading),
-            ("sum_format", settings.accumulation),
+            ("sum_format", settings.sum_format),
             ("samples", "mean" if each else "each"),
             ("sides", "alike" if settings.as_printed else "told_apart"),
             ("rest_opacity", "printed" if settings.as_printed else "surfaces"),

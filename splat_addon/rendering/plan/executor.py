@@ -135,7 +135,7 @@ class TileContext:
     def color_scale(self) -> float:
         """Factor by which float16 sums multiply colours: a power of two that brings the scene's brightest colour to at
         most 1."""
-        if self.plan.accumulation == "float32":
+        if self.plan.sum_format == "float32":
             return 1.0
         surfels = [instance.surfels for instance in self.scene.surfels]  # polygons are not summed
         textures = [t for instance in self.scene.surfels if instance.is_textured for t in instance.textures if t]

@@ -20,7 +20,7 @@ VISIBILITY_ROWS = 2
 class FramePlan:
     """tiles: (x, y, width, height) in pixels, each rendered with all passes and a margin for filters and lines.
     samples: N for N x N samples per pixel. multisamples: hardware samples for each of them, or 0.
-    sample_shading: they are evaluated and lit one by one. method, storage, accumulation: as in the settings.
+    sample_shading: they are evaluated and lit one by one. method, storage, sum_format: as in the settings.
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
     steps: passes and loops, in order. variants: those whose parts are in every program.
     choices: (name in paths of shaders, file). margin: pixels drawn around a tile and not kept.
@@ -34,7 +34,7 @@ class FramePlan:
     sample_shading: bool
     method: str
     storage: str
-    accumulation: str
+    sum_format: str
     linear_depth: bool
     steps: tuple[Step, ...]
     variants: frozenset[str]
@@ -78,7 +78,7 @@ class FramePlan:
 
     def format(self, texture: Texture) -> str:
         """A name in `device.interface.FORMATS`."""
-        return "RGBA16F" if texture.is_sum and self.accumulation == "float16" else texture.format
+        return "RGBA16F" if texture.is_sum and self.sum_format == "float16" else texture.format
 
     def multisamples_of(self, texture: Texture) -> int:
         """Samples per texel, 0 for a single-sample texture."""
@@ -88,7 +88,7 @@ class FramePlan:
         depth = "linear" if self.linear_depth else "hardware"
         lines = [
             f"{len(self.tiles)} tile(s), {self.samples} x {self.samples} samples, method {self.method}, {depth} depth, "
-            f"{self.storage} splats, {self.accumulation} sums"
+            f"{self.storage} splats, {self.sum_format} sums"
         ]
         if self.multisamples:
             each = "evaluated and lit one by one" if self.sample_shading else "evaluated once, lit once for their mean"

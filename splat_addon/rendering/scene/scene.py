@@ -85,7 +85,7 @@ class Placed:
         are shown.
     name: identifies it in the frame's `cryptomatte`; instances with the same name count as one. index: its value in
         `object_index`.
-    split: distance from the camera, world units, up to which an object is drawn as polygons, and beyond it as surfels,
+    split_distance: from the camera, world units, up to which an object is drawn as polygons, and beyond it as surfels,
         by two instances that have the same; None: each is drawn everywhere. Shadows are cast by both.
     is_holdout: it hides everything behind it and shows nothing: the picture has an alpha of 0 there.
     """
@@ -98,7 +98,7 @@ class Placed:
     textures: tuple[SurfaceTexture | None, ...] = ()
     name: str = ""
     index: int = 0
-    split: float | None = None
+    split_distance: float | None = None
     is_holdout: bool = False
 
     def __post_init__(self):
@@ -111,8 +111,8 @@ class Placed:
         object.__setattr__(self, "matrix_world", matrix)
         object.__setattr__(self, "materials", tuple(self.materials) or (Material(),))
         object.__setattr__(self, "textures", tuple(self.textures))
-        if self.split is not None and not 0 < self.split < math.inf:
-            raise ValueError(f"An instance's split must be a finite distance above 0, not {self.split}.")
+        if self.split_distance is not None and not 0 < self.split_distance < math.inf:
+            raise ValueError(f"An instance's split_distance must be finite and above 0, not {self.split_distance}.")
 
     @property
     def radius(self) -> float:

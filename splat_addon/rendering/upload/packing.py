@@ -81,7 +81,7 @@ def row_count(surfels: Surfels) -> int:
     count = len(surfels)
     if count > MAX_SPLATS:
         raise ValueError(
-            f"One object can hold {MAX_SPLATS:,} surfels, not {count:,}; split it or raise its surfel spacing."
+            f"One object can hold {MAX_SPLATS:,} surfels, not {count:,}; make several, or raise its surfel spacing."
         )
     return max(-(-count // SPLATS_PER_ROW), 1)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds vertices at the same position by hashing: importers split vertices at seams."""
+"""Finds vertices at the same position by hashing: importers repeat vertices at seams."""
 
 from __future__ import annotations
 

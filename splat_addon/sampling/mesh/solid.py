@@ -17,7 +17,7 @@ from .triangle_mesh import TriangleMesh
 def is_solid(mesh: TriangleMesh) -> bool:
     """Whether every edge is shared with a triangle that traverses it the other way, and every part faces outwards.
 
-    Vertices at the same position count as one, because importers split them at seams. A ray from outside then always
+    Vertices at the same position count as one, because importers repeat them at seams. A ray from outside then always
     hits a front face first. Parts are connected by vertices; a part with negative or no volume (inside out, or a
     cavity) makes the answer False, which costs speed but is never wrong in the picture.
     """

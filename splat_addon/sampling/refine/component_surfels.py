@@ -25,7 +25,7 @@ def component_surfels(
     mesh: TriangleMesh,
     coordinates: np.ndarray,
     grid: Grid,
-    lost: tuple[np.ndarray, np.ndarray],
+    missed: tuple[np.ndarray, np.ndarray],
     largest_radius: float,
     sampler: MaterialSampler,
     tangents: np.ndarray | None,
@@ -33,14 +33,14 @@ def component_surfels(
 ) -> dict[str, np.ndarray]:
     """The arrays of `Surfels` of p parts, positions relative to the grid's middle.
 
-    coordinates: (3, V) float64 grid coordinates of the mesh's vertices. lost: result of `missed_components`.
+    coordinates: (3, V) float64 grid coordinates of the mesh's vertices. missed: result of `missed_components`.
     largest_radius: of a disc, in spacings. sampler, tangents: as in `SampleFiller`.
     texture_mapped: whether the surfels get texture coordinates.
     The disc lies at the area-weighted centroid, faces the direction that most of the area faces, and has the area
     projected onto that direction. The shading normal is the mean over the triangles on its front; material and material
     values are those of the largest triangle.
     """
-    triangles, part = lost
+    triangles, part = missed
     corners = gather_corners(coordinates, mesh.triangles[triangles])
     vectors = doubled_areas(corners) / 2
     areas = np.sqrt((vectors**2).sum(axis=0)) + _TINY_AREA

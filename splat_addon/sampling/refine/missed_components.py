@@ -62,10 +62,10 @@ def missed_components(mesh: TriangleMesh, surface: SampledSurface) -> tuple[np.n
     is_found = np.zeros(len(reached), bool)
     is_found[labels[np.flatnonzero(reached[: len(labels)])]] = True
     part = labels[corners[:, 0]]
-    lost = ~is_found[part]
-    _, first, number = np.unique(part[lost], return_index=True, return_inverse=True)
+    missed = ~is_found[part]
+    _, first, number = np.unique(part[missed], return_index=True, return_inverse=True)
     # in the order of their first triangles, because labels follow the order of hashes
-    return rest[lost], np.argsort(np.argsort(first))[number.reshape(-1)]
+    return rest[missed], np.argsort(np.argsort(first))[number.reshape(-1)]
 
 
 def _welded(hashes: np.ndarray, corners: np.ndarray, reached: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

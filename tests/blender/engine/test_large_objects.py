@@ -7,7 +7,7 @@ import pytest
 
 from splat_addon.blender.export import scene
 from splat_addon.blender.export.live_meshes import LiveMeshes
-from splat_addon.surfels import split
+from splat_addon.surfels import portions
 
 
 @pytest.fixture
@@ -41,8 +41,8 @@ def test_the_sets_stay_the_same_from_frame_to_frame(sheet, monkeypatch):
 
 def test_a_set_that_is_held_is_not_split(random_surfels):
     surfels = random_surfels(10)
-    assert split(surfels, 10) == (surfels,)
-    parts = split(surfels, 4)
+    assert portions(surfels, 10) == (surfels,)
+    parts = portions(surfels, 4)
     assert [len(part) for part in parts] == [4, 4, 2]
     assert (np.concatenate([part.normals for part in parts]) == surfels.normals).all()
     assert all(np.shares_memory(part.colors, surfels.colors) for part in parts)

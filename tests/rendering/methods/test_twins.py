@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from splat_addon.clip_lines import MAX_CUT, TURN, kept
 from splat_addon.reference.methods.clip_lines import clipped_samples
-from splat_addon.reference.methods.plane import splat_plane, straddling_samples
+from splat_addon.reference.methods.plane import near_clipped_samples, splat_plane
 from splat_addon.rendering import EMPTY_DEPTH, Camera, Renderer, Scene, Settings
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.view import build_view
@@ -136,9 +136,9 @@ def twin_weights(method, axes, camera, shift=(0.0, 0.0), lines=NO_LINES):
     x, y = np.meshgrid(np.arange(SIZE) + 0.5 + shift[0], np.arange(SIZE) + 0.5 + shift[1])
     points = np.stack([left + x.ravel() * pixel[0], bottom + y.ravel() * pixel[1]], axis=1)
     position, u, v = axes
-    is_sprite = METHODS[method].works_in == "sprites"  # drawn whole or not at all
+    is_sprite = METHODS[method].rasterizer == "point_sprite"  # drawn whole or not at all
     if -position[2] - np.hypot(u[2], v[2]) <= NEAR and not is_sprite:
-        weights, depths = straddling_samples(position, u, v, points, camera.is_orthographic, partial(inside, lines))
+        weights, depths = near_clipped_samples(position, u, v, points, camera.is_orthographic, partial(inside, lines))
     else:
         plane = splat_plane(position, u, v, camera.is_orthographic)
         weights, depths = clipped_samples(method, plane, points, pixel, *lines)

@@ -15,8 +15,8 @@ def test_half_the_digits_cost_less_than_is_seen(name, method, render):
     """Measured: 71 to 85 dB."""
     scene, camera = getattr(scenes, name)(size=(128, 128))
     whole, half = (
-        render(scene, camera, Settings(method=method, supersampling=1, accumulation=accumulation))
-        for accumulation in ("float32", "float16")
+        render(scene, camera, Settings(method=method, supersampling=1, sum_format=sum_format))
+        for sum_format in ("float32", "float16")
     )
     assert psnr(half.color, whole.color) > 65
     np.testing.assert_allclose(half.depth, whole.depth, rtol=1e-4)
@@ -26,7 +26,7 @@ def test_half_the_digits_cost_less_than_is_seen(name, method, render):
 def test_the_plan_names_the_formats(render):
     scene, camera = scenes.torus(500, size=(16, 16))
     plans = [
-        render(scene, camera, Settings(method="quad", supersampling=2, accumulation=a)).stats["plan"]
+        render(scene, camera, Settings(method="quad", supersampling=2, sum_format=a)).stats["plan"]
         for a in ("float32", "float16")
     ]
     sums = "gbuffer_color", "gbuffer_normal", "gbuffer_material"
@@ -37,5 +37,5 @@ def test_the_plan_names_the_formats(render):
 
 
 def test_an_unknown_format_is_refused():
-    with pytest.raises(ValueError, match="accumulation must be one of float32, float16, not 'half'"):
-        Settings(method="quad", supersampling=2, accumulation="half")
+    with pytest.raises(ValueError, match="sum_format must be one of float32, float16, not 'half'"):
+        Settings(method="quad", supersampling=2, sum_format="half")
