@@ -6,16 +6,23 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import EnumProperty, FloatProperty, StringProperty
 
-from .conversion.mesh_settings import DENSITIES
+from .density_properties import (
+    DENSITIES,
+    pixels_property,
+    resolution_property,
+    spacing_property,
+    texture_mapped_property,
+)
 from .enum_values import check_choices
 from .geometry.sources import asked_of, has_surfaces
 from .ids import OBJECT_SETTINGS, RENDER_SETTINGS
+from .registration import with_property
 from .ui.engine_panel import EnginePanel
 
 #: density -> the property of `MeshSamplingProperties` that holds its number, and the kind of density.
-_FINENESS = {
+_NUMBERED = {
     "AUTOMATIC": ("mesh_pixels", "automatic"),
     "RESOLUTION": ("mesh_resolution", "resolution"),
     "SPACING": ("mesh_spacing", "spacing"),
@@ -61,7 +68,7 @@ _MESH_ITEMS = (
 #: The numbers match earlier files, which had no automatic density.
 _NUMBERS = {"RESOLUTION": 0, "SPACING": 1, "CAMERA": 2, "AUTOMATIC": 3}
 
-_DENSITY_ITEMS = [(name, DENSITIES[name].label, DENSITIES[name].description, _NUMBERS[name]) for name in _FINENESS]
+_DENSITY_ITEMS = [(name, DENSITIES[name].label, DENSITIES[name].description, _NUMBERS[name]) for name in _NUMBERED]
 
 
 class MeshSamplingProperties:
@@ -81,61 +88,23 @@ class MeshSamplingProperties:
         default="AUTOMATIC",
         update=_read_again,
     )
-    mesh_resolution: IntProperty(
-        name="Resolution",
-        description=(
-            "Grid cells along the longest edge of each object's bounding box. Doubling it makes four times as "
-            "many surfels, and takes four times the memory and time"
-        ),
-        default=256,
-        min=1,
-        soft_min=8,
-        soft_max=2048,
-        update=_meant("RESOLUTION"),
+    mesh_resolution: resolution_property("each object's", min=1, soft_max=2048, update=_meant("RESOLUTION"))
+    mesh_spacing: spacing_property(
+        " in world units, where the object's scale spreads them most", min=1e-6, update=_meant("SPACING")
     )
-    mesh_spacing: FloatProperty(
-        name="Spacing",
-        description=(
-            "Distance between surfels in world units, where the object's scale spreads them most. Half of it "
-            "takes four times the memory and time"
-        ),
-        default=0.01,
-        min=1e-6,
-        soft_max=10.0,
-        precision=4,
-        step=0.1,
-        update=_meant("SPACING"),
-    )
-    mesh_pixels: FloatProperty(
-        name="Pixels per Surfel",
-        description=(
-            "Distance between surfels in pixels of the render, where the object comes closest to the camera. An"
-            " object is sampled again when it comes much closer"
-        ),
-        default=0.75,
-        min=0.1,
-        soft_max=10.0,
-        update=_read_again,
-    )
-    mesh_textures: BoolProperty(
-        name="Texture-Mapped",
-        description=(
-            "Look the base colour's image up at every pixel instead of once a surfel. Textures are much "
-            "sharper, and a frame takes 3.6 to 6 times as long in software"
-        ),
-        default=False,
-    )
+    mesh_pixels: pixels_property("An object is sampled again when it comes much closer", min=0.1, update=_read_again)
+    mesh_textures: texture_mapped_property()
 
 
 def are_meshes_texture_mapped(scene: bpy.types.Scene) -> bool:
     return getattr(scene, RENDER_SETTINGS).mesh_textures
 
 
-def mesh_fineness(scene: bpy.types.Scene) -> dict[str, float]:
+def density_of_meshes(scene: bpy.types.Scene) -> dict[str, float]:
     """The density at which meshes are sampled: {"resolution" | "spacing" (world units) | "pixels" | "automatic":
     number}."""
     properties = getattr(scene, RENDER_SETTINGS)
-    name, kind = _FINENESS[properties.mesh_density]
+    name, kind = _NUMBERED[properties.mesh_density]
     return {kind: getattr(properties, name)}
 
 
@@ -252,7 +221,7 @@ class RENDER_PT_surfel_meshes(EnginePanel, bpy.types.Panel):
         self.layout.prop(properties, "render_meshes")
         # Also for objects that are surfels by their own choice, or because they are transparent.
         self.layout.prop(properties, "mesh_density")
-        self.layout.prop(properties, _FINENESS[properties.mesh_density][0])
+        self.layout.prop(properties, _NUMBERED[properties.mesh_density][0])
         self.layout.prop(properties, "mesh_textures")
 
 
@@ -275,16 +244,6 @@ class OBJECT_PT_surfel_splatting(EnginePanel, bpy.types.Panel):
         self.layout.prop(settings, "detail")
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (SurfelObjectSettings, RENDER_PT_surfel_meshes, OBJECT_PT_surfel_splatting)
+register, unregister = with_property(
+    bpy.types.Object, OBJECT_SETTINGS, SurfelObjectSettings, RENDER_PT_surfel_meshes, OBJECT_PT_surfel_splatting
 )
-
-
-def register():
-    _register_classes()
-    setattr(bpy.types.Object, OBJECT_SETTINGS, PointerProperty(type=SurfelObjectSettings))
-
-
-def unregister():
-    delattr(bpy.types.Object, OBJECT_SETTINGS)
-    _unregister_classes()

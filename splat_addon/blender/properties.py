@@ -34,6 +34,7 @@ from .enum_values import check_choices
 from .ids import RENDER_SETTINGS
 from .materials.matcap_images import matcap_of
 from .mesh_sampling_settings import MeshSamplingProperties
+from .registration import with_property
 
 #: A new scene's samples, of F12 as of the viewport at rest: creases and the edges of polygons are smooth in both.
 _SAMPLES = 16
@@ -364,14 +365,4 @@ def _lines(properties) -> Lines:
     )
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((SurfelSplattingSettings,))
-
-
-def register():
-    _register_classes()
-    setattr(bpy.types.Scene, RENDER_SETTINGS, PointerProperty(type=SurfelSplattingSettings))
-
-
-def unregister():
-    delattr(bpy.types.Scene, RENDER_SETTINGS)
-    _unregister_classes()
+register, unregister = with_property(bpy.types.Scene, RENDER_SETTINGS, SurfelSplattingSettings)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sampling: a mesh becomes surfels by exact scan conversion onto a layered depth cube. Numpy only.
 
-Flow: `mesh` (usable triangles) -> `density`, `ldc` (grid, scan conversion, reduction) -> `attributes` (ellipse, normal,
-material) -> `edges` (clip lines) -> `refine` (fewer surfels where the surface is flat, extra ones where no ray hit) ->
-`Surfels`; `sample` runs these steps. `camera_density` finds the spacing that a camera needs. `deform` lets surfels
-follow a mesh; points without faces become surfels in `points`.
+Flow: `options` (the user's choices), `mesh` (usable triangles) -> `density`, `ldc` (grid, scan conversion, reduction) ->
+`attributes` (ellipse, normal, material) -> `edges` (clip lines) -> `refine` (fewer surfels where the surface is flat,
+extra ones where no ray hit) -> `Surfels`; `sample` runs these steps. `camera_density` finds the spacing that a camera
+needs. `deform` lets surfels follow a mesh; points without faces become surfels in `points`.
 """
 
 from ..images import Image
@@ -21,10 +21,11 @@ from .mesh.corners import corner_values
 from .mesh.joining import have_same_values, joined, transformed
 from .mesh.solid import is_solid
 from .mesh.triangle_mesh import TriangleMesh
+from .options import DEFAULT_SPLAT_SIZE, SamplingOptions
 from .points import PointsReport, surfels_from_points
 from .progress import SamplingCancelled
 from .refine.adaptive import Tolerance
-from .sample import DEFAULT_SPLAT_SIZE, Sampling, sample_mesh, sample_surface
+from .sample import Sampling, sample_mesh, sample_surface
 
 __all__ = [
     "DEFAULT_CREASE_ANGLE",
@@ -43,6 +44,7 @@ __all__ = [
     "PointsReport",
     "Sampling",
     "SamplingCancelled",
+    "SamplingOptions",
     "Surface",
     "Texture",
     "Tolerance",

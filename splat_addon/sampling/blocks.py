@@ -21,11 +21,12 @@ from ..surfels import empty_surfels
 from .ldc.depth_cube import surface_of
 from .ldc.scan_conversion import Spans, expand
 from .mesh.triangle_mesh import TriangleMesh
+from .options import SamplingOptions
 from .progress import Progress, stage
 from .refine.missed_components import SampledSurface, missed_components
 from .sample import Sampling, SamplingRun
 
-_VERSION = 1
+_VERSION = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,11 +51,11 @@ def sample_block(mesh: TriangleMesh, number: int, count: int, progress: Progress
     """
     if not 0 <= number < count:
         raise ValueError(f"There is no block {number + 1} of {count}.")
-    run = SamplingRun(mesh, **options)
+    run = SamplingRun(mesh, SamplingOptions(**options))
     if run.is_empty:
-        return Block(number, count, _digest(run, options), (Spans.joined([]),) * 3, {})
+        return Block(number, count, _digest(run), (Spans.joined([]),) * 3, {})
     images = run.images(SampledSurface(len(run.mesh.positions)), stage(progress, 0.0, 0.5), (number, count))
-    return Block(number, count, _digest(run, options), images, run.filled(images, stage(progress, 0.5, 1.0)))
+    return Block(number, count, _digest(run), images, run.filled(images, stage(progress, 0.5, 1.0)))
 
 
 def joined_blocks(mesh: TriangleMesh, blocks: Iterable[Block], progress: Progress | None = None, **options) -> Sampling:
@@ -62,9 +63,9 @@ def joined_blocks(mesh: TriangleMesh, blocks: Iterable[Block], progress: Progres
 
     Raises ValueError with a sentence if a block belongs to another mesh or other options, is missing, or appears twice.
     """
-    run = SamplingRun(mesh, **options)
+    run = SamplingRun(mesh, SamplingOptions(**options))
     blocks = sorted(blocks, key=lambda block: block.number)
-    digest = _digest(run, options)
+    digest = _digest(run)
     for block in blocks:
         if block.made_from != digest:
             raise ValueError(
@@ -105,10 +106,10 @@ def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], np.ndarray]:
     return tuple(images), np.concatenate(orders)
 
 
-def _digest(run: SamplingRun, options: dict) -> str:
+def _digest(run: SamplingRun) -> str:
     """Digest of the usable mesh and the sampling options. It covers which triangles use which material, but not
     material values."""
-    digest = hashlib.sha256(repr((_VERSION, sorted(options.items()))).encode("utf-8"))
+    digest = hashlib.sha256(repr((_VERSION, run.options)).encode("utf-8"))
     mesh = run.mesh
     for values in (
         mesh.positions,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sampling density: the ways to specify it, and the spacing that each results in.
+"""Sampling density: the spacing that each way to specify it results in, and the number of surfels.
 
 This runs before `grid`. `camera_density` converts a density in pixels of a camera to a spacing.
 """
@@ -9,68 +9,44 @@ from __future__ import annotations
 import math
 
 from .ldc.grid import longest_edge
-from .ldc.reductions import DEFAULT_GRAZING_ANGLE, projected_area
+from .ldc.reductions import projected_area
 from .mesh.cleaning import drop_unusable
 from .mesh.triangle_mesh import TriangleMesh
+from .options import Density
 
 
-def check_fineness(spacing: float | None = None, resolution: float | None = None, count: float | None = None):
-    """Raise ValueError with one sentence unless exactly one option is given, and it is finite and above 0."""
-    values = {"spacing": spacing, "resolution": resolution, "count": count}
-    given = {name: value for name, value in values.items() if value is not None}
-    if len(given) != 1:
-        raise ValueError(f"Give one of spacing, resolution and count, not {' and '.join(given) or 'none of them'}.")
-    for name, value in given.items():
-        if not (math.isfinite(value) and value > 0):
-            raise ValueError(f"The {name} must be a finite number above 0, not {value}.")
+def grid_spacing(mesh: TriangleMesh, **density) -> float:
+    """Cell size H, object units. density: the fields of `Density`."""
+    return spacing_of(mesh, Density(**density))
 
 
-def grid_spacing(
-    mesh: TriangleMesh,
-    *,
-    spacing: float | None = None,
-    resolution: float | None = None,
-    count: float | None = None,
-    reduction: str = "normal",
-    grazing_angle: float = DEFAULT_GRAZING_ANGLE,
-) -> float:
-    """Cell size H, object units, from exactly one of the three options.
+def spacing_of(mesh: TriangleMesh, density: Density) -> float:
+    """Cell size H, object units.
 
-    spacing: H itself. resolution: cells along the longest edge of the usable triangles' box.
-    count: surfels that the reduction should leave; H = sqrt(projected area / count).
-    Raises ValueError with one sentence if a value is not above 0, if not exactly one is given, and for a resolution or
-    count of a mesh without usable triangles.
+    It is the spacing itself, the longest edge of the usable triangles' box divided by the resolution, or
+    sqrt(projected area / count).
+
+    Raises ValueError with one sentence for a resolution or count of a mesh without usable triangles.
     """
-    check_fineness(spacing, resolution, count)
-    if spacing is not None:
-        return float(spacing)
+    if density.spacing is not None:
+        return float(density.spacing)
     mesh, _ = drop_unusable(mesh)
     if not len(mesh):
-        what = "resolution" if count is None else "count"
+        what = "resolution" if density.count is None else "count"
         raise ValueError(f"A {what} means nothing for a mesh without usable triangles; give a spacing instead.")
-    if count is not None:
-        return math.sqrt(projected_area(mesh, reduction, grazing_angle) / count)
-    return longest_edge(mesh) / resolution
+    if density.count is not None:
+        return math.sqrt(projected_area(mesh, density.reduction, density.grazing_angle) / density.count)
+    return longest_edge(mesh) / density.resolution
 
 
-def predict_count(
-    mesh: TriangleMesh,
-    *,
-    spacing: float | None = None,
-    resolution: float | None = None,
-    count: float | None = None,
-    reduction: str = "normal",
-    grazing_angle: float = DEFAULT_GRAZING_ANGLE,
-) -> int:
+def predict_count(mesh: TriangleMesh, **density) -> int:
     """The number of surfels that `sample_mesh` will make, computed from areas alone; 0 for a mesh without usable
-    triangles.
+    triangles. density: the fields of `Density`.
 
     3-to-1 makes fewer where sheets lie closer than a cell. Each part that no ray hits adds one surfel.
     """
-    check_fineness(spacing, resolution, count)
+    given = Density(**density)
     mesh, _ = drop_unusable(mesh)
     if not len(mesh):
         return 0
-    how = {"reduction": reduction, "grazing_angle": grazing_angle}
-    cell = grid_spacing(mesh, spacing=spacing, resolution=resolution, count=count, **how)
-    return round(projected_area(mesh, **how) / cell**2)
+    return round(projected_area(mesh, given.reduction, given.grazing_angle) / spacing_of(mesh, given) ** 2)

@@ -23,6 +23,24 @@ def empty_file(add_on):
 
 
 @pytest.fixture
+def cube():
+    """Of edges 2, active and selected."""
+    bpy.ops.mesh.primitive_cube_add(size=2)
+    return bpy.context.object
+
+
+@pytest.fixture
+def camera():
+    """The scene's camera, 10 above the origin, looking down."""
+    made = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    bpy.context.collection.objects.link(made)
+    made.location.z = 10
+    bpy.context.scene.camera = made
+    bpy.context.view_layer.update()
+    return made
+
+
+@pytest.fixture
 def random_surfels():
     """random_surfels(n) -> n surfels of random values, the same every time."""
 

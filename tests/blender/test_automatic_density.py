@@ -13,22 +13,6 @@ from splat_addon.blender.ui.sidebar import prediction as sidebar_text
 AUTOMATIC = Choices({"automatic": 1.0})
 
 
-@pytest.fixture
-def cube():
-    bpy.ops.mesh.primitive_cube_add(size=2)
-    return bpy.context.object
-
-
-@pytest.fixture
-def camera():
-    """The scene's camera, 10 above the origin, looking down."""
-    made = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-    bpy.context.collection.objects.link(made)
-    made.location.z = 10
-    bpy.context.scene.camera = made
-    return made
-
-
 def prepared(source, asked=AUTOMATIC):
     bpy.context.view_layer.update()
     return prepare([source], bpy.context.evaluated_depsgraph_get(), asked)

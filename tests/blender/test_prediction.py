@@ -15,23 +15,6 @@ PLAIN = Choices({"resolution": 16})
 
 
 @pytest.fixture
-def cube():
-    bpy.ops.mesh.primitive_cube_add(size=2)
-    return bpy.context.object
-
-
-@pytest.fixture
-def camera():
-    """The scene's camera, 10 above the origin, looking down."""
-    made = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-    bpy.context.collection.objects.link(made)
-    made.location.z = 10
-    bpy.context.scene.camera = made
-    bpy.context.view_layer.update()
-    return made
-
-
-@pytest.fixture
 def known(cube):
     """The extent of the cube, measured as the timer does it."""
     bpy.context.view_layer.update()

@@ -180,8 +180,9 @@ def _facts(trees) -> dict[str, str]:
         for node in ast.walk(tree):
             if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store) and _is_facts(node.value):
                 facts[node.slice.value] = file.stem
-            if isinstance(node, ast.Call) and _called(node) == "has" and isinstance(node.args[0], ast.Constant):
-                facts[node.args[0].value] = file.stem
+            if isinstance(node, ast.Call) and _called(node) in ("has", "counts"):
+                if isinstance(node.args[0], ast.Constant):
+                    facts[node.args[0].value] = file.stem
     return facts
 
 

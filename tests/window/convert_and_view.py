@@ -11,7 +11,7 @@ import bpy
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
-from steps import in_view, open_sidebar, play, show_tab, view3d  # noqa: E402
+from steps import in_view, open_sidebar, play, show_tab, smooth_and_red, view3d  # noqa: E402
 
 import splat_addon  # noqa: E402
 
@@ -23,13 +23,7 @@ def prepare():
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     with in_view():
         bpy.ops.mesh.primitive_monkey_add(size=3)
-        suzanne = bpy.context.object
-        suzanne.modifiers.new("Subdivision", "SUBSURF").levels = 2
-        bpy.ops.object.shade_smooth()
-        material = bpy.data.materials.new("Red")
-        material.use_nodes = True
-        material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (0.8, 0.05, 0.03, 1)
-        suzanne.data.materials.append(material)
+        smooth_and_red((0.8, 0.05, 0.03, 1))
         bpy.ops.view3d.view_selected()
         bpy.ops.ed.undo_push(message="Suzanne")
     open_sidebar()

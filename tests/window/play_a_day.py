@@ -15,7 +15,7 @@ from mathutils import Quaternion
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from steps import REPORT, in_view, open_sidebar, play, show_tab, view3d
+from steps import REPORT, in_view, open_sidebar, play, show_tab, smooth_and_red, view3d
 
 MODULE = "bl_ext.user_default.surfel_splatting"
 PACKAGE = os.environ["SURFEL_PACKAGE"]
@@ -73,13 +73,7 @@ def build_scene():
     with in_view():
         bpy.ops.mesh.primitive_plane_add(size=8, location=(0, 0, -1))
         bpy.ops.mesh.primitive_monkey_add(size=2)
-        suzanne = bpy.context.object
-        suzanne.modifiers.new("Subdivision", "SUBSURF").levels = 2
-        bpy.ops.object.shade_smooth()
-    material = bpy.data.materials.new("Red")
-    material.use_nodes = True
-    material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (0.8, 0.1, 0.05, 1)
-    suzanne.data.materials.append(material)
+        smooth_and_red((0.8, 0.1, 0.05, 1))
     lamp = bpy.data.objects["Light"]
     lamp.location, lamp.data.energy, lamp.data.shadow_soft_size = (3, -3, 4), 600, 0.5
     camera = bpy.context.scene.camera

@@ -13,8 +13,9 @@ import bpy
 from ...sampling import Sampling, sample_block, sample_surface, write_blocks
 from ..conversion.batch import ConversionBatch
 from ..conversion.mesh_conversion import sampling_options
-from ..conversion.mesh_settings import DENSITIES, choices
+from ..conversion.mesh_settings import choices
 from ..conversion.ties import tie
+from ..density_properties import DENSITIES
 from ..geometry.sources import has_surfaces
 from ..ids import CONVERSION_SETTINGS
 from .whole_results import unfinished

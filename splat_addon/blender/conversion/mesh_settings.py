@@ -4,44 +4,22 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ...sampling import DEFAULT_CREASE_ANGLE, DEFAULT_GRAZING_ANGLE, DEFAULT_SPLAT_SIZE, LEAST_GRAZING_ANGLE, REDUCTIONS
+from ...sampling import DEFAULT_CREASE_ANGLE, DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS
+from ..density_properties import (
+    DENSITIES,
+    pixels_property,
+    resolution_property,
+    spacing_property,
+    splat_size_property,
+    texture_mapped_property,
+)
 from ..ids import CONVERSION_SETTINGS, TEXTS
-from .automatic_density import FALLBACK_RESOLUTION, MOST_SURFELS
+from ..registration import with_property
 from .mesh_conversion import Choices
-
-
-class Density(NamedTuple):
-    """A way to specify the density: its label, the property that holds the number, and the value stored in a .blend."""
-
-    label: str
-    description: str
-    property: str
-    number: int
-
-
-DENSITIES = {
-    "AUTOMATIC": Density(
-        "Automatic",
-        "As fine as the scene's camera needs on the current frame, a quarter finer where something moves. "
-        f"Resolution {FALLBACK_RESOLUTION} where no camera sees the object, and {MOST_SURFELS:,} surfels at most",
-        "pixels",
-        4,
-    ),
-    "RESOLUTION": Density("Resolution", "A number of cells along each object's longest edge", "resolution", 0),
-    "SPACING": Density("Spacing", "The same distance between surfels in every object", "spacing", 1),
-    "COUNT": Density("Count", "A number of surfels for each object", "count", 2),
-    "CAMERA": Density(
-        "Camera",
-        "As fine as the scene's camera and resolution need on the current frame",
-        "pixels",
-        3,
-    ),
-}
 
 
 class ConversionProperties:
@@ -53,29 +31,8 @@ class ConversionProperties:
         items=[(name, density.label, density.description, density.number) for name, density in DENSITIES.items()],
         default="AUTOMATIC",
     )
-    resolution: IntProperty(
-        name="Resolution",
-        description=(
-            "Grid cells along the longest edge of the object's bounding box. Doubling it makes four times as "
-            "many surfels, and takes four times the memory and time"
-        ),
-        default=256,
-        min=0,
-        soft_min=8,
-        soft_max=4096,
-    )
-    spacing: FloatProperty(
-        name="Spacing",
-        description=(
-            "Distance between surfels, in the units of the chosen space. Half of it takes four times the memory"
-            " and time"
-        ),
-        default=0.01,
-        min=0.0,
-        soft_max=10.0,
-        precision=4,
-        step=0.1,
-    )
+    resolution: resolution_property("the object's", min=0, soft_max=4096)
+    spacing: spacing_property(", in the units of the chosen space", min=0.0)
     count: IntProperty(
         name="Count",
         description="How many surfels each object becomes, within 1 %",
@@ -84,17 +41,7 @@ class ConversionProperties:
         soft_min=1_000,
         soft_max=10_000_000,
     )
-    pixels: FloatProperty(
-        name="Pixels per Surfel",
-        description=(
-            "Distance between surfels in pixels of the render, where the object comes closest to the camera. "
-            "Doubling it makes a quarter of the surfels"
-        ),
-        default=0.75,
-        min=0.0,
-        soft_min=0.25,
-        soft_max=10.0,
-    )
+    pixels: pixels_property("Doubling it makes a quarter of the surfels", min=0.0, soft_min=0.25)
     join: BoolProperty(
         name="Join",
         description=(
@@ -161,14 +108,7 @@ class ConversionProperties:
         ),
         default=False,
     )
-    texture_mapped: BoolProperty(
-        name="Texture-Mapped",
-        description=(
-            "Look the base colour's image up at every pixel instead of once a surfel. Textures are much "
-            "sharper, and a frame takes 3.6 to 6 times as long in software"
-        ),
-        default=False,
-    )
+    texture_mapped: texture_mapped_property()
     clips_edges: BoolProperty(
         name="End at Edges",
         description=(
@@ -185,15 +125,9 @@ class ConversionProperties:
         min=math.radians(1),
         max=math.pi,
     )
-    splat_size: FloatProperty(
-        name="Splat Size",
-        description=(
-            "Half-axis of a splat, in spacings. 1.25 covers every surface; smaller splats are sharper but leave"
-            " dark specks"
-        ),
-        default=DEFAULT_SPLAT_SIZE,
-        min=0.0,
-        soft_min=0.5,
+    splat_size: splat_size_property(
+        "Half-axis of a splat, in spacings. 1.25 covers every surface; smaller splats are sharper but leave dark"
+        " specks",
         soft_max=2.0,
     )
     source: EnumProperty(
@@ -272,14 +206,4 @@ class SurfelConversionSettings(ConversionProperties, bpy.types.PropertyGroup):
     """The settings of the sidebar for the next conversion."""
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((SurfelConversionSettings,))
-
-
-def register():
-    _register_classes()
-    setattr(bpy.types.Scene, CONVERSION_SETTINGS, PointerProperty(type=SurfelConversionSettings))
-
-
-def unregister():
-    delattr(bpy.types.Scene, CONVERSION_SETTINGS)
-    _unregister_classes()
+register, unregister = with_property(bpy.types.Scene, CONVERSION_SETTINGS, SurfelConversionSettings)

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty
+from bpy.props import EnumProperty, IntProperty
 from mathutils import Vector
 
-from ...sampling import DEFAULT_SPLAT_SIZE
 from ...sampling.points import DEFAULT_NEIGHBOURS, ISOLATED_CHOICES, MAX_NEIGHBOURS
+from ..density_properties import splat_size_property
 
 
 class PointsProperties:
@@ -26,15 +26,8 @@ class PointsProperties:
         soft_min=6,
         soft_max=64,
     )
-    splat_size: FloatProperty(
-        name="Splat Size",
-        description=(
-            "Half-axis of a splat, in distances between points. Splats too small to close a hole are enlarged"
-        ),
-        default=DEFAULT_SPLAT_SIZE,
-        min=0.0,
-        soft_min=0.5,
-        soft_max=3.0,
+    splat_size: splat_size_property(
+        "Half-axis of a splat, in distances between points. Splats too small to close a hole are enlarged", soft_max=3.0
     )
     isolated: EnumProperty(
         name="Stray Points",

@@ -14,6 +14,7 @@ import numpy as np
 from mathutils.bvhtree import BVHTree
 
 from ...surfels import Surfels
+from ..geometry.node_groups import known_group, new_modifier_group
 from ..geometry.node_maths import Maths, enabled
 from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP
 
@@ -132,16 +133,11 @@ def _bind(mesh: bpy.types.Mesh, surfels: Surfels, vertices: np.ndarray, triangle
 
 
 def _group() -> bpy.types.NodeTree:
-    known = (group for group in bpy.data.node_groups if group.get(_MAKE) == _VERSION and group.library is None)
-    return next(known, None) or _new_group()
+    return known_group(_MAKE, _VERSION) or _new_group()
 
 
 def _new_group() -> bpy.types.NodeTree:
-    group = bpy.data.node_groups.new(SHAPE_GROUP, "GeometryNodeTree")
-    group[_MAKE] = _VERSION
-    group.is_modifier = True
-    for way in ("INPUT", "OUTPUT"):
-        group.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    group = new_modifier_group(SHAPE_GROUP, _MAKE, _VERSION)
     group.interface.new_socket("Source", in_out="INPUT", socket_type="NodeSocketObject")
     group.interface.new_socket("Vertices", in_out="INPUT", socket_type="NodeSocketInt")
     group.interface.new_socket("Turns", in_out="INPUT", socket_type="NodeSocketFloat")

@@ -20,6 +20,7 @@ from bpy.props import (
 )
 
 from ..ids import OBJECT_SETTINGS, SURFEL_RECORD
+from ..registration import with_property
 from .mesh_settings import ConversionProperties, SurfelConversionSettings, chosen_density
 from .points_settings import PointsProperties
 
@@ -95,16 +96,4 @@ def is_stood_in(owner: bpy.types.Object, sources: set[bpy.types.Object]) -> bool
     return owner in sources and getattr(owner, OBJECT_SETTINGS).render_as == "SCENE"
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (SurfelPointsSettings, SurfelSource, SurfelRecord)
-)
-
-
-def register():
-    _register_classes()
-    setattr(bpy.types.Object, SURFEL_RECORD, PointerProperty(type=SurfelRecord))
-
-
-def unregister():
-    delattr(bpy.types.Object, SURFEL_RECORD)
-    _unregister_classes()
+register, unregister = with_property(bpy.types.Object, SURFEL_RECORD, SurfelRecord, SurfelPointsSettings, SurfelSource)

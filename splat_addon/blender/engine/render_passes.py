@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, PointerProperty
+from bpy.props import BoolProperty
 
 from ...rendering import Cryptomatte, Frame
 from ..ids import LAYER_SETTINGS
+from ..registration import with_property
 
 #: Since 5.0, passes have the names that users read.
 _HAS_LONG_NAMES = bpy.app.version >= (5, 0, 0)
@@ -122,14 +123,4 @@ def _fill(target: bpy.types.RenderPass, values: np.ndarray) -> None:
     target.rect.foreach_set(np.ascontiguousarray(values, np.float32).ravel())
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((ViewLayerPasses,))
-
-
-def register():
-    _register_classes()
-    setattr(bpy.types.ViewLayer, LAYER_SETTINGS, PointerProperty(type=ViewLayerPasses))
-
-
-def unregister():
-    delattr(bpy.types.ViewLayer, LAYER_SETTINGS)
-    _unregister_classes()
+register, unregister = with_property(bpy.types.ViewLayer, LAYER_SETTINGS, ViewLayerPasses)

@@ -62,6 +62,11 @@ class Place(NamedTuple):
     form: Form
     detail: float
 
+    def of_instance(self, materials: tuple[Material, ...]) -> dict:
+        """Fields of an instance that stands there."""
+        placed = {"matrix_world": self.matrix, "materials": materials, "split_distance": self.form.split_distance}
+        return placed | self.fields
+
 
 @dataclass(eq=False)
 class _LiveMesh:
@@ -206,14 +211,7 @@ class LiveMeshes:
         self.counts["meshes"] += 1
         self.counts["surfels"] += sum(map(len, live.shown[1]))
         return [
-            Instance(
-                part,
-                place.matrix,
-                live.materials,
-                split_distance=place.form.split_distance,
-                textures=textures,
-                **place.fields,
-            )
+            Instance(part, textures=textures, **place.of_instance(live.materials))
             for part in live.shown[1]
             for place in live.sampled_at
         ]
@@ -228,14 +226,7 @@ class LiveMeshes:
             notes.add(sentence)
         textures = live.kept_textures()
         return [
-            PolygonInstance(
-                part,
-                place.matrix,
-                live.materials,
-                split_distance=place.form.split_distance,
-                textures=textures,
-                **place.fields,
-            )
+            PolygonInstance(part, textures=textures, **place.of_instance(live.materials))
             for part in live.drawn[1]
             for place in live.drawn_at
         ]

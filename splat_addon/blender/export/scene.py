@@ -22,7 +22,7 @@ from ..geometry.points_proxy import is_solid, shown_points, shows_as_points
 from ..geometry.sources import asked_of, owner_of
 from ..materials.material_override import Overridden, override_of
 from ..materials.surface_textures import TextureStore
-from ..mesh_sampling_settings import Form, are_meshes_texture_mapped, form_of, mesh_fineness
+from ..mesh_sampling_settings import Form, are_meshes_texture_mapped, density_of_meshes, form_of
 from . import passed_over
 from .light_linking import LightSets
 from .live_meshes import LiveMeshes, Place
@@ -151,7 +151,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
         except ValueError as error:
             notes.leave_out(object_.name, error)
     sampled, polygons = live_meshes.instances(
-        depsgraph, mesh_fineness(bpy_scene), are_meshes_texture_mapped(bpy_scene), notes
+        depsgraph, density_of_meshes(bpy_scene), are_meshes_texture_mapped(bpy_scene), notes
     )
     world, environment = store.world.read(_world_of(depsgraph), notes)
     lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))

@@ -14,6 +14,7 @@ from contextlib import contextmanager
 import bpy
 
 from ..ids import POINT_ATTRIBUTES, POINTS_GROUP, POINTS_MATERIAL, SOLID
+from .node_groups import known_group, new_modifier_group
 
 #: Custom property of the node group, which distinguishes our groups from others of the same name.
 _MAKE, _VERSION = "surfels_points", 1
@@ -74,16 +75,11 @@ def is_points_modifier(modifier: bpy.types.Modifier) -> bool:
 
 
 def _group() -> bpy.types.NodeTree:
-    known = (group for group in bpy.data.node_groups if group.get(_MAKE) == _VERSION and group.library is None)
-    return next(known, None) or _new_group()
+    return known_group(_MAKE, _VERSION) or _new_group()
 
 
 def _new_group() -> bpy.types.NodeTree:
-    group = bpy.data.node_groups.new(POINTS_GROUP, "GeometryNodeTree")
-    group[_MAKE] = _VERSION
-    group.is_modifier = True
-    for way in ("INPUT", "OUTPUT"):
-        group.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    group = new_modifier_group(POINTS_GROUP, _MAKE, _VERSION)
     material = group.interface.new_socket("Material", in_out="INPUT", socket_type="NodeSocketMaterial")
     material.default_value = _material()
     new, link = group.nodes.new, group.links.new

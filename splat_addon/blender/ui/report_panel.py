@@ -29,30 +29,31 @@ class RENDER_PT_surfel_report(EnginePanel, bpy.types.Panel):
                     write(box, sentence, context)
 
 
-class RENDER_PT_surfel_report_times(EnginePanel, bpy.types.Panel):
-    bl_label = "Times"
+class _ReportPart(EnginePanel):
+    """A part of the report that is there where the last picture has the statistic."""
+
     bl_context = "render"
     bl_parent_id = "RENDER_PT_surfel_report"
     bl_options = frozenset({"DEFAULT_CLOSED"})
+    statistic = ""
 
     @classmethod
     def poll(cls, context):
-        return super().poll(context) and bool(final_render.last_frame_stats.get("passes"))
+        return super().poll(context) and bool(final_render.last_frame_stats.get(cls.statistic))
+
+
+class RENDER_PT_surfel_report_times(_ReportPart, bpy.types.Panel):
+    bl_label = "Times"
+    statistic = "passes"
 
     def draw(self, context):
         for name, milliseconds in final_render.last_frame_stats["passes"].items():
             self.layout.label(text=f"{name}: {milliseconds:,.1f} ms")
 
 
-class RENDER_PT_surfel_report_plan(EnginePanel, bpy.types.Panel):
+class RENDER_PT_surfel_report_plan(_ReportPart, bpy.types.Panel):
     bl_label = "Plan"
-    bl_context = "render"
-    bl_parent_id = "RENDER_PT_surfel_report"
-    bl_options = frozenset({"DEFAULT_CLOSED"})
-
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and "plan" in final_render.last_frame_stats
+    statistic = "plan"
 
     def draw(self, context):
         for line in str(final_render.last_frame_stats["plan"]).splitlines():

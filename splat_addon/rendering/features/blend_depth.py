@@ -15,12 +15,9 @@ def _count(planning) -> int:
 
 def passes(planning):
     """None; it says whether there are any."""
-    if planning.shown:
-        if count := planning.find(_count):
-            planning.has("BLEND_DEPTH", f"splats of {count} instances blend as deep as their surface asks for")
-        else:
-            planning.skip("blend depths", "all splats blend as deep as epsilon says")
-    return ()
+    why = "splats of {count} instances blend as deep as their surface asks for"
+    count = planning.find(_count)
+    return planning.counts("BLEND_DEPTH", count, why, "blend depths", "all splats blend as deep as epsilon says")
 
 
 def parts(planning, p):

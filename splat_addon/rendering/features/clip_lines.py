@@ -30,12 +30,8 @@ def _count(planning) -> int:
 
 def passes(planning):
     """None; it says whether there are any."""
-    if planning.shown:
-        if count := planning.find(_count):
-            planning.has("CLIP_LINES", f"splats of {count} instances end at creases and borders, drawn by themselves")
-        else:
-            planning.skip("clip lines", "all splats are whole")
-    return ()
+    why = "splats of {count} instances end at creases and borders, drawn by themselves"
+    return planning.counts("CLIP_LINES", planning.find(_count), why, "clip lines", "all splats are whole")
 
 
 def parts(planning, p):

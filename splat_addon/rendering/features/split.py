@@ -13,12 +13,8 @@ def _count(planning) -> int:
 
 def passes(planning):
     """None; it says whether there are any."""
-    if planning.shown:
-        if count := planning.find(_count):
-            planning.has("SPLIT", f"{count} instances are polygons near the camera, or surfels beyond that")
-        else:
-            planning.skip("split objects", "all are drawn whole")
-    return ()
+    why = "{count} instances are polygons near the camera, or surfels beyond that"
+    return planning.counts("SPLIT", planning.find(_count), why, "split objects", "all are drawn whole")
 
 
 def is_present(planning) -> bool:

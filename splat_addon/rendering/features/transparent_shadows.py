@@ -16,12 +16,9 @@ def _casting(planning) -> int:
 
 def passes(planning):
     """None; it says whether anything casts such."""
-    if planning.shown:
-        if casting := planning.find(_casting):
-            planning.has("SCREEN_DOOR", f"shadows of {casting} instances are as transparent as those")
-        else:
-            planning.skip("transparent shadows", "nothing transparent casts any")
-    return ()
+    why = "shadows of {count} instances are as transparent as those"
+    casting = planning.find(_casting) if planning.shown else 0
+    return planning.counts("SCREEN_DOOR", casting, why, "transparent shadows", "nothing transparent casts any")
 
 
 def is_present(planning) -> bool:

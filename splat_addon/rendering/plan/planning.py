@@ -43,6 +43,17 @@ class Planning:
         """Record that a feature is present, and why."""
         self.features.append((feature, why))
 
+    def counts(self, feature: str, count: int, why: str, *otherwise: str) -> tuple:
+        """Say of what has no passes of its own that it is present; for a count of 0, what is not needed and why.
+
+        why: has {count}.
+        """
+        if self.shown and count:
+            self.has(feature, why.format(count=count))
+        elif self.shown:
+            self.skip(*otherwise)
+        return ()
+
     def skip(self, what: str, why: str) -> None:
         """Record what is not needed, and why."""
         self.skipped.append((what, why))

@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...surfels import Surfels, axes_quaternions, empty_surfels
+from ..options import DEFAULT_SPLAT_SIZE
 from ..progress import Progress, stage
-from ..sample import DEFAULT_SPLAT_SIZE
 from .cells import spatial_order
 from .cleanup import finite_points, first_of_each, isolated_points
 from .footprints import tangent_ellipses, tangent_frames
