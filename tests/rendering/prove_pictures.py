@@ -36,13 +36,13 @@ def main() -> int:
     cases = {name: (make, edge) for name, make, edge in equal_pictures.cases()}
     having = found(cases)
     renderer, before, untold = Renderer(open_device("standalone")), {}, []
-    for number, (thing, names) in enumerate(sorted(having.items(), key=str)):
-        if options.k in str(thing) and not is_told(renderer, thing, names, cases, before):
+    asked = [(thing, names) for thing, names in sorted(having.items(), key=str) if options.k in str(thing)]
+    for number, (thing, names) in enumerate(asked, 1):
+        if not is_told(renderer, thing, names, cases, before):
             untold.append(thing)
-            print(
-                f"{number} of {len(having)}: nothing tells of {' '.join(map(str, thing))}, in {len(names)}", flush=True
-            )
-    print(f"{len(having) - len(untold)} of {len(having)} parts, choices and passes are told of")
+            print(f"nothing tells of {' '.join(map(str, thing))}, in {len(names)} pictures", flush=True)
+        if number % 25 == 0 or number == len(asked):
+            print(f"{number - len(untold)} of {number} parts, choices and passes are told of", flush=True)
     return len(untold)
 
 
