@@ -23,7 +23,7 @@ MAY_IMPORT = {
     "blender": {"surfels", "sampling", "rendering", "interchange"},
 }
 #: `reference` reads rendering's data, never its passes.
-RENDERING_DATA = {"scene", "shadow", "settings", "frame", "view", "methods", "shading_models"}
+RENDERING_DATA = {"scene", "shadow", "settings", "frame", "view", "depth_range", "methods", "shading_models"}
 RENDERING_DATA |= {"upload"}  # of which the table of GGX alone
 #: foreign module -> where it may be imported
 HOMES = {

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..rendering.depth_range import depth_extent
 from ..rendering.scene import Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.settings import Settings
-from ..rendering.view import depth_extent
 from .brdf import dot, unit
 from .lights import all_incident
 from .rays import RayGrid, Surface

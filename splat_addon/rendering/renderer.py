@@ -10,25 +10,27 @@ from typing import NamedTuple
 import numpy as np
 
 from .accumulation import mean_frame, sample_blocks, sample_camera
+from .depth_range import clip_range
 from .device import Device
 from .device.interface import Texture as DeviceTexture
 from .device.interface import texture_bytes
 from .features.outputs import PIXELS, check_samplers
 from .features.sample_sum import SUM
-from .frame import EMPTY_DEPTH, HELD_BY, OUTPUTS, Frame
+from .frame import OUTPUTS, Frame
 from .identity import Identified, nearer
 from .panorama_faces import panorama_frame
 from .plan.build import plan
 from .plan.executor import Execution, TileContext, texture_key
 from .plan.frame_plan import FramePlan
 from .plan.graph import Texture
+from .read_back import assembled, background, background_pixel, positions_of, read_tile
 from .scene import Scene
 from .scene.camera import Camera
 from .scene.panorama import Panorama
-from .settings import Settings, held_arrays
+from .settings import Settings
 from .shadow import ShadowMap, casting, same_maps
 from .upload.resources import Resources
-from .view import build_view, clip_range
+from .view import build_view
 
 #: x, y, width, height in pixels.
 Tile = tuple[int, int, int, int]
@@ -137,17 +139,17 @@ class Renderer:
             tiles, identified = [], Identified(scene, tuple(size), settings.outputs)
             for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress, are_shared_done):
                 place = (tile[0] - left, tile[1] - bottom, *tile[2:])
-                tiles.append((place, _read(target, frame_plan, settings.outputs)))
+                tiles.append((place, read_tile(target, frame_plan, settings.outputs)))
                 if seen := [self._read_whole(t, tile, frame_plan) for t in frame_plan.facts.get("identity", ())]:
                     identified.add(place, nearer(*seen), frame_plan)
         finally:
             self.device.restore()
-        arrays = _assembled(tiles, size) if tiles else _background(scene, size, settings)
+        arrays = assembled(tiles, size) if tiles else background(scene, size, settings)
         arrays |= identified.arrays
         stats["milliseconds"] = 1e3 * (perf_counter() - started)
         stats["texture_bytes"] = texture_bytes(self.device.textures)
         if "position" in settings.outputs:
-            arrays["position"] = _positions(camera, arrays["depth"], (left, bottom))
+            arrays["position"] = positions_of(camera, arrays["depth"], (left, bottom))
         return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)
 
     def _read_whole(self, texture: Texture, tile: Tile, frame_plan: FramePlan) -> np.ndarray:
@@ -298,61 +300,7 @@ def _share(progress: Progress, turn: int, count: int) -> Progress:
     return lambda done, step: progress((turn + done) / count, f"sample {turn + 1}/{count}: {step}")
 
 
-def background_pixel(scene: Scene, settings: Settings) -> tuple[float, float, float, float]:
-    """Premultiplied colour of a pixel that nothing covers."""
-    return (0.0, 0.0, 0.0, 0.0) if settings.transparent_film else (*scene.world, 1.0)
-
-
-def _background(scene: Scene, size, settings: Settings) -> dict[str, np.ndarray]:
-    """The arrays of a picture without splats."""
-    width, height = size
-    pixels = {"color": background_pixel(scene, settings), "depth": EMPTY_DEPTH, "shadow": 1.0}
-    arrays = {}
-    for name in _read_arrays(settings.outputs):
-        where = HELD_BY[name][1]
-        shape = (height, width) if isinstance(where, int) else (height, width, where.stop - where.start)
-        arrays[name] = np.full(shape, pixels.get(name, 0.0), np.float32)
-    return arrays
-
-
 def _drawn(tile: Tile, frame_plan: FramePlan) -> Tile:
     """A tile, including its margin."""
     (x, y, width, height), margin = tile, frame_plan.margin
     return x - margin, y - margin, width + 2 * margin, height + 2 * margin
-
-
-def _read_arrays(outputs: tuple[str, ...]) -> tuple[str, ...]:
-    """Read the arrays that the device stores directly."""
-    return tuple(name for name in held_arrays(outputs) if name in HELD_BY)
-
-
-def _read(target, frame_plan: FramePlan, outputs: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """Read the requested arrays of one tile, without its margin."""
-    kept = slice(frame_plan.margin, -frame_plan.margin or None)
-    names, held = _read_arrays(outputs), [texture.name for texture in frame_plan.passes[-1].colors]
-    textures = {HELD_BY[name][0] for name in names}
-    texels = {name: target.read(slot) for slot, name in enumerate(held) if name in textures}
-    arrays = {}
-    for name in names:
-        texture, where = HELD_BY[name]
-        arrays[name] = np.ascontiguousarray(texels[texture][kept, kept, where])
-    return arrays
-
-
-def _positions(camera: Camera, depth: np.ndarray, corner: tuple[int, int]) -> np.ndarray:
-    """(h, w, 3) float32, 0 where nothing was hit. corner: the picture's pixel at which the depths begin."""
-    is_hit = depth < EMPTY_DEPTH
-    points = camera.points_at(np.where(is_hit, depth, 0.0), corner)
-    return np.where(is_hit[..., None], points, 0.0).astype(np.float32)
-
-
-def _assembled(tiles, size) -> dict[str, np.ndarray]:
-    """One picture from its tiles; a single tile is returned as it is."""
-    if len(tiles) == 1:
-        return tiles[0][1]
-    width, height = size
-    whole = {name: np.empty((height, width, *part.shape[2:]), np.float32) for name, part in tiles[0][1].items()}
-    for (x, y, w, h), arrays in tiles:
-        for name, part in arrays.items():
-            whole[name][y : y + h, x : x + w] = part
-    return whole

@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .depth_range import sees_any, visible_corners
 from .scene import Scene
 from .scene.camera import Camera, look_at
 from .scene.light import MAX_SUN_HALF_ANGLE, Light
-from .view import View, sees_any, visible_corners
+from .view import View
 
 #: Maximum number of maps in the atlas; the last lights cast no shadow if there are more.
 MAX_MAPS = 64

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sampling: a mesh becomes surfels by exact scan conversion onto a layered depth cube. Numpy only.
 
-Flow: `options` (the user's choices), `mesh` (usable triangles) -> `density`, `ldc` (grid, scan conversion, reduction) ->
-`attributes` (ellipse, normal, material) -> `edges` (clip lines) -> `refine` (fewer surfels where the surface is flat,
-extra ones where no ray hit) -> `Surfels`; `sample` runs these steps. `camera_density` finds the spacing that a camera
-needs. `deform` lets surfels follow a mesh; points without faces become surfels in `points`.
+Flow: `options` (chosen by the user), `mesh` (usable triangles) -> `density`, `ldc` (grid, scan conversion, reduction)
+-> `attributes` (ellipse, normal, material) -> `edges` (clip lines) -> `refine` (fewer surfels where the surface is
+flat, extra ones where no ray hit) -> `Surfels`; `sample` runs these steps. `camera_density` finds the spacing that a
+camera needs. `deform` lets surfels follow a mesh; points without faces become surfels in `points`.
 """
 
 from ..images import Image

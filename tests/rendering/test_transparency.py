@@ -11,8 +11,9 @@ import pytest
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Light, Material, Scene, Settings, look_at, plan
+from splat_addon.rendering.depth_range import clip_range
 from splat_addon.rendering.methods import METHODS
-from splat_addon.rendering.view import build_view, clip_range
+from splat_addon.rendering.view import build_view
 from splat_addon.surfels import Surfels
 
 PEELING = [name for name, method in METHODS.items() if method.rasterizer != "point_sprite"]

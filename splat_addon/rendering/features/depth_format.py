@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..view import DepthExtent, depth_extent
+from ..depth_range import DepthExtent, depth_extent
 
 #: Up to this ratio of the farthest depth to the nearest, or of a parallel camera's depths to its window, the hardware's
 #: depth resolves 128 / 2^24 = 8e-6 of it: 1.5 % of the epsilon of a splat as small as a pixel of a 1000-pixel picture.

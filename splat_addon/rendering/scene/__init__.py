@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene and the camera as plain values, independent of passes and devices."""
 
-from .scene import Instance, Material, Placed, PolygonInstance, Scene, SurfaceTexture
+from .material import Material, SurfaceTexture
+from .scene import Instance, Placed, PolygonInstance, Scene
 
 __all__ = ("Instance", "Material", "Placed", "PolygonInstance", "Scene", "SurfaceTexture")

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads the textures of the last pass into the arrays of a frame."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .frame import EMPTY_DEPTH, HELD_BY
+from .plan.frame_plan import FramePlan
+from .scene import Scene
+from .scene.camera import Camera
+from .settings import Settings, held_arrays
+
+
+def background_pixel(scene: Scene, settings: Settings) -> tuple[float, float, float, float]:
+    """Premultiplied colour of a pixel that nothing covers."""
+    return (0.0, 0.0, 0.0, 0.0) if settings.transparent_film else (*scene.world, 1.0)
+
+
+def background(scene: Scene, size, settings: Settings) -> dict[str, np.ndarray]:
+    """The arrays of a picture without splats."""
+    width, height = size
+    pixels = {"color": background_pixel(scene, settings), "depth": EMPTY_DEPTH, "shadow": 1.0}
+    arrays = {}
+    for name in read_arrays(settings.outputs):
+        where = HELD_BY[name][1]
+        shape = (height, width) if isinstance(where, int) else (height, width, where.stop - where.start)
+        arrays[name] = np.full(shape, pixels.get(name, 0.0), np.float32)
+    return arrays
+
+
+def read_arrays(outputs: tuple[str, ...]) -> tuple[str, ...]:
+    """Read the arrays that the device stores directly."""
+    return tuple(name for name in held_arrays(outputs) if name in HELD_BY)
+
+
+def read_tile(target, frame_plan: FramePlan, outputs: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Read the requested arrays of one tile, without its margin."""
+    kept = slice(frame_plan.margin, -frame_plan.margin or None)
+    names, held = read_arrays(outputs), [texture.name for texture in frame_plan.passes[-1].colors]
+    textures = {HELD_BY[name][0] for name in names}
+    texels = {name: target.read(slot) for slot, name in enumerate(held) if name in textures}
+    arrays = {}
+    for name in names:
+        texture, where = HELD_BY[name]
+        arrays[name] = np.ascontiguousarray(texels[texture][kept, kept, where])
+    return arrays
+
+
+def positions_of(camera: Camera, depth: np.ndarray, corner: tuple[int, int]) -> np.ndarray:
+    """(h, w, 3) float32, 0 where nothing was hit. corner: the picture's pixel at which the depths begin."""
+    is_hit = depth < EMPTY_DEPTH
+    points = camera.points_at(np.where(is_hit, depth, 0.0), corner)
+    return np.where(is_hit[..., None], points, 0.0).astype(np.float32)
+
+
+def assembled(tiles, size) -> dict[str, np.ndarray]:
+    """One picture from its tiles; a single tile is returned as it is."""
+    if len(tiles) == 1:
+        return tiles[0][1]
+    width, height = size
+    whole = {name: np.empty((height, width, *part.shape[2:]), np.float32) for name, part in tiles[0][1].items()}
+    for (x, y, w, h), arrays in tiles:
+        for name, part in arrays.items():
+            whole[name][y : y + h, x : x + w] = part
+    return whole

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Materials and textures of surfaces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...images import Image
+
+
+@dataclass(frozen=True)
+class Material:
+    """How a surface reflects and emits light; its base colour is the surfels' own.
+
+    roughness, metallic: 0 to 1. ior: index of refraction of the dielectric coat, which sets its reflectance at normal
+        incidence, ((ior - 1) / (ior + 1))^2. emission: scene-linear radiance, the same in all directions.
+    index: what the frame's `material_index` shows of it.
+    Surfels may have their own roughness, metallic and emission, which take the place of these.
+    """
+
+    roughness: float = 0.5
+    metallic: float = 0.0
+    ior: float = 1.5
+    emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    index: int = 0
+
+    def __post_init__(self):
+        numbers = [self.roughness, self.metallic, self.ior, *self.emission]
+        if not (np.isfinite(numbers).all() and self.ior > 0 and len(self.emission) == 3):
+            raise ValueError(f"A material needs finite numbers and an index of refraction above 0, not {self}.")
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceTexture:
+    """A base colour that is looked up for every pixel, for surfels with texture coordinates.
+
+    factor: (3,) scene-linear, multiplies the image.
+    """
+
+    image: Image
+    factor: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+    def __post_init__(self):
+        if len(self.factor) != 3 or not np.isfinite(self.factor).all():
+            raise ValueError(f"A texture's factor must be 3 finite numbers, not {self.factor!r}.")
+
+    @cached_property
+    def brightest(self) -> float:
+        """The largest component of any texel times the factor."""
+        return float(np.max(self.image.pixels[..., :3].max(axis=(0, 1)) * self.factor))
