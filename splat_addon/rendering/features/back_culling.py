@@ -16,7 +16,11 @@ def passes(planning):
     return ()
 
 
+def is_present(planning) -> bool:
+    return planning.settings.culls_backs
+
+
 def parts(planning, p):
     hosts = (*SPLAT_HOSTS, "visibility.frag")
-    if planning.settings.culls_backs and p.host in hosts and p.kind in ("opaque", "layer", "rest"):
+    if p.host in hosts and p.kind in ("opaque", "layer", "rest"):
         yield Part("back_culling", only="splats" if p.host == "visibility.frag" else "")

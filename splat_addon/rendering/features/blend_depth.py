@@ -20,8 +20,12 @@ def passes(planning):
     return planning.counts("BLEND_DEPTH", count, why, "blend depths", "all splats blend as deep as epsilon says")
 
 
+def is_present(planning) -> bool:
+    return bool(planning.find(_count))
+
+
 def parts(planning, p):
-    if p.host in _HOSTS and planning.find(_count):
+    if p.host in _HOSTS:
         # A light's view is compared with places that the camera sees, and moved by less, surfaces shadow themselves.
         words = ("blends_less",) if p.kind != "shadow" else ()
         yield Part("blend_depth", words, only="splats" if p.host == "visibility.frag" else "")

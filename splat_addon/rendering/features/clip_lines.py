@@ -34,8 +34,12 @@ def passes(planning):
     return planning.counts("CLIP_LINES", planning.find(_count), why, "clip lines", "all splats are whole")
 
 
+def is_present(planning) -> bool:
+    return bool(planning.find(_count))
+
+
 def parts(planning, p):
-    if p.host in (*SPLAT_HOSTS, "visibility.frag") and planning.find(_count):
+    if p.host in (*SPLAT_HOSTS, "visibility.frag"):
         words = _words(planning, p)
         varyings = (*_VARYINGS, *(_IN_SPACE if "cuts_at_lines" in words else ()))
         yield Part("clip_lines", words, inputs=("clip_lines",), varyings=varyings, only="clipped")
