@@ -10,7 +10,7 @@ from splat_addon.reference import scenes
 from splat_addon.reference.extremes import sheet
 from splat_addon.rendering import Camera, Instance, Renderer, Scene, Settings, look_at, renderer
 from splat_addon.rendering.features import depth_bounds
-from splat_addon.rendering.features.hiz import CELL
+from splat_addon.rendering.features.hiz import HIZ_CELL
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan import executor
 from splat_addon.rendering.view import build_view
@@ -102,7 +102,7 @@ def test_a_cell_holds_the_farthest_that_is_seen_around_it(on_device, monkeypatch
         pictures.append(on_device(lambda device: Renderer(device).render(scene, camera, MIP)))
     seen, cells = found["seen"], found["cells"]
     for y, x in np.ndindex(cells.shape):
-        rows, columns = (slice(max(CELL * at - 2, 0), CELL * at + CELL + 2) for at in (y, x))
+        rows, columns = (slice(max(HIZ_CELL * at - 2, 0), HIZ_CELL * at + HIZ_CELL + 2) for at in (y, x))
         assert cells[y, x] == seen[rows, columns].max()
     assert pictures[0].color[..., :3].max() > 0.1 and pictures[0].overdraw.max() > 1
     assert pictures[1].overdraw.max() == 0

@@ -10,13 +10,13 @@ from ..plan.graph import Part, Pass, Texture, fill, of_samples
 from . import depth_bounds
 
 #: Samples along each side of what it holds one value for.
-CELL = 4
-CONSTANTS = {"CELL": CELL}
+HIZ_CELL = 4
+CONSTANTS = {"HIZ_CELL": HIZ_CELL}
 
 
 def _of_cells(plan, pixels: tuple[int, int]) -> tuple[int, int]:
     width, height = of_samples(plan, pixels)
-    return -(-width // CELL), -(-height // CELL)
+    return -(-width // HIZ_CELL), -(-height // HIZ_CELL)
 
 
 FARTHEST = Texture("hiz", "R32F", _of_cells)
