@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from .nodes import PORTION, Table
+from .ordering import BITS, sorted_with_order
 
 #: Shares of a cell: the gap in depth after which another sheet begins, and the most that a sheet may span.
 GAP = 0.5
@@ -19,9 +20,6 @@ MOST_DEPTH = 1.5
 
 #: Steps of depth in a cell, by which surfels of one cell are put in order.
 _STEPS = 16
-
-#: Bits of a sorted number.
-_BITS = 63
 
 
 def clustered(table: Table, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray]:
@@ -44,7 +42,7 @@ def _sorted(table: Table, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np
     low, cells = positions.min(axis=1), int(np.ptp(positions, axis=1).max() / cell) + 2
     # materials and sides, columns, rows, and depths over a cell, which reach a cell farther at either end
     bits = [n.bit_length() for n in (6 * int(materials.max()) + 5, cells, cells, (cells + 2) * _STEPS)]
-    fits = sum(bits) <= _BITS
+    fits = sum(bits) <= BITS
     parts = []
     for start in range(0, len(rows), PORTION):
         some = rows[start : start + PORTION]
@@ -53,9 +51,7 @@ def _sorted(table: Table, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np
     keys = np.concatenate(parts, axis=-1)
     is_first = np.ones(len(rows), bool)
     if fits:
-        # stable, so that every numpy gives the same order where some are equal
-        order = np.argsort(keys, kind="stable")
-        keys = keys[order]
+        keys, order = sorted_with_order(keys, sum(bits))
         place, depth = keys >> bits[-1], keys & ((1 << bits[-1]) - 1)
         is_first[1:] = place[1:] != place[:-1]
     else:

@@ -16,6 +16,7 @@ from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan.executor import describe
 from splat_addon.rendering.upload.packing import pack_clip_lines
 from splat_addon.rendering.upload.storages import STORAGES
+from splat_addon.rendering.upload.stored_order import stored_order
 from splat_addon.surfels import concatenate
 from tests.rendering.creased import angle_iron, clipped_iron
 
@@ -143,12 +144,13 @@ def test_a_clipped_splat_shadows_with_what_is_left_of_it(kind, render):
 def test_a_clipped_surfel_takes_8_bytes_more_and_others_none():
     whole, cut = disc(), disc(clip_line=pack_lines(LINE), clip_line_2=pack_lines(-LINE))
     surfels = concatenate([whole] * 600 + [cut] * 520)
+    order = stored_order(surfels)
     for storage in STORAGES.values():
-        assert [t.nbytes for t in storage.pack(surfels)[0]] == [t.nbytes for t in storage.pack(replace(
-            surfels, clip_line=None, clip_line_2=None))[0]]  # fmt: skip
-        texels = pack_clip_lines(surfels, storage.order(surfels))
-        assert texels.shape == (2, 512, 4) and texels[0].any(axis=1).all() and texels[1].any(axis=1).sum() == 8
-        assert (texels * 65535 == np.rint(texels * 65535)).all()
+        assert [t.nbytes for t in storage.pack(surfels, order)[0]] == [t.nbytes for t in storage.pack(replace(
+            surfels, clip_line=None, clip_line_2=None), order)[0]]  # fmt: skip
+    texels = pack_clip_lines(surfels, order)
+    assert texels.shape == (2, 512, 4) and texels[0].any(axis=1).all() and texels[1].any(axis=1).sum() == 8
+    assert (texels * 65535 == np.rint(texels * 65535)).all()
 
 
 def test_a_model_without_lines_has_no_line_of_them_in_its_shaders():

@@ -58,6 +58,7 @@ MEETINGS = {
     ),
     "lit_splats": (
         ("splats are lit before they are added up", "features/gbuffer.py features/oit.py features/oit.glsl"),
+        ("of what is lit one by one nothing is merged", "features/levels.py"),
         ("samples show the colours that are lit, as flat shading does", "plan/build.py"),
     ),
     "materials": (

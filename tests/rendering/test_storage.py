@@ -6,12 +6,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from splat_addon.hierarchy import build_hierarchy
+from splat_addon.hierarchy.ordering import sorted_with_order, spatial_order
 from splat_addon.reference import scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Scene, Settings
-from splat_addon.rendering.upload.packing_16_bit import pack_16_bit, spatial_order
+from splat_addon.rendering.upload.packing_16_bit import pack_16_bit
 from splat_addon.rendering.upload.storages import STORAGES
-from splat_addon.surfels import LAYOUT, Surfels, quaternion_axes
+from splat_addon.rendering.upload.stored_order import places_of, stored_order
+from splat_addon.surfels import LAYOUT, Surfels, concatenate, quaternion_axes
 
 BLOCK = 512
 
@@ -61,7 +64,7 @@ def unpacked(texels, table, count):
 @settings(max_examples=60, deadline=None)
 def test_every_number_keeps_within_its_bound(surfels):
     order = spatial_order(surfels.positions)
-    found = unpacked(*pack_16_bit(surfels)[0], len(surfels))
+    found = unpacked(*pack_16_bit(surfels, order)[0], len(surfels))
     true = {name: getattr(surfels, name)[order].astype(np.float64) for name in LAYOUT}
     for first in range(0, len(surfels), BLOCK):
         block = {name: (found[name][first : first + BLOCK], true[name][first : first + BLOCK]) for name in LAYOUT}
@@ -95,12 +98,37 @@ def test_the_order_holds_everyone_once_and_gathers_neighbours(seed, count):
     assert (np.diff(octants) >= 0).all()
 
 
+def test_levels_lie_after_the_surfels_and_move_none():
+    """From a row of their own on, and every surfel and node has one place, the first that holds it."""
+    surfels = _sheet(5000)
+    levels = build_hierarchy(surfels)
+    alone, both = stored_order(surfels), stored_order(surfels, levels)
+    np.testing.assert_array_equal(both[:5000], alone)
+    places = places_of(both, 5000 + len(levels))
+    assert len(levels) and (places[:5000] < 5000).all() and places[5000:].min() == 5120
+    np.testing.assert_array_equal(both[places], np.arange(5000 + len(levels)))
+    for storage in STORAGES.values():
+        every = concatenate([surfels, levels.nodes])
+        for own, with_levels in zip(storage.pack(surfels, alone)[0], storage.pack(every, both)[0], strict=True):
+            np.testing.assert_array_equal(with_levels[: len(own) - 1], own[:-1])
+
+
+def test_a_sort_by_the_word_is_the_stable_one():
+    keys = np.random.default_rng(1).integers(0, 1000, 5000)
+    for bits in (10, 55):  # with room for the numbers of 5000, and without
+        ordered, order = sorted_with_order(keys, bits)
+        np.testing.assert_array_equal(order, np.argsort(keys, kind="stable"))
+        np.testing.assert_array_equal(ordered, np.sort(keys))
+
+
 def test_storage_halves_the_memory():
     surfels = _sheet(40_000)
     sizes = {
         name: sum(
             texels.size * {"RGBA32F": 4, "RGBA16": 2}[format]
-            for texels, (_, format) in zip(storage.pack(surfels)[0], storage.textures, strict=True)
+            for texels, (_, format) in zip(
+                storage.pack(surfels, stored_order(surfels))[0], storage.textures, strict=True
+            )
         )
         for name, storage in STORAGES.items()
     }
@@ -111,7 +139,7 @@ def test_storage_halves_the_memory():
 def test_devices_read_what_was_packed(render):
     """Surfels that are given as 16 bits hold them are drawn alike from both storages: the shader reads them right."""
     surfels = _sheet(3000)
-    held = unpacked(*pack_16_bit(surfels)[0], len(surfels))
+    held = unpacked(*pack_16_bit(surfels, stored_order(surfels))[0], len(surfels))
     held = Surfels(**{name: held[name].astype(dtype) for name, (_, dtype) in LAYOUT.items()})
     camera = Camera.perspective(np.eye(4), 0.6, (96, 96), 0.1, 100)
     scene = Scene((held,), world=(0.5, 0.5, 0.5))
@@ -151,11 +179,11 @@ def test_too_many_materials_are_refused():
     surfels = _sheet(10)
     many = Surfels(**{**surfels.arrays(), "materials": np.full(10, 65536)})
     with pytest.raises(ValueError, match="materials up to 65,535, not 65,536; use float32 storage"):
-        pack_16_bit(many)
+        pack_16_bit(many, np.arange(10))
 
 
 def test_no_surfels_pack_to_one_empty_row():
-    (texels, table), coarse = pack_16_bit(_sheet(0))
+    (texels, table), coarse = pack_16_bit(_sheet(0), np.arange(0))
     assert coarse == 0
     assert texels.shape == (1, 2048, 4) and table.shape == (1, 3, 4) and not texels.any()
 

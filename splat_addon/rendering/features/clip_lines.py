@@ -7,7 +7,6 @@ They are a draw of their own, with the variant "clipped" of every program that d
 from __future__ import annotations
 
 from ..plan.graph import Part
-from ..upload.storages import get_storage
 from .drawing import SPLAT_HOSTS
 
 _VARYINGS = (("flat", "vec3", "clip_first"), ("flat", "vec3", "clip_second"), ("flat", "float", "clip_is_reflex"))
@@ -16,12 +15,7 @@ _VARYINGS = (("flat", "vec3", "clip_first"), ("flat", "vec3", "clip_second"), ("
 _IN_SPACE = (("flat", "float", "clip_in_space"),)
 
 
-def _lines(tile, placed):
-    instance = placed.instance
-    return tile.resources.clip_lines(instance.surfels, get_storage(tile.plan.storage), tile.levels(instance))
-
-
-DRAWN = {"clip_lines": _lines}
+DRAWN = {"clip_lines": lambda tile, placed: tile.resources.clip_lines(placed.instance.surfels)}
 
 
 def _count(planning) -> int:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from ..levels import LEAST_SURFELS, may_merge
 from ..plan.graph import Part
 from ..upload.cuts import NUMBERS_PER_ROW
+from . import lit_splats
 from .drawing import SPLAT_HOSTS
 
 CONSTANTS = {"NUMBERS_PER_ROW": NUMBERS_PER_ROW}
@@ -18,6 +19,8 @@ DRAWN = {"drawn_splats": lambda tile, placed: tile.cut(placed).numbers}
 
 def merging(planning) -> frozenset:
     """The instances of which there may be merged surfels in the picture; of no others are there any in its shadows."""
+    if planning.find(lit_splats.wanted):
+        return frozenset()
     tolerance = planning.settings.detail_tolerance
     return frozenset(i for i in planning.scene.surfels if may_merge(i, planning.camera, tolerance))
 
@@ -27,6 +30,8 @@ def passes(planning):
     if planning.shown:
         if not planning.settings.detail_tolerance:
             planning.skip("levels of detail", "every surfel is drawn, as the tolerance is 0")
+        elif planning.find(lit_splats.wanted):
+            planning.skip("levels of detail", "every surfel is lit by itself")
         elif found := planning.find(merging):
             planning.facts["levels"] = found
             planning.has("LEVELS", f"{len(found)} instances may have surfels too small to be seen one by one")

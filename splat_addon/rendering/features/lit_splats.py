@@ -47,7 +47,7 @@ def each(planning) -> Pass | None:
 
 def light(planning, instances) -> Pass:
     """What lights the splats of one instance, of these: its texture has a texel a splat of the largest."""
-    rows = max(row_count(instance.surfels) for instance in instances)
+    rows = max(row_count(len(instance.surfels)) for instance in instances)
     planning.facts["lit_rows"] = max(rows, planning.facts.get("lit_rows", 0))
     own = Part("lit_splats", inputs=storage_samplers(planning.settings.storage), writes=(LIT,))
     return Pass("light_splats", "each splat is lit by itself", "lit_splats.frag", run, (own,), "rest")
@@ -72,7 +72,7 @@ def run(tile, p: Pass):
         light = light or tile.program(p.each)
         textures = tile.textures(p.each, light, placed)
         blocks = tile.blocks(light, draw_block(tile, placed, tile.settings.epsilon))
-        viewport = 0, 0, SPLATS_PER_ROW, row_count(placed.instance.surfels)
+        viewport = 0, 0, SPLATS_PER_ROW, row_count(len(placed.instance.surfels))
         tile.resources.device.draw_triangles(light, lit, 1, blocks, textures, viewport)
         draw_splats(tile, p, target, [placed], p.host.replace(".frag", ".vert"))
     return target

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from ..plan.graph import Part, Texture
 from ..upload.packing import pack_materials, shared_emission, shared_material
-from ..upload.storages import get_storage
 from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
 
 NAMES = ("materials", "emission")
@@ -32,8 +31,7 @@ VALUES = {
 
 def _drawn(tile, placed):
     instance, emissions_differ = placed.instance, tile.plan.facts["emissions_differ"]
-    storage = get_storage(tile.plan.storage)
-    return tile.resources.materials(instance, storage, emissions_differ, tile.levels(instance))
+    return tile.resources.materials(instance, emissions_differ, tile.levels(instance))
 
 
 DRAWN = {"materials": _drawn}

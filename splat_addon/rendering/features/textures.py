@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
-from ..upload.storages import get_storage
 
 #: uv and slot, change of uv along the half-axes, where the map ends; and the half-axes.
 _VARYINGS = (("flat", "vec3", "texture_place"), ("flat", "vec4", "texture_along"), ("flat", "vec2", "texture_border"))
@@ -20,7 +19,7 @@ _ATLAS = ("texture_atlas", "texture_table")
 
 def _surfel_uvs(tile, placed):
     instance = placed.instance
-    return tile.resources.surfel_uvs(instance.surfels, get_storage(tile.plan.storage), tile.levels(instance))
+    return tile.resources.surfel_uvs(instance.surfels, tile.levels(instance))
 
 
 DRAWN = {

@@ -115,8 +115,8 @@ class TileContext:
         seen = sight(instance, self.camera, placed.hides_backs, self.settings.detail_tolerance)
         places = self.stored(instance).places
         return self.resources.cuts.get(
-            (levels, places is None, seen.key),
-            lambda: _stored(cut_entries(levels, seen), levels, places),
+            (levels, seen.key),
+            lambda: _stored(cut_entries(levels, seen), places),
             levels.surfels,
             instance.surfels.clipped_count,
         )
@@ -164,11 +164,9 @@ class TileContext:
         return target
 
 
-def _stored(entries: np.ndarray | None, levels: Hierarchy, places: np.ndarray | None) -> np.ndarray | None:
-    """Storage positions of a hierarchy's entries; None for all surfels in their own order."""
-    if places is None:
-        return entries
-    return places[: levels.surfels] if entries is None else places[entries]
+def _stored(entries: np.ndarray | None, places: np.ndarray) -> np.ndarray | None:
+    """Where entries of a hierarchy are stored; None for all surfels, which are the first."""
+    return None if entries is None else places[entries]
 
 
 def texture_key(texture: Texture, size: tuple[int, int], plan: FramePlan, is_next: bool = False) -> TextureKey:

@@ -16,9 +16,8 @@ import numpy as np
 from ...clip_lines import CLIP_FIELDS, TURN
 from ...surfels import Surfels
 from ..scene import Material, Placed
-from .stored_order import clipped_first
+from .stored_order import SPLATS_PER_ROW
 
-SPLATS_PER_ROW = 512
 TEXELS_PER_SPLAT = 4
 #: Steps per radius of a stored blend depth.
 BLEND_STEPS = 256
@@ -27,9 +26,12 @@ MAX_ROWS = 16384
 MAX_SPLATS = SPLATS_PER_ROW * MAX_ROWS
 
 
-def pack_surfels(surfels: Surfels) -> np.ndarray:
-    """(rows, 2048, 4) float32 texels, clipped surfels first. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
-    rows, count, order = row_count(surfels), len(surfels), clipped_first(surfels)
+def pack_surfels(surfels: Surfels, order: np.ndarray) -> np.ndarray:
+    """(rows, 2048, 4) float32 texels. order: (n,) numbers of the surfels in which they are stored.
+
+    Raises ValueError above `MAX_SPLATS` (8.4 million).
+    """
+    rows, count = row_count(len(order)), len(order)
     texels = np.zeros((rows * SPLATS_PER_ROW, TEXELS_PER_SPLAT, 4), np.float32)
     filled = texels[:count]
     filled[:, 0, :3] = surfels.positions[order]
@@ -49,14 +51,14 @@ def not_blended(surfels: Surfels) -> np.ndarray:
     return np.minimum(np.floor((1 - surfels.blend_depth.astype(np.float64)) * BLEND_STEPS), BLEND_STEPS - 1)
 
 
-def pack_uvs(surfels: Surfels, order=slice(None)) -> np.ndarray:
+def pack_uvs(surfels: Surfels, order: np.ndarray) -> np.ndarray:
     """(rows, 1024, 4) float32, two texels a splat: uv, its change along the local x half-axis  |  along y, border.
 
     order: storage order of the surfels.
     """
-    rows = row_count(surfels)
+    rows = row_count(len(order))
     texels = np.zeros((rows * SPLATS_PER_ROW, 2, 4), np.float32)
-    filled = texels[: len(surfels)]
+    filled = texels[: len(order)]
     columns = surfels.uvs, surfels.uv_along_x, surfels.uv_along_y
     filled[:, 0, :2], filled[:, 0, 2:], filled[:, 1, :2] = (column[order] for column in columns)
     if surfels.uv_border is not None:
@@ -76,9 +78,8 @@ def pack_clip_lines(surfels: Surfels, order: np.ndarray) -> np.ndarray:
     return (texels / (TURN - 1)).reshape(-1, SPLATS_PER_ROW, 4)
 
 
-def row_count(surfels: Surfels) -> int:
-    """Number of rows of 512 splats, at least one. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
-    count = len(surfels)
+def row_count(count: int) -> int:
+    """Rows of 512 splats, one at least. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
     if count > MAX_SPLATS:
         raise ValueError(
             f"One object can hold {MAX_SPLATS:,} surfels, not {count:,}; make several, or raise its surfel spacing."
@@ -116,9 +117,10 @@ def pack_own_materials(
     Values that surfels lack come from their slot. order: storage order of the surfels.
     """
     slots = pack_materials(materials, with_emission).reshape(len(materials), -1, 4)
-    rows, count = row_count(surfels), len(surfels)
+    chosen = surfels.materials[order]
+    rows, count = row_count(len(chosen)), len(chosen)
     texels = np.zeros((rows * SPLATS_PER_ROW, *slots.shape[1:]), np.float32)
-    texels[:count] = slots[np.minimum(surfels.materials[order], len(materials) - 1)]
+    texels[:count] = slots[np.minimum(chosen, len(materials) - 1)]
     for column, values in enumerate((surfels.roughness, surfels.metallic)):
         if values is not None:
             texels[:count, 0, column] = values[order]

@@ -20,7 +20,6 @@ import numpy as np
 
 from ...surfels import Surfels
 from .packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT, not_blended, octahedral, row_count
-from .stored_order import clipped_first
 
 #: An error of this share of a splat's shorter half-axis is visible.
 COARSE = 1 / 8
@@ -29,18 +28,16 @@ _STEPS = 65535
 #: Steps from 0 to 1 of a signed number; one of the 65,536 values is unused so that 0 is exact.
 _SIGNED_STEPS = 32767
 
-#: Bits per coordinate of the spatial order.
-_ORDER_BITS = 16
 
-
-def pack_16_bit(surfels: Surfels) -> tuple[tuple[np.ndarray, np.ndarray], int]:
+def pack_16_bit(surfels: Surfels, order: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], int]:
     """(rows, 2048, 4) float32 texels in 0 to 1, multiples of 1 / 65535, the (rows, 3, 4) float32 table, and how many
     surfels are coarse: their position may be off by more than `COARSE` of their shorter half-axis, because their block
     is that much larger than they are (a stray surfel far away widens the block that it falls into).
 
+    order: (n,) numbers of the surfels in which they are stored, neighbours together.
     Raises ValueError above `MAX_SPLATS` surfels and for a material index above 65,535.
     """
-    rows = row_count(surfels)
+    rows, count = row_count(len(order)), len(order)
     if len(surfels) and surfels.materials.max() > _STEPS:
         raise ValueError(
             f"16-bit storage numbers materials up to {_STEPS:,}, not {surfels.materials.max():,}; use float32 storage."
@@ -49,8 +46,8 @@ def pack_16_bit(surfels: Surfels) -> tuple[tuple[np.ndarray, np.ndarray], int]:
     table = np.zeros((rows, 3, 4), np.float32)
     if not len(surfels):
         return (texels.reshape(rows, -1, 4), table), 0
-    # pad the last row with its last splat, which widens no block
-    order = np.pad(order_16_bit(surfels), (0, rows * SPLATS_PER_ROW - len(surfels)), "edge")
+    # the last row is filled up with its last splat, which widens no block
+    order = np.pad(order, (0, rows * SPLATS_PER_ROW - count), "edge")
 
     def blocks(array):
         return array[order].reshape(rows, SPLATS_PER_ROW, *array.shape[1:])
@@ -80,30 +77,7 @@ def pack_16_bit(surfels: Surfels) -> tuple[tuple[np.ndarray, np.ndarray], int]:
     texels[:, :, 3, 3] = _steps(np.clip(colors[..., 3], 0, 1))
     table[:, 2, 0] = brightest
     is_coarse = blocks(surfels.scales).min(axis=2) * COARSE < size.max(axis=1, keepdims=True) / (2 * _STEPS)
-    return (texels.reshape(rows, -1, 4), table), int(np.count_nonzero(is_coarse.ravel()[: len(surfels)]))
-
-
-def order_16_bit(surfels: Surfels) -> np.ndarray:
-    """(N,) indices: clipped surfels first, neighbours together."""
-    return clipped_first(surfels, spatial_order(surfels.positions))
-
-
-def spatial_order(positions: np.ndarray) -> np.ndarray:
-    """(N,) indices that order (N, 3) positions along a Morton curve through their box; equal cells keep their order."""
-    low, high = positions.min(axis=0).astype(np.float64), positions.max(axis=0).astype(np.float64)
-    shares = (positions - low) / max((high - low).max(), 1e-300)
-    cells = np.minimum(shares * 2**_ORDER_BITS, 2**_ORDER_BITS - 1).astype(np.uint64)
-    codes = np.zeros(len(positions), np.uint64)
-    for axis in range(3):
-        codes |= _spread(cells[:, axis]) << np.uint64(axis)
-    return np.argsort(codes, kind="stable")
-
-
-def _spread(bits: np.ndarray) -> np.ndarray:
-    """16-bit numbers with two zeros after each bit."""
-    for shift, mask in ((16, 0x0000FF0000FF), (8, 0x00F00F00F00F), (4, 0x0C30C30C30C3), (2, 0x249249249249)):
-        bits = (bits | bits << np.uint64(shift)) & np.uint64(mask)
-    return bits
+    return (texels.reshape(rows, -1, 4), table), int(np.count_nonzero(is_coarse.ravel()[:count]))
 
 
 def rotation_parameters(quaternions: np.ndarray) -> np.ndarray:

@@ -19,6 +19,7 @@ from .atlas import FORMAT, make_atlas
 from .cuts import Cuts
 from .packing import pack_clip_lines, pack_materials, pack_own_materials, pack_uvs
 from .storages import Storage
+from .stored_order import places_of, stored_order
 
 Uploaded = TypeVar("Uploaded")
 
@@ -27,12 +28,14 @@ TextureKey = tuple[str, int, int, str, int]
 
 
 class StoredSurfels(NamedTuple):
-    """textures: by sampler. coarse: number of surfels whose position loses visible precision in the storage. levels:
-    whether merged nodes follow the surfels. places: storage position of each; None: in order."""
+    """textures: by sampler. coarse: number of surfels whose position loses visible precision in the storage.
+
+    places: storage position of each surfel, then of each merged node, if there are levels. Surfels come first, stored
+    as they are without levels.
+    """
 
     textures: dict[str, Texture]
     coarse: int
-    levels: Hierarchy | None = None
     places: np.ndarray | None = None
 
 
@@ -49,22 +52,18 @@ class Resources:
 
     def surfels(self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None) -> StoredSurfels:
         """Textures of surfels, uploaded once per storage. levels: hierarchy whose nodes are stored after them."""
-        made_from, held = self._held.get(surfels, {}).get("surfels", (None, None))
-        if levels is None and held is not None and made_from[0] == storage.name and held.places is None:
-            # data after surfels in their own order does not affect users who draw only these
-            return held
 
         def stored() -> StoredSurfels:
-            every = _with_nodes(surfels, levels)
-            arrays, coarse = storage.pack(every)
-            places = _places(every, storage) if levels else None
+            every, order = _with_nodes(surfels, levels), self._order(surfels, levels)
+            arrays, coarse = storage.pack(every, order)
+            places = places_of(order, len(every)) if levels else None
             textures = {
                 sampler: self.data(texels, format)
                 for (sampler, format), texels in zip(storage.textures, arrays, strict=True)
             }
-            return StoredSurfels(textures, coarse, levels, places)
+            return StoredSurfels(textures, coarse, places)
 
-        return self._once(surfels, "surfels", (storage.name, levels), stored)
+        return self._with_levels(surfels, "surfels", (storage.name,), levels, stored)
 
     def polygons(self, polygons: Polygons) -> Texture:
         """The corners of polygons, uploaded once."""
@@ -74,40 +73,47 @@ class Resources:
         """The texture coordinates of polygons, uploaded once."""
         return self._once(polygons, "uvs", None, lambda: self.data(pack_polygon_uvs(polygons)))
 
-    def materials(
-        self, instance: Placed, storage: Storage, with_emission: bool, levels: Hierarchy | None = None
-    ) -> Texture:
-        """The materials of an instance's slots; if surfels or corners have their own, one each. Uploaded once.
-
-        storage: of surfels, which may change their order.
-        """
+    def materials(self, instance: Placed, with_emission: bool, levels: Hierarchy | None = None) -> Texture:
+        """The materials of an instance's slots; if surfels or corners have their own, one each. Uploaded once."""
         shape, slots = instance.shape, instance.materials
         if not shape.has_own_material:
             return self.data(pack_materials(slots, with_emission))
 
         def own() -> Texture:
-            every = _with_nodes(shape, levels)
-            return self.data(pack_own_materials(every, slots, _order(every, storage), with_emission))
+            if not isinstance(shape, Surfels):
+                return self.data(pack_own_materials(shape, slots, slice(None), with_emission))
+            every, order = _with_nodes(shape, levels), self._order(shape, levels)
+            return self.data(pack_own_materials(every, slots, order, with_emission))
 
-        return self._once(shape, "materials", (slots, storage.name, with_emission, levels), own)
+        return self._with_levels(shape, "materials", (slots, with_emission), levels, own)
 
-    def surfel_uvs(self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None) -> Texture:
-        """The texture coordinates of surfels, uploaded once."""
-
-        def uploaded() -> Texture:
-            every = _with_nodes(surfels, levels)
-            return self.data(pack_uvs(every, _order(every, storage)))
-
-        return self._once(surfels, "uvs", (storage.name, levels), uploaded)
-
-    def clip_lines(self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None) -> Texture:
-        """The lines of clipped surfels, uploaded once."""
+    def surfel_uvs(self, surfels: Surfels, levels: Hierarchy | None = None) -> Texture:
+        """Their texture coordinates, uploaded once."""
 
         def uploaded() -> Texture:
-            every = _with_nodes(surfels, levels)
-            return self.data(pack_clip_lines(every, storage.order(every)), "RGBA16")
+            return self.data(pack_uvs(_with_nodes(surfels, levels), self._order(surfels, levels)))
 
-        return self._once(surfels, "clip_lines", (storage.name, levels), uploaded)
+        return self._with_levels(surfels, "uvs", (), levels, uploaded)
+
+    def clip_lines(self, surfels: Surfels) -> Texture:
+        """The lines of those that are clipped, uploaded once; merged ones have none."""
+
+        def uploaded() -> Texture:
+            return self.data(pack_clip_lines(surfels, self._order(surfels)), "RGBA16")
+
+        return self._once(surfels, "clip_lines", None, uploaded)
+
+    def _order(self, surfels: Surfels, levels: Hierarchy | None = None) -> np.ndarray:
+        """That in which they are stored, found once."""
+        return self._with_levels(surfels, "order", (), levels, lambda: stored_order(surfels, levels))
+
+    def _with_levels(
+        self, owner: object, kind: str, made_from: tuple, levels: Hierarchy | None, make: Callable[[], Uploaded]
+    ) -> Uploaded:
+        """As `_once`; what is there with levels serves those too who draw none: the surfels lie before them."""
+        (*from_before, levels_before), _ = self._held.get(owner, {}).get(kind, ((None,), None))
+        is_kept = levels is None and tuple(from_before) == made_from
+        return self._once(owner, kind, (*made_from, levels_before if is_kept else levels), make)
 
     def atlas(self, textures: tuple[SurfaceTexture | None, ...]) -> tuple[Texture, Texture]:
         """Texels and table of an instance's textures, uploaded once."""
@@ -166,21 +172,6 @@ class Resources:
         self.textures.clear()
 
 
-def _with_nodes(shape: Surfels | Polygons, levels: Hierarchy | None) -> Surfels | Polygons:
-    """The surfels, followed by the merged nodes."""
-    return concatenate([shape, levels.nodes]) if levels else shape
-
-
-def _places(surfels: Surfels, storage: Storage) -> np.ndarray | None:
-    """(N,) storage position of each; None: in order."""
-    order = storage.order(surfels)
-    if isinstance(order, slice):
-        return None
-    places = np.empty(len(surfels), np.int32)
-    places[order] = np.arange(len(surfels), dtype=np.int32)
-    return places
-
-
-def _order(shape: Surfels | Polygons, storage: Storage):
-    """The index that brings surfels into storage order; corners of polygons keep theirs."""
-    return storage.order(shape) if isinstance(shape, Surfels) else slice(None)
+def _with_nodes(surfels: Surfels, levels: Hierarchy | None) -> Surfels:
+    """The surfels, then the merged nodes."""
+    return concatenate([surfels, levels.nodes]) if levels else surfels

@@ -10,24 +10,22 @@ import numpy as np
 
 from ...surfels import Surfels
 from .packing import pack_surfels
-from .packing_16_bit import order_16_bit, pack_16_bit
-from .stored_order import clipped_first
+from .packing_16_bit import pack_16_bit
 
 
 @dataclass(frozen=True)
 class Storage:
     """name: also of its GLSL file. label, summary: for users.
     textures: (sampler, format) of each texture.
-    pack: function that returns their (h, w, 4) float32 texels, and the number of surfels that visibly lose precision.
-    order: function that returns the (N,) storage order, clipped surfels first; a full slice keeps the order.
+    pack: surfels, in the order that `stored_order` gives, to their (h, w, 4) float32 texels, and the number of surfels
+        whose place it loses visibly.
     """
 
     name: str
     label: str
     summary: str
     textures: tuple[tuple[str, str], ...]
-    pack: Callable[[Surfels], tuple[tuple[np.ndarray, ...], int]]
-    order: Callable[[Surfels], np.ndarray | slice]
+    pack: Callable[[Surfels, np.ndarray], tuple[tuple[np.ndarray, ...], int]]
 
     @property
     def samplers(self) -> tuple[str, ...]:
@@ -43,8 +41,7 @@ STORAGES = {
             "Float 32",
             "64 bytes a surfel, exact",
             (("surfels", "RGBA32F"),),
-            lambda surfels: ((pack_surfels(surfels),), 0),
-            clipped_first,
+            lambda surfels, order: ((pack_surfels(surfels, order),), 0),
         ),
         Storage(
             "16-bit",
@@ -52,7 +49,6 @@ STORAGES = {
             ("32 bytes a surfel, at least 58 dB from Float 32"),
             (("surfels", "RGBA16"), ("surfel_blocks", "RGBA32F")),
             pack_16_bit,
-            order_16_bit,
         ),
     )
 }

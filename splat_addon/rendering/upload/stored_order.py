@@ -1,21 +1,40 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Storage order with clipped surfels first, so that both kinds are one draw each, and clip lines are stored for the
-former only."""
+"""The order in which surfels lie on the device, whatever they are stored as.
+
+Neighbours lie together, so that what is drawn one after the other is near in memory and in the picture. Clipped surfels
+lie before the others, so that either are a draw of their own; merged ones lie after all, from the next whole row on, so
+that the surfels are stored as they are without them.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
+from ...hierarchy import Hierarchy
+from ...hierarchy.ordering import spatial_order
 from ...surfels import Surfels
 
+SPLATS_PER_ROW = 512
 
-def clipped_first(surfels: Surfels, order: np.ndarray | None = None):
-    """The index that applies the given order (None: unchanged), but puts clipped surfels first.
 
-    Clipped surfels are reversed, so that neighbours stay close where one kind ends and the other begins.
+def stored_order(surfels: Surfels, levels: Hierarchy | None = None) -> np.ndarray:
+    """(stored,) int32 numbers of surfels and, from N on, of the merged nodes of `levels`.
+
+    A row that nodes follow is filled up with its last surfel.
     """
-    if not surfels.clipped_count:
-        return slice(None) if order is None else order
-    order = np.arange(len(surfels)) if order is None else order
-    is_cut = surfels.is_cut()[order]
-    return np.concatenate([order[is_cut][::-1], order[~is_cut]])
+    order = spatial_order(surfels.positions).astype(np.int32)
+    if surfels.clipped_count:
+        # turned round: where one kind ends and the other begins, neighbours in the order stay neighbours
+        is_cut = surfels.is_cut()[order]
+        order = np.concatenate([order[is_cut][::-1], order[~is_cut]])
+    if levels is None:
+        return order
+    order = np.pad(order, (0, -len(order) % SPLATS_PER_ROW), "edge")
+    return np.concatenate([order, len(surfels) + spatial_order(levels.nodes.positions).astype(np.int32)])
+
+
+def places_of(order: np.ndarray, count: int) -> np.ndarray:
+    """(count,) int32 the first place in the order at which each number is stored."""
+    places = np.empty(count, np.int32)
+    places[order[::-1]] = np.arange(len(order) - 1, -1, -1, dtype=np.int32)
+    return places

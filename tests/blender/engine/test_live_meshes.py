@@ -26,7 +26,7 @@ def live(scene, add_camera):
 def sampled(monkeypatch):
     """The surfels that were packed for the device, in order."""
     packed, pack = [], storages.pack_surfels
-    monkeypatch.setattr(storages, "pack_surfels", lambda surfels: packed.append(surfels) or pack(surfels))
+    monkeypatch.setattr(storages, "pack_surfels", lambda surfels, order: packed.append(surfels) or pack(surfels, order))
     return packed
 
 

@@ -13,7 +13,7 @@ from splat_addon.rendering.upload import storages
 def uploads(monkeypatch):
     """The surfels that were packed for the device, one entry each time."""
     packed, pack = [], storages.pack_surfels
-    monkeypatch.setattr(storages, "pack_surfels", lambda surfels: packed.append(surfels) or pack(surfels))
+    monkeypatch.setattr(storages, "pack_surfels", lambda surfels, order: packed.append(surfels) or pack(surfels, order))
     return packed
 
 

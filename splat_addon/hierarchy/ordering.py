@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Orders that bring together what lies together: of whole numbers, and of places along a Morton curve."""
+
+from __future__ import annotations
+
+import numpy as np
+
+#: Bits of a number that is sorted.
+BITS = 63
+#: Bits of each coordinate in the order along which neighbours are gathered.
+_ORDER_BITS = 16
+#: Places that are worked on at a time, so that they stay in the processor's cache.
+_PORTION = 1 << 15
+
+
+def sorted_with_order(keys: np.ndarray, bits: int) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) int64 keys, sorted, and the order that sorts them, equal ones as they were. bits: that the keys have.
+
+    Where key and number fit into one word, that word is sorted: in a tenth of the time that an indirect sort takes.
+    """
+    width = max(len(keys) - 1, 1).bit_length()
+    if bits + width > BITS:
+        order = np.argsort(keys, kind="stable")
+        return keys[order], order
+    both = keys << width
+    both |= np.arange(len(keys))
+    both.sort()
+    return both >> width, both & ((1 << width) - 1)
+
+
+def spatial_order(positions: np.ndarray) -> np.ndarray:
+    """(N,) indices that bring neighbours of (N, 3) positions together: along a Morton curve through their box, equal
+    cells in their own order.
+    """
+    if not len(positions):
+        return np.zeros(0, int)
+    low, high = positions.min(axis=0).astype(np.float64), positions.max(axis=0).astype(np.float64)
+    size = max((high - low).max(), 1e-300)
+    # so many that cells are a fraction of the distance between neighbours, and keys are sorted fast
+    bits = min(_ORDER_BITS, (BITS - max(len(positions) - 1, 1).bit_length()) // 3)
+    codes = np.empty(len(positions), np.int64)
+    for start in range(0, len(positions), _PORTION):
+        some = slice(start, start + _PORTION)
+        shares = (positions[some] - low) / size
+        cells = np.minimum(shares * 2**bits, 2**bits - 1).astype(np.int64)
+        x, y, z = (_spread(np.ascontiguousarray(cells[:, axis])) for axis in range(3))
+        codes[some] = x | y << 1 | z << 2
+    return sorted_with_order(codes, 3 * bits)[1]
+
+
+def _spread(bits: np.ndarray) -> np.ndarray:
+    """16-bit numbers with two zeros after each bit."""
+    for shift, mask in ((16, 0x0000FF0000FF), (8, 0x00F00F00F00F), (4, 0x0C30C30C30C3), (2, 0x249249249249)):
+        bits = (bits | bits << shift) & mask
+    return bits
