@@ -196,7 +196,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         name="Detail Tolerance",
         description=(
             "Draw larger surfels in place of those that are too small to be seen, off by at most this many pixels. 0 "
-            "draws every surfel; 1.5 makes large sets many times faster"
+            "draws every surfel; 1.25 makes large sets many times faster"
         ),
         min=0.0,
         soft_max=8.0,

@@ -60,7 +60,7 @@ def sight(instance: Instance, camera: Camera, hides_backs: bool, tolerance: floa
     """A camera's view of an instance. tolerance: in pixels of the camera's picture."""
     matrix = instance.model_view(camera)
     x, y, depth = matrix[0], matrix[1], -matrix[2]
-    left, right, bottom, top = camera.window
+    left, right, bottom, top = _whole_pixels(camera)
     across, up = _BESIDE * (right - left) / camera.size[0], _BESIDE * (top - bottom) / camera.size[1]
     one = np.array([0, 0, 0, 1.0])
     spread = one if camera.is_orthographic else depth
@@ -81,7 +81,17 @@ def sight(instance: Instance, camera: Camera, hides_backs: bool, tolerance: floa
     return Sight(np.array(planes), depth, pixels, camera.near, eye, hides_backs, tolerance)
 
 
+def _whole_pixels(camera: Camera) -> tuple[float, float, float, float]:
+    """The camera's window moved by less than a pixel, so that all samples of a picture have one cut."""
+    (left, right, bottom, top), edges = camera.window, []
+    for first, last, count in ((left, right, camera.size[0]), (bottom, top, camera.size[1])):
+        step = float(f"{(last - first) / count:.11g}")  # without the last digits, which moving changes
+        middle = round((first + last) / 2 / step) * step
+        edges += [middle - count / 2 * step, middle + count / 2 * step]
+    return tuple(edges)
+
+
 def _pixels(camera: Camera) -> float:
     """Pixels per world unit at distance 1, or anywhere for a parallel view."""
-    left, right, bottom, top = camera.window
+    left, right, bottom, top = _whole_pixels(camera)
     return max(camera.size[0] / (right - left), camera.size[1] / (top - bottom))

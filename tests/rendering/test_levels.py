@@ -9,7 +9,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import Camera, Renderer, Settings, plan
+from splat_addon.rendering import Camera, Equirectangular, Light, Panorama, Renderer, Settings, plan
 from splat_addon.rendering.levels import LEAST_SURFELS
 from splat_addon.rendering.methods import METHODS
 
@@ -141,6 +141,69 @@ def test_a_still_view_uploads_nothing_and_a_moved_one_its_cuts(on_device):
         return uploads
 
     assert on_device(draw) == [2, 0, 2, 0]
+
+
+LAMPS = {
+    "sun": (Light("sun", direction=(-0.5, 0.6, -0.8), casts_shadow=True), 1),
+    "lamp amid": (Light("point", energy=100, position=(0.9, -0.7, 0.9), casts_shadow=True), None),
+}
+
+
+@pytest.mark.parametrize("name", LAMPS)
+def test_each_shadow_map_has_a_cut_of_its_own(name, on_device):
+    """One an instance, a map and the camera, of those that may be seen; a still view and more samples make no more."""
+    scene, camera = far_torus()
+    light, maps = LAMPS[name]
+    scene = replace(scene, lights=(light,))
+
+    def draw(device):
+        renderer, uploads, frames = Renderer(device), [], []
+        for samples in (1, 1, 4):
+            before = renderer.resources.cuts.uploads
+            frames.append(renderer.render(scene, camera, replace(SOME, samples=samples, shadow_resolution=64)))
+            uploads.append(renderer.resources.cuts.uploads - before)
+        return uploads, frames[0].stats["plan"].facts["shadow_maps"]
+
+    uploads, made = on_device(draw)
+    assert len(made) == maps or 1 < len(made) <= 6
+    assert 2 + len(made) <= uploads[0] <= 2 + 2 * len(made)
+    assert uploads[1:] == [0, 0]
+
+
+def test_the_faces_of_a_panorama_have_cuts_of_their_own(on_device):
+    scene, camera = far_torus()
+    panorama = Panorama(camera.matrix_world, Equirectangular(), (64, 32), near=0.01)
+    settings = replace(SOME, outputs=("color",), shadow_resolution=0)
+
+    def draw(device):
+        renderer, uploads, frames = Renderer(device), [], []
+        for tolerance in (1.5, 1.5, 0.0):
+            before = renderer.resources.cuts.uploads
+            frames.append(renderer.render(scene, panorama, replace(settings, detail_tolerance=tolerance)))
+            uploads.append(renderer.resources.cuts.uploads - before)
+        return uploads, frames
+
+    uploads, frames = on_device(draw)
+    assert uploads[0] >= 2 and uploads[1:] == [0, 0]
+    assert psnr(frames[1].color, frames[2].color) > 37
+
+
+@pytest.mark.parametrize("resolution", [128, 512, 2048])
+@pytest.mark.parametrize("tolerance", [1.25, 2.5])
+def test_what_is_merged_casts_no_shadow_on_itself(tolerance, resolution, render):
+    """Camera and shadow map draw different levels, coarser or finer than one another; they never differ by so much
+    that a surface which a light shines on hides itself."""
+    scene, camera = far_torus()
+    light = replace(LAMPS["sun"][0], direction=tuple(camera.matrix_world[:3, :3] @ (0.2, -0.3, -1)))
+    scene = replace(scene, lights=(light,))
+    every = replace(EVERY, shadow_resolution=resolution, outputs=("color", "depth", "normal", "coverage", "shadow"))
+    truth, some = (render(scene, camera, replace(every, detail_tolerance=t)) for t in (0.0, tolerance))
+    inside = truth.coverage > 0.999
+    falsely = inside & (truth.shadow[..., 0] > 0.999) & (some.shadow[..., 0] < 0.5)
+    lost = inside & (truth.shadow[..., 0] < 0.001) & (some.shadow[..., 0] > 0.5)
+    assert some.stats["splats_drawn"] < 0.5 * truth.stats["splats_drawn"] and inside.sum() > 200
+    # a shadow's edge may move as far as the tolerance is
+    assert not falsely.any() and lost.sum() <= 0.02 * inside.sum()
 
 
 def test_parts_of_a_picture_are_drawn_with_the_whole_s_levels(render, monkeypatch):

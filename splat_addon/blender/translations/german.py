@@ -145,11 +145,11 @@ GERMAN = {
     ),
     (
         "Draw larger surfels in place of those that are too small to be seen, off by at most this many "
-        "pixels. 0 draws every surfel; 1.5 makes large sets many times faster"
+        "pixels. 0 draws every surfel; 1.25 makes large sets many times faster"
     ): (
         "Größere Surfels anstelle von solchen zeichnen, die zu klein sind, um gesehen zu werden, mit "
-        "höchstens so vielen Pixeln Abweichung. 0 zeichnet jedes Surfel; 1,5 macht große Mengen um ein "
-        "Vielfaches schneller"
+        "höchstens so vielen Pixeln Abweichung. 0 zeichnet jedes Surfel; 1,25 macht große Mengen "
+        "um ein Vielfaches schneller"
     ),
     ("Draw lines along silhouettes and creases, with any shading. It takes 1.5 to 1.7 times the time of a frame"): (
         "Linien entlang von Umrissen und Falten zeichnen, bei jeder Schattierung. Das braucht die 1,5- bis "

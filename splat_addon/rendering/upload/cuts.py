@@ -26,6 +26,10 @@ class Cut(NamedTuple):
     numbers: Texture | None
 
 
+#: Number of cuts kept that the previous frame did not use: of panorama faces, and of shadow maps that samples share.
+_SPARE = 12
+
+
 class Cuts:
     """The cuts of the last frames. uploads: number of uploads."""
 
@@ -36,8 +40,10 @@ class Cuts:
         self.uploads = 0
 
     def begin_frame(self) -> None:
-        """Free the cuts that the previous frame did not use."""
-        self._kept = {key: kept for key, kept in self._kept.items() if kept[0] == self._frame}
+        """Free the cuts that the previous frame did not use, except the most recent ones."""
+        unused = [key for key, (frame, _) in self._kept.items() if frame != self._frame]
+        for key in sorted(unused, key=lambda key: self._kept[key][0])[:-_SPARE]:
+            del self._kept[key]
         self._frame += 1
 
     def get(self, key: object, numbers: Callable[[], np.ndarray | None], every: int, clipped: int) -> Cut:
