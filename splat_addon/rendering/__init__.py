@@ -7,6 +7,7 @@ scene, camera, settings -> plan -> view -> passes on a device -> Frame
 from .cryptomatte import Cryptomatte
 from .device import open_device
 from .frame import EMPTY_DEPTH, Frame
+from .pace import Pace
 from .plan.build import plan
 from .plan.frame_plan import FramePlan
 from .presets import PRESETS, Preset
@@ -40,6 +41,7 @@ __all__ = (
     "Lines",
     "Matcap",
     "Material",
+    "Pace",
     "Panorama",
     "PolygonInstance",
     "Polygons",

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from .accumulation import sample_camera
+from .pace import Pace
 from .renderer import Renderer, Shown
 from .scene import Scene
 from .scene.camera import Camera
@@ -18,14 +19,16 @@ class Refinement:
 
     samples: number of samples in the shown picture; 0 for the first, which is not stored in a sum, so that a moving
         view costs no more than without refinement.
+    pace: how coarse levels of detail are while only the camera moves; at rest they are as the settings say.
     """
 
-    def __init__(self, renderer: Renderer):
+    def __init__(self, renderer: Renderer, pace: Pace | None = None):
         self.renderer = renderer
+        self.pace = pace or Pace(None)
         self.samples = 0
         self._of: tuple[Scene, Camera, Settings] | None = None
         self._maps: tuple[ShadowMap, ...] | None = None
-        self._refines = False
+        self._refines = self._is_coarse = False
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
         """Yield the parts of the picture to show now: with one sample if anything changed, with one more sample if
@@ -34,16 +37,18 @@ class Refinement:
         A part is valid until the next is requested. Raises as `Renderer.draw`.
         """
         if not self._is_of(scene, camera, settings):
+            moves = self._of is not None and self._of[0] is scene and self._of[2] == settings
             self._of, self.samples, self._maps = (scene, camera, settings), 0, None
-            self._refines = settings.samples > 1
-            yield from self.renderer.draw(scene, camera, settings)
+            self._refines, self._is_coarse = settings.samples > 1, False
+            yield from self._moving(scene, camera, settings) if moves else self.renderer.draw(scene, camera, settings)
             return
-        if self.wants_more:
+        if self._refines and self.wants_more:
             moved = sample_camera(camera, self.samples)
             fitted = moved if camera.lens else camera
             self._maps = self.renderer.add_sample(scene, moved, fitted, settings, self.samples == 0, self._maps)
             self._refines = self._maps is not None
             self.samples += 1
+        self._is_coarse = False
         if self._refines:
             yield self.renderer.shown_sum(camera.size, self.samples)
         else:
@@ -52,7 +57,17 @@ class Refinement:
     @property
     def wants_more(self) -> bool:
         """Whether drawing again improves the picture."""
-        return self._refines and self.samples < self._of[2].samples
+        return self._is_coarse or (self._refines and self.samples < self._of[2].samples)
+
+    def _moving(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
+        """The picture of a camera that moves, as coarse as its pace requires."""
+        drawn, device = self.pace.begin(settings), self.renderer.device
+        self._is_coarse = drawn is not settings
+        for shown in self.renderer.draw(scene, camera, drawn):
+            if self.pace.rate is not None:
+                device.finish(device.target([shown.texture]))
+            yield shown
+        self.pace.end(settings)
 
     def _is_of(self, scene: Scene, camera: Camera, settings: Settings) -> bool:
         if self._of is None:

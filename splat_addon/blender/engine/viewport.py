@@ -10,7 +10,7 @@ from time import monotonic
 
 import bpy
 
-from ...rendering import Refinement, Renderer, Shown, open_device
+from ...rendering import Pace, Refinement, Renderer, Shown, open_device
 from ..export.camera import viewport_camera
 from ..export.live_meshes import LiveMeshes
 from ..export.scene import SurfelStore, export_scene
@@ -99,13 +99,17 @@ def _show(shown: Shown) -> None:
 _REST = 0.2
 
 
+#: Pictures per second that a moving view is coarse enough for.
+_RATE = 10.0
+
+
 class _State:
     """State of one 3D view: the scene as last read, and the data on the device."""
 
     def __init__(self):
         self.store = SurfelStore()
         self.live_meshes = LiveMeshes()
-        self.refinement = Refinement(Renderer(open_device("blender")))
+        self.refinement = Refinement(Renderer(open_device("blender")), Pace(_RATE))
         self.scene = None
         self._changed = 0.0
         self._is_waiting = False
