@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a frame costs with levels of detail: time and memory against surfels, pixels and overdraw.
+
+One model, lit by a sun, with more and more surfels in the same views: *filling* the picture, and so far away (*tiny*)
+that it covers some 60 pixels. *All* draws every surfel, *cut* what the tolerance lets through; times are medians of
+whole frames in turn. FLIP and PSNR compare the cut with all. *Decided* is the share of the cut frame that planning and
+cutting take while the camera moves. *Bare* is the pass that draws the same splats into a depth buffer alone: no frame
+takes less. Uploads are those of a second frame of the same view. The dolly moves away to four times the distance; its
+*pop* is FLIP between neighbouring pictures, less that of the pictures of all surfels.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from time import perf_counter
+
+import numpy as np
+
+from measuring.models import in_view, load
+from measuring.timing import in_turn, wall
+from splat_addon.hierarchy import cut_entries
+from splat_addon.reference.metrics import mean_flip, psnr
+from splat_addon.rendering import Renderer, Settings, open_device, plan
+from splat_addon.rendering.levels import hierarchy_of, sight
+from splat_addon.sampling import sample_mesh
+
+DEVICES = ("standalone",)
+QUICK = {"size": 64, "resolutions": [60], "model": "bunny.obj.gz", "dolly": 3}
+#: name -> the eye in half diagonals of the model's box
+VIEWS = {"filling": (1.2, 0.7, 2.6), "tiny": (76.0, 44.0, 165.0)}
+COLUMNS = (
+    "surfels view shadow drawn all,_ms cut,_ms cut/all bare/cut decided PSNR FLIP MiB,_all MiB,_cut uploads".split()
+)
+PASSES = "surfels", "view", "splats over a pixel", "milliseconds of each pass"
+
+
+def arguments(parser) -> None:
+    parser.add_argument("--size", type=int, default=512, help="pixels along each side")
+    parser.add_argument("--model", default="dragon_vrip.ply.gz")
+    parser.add_argument("--resolutions", type=int, nargs="+", default=[265, 500, 830, 2030])
+    parser.add_argument("--dolly", type=int, default=60, help="pictures of the dolly, of the first resolution")
+    parser.add_argument("--tolerance", type=float, default=Settings.detail_tolerance, help="pixels")
+    parser.set_defaults(turns=3)
+
+
+def run(options, report) -> None:
+    device, passes = open_device(options.device), []
+    report.header(device, f"{options.model}, {options.size} x {options.size} pixels, tolerance {options.tolerance}")
+    mesh = load(options.models / options.model)
+
+    def rows():
+        for resolution in options.resolutions:
+            surfels = sample_mesh(mesh, resolution=resolution)
+            started = perf_counter()
+            levels = hierarchy_of(surfels)
+            seconds, own = perf_counter() - started, sum(a.nbytes for a in surfels.arrays().values())
+            yield f"{len(surfels):,}", f"built in {seconds:.2f} s", f"{levels.nbytes / own:.0%} more memory", *[""] * 11
+            for view, eye in VIEWS.items():
+                for shadow in (0, 1024):
+                    yield measure(device, surfels, view, eye, shadow, options, passes)
+
+    report.table([name.replace("_", " ") for name in COLUMNS], rows())
+    report.table(PASSES, passes, "Where the time of a cut frame goes, sun without shadow.")
+    if options.dolly > 1:
+        pops = dolly(Renderer(device), sample_mesh(mesh, resolution=options.resolutions[0]), options)
+        report.say(f"Dolly of {options.dolly} pictures: pop {np.mean(pops):.4f} on average, {max(pops):.4f} at most.")
+
+
+def dolly(renderer: Renderer, surfels, options) -> list[float]:
+    """The pop of each picture after the first."""
+    before, pops = None, []
+    for step in np.linspace(0, 2, options.dolly):
+        scene, camera = in_view(surfels, options.size, tuple(2**step * x for x in VIEWS["filling"]))
+        settings = Settings(outputs=("color",), shadow_resolution=0, detail_tolerance=options.tolerance)
+        now = [renderer.render(scene, camera, s).color for s in (settings, replace(settings, detail_tolerance=0.0))]
+        if before:
+            cut, every = (mean_flip(a, b) for a, b in zip(now, before, strict=True))
+            pops.append(max(cut - every, 0.0))
+        before = now
+    return pops
+
+
+def measure(device, surfels, view: str, eye, shadow: int, options, passes: list) -> tuple:
+    """A row, and one for `passes`. Either kind has a renderer of its own."""
+    (scene, camera), every = in_view(surfels, options.size, eye), Settings(detail_tolerance=0.0)
+    camera = replace(camera, far=camera.far * 100)
+    every = replace(every, shadow_resolution=shadow, outputs=("color",))
+    lit = replace(scene, lights=tuple(replace(light, casts_shadow=shadow > 0) for light in scene.lights))
+    settings = {"all": every, "cut": replace(every, detail_tolerance=options.tolerance)}
+    renderers = {kind: Renderer(device) for kind in settings}
+    jobs = {kind: partial(renderers[kind].render, lit, camera, settings[kind]) for kind in settings}
+    drawn = in_turn(jobs, options.turns, wall)
+    renderers["all"].release()
+    before = renderers["cut"].resources.cuts.uploads
+    held = {"cut": jobs["cut"]().stats["texture_bytes"]}
+    uploads = renderers["cut"].resources.cuts.uploads - before
+    profiled = renderers["cut"].render(lit, camera, replace(settings["cut"], profile=True))
+    times, cut = profiled.stats["passes"], drawn.spread("cut").median
+    if not shadow:
+        counted = renderers["cut"].render(lit, camera, replace(settings["cut"], outputs=("color", "overdraw")))
+        over = counted.overdraw[counted.overdraw > 0]
+        each = ", ".join(f"{name} {ms:.1f}" for name, ms in times.items())
+        passes.append((f"{len(surfels):,}", view, f"{over.mean() if len(over) else 0:.1f}", each))
+    one, other = (drawn.results[kind] for kind in ("cut", "all"))
+    renderers["cut"].release()
+    held["all"] = jobs["all"]().stats["texture_bytes"]
+    renderers["all"].release()
+    return (
+        f"{len(surfels):,}", view, "sun's" if shadow else "none", f"{one.stats['splats_drawn']:,}",
+        f"{1e3 * drawn.spread('all').median:.0f}", f"{1e3 * cut:.0f}", f"{drawn.ratio('cut', 'all'):.3f}",
+        f"{times.get('visibility', 0) / 1e3 / cut:.2f}", f"{decided(lit, camera, settings['cut']) / cut:.1%}",
+        f"{psnr(one.color, other.color):.1f}", f"{mean_flip(one.color, other.color):.4f}",
+        f"{held['all'] / 2**20:.0f}", f"{held['cut'] / 2**20:.0f}", uploads,
+    )  # fmt: skip
+
+
+def decided(scene, camera, settings) -> float:
+    """Seconds to plan a frame and cut all its views."""
+    started = perf_counter()
+    made = plan(scene, camera, settings)
+    for instance in made.facts.get("levels", ()):
+        for seen in (camera, *(m.camera for m in made.facts["shadow_maps"])):
+            cut_entries(hierarchy_of(instance.surfels), sight(instance, seen, False, settings.detail_tolerance))
+    return perf_counter() - started
