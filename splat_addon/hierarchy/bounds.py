@@ -36,7 +36,7 @@ class Frame:
 
     def reach(self, children: Nodes, runs: Runs, offsets: np.ndarray, share: np.float32) -> np.ndarray:
         """(n,) at least how many half-axes of its parent's ellipse a share of each child's reaches from its centre."""
-        first, second = ((a / h)[:, runs.owner] for a, h in ((self.first, self.longest), (self.second, self.shortest)))
+        first, second = (runs.spread(a / h) for a, h in ((self.first, self.longest), (self.second, self.shortest)))
         beside = _dot(first, offsets) ** 2 + _dot(second, offsets) ** 2
         (a, b), (c, d) = ([_dot(axis, half) for half in children.axes] for axis in (first, second))
         # the longer half-axis of what the child's circle is mapped to, its matrix's largest singular value
@@ -50,7 +50,7 @@ def bounds(children: Nodes, runs: Runs, offsets: np.ndarray, frame: Frame, shadi
 
     offsets: (3, n) of the children from their parent. shading, colors: (3, m), (4, m) of the parents.
     """
-    normal = frame.normal[:, runs.owner]
+    normal = runs.spread(frame.normal)
     tilt = np.sqrt(np.maximum(1 - _dot(normal, children["normals"]) ** 2, 0))
     height = _dot(normal, offsets)
     rise = np.sqrt(_dot(normal, children.axes[0]) ** 2 + _dot(normal, children.axes[1]) ** 2)
@@ -58,7 +58,7 @@ def bounds(children: Nodes, runs: Runs, offsets: np.ndarray, frame: Frame, shadi
     off = runs.largest(children["off"] + np.abs(height) + rise + children["uncovered"] * tilt) + slack
 
     moved = children["off"] * tilt
-    outside = np.maximum(frame.reach(children, runs, offsets, np.float32(1)) - 1, 0) * frame.longest[runs.owner]
+    outside = np.maximum(frame.reach(children, runs, offsets, np.float32(1)) - 1, 0) * runs.spread(frame.longest)
     uncovered = runs.largest(outside + children["uncovered"] + moved) + slack
 
     # The offsets' mean is 0, so that for every direction there is a child that is not behind: of it at most a right
@@ -69,8 +69,8 @@ def bounds(children: Nodes, runs: Runs, offsets: np.ndarray, frame: Frame, shadi
     stick_out = np.maximum(np.sqrt(frame.longest**2 + np.maximum(farthest, 0)) - nearest, 0)
     overhang = stick_out + runs.largest(children["overhang"] + moved) + slack
 
-    turned = np.sqrt(np.maximum(2 - 2 * _dot(shading[:, runs.owner], children["shading"]), 0)) / 2
-    tinted = np.abs(colors[:, runs.owner] - children["colors"]).max(axis=0)
+    turned = np.sqrt(np.maximum(2 - 2 * _dot(runs.spread(shading), children["shading"]), 0)) / 2
+    tinted = np.abs(runs.spread(colors) - children["colors"]).max(axis=0)
     spread = runs.largest(np.maximum(turned, tinted) + children["spread"])
     return {"off": off, "uncovered": uncovered, "overhang": overhang, "spread": spread}
 

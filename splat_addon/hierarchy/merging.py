@@ -37,9 +37,9 @@ _LEAST_BLENDING = 0.05
 def merged(children: Nodes, runs: Runs, cell: float) -> Nodes:
     """The parents of runs of children."""
     areas = runs.sum(children["areas"])
-    shares = children["areas"] / areas[runs.owner]
+    shares = children["areas"] / runs.spread(areas)
     centre = runs.sum(children["positions"] * shares)
-    offsets = children["positions"] - centre[:, runs.owner]
+    offsets = children["positions"] - runs.spread(centre)
     normal = _unit(runs.sum(children["normals"] * shares))
     frame = _ellipse(children, runs, shares, offsets, normal)
     shading = runs.sum(children["shading"] * shares)

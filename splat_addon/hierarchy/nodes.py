@@ -73,7 +73,7 @@ class Table:
 
     def take(self, rows: np.ndarray) -> Nodes:
         """Some of them, column by column."""
-        some = Table(self.widths, self.rows[rows])
+        some = Table(self.widths, np.take(self.rows, rows, axis=0))
         return Nodes({name: some.column(name) for name in self.widths})
 
     def joined(self, parts: list[Table], rows: np.ndarray) -> Table:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -17,10 +16,9 @@ class Runs:
     starts: np.ndarray
     counts: np.ndarray
 
-    @cached_property
-    def owner(self) -> np.ndarray:
-        """(n,) whose each child is."""
-        return np.repeat(np.arange(len(self.starts), dtype=np.int32), self.counts)
+    def spread(self, columns: np.ndarray) -> np.ndarray:
+        """(..., n) of (..., m): each parent's value for each of its children."""
+        return np.repeat(columns, self.counts, axis=-1)
 
     def portions(self, size: int) -> Iterator[tuple[slice, Runs]]:
         """Whole runs of about `size` children together, and where these are."""

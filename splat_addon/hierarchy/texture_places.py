@@ -29,7 +29,7 @@ def merged_places(children, shares: np.ndarray, offsets: np.ndarray, runs: Runs,
     shares: (n,) of the parent's area. offsets: (3, n) of the children from their parent's position.
     """
     mean = runs.sum(children * shares)
-    of_child = mean[:, runs.owner]
+    of_child = runs.spread(mean)
     size = np.sqrt(np.einsum("kn,kn->n", mean[2:], mean[2:]) / 2)
     off = [children[k] - of_child[k] - np.einsum("an,an->n", of_child[2 + 3 * k : 5 + 3 * k], offsets) for k in (0, 1)]
     slip = runs.largest(np.hypot(*off))
