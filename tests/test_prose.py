@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The words: spelt right, within their budget, in sentences that are understood at first reading."""
 
+import ast
+import io
 import re
 import subprocess
 import sys
+import tokenize
 from pathlib import Path
 
 import pytest
@@ -27,7 +30,26 @@ RIDDLES = {
     r"\bdue to the fact that\b": "because",
     r"\bit (?:should|must) be noted\b": "leave it out",
     r"\bsimply\b|\bobviously\b|\bof course\b": "leave it out",
+    r"\bthat which\b|\bthose which\b": "name the thing",
+    r"\bof so many\b": "of this number of",
+    r"\btells? of\b": "describes, reports",
+    r"\bin vain\b": "without effect",
+    r"\banew\b": "again",
+    r"\bas ever\b": "as usual",
+    r"\bask(?:ed)? for by\b|\bis asked of\b": "say who needs what",
+    r"(?:^|[.;:] )Who\b": "say who does what",
+    r"\b(?:have|has) not (?:its|the|a|it|them)\b": "lack, do not have",
 }
+#: And in code, where a noun without a verb makes a reader guess what it belongs to.
+FRAGMENTS = {r"^Of\b": "name the thing first", r"\blet(?:s|ting)? go of\b": "free", r"^(?:That|Those) of\b": "name it"}
+#: The first sentence of a docstring says what the thing is for.
+LONGEST_SUMMARY = 50
+SOURCES = sorted(
+    file
+    for folder in ("splat_addon", "shaders", "scripts")
+    for file in (ROOT / folder).rglob("*")
+    if file.suffix in (".py", ".glsl") and "translations" not in file.parts
+)
 
 
 def prose(page: Path) -> str:
@@ -86,3 +108,49 @@ def test_what_a_page_links_to_exists(page):
 def test_the_glossary_has_at_most_thirty_terms():
     lines = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8").splitlines()
     assert len([line for line in lines if line.startswith("| ")]) - 1 <= 30
+
+
+def docstrings(file: Path) -> list[str]:
+    nodes = ast.walk(ast.parse(file.read_text(encoding="utf-8"))) if file.suffix == ".py" else ()
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef)
+    return [doc for node in nodes if isinstance(node, documented) and (doc := ast.get_docstring(node))]
+
+
+def comments(file: Path) -> list[str]:
+    """Each as a whole: lines that follow one another are one comment."""
+    text = file.read_text(encoding="utf-8")
+    if file.suffix == ".py":
+        tokens = tokenize.generate_tokens(io.StringIO(text).readline)
+        lines = {t.start[0]: t.string.lstrip("#: ") for t in tokens if t.type == tokenize.COMMENT}
+    else:
+        lines = {i: line.split("//", 1)[1].strip() for i, line in enumerate(text.splitlines()) if "//" in line}
+    whole: dict[int, str] = {}
+    for number, line in lines.items():
+        whole[number] = f"{whole.pop(number - 1)} {line}" if number - 1 in whole else line
+    return list(whole.values())
+
+
+def test_code_is_explained_without_riddles():
+    said = [
+        f"{file.relative_to(ROOT)}: {text[:80]!r}: {better}"
+        for file in SOURCES
+        for text in (*docstrings(file), *comments(file))
+        for riddle, better in (RIDDLES | FRAGMENTS).items()
+        if re.search(riddle, text)
+    ]
+    assert said == []
+
+
+def test_docstrings_begin_with_a_short_sentence_and_end_one():
+    bad = []
+    for file in SOURCES:
+        for text in docstrings(file):
+            first = re.split(r"(?<=[.:;])\s", " ".join(text.split("\n\n")[0].split()))[0]
+            ends = (
+                text.rstrip()[-1] in ".:`)|\"'"
+                or "_OT_" in file.read_text(encoding="utf-8")
+                or text.rstrip().count("\n")
+            )
+            if len(first.split()) > LONGEST_SUMMARY or not ends:
+                bad.append(f"{file.relative_to(ROOT)}: {text[:80]!r}")
+    assert bad == []

@@ -3,7 +3,7 @@
 moments.
 
 The efficiency of four workers is simulated: each task's cost is measured in processor seconds, as a process of its own
-that starts up and opens the file, and tasks are handed out in order to the first free worker. This is what four
+that starts up and opens the file, and tasks go, in their order, to whichever worker is free. This is what four
 single-core machines that share only a disk would do.
 """
 

@@ -58,11 +58,13 @@ _MESH_ITEMS = (
     (
         "SURFELS",
         "Surfels",
-        "Sample the mesh when it is first drawn; its surfels follow it as it deforms. That takes 1 to 3 "
-        "microseconds a surfel in each frame in which it deforms",
+        (
+            "Sample the mesh when it is first drawn; its surfels follow it as it deforms. Frames in which it "
+            "deforms take longer"
+        ),
         1,
     ),
-    ("HIDDEN", "Nothing", "Leave them out", 2),
+    ("HIDDEN", "Nothing", "Do not draw them", 2),
 )
 
 #: The numbers match earlier files, which had no automatic density.
@@ -115,16 +117,18 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
         name="Render as",
         description=(
             "How this object and its instances are drawn. Conversion sets it to Nothing, because the surfels "
-            "stand in the object's place"
+            "replace the object"
         ),
         items=[
-            ("SCENE", "As the Scene Says", "As Render Meshes as in the render properties says"),
+            ("SCENE", "From Scene", "Use the render properties' setting Render Meshes as"),
             *(item[:3] for item in _MESH_ITEMS),
             (
                 "DISTANCE",
                 "Split by Distance",
-                "Draw polygons up to a distance from the camera and surfels beyond it. It takes 1.4 times the "
-                "time of surfels alone",
+                (
+                    "Draw polygons up to a distance from the camera and surfels beyond it. "
+                    "This takes longer than surfels alone"
+                ),
             ),
             (
                 "GROUP",
@@ -152,8 +156,8 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
     detail: FloatProperty(
         name="Object Detail",
         description=(
-            "How many times closer together the surfels of this object lie than the density says. 2 makes four "
-            "times as many surfels"
+            "How many times closer together this object's surfels are than the density says. 2 makes four times "
+            "as many surfels"
         ),
         default=1.0,
         min=0.01,

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on's preferences: what a picture may take of the graphics device, what the sidebar converts with where a
-scene was told nothing, and what is known of the device.
+"""The add-on's preferences: the memory limit of a picture, the default conversion settings for the sidebar, and
+information about the graphics device.
 
-Every picture asks for them, so they may change between two; without preferences (a script that registers the package
-by itself) the defaults hold.
+They are read for every picture, so they may change in between; without preferences (if a script registers the package)
+the defaults apply.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ class SurfelPreferences(bpy.types.AddonPreferences):
     most_megabytes: IntProperty(
         name="Memory of a Picture",
         description=(
-            "Megabytes that a final render, and each 3D view, may take of the graphics device. A picture that needs "
-            "more stops and says so. 0 sets no limit"
+            "Maximum memory in megabytes that a final render, and each 3D view, may use on the graphics device. A"
+            " picture that needs more stops with a message. 0 sets no limit"
         ),
         min=0,
         soft_max=64_000,
@@ -58,13 +58,13 @@ def preferences() -> SurfelPreferences | None:
 
 
 def most_bytes() -> int | None:
-    """What a picture may take of the graphics device; None for no limit."""
+    """Maximum memory of a picture in bytes; None for no limit."""
     chosen = preferences()
     return chosen.most_megabytes * MEGABYTE if chosen and chosen.most_megabytes else None
 
 
 def device_lines() -> tuple[str, ...]:
-    """What draws, for people; in background Blender 4.5 to 5.1 know it within a render alone."""
+    """A description of the graphics device; in background mode, Blender 4.5 to 5.1 know it only during a render."""
     try:
         return _known_device()
     except RuntimeError as reason:

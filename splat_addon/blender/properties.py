@@ -51,7 +51,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         name="Shading",
         description="How the surface reflects light",
         items=[
-            (m.name, m.label, f"{m.summary} ({m.source}). {m.cost:g} times the frame of Flat")
+            (m.name, m.label, m.summary if m.source == "none needed" else f"{m.summary} ({m.source})")
             for m in SHADING_MODELS.values()
         ],
         default=Settings.shading,
@@ -72,14 +72,12 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     )
     matcap: PointerProperty(
         name="Matcap",
-        description=("An image of a lit ball that fills the frame. Of a multilayer file the first layer is shown"),
+        description=("An image of a lit ball that fills the frame. A multilayer file shows its first layer"),
         type=bpy.types.Image,
     )
     use_lines: BoolProperty(
         name="Lines",
-        description=(
-            "Draw lines along silhouettes and creases, with any shading. It takes 1.5 to 1.7 times the time of a frame"
-        ),
+        description=("Draw lines along silhouettes and creases, with any shading. Frames take noticeably longer"),
         default=False,
     )
     line_width: FloatProperty(
@@ -92,7 +90,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         default=Lines.width,
     )
     line_color: FloatVectorProperty(
-        name="Color", description="Of the lines", subtype="COLOR", min=0.0, max=1.0, default=Lines.color
+        name="Color", description="Color of the lines", subtype="COLOR", min=0.0, max=1.0, default=Lines.color
     )
     line_crease_angle: FloatProperty(
         name="Crease Angle",
@@ -116,7 +114,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         name="Supersampling",
         description=(
             "Samples along each side of a pixel in final renders, so 3 means 9 samples. Use 1 with Mip Filter; "
-            "with Quads, 2 takes 1.3 times and 4 takes 2.1 times the time"
+            "with Quads, more samples are sharper and slower"
         ),
         min=1,
         max=MAX_SUPERSAMPLING,
@@ -134,8 +132,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     samples: IntProperty(
         name="Samples",
         description=(
-            "Number of pictures that a final render averages, each through another place in the pixel, on the "
-            "lens and in time. Each takes the time of one picture"
+            "Number of pictures that a final render averages, each with another offset in the pixel, on the lens "
+            "and in time. The time grows with the number"
         ),
         min=1,
         max=MAX_SAMPLES,
@@ -145,8 +143,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     blur_samples: IntProperty(
         name="Blur Samples",
         description=(
-            "The least samples of a final render with depth of field or motion blur, which one sample does not show. "
-            "Each takes a picture's time; at 1 Samples alone counts"
+            "Minimum number of samples of a final render with depth of field or motion blur, which one sample "
+            "does not show. Set it to 1 to use Samples alone"
         ),
         min=1,
         max=MAX_SAMPLES,
@@ -164,8 +162,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     motion_blur_steps: IntProperty(
         name="Steps",
         description=(
-            "Moments of the open shutter at which the scene is evaluated. Fewer are faster, and show what moves"
-            " as separate pictures"
+            "Number of times during the open shutter at which the scene is evaluated. Fewer are faster, but show "
+            "moving objects as separate pictures"
         ),
         min=1,
         max=MAX_SAMPLES,
@@ -185,8 +183,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     edge_threshold: FloatProperty(
         name="Edge Fade",
         description=(
-            "With Quads, a pixel fades to the background where the splats' weights sum to less than this. It "
-            "takes up to a tenth more time"
+            "With Quads, a pixel fades to the background where the splats' weights sum to less than this. Frames "
+            "take slightly longer"
         ),
         min=0.0,
         soft_max=1.0,
@@ -206,8 +204,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     shadow_resolution: IntProperty(
         name="Resolution",
         description=(
-            "Texels along each side of a shadow map; 0 turns shadows off. Each map takes the time of one "
-            "visibility pass"
+            "Texels along each side of a shadow map; 0 turns shadows off. Each light with shadows adds one or "
+            "several maps"
         ),
         min=0,
         max=MAX_SHADOW_RESOLUTION,
@@ -215,10 +213,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     )
     use_ambient_occlusion: BoolProperty(
         name="Ambient Occlusion",
-        description=(
-            "Let visible surfaces block the world's light from one another. It takes 1.1 to 1.5 times the time of a"
-            " frame"
-        ),
+        description=("Let visible surfaces block the world's light from one another. Frames take noticeably longer"),
         default=False,
     )
     ambient_occlusion_distance: FloatProperty(
@@ -292,21 +287,21 @@ def final_settings(view_layer: bpy.types.ViewLayer, scene: bpy.types.Scene, outp
 
 
 def final_samples(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> int:
-    """The pictures that a final render of a view layer is the mean of."""
+    """The number of samples of a final render of a view layer."""
     properties = getattr(scene, RENDER_SETTINGS)
     samples = min(view_layer.samples, MAX_SAMPLES) or properties.samples
     return max(samples, properties.blur_samples) if any(blurs(scene, view_layer)) else samples
 
 
 def is_coarser_than_viewport(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> bool:
-    """Whether a final render of a view layer looks at fewer places of a pixel than the viewport at rest."""
+    """Whether a final render of a view layer has fewer samples per pixel than the viewport at rest."""
     properties = getattr(scene, RENDER_SETTINGS)
     final = final_samples(scene, view_layer) * properties.supersampling**2
     return final < properties.viewport_samples * properties.viewport_supersampling**2
 
 
 def blurs(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> Iterator[str]:
-    """What is switched on that a final render of one sample does not show."""
+    """Enabled effects that a final render with one sample would not show."""
     camera = scene.camera
     if camera is not None and camera.type == "CAMERA" and camera.data.type == "PERSP" and camera.data.dof.use_dof:
         yield "Depth of Field"

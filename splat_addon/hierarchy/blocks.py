@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blocks: runs of neighbours in one level, of which a view draws all or none.
+"""Blocks: runs of neighbours in one level that a view draws completely or not at all.
 
-A level's entries are put in the order of their parents, so that what any run of parents stands for is a run again. A
-block's children are therefore whole blocks of the level below, and one comparison decides between it and them (equal
-blocks: Goswami et al. 2012). Boxes, cones and errors of a block hold those of all blocks below it: what a parent's say
-of a view, its children's never contradict.
+A level's entries are ordered by their parents, so that the children of any run of parents are a run too. A block's
+children are therefore whole blocks of the level below, and one comparison decides between it and them (equal blocks:
+Goswami et al. 2012). Boxes, cones and errors of a block enclose those of all blocks below it, so tests of a parent
+never contradict those of its children.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-#: Entries of a block, at most.
+#: Maximum number of entries in a block.
 BLOCK = 32
 
 
@@ -66,7 +66,7 @@ class Blocks:
 
 
 def ranges(starts: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """start, start + 1 .. of each run, one after the other."""
+    """start, start + 1, ... of all runs, concatenated."""
     ends = np.cumsum(counts)
     total = int(ends[-1]) if len(ends) else 0
     return np.arange(total) + np.repeat(starts - (ends - counts), counts)
@@ -121,8 +121,8 @@ def _between(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def _bounds(entries, starts, geometry: Geometry, errors, below, children):
-    """low, high, axes, angles and errors of a level's blocks. below: those of the level below, children: where each
-    block's begin among them."""
+    """low, high, axes, angles and errors of a level's blocks. below: the values of the level below, children: where
+    each block's children begin."""
     if not len(entries):
         return np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3))
     radii = geometry.radii[entries]

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a merged surfel may differ by from those that it stands for: bounds that follow from its children's.
+"""Bounds on the difference between a merged surfel and the surfels it replaces, computed from its children's bounds.
 
-Of a node and all surfels under it, in object units:
-    off: no point of their ellipses is farther off its plane;
-    uncovered: none, seen along its normal, is farther beside its ellipse;
-    overhang: no point of its ellipse is farther from what all of them cover, seen along its normal.
+For a node and all surfels under it, in object units: off: no point of their ellipses is farther off its plane;
+uncovered: none, seen along its normal, is farther beside its ellipse; overhang: no point of its ellipse is farther from
+what all of them cover, seen along its normal.
 And of what they show: spread, the largest difference of a colour's component, or half the length between normals.
 
-A child's own bounds hold along its own normal. Seen along the parent's, which is turned from it by t, what lies off the
-child's plane moves sideways by sin t of that, and what lies beside its ellipse moves off the plane by as much.
+A child's bounds refer to its own normal. Seen along the parent's normal, which differs by an angle t, an offset from
+the child's plane moves sideways by sin t times the offset, and an offset beside its ellipse moves off the plane in the
+same proportion.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 from .nodes import Nodes
 from .runs import Runs
 
-#: Of float32 sums of a few terms, as a share of the node's size.
+#: Rounding error of float32 sums of a few terms, as a fraction of the node's size.
 _ROUNDING = np.float32(1e-5)
 
 

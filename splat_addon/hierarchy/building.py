@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds a hierarchy: levels from below, each over cells twice as large, then the order and the blocks from above."""
+"""Builds a hierarchy: levels from the bottom, each with cells twice as large, then the order and the blocks from the
+top."""
 
 from __future__ import annotations
 
@@ -16,17 +17,17 @@ from .merging import OVERLAP, as_surfels, merged
 from .nodes import PORTION, Table, leaves
 from .runs import Runs
 
-#: Cells of the first level, in the spacing of the surfels: nine become one, so that all levels together are a sixth of
-#: the surfels. At twice the spacing they would be a third.
+#: Cells of the first level, in spacings of the surfels: nine surfels become one, so all levels together add a sixth. At
+#: twice the spacing they would add a third.
 FIRST_CELL = 3.0
 
-#: A level of which less than this share merges is left out: a larger cell merges them.
+#: A level in which less than this share merges is skipped; a larger cell merges them.
 _LEAST_MERGED = 0.1
 
-#: A surfel waits for cells of which its larger half-axis is at most this many edges.
+#: A surfel waits for larger cells if its larger half-axis exceeds this many edges of the cell.
 _LARGEST = 1.25 * np.sqrt(3)
 
-#: Doublings between the smallest and the largest cell.
+#: Maximum doublings between the smallest and the largest cell.
 _MOST_LEVELS = 48
 
 
@@ -52,13 +53,13 @@ class Hierarchy:
 
     @cached_property
     def nbytes(self) -> int:
-        """What it takes beside the surfels."""
+        """Memory in bytes beside the surfels."""
         arrays = (*self.nodes.arrays().values(), self.errors, self.entries, *vars(self.blocks).values())
         return sum(array.nbytes for array in arrays)
 
 
 def build_hierarchy(surfels: Surfels) -> Hierarchy:
-    """That of any set of surfels; of none, or too few to merge, it has a single level."""
+    """The hierarchy of any set of surfels; it has a single level if there are none, or too few to merge."""
     nodes, errors, levels, geometry = build_levels(surfels)
     entries, counts = depth_first(levels, len(surfels))
     blocks = make_blocks(entries, counts, geometry, np.concatenate([np.zeros((len(surfels), 3), np.float32), errors]))
@@ -106,7 +107,7 @@ def _cells(surfels: Surfels) -> Iterator[float]:
 
 
 def _merge(current: Table, cell: float) -> tuple[Table, np.ndarray, Runs, np.ndarray] | None:
-    """Parents, the rows of their children, the runs that these are, and the rows that wait; None if too few merge."""
+    """Parents, the rows of their children, the runs of these, and the rows that wait; None if too few merge."""
     is_large = current.column("radii") > _LARGEST * cell
     rows = np.flatnonzero(~is_large)
     if len(rows) < 2:

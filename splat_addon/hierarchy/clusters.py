@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which surfels of a level become one: those of a sheet of surface over one cell of a grid.
+"""Finds the surfels of a level that become one: those on one sheet of surface over one cell of a grid.
 
-A surfel belongs to the grid that its plane faces most, of three along the axes with two sides each, as the samples of
-a layered depth cube do (Pfister et al. 2000): opposite sides of a thin sheet never meet, and a cell's normals stay
-within a cone. Over a cell a surfel has the depth in which its plane meets the cell's middle line; surfels of one smooth
-surface meet it nearly at one place, and where there is a gap another sheet begins.
+A surfel belongs to the grid that its plane faces most, of three along the axes with two sides each, as the samples of a
+layered depth cube do (Pfister et al. 2000): opposite sides of a thin sheet never meet, and a cell's normals stay within
+a cone. Over a cell a surfel has the depth in which its plane meets the cell's middle line; surfels of one smooth
+surface have nearly the same depth there, and a gap separates sheets.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ import numpy as np
 from .nodes import PORTION, Table
 from .ordering import BITS, sorted_with_order
 
-#: Shares of a cell: the gap in depth after which another sheet begins, and the most that a sheet may span.
+#: In cells: the gap in depth after which another sheet begins, and the maximum extent of a sheet.
 GAP = 0.5
 MOST_DEPTH = 1.5
 
-#: Steps of depth in a cell, by which surfels of one cell are put in order.
+#: Steps of depth per cell, by which the surfels of a cell are ordered.
 _STEPS = 16
 
 
@@ -26,7 +26,7 @@ def clustered(table: Table, rows: np.ndarray, cell: float) -> tuple[np.ndarray, 
     """(n,) order that brings those in some rows together by cluster, and (m,) the clusters' sizes in it."""
     order, is_first, depth = _sorted(table, rows, cell)
     is_first[1:] |= depth[1:] - depth[:-1] > GAP * _STEPS
-    # what a chain of small gaps spans is cut where it gets too deep
+    # a chain of small gaps is cut if it gets too deep
     starts = np.flatnonzero(is_first)
     depth = depth - np.repeat(depth[starts], np.diff(np.append(starts, len(order))))
     layer = depth // int(MOST_DEPTH * _STEPS)
@@ -83,7 +83,7 @@ def _places(positions, normals, materials, low: np.ndarray, cell: float) -> list
             along = (positions[other, at] - low[other]) / size
             whole = np.floor(along)
             columns[k, at] = whole
-            # half a cell along a plane that faces this axis most is at most half a cell up or down
+            # half a cell along a plane that faces this axis most changes depth by at most half a cell
             depth -= (whole + np.float32(0.5) - along) * (normals[other, at] / normal)
         columns[3, at] = np.floor((depth + 1) * _STEPS)
     return list(np.maximum(columns, 0))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The cut through a hierarchy that a view draws: blocks whose error is within a tolerance of pixels, and whose parents'
-is not, without those that lie beside the picture or show their backs alone.
+"""The cut through a hierarchy that a view draws: blocks whose error in pixels is within a tolerance while their
+parents' is not, except blocks outside the picture and blocks that only face away.
 
-A block is compared by its largest error and its nearest depth, both of which hold all blocks under it: a block that is
-fine enough has no child that is not, so that every place is drawn once, at one level (Dachsbacher et al. 2003).
+The test uses a block's largest error and nearest depth, which bound all blocks under it: if a block is fine enough, so
+are its children, so every place is drawn once, at one level (Dachsbacher et al. 2003).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Sight:
 
     @property
     def key(self) -> bytes:
-        """Equal views have equal ones."""
+        """Equal views have equal keys."""
         numbers = (self.planes, self.depth, self.eye, (self.pixels, self.near, self.hides_backs, self.tolerance))
         return b"".join(np.asarray(n, np.float64).tobytes() for n in numbers)
 
@@ -46,7 +46,7 @@ class Sight:
 
 
 def cut_entries(hierarchy: Hierarchy, sight: Sight) -> np.ndarray | None:
-    """(n,) int32 numbers of the surfels and nodes to draw, neighbours together; None: all surfels, in any order."""
+    """(n,) int32 indices of the surfels and nodes to draw, neighbours together; None: all surfels, in any order."""
     blocks = hierarchy.blocks
     drawn = _cut(blocks, sight)
     first, last = blocks.first[drawn], blocks.last[drawn]
@@ -74,19 +74,20 @@ def _middle_half(blocks: Blocks, rows: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def _pixels(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
-    """(n,) the largest error of each block in pixels, seen from its nearest place."""
+    """(n,) largest error of each block in pixels, at its nearest point."""
     error = blocks.errors[rows].max(axis=1, initial=0.0) * sight.pixels
     if sight.is_parallel:
         return error
     middle, half = _middle_half(blocks, rows)
     nearest = middle @ sight.depth[:3] + sight.depth[3] - half @ np.abs(sight.depth[:3])
-    # nothing that is merged touches the near plane, at which methods may treat splats otherwise
+    # merged surfels must not touch the near plane, where methods may treat splats differently
     error = np.where((nearest > sight.near) | (error == 0), error, np.inf)
     return error / np.maximum(nearest, sight.near)
 
 
 def _may_be_seen(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
-    """(n,) bool: whether the box touches the view's volume, and the cone of normals some direction to the eye."""
+    """(n,) bool: whether the box intersects the view volume, and the cone of normals contains a direction towards the
+    eye."""
     middle, half = _middle_half(blocks, rows)
     seen = (middle @ sight.planes[:, :3].T + sight.planes[:, 3] + half @ np.abs(sight.planes[:, :3]).T >= 0).all(axis=1)
     if sight.hides_backs:
@@ -94,7 +95,7 @@ def _may_be_seen(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
         distance = np.maximum(np.linalg.norm(away, axis=1), 1e-300)
         radius = 0.0 if sight.is_parallel else np.linalg.norm(half, axis=1)
         angle = np.arccos(np.clip(np.einsum("nk,nk->n", away, blocks.axes[rows]) / distance, -1, 1))
-        # from every place of the box every normal of the cone points away
+        # every normal of the cone points away from every point of the box
         angle = angle + blocks.angles[rows]
         seen &= ~((angle < np.pi / 2) & (distance * np.cos(angle) > radius))
     return seen

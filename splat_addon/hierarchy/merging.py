@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One surfel in place of several: where it lies, its ellipse, and what it shows.
+"""Merges several surfels into one: position, ellipse and attributes.
 
 The position is the centroid by area, the normal the mean, and the ellipse has the second moments of its children's.
-They overlap as samples of a grid do, by `OVERLAP` of what their own cell would need, and so does it. Colours are means
-in linear light, weighted by what hides the light behind: what is let through is a mean too. What the mean shading
-normal has lost in length is roughness (Toksvig, "Mipmapping Normal Maps", 2005) where surfels have their own; where
-they have not, a pixel that shows many of them has the mean of their normals too, and there is nothing to make up for.
+They overlap like samples of a grid, by a factor of `OVERLAP`, and so does the merged one. Colours are means in linear
+light, weighted by opacity, so transmitted light is averaged too. If surfels have their own roughness, the length lost
+by the mean shading normal is added to it (Toksvig, "Mipmapping Normal Maps", 2005); otherwise a pixel with many surfels
+also shows the mean of their normals, and needs no correction.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from .nodes import MEANS, Nodes, Table
 from .runs import Runs
 from .texture_places import along_axes, merged_places
 
-#: Half-axis of the splat of a square cell, in its edge: as conversion lays them, of a cell for each sample.
+#: Half-axis of the splat of a square cell, relative to its edge, as conversion makes it.
 OVERLAP = 1.25
-#: And of merged ones, whose cells are rounder than a sample's and lie closer over seams: less shows beside silhouettes.
+#: The same for merged surfels, whose cells are rounder and overlap more at seams: less protrudes at silhouettes.
 MERGED_OVERLAP = 0.9
-#: Square of a half-axis per variance of position: a cell's is 1 / 12 of its edge's square.
+#: Squared half-axis per variance of position: the variance of a cell is 1 / 12 of its squared edge.
 _PER_VARIANCE = np.float32(12 * MERGED_OVERLAP**2)
-#: Of a child's half-axes: the ellipse around its own cell, which the parent's must cover.
+#: The ellipse around a child's own cell, relative to its half-axes; the parent must cover it.
 _CORE = np.float32(np.sqrt(0.5) / MERGED_OVERLAP)
-#: More than this it is not widened to do so.
+#: Maximum widening to achieve that.
 _MOST_WIDENED = np.float32(1.5)
-#: Of the longer half-axis, the shorter one at least.
+#: Minimum ratio of the shorter to the longer half-axis.
 _NARROWEST = np.float32(0.02)
-#: As `sampling.blending` has it for single samples.
+#: As in `sampling.blending` for single samples.
 _LEAST_BLENDING = 0.05
 
 
@@ -69,7 +69,7 @@ def merged(children: Nodes, runs: Runs, cell: float) -> Nodes:
 
 
 def as_surfels(nodes: Table, like: Surfels) -> Surfels:
-    """Merged nodes with the fields that `like` has, and its origin."""
+    """Merged nodes as surfels with the fields and the origin of `like`."""
     axes = [nodes.column(name) for name in ("first_axis", "second_axis")]
     lengths = np.stack([np.sqrt(np.einsum("kn,kn->n", axis, axis)) for axis in axes])
     x, y = (axis / length for axis, length in zip(axes, lengths, strict=True))
@@ -93,12 +93,12 @@ def as_surfels(nodes: Table, like: Surfels) -> Surfels:
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
-    """Of children that face one axis, whose sum cannot vanish."""
+    """Unit sums of normals that face one axis, so that the sum cannot vanish."""
     return vectors / np.sqrt(np.einsum("kn,kn->n", vectors, vectors))
 
 
 def _ellipse(children: Nodes, runs: Runs, shares: np.ndarray, offsets: np.ndarray, normal: np.ndarray) -> Frame:
-    """Of the second moments of the children, on the plane of the normal."""
+    """Ellipses from the second moments of the children, on the planes of the normals."""
     (u, v), d = children.axes, offsets
     across, along = _tangents(normal)
     moments = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The surfels of one level while a hierarchy is built."""
+"""Surfels of one level while a hierarchy is built."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from ..clip_lines import CLIP_FIELDS, CUT
 from ..surfels import Surfels, portions, quaternion_axes
 from .texture_places import gradients
 
-#: Fields of which a merged surfel has the plain mean. Colours, normals, roughness and texture coordinates have rules.
+#: Fields that are plainly averaged. Colours, normals, roughness and texture coordinates have their own rules.
 MEANS = ("metallic", "emission")
 
 
-#: Nodes that are worked on at a time: what is made of them on the way stays in the processor's cache.
+#: Nodes per batch, few enough for temporaries to stay in the processor's cache.
 PORTION = 1 << 14
 
-#: What every node has one number of.
+#: Fields with one number per node.
 _SINGLE = {"radii", "areas", "materials", "off", "uncovered", "overhang", "spread"}
 
 

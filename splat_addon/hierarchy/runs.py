@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs of children, and what is known of each run together."""
+"""Runs of children, and computations on whole runs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Runs:
         return np.repeat(columns, self.counts, axis=-1)
 
     def portions(self, size: int) -> Iterator[tuple[slice, Runs]]:
-        """Whole runs of about `size` children together, and where these are."""
+        """Portions of whole runs with about `size` children each, and their positions."""
         first, ends = 0, self.starts + self.counts
         while first < len(self.starts):
             start = self.starts[first]

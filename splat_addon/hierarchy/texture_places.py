@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Texture coordinates of merged surfels: the mean, and the mean change per object unit along the plane.
 
-Where children slip from that by more than a share of their cell, as across the border of a chart, or have no texture,
-the merged surfel has none: its colour, the mean of its children's, is shown.
+If children deviate from that by more than a fraction of their cell, as across the border of a chart, or have no
+texture, the merged surfel has no texture and shows its colour, the mean of its children's.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ import numpy as np
 from ..surfels import Surfels
 from .runs import Runs
 
-#: Of a cell.
+#: Maximum deviation, in cells.
 MOST_SLIP = 0.5
 
 
 def gradients(surfels: Surfels, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """(6, N): what u, then v, change along the three axes of the object. x, y: (N, 3) unit axes of the ellipses."""
+    """(6, N) gradient of u, then of v, along the three axes of the object. x, y: (N, 3) unit axes of the ellipses."""
     along = surfels.uv_along_x / surfels.scales[:, :1], surfels.uv_along_y / surfels.scales[:, 1:]
     rows = [x * along[0][:, k : k + 1] + y * along[1][:, k : k + 1] for k in (0, 1)]
     return np.concatenate(rows, axis=1).T

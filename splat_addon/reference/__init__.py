@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ground truth: the same picture as the engine's, in float64 numpy, slow and plain.
+"""The reference renderer: the same picture as the engine's in float64 numpy, slow and simple.
 
-It reads the data files of `rendering` (camera, scene, settings, frame) and none of its passes, so that the
-two can be held against each other. `scenes` builds what they are compared on, `metrics` says how close they are.
+It uses the data files of `rendering` (camera, scene, settings, frame) and none of its passes, so that the two can be
+compared. `scenes` builds test scenes, `metrics` measures differences.
 """
 
 from .ewa import render_ewa

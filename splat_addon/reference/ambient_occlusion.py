@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The share of the world's light that surfaces of a picture leave to one another, in float64 from every pixel around.
+"""Ambient occlusion of a picture in float64, from all surrounding pixels.
 
-The twin of shaders/features/ambient_occlusion.glsl, which looks at some (Jimenez et al. 2016).
+The twin of shaders/features/ambient_occlusion.glsl, which samples some of them (Jimenez et al. 2016).
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ import numpy as np
 from ..rendering.frame import EMPTY_DEPTH, Frame
 from ..rendering.scene.camera import Camera
 
-#: Slices lead along whole steps of up to that many pixels: 16 of them.
+#: Slices run along whole steps of up to this many pixels; there are 16 of them.
 MOST_STEP = 4
-#: Least cosine to the viewer that a normal counts with: a mean of normals may face away, what is seen does not.
+#: Minimum cosine to the viewer: a mean normal may face away although the surface is visible.
 LEAST_FACING = 0.2
 
 
 def open_share(frame: Frame, camera: Camera, distance: float) -> np.ndarray:
     """(h, w) of the half-space around the normal, weighted by the cosine; 1 where nothing is seen.
 
-    frame: its depth and normal. distance: up to half of it all that is in the way counts, beyond all of it nothing.
+    frame: its depth and normal are used. distance: occluders count fully up to half of it, and not at all beyond it.
     """
     position = np.where((frame.depth < EMPTY_DEPTH)[..., None], camera.points_at(frame.depth), np.nan)
     normal = frame.normal / np.maximum(np.linalg.norm(frame.normal, axis=2, keepdims=True), 1e-30)
@@ -55,7 +55,7 @@ def _slices():
 
 
 def _horizon(position, to_eye, along, distance: float, lowest) -> np.ndarray:
-    """Cosine between the way to the viewer and the highest that is seen along a direction."""
+    """Cosine between the direction to the viewer and the highest horizon along a direction."""
     highest, (height, width) = lowest.copy(), lowest.shape
     for step in range(1, max(height, width)):
         x, y = step * along

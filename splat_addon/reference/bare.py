@@ -1,29 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How much of a mesh its surfels leave bare."""
+"""Measures how much of a mesh its surfels leave uncovered."""
 
 from __future__ import annotations
 
 import numpy as np
 
-#: Surfels near a point that are asked whether they cover it; a cell has at most about 15 in reach.
+#: Number of nearby surfels tested per point; a cell has at most about 15 within reach.
 NEIGHBOURS = 32
 
 
 def uncovered_points(mesh, surfels, spacing: float, count: int = 40_000) -> np.ndarray:
-    """(n, 3) those of `count` random points of a mesh's surface that lie under no splat.
+    """(n, 3) the points, out of `count` random points on a mesh's surface, that no splat covers.
 
-    A splat covers a point whose foot on the splat's plane is inside the ellipse, within half a cell of the plane.
+    A splat covers a point if its projection onto the splat's plane is inside the ellipse, within half a cell of the
+    plane.
     """
     points = random_points(mesh, count)
     sizes = np.rint(np.log2(surfels.scales[:, 1]))
-    # each size apart: many small neighbours must not hide a large one that reaches farther
+    # each size separately: many small neighbours must not hide a large one that reaches farther
     for size in np.unique(sizes):
         points = points[~_covered(points, surfels, np.flatnonzero(sizes == size), spacing)]
     return points
 
 
 def _covered(points, surfels, rows, spacing) -> np.ndarray:
-    """(n,) bool: which points lie under one of these surfels."""
+    """(n,) bool: which points these surfels cover."""
     from scipy.spatial import cKDTree
 
     positions, normals = surfels.origin + surfels.positions[rows], surfels.geometric_normals()[rows]

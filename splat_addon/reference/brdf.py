@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The GGX lobe under points, quads and an even world, in plain numpy; the twin of shaders/lib/brdf.glsl.
+"""The GGX lobe under points, quads and a uniform world, in plain numpy; the twin of shaders/lib/brdf.glsl.
 
 Sources:
 - Trowbridge & Reitz 1975; Walter et al. 2007, "Microfacet Models for Refraction", eq. 33: the distribution D.
@@ -17,7 +17,8 @@ import numpy as np
 
 from ..rendering.upload.brdf_table import LEAST_ROUGHNESS, brdf_table
 
-#: Half-axes over distance below which a quad counts as a point with its area, which float32 needs; 4e-4 off at most.
+#: Below this ratio of half-axes to distance a quad counts as a point with its area, which float32 needs; the error is
+#: at most 4e-4.
 SMALL_QUAD = 0.02
 
 
@@ -58,7 +59,7 @@ def specular_albedo(roughness, nv, f0, f90=1.0) -> tuple[np.ndarray, np.ndarray]
 
 
 def mean_direction(roughness, nv, view, normal) -> np.ndarray:
-    """(n, 3) unit: where the lobe reflects light from on average. roughness, nv: (n,). view, normal: (n, 3) unit."""
+    """(n, 3) unit mean direction of reflected light. roughness, nv: (n,). view, normal: (n, 3) unit."""
     x, z = table_at(roughness, nv)[:, 6:8].T[:, :, None]
     return unit(normal * z + unit(view - normal * dot(view, normal)[:, None]) * x)
 

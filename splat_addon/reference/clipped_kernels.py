@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Resampling kernels of splats that end at lines, in `render_ewa`: what a pixel sees of them, and what hides them.
+"""Resampling kernels of clipped splats in `render_ewa`: what a pixel sees of them, and what hides them.
 
-The twin of shaders/features/clip_lines.glsl, of many splats at once and from rays.
+The twin of shaders/features/clip_lines.glsl, for many splats at once and from rays.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from .methods.clip_lines import clipped_share, there
 from .rays import RayGrid
 from .splats import Splats
 
-#: Pixels past a line, whose sample is on its kept side then but for a corner of it.
+#: Pixels past a line, up to which a sample's area is at most partly beyond it.
 TO_WITHIN = 0.75
 
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`render_ewa`: the picture as the elliptical weighted average of the papers defines it.
 
-Scene -> `splats` (eye space) -> affine projections -> averages at the pixels' centres -> `shading` -> Frame.
-Zwicker, Pfister, van Baar, Gross, "Surface Splatting", 2001: the resampling filter, equations 9 to 12; the object
-space form of Ren et al. 2002 has the same kernels. The truth for method "ewa", and in the affine limit another way
-to `render_exact`'s.
+Scene -> `splats` (eye space) -> affine projections -> averages at the pixels' centres -> `shading` -> Frame. Zwicker,
+Pfister, van Baar, Gross, "Surface Splatting", 2001: the resampling filter, equations 9 to 12; the object space form of
+Ren et al. 2002 has the same kernels. The reference for method "ewa"; in the affine limit it is an independent way to
+compute what `render_exact` does.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from .splats import Splats, eye_splats, projected_bounds
 #: Standard deviation of the kernel exp(-2 rho^2), in half-axes.
 KERNEL_SIGMA = 0.5
 
-#: How far outside its ellipse a splat's plane is followed for its depth, in radii.
+#: How far outside its ellipse a splat's plane is extrapolated for its depth, in radii.
 FARTHEST_RADII = 16.0
 
 
@@ -56,10 +56,10 @@ def render_ewa(
     filter_sigma: of the pixel's Gaussian, in pixels; 0 leaves the low-pass out.
     cutoff: where a resampling kernel ends, in its standard deviations; 2 is where `render_exact`'s kernels end.
 
-    A splat's projection is taken as affine at its centre; one whose centre lies before the near plane has none and is
-    left out (`stats["left_out"]` counts them). All are opaque. What is visible is found by the unfiltered splats on the
-    rays through the pixels' centres, as `render_exact` does; the sums are normalised and shaded once a pixel.
-    Clip lines cut what hides, and end kernels as the pixel's Gaussian blurs them (`clipped_kernels`).
+    A splat's projection is approximated as affine at its centre; splats with their centre in front of the near plane
+    have none and are left out (`stats["left_out"]` counts them). All splats are opaque. Visibility uses the unfiltered
+    splats on rays through pixel centres, as in `render_exact`; the sums are normalised and shaded once per pixel. Clip
+    lines cut what hides, and end kernels as the pixel's Gaussian blurs them (`clipped_kernels`).
     """
     splats = eye_splats(scene, camera).as_asked(settings).as_opaque()
     before = -splats.center[:, 2] > (-np.inf if camera.is_orthographic else camera.near)
@@ -78,7 +78,7 @@ def render_ewa(
 
 
 def project(splats: Splats, camera: Camera, filter_sigma: float) -> Projections:
-    """The affine projection of splats before the eye, joined with the pixel's Gaussian."""
+    """The affine projection of splats in front of the eye, combined with the pixel's Gaussian."""
     left, right, bottom, top = camera.window
     pixels = np.array(camera.size) / (right - left, top - bottom)
     depth = -splats.center[:, 2]
@@ -118,7 +118,7 @@ def _visibility(splats: Splats, grid: RayGrid, epsilon: float) -> np.ndarray:
 def _contributions(
     splats: Splats, projections: Projections, grid: RayGrid, visibility: np.ndarray, cutoff: float, apart: float
 ):
-    """Rays, splats, weights, depths and places of what is visible, in chunks.
+    """Rays, splats, weights, depths and positions of visible splats, in chunks.
 
     apart: in radii, how far before a splat another surface lies that does not meet it at a clip line.
     """
@@ -145,12 +145,12 @@ def _contributions(
         ray, splat = ray[seen], splat[seen]
         weight = projections.amplitude[splat] * np.exp(-square[seen] / 2) * share[seen]
         weight *= splats.side_weight()[splat]
-        # A splat has one colour, that of its centre.
+        # A splat has a single colour, the one at its centre.
         yield ray, splat, weight, depth[seen], np.zeros((len(ray), 2))
 
 
 def _plane_depth(splats: Splats, projections: Projections, splat, grid: RayGrid, ray) -> np.ndarray:
-    """(M,) depth of the splat's plane on the ray, held near the splat: outside its ellipse it runs off."""
+    """(M,) depth of the splat's plane on the ray, clamped near the splat, because outside its ellipse it diverges."""
     origin, direction = grid.rays(ray)
     plane, center = splats.plane[splat], splats.center[splat]
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -23,7 +23,7 @@ from .shading_models import DIAGNOSTIC, SHADERS
 from .splats import LEAST_OPACITY, Splats, eye_splats, projected_bounds
 from .world import WorldLight
 
-#: Rays of a tile: enough for numpy to be quick, few enough that a tile's arrays stay below 100 MB.
+#: Rays per tile: enough for numpy to be efficient, few enough that a tile's arrays stay below 100 MB.
 TILE_RAYS = 300_000
 
 DEFAULTS = Settings()
@@ -34,11 +34,11 @@ def render_exact(
 ) -> Frame:
     """The picture of `scene` by definition, in float64.
 
-    samples: samples x samples rays a pixel at (i + 0.5) / samples; takes the place of `settings.supersampling`.
-    pixel_filter: a name in `filters.PIXEL_FILTERS`; always say which one a number was measured with.
-    `settings.method` and `settings.layers` have no meaning here: of what is transparent there are as many layers as the
-    rays meet. `settings.lines` are not drawn. `settings.ambient_occlusion` is left out: the world's light reaches every
-    surface whole, and `ambient_occlusion.open_share` is the share that surfaces of a frame leave one another.
+    samples: samples x samples rays per pixel at (i + 0.5) / samples; replaces `settings.supersampling`.
+    pixel_filter: a name in `filters.PIXEL_FILTERS`; always say which one a number was measured with. `settings.method`
+        and `settings.layers` are ignored: there are as many transparent layers as rays hit. `settings.lines` are not
+        drawn. `settings.ambient_occlusion` is left out: the world's light reaches every surface whole, and
+        `ambient_occlusion.open_share` is the share that surfaces of a frame leave one another.
 
     A ray sees the splats that lie no deeper than the nearest splat moved back by `settings.epsilon` of its radius
     along the ray, mixes them with weights exp(-2 rho^2), and is shaded once (Botsch et al. 2005, deferred).
@@ -74,7 +74,7 @@ def render_exact(
 
 
 def _columns(settings: Settings) -> dict[str, slice | int]:
-    """Where in `shaded_rays` the arrays of a frame are."""
+    """Columns of the arrays of a frame in `shaded_rays`."""
     columns, first = {"color": slice(0, 4), "normal": slice(4, 7), "coverage": 7}, 8
     for name in _more_outputs(settings):
         count = OUTPUTS[name][0]
@@ -125,7 +125,7 @@ def _layered_rays(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: C
         return rays, depths
     rays = rays.reshape(grid.count, -1)
     until = np.minimum(visible_depth(*splats_in(*opaque, grid), grid, settings.epsilon), limit)
-    # What is seen first and shows nothing cuts a hole.
+    # If the first visible surface is a holdout, it cuts a hole.
     is_hole = np.isfinite(until) & (depths > until)
     rays[is_hole], depths[is_hole] = 0, np.inf
     total, through, is_seen = np.zeros_like(rays), np.ones(grid.count), np.zeros(grid.count, bool)
@@ -144,7 +144,7 @@ def _layered_rays(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: C
 
 
 def _opaque_surface(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: Camera, epsilon: float):
-    """What every ray sees of opaque splats and polygons, and the depth beyond which the latter hide everything."""
+    """What every ray sees of opaque splats and polygons, and the depth beyond which polygons hide everything."""
     if not scene.polygons:
         return visible_surface(splats, bounds, grid, epsilon), np.inf
     hits = polygon_hits(scene, camera, grid, epsilon)
@@ -154,7 +154,7 @@ def _opaque_surface(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera:
 
 
 def _opaque_and_transparent(splats: Splats, bounds, settings: Settings):
-    """Splats and bounds of both; those of no opacity are in neither."""
+    """Splats and bounds of opaque and transparent splats; those with opacity 0 are in neither."""
     if settings.shading in DIAGNOSTIC:
         return (splats.as_opaque(), bounds), (splats.take(np.arange(0)), bounds)
     groups = ~splats.is_transparent, splats.is_transparent & (splats.opacity >= LEAST_OPACITY)
@@ -162,9 +162,9 @@ def _opaque_and_transparent(splats: Splats, bounds, settings: Settings):
 
 
 def _nearest_depth(rays: np.ndarray, grid: RayGrid, samples: int, margin: int) -> np.ndarray:
-    """(h, w) depth of the nearest ray of each pixel that is not margin; `EMPTY_DEPTH` where none hit.
+    """(h, w) depth of the nearest ray of each pixel, without margin; `EMPTY_DEPTH` if none hit.
 
-    rays: (count,) depths, infinite where nothing is hit.
+    rays: (count,) depths, infinite for misses.
     """
     rows, columns = (n // samples for n in grid.shape)
     pixels = rays.reshape(rows, samples, columns, samples).min(axis=(1, 3))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scenes at the edges of arithmetic: sheets seen edge-on, specks at the near plane, worlds moved and scaled.
+"""Scenes at the limits of arithmetic: sheets seen edge-on, specks at the near plane, moved and scaled worlds.
 
 Builders that tests/extremes and `scripts/bench.py numerics` share; `scenes` holds the everyday ones.
 """
@@ -16,7 +16,7 @@ from ..rendering.scene.camera import Camera
 from ..rendering.scene.light import Light
 from ..surfels import Surfels, axes_quaternions
 
-#: Half-diagonals of its cell by which a sheet's disc reaches: neighbours overlap at the corners.
+#: Radius of a sheet's disc in half-diagonals of its cell: neighbours overlap at the corners.
 SHEET_OVERLAP = 1.2
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every feature beside its absence, as pairs of pictures: a table in which a new one is one line."""
+"""Each feature paired with its absence, as two pictures: a table in which a new feature is one line."""
 
 from __future__ import annotations
 

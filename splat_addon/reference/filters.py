@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-#: Of the Gaussian, in pixels: the low-pass that the splat methods are derived with (variance 1/2).
+#: Sigma of the Gaussian, in pixels: the low-pass from which the splat methods are derived (variance 1/2).
 SIGMA = 0.7071
 
 #: Whole pixels on each side that the Gaussian reaches into: 2.5 px from the centre, 3.5 sigma.

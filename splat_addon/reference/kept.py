@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files with what one process found and another need not find again; they fall with their sources.
+"""Caches results in files, so that other processes need not compute them again; they expire when their sources change.
 
-Tests and benches keep exact pictures here, which are slow: whichever asks first computes them for all.
+Tests and benches store exact pictures here, which are slow to compute.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-#: Of one numpy's results a next one's differ by roundings alone; 1 and 2 keep their own.
+#: Results of different numpy versions differ only by rounding; versions 1 and 2 have separate caches.
 NUMPY = np.__version__.partition(".")[0]
 
-#: Folders of a name that stay: a developer goes back and forth.
+#: Number of folders per name that are kept, because developers switch between versions.
 KEPT = 4
 
 
 @cache
 def folder(name: str, *sources: str) -> Path:
-    """build/`name`/KEY, which is empty when a file that these patterns match changes."""
+    """The folder build/`name`/KEY, which is empty after a change to any file that these patterns match."""
     digest = hashlib.sha256()
     for file in sorted(file for pattern in sources for file in ROOT.glob(pattern)):
         digest.update(file.read_bytes())
@@ -39,14 +39,15 @@ def folder(name: str, *sources: str) -> Path:
 
 
 def write(file: Path, contents: bytes) -> None:
-    """Whole or not at all: another process may read it at any time."""
+    """Write a file completely or not at all: other processes may read it at any time."""
     written = file.with_name(f"{file.name}.{os.getpid()}")
     written.write_bytes(contents)
     os.replace(written, file)
 
 
 def remembered(function: Callable) -> Callable:
-    """`function`, of the product and pure, whose result for arguments of equal contents is read from a file."""
+    """`function`, which must be pure and part of the product, with results cached in a file by the contents of its
+    arguments."""
 
     @wraps(function)
     def result(*arguments, **options):

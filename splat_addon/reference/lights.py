@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What lights send to places, by definition and in float64; the twin of shaders/hosts/lights.glsl.
+"""The light that reaches points, by definition and in float64; the twin of shaders/hosts/lights.glsl.
 
 A light with a size is a square of its area; a round one faces the place that it lights, as
 Cycles takes a disc there. Blender's manual has the units;
@@ -19,15 +19,15 @@ from ..rendering.scene.light import MAX_SUN_HALF_ANGLE, Light
 from .brdf import unit
 from .shadows import lit_share
 
-#: Half-side over distance below which a light is taken for a point.
+#: Below this ratio of half-side to distance, a light is treated as a point.
 LEAST_SIZE = 2e-3
 
 
 @dataclass(frozen=True, eq=False)
 class Incident:
-    """What reaches n places. to_light: (n, 3) unit. irradiance: (n, 3) of surfaces that face it.
+    """Light that reaches n points. to_light: (n, 3) unit. irradiance: (n, 3) of surfaces that face it.
 
-    is_sized: (n,) bool. corners: (n, 4, 3) from the places, and radiance: (n, 3), where it is.
+    is_sized: (n,) bool. For those, corners: (n, 4, 3) relative to the points, and radiance: (n, 3).
     """
 
     to_light: np.ndarray
@@ -37,13 +37,13 @@ class Incident:
     radiance: np.ndarray
 
     def times(self, share: np.ndarray) -> Incident:
-        """The same light, of which that share (n,) arrives."""
+        """The same light, reduced to that share (n,)."""
         dimmed = {name: getattr(self, name) * share[:, None] for name in ("irradiance", "radiance")}
         return replace(self, **dimmed)
 
 
 def incident(light: Light, camera: Camera, position: np.ndarray) -> Incident:
-    """Of one light, at positions (n, 3) in the camera's eye space."""
+    """The light from one lamp at positions (n, 3) in the camera's eye space."""
     rotation = camera.matrix_world[:3, :3].T
     axis = rotation @ np.asarray(light.direction, np.float64)
     axis /= np.linalg.norm(axis)
@@ -95,14 +95,14 @@ _SHAPES = {"sun": _sun, "point": _point, "spot": _spot, "area": _area}
 
 
 def _facing(to_light: np.ndarray, half_side) -> tuple[np.ndarray, np.ndarray]:
-    """(n, 3) half-axes of squares that face the places they light."""
+    """(n, 3) half-axes of squares that face the lit points."""
     side = np.where(np.abs(to_light[:, 2:]) < 0.7, (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
     u = unit(np.cross(side, to_light))
     return u * np.reshape(half_side, (-1, 1)), np.cross(to_light, u) * np.reshape(half_side, (-1, 1))
 
 
 def all_incident(scene: Scene, camera: Camera, position, light_set, epsilon: float) -> list[Incident]:
-    """Of every light, at positions (n, 3) that belong to sets (n, 4) of objects; epsilon: of `lit_share`."""
+    """The light from every lamp at positions (n, 3) that belong to sets (n, 4) of objects; epsilon: see `lit_share`."""
     arriving = []
     for light in scene.lights:
         share = _linked(light, light_set)
@@ -113,5 +113,5 @@ def all_incident(scene: Scene, camera: Camera, position, light_set, epsilon: flo
 
 
 def _linked(light: Light, light_set: np.ndarray) -> np.ndarray:
-    """(n,) share of a place that the light lights."""
+    """(n,) share of a point that the light affects, by light linking."""
     return light_set.sum(axis=1) if light.receivers is None else light_set[:, list(light.receivers)].sum(axis=1)

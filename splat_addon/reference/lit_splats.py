@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splats whose colours are what leaves them, each lit where it stands (Botsch and Kobbelt 2003, section 4)."""
+"""Splats that are lit individually at their own position (Botsch and Kobbelt 2003, section 4)."""
 
 from __future__ import annotations
 

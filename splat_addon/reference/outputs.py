@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a frame hands on of the surface beside its colour, by definition: the twin of shaders/hosts/outputs.glsl."""
+"""Outputs of a frame other than colour, by definition: the twin of shaders/hosts/outputs.glsl."""
 
 from __future__ import annotations
 

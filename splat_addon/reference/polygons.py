@@ -19,7 +19,7 @@ from .textures import point_colors
 LEAST_FRONT = 0.02
 SAME_SURFACE = 0.7
 
-#: Pairs of a ray and a triangle that are looked at at once: what they need then stays in a processor's cache.
+#: Pairs of a ray and a triangle per batch, few enough to stay in the processor's cache.
 CHUNK_PAIRS = 50_000
 
 
@@ -79,7 +79,7 @@ def nearest_hits(corners: np.ndarray, origin: np.ndarray, direction: np.ndarray,
             t = np.einsum("mk,mk->m", q, beside[met]) * scale
             hit = np.flatnonzero((u >= 0) & (v >= 0) & (u + v <= 1) & (t >= near) & (t <= far))
         np.minimum.at(depth, rays[hit], t[hit])
-        # Of triangles at one depth the first is taken: it is written last.
+        # If triangles have equal depth, the first is used: it is written last.
         nearest = hit[t[hit] == depth[rays[hit]]][::-1]
         triangle[rays[nearest]] = met[nearest]
         shares[rays[nearest]] = np.stack([1 - u - v, u, v], axis=1)[nearest]
@@ -87,7 +87,7 @@ def nearest_hits(corners: np.ndarray, origin: np.ndarray, direction: np.ndarray,
 
 
 def _may_meet(a, along, beside, origin, direction) -> tuple[np.ndarray, np.ndarray]:
-    """Rows of rays and of triangles whose lines and planes meet inside the triangle, or within rounding of its rim.
+    """Rows of rays and triangles that intersect, or miss only within rounding.
 
     Each side of the triangle is linear in the ray's direction and moment (its Pluecker coordinates), so all pairs are
     three products of matrices.
@@ -170,7 +170,7 @@ def joined(splats: Surface, polygons: Hits, contact: float) -> Surface:
 
 
 def contact(scene: Scene, epsilon: float) -> float:
-    """How deep polygons may lie behind splats of their surface, world units; as `View.contact`."""
+    """Maximum depth of polygons behind splats of the same surface, world units; as `View.contact`."""
     return (1 + 4 * epsilon) * max(overlapping_radii(scene).values(), default=0.0)
 
 

@@ -17,10 +17,10 @@ from ..rendering.scene.camera import Camera
 from .splats import Splats
 from .textures import point_colors
 
-#: Splat-ray pairs handled at once: about 100 bytes each.
+#: Splat-ray pairs per batch: about 100 bytes each.
 CHUNK_PAIRS = 1_000_000
 
-#: A mean of unit normals this short is what rounding left of normals that cancel; the surface then faces the viewer.
+#: A mean of unit normals shorter than this is rounding error of normals that cancel; the surface then faces the viewer.
 CANCELLED = 1e-6
 TO_VIEWER = (0.0, 0.0, 1.0)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scenes that the engine and the truth are compared on: numpy builders, the same for every run.
+"""Scenes on which the engine and the reference are compared: numpy builders, identical in every run.
 
 Each returns a `Scene` and a `Camera`. The splats are ellipses of seeded random orientation and aspect, overlap
 about as much as converted meshes do, and carry colours with edges, so that filters have something to do.
@@ -26,7 +26,7 @@ LEAST_ASPECT = 0.7
 
 SUN = Light("sun", (1.0, 0.95, 0.85), energy=2.5, direction=(0.5, 0.6, -1.0))
 LAMP = Light("point", (0.5, 0.7, 1.0), energy=120.0, position=(-2.0, -2.5, 1.5))
-#: Of each of the transparent spheres, which stand 1 apart.
+#: Radius of each transparent sphere; they are 1 apart.
 SPHERES_RADIUS = 0.42
 WORLD = (0.05, 0.06, 0.08)
 

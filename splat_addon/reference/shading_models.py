@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The shading models in float64: the twins of shaders/shading_models/*.glsl, by name.
 
-Each takes what rays see (`Surface`), their grid, the scene, its camera and the settings, and gives (n, 3) radiance.
+Each takes the surfaces that rays see (`Surface`), their grid, the scene, its camera and the settings, and returns (n,
+3) radiance.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ def _toon(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, setting
 
 
 def _matcap(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
-    """The normal in a basis around the ray, as Blender's Workbench has it, is a place in the picture."""
+    """Maps the normal, in a basis around the ray as in Blender's Workbench, to a position in the picture."""
     view = -unit(grid.rays(surface.rays)[1])
     a, b = 1 / (1 + view[:, 2]), -view[:, 0] * view[:, 1] / (1 + view[:, 2])
     across = np.stack([1 - view[:, 0] ** 2 * a, b, -view[:, 0]], axis=1)
@@ -98,7 +99,7 @@ def heat(t: np.ndarray) -> np.ndarray:
 
 
 def blinn_exponent(roughness: np.ndarray) -> np.ndarray:
-    """Of the lobe as wide as GGX's at that roughness (Walter et al. 2007, section 5.2)."""
+    """Exponent of a Blinn lobe as wide as GGX at that roughness (Walter et al. 2007, section 5.2)."""
     return 2 / np.clip(roughness, MIN_ROUGHNESS, 1) ** 4 - 2
 
 
@@ -119,13 +120,13 @@ def _blinn_lobe(normal, view, to_light, exponent) -> np.ndarray:
 
 
 def _lighting(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings):
-    """Directions of the rays that hit, (n, 3), and what each light sends to where they do."""
+    """Directions of the rays that hit, (n, 3), and the light that reaches the hit points."""
     origin, direction = grid.rays(surface.rays)
     position = origin + surface.depth[:, None] * direction
     return direction, all_incident(scene, camera, position, surface.light_set, settings.epsilon)
 
 
-#: Those that show how splats add up; to them, all are opaque.
+#: The models that show how splats add up; they treat everything as opaque.
 DIAGNOSTIC = ("overdraw", "weight")
 
 #: name of a shading model -> its twin

@@ -15,13 +15,13 @@ from ..rendering.shadow import casting
 from .polygons import are_lit
 from .splats import Splats, eye_splats
 
-#: Pairs of a ray and a splat that are met at once.
+#: Pairs of a ray and a splat per batch.
 CHUNK_PAIRS = 50_000
 
-#: Places on a lamp that soft shadows are averaged over.
+#: Points on a lamp over which soft shadows are averaged.
 LAMP_POINTS = 25
 
-#: Of the way from a lamp, at its end: what a polygon does not shadow of itself.
+#: Last fraction of the way from a lamp in which a polygon casts no shadow, so that it does not shadow itself.
 OWN_SURFACE = 1e-9
 
 #: shaders/features/shadows.glsl: the turn of an edge, radians, beyond which splats that reach over it cast no shadow,
@@ -29,12 +29,12 @@ OWN_SURFACE = 1e-9
 BEND = math.radians(30)
 FARTHEST_BACK = 4.0
 
-#: Where a sun is taken to stand, in units of the scene's extent.
+#: Distance of a sun, in units of the scene's extent.
 FAR_AWAY = 1e4
 
 
 def lit_share(light: Light, scene: Scene, camera: Camera, position: np.ndarray, epsilon: float) -> np.ndarray:
-    """(n,) which share of the lamp positions (n, 3) of the eye space see.
+    """(n,) the share of the lamp that is visible from positions (n, 3) in eye space.
 
     A splat hides the places that lie farther behind it, as seen from the light, than it is moved back: epsilon, in its
     radii, behind a plane that is turned away from the light by BEND more than its own.
@@ -56,7 +56,7 @@ def _is_lit(casters: Scene, camera: Camera, splats: Splats, epsilon: float, lamp
 
 
 def _moved(splats: Splats, lamp: np.ndarray) -> np.ndarray:
-    """(N,) how far splats are moved away from the lamp, over epsilon."""
+    """(N,) how far splats are moved away from the lamp, in units of epsilon."""
     way = splats.center - lamp
     with np.errstate(divide="ignore", invalid="ignore"):
         cosine = np.abs(np.einsum("ij,ij->i", splats.plane, way))

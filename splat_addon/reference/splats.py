@@ -16,14 +16,14 @@ from ..rendering.scene.light import MAX_LIGHT_SETS
 from ..rendering.settings import Settings
 from .textures import surfel_textures
 
-#: What the back of a splat weighs against a front, and how much further it is moved away: shaders/lib/sides.glsl.
+#: Weight of a back relative to a front, and how much farther it is moved away: shaders/lib/sides.glsl.
 BACK_WEIGHT = 1e-3
 BACK_EPSILON = 2.0
 
-#: The deepest blending, in radii, that devices tell from any: rendering/upload/packing.py.
+#: The largest stored blend depth, in radii: rendering/upload/packing.py.
 FITTED_BLENDING = 255 / 256
 
-#: A splat that shows less of itself is not there at all: shaders/lib/sides.glsl.
+#: A splat with a smaller visible share is not drawn at all: shaders/lib/sides.glsl.
 LEAST_OPACITY = 1e-3
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`render_triangles`: the picture of a mesh itself, which pictures of its surfels are to look like.
+"""`render_triangles`: the picture of a mesh itself, the reference for pictures of its surfels.
 
 Float64, many samples a pixel, unlit: each sample shows the nearest triangle's interpolated corner colours. It shares
 nothing with the sampling of surfels, with the renderer or with `render_exact` but the camera and the pixel filter.
@@ -14,7 +14,7 @@ import numpy as np
 from ..rendering.scene.camera import Camera
 from .filters import filter_weights, resample
 
-#: Pairs of a triangle and a sample that are handled at once: about 100 bytes each.
+#: Triangle-sample pairs per batch: about 100 bytes each.
 CHUNK_PAIRS = 1_000_000
 
 #: Samples of a strip of the picture.

@@ -11,7 +11,7 @@ from ..rendering.scene.environment import LEVEL_SIDE, LEVELS, Environment
 
 
 class WorldLight:
-    """The world of a scene, asked in directions (n, 3) of a camera's eye space."""
+    """The world of a scene, sampled in directions (n, 3) of a camera's eye space."""
 
     def __init__(self, scene: Scene, camera: Camera):
         self._tint, self._environment = np.array(scene.world), scene.environment
@@ -21,19 +21,19 @@ class WorldLight:
             self._levels = texels.reshape(-1, *2 * texels.shape[1:2], 4)[..., :3].astype(np.float64)
 
     def background(self, direction: np.ndarray) -> np.ndarray:
-        """(n, 3) radiance that comes from there."""
+        """(n, 3) radiance of the background in that direction."""
         if self._environment is None:
             return np.broadcast_to(self._tint, direction.shape)
         return self._tint * _image_at(self._environment, self._turned(direction))
 
     def irradiance(self, normal: np.ndarray) -> np.ndarray:
-        """(n, 3) what a matt surface of that normal gets, over pi."""
+        """(n, 3) irradiance of a matt surface with that normal, over pi."""
         if self._environment is None:
             return np.broadcast_to(self._tint, normal.shape)
         return self._tint * _level_at(self._levels, np.full(len(normal), len(LEVELS)), self._turned(normal))
 
     def reflection(self, direction: np.ndarray, roughness: np.ndarray) -> np.ndarray:
-        """(n, 3) radiance that a lobe of that roughness (n,) and mean direction gets on average."""
+        """(n, 3) mean radiance of a lobe with that roughness (n,) and mean direction."""
         if self._environment is None:
             return np.broadcast_to(self._tint, direction.shape)
         toward, levels = self._turned(direction), np.array(LEVELS)

@@ -39,24 +39,26 @@ PRESETS = {
         Preset(
             "preview",
             "Preview",
-            "The fastest picture without holes: 19 to 31 dB and FLIP 0.02 to 0.06 from filtered pixels, 21 to 35 dB "
-            "from box pixels, in the least time",
+            "The fastest picture without holes: unfiltered, so edges and textures are jagged",
             {"method": "quad", "supersampling": 1},
         ),
         Preset(
             "balanced",
             "Balanced",
-            "Filtered, so smooth and still in animations and fine textures: 40 to 47 dB and FLIP 0.007 to 0.016 from "
-            "filtered pixels, in about 1.6 times the time of Preview a sample. 16 samples smooth creases and polygons",
+            (
+                "Filtered, so that animations and fine textures are smooth and do not flicker. A sample takes longer "
+                "than one of Preview; 16 samples smooth creases and polygons"
+            ),
             {"method": "mip", "supersampling": 1},
             samples=16,
         ),
         Preset(
             "final",
             "Final",
-            "The sharpest, for stills and what is scaled down later: 34 to 54 dB and FLIP 0.002 to 0.007 from box "
-            "pixels, in about 2.1 times the time of Preview. Set 5 x 5 for detail far below a pixel: 38 dB instead of "
-            "34 to 35",
+            (
+                "The sharpest, for stills and for pictures that are scaled down later. Takes about twice as long as "
+                "Preview; raise Supersampling to 5 for detail far below a pixel"
+            ),
             {"method": "quad", "supersampling": 4},
         ),
     )

@@ -65,7 +65,7 @@ def converted(mesh, density: dict, kind: str):
 
 
 def densities(mesh, cameras, options) -> dict[str, dict]:
-    """name -> fineness: resolutions, and spacings of so many pixels in the closest of all views."""
+    """name -> fineness: resolutions, and spacings in pixels of the closest view."""
     found, surface = {str(resolution): {"resolution": resolution} for resolution in options.resolution}, outline(mesh)
     for pixels in options.pixels:
         near = min(

@@ -57,7 +57,7 @@ PICTURED = frozenset([*settings_of(EVERY), replace(YARDSTICK, supersampling=2), 
 
 
 def choices(name: str = "all", multisample_counts: tuple[int, ...] = ()) -> list[Settings]:
-    """Those of `CHOICES` that the device's sample counts allow, including the yardstick."""
+    """The entries of `CHOICES` that the device's sample counts allow, including the yardstick."""
     return [settings for settings in CHOICES[name] if settings.multisampling in (0, *multisample_counts)]
 
 

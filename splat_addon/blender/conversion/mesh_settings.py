@@ -35,7 +35,7 @@ class ConversionProperties:
     spacing: spacing_property(", in the units of the chosen space", min=0.0)
     count: IntProperty(
         name="Count",
-        description="How many surfels each object becomes, within 1 %",
+        description="Approximate number of surfels for each object",
         default=100_000,
         min=0,
         soft_min=1_000,
@@ -45,8 +45,8 @@ class ConversionProperties:
     join: BoolProperty(
         name="Join",
         description=(
-            "Make one surfel object of everything that is selected, in the place of the active object. Density "
-            "then refers to the whole"
+            "Make one surfel object of the whole selection, in the place of the active object. The density then "
+            "refers to the whole"
         ),
         default=False,
     )
@@ -84,8 +84,8 @@ class ConversionProperties:
     use_adaptive: BoolProperty(
         name="Adaptive",
         description=(
-            "Use larger surfels where the surface is flat and its colour even. It helps buildings and machines,"
-            " and adds 2 to 3 s for a million surfels"
+            "Use larger surfels where the surface is flat and its colour even. This helps buildings and machines,"
+            " but conversion takes longer"
         ),
         default=False,
     )
@@ -103,8 +103,8 @@ class ConversionProperties:
     bake_materials: BoolProperty(
         name="Bake Materials",
         description=(
-            "Let Cycles bake material inputs that cannot be read directly, such as procedural textures. It adds"
-            " about 35 s for a million surfels and each such input"
+            "Let Cycles bake material inputs that cannot be read directly, such as procedural textures. This is "
+            "slow: each input may take longer than the rest of the conversion"
         ),
         default=False,
     )
@@ -112,8 +112,8 @@ class ConversionProperties:
     clips_edges: BoolProperty(
         name="End at Edges",
         description=(
-            "Surfels end at creases, borders of colours and open borders, and blend as deep as their surface asks for. "
-            "It takes 8 to 12 bytes a surfel, and a frame takes up to 1.1 times as long"
+            "End surfels at creases, borders of colours and open borders, and limit their blend depth to that of "
+            "their surface. Edges stay sharp, but conversion takes longer and frames slightly longer"
         ),
         default=True,
     )

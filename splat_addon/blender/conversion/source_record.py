@@ -42,8 +42,8 @@ class SurfelRecord(bpy.types.PropertyGroup):
     )
     mesh: PointerProperty(type=SurfelConversionSettings)
     points: PointerProperty(type=SurfelPointsSettings)
-    unread: StringProperty(name="Not Sampled", description="What the materials could not be read for, a line each")
-    origin: FloatVectorProperty(name="Origin", description="Of the surfels, in the space of the first source")
+    unread: StringProperty(name="Not Sampled", description="Material inputs that could not be read, one per line")
+    origin: FloatVectorProperty(name="Origin", description="Origin of the surfels, in the space of the first source")
     is_hidden_source: BoolProperty(
         name="Hidden for Surfels",
         description="This object was hidden when it was converted, and comes back when its surfels are deleted",

@@ -61,12 +61,12 @@ RENDER_PASSES = (
 class ViewLayerPasses(bpy.types.PropertyGroup):
     use_pass_coverage: BoolProperty(
         name="Coverage",
-        description="The share of each pixel that surfaces cover, whatever the world behind them",
+        description="The share of each pixel that surfaces cover, regardless of the background",
         default=False,
     )
     use_pass_overdraw: BoolProperty(
         name="Overdraw",
-        description="How many splats each pixel's samples average. It takes 1.03 times the time of a frame",
+        description="How many splats each pixel's samples average. Frames take slightly longer",
         default=False,
     )
 

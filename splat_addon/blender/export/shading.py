@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Converts Blender's lights and materials to the renderer's, as far as it supports them."""
+"""Converts Blender's lights and materials to the renderer's, where it supports them."""
 
 from __future__ import annotations
 

@@ -21,13 +21,13 @@ from .material_surfaces import SHADERS, surface_shader, uses_nodes
 from .node_products import linked
 from .shader_mixes import emitted
 
-#: Pixels along a square.
+#: Pixels along the side of a square.
 SIDE = 2
 
-#: What a pixel holds that no ray from it met.
+#: Value of a pixel whose rays hit nothing.
 _MISSED = -1.0
 
-#: How `bpy.ops.object.bake` is asked, by kind.
+#: Settings of `bpy.ops.object.bake`, by kind.
 _KINDS = {
     "EMIT": {},
     "NORMAL": {"normal_space": "OBJECT", "normal_r": "POS_X", "normal_g": "POS_Y", "normal_b": "POS_Z"},

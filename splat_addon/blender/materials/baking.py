@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels take what their materials cannot be read for, such as procedural textures, from Blender's own bake."""
+"""Bakes material inputs that cannot be read, such as procedural textures, into surfels with Blender's own bake."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from ...surfels import OPTIONAL_LAYOUT, Surfels
 from .bake_scene import BakeScene
 from .material_surfaces import SHADERS, Unread, surface_shader
 
-#: Below it nothing is seen of a colour.
+#: Coverage below which a colour is invisible.
 _LEAST_OPACITY = 1e-4
 
-#: Surfels of one bake: four million pixels, 64 MB.
+#: Surfels per bake: four million pixels, 64 MB.
 _CHUNK = 1_000_000
 
 
@@ -71,7 +71,7 @@ def baked(surfels: Surfels, what: Bakeable, depsgraph: bpy.types.Depsgraph) -> t
 
 
 def _uncover(colors: np.ndarray, slots: np.ndarray, what: Bakeable) -> None:
-    """Of mixed shaders colours are baked as far as they are covered; make them whole."""
+    """Divide the baked colours of mixed shaders by their coverage."""
     mixed = {m for m, unread in what.unread if unread.channel == "opacity" and _is_mixed(m)}
     rows = np.isin(slots, [k for k, material in enumerate(what.materials) if material in mixed])
     opacity = np.clip(colors[rows, 3:], 0, 1)

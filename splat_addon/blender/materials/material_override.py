@@ -39,6 +39,6 @@ class Overridden:
         return self._made[key][2]
 
     def begin_frame(self) -> None:
-        """Let go of what the last frame did not ask for."""
+        """Drop what the last frame did not use."""
         self._made = {key: made for key, made in self._made.items() if key in self._used}
         self._used.clear()

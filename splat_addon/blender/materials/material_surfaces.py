@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender's materials are made of on a mesh -> `sampling.Surface`, with the mesh layers that it is looked up by.
+"""Reads Blender's materials as `sampling.Surface`, with the mesh layers that they use.
 
 Each input of the shader at the output is read as a product (`node_products`). One that cannot be is given the value of
 its socket, and is named, so that it can be said or baked.
@@ -43,7 +43,7 @@ CHANNEL_NAMES = {
     "normal_map": "normal",
 }
 
-#: shader node -> field of `Surface` -> its sockets, whose product is meant
+#: shader node -> field of `Surface` -> its sockets, which are multiplied
 SHADERS = {
     "ShaderNodeBsdfPrincipled": {
         "color": ("Base Color",),
@@ -271,8 +271,8 @@ def default_color_layer(mesh: bpy.types.Mesh) -> str | None:
 
 
 def uses_nodes(material: bpy.types.Material) -> bool:
-    """Whether the material's node tree is looked at."""
-    # From 5.0 every material does, and asking is deprecated.
+    """Whether the material uses its node tree."""
+    # From 5.0 every material does, and the property is deprecated.
     return bpy.app.version >= (5, 0, 0) or (material.use_nodes and material.node_tree is not None)
 
 

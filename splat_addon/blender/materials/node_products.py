@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a socket of a shader's node tree is the product of: constants, image textures and attributes.
+"""Reads a socket of a shader's node tree as a product of constants, image textures and attributes.
 
 That is what importers and painters make. A Math or Invert node over one image is read too: it is applied to the image's
 pixels. Anything else raises `UnreadableError`, whose text ends the sentence "it comes from ...".
@@ -85,7 +85,7 @@ def product(socket: Socket) -> Product:
     return _Reading().product(socket)
 
 
-#: The most nodes that are followed one behind another: far more than anyone places, and within Python's own limit.
+#: Maximum length of a chain of nodes: far more than anyone uses, and within Python's own limit.
 MAX_CHAIN = 100
 
 
@@ -134,7 +134,7 @@ class _Reading:
         return _READERS.get((node.bl_idname, output))
 
     def _inside(self, group: Node, output: str) -> Product:
-        """What a group puts out."""
+        """The output of a group."""
         ends = (n for n in group.node_tree.nodes if n.bl_idname == "NodeGroupOutput" and n.is_active_output)
         end = next(ends, None)
         if end is None:
@@ -146,7 +146,7 @@ class _Reading:
             self._groups.pop()
 
     def _outside(self, output: str) -> Product:
-        """What is put into the innermost group."""
+        """The input of the innermost group."""
         group = self._groups.pop()
         try:
             return self.product(_input(group, output))
@@ -189,7 +189,7 @@ def linked(socket: Socket) -> tuple[Node, str] | None:
 
 #: Reads a socket further up the tree.
 Read = Callable[[Socket], Product]
-#: Reads what a node puts out.
+#: Reads the output of a node.
 Reader = Callable[[Node, Read], Product]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mixed and added shaders, and those that have no diffuse colour such as Glass, as colours that Cycles can bake.
+"""Turns mixed and added shaders, and those without a diffuse colour such as Glass, into colours that Cycles can bake.
 
 A tree of shaders becomes a tree of colours of the same shape, once for each thing that surfels keep: Mix Shader mixes
 them, Add Shader adds them, and each shader at an end gives its own. What a surface lets through adds up as light does,
@@ -30,7 +30,7 @@ _CLEAR = ("BSDF_TRANSPARENT", "HOLDOUT")
 
 
 def ends(shader: Node) -> Iterator[Node]:
-    """The shaders that a tree of them is made of."""
+    """The leaf shaders of a tree of shaders."""
     if shader.mute:
         link = passed_through_link(shader)
         source = link and linked(link.from_socket)
@@ -46,7 +46,7 @@ def ends(shader: Node) -> Iterator[Node]:
 
 
 def channels(shader: Node) -> list[str]:
-    """What of a surface is to be baked of a tree of shaders."""
+    """The channels of a surface to bake for a tree of shaders."""
     kinds = [end.type for end in ends(shader)]
     emits = any(end.type == "EMISSION" or _emits(end) for end in ends(shader))
     is_clear = any(kind in _CLEAR or kind == "BSDF_PRINCIPLED" for kind in kinds)

@@ -18,7 +18,7 @@ from .texture_images import UnreadableError
 
 
 def texture_of(surface: Surface) -> SurfaceTexture | None:
-    """Of a surface as sampling has it; None where its colour is not one image times a constant."""
+    """The texture of a surface; None if its colour is not a single image times a constant."""
     texture = surface.color_texture
     return None if texture is None else SurfaceTexture(texture.image, surface.color.value[:3])
 
@@ -26,7 +26,8 @@ def texture_of(surface: Surface) -> SurfaceTexture | None:
 def kept_textures(
     kept: tuple[SurfaceTexture | None, ...], surfaces: tuple[Surface, ...]
 ) -> tuple[SurfaceTexture | None, ...]:
-    """Those of a mesh's surfaces; the same tuple as `kept`, by which the device knows it, while nothing changed."""
+    """The textures of a mesh's surfels; the same tuple as `kept` while nothing changed, because the device identifies
+    it by that."""
     found = tuple(texture_of(surface) for surface in surfaces)
     is_same = len(kept) == len(found) and all(map(_are_same, kept, found))
     return kept if is_same else found

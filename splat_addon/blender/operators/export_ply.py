@@ -26,7 +26,7 @@ _WRITERS = {
 
 
 class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
-    """Write surfels to a PLY file, with everything that they have or as Gaussian splats"""
+    """Write surfels to a PLY file, either losslessly or as Gaussian splats"""
 
     bl_idname = EXPORT_PLY
     bl_label = "Export Surfels"
@@ -46,7 +46,7 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
     )
     ascii: BoolProperty(
         name="Text",
-        description="Write numbers that a text editor shows: a file several times as large. Surfels only",
+        description="Write a text file, which is several times as large. Surfels only",
         default=False,
     )
     use_selection: BoolProperty(

@@ -21,7 +21,7 @@ from .menu_entry import with_menu_entry
 
 
 class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Operator):
-    """Read a PLY file as surfels: one that this extension wrote, flat Gaussian splats, or the points of any other"""
+    """Read surfels from a PLY file: one written by this extension, flat Gaussian splats, or any other points"""
 
     bl_idname = IMPORT_PLY
     bl_label = "Import Surfels"
@@ -33,8 +33,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
     flatness: FloatProperty(
         name="Flatness",
         description=(
-            "How thick a Gaussian may be, in its middle radius, to become a surfel; thicker ones are left out. "
-            "1 takes all"
+            "Maximum thickness of a Gaussian relative to its middle radius; thicker ones are left out. 1 accepts all"
         ),
         default=DEFAULT_FLATNESS,
         min=0.0,

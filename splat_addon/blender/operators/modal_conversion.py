@@ -24,7 +24,7 @@ def follow_property():
     return BoolProperty(
         name="Follow Source",
         description=(
-            "The surfels go where their source goes, with its parent, animation and constraints. Off, they are a "
+            "Let the surfels follow their source, with its parent, animation and constraints. If off, they are a "
             "frozen copy"
         ),
         default=True,

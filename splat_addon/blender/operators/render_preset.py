@@ -18,7 +18,7 @@ class RENDER_OT_surfel_preset(bpy.types.Operator):
 
     preset: EnumProperty(
         name="Preset",
-        description="Which trade of speed for accuracy",
+        description="The balance between speed and accuracy",
         items=[(preset.name, preset.label, preset.summary) for preset in PRESETS.values()],
     )
 

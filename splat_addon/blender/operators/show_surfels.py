@@ -16,7 +16,7 @@ def shows_surfels(context: bpy.types.Context) -> bool:
 
 
 class VIEW3D_OT_surfels_show(bpy.types.Operator):
-    """Choose the render engine that draws surfels, and Rendered shading in this 3D view"""
+    """Switch to Surfel Splatting as the render engine, and to Rendered shading in this 3D view"""
 
     bl_idname = SHOW_SURFELS
     bl_label = f"Show with {ENGINE_LABEL}"

@@ -31,7 +31,7 @@ directions, is estimated from neighbouring points"""
         name="Source",
         description="What happens to the points that were converted",
         items=(
-            ("KEEP", "Keep", "Leave the points as they are: of a mesh, as black dots over the surfels"),
+            ("KEEP", "Keep", "Leave the points as they are; those of a mesh appear as black dots over the surfels"),
             ("HIDE", "Hide", "Hide the points in the viewport and in renders, so that only the surfels are seen"),
         ),
         default="HIDE",

@@ -23,7 +23,7 @@ def updatable(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 class OBJECT_OT_surfels_update(bpy.types.Operator):
-    """Convert the sources of the selected surfels again, as they are now, with the settings of the first time"""
+    """Convert the current sources of the selected surfels again, with the settings of the first conversion"""
 
     bl_idname = UPDATE_SURFELS
     bl_label = "Update Surfels from Source"
@@ -31,7 +31,10 @@ class OBJECT_OT_surfels_update(bpy.types.Operator):
 
     bake: BoolProperty(
         name="Bake Materials",
-        description="Let Cycles bake what the materials could not be read for. 35 s for a million surfels and input",
+        description=(
+            "Let Cycles bake the material inputs that cannot be read directly. This is slow: each input may take "
+            "longer than the rest of the conversion"
+        ),
         options={"SKIP_SAVE"},
     )
 

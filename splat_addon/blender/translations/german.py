@@ -5,16 +5,14 @@ from __future__ import annotations
 
 GERMAN = {
     "16 Bit": "16 Bit",
-    "24 bytes a sample, at least 62 dB from Float 32 with 300 splats over a pixel, and wrong from 1,000": (
-        "24 Byte pro Sample, mindestens 62 dB von Float 32 bei 300 Splats über einem Pixel, und falsch ab 1.000"
+    "Takes less memory. Precise with hundreds of splats over a pixel, wrong with thousands": (
+        "Braucht weniger Speicher. Genau bei Hunderten von Splats über einem Pixel, falsch bei Tausenden"
     ),
     "3-to-1": "3 zu 1",
-    "32 bytes a sample, exact with thousands of splats over a pixel": (
-        "32 Byte pro Sample, genau bei Tausenden von Splats über einem Pixel"
-    ),
-    "32 bytes a surfel, at least 58 dB from Float 32": "32 Byte pro Surfel, mindestens 58 dB von Float 32",
+    "Exact, even with thousands of splats over a pixel": ("Genau, auch bei Tausenden von Splats über einem Pixel"),
+    "Takes half the memory; differences from Float 32 are invisible": "Braucht halb so viel Speicher; Unterschiede zu Float 32 sind unsichtbar",
     "3D Cursor": "3D-Cursor",
-    "64 bytes a surfel, exact": "64 Byte pro Surfel, genau",
+    "Exact, with twice the memory of 16 Bit": "Genau, mit doppelt so viel Speicher wie 16 Bit",
     (
         "A crease is drawn where the surface turns by more than this angle within about 3 pixels; 180 "
         "degrees draws none"
@@ -39,12 +37,14 @@ GERMAN = {
         "Alle Eigenschaften, genau; andere Programme lesen die Positionen, Normalen und Farben"
     ),
     "Ambient Occlusion": "Umgebungsverdeckung",
-    "An image of a lit ball that fills the frame. Of a multilayer file the first layer is shown": (
+    "An image of a lit ball that fills the frame. A multilayer file shows its first layer": (
         "Ein Bild einer beleuchteten Kugel, die das Bild ausfüllt. Von einer mehrschichtigen Datei wird die "
         "erste Schicht gezeigt"
     ),
     "Angle": "Winkel",
-    "As Render Meshes as in the render properties says": ("So, wie es Meshes als in den Rendereigenschaften sagt"),
+    "Use the render properties' setting Render Meshes as": (
+        "Die Einstellung Meshes als der Rendereigenschaften verwenden"
+    ),
     "As fine as the scene's camera and resolution need on the current frame": (
         "So fein, wie Kamera und Auflösung der Szene es im aktuellen Einzelbild brauchen"
     ),
@@ -55,7 +55,7 @@ GERMAN = {
         "So fein, wie die Kamera der Szene es im aktuellen Einzelbild braucht, ein Viertel feiner, wo sich "
         "etwas bewegt. Auflösung 256, wo keine Kamera das Objekt sieht, und höchstens 4.000.000 Surfels"
     ),
-    "As the Scene Says": "Wie die Szene sagt",
+    "From Scene": "Aus Szene",
     "Automatic": "Automatisch",
     "Away from the middle of each connected part, for scans of whole objects": (
         "Weg von der Mitte jedes zusammenhängenden Teils, für Scans ganzer Objekte"
@@ -71,15 +71,15 @@ GERMAN = {
     "Broken Objects": "Fehlerhafte Objekte",
     "Camera": "Kamera",
     "Choose method and samples together": "Methode und Samples zusammen wählen",
-    "Choose the render engine that draws surfels, and Rendered shading in this 3D view": (
-        "Die Render-Engine wählen, die Surfels zeichnet, und in dieser 3D-Ansicht die Schattierung Gerendert"
+    "Switch to Surfel Splatting as the render engine, and to Rendered shading in this 3D view": (
+        "Zu Surfel Splatting als Render-Engine und in dieser 3D-Ansicht zur Schattierung Gerendert wechseln"
     ),
     "Color": "Farbe",
     "Conversion in New Scenes": "Umwandlung in neuen Szenen",
     "Convert Points to Surfels": "Punkte in Surfels umwandeln",
-    "Convert the sources of the selected surfels again, as they are now, with the settings of the first time": (
-        "Die Quellen der ausgewählten Surfels so, wie sie jetzt sind, noch einmal umwandeln, mit den "
-        "Einstellungen vom ersten Mal"
+    "Convert the current sources of the selected surfels again, with the settings of the first conversion": (
+        "Die Quellen der ausgewählten Surfels, wie sie jetzt sind, noch einmal umwandeln, mit den "
+        "Einstellungen der ersten Umwandlung"
     ),
     "Convert to Surfels": "In Surfels umwandeln",
     "Count": "Anzahl",
@@ -90,29 +90,22 @@ GERMAN = {
     "Depth": "Tiefe",
     "Depth Threshold": "Tiefenschwelle",
     "Detail Tolerance": "Detailtoleranz",
-    (
-        "Diffuse and GGX specular light of the scene's lights and world (Walter et al. 2007, Heitz et al. "
-        "2016). 1.11 times the frame of Flat"
-    ): (
-        "Diffuses und glänzendes (GGX-)Licht der Lampen und der Welt (Walter et al. 2007, Heitz et al. "
-        "2016). 1,11-mal das Einzelbild von Flach"
+    ("Diffuse and GGX specular light of the scene's lights and world (Walter et al. 2007, Heitz et al. 2016)"): (
+        "Diffuses und glänzendes (GGX-)Licht der Lampen und der Welt (Walter et al. 2007, Heitz et al. 2016)"
     ),
-    (
-        "Diffuse light and a highlight as sharp as the material is smooth; lights are points (Blinn 1977, "
-        "normalised). 1.06 times the frame of Flat"
-    ): (
+    ("Diffuse light and a highlight as sharp as the material is smooth; lights are points (Blinn 1977, normalised)"): (
         "Diffuses Licht und ein Glanzlicht, so scharf, wie das Material glatt ist; Lampen sind Punkte (Blinn "
-        "1977, normiert). 1,06-mal das Einzelbild von Flach"
+        "1977, normiert)"
     ),
     (
-        "Discs in point sprites of which the nearest is seen: nothing blends, 0.65 to 0.7 of the time of "
-        "Quads (Botsch and Kobbelt 2003, sections 3.1 and 3.2)"
+        "Discs in point sprites, of which only the nearest is drawn without blending; faster than Quads "
+        "(Botsch and Kobbelt 2003, sections 3.1 and 3.2)"
     ): (
-        "Scheiben in Punktsprites, von denen die nächste zu sehen ist: Nichts mischt sich, 0,65 bis 0,7 der "
-        "Zeit von Quads (Botsch und Kobbelt 2003, Abschnitte 3.1 und 3.2)"
+        "Scheiben in Punktsprites, von denen nur die nächste ohne Mischen gezeichnet wird; schneller als "
+        "Quads (Botsch und Kobbelt 2003, Abschnitte 3.1 und 3.2)"
     ),
-    "Discs in point sprites; opens holes at flat angles (Botsch and Kobbelt 2003, sections 3.1 to 3.4)": (
-        "Scheiben in Punktsprites; öffnet bei flachen Winkeln Löcher (Botsch und Kobbelt 2003, Abschnitte 3.1 bis 3.4)"
+    "Discs in point sprites, with holes at grazing angles (Botsch and Kobbelt 2003, sections 3.1 to 3.4)": (
+        "Scheiben in Punktsprites, mit Löchern bei flachen Winkeln (Botsch und Kobbelt 2003, Abschnitte 3.1 bis 3.4)"
     ),
     "Distance": "Entfernung",
     (
@@ -151,16 +144,12 @@ GERMAN = {
         "höchstens so vielen Pixeln Abweichung. 0 zeichnet jedes Surfel; 1,25 macht große Mengen "
         "um ein Vielfaches schneller"
     ),
-    ("Draw lines along silhouettes and creases, with any shading. It takes 1.5 to 1.7 times the time of a frame"): (
-        "Linien entlang von Umrissen und Falten zeichnen, bei jeder Schattierung. Das braucht die 1,5- bis "
-        "1,7-fache Zeit eines Einzelbilds"
+    ("Draw lines along silhouettes and creases, with any shading. Frames take noticeably longer"): (
+        "Linien entlang von Umrissen und Falten zeichnen, bei jeder Schattierung. Einzelbilder dauern merklich länger"
     ),
-    (
-        "Draw polygons up to a distance from the camera and surfels beyond it. It takes 1.4 times the time "
-        "of surfels alone"
-    ): (
-        "Bis zu einer Entfernung von der Kamera Polygone und dahinter Surfels zeichnen. Das braucht 1,4-mal "
-        "so lange wie Surfels allein"
+    ("Draw polygons up to a distance from the camera and surfels beyond it. This takes longer than surfels alone"): (
+        "Bis zu einer Entfernung von der Kamera Polygone und dahinter Surfels zeichnen. Das dauert länger als"
+        " Surfels allein"
     ),
     "Draw polygons where the weights of a vertex group are 0.5 or more, and surfels elsewhere": (
         "Polygone zeichnen, wo die Gewichte einer Vertexgruppe 0,5 oder mehr sind, und anderswo Surfels"
@@ -176,22 +165,18 @@ GERMAN = {
     "Drop": "Entfernen",
     "EWA": "EWA",
     "EWA in Space": "EWA im Raum",
-    (
-        "Each light in a few even steps, with a highlight that has an edge (Lake et al. 2000). 1.06 times "
-        "the frame of Flat"
-    ): (
-        "Jede Lampe in wenigen gleichmäßigen Stufen, mit einem scharf begrenzten Glanzlicht (Lake et al. "
-        "2000). 1,06-mal das Einzelbild von Flach"
+    ("Each light in a few even steps, with a highlight that has an edge (Lake et al. 2000)"): (
+        "Jede Lampe in wenigen gleichmäßigen Stufen, mit einem scharf begrenzten Glanzlicht (Lake et al. 2000)"
     ),
     "Edge Fade": "Randverlauf",
     "End at Edges": "An Kanten enden",
     "Environment": "Umgebung",
     (
-        "Exact ellipses no smaller than the pixel's filter, at their planes' depth; 3 dB truer at flat "
+        "Exact ellipses, no smaller than the pixel's filter, with correct depth; more accurate at grazing "
         "angles (Guennebaud et al. 2006, sections 3 and 4, repaired)"
     ): (
-        "Genaue Ellipsen, nicht kleiner als der Filter des Pixels, in der Tiefe ihrer Ebenen; bei flachen "
-        "Winkeln 3 dB genauer (Guennebaud et al. 2006, Abschnitte 3 und 4, berichtigt)"
+        "Genaue Ellipsen, nicht kleiner als der Filter des Pixels, mit richtiger Tiefe; bei flachen Winkeln "
+        "genauer (Guennebaud et al. 2006, Abschnitte 3 und 4, berichtigt)"
     ),
     "Exact ellipses, no smaller than the pixel's disc (Botsch et al. 2005, sections 3 and 5)": (
         "Genaue Ellipsen, nicht kleiner als die Scheibe des Pixels (Botsch et al. 2005, Abschnitte 3 und 5)"
@@ -204,13 +189,11 @@ GERMAN = {
     "Film": "Film",
     "Filter": "Filter",
     (
-        "Filtered, so smooth and still in animations and fine textures: 40 to 47 dB and FLIP 0.007 to 0.016 "
-        "from filtered pixels, in about 1.6 times the time of Preview a sample. 16 samples smooth creases "
-        "and polygons"
+        "Filtered, so that animations and fine textures are smooth and do not flicker. A sample takes longer "
+        "than one of Preview; 16 samples smooth creases and polygons"
     ): (
-        "Gefiltert, daher glatt und ruhig in Animationen und feinen Texturen: 40 bis 47 dB und FLIP 0,007 "
-        "bis 0,016 von gefilterten Pixeln, in etwa der 1,6-fachen Zeit der Vorschau pro Sample. 16 Samples "
-        "glätten Falten und Polygone"
+        "Gefiltert, damit Animationen und feine Texturen glatt sind und nicht flimmern. Ein Sample dauert "
+        "länger als eines der Vorschau; 16 Samples glätten Falten und Polygone"
     ),
     "Final": "Endgültig",
     "Flat": "Flach",
@@ -276,20 +259,16 @@ GERMAN = {
         "Wie weit die Fläche von einer Ebene abweichen darf, wo Surfels größer werden, in den Einheiten des "
         "gewählten Raums"
     ),
-    (
-        "How many splats a sample is the mean of: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red "
-        "(none needed). 1.04 times the frame of Flat"
-    ): (
-        "Aus wie vielen Splats ein Sample gemittelt ist: 1 blau, 4 türkis, 16 grün, 64 gelb, 256 und mehr "
-        "rot (keine Quelle nötig). 1,04-mal das Einzelbild von Flach"
+    ("How many splats each sample averages: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red"): (
+        "Aus wie vielen Splats jedes Sample gemittelt ist: 1 blau, 4 türkis, 16 grün, 64 gelb, 256 und mehr rot"
     ),
-    "How many splats each pixel's samples average. It takes 1.03 times the time of a frame": (
-        "Wie viele Splats die Samples jedes Pixels mitteln. Das braucht die 1,03-fache Zeit eines Einzelbilds"
+    "How many splats each pixel's samples average. Frames take slightly longer": (
+        "Wie viele Splats die Samples jedes Pixels mitteln. Einzelbilder dauern etwas länger"
     ),
-    "How many surfels each object becomes, within 1 %": ("Wie viele Surfels aus jedem Objekt werden, auf 1 % genau"),
+    "Approximate number of surfels for each object": ("Ungefähre Anzahl von Surfels für jedes Objekt"),
     (
-        "How many times closer together the surfels of this object lie than the density says. 2 makes four "
-        "times as many surfels"
+        "How many times closer together this object's surfels are than the density says. 2 makes four times "
+        "as many surfels"
     ): ("Wievielmal dichter die Surfels dieses Objekts liegen, als die Dichte sagt. 2 ergibt viermal so viele Surfels"),
     "How meshes, curves, texts and metaballs are drawn that have not been converted": (
         "Wie nicht umgewandelte Meshes, Kurven, Texte und Metabälle gezeichnet werden"
@@ -307,16 +286,16 @@ GERMAN = {
     ),
     "How the sums of overlapping splats are stored": "Wie die Summen überlappender Splats gespeichert werden",
     "How the surface reflects light": "Wie die Oberfläche Licht zurückwirft",
-    ("How thick a Gaussian may be, in its middle radius, to become a surfel; thicker ones are left out. 1 takes all"): (
-        "Wie dick eine Gaußverteilung sein darf, in ihrem mittleren Radius, um ein Surfel zu werden; dickere "
-        "werden weggelassen. 1 nimmt alle"
+    ("Maximum thickness of a Gaussian relative to its middle radius; thicker ones are left out. 1 accepts all"): (
+        "Höchste Dicke einer Gaußverteilung im Verhältnis zu ihrem mittleren Radius; dickere werden "
+        "weggelassen. 1 nimmt alle"
     ),
     (
         "How this object and its instances are drawn. Conversion sets it to Nothing, because the surfels "
-        "stand in the object's place"
+        "replace the object"
     ): (
         "Wie dieses Objekt und seine Instanzen gezeichnet werden. Die Umwandlung setzt es auf Nichts, weil "
-        "die Surfels an der Stelle des Objekts stehen"
+        "die Surfels das Objekt ersetzen"
     ),
     "Import": "Importieren",
     "Import Surfels": "Surfels importieren",
@@ -335,36 +314,38 @@ GERMAN = {
     "Leave the object as it is, in the same place as its surfels": (
         "Das Objekt lassen, wie es ist, an derselben Stelle wie seine Surfels"
     ),
-    "Leave the points as they are: of a mesh, as black dots over the surfels": (
-        "Die Punkte lassen, wie sie sind: die eines Meshes als schwarze Punkte über den Surfels"
+    "Leave the points as they are; those of a mesh appear as black dots over the surfels": (
+        "Die Punkte lassen, wie sie sind; die eines Meshes erscheinen als schwarze Punkte über den Surfels"
     ),
-    "Leave them out": "Weglassen",
+    "Do not draw them": "Nicht zeichnen",
     "Leave them out, since most are errors of the scanner": ("Weglassen, denn die meisten sind Fehler des Scanners"),
     (
-        "Let Cycles bake material inputs that cannot be read directly, such as procedural textures. It adds "
-        "about 35 s for a million surfels and each such input"
+        "Let Cycles bake material inputs that cannot be read directly, such as procedural textures. This is "
+        "slow: each input may take longer than the rest of the conversion"
     ): (
         "Cycles Materialeingänge backen lassen, die nicht direkt gelesen werden können, etwa prozedurale "
-        "Texturen. Das kostet etwa 35 s für eine Million Surfels und jeden solchen Eingang"
+        "Texturen. Das ist langsam: Jeder Eingang kann länger dauern als die übrige Umwandlung"
     ),
-    "Let Cycles bake what the materials could not be read for. 35 s for a million surfels and input": (
-        "Cycles backen lassen, wofür die Materialien nicht gelesen werden konnten. 35 s für eine Million "
-        "Surfels und jeden Eingang"
+    (
+        "Let Cycles bake the material inputs that cannot be read directly. This is slow: each input may take "
+        "longer than the rest of the conversion"
+    ): (
+        "Cycles die Materialeingänge backen lassen, die nicht direkt gelesen werden können. Das ist langsam: "
+        "Jeder Eingang kann länger dauern als die übrige Umwandlung"
     ),
-    ("Let visible surfaces block the world's light from one another. It takes 1.1 to 1.5 times the time of a frame"): (
-        "Sichtbare Flächen das Licht der Welt voneinander abhalten lassen. Das braucht die 1,1- bis "
-        "1,5-fache Zeit eines Einzelbilds"
+    ("Let visible surfaces block the world's light from one another. Frames take noticeably longer"): (
+        "Sichtbare Flächen das Licht der Welt voneinander abhalten lassen. Einzelbilder dauern merklich länger"
     ),
     "Levels": "Stufen",
     "Levels of brightness that each light is shown in": "Helligkeitsstufen, in denen jede Lampe gezeigt wird",
     "Light": "Licht",
     "Lines": "Linien",
     (
-        "Look the base colour's image up at every pixel instead of once a surfel. Textures are much sharper, "
-        "and a frame takes 3.6 to 6 times as long in software"
+        "Look up the base colour's image for every pixel instead of once per surfel. Textures are much "
+        "sharper, but frames take several times as long without a graphics card"
     ): (
-        "Das Bild der Grundfarbe an jedem Pixel nachschlagen statt einmal pro Surfel. Texturen werden viel "
-        "schärfer, und ein Einzelbild braucht in Software 3,6- bis 6-mal so lange"
+        "Das Bild der Grundfarbe für jeden Pixel nachschlagen statt einmal pro Surfel. Texturen werden viel "
+        "schärfer, aber Einzelbilder dauern ohne Grafikkarte um ein Mehrfaches länger"
     ),
     (
         "Make a surfel of every point of the selected point clouds and meshes; what they lack, normals, "
@@ -374,8 +355,8 @@ GERMAN = {
         "Größen und Richtungen, wird aus benachbarten Punkten geschätzt"
     ),
     (
-        "Make one surfel object of everything that is selected, in the place of the active object. Density "
-        "then refers to the whole"
+        "Make one surfel object of the whole selection, in the place of the active object. The density then "
+        "refers to the whole"
     ): (
         "Aus der ganzen Auswahl ein einziges Surfelobjekt an der Stelle des aktiven Objekts machen. Die "
         "Dichte bezieht sich dann auf das Ganze"
@@ -385,11 +366,11 @@ GERMAN = {
         "Messen, wie lange jeder Durchgang braucht, indem nach jedem auf das Grafikgerät gewartet wird"
     ),
     (
-        "Megabytes that a final render, and each 3D view, may take of the graphics device. A picture that "
-        "needs more stops and says so. 0 sets no limit"
+        "Maximum memory in megabytes that a final render, and each 3D view, may use on the graphics device. A"
+        " picture that needs more stops with a message. 0 sets no limit"
     ): (
-        "Megabyte, die ein endgültiges Rendern und jede 3D-Ansicht auf dem Grafikgerät belegen dürfen. Ein "
-        "Bild, das mehr braucht, bricht ab und sagt es. 0 setzt keine Grenze"
+        "Höchster Speicher in Megabyte, den ein endgültiges Rendern und jede 3D-Ansicht auf dem Grafikgerät "
+        "belegen dürfen. Ein Bild, das mehr braucht, bricht mit einer Meldung ab. 0 setzt keine Grenze"
     ),
     "Memory of a Picture": "Speicher eines Bilds",
     "Meshes": "Meshes",
@@ -400,11 +381,11 @@ GERMAN = {
         "werden sie weggelassen"
     ),
     (
-        "Moments of the open shutter at which the scene is evaluated. Fewer are faster, and show what moves "
-        "as separate pictures"
+        "Number of times during the open shutter at which the scene is evaluated. Fewer are faster, but show "
+        "moving objects as separate pictures"
     ): (
-        "Zeitpunkte des offenen Verschlusses, an denen die Szene ausgewertet wird. Weniger sind schneller "
-        "und zeigen, was sich bewegt, als einzelne Bilder"
+        "Anzahl der Zeitpunkte des offenen Verschlusses, an denen die Szene ausgewertet wird. Weniger sind "
+        "schneller, zeigen aber bewegte Objekte als einzelne Bilder"
     ),
     "Motion Blur": "Bewegungsunschärfe",
     "Neighbours": "Nachbarn",
@@ -430,11 +411,11 @@ GERMAN = {
         "Rauschen; weniger erhalten kleine Details"
     ),
     (
-        "Number of pictures that a final render averages, each through another place in the pixel, on the "
-        "lens and in time. Each takes the time of one picture"
+        "Number of pictures that a final render averages, each with another offset in the pixel, on the lens "
+        "and in time. The time grows with the number"
     ): (
-        "Anzahl der Bilder, über die ein endgültiges Rendern mittelt, jedes durch eine andere Stelle im "
-        "Pixel, in der Linse und in der Zeit. Jedes braucht die Zeit eines Bilds"
+        "Anzahl der Bilder, über die ein endgültiges Rendern mittelt, jedes mit einem anderen Versatz im "
+        "Pixel, auf der Linse und in der Zeit. Die Zeit wächst mit der Anzahl"
     ),
     "Number of pictures that the viewport averages while nothing changes": (
         "Anzahl der Bilder, über die das Ansichtsfenster mittelt, solange sich nichts ändert"
@@ -448,8 +429,8 @@ GERMAN = {
     ),
     "Object": "Objekt",
     "Object Detail": "Objektdetail",
-    "Of the lines": "Der Linien",
-    "Of the surfels, in the space of the first source": "Der Surfels, im Raum der ersten Quelle",
+    "Color of the lines": "Farbe der Linien",
+    "Origin of the surfels, in the space of the first source": "Ursprung der Surfels, im Raum der ersten Quelle",
     "Origin": "Ursprung",
     "Outward": "Nach außen",
     "Overdraw": "Überzeichnung",
@@ -471,9 +452,9 @@ GERMAN = {
     "Ray Cast": "Raycast",
     "Ray Cast, as Printed": "Raycast, wie gedruckt",
     "Ray Visibility": "Strahlensichtbarkeit",
-    ("Read a PLY file as surfels: one that this extension wrote, flat Gaussian splats, or the points of any other"): (
-        "Eine PLY-Datei als Surfels lesen: eine von dieser Erweiterung geschriebene, flache Gaussian Splats "
-        "oder die Punkte jeder anderen"
+    ("Read surfels from a PLY file: one written by this extension, flat Gaussian splats, or any other points"): (
+        "Surfels aus einer PLY-Datei lesen: aus einer von dieser Erweiterung geschriebenen, aus flachen "
+        "Gaussian Splats oder aus beliebigen anderen Punkten"
     ),
     "Reduction": "Reduktion",
     "Render Meshes as": "Meshes als",
@@ -500,11 +481,11 @@ GERMAN = {
         "und ist am schnellsten"
     ),
     (
-        "Sample the mesh when it is first drawn; its surfels follow it as it deforms. That takes 1 to 3 "
-        "microseconds a surfel in each frame in which it deforms"
+        "Sample the mesh when it is first drawn; its surfels follow it as it deforms. Frames in which it "
+        "deforms take longer"
     ): (
         "Das Mesh abtasten, wenn es zum ersten Mal gezeichnet wird; seine Surfels folgen ihm, wenn es sich "
-        "verformt. Das kostet 1 bis 3 Mikrosekunden pro Surfel in jedem Einzelbild, in dem es sich verformt"
+        "verformt. Einzelbilder, in denen es sich verformt, dauern länger"
     ),
     (
         "Sample what is selected, as its modifiers make it, into new objects of surfels that lie exactly "
@@ -516,10 +497,10 @@ GERMAN = {
     "Samples": "Samples",
     (
         "Samples along each side of a pixel in final renders, so 3 means 9 samples. Use 1 with Mip Filter; "
-        "with Quads, 2 takes 1.3 times and 4 takes 2.1 times the time"
+        "with Quads, more samples are sharper and slower"
     ): (
         "Samples entlang jeder Seite eines Pixels beim endgültigen Rendern, 3 bedeutet also 9 Samples. Beim "
-        "Mip-Filter 1 verwenden; bei Quads braucht 2 die 1,3-fache und 4 die 2,1-fache Zeit"
+        "Mip-Filter 1 verwenden; bei Quads sind mehr Samples schärfer und langsamer"
     ),
     "Samples along each side of a pixel in the viewport": (
         "Samples entlang jeder Seite eines Pixels im Ansichtsfenster"
@@ -538,10 +519,10 @@ GERMAN = {
     "Shadows": "Schatten",
     "Show with Surfel Splatting": "Mit Surfel Splatting zeigen",
     (
-        "Smooth and still at one sample a pixel: 40 to 47 dB in 1.3 to 1.9 times the time of Quads (this "
-        "project, after Zwicker et al. 2001)"
+        "Filters each splat exactly: smooth and free of flicker at one sample per pixel, slower than Quads "
+        "(this project, after Zwicker et al. 2001)"
     ): (
-        "Glatt und ruhig bei einem Sample pro Pixel: 40 bis 47 dB in der 1,3- bis 1,9-fachen Zeit von Quads "
+        "Filtert jeden Splat genau: glatt und flimmerfrei bei einem Sample pro Pixel, langsamer als Quads "
         "(dieses Projekt, nach Zwicker et al. 2001)"
     ),
     "Softness": "Weichheit",
@@ -574,49 +555,42 @@ GERMAN = {
     "Surfels": "Surfels",
     "Surfels (.ply)": "Surfels (.ply)",
     (
-        "Surfels end at creases, borders of colours and open borders, and blend as deep as their surface "
-        "asks for. It takes 8 to 12 bytes a surfel, and a frame takes up to 1.1 times as long"
+        "End surfels at creases, borders of colours and open borders, and limit their blend depth to that of "
+        "their surface. Edges stay sharp, but conversion takes longer and frames slightly longer"
     ): (
-        "Surfels enden an Falten, Farbgrenzen und offenen Rändern und mischen sich so tief, wie ihre Fläche "
-        "es verlangt. Das kostet 8 bis 12 Byte pro Surfel, und ein Einzelbild braucht bis zu 1,1-mal so lange"
+        "Surfels an Falten, Farbgrenzen und offenen Rändern enden lassen und ihre Mischtiefe auf die ihrer "
+        "Fläche begrenzen. Kanten bleiben scharf, aber die Umwandlung dauert länger und Einzelbilder etwas "
+        "länger"
     ),
     "Temperature": "Temperatur",
-    ("Texels along each side of a shadow map; 0 turns shadows off. Each map takes the time of one visibility pass"): (
-        "Texel entlang jeder Seite einer Schattenkarte; 0 schaltet Schatten aus. Jede Karte braucht die Zeit "
-        "eines Sichtbarkeitsdurchgangs"
+    ("Texels along each side of a shadow map; 0 turns shadows off. Each light with shadows adds one or several maps"): (
+        "Texel entlang jeder Seite einer Schattenkarte; 0 schaltet Schatten aus. Jede Lampe mit Schatten fügt"
+        " eine oder mehrere Karten hinzu"
     ),
     "Text": "Text",
     "Texture-Mapped": "Mit Texturen",
-    "The classic filter, in the picture; blurs silhouettes (Zwicker et al. 2001, Ren et al. 2002)": (
-        "Der klassische Filter, im Bild; macht Umrisse unscharf (Zwicker et al. 2001, Ren et al. 2002)"
+    "The classic filter, in screen space; blurs silhouettes (Zwicker et al. 2001, Ren et al. 2002)": (
+        "Der klassische Filter, im Bildraum; macht Umrisse unscharf (Zwicker et al. 2001, Ren et al. 2002)"
     ),
     (
-        "The direction that the surface faces in the world, -1 to 1 on each axis as 0 to 1 of red, green and "
-        "blue (none needed). 1 times the frame of Flat"
+        "The direction that the surface faces in the world, with -1 to 1 on each axis shown as 0 to 1 of red,"
+        " green and blue"
     ): (
-        "Die Richtung in der Welt, in die die Fläche zeigt, -1 bis 1 auf jeder Achse als 0 bis 1 von Rot, "
-        "Grün und Blau (keine Quelle nötig). 1-mal das Einzelbild von Flach"
+        "Die Richtung in der Welt, in die die Fläche zeigt, mit -1 bis 1 auf jeder Achse als 0 bis 1 von Rot,"
+        " Grün und Blau"
+    ),
+    ("The distance along the view, from black at the nearest visible surface to white at the farthest"): (
+        "Die Entfernung in Blickrichtung, von Schwarz an der nächsten sichtbaren Fläche bis Weiß an der fernsten"
+    ),
+    ("The fastest picture without holes: unfiltered, so edges and textures are jagged"): (
+        "Das schnellste Bild ohne Löcher: ungefiltert, daher mit gezackten Kanten und Texturen"
     ),
     (
-        "The distance along the view, from black at the nearest to white at the farthest of what is in view "
-        "(none needed). 1 times the frame of Flat"
+        "Minimum number of samples of a final render with depth of field or motion blur, which one sample "
+        "does not show. Set it to 1 to use Samples alone"
     ): (
-        "Die Entfernung in Blickrichtung, von Schwarz am nächsten bis Weiß am fernsten Punkt, der zu sehen "
-        "ist (keine Quelle nötig). 1-mal das Einzelbild von Flach"
-    ),
-    (
-        "The fastest picture without holes: 19 to 31 dB and FLIP 0.02 to 0.06 from filtered pixels, 21 to 35 "
-        "dB from box pixels, in the least time"
-    ): (
-        "Das schnellste Bild ohne Löcher: 19 bis 31 dB und FLIP 0,02 bis 0,06 von gefilterten Pixeln, 21 bis "
-        "35 dB von Box-Pixeln, in der kürzesten Zeit"
-    ),
-    (
-        "The least samples of a final render with depth of field or motion blur, which one sample does not "
-        "show. Each takes a picture's time; at 1 Samples alone counts"
-    ): (
-        "Die wenigsten Samples eines endgültigen Renderns mit Tiefen- oder Bewegungsunschärfe, die ein "
-        "einzelnes Sample nicht zeigt. Jedes braucht die Zeit eines Bilds; bei 1 zählt allein Samples"
+        "Mindestzahl der Samples eines endgültigen Renderns mit Tiefen- oder Bewegungsunschärfe, die ein "
+        "einzelnes Sample nicht zeigt. Auf 1 setzen, um allein Samples zu verwenden"
     ),
     "The object is drawn as polygons where its weights are 0.5 or more": (
         "Das Objekt wird als Polygone gezeichnet, wo ihre Gewichte 0,5 oder mehr sind"
@@ -625,38 +599,36 @@ GERMAN = {
         "Der Raum des Objekts selbst, dessen Skalierung dann auch den Abstand skaliert"
     ),
     (
-        "The paper's own formula: depths are off by as much as splats are flatter or steeper than 1 unit "
-        "(Botsch and Kobbelt 2003, equation 4 as printed)"
+        "Uses the paper's own formula, whose depths are wrong for splats tilted towards the viewer (Botsch "
+        "and Kobbelt 2003, equation 4 as printed)"
     ): (
-        "Die Formel des Artikels selbst: Die Tiefe ist falsch, und zwar so weit, wie Splats flacher oder "
-        "steiler als 1 Einheit sind (Botsch und Kobbelt 2003, Gleichung 4 wie gedruckt)"
+        "Verwendet die Formel des Artikels, deren Tiefen bei zum Betrachter geneigten Splats falsch sind "
+        "(Botsch und Kobbelt 2003, Gleichung 4 wie gedruckt)"
     ),
     (
-        "The paper's own formulas: a disc that faces the ray vanishes, small ones lose their depth "
+        "Uses the paper's own formulas: discs that face the ray vanish, and small ones lose their depth "
         "(Guennebaud et al. 2006, sections 3 and 4, equations 8 to 10)"
     ): (
-        "Die Formeln des Artikels selbst: Eine dem Strahl zugewandte Scheibe verschwindet, kleine verlieren "
-        "ihre Tiefe (Guennebaud et al. 2006, Abschnitte 3 und 4, Gleichungen 8 bis 10)"
+        "Verwendet die Formeln des Artikels: Dem Strahl zugewandte Scheiben verschwinden, und kleine "
+        "verlieren ihre Tiefe (Guennebaud et al. 2006, Abschnitte 3 und 4, Gleichungen 8 bis 10)"
     ),
     "The same distance between surfels in every object": ("Derselbe Abstand zwischen den Surfels in allen Objekten"),
     (
-        "The same filter joined in each splat's plane, drawn as a larger quad (Ren et al. 2002; "
+        "EWA computed in each splat's plane, which is drawn as a larger quad (Ren et al. 2002; "
         "view-independent object-space surface splatting, section 3, equation 10)"
     ): (
-        "Derselbe Filter, in der Ebene jedes Splats angesetzt und als größeres Quad gezeichnet (Ren et al. "
-        "2002; View-independent object-space surface splatting, Abschnitt 3, Gleichung 10)"
+        "EWA, in der Ebene jedes Splats berechnet, der als größeres Quad gezeichnet wird (Ren et al. 2002; "
+        "View-independent object-space surface splatting, Abschnitt 3, Gleichung 10)"
     ),
-    "The share of each pixel that surfaces cover, whatever the world behind them": (
-        "Der Anteil jedes Pixels, den Flächen bedecken, welche Welt auch dahinterliegt"
+    "The share of each pixel that surfaces cover, regardless of the background": (
+        "Der Anteil jedes Pixels, den Flächen bedecken, unabhängig vom Hintergrund"
     ),
     (
-        "The sharpest, for stills and what is scaled down later: 34 to 54 dB and FLIP 0.002 to 0.007 from "
-        "box pixels, in about 2.1 times the time of Preview. Set 5 x 5 for detail far below a pixel: 38 dB "
-        "instead of 34 to 35"
+        "The sharpest, for stills and for pictures that are scaled down later. Takes about twice as long as "
+        "Preview; raise Supersampling to 5 for detail far below a pixel"
     ): (
-        "Am schärfsten, für Standbilder und was später verkleinert wird: 34 bis 54 dB und FLIP 0,002 bis "
-        "0,007 von Box-Pixeln, in etwa der 2,1-fachen Zeit der Vorschau. Für Details weit unter einem Pixel "
-        "5 x 5 setzen: 38 dB statt 34 bis 35"
+        "Am schärfsten, für Standbilder und für Bilder, die später verkleinert werden. Dauert etwa doppelt so"
+        " lange wie die Vorschau; für Details weit unter einem Pixel Supersampling auf 5 erhöhen"
     ),
     "The side to which estimated normals point; existing normals are kept": (
         "Die Seite, zu der geschätzte Normalen zeigen; vorhandene Normalen bleiben"
@@ -665,38 +637,29 @@ GERMAN = {
         "Der Raum, in dem Surfels gleichmäßig verteilt und Längen gemessen werden"
     ),
     (
-        "The square cuts the low-pass, and large splats off the axis (Botsch et al. 2005, sections 3 and 5, "
-        "within the paper's square)"
+        "Draws each splat in a square that cuts off its filter, and large splats away from the axis (Botsch "
+        "et al. 2005, sections 3 and 5, within the paper's square)"
     ): (
-        "Das Quadrat beschneidet den Tiefpass und große Splats abseits der Achse (Botsch et al. 2005, "
-        "Abschnitte 3 und 5, im Quadrat des Artikels)"
+        "Zeichnet jeden Splat in einem Quadrat, das seinen Filter beschneidet, und große Splats abseits der "
+        "Achse (Botsch et al. 2005, Abschnitte 3 und 5, im Quadrat des Artikels)"
     ),
     "The surface has an edge where it, or its shading, turns by more than this angle": (
         "Die Fläche hat eine Kante, wo sie oder ihre Schattierung sich um mehr als diesen Winkel dreht"
     ),
     (
-        "The surfels go where their source goes, with its parent, animation and constraints. Off, they are a "
+        "Let the surfels follow their source, with its parent, animation and constraints. If off, they are a "
         "frozen copy"
     ): (
-        "Die Surfels gehen dorthin, wohin ihre Quelle geht, mit deren Übergeordnetem, Animation und "
-        "Einschränkungen. Sonst sind sie eine eingefrorene Kopie"
+        "Die Surfels ihrer Quelle folgen lassen, mit deren Übergeordnetem, Animation und Einschränkungen. "
+        "Sonst sind sie eine eingefrorene Kopie"
     ),
-    (
-        "The surfels' own colour, times that of a ball in a picture where it faces the same way (Sloan et "
-        "al. 2001). 1 times the frame of Flat"
-    ): (
-        "Die Farbe der Surfels selbst, mal der einer Kugel in einem Bild, wo diese in dieselbe Richtung "
-        "zeigt (Sloan et al. 2001). 1-mal das Einzelbild von Flach"
+    ("The surfels' own colour, multiplied by a ball in an image where it faces the same way (Sloan et al. 2001)"): (
+        "Die Farbe der Surfels selbst, multipliziert mit der einer Kugel in einem Bild, wo diese in dieselbe "
+        "Richtung zeigt (Sloan et al. 2001)"
     ),
-    "The surfels' own colour, unlit (none needed). 1 times the frame of Flat": (
-        "Die Farbe der Surfels selbst, unbeleuchtet (keine Quelle nötig). 1-mal das Einzelbild von Flach"
-    ),
-    (
-        "The weights that a sample is the mean by: 1/16 blue, 1/4 cyan, 1 green, 4 yellow, 16 and more red "
-        "(none needed). 1 times the frame of Flat"
-    ): (
-        "Die Gewichte, mit denen ein Sample gemittelt ist: 1/16 blau, 1/4 türkis, 1 grün, 4 gelb, 16 und "
-        "mehr rot (keine Quelle nötig). 1-mal das Einzelbild von Flach"
+    "The surfels' own colour, unlit": ("Die Farbe der Surfels selbst, unbeleuchtet"),
+    ("The sum of the splats' weights in each sample: 1/16 blue, 1/4 cyan, 1 green, 4 yellow, 16 and more red"): (
+        "Die Summe der Gewichte der Splats in jedem Sample: 1/16 blau, 1/4 türkis, 1 grün, 4 gelb, 16 und mehr rot"
     ),
     "Their points were taken": "Ihre Punkte wurden übernommen",
     "Their surfaces were sampled": "Ihre Flächen wurden abgetastet",
@@ -717,11 +680,11 @@ GERMAN = {
     "Update Surfels from Source": "Surfels aus Quelle aktualisieren",
     "Use": "Verwenden",
     (
-        "Use larger surfels where the surface is flat and its colour even. It helps buildings and machines, "
-        "and adds 2 to 3 s for a million surfels"
+        "Use larger surfels where the surface is flat and its colour even. This helps buildings and machines,"
+        " but conversion takes longer"
     ): (
-        "Größere Surfels verwenden, wo die Fläche eben und ihre Farbe gleichmäßig ist. Das hilft bei "
-        "Gebäuden und Maschinen und kostet 2 bis 3 s für eine Million Surfels"
+        "Größere Surfels verwenden, wo die Fläche eben und ihre Farbe gleichmäßig ist. Das hilft bei Gebäuden"
+        " und Maschinen, aber die Umwandlung dauert länger"
     ),
     "Vertex Group": "Vertexgruppe",
     "Viewport": "Ansichtsfenster",
@@ -743,32 +706,32 @@ GERMAN = {
     "What happens to the object that was converted": "Was mit dem Objekt geschieht, das umgewandelt wurde",
     "What happens to the points that were converted": "Was mit den umgewandelten Punkten geschieht",
     "What the file holds": "Was die Datei enthält",
-    "What the materials could not be read for, a line each": (
-        "Wofür die Materialien nicht gelesen werden konnten, eine Zeile für jedes"
+    "Material inputs that could not be read, one per line": (
+        "Materialeingänge, die nicht gelesen werden konnten, einer pro Zeile"
     ),
     "What the sources were converted as": "Als was die Quellen umgewandelt wurden",
     "Which samples of the three axes become surfels": "Welche Proben der drei Achsen zu Surfels werden",
-    "Which trade of speed for accuracy": "Welcher Tausch von Geschwindigkeit gegen Genauigkeit",
+    "The balance between speed and accuracy": "Das Verhältnis von Geschwindigkeit und Genauigkeit",
     "Width": "Breite",
     "Width of a line, which lies on the nearer surface of a silhouette and on both sides of a crease": (
         "Breite einer Linie, die auf der näheren Fläche eines Umrisses und auf beiden Seiten einer Falte liegt"
     ),
     (
-        "With Quads, a pixel fades to the background where the splats' weights sum to less than this. It "
-        "takes up to a tenth more time"
+        "With Quads, a pixel fades to the background where the splats' weights sum to less than this. Frames "
+        "take slightly longer"
     ): (
         "Bei Quads geht ein Pixel in den Hintergrund über, wo die Gewichte der Splats zusammen weniger als "
-        "das ergeben. Das kostet bis zu einem Zehntel mehr Zeit"
+        "das ergeben. Einzelbilder dauern etwas länger"
     ),
     "World": "Welt",
     "World space, so that scaled objects are as dense as others; the surfel object has a scale of 1": (
         "Weltraum, in dem skalierte Objekte so dicht sind wie andere; das Surfelobjekt hat die Skalierung 1"
     ),
-    "Write numbers that a text editor shows: a file several times as large. Surfels only": (
-        "Zahlen schreiben, die ein Texteditor anzeigt: eine um ein Mehrfaches größere Datei. Nur Surfels"
+    "Write a text file, which is several times as large. Surfels only": (
+        "Eine Textdatei schreiben, die um ein Mehrfaches größer ist. Nur Surfels"
     ),
-    "Write surfels to a PLY file, with everything that they have or as Gaussian splats": (
-        "Surfels in eine PLY-Datei schreiben, mit allem, was sie haben, oder als Gaussian Splats"
+    "Write surfels to a PLY file, either losslessly or as Gaussian splats": (
+        "Surfels in eine PLY-Datei schreiben, verlustfrei oder als Gaussian Splats"
     ),
     "Write the selected surfel objects, and not all visible ones": (
         "Die ausgewählten Surfelobjekte schreiben, nicht alle sichtbaren"

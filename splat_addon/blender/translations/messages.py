@@ -81,7 +81,7 @@ def _of_sources() -> Iterator[Message]:
 
 
 def _constants(shown: ast.expr) -> Iterator[str]:
-    """Of a text, or of either one that a condition chooses from."""
+    """The constants in an expression: a text, or both texts of a conditional."""
     if isinstance(shown, ast.IfExp):
         yield from (*_constants(shown.body), *_constants(shown.orelse))
     elif isinstance(shown, ast.Constant) and isinstance(shown.value, str):

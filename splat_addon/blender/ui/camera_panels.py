@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A panoramic camera's projection, which Blender's Lens panel shows for Cycles alone."""
+"""Panel for a panoramic camera's projection, which Blender's Lens panel only shows for Cycles."""
 
 from __future__ import annotations
 

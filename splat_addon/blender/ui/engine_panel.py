@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the panels of this engine in the properties editor have in common."""
+"""The common base of this engine's panels in the properties editor."""
 
 from __future__ import annotations
 

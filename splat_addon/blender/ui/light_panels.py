@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A light's Data tab: all that the export reads of it, where Blender's panel for other engines has the type alone."""
+"""A light's Data tab with all properties that the engine uses; Blender's panel for other engines only shows the
+type."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An object's ray visibility, of which Blender's Visibility panel shows other engines nothing."""
+"""Panel for an object's ray visibility, which Blender's Visibility panel does not show for other engines."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The passes of a view layer in its properties: Blender's own switches of those that this engine has, and ours."""
+"""The passes of a view layer: Blender's own switches for the passes that this engine has, and our own."""
 
 from __future__ import annotations
 

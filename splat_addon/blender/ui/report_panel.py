@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the last picture had to say: its messages, what was drawn in which time and memory, and its plan."""
+"""Report on the last picture: messages, statistics, times, memory, and its plan."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class RENDER_PT_surfel_report_plan(_ReportPart, bpy.types.Panel):
 
 
 def measured(stats: dict) -> Iterator[str]:
-    """Lines on what a final render drew, in which time and memory. stats: of `final_render`."""
+    """Lines about a final render: what was drawn, time and memory. stats: of `final_render`."""
     if not stats:
         yield "Nothing has been rendered yet"
         return

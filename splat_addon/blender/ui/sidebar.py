@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Surfels tab in the 3D view's sidebar: the conversion, and what it will make before it is pressed."""
+"""The Surfels tab in the 3D view's sidebar: conversion, with a prediction of its result."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         self._draw_surfels(context)
 
     def _draw_unread(self, sentences: list[str], context):
-        """What the materials could not be read for, and the button that bakes it."""
+        """Draw the material inputs that could not be read, and the button that bakes them."""
         if not sentences:
             return
         box = self.layout.box()
@@ -67,12 +67,12 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         box.operator(UPDATE_SURFELS, text="Bake Materials", icon="RENDER_STILL").bake = True
 
     def _draw_surfels(self, context):
-        """What there is to do with the active object, if that is surfels."""
+        """Draw the actions for the active object if it is surfels."""
         if context.active_object in updatable(context):
             names = ", ".join(source.name for source in sources_of(context.active_object))
             self.layout.operator(UPDATE_SURFELS, text=f"Update from {names}", icon="FILE_REFRESH")
             self._draw_unread(record_of(context.active_object).unread.splitlines(), context)
-        # Another engine shows points in place of a surfel object.
+        # Other engines show a surfel object as points.
         if context.active_object is not None and is_surfel_object(context.active_object) and not shows_surfels(context):
             self.layout.operator(SHOW_SURFELS, icon="SHADING_RENDERED")
 
@@ -103,7 +103,7 @@ def _density_of(sources, extent: Extent, asked: Choices, depsgraph) -> tuple[dic
 
 
 def prediction_text(predictions: list[tuple[int, float]]) -> str:
-    """The number of surfels that the sources will become together, and how far apart those will lie."""
+    """A text with the total number of surfels and their spacing."""
     counts, spacings = zip(*predictions, strict=True)
     if not sum(counts):
         return "Nothing to sample: no faces, or a density of 0"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a view layer includes, of what Blender's Filter panel for other engines shows more."""
+"""View layer settings beyond those that Blender's Filter panel shows for other engines."""
 
 from __future__ import annotations
 

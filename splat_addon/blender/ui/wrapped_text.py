@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sentences in panels, which Blender does not break into lines."""
+"""Draws sentences in panels with line breaks, which Blender does not do."""
 
 from __future__ import annotations
 

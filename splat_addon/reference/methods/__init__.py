@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The numpy twins of the methods: what shaders/methods computes of one splat, in float64; a file of its name each."""
+"""The numpy twins of the methods: the computations of shaders/methods for one splat, in float64, one file each."""
 
 from importlib import import_module
 

@@ -10,10 +10,10 @@ from . import TWINS
 from .mip import FILTER_SIGMA, KERNEL_VARIANCE, NORMAL, NORMAL_END
 from .plane import Plane, gradients, places
 
-#: A smaller share is none: the approximation ends there.
+#: Smaller shares are 0: the approximation ends there.
 LEAST_SHARE = 0.006
 
-#: Half-axes squared, beyond which the pixel is too large for digits.
+#: Half-axes squared, beyond which the pixel is too large for float precision.
 LARGEST_PIXEL = 1e8
 
 
@@ -67,20 +67,21 @@ def clipped_share(place: np.ndarray, change: np.ndarray, lines: np.ndarray, refl
 
 
 def _share_before(inside: np.ndarray) -> np.ndarray:
-    """Of a normal distribution, what lies before x: all, from where the approximation ends."""
+    """Normal distribution function of x; 1 where the approximation ends."""
     x = np.clip(inside, -NORMAL_END, NORMAL_END)
     return np.where(inside < NORMAL_END, 0.5 + x * sum(f * x ** (2 * power) for power, f in enumerate(NORMAL)), 1.0)
 
 
 def _both_keep(one: np.ndarray, other: np.ndarray, correlation: np.ndarray) -> np.ndarray:
-    """What two lines keep both of a Gaussian, of which each keeps a share (Sheppard 1899, exact at the middle)."""
+    """The share of a Gaussian on the kept side of two lines, given the share of each (Sheppard 1899, exact at the
+    middle)."""
     turn = np.arcsin(np.clip(correlation, -1, 1)) * 2 / np.pi
     end = np.where(turn > 0, np.minimum(one, other), np.maximum(one + other - 1, 0))
     return one * other + np.abs(turn) * (end - one * other)
 
 
 def _kernel_under_pixel(place: np.ndarray, change: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Middle (M, 2) and variance (M, 2, 2) of kernel times pixel; the kernel's where the pixel has no end."""
+    """Middle (M, 2) and variance (M, 2, 2) of kernel times pixel; those of the kernel if the pixel is unbounded."""
     pixel = FILTER_SIGMA**2 * change @ np.swapaxes(change, 1, 2)
     kernel = KERNEL_VARIANCE * np.eye(2)
     has_end = (np.trace(pixel, axis1=1, axis2=2) < LARGEST_PIXEL) & ((place**2).sum(axis=1) < LARGEST_PIXEL)

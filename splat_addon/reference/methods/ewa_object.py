@@ -9,7 +9,7 @@ from .plane import Plane, places
 
 KERNEL_VARIANCE = 0.25
 FILTER_VARIANCE = 0.5
-#: Of the squares of the half-axes in the picture; seen flatter, a splat is widened no more.
+#: Minimum ratio of the squared half-axes in the picture; splats at more grazing angles are not widened.
 LEAST_FLATNESS2 = 0.004
 
 

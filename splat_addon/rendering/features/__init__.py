@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a frame may need, in order: of passes, and of what acts at one hook.
+"""The features that a frame may need, in the order of their passes and of their calls at a hook.
 
-Each module decides from a `Planning` whether the frame needs it, and says why not. It may have
+Each module decides from a `Planning` whether the frame needs it, and records the reason if not. It may have
 
     passes(planning)       its passes, where the frame needs them
     is_present(planning)   whether it has parts, where that does not depend on the pass
@@ -92,7 +92,7 @@ def name_of(feature) -> str:
     return feature.__name__.rpartition(".")[2]
 
 
-#: word -> its place among those that act at one hook
+#: word -> its position in the order of calls at a hook
 ORDER = {name: number for number, name in enumerate(n for f in FEATURES for n in getattr(f, "NAMES", (name_of(f),)))}
 
 
@@ -103,12 +103,12 @@ def _having(name: str) -> tuple:
 PASSES, READ_BACK, MARGINS, CHECKS, DRAWS = (
     _having(name) for name in ("passes", "read_back", "margin", "check", "draws")
 )
-#: (parts, is_present) of each
+#: (parts, is_present) of each feature
 PARTS = tuple((f.parts, getattr(f, "is_present", lambda planning: True)) for f in FEATURES if hasattr(f, "parts"))
 
 
 def _joined(attribute: str) -> dict:
-    """What the features have in a table, together."""
+    """The tables of all features, joined."""
     return {name: value for feature in FEATURES for name, value in getattr(feature, attribute, {}).items()}
 
 

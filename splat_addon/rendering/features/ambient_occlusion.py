@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ambient occlusion: what surfaces of the picture keep of the world's light from one another (Jimenez et al. 2016)."""
+"""Ambient occlusion: visible surfaces block the world's light from one another (Jimenez et al. 2016)."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from ..plan.tiles import tile_edge
 from . import gbuffer, polygons
 from .drawing import LIT_HOSTS
 
-#: Of a tile's edge: how far is looked for occluders in a picture that is drawn in tiles.
+#: Search distance for occluders in a picture that is drawn in tiles, as a fraction of a tile's edge.
 TILE_SHARE = 1 / 8
 
 DEPTHS = Texture("occluders", "R32F")
 
 
 def missing(planning) -> str:
-    """Why the frame has none, or nothing."""
+    """The reason why the frame has no ambient occlusion, or ""."""
     scene = planning.scene
     if not planning.settings.ambient_occlusion:
         return "its distance is 0"
@@ -31,13 +31,13 @@ def missing(planning) -> str:
 
 
 def margin(planning) -> int:
-    """Pixels that are looked at beside a tile's own; 0 where the whole picture is one tile."""
+    """Pixels read beside a tile; 0 if the whole picture is one tile."""
     edge = tile_edge(planning)
     return int(TILE_SHARE * edge) if not planning.find(missing) and max(planning.camera.size) > edge else 0
 
 
 def _reach(tile) -> float:
-    """In samples."""
+    """Search distance in samples."""
     pixels = tile.plan.facts["occlusion_margin"] or max(tile.camera.size)
     return pixels * tile.plan.samples
 
@@ -49,7 +49,7 @@ VALUES = {
 
 
 def passes(planning):
-    """The depths that are looked at."""
+    """The pass that stores the depths to search."""
     if not planning.shown:
         return
     if why := planning.find(missing):

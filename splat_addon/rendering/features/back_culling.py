@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splats whose backs are seen, left out in the vertex stage (Botsch and Kobbelt 2003, section 4)."""
+"""Skips splats that face away, in the vertex stage (Botsch and Kobbelt 2003, section 4)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .drawing import SPLAT_HOSTS
 
 
 def passes(planning):
-    """None; it says whether they are, and how many."""
+    """No passes; records whether there are such splats, and how many."""
     if planning.shown and planning.settings.culls_backs:
         count = sum(len(instance.surfels) for instance in planning.scene.surfels)
         backs = planning.facts["culled"] = sum(i.backs(planning.camera) for i in planning.scene.surfels)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splats that blend no deeper than splats of their own surface lie off its plane: visibility moves them by less."""
+"""Limits the blend depth of splats to the distance of their own surface from their plane: visibility moves them by
+less."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Splats that end at lines before their ellipse does, where their surface has a crease or a border.
 
-They are a draw of their own, with the variant "clipped" of every program that draws splats; others pay nothing.
+They are a separate draw call, with the variant "clipped" of every program that draws splats; other splats cost no more.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from .drawing import SPLAT_HOSTS
 
 _VARYINGS = (("flat", "vec3", "clip_first"), ("flat", "vec3", "clip_second"), ("flat", "float", "clip_is_reflex"))
 
-#: Whether lines are of places in the ellipse, where others are of places in the picture.
+#: Method kinds whose lines refer to positions in the ellipse; the others' refer to positions in the picture.
 _IN_SPACE = (("flat", "float", "clip_in_space"),)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far each sample sees, for methods that work in the picture and compare depths themselves."""
+"""The range of visible depths of each sample, for screen-space methods, which compare depths themselves."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ BOUNDS = Texture("depth_bounds")
 
 
 def bounds(planning, reason: str, seen: Texture, kind: str = "opaque") -> Pass:
-    """The pass, of the depths that are seen; and the depths of samples, where visibility has more rows than they."""
+    """The pass that stores the visible depths; and the depths of samples, if visibility has more rows than there are
+    samples."""
     rows = silhouettes.rows_of(seen)
     own = Part(
         "depth_bounds",

@@ -1,27 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the depth buffer holds: the hardware's depth, or a linear one that fragments write."""
+"""The format of the depth buffer: hardware depth, or a linear one that fragments write."""
 
 from __future__ import annotations
 
 from ..depth_range import DepthExtent, depth_extent
 
-#: Up to this ratio of the farthest depth to the nearest, or of a parallel camera's depths to its window, the hardware's
-#: depth resolves 128 / 2^24 = 8e-6 of it: 1.5 % of the epsilon of a splat as small as a pixel of a 1000-pixel picture.
+#: Up to this ratio of the farthest depth to the nearest (for a parallel camera, of its depth range to its window),
+#: hardware depth resolves 128 / 2^24 = 8e-6 of it: 1.5 % of the epsilon of a splat of one pixel in a picture of 1000
+#: pixels.
 MAX_HARDWARE_DEPTH_RATIO = 128
 
-#: Up to this radius of a splat at distance 1 its corners may be moved back instead of every fragment.
+#: Up to this radius of a splat at distance 1, its corners may be moved back instead of every fragment.
 MAX_HARDWARE_DEPTH_RADIUS = 0.25
 
 VALUES = {"depth_range": ("vec2", lambda tile: [d * tile.view.scale for d in tile.plan.facts["depth_range"]])}
 
 
 def extent(planning) -> DepthExtent:
-    """Of what may touch the picture."""
+    """The depth extent of everything that may be in the picture."""
     return depth_extent(planning.scene, planning.camera, planning.settings.epsilon)
 
 
 def linear(planning) -> tuple[bool, str]:
-    """Whether fragments must write their own depth, which costs the early depth test, and why."""
+    """Whether fragments must write their own depth, which costs the early depth test; and the reason."""
     if not planning.shown:
         return False, ""
     if planning.method.writes_depth:
@@ -40,7 +41,7 @@ def linear(planning) -> tuple[bool, str]:
 
 
 def state(planning) -> dict:
-    """Of programs that find what is nearest."""
+    """State of programs that find the nearest surface."""
     settings = planning.settings
     return {
         "depth_test": True,
@@ -51,7 +52,7 @@ def state(planning) -> dict:
 
 
 def passes(planning):
-    """None; it says what it decides."""
+    """No passes; records the decision."""
     if planning.shown:
         is_linear, why = planning.find(linear)
         if not is_linear:

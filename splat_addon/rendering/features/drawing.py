@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the splats and polygons of a view: what the passes of several features share."""
+"""Draws the splats and polygons of a view, for the passes of several features."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 SPLAT_HOSTS = tuple(f"{name}.frag" for name in RASTERIZERS)
 #: Fragment shaders that light samples.
 LIT_HOSTS = ("shading.frag", "deferred_lighting.frag")
-#: Fragment shaders that light samples, or splats one by one.
+#: Fragment shaders that light samples or individual splats.
 LIGHTING_HOSTS = (*LIT_HOSTS, "lit_splats.frag")
 
 
@@ -33,14 +33,14 @@ def _stored(tile: TileContext, placed: DrawItem, sampler: str) -> DeviceTexture:
     return tile.stored(placed.instance).textures[sampler]
 
 
-#: sampler -> the texture of what is drawn
+#: sampler -> the texture of the object being drawn
 DRAWN = {name: partial(_stored, sampler=name) for storage in STORAGES.values() for name in storage.samplers} | {
     "polygon_corners": lambda tile, placed: tile.resources.polygons(placed.instance.polygons),
 }
 
 
 def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None):
-    """One draw call an instance, and one for those of its splats that end at clip lines: they are stored first.
+    """One draw call per instance, and another for its splats with clip lines, which are stored first.
 
     variants: of the pass's programs. viewport: as `Device.draw_triangles` takes it.
     """
@@ -57,7 +57,7 @@ def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawIt
 def draw_polygons(
     tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None
 ):
-    """The same; epsilon is how far behind polygons splats may lie."""
+    """Draw polygons; epsilon: how far behind polygons splats may lie."""
     program = None
     for placed in placed_ones:
         program = program or tile.program(p, vertex, *variants)
@@ -65,14 +65,14 @@ def draw_polygons(
 
 
 def _draw(tile, p, target, placed: DrawItem, epsilon: float, program: Pipeline, which: tuple[int, int], viewport):
-    """which: the first triangle, and how many."""
+    """Draw. which: first triangle and number of triangles."""
     blocks = tile.blocks(program, draw_block(tile, placed, epsilon))
     textures = tile.textures(p, program, placed)
     tile.resources.device.draw_triangles(program, target, which[1], blocks, textures, viewport, which[0])
 
 
 def draw_block(tile: TileContext, placed: DrawItem, epsilon: float) -> np.ndarray:
-    """Values of `uniforms.DRAW`."""
+    """The values of `uniforms.DRAW`."""
     normal_matrix = np.eye(4)
     normal_matrix[:3, :3] = placed.normal_matrix
     values = (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where splats' weights sum to less than a threshold, the sample fades (the view-independent paper, section 4.5)."""
+"""Fades samples whose splats' weights sum to less than a threshold (the view-independent paper, section 4.5)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ VALUES = {"edge_threshold": ("float", lambda tile: tile.settings.edge_threshold)
 
 
 def passes(planning):
-    """None; it says whether there is one."""
+    """No passes; records whether there is a threshold."""
     if planning.shown:
         threshold = planning.settings.edge_threshold
         if threshold == 0:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The attribute pass: what is visible adds its weighted attributes to their sums (Botsch et al. 2005, section 4)."""
+"""The attribute pass: visible splats add their weighted attributes to the sums (Botsch et al. 2005, section 4)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ VALUES = {
 COLOR = Texture("gbuffer_color", is_multisampled=True, is_sum=True)
 NORMAL = Texture("gbuffer_normal", is_multisampled=True, is_sum=True)
 DEPTH_SUM = Texture("gbuffer_depth", "RG32F", is_multisampled=True)
-#: With room for the planes that shadows compare depths with: targets have no room for a texture more.
+#: With room for the planes that shadows compare depths with, because targets have no room for another texture.
 DEPTH_PLANE_SUM = Texture("gbuffer_depth", "RGBA32F", is_multisampled=True)
 SPRITE_DEPTH = Texture("sprite_depth", "DEPTH32F")
 
@@ -28,13 +28,13 @@ def depths_are_apart(planning, kind: str) -> bool:
 
 
 def depth_sum(planning) -> Texture:
-    """Of depths that are apart."""
+    """The sum of separate depths."""
     has_planes = planning.find(shadows.maps) and not planning.settings.lights_splats
     return DEPTH_PLANE_SUM if has_planes else DEPTH_SUM
 
 
 def depth_parts(planning, kind: str, **fields) -> Part:
-    """Depths are beside normals, or apart. fields: what is done with them."""
+    """The parts for depths, which are stored beside normals or separately. fields: further fields of the part."""
     if not depths_are_apart(planning, kind):
         return Part("depth_in_normals", **fields)
     apart = depth_sum(planning)
@@ -55,7 +55,7 @@ def state(planning) -> dict:
 
 
 def attributes(planning, reason: str, tests: Texture | None, kind: str = "opaque") -> Pass:
-    """The pass, tested by the hardware with a depth."""
+    """The attribute pass, with a depth for the hardware's test."""
     own = Part("gbuffer", writes=(COLOR,), tests=(tests,) if tests else ())
     own_parts = own, *rasterized(planning), depth_parts(planning, kind, writes=(NORMAL,))
     if planning.method.rasterizer == "point_sprite":
@@ -90,7 +90,7 @@ def _why(planning) -> str:
 
 
 def run(tile, p: Pass):
-    """Fill the sums; textured instances with programs that look colours up."""
+    """Fill the sums; textured instances use programs that look up colours."""
     target, vertex = tile.target(p), p.host.replace(".frag", ".vert")
     target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
     drawn = tile.drawn_by(p)

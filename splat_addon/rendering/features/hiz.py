@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far is seen in each cell of samples, which tells what splats are hidden before they are drawn.
+"""Hierarchical depth: how far each cell of samples sees, to reject hidden splats before they are drawn.
 
-One level of a hierarchical z-buffer (Greene, Kass, Miller 1993).
+It is one level of a hierarchical z-buffer (Greene, Kass, Miller 1993).
 """
 
 from __future__ import annotations

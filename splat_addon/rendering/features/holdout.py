@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that cut holes: they have depths and nothing else."""
+"""Objects that cut holes: they have depth and nothing else."""
 
 from __future__ import annotations
 
@@ -52,12 +52,12 @@ def parts(planning, p):
 
 
 def draws(tile, p: Pass, instance) -> bool:
-    """What cuts holes has depths and nothing else."""
+    """Whether a pass draws an object: holdouts have depth only."""
     return not (instance.is_holdout and p.kind == "opaque" and p.host in SPLAT_HOSTS and tile.plan.has("HOLDOUT"))
 
 
 def run(tile, p):
-    """Fill the depth texture: the visibility pass's where a hole is seen, to the last digit."""
+    """Fill the depth texture: where a hole is visible, with exactly the depth of the visibility pass."""
     kinds = {name: getattr(tile.view, name) for name in ("placed", "polygons")}
     cutting = {name: tuple(d for d in placed if d.instance.is_holdout) for name, placed in kinds.items()}
     return visibility.run(replace(tile, view=replace(tile.view, **cutting)), p)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Levels of detail: of an instance with more surfels than its picture shows, a view draws a cut through its hierarchy.
+"""Levels of detail: if an instance has more surfels than its picture can show, a view draws a cut through its
+hierarchy.
 
-The numbers of what is drawn lie in a texture, and nothing else of the object changes with the view: one instance may be
-drawn by several views, each with its own cut.
+The indices of drawn splats are in a texture, and nothing else of the object depends on the view: several views may draw
+the same instance with different cuts.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ def merging(planning) -> frozenset:
 
 
 def passes(planning):
-    """None; it says whether there are any."""
+    """No passes; records whether there are any."""
     if planning.shown:
         if not planning.settings.detail_tolerance:
             planning.skip("levels of detail", "every surfel is drawn, as the tolerance is 0")

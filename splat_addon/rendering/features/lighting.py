@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From sums to pixels: each sample is lit once, in one pass with the mean of the pixel's, or kept to be filtered."""
+"""Lighting, from sums to pixels: each sample is lit once, either in one pass with the average over the pixel, or stored
+for a later filter."""
 
 from __future__ import annotations
 
@@ -20,13 +21,13 @@ def _samples(planning) -> tuple[tuple[str, int], ...]:
 
 
 def deferred(planning, reason: str, kind: str = "opaque") -> Pass:
-    """Shades every sample and keeps it."""
+    """The pass that shades and stores every sample."""
     own = Part("lighting", writes=(SHADED, SURFACE), constants=_samples(planning))
     return Pass("deferred_lighting", reason, "deferred_lighting.frag", fill, (own,), kind)
 
 
 def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque", state=None) -> Pass:
-    """Filters silhouettes."""
+    """The pass that filters silhouettes."""
     own = Part(
         "lighting",
         reads=(SHADED, SURFACE, seen, depth_bounds.BOUNDS),
@@ -38,7 +39,7 @@ def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque"
 
 
 def layer_pixels(planning, depth: Texture, writes: tuple[Texture, ...]) -> Pass:
-    """What a transparent layer of these depths adds to pixels."""
+    """The pass that adds a transparent layer with these depths to the pixels."""
     add = {"blend": "add"}
     if planning.method.filters_silhouettes:
         return _filtered(planning, "nearer layers cover it", depth, writes, "layer", add)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scene's lights: points and directions, or with a size; for all objects, or for some."""
+"""The scene's lights: points and directions, or lights with a size; for all objects or for some."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def _are_linked(planning) -> bool:
 
 
 def passes(planning):
-    """None; it says what the frame has of lights."""
+    """No passes; records what lights the frame has."""
     if not planning.shown:
         return ()
     if not planning.model.is_lit:

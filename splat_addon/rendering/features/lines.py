@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lines: how much of each sample lies on a silhouette or a crease, before it is shaded."""
+"""Lines: the share of each sample that lies on a silhouette or a crease, found before shading."""
 
 from __future__ import annotations
 
@@ -46,5 +46,5 @@ def parts(planning, p):
 
 
 def margin(planning) -> int:
-    """Pixels that lines look at beside their own."""
+    """Pixels that lines read beside their own."""
     return math.ceil(planning.settings.lines.reach) if planning.settings.lines else 0

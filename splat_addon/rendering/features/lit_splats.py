@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splats that are lit one by one, whose colours blend (Botsch and Kobbelt 2003, section 4).
+"""Splats that are lit individually, so that lit colours are blended (Botsch and Kobbelt 2003, section 4).
 
-Otherwise samples are lit once (Botsch et al. 2005, section 4). Each instance's splats are lit before they are added up,
-one fragment a splat, with their own colours: what is texture-mapped too.
+Without this feature, samples are lit once (Botsch et al. 2005, section 4). Each instance's splats are lit before they
+are summed, in one fragment per splat, with their own colours, even if they are texture-mapped.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ LIT = Texture("lit_splats", per=_of_splats)
 
 
 def wanted(planning) -> bool:
-    """Raises ValueError where polygons, which are lit at samples, are among the splats."""
+    """Whether splats are lit. Raises ValueError if there are polygons among them, because polygons are lit at
+    samples."""
     if not planning.settings.lights_splats or not planning.shown:
         return False
     if planning.scene.polygons:
@@ -34,14 +35,14 @@ def wanted(planning) -> bool:
 
 
 def model_in(planning, p: Pass) -> ShadingModel:
-    """The shading model that a pass has to do with: samples show blended colours as they are."""
+    """The shading model of a pass: samples show blended colours unchanged."""
     asked_for = get_shading_model(planning.settings.shading)
     of_samples = p.kind in ("opaque", "layer") and p.host in (*LIT_HOSTS, *SPLAT_HOSTS)
     return get_shading_model("flat") if of_samples and planning.find(wanted) else asked_for
 
 
 def each(planning) -> Pass | None:
-    """What lights the splats of an instance before they are added up."""
+    """The pass that lights the splats of an instance before they are summed."""
     return light(planning, planning.scene.surfels) if planning.find(wanted) else None
 
 
@@ -63,9 +64,8 @@ def parts(planning, p):
 
 
 def run(tile, p: Pass):
-    """Fill the sums, one instance after the other, whose splats are lit first: one fragment each, at the texel of its
-    number.
-    """
+    """Fill the sums, one instance after another; each one's splats are lit first, one fragment each, at the texel of
+    its number."""
     target, lit, light = tile.target(p), tile.target(p.each), None
     target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
     for placed in tile.drawn_by(p):

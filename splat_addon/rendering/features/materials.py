@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Roughness, metallic, reflectance and emission: one of all surfels, or sums over what differs."""
+"""Roughness, metallic, reflectance and emission: shared by all surfels, or summed if they differ."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ EMISSION = Texture("gbuffer_emission", is_multisampled=True)
 
 
 def shared(planning):
-    """The material and the emission that all surfels share, or None of each."""
+    """The material and the emission that all surfels share; None for each that differs."""
     return shared_material(planning.shown), shared_emission(planning.shown)
 
 
@@ -38,14 +38,14 @@ DRAWN = {"materials": _drawn}
 
 
 def differ(planning) -> tuple[bool, bool]:
-    """Whether there are sums of materials, and of emissions."""
+    """Whether materials, and emissions, need sums."""
     material, emission = planning.find(shared)
     has = planning.model.has_material
     return has and material is None, has and emission is None
 
 
 def passes(planning):
-    """None; it says what the frame has."""
+    """No passes; records what the frame has."""
     material, emission = planning.facts["material"], planning.facts["emission"] = planning.find(shared)
     if not planning.shown:
         return ()
@@ -62,7 +62,7 @@ def passes(planning):
 
 
 def texels(planning):
-    """The constant that says how many texels a material has."""
+    """The constant for the number of texels per material."""
     return (("TEXELS_PER_MATERIAL", 2 if differ(planning)[1] else 1),)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splats that reach the near plane: methods that work in the picture draw them in space, which the hardware clips."""
+"""Splats that reach the near plane: screen-space methods draw them in space, where the hardware clips them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from . import depth_format
 
 
 def passes(planning):
-    """None; it says whether there may be any."""
+    """No passes; records whether there may be any."""
     if planning.shown:
         if planning.find(depth_format.extent).reaches_near:
             planning.has("NEAR_CLIPPED", "splats that may reach the near plane are drawn in space")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whose the samples are: a number that passes which find what is nearest leave beside its depth."""
+"""Object numbers of samples, which passes that find the nearest surface write beside its depth."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ _VARYINGS = (("flat", "float", "number"),)
 
 
 def asked_for(planning) -> tuple[str, ...]:
-    """The outputs that need numbers."""
+    """The requested outputs that need numbers."""
     return tuple(name for name in NUMBERED if name in planning.settings.outputs)
 
 
 def read_back(planning) -> tuple[Texture, ...]:
-    """What outputs are made of: that of samples, and of polygons where they are apart."""
+    """The textures to read back: numbers of samples, and of polygons if they are separate."""
     if not asked_for(planning) or not planning.shown:
         return ()
     first = ROW_IDENTITY if planning.find(silhouettes.have_rows) else IDENTITY
@@ -35,7 +35,8 @@ def _polygons_apart(planning) -> bool:
 
 
 def passes(planning):
-    """What finds whose a sample is that sees only what a filter spreads; where silhouettes are filtered, none does."""
+    """The pass that finds numbers for samples that only see what a filter spreads; not needed if silhouettes are
+    filtered."""
     if not planning.shown:
         return
     names, method = asked_for(planning), planning.method
@@ -82,7 +83,7 @@ def parts(planning, p):
 
 
 def run_edges(tile, p: Pass):
-    """Fill what the visibility pass left empty of the numbers: of the footprints of splats the nearest wins."""
+    """Fill gaps that the visibility pass left in the numbers with the nearest splat footprint."""
     target = tile.target(p)
     target.clear(depth=1.0)
     draw_splats(tile, p, target, tile.drawn_by(p), "screen_space.vert")

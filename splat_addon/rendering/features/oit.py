@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The last transparent layer: all that is left, without an order, each splat lit by itself (Guennebaud et al. 2006)."""
+"""The last transparent layer: everything left, without sorting, with each splat lit by itself (Guennebaud et al.
+2006)."""
 
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ WEIGHT = Texture("oit_weight", "RG32F")
 
 
 def passes_of_rest(planning, peeled: Texture, layers: Texture) -> tuple[Pass, ...]:
-    """What is done where no layer was empty: with what layers add up to, and how far they are peeled."""
+    """The passes to run if no layer was empty: from the sum of the layers, and how far they are peeled."""
     samples = (("SAMPLES", planning.settings.supersampling),)
     add = {"blend": "add"}
     rest = Part("oit", ("rest",), (lit_splats.LIT,), writes=(ACCUM, WEIGHT)), *rasterized(planning)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a frame's arrays are held by: their packing into textures of pixels, and the limits of attachments and samplers.
+"""Storage of a frame's arrays: their packing into pixel textures, and the limits of attachments and samplers.
 
-Outputs beside colour, depth and normal go from lit samples to pixels in textures of one packing: of samples where
-silhouettes are filtered afterwards, of layers where something is transparent, of pixels at the end.
+Outputs other than colour, depth and normal go from lit samples to pixels in textures of the same packing: one set for
+samples if silhouettes are filtered later, one for layers if there is transparency, and one for pixels.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from ..plan.graph import Part, Texture, of_pixels
 from . import shadows
 from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
 
-#: Colour textures that a target may have: as many as Blender's.
+#: Maximum number of colour textures in a target, Blender's limit.
 MAX_COLORS = 6
 PIXELS = {
     name: Texture(name, "R32F" if name == "depth" else "RGBA32F", of_pixels)
     for name in dict.fromkeys(texture for texture, _ in HELD_BY.values())
 }
-#: Textures that hand on what a sample is lit to; a feature of the name fills each.
+#: Textures for outputs of lit samples; the feature of the same name fills each.
 _HANDED_ON = tuple(name for name in PIXELS if name not in ("combined", "depth", "normal_coverage"))
 SAMPLES = {name: Texture(f"sample_{name}") for name in _HANDED_ON}
 LAYERS = {name: Texture(f"layers_{name}", per=of_pixels) for name in _HANDED_ON}
@@ -29,23 +29,23 @@ OVERDRAW = Texture("gbuffer_overdraw", "R32F", is_multisampled=True)
 
 _HOSTS = (*LIT_HOSTS, *SPLAT_HOSTS, "lit_splats.frag", "resolve.frag", "layer.frag", "background.frag")
 
-#: Whoever an output is written for, functions know it by one name.
+#: Functions know an output by one name, whichever texture it is written to.
 CALLED = tuple((kind[name], f"out_{name}") for kind in (PIXELS, SAMPLES, LAYERS) for name in _HANDED_ON)
 
 
 def pixel_textures(planning) -> tuple[Texture, ...]:
-    """What the last pass writes, whatever else is asked for."""
+    """The textures that the last pass always writes."""
     return PIXELS["combined"], PIXELS["depth"]
 
 
 def wanted(planning) -> tuple[str, ...]:
-    """Names of all textures of pixels."""
+    """Names of all pixel textures."""
     asked_for = {HELD_BY[name][0] for name in planning.settings.outputs if name in HELD_BY}
     return tuple(name for name in PIXELS if name in {"combined", "depth"} | asked_for)
 
 
 def _handed_on(planning, by_layers: bool = False) -> tuple[str, ...]:
-    """Of those, what samples hand on. Layers tell nothing of overdraw, which is of what is opaque."""
+    """The textures that samples pass on. Layers do not pass on overdraw, which counts opaque splats only."""
     names = [name for name in planning.find(wanted) if name in _HANDED_ON]
     if by_layers and "shadow" not in planning.settings.outputs:
         names = [name for name in names if name != "shadow_overdraw"]
@@ -53,17 +53,17 @@ def _handed_on(planning, by_layers: bool = False) -> tuple[str, ...]:
 
 
 def read_back(planning) -> tuple[Texture, ...]:
-    """What is read of a frame."""
+    """The textures that are read back for a frame."""
     return tuple(PIXELS[name] for name in planning.find(wanted))
 
 
 def counts_splats(planning) -> bool:
-    """Whether somebody asks how many splats a sample is the mean of."""
+    """Whether any output needs the number of splats per sample."""
     return "overdraw" in planning.settings.outputs or bool(planning.model.sums)
 
 
 def passes(planning):
-    """None; it says what is not asked for."""
+    """No passes; records what is not requested."""
     if planning.shown or planning.scene.environment:
         given = planning.find(wanted)
         for name in PIXELS:
@@ -84,7 +84,7 @@ def passes(planning):
 
 
 def _count(planning, p):
-    """The sum of splats: of its own, or beside the planes that shadows compare depths with."""
+    """The sum that counts splats: separate, or beside the planes that shadows compare depths with."""
     beside = shadows.plane_sum(planning, p.kind)
     words, own = (("beside_planes",), ()) if beside else (("by_itself",), (OVERDRAW,))
     if p.host in SPLAT_HOSTS:
@@ -95,7 +95,7 @@ def _count(planning, p):
 
 
 def _found(planning):
-    """What is wanted, handed on, and handed on by layers."""
+    """The textures requested, passed on by samples, and passed on by layers."""
     return planning.find(wanted), _handed_on(planning), _handed_on(planning, True)
 
 
@@ -121,7 +121,7 @@ def parts(planning, p):
 
 
 def _handing(planning, p, in_layer: bool, has_layers: bool):
-    """What is handed on from samples to pixels."""
+    """The parts that pass outputs on from samples to pixels."""
     has_material = (
         ("has_material",) if planning.model.has_material and "diffuse_color" in planning.settings.outputs else ()
     )
@@ -144,7 +144,7 @@ def _handing(planning, p, in_layer: bool, has_layers: bool):
 
 
 def check(plan: FramePlan) -> None:
-    """Raises ValueError for a pass of more attachments than every device has."""
+    """Raise ValueError for a pass with more attachments than all devices support."""
     for p in plan.passes:
         if len(p.colors) > MAX_COLORS and p.host:
             names = [texture.name for texture in p.colors]
@@ -155,7 +155,7 @@ def check(plan: FramePlan) -> None:
 
 
 def check_samplers(plan: FramePlan, room: int) -> None:
-    """Raises ValueError for a pass whose shader would read more textures than a device has room for."""
+    """Raise ValueError for a pass whose shader would read more textures than a device supports."""
     for p in plan.passes:
         for variant in {part.only for part in p.parts}:
             parts = [part for part in p.parts if part.only in ("", variant)]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The polygon pass: the attributes of the nearest polygon of each sample (Guennebaud et al. 2006, section 5.1).
+"""The polygon pass: attributes of the nearest polygon of each sample (Guennebaud et al. 2006, section 5.1).
 
-Shading joins them with the splats' means.
+Shading blends them with the means of the splats.
 """
 
 from __future__ import annotations
@@ -61,14 +61,14 @@ def parts(planning, p):
 
 
 def joined(planning):
-    """What joins them with the splats' means."""
+    """The parts that blend polygons with the splats' means."""
     if planning.scene.polygons:
         share = "known" if planning.method.rasterizer == "screen_space" else "compared"
         yield Part("polygons", reads=(COLOR, NORMAL), choices=(("polygon_share", share),))
 
 
 def _drawn(planning):
-    """What the pass keeps beside colours and normals."""
+    """Textures that the pass writes beside colours and normals."""
     differ, glow = materials.differ(planning)
     drawn = {"inputs": ("materials",), "constants": materials.texels(planning)}
     if differ:

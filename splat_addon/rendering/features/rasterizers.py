@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the programs have in common that draw splats with a method: in space, in the picture, or as sprites."""
+"""Common parts of the programs that draw splats with a method: in space, in screen space, or as sprites."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Adds a sample's picture to the sum of those before (Haeberli & Akeley 1990): each tile to its part of the whole."""
+"""Adds a sample's picture to the sum of the previous ones (Haeberli & Akeley 1990), tile by tile."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from . import outputs, world
 
 
 def _corner(tile):
-    """Where the pixel 0, 0 of a tile with its margin lies in the whole picture."""
+    """Position of pixel 0, 0 of a tile with its margin in the whole picture."""
     return tile.rectangle[0] - tile.plan.margin, tile.rectangle[1] - tile.plan.margin
 
 

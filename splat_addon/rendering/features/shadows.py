@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shadow maps: what each light sees first, one map beside the other in an atlas (Botsch et al. 2005, section 6)."""
+"""Shadow maps: the nearest surfaces seen by each light, in one atlas (Botsch et al. 2005, section 6)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..view import View
 from . import visibility
 from .drawing import LIT_HOSTS, SPLAT_HOSTS
 
-#: Of polygons, in texels of a map: a filter reaches two, over which planes may differ by that much at 45 degrees.
+#: Offset of polygons, in texels of a map: a filter reaches two texels, over which planes at 45 degrees differ by this.
 SETBACK = 2.0
 
 
@@ -22,14 +22,14 @@ def _of_atlas(plan, pixels: tuple[int, int]) -> tuple[int, int]:
 
 
 DEPTH = Texture("shadow_depth", "DEPTH32F", _of_atlas)
-#: The splats' geometric normals: depths are compared with their plane.
+#: Sum of the splats' geometric normals: depths are compared with their plane.
 PLANE = Texture("gbuffer_plane", "RG32F", is_multisampled=True)
-#: With room for the number of splats, where that is asked for too: targets have no room for a texture more.
+#: With room for the number of splats, if requested, because targets have no room for another texture.
 PLANE_COUNT = Texture("gbuffer_plane", "RGBA32F", is_multisampled=True)
 
 
 def maps(planning):
-    """What lights see, in the order of the lights."""
+    """The maps that lights need, in the order of the lights."""
     if not planning.model.is_lit or not planning.settings.shadow_resolution:
         planning.skip("shadows", "they are switched off, or nothing is lit")
         return ()
@@ -63,7 +63,7 @@ def is_present(planning) -> bool:
 
 
 def plane_sum(planning, kind: str) -> Texture | None:
-    """Of planes that are not beside depths; None where they are, or nothing asks for planes."""
+    """The separate sum of planes; None if they are stored beside depths, or nothing needs them."""
     from . import gbuffer, outputs
 
     is_lit = planning.find(maps) and not planning.settings.lights_splats
@@ -88,7 +88,7 @@ def parts(planning, p):
 
 
 def run(tile, p: Pass):
-    """Fill the atlas, a visibility pass a map. Parallel cameras store the hardware's depth, others depth / far."""
+    """Fill the atlas, one visibility pass per map. Parallel cameras store hardware depth, others depth / far."""
     target = tile.target(p)
     target.clear(depth=1.0)
     for made, view in zip(tile.plan.facts["shadow_maps"], tile.shadow_views, strict=True):
@@ -105,9 +105,8 @@ def run(tile, p: Pass):
 
 
 def _as_cast(view: View, camera: Camera) -> View:
-    """What casts shadows into a map: what is split by its distance from another camera is whole, and polygons lie some
-    texels farther, so that they do not shadow themselves where their shading normals are not their own.
-    """
+    """A view as it casts shadows into a map: objects split by distance from the camera are complete, and polygons are
+    moved back by a few texels so that they do not shadow themselves where shading normals differ from their own."""
     left, right, _, _ = camera.window
     texel = (right - left) / camera.size[0] * (view.scale if camera.is_orthographic else 1.0)
     polygons = tuple(replace(p, split_distance=0.0, setback=SETBACK * texel) for p in view.polygons)

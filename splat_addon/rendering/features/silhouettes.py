@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Silhouettes, filtered as colours are: what the other passes do for it. The filter itself is the resolve pass's."""
+"""Filtered silhouettes: the preparations in other passes. The resolve pass contains the filter."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ CONSTANTS = {"FILTER_REACH": FILTER_MARGIN}
 
 
 def of_rows(plan: FramePlan, pixels: tuple[int, int]) -> tuple[int, int]:
-    """A texture's size: so many rows to each row of samples."""
+    """A texture size with this many rows per row of samples."""
     columns, rows = of_samples(plan, pixels)
     return columns, rows * VISIBILITY_ROWS
 
 
 def rows_of(texture: Texture) -> int:
-    """How many rows of it a row of samples has."""
+    """Number of the texture's rows per row of samples."""
     return VISIBILITY_ROWS if texture.per is of_rows else 1
 
 
 def passes(planning):
-    """None; it says whether silhouettes are filtered."""
+    """No passes; records whether silhouettes are filtered."""
     planning.facts["filters_silhouettes"] = is_present(planning) and bool(planning.shown)
     return ()
 
@@ -31,12 +31,12 @@ def is_present(planning) -> bool:
 
 
 def margin(planning) -> int:
-    """Pixels that the filter reads to each side."""
+    """Pixels that the filter reads on each side."""
     return FILTER_MARGIN if planning.facts["filters_silhouettes"] else 0
 
 
 def have_rows(planning) -> bool:
-    """Whether visibility has more rows than samples have: what transparent layers hide is known at samples alone."""
+    """Whether visibility has more rows than samples: transparent layers only know what they hide at samples."""
     from . import transparency
 
     return planning.method.filters_silhouettes and not planning.find(transparency.layers)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that are polygons near the camera, and surfels beyond that (Guennebaud et al. 2006, section 5)."""
+"""Objects drawn as polygons near the camera and as surfels beyond (Guennebaud et al. 2006, section 5)."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Colours that are looked up in textures: instances without do not pay for them, and a sprite has one colour."""
+"""Colours from textures; instances without textures do not pay for them, and a sprite has a single colour."""
 
 from __future__ import annotations
 
 from ..plan.graph import Part
 
-#: uv and slot, change of uv along the half-axes, where the map ends; and the half-axes.
+#: uv and slot, change of uv along the half-axes, border of the map; and the half-axes.
 _VARYINGS = (("flat", "vec3", "texture_place"), ("flat", "vec4", "texture_along"), ("flat", "vec2", "texture_border"))
 _AXES = (("flat", "vec3", "texture_axis_u"), ("flat", "vec3", "texture_axis_v"))
 _OF_POLYGONS = (
@@ -31,7 +31,7 @@ DRAWN = {
 
 
 def _are_textured(planning) -> tuple[bool, bool]:
-    """Whether some of the surfels look textures up, and of the polygons."""
+    """Whether any surfels, and any polygons, use textures."""
     scene = planning.scene
     return any(i.is_textured for i in scene.surfels), any(i.is_textured for i in scene.polygons)
 
@@ -42,7 +42,7 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     settings, each = planning.settings, planning.settings.multisampling and planning.settings.sample_shading
-    # of what is evaluated once: a sample, or each of its hardware samples, which is a smaller piece of the pixel
+    # pixel filter of whatever is evaluated once: a sample, or each of its hardware samples, a smaller part of the pixel
     variance = planning.method.pixel_variance / (settings.multisampling if each else 1)
     shared = {"constants": (("PIXEL_VARIANCE", repr(variance)),), "only": "textured"}
     hosts = "object_space.frag", "screen_space.frag"

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Transparent layers, peeled from the nearest to the farthest (Guennebaud et al. 2006, section 6).
 
-Opaque surfels are seen first, and hide what lies behind them. Then, from the nearest to the farthest, a layer of what
-is transparent is made as an opaque picture is: by visibility, attributes and shading; but every splat that a nearer
-layer holds is left out. As a layer holds just what lies no deeper than its nearest splat moved back by its epsilon,
-each splat is in one layer at each sample, and the overlapping splats of a surface are in the same one.
+Opaque surfels are drawn first, and hide what lies behind them. Then each layer, nearest first, is drawn like an opaque
+picture, with visibility, attributes and shading, but without the splats of nearer layers. A layer contains what is no
+deeper than its nearest splat moved back by epsilon, so at each sample every splat is in exactly one layer, and
+overlapping splats of a surface are in the same one.
 
-The last layer may hold all that is left: splats are lit one by one, their colours mixed by their opacity, and their
-weights, in those of a single surface, tell how many surfaces there are (`oit`).
+The last layer may contain everything left: splats are lit individually and their colours mixed by opacity, and their
+weights, relative to those of a single surface, give the number of surfaces (`oit`).
 
-Layers are put on one another where visibility is known: each adds to the pixel what the nearer ones let through at each
-of its samples, and the opaque picture what all of them do.
+Layers are composited at the resolution of visibility: each adds to the pixel what the nearer ones let through at each
+of its samples, and so does the opaque picture behind them.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..plan.graph import Loop, Part, Pass, Texture, fill, of_pixels
 from . import depth_bounds, gbuffer, lighting, oit, outputs, visibility
 from .drawing import SPLAT_HOSTS
 
-#: Samples that are read to each side of a layer's.
+#: Samples that are read on each side of a layer's.
 LAYER_MARGIN = 1
 #: Of a picture along each side, for which `OCCUPANCY` holds one value each.
 OCCUPANCY_BLOCKS = 64
@@ -34,9 +34,8 @@ COLOR_DEPTH = Texture("layers_depth", "R32F", of_pixels)
 
 
 def layers(planning) -> int:
-    """How many are peeled at most. Raises ValueError where hardware multisampling is asked for, whose samples hold one
-    depth each but are shaded together.
-    """
+    """The maximum number of layers. Raises ValueError for hardware multisampling, whose samples have individual depths
+    but are shaded together."""
     method, settings = planning.method, planning.settings
     if not any(instance.is_transparent for instance in planning.scene.surfels):
         planning.skip("transparent layers", "every surfel is opaque")
@@ -93,7 +92,7 @@ def is_present(planning) -> bool:
 
 
 def draws(tile, p: Pass, instance) -> bool:
-    """Where layers are planned, what is transparent is drawn by them, and all the rest by other passes."""
+    """Whether a pass draws an object: if there are layers, they draw transparent objects, and other passes the rest."""
     return not tile.plan.facts["layers"] or instance.is_transparent is (p.kind in ("layer", "rest"))
 
 
@@ -122,7 +121,7 @@ def parts(planning, p):
 
 
 def start(tile, p: Pass):
-    """Nothing is peeled, and nothing seen: all 0."""
+    """Start with nothing peeled and nothing visible: all 0."""
     for texture in p.fills:
         target = tile.resources.device.target([tile.texture(texture)])
         target.clear(color=0.0)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shadows of what is transparent: its splats leave as much out of a shadow map as shows through them."""
+"""Shadows of transparent objects: their splats leave gaps in a shadow map in proportion to the light they let
+through."""
 
 from __future__ import annotations
 

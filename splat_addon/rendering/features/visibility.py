@@ -17,12 +17,12 @@ _OF_POLYGONS = Part("visibility", ("of_polygons",), inputs=("polygon_corners",),
 
 
 def nearest_depth(planning) -> Texture:
-    """What visibility writes: it may have more rows than there are of samples."""
+    """The texture that visibility writes, which may have more rows than there are samples."""
     return ROW_DEPTH if planning.find(silhouettes.have_rows) else DEPTH
 
 
 def own_parts(planning, depth: Texture, reads=(), words=()) -> tuple[Part, ...]:
-    """Of a pass that finds what is nearest."""
+    """The parts of a pass that finds the nearest surface."""
     return (
         Part(
             "visibility",
@@ -37,7 +37,7 @@ def own_parts(planning, depth: Texture, reads=(), words=()) -> tuple[Part, ...]:
 
 
 def drawn(name: str, reason: str, own: tuple[Part, ...], planning, kind: str = "opaque") -> Pass:
-    """A pass that finds what is nearest."""
+    """A pass that finds the nearest surface."""
     return Pass(name, reason, "visibility.frag", run, own, kind, depth_format.state(planning))
 
 
@@ -59,7 +59,7 @@ def parts(planning, p):
 
 
 def run(tile, p: Pass):
-    """Fill the depth texture, and what else is kept of what is nearest."""
+    """Fill the depth texture and the other textures about the nearest surface."""
     target = tile.target(p)
     target.clear(color=0.0 if p.colors else None, depth=1.0)
     if silhouettes.rows_of(p.depth) > 1:
@@ -70,13 +70,13 @@ def run(tile, p: Pass):
 
 
 def draw(tile, p: Pass, target, splats, polygons, viewport=None) -> None:
-    """Both kinds, with the pass's programs."""
+    """Draw splats and polygons with the pass's programs."""
     draw_splats(tile, p, target, splats, "visibility.vert", "splats", viewport=viewport)
     draw_polygons(tile, p, target, polygons, "polygon_visibility.vert", "polygons", viewport=viewport)
 
 
 def _seen_by_rows(view: View, rows: int) -> View:
-    """A view moved in the picture, so that the first of a sample's rows goes through its centre as the sample does."""
+    """A view shifted in the picture, so that the first of a sample's rows goes through its centre."""
     projection = view.projection.copy()
     projection[1] -= projection[3] * (silhouettes.VISIBILITY_ROWS - 1) / rows
     return replace(view, projection=projection)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The world around: the light that it sends, and what is seen of it where nothing is drawn."""
+"""The world: its light, and the background where nothing is drawn."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _LIGHTS = Part("world", inputs=("environment_image", "environment_levels"), choi
 
 
 def passes(planning):
-    """A world without anything in it is a pass of its own."""
+    """An empty world is a pass of its own."""
     if not planning.shown:
         planning.skip("all other passes", "the scene has neither surfels nor polygons: the picture is its background")
         if is_shown(planning):
@@ -52,5 +52,5 @@ def parts(planning, p):
 
 
 def is_shown(planning) -> bool:
-    """Whether the world is a picture that is seen."""
+    """Whether the background is a visible image."""
     return planning.scene.environment is not None and not planning.settings.transparent_film

@@ -7,6 +7,6 @@ METHOD = Method(
     "ewa",
     label="EWA",
     paper="Zwicker et al. 2001, Ren et al. 2002",
-    summary="The classic filter, in the picture; blurs silhouettes",
+    summary="The classic filter, in screen space; blurs silhouettes",
     blurs_rims=True,
 )

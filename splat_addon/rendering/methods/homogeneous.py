@@ -7,5 +7,5 @@ METHOD = Method(
     "homogeneous",
     label="Homogeneous",
     paper="Guennebaud et al. 2006, sections 3 and 4, repaired",
-    summary="Exact ellipses no smaller than the pixel's filter, at their planes' depth; 3 dB truer at flat angles",
+    summary=("Exact ellipses, no smaller than the pixel's filter, with correct depth; more accurate at grazing angles"),
 )

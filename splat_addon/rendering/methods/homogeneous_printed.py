@@ -7,5 +7,5 @@ METHOD = Method(
     "homogeneous_printed",
     label="Homogeneous, as Printed",
     paper="Guennebaud et al. 2006, sections 3 and 4, equations 8 to 10",
-    summary="The paper's own formulas: a disc that faces the ray vanishes, small ones lose their depth",
+    summary="Uses the paper's own formulas: discs that face the ray vanish, and small ones lose their depth",
 )

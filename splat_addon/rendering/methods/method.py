@@ -24,7 +24,7 @@ class Method:
     culls_hidden: splats that lie behind all that is seen are found before they are drawn. The papers draw them, so do
         their methods here.
     sprites_hide: visibility too is of its sprites. Else it is of the exact ellipses.
-    writes_depth: at every pixel: the hardware's would be another than that which it corrects or clamps.
+    writes_depth: at every pixel: the hardware's depth would differ from the one that the method corrects or clamps.
     pixel_variance: of its pixel filter, samples squared; 1/12 is that of a box. Textures are looked up under it.
     """
 

@@ -7,5 +7,5 @@ METHOD = Method(
     "raycast_printed",
     label="Ray Cast, as Printed",
     paper="Botsch et al. 2005, sections 3 and 5, within the paper's square",
-    summary="The square cuts the low-pass, and large splats off the axis",
+    summary="Draws each splat in a square that cuts off its filter, and large splats away from the axis",
 )

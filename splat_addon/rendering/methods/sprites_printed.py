@@ -7,7 +7,7 @@ METHOD = Method(
     "sprites_printed",
     label="Sprites, as Printed",
     paper="Botsch and Kobbelt 2003, equation 4 as printed",
-    summary="The paper's own formula: depths are off by as much as splats are flatter or steeper than 1 unit",
+    summary="Uses the paper's own formula, whose depths are wrong for splats tilted towards the viewer",
     sprites_hide=True,
     writes_depth=True,
     pixel_variance=1 / 12,

@@ -7,6 +7,5 @@ MODEL = ShadingModel(
     "depth",
     label="Depth",
     source="none needed",
-    summary="The distance along the view, from black at the nearest to white at the farthest of what is in view",
-    cost=1.0,
+    summary="The distance along the view, from black at the nearest visible surface to white at the farthest",
 )

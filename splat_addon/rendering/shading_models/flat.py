@@ -8,5 +8,4 @@ MODEL = ShadingModel(
     label="Flat",
     source="none needed",
     summary="The surfels' own colour, unlit",
-    cost=1.0,
 )

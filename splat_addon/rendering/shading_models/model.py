@@ -9,24 +9,24 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class ShadingModel:
-    """name: also of shaders/shading_models/<name>.glsl and of its twin in `reference.shading_models`. label: for users.
-    source: of the model. summary: what it shows. cost: time of a frame, as a multiple of flat's
-        (docs/evidence/features.md).
+    """An entry of the registry.
 
-    is_lit: it looks at lights, with their shadows and the objects they are linked to.
-    has_material: it looks at roughness, metallic, reflectance and emission.
-    has_world: it looks at the light of the world around.
-    tables: sampler -> the texture for a tile, of what its file reads beside the sums.
-    values: name -> (type, value for a tile) of what its file is told in the frame's block.
-    sums: added up for it, and for an output of that name.
-    features: (name, why) of what is defined for it alone.
+    name: also of shaders/shading_models/<name>.glsl and of its twin in `reference.shading_models`. label: for users.
+    source: of the model, or "none needed". summary: what it shows.
+
+    is_lit: it uses lights, with their shadows and light linking.
+    has_material: it uses roughness, metallic, reflectance and emission.
+    has_world: it uses the light of the world.
+    tables: sampler -> the texture for a tile that its file reads beside the sums.
+    values: name -> (type, value for a tile) that its file reads from the frame's block.
+    sums: textures that are summed for it, and for an output of that name.
+    features: (name, why) of features that exist only for it.
     """
 
     name: str
     label: str
     source: str
     summary: str
-    cost: float
     is_lit: bool = False
     has_material: bool = False
     has_world: bool = False

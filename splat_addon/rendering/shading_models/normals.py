@@ -7,6 +7,8 @@ MODEL = ShadingModel(
     "normals",
     label="Normals",
     source="none needed",
-    summary="The direction that the surface faces in the world, -1 to 1 on each axis as 0 to 1 of red, green and blue",
-    cost=1.0,
+    summary=(
+        "The direction that the surface faces in the world, with -1 to 1 on each axis shown as 0 to 1 of red,"
+        " green and blue"
+    ),
 )

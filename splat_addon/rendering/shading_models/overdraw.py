@@ -7,7 +7,6 @@ MODEL = ShadingModel(
     "overdraw",
     label="Overdraw",
     source="none needed",
-    summary="How many splats a sample is the mean of: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red",
-    cost=1.04,
+    summary="How many splats each sample averages: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red",
     sums=("gbuffer_overdraw",),
 )

@@ -8,7 +8,6 @@ MODEL = ShadingModel(
     label="Phong",
     source="Blinn 1977, normalised",
     summary="Diffuse light and a highlight as sharp as the material is smooth; lights are points",
-    cost=1.06,
     is_lit=True,
     has_material=True,
     has_world=True,

@@ -9,7 +9,6 @@ MODEL = ShadingModel(
     label="Principled",
     source="Walter et al. 2007, Heitz et al. 2016",
     summary="Diffuse and GGX specular light of the scene's lights and world",
-    cost=1.11,
     is_lit=True,
     has_material=True,
     has_world=True,

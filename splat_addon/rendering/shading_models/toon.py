@@ -8,7 +8,6 @@ MODEL = ShadingModel(
     label="Toon",
     source="Lake et al. 2000",
     summary="Each light in a few even steps, with a highlight that has an edge",
-    cost=1.06,
     is_lit=True,
     has_material=True,
     has_world=True,

@@ -7,7 +7,6 @@ MODEL = ShadingModel(
     "weight",
     label="Weight",
     source="none needed",
-    summary="The weights that a sample is the mean by: 1/16 blue, 1/4 cyan, 1 green, 4 yellow, 16 and more red",
-    cost=1.0,
+    summary=("The sum of the splats' weights in each sample: 1/16 blue, 1/4 cyan, 1 green, 4 yellow, 16 and more red"),
     features=(("SUM_OF_WEIGHTS", "the model shows it"),),
 )

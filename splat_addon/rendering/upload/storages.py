@@ -39,14 +39,14 @@ STORAGES = {
         Storage(
             "float32",
             "Float 32",
-            "64 bytes a surfel, exact",
+            "Exact, with twice the memory of 16 Bit",
             (("surfels", "RGBA32F"),),
             lambda surfels, order: ((pack_surfels(surfels, order),), 0),
         ),
         Storage(
             "16-bit",
             "16 Bit",
-            ("32 bytes a surfel, at least 58 dB from Float 32"),
+            ("Takes half the memory; differences from Float 32 are invisible"),
             (("surfels", "RGBA16"), ("surfel_blocks", "RGBA32F")),
             pack_16_bit,
         ),

@@ -23,7 +23,7 @@ DEFAULT_CREASE_ANGLE = math.radians(30)
 #: Largest difference of a component of colour across an edge where it still goes on.
 COLOR_BREAK = 0.02
 
-#: Of a cosine in float32: planes that differ by just the angle, as those of a regular prism do, make no crease.
+#: Tolerance of a cosine in float32: planes that differ by exactly the angle, as in a regular prism, make no crease.
 _ROUNDING = 1e-6
 
 #: On a cylinder two neighbours' planes differ twice as much as each does from the direction of a vertex between them.

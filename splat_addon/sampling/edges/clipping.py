@@ -23,7 +23,7 @@ _SAME_LINE = 0.06
 #: What two lines keep: the first one's side, that of both, that of either, or all.
 _FIRST, _BOTH, _EITHER, _ALL = range(4)
 
-#: Of more edges than this the farther ones of a splat are not looked at for its corner.
+#: If a splat meets more edges than this, the farther ones are ignored when looking for its corner.
 _MOST_EDGES = 6
 
 #: Keeps the whole ellipse.

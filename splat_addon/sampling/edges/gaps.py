@@ -80,13 +80,13 @@ def _bare(mesh: TriangleMesh, borders: Borders, clipping: Clipping, grid: Grid):
     side = np.searchsorted(offsets, bare, side="right") - 1
     share = (bare - offsets[side]) / np.maximum(counts[side] - 1, 1)
     places = first[side] + (last - first)[side] * share[:, None]
-    # Of a run of bare places the second, the fourth, ...; of a single one that.
+    # In a run of bare points use the second, the fourth, ...; if there is only one, use it.
     starts = np.append(True, (bare[1:] != bare[:-1] + 1) | (side[1:] != side[:-1])) if len(bare) else bare
     runs = np.flatnonzero(starts)
     sizes = np.diff(np.append(runs, len(bare)))
     run, number = expand(sizes)
     chosen = np.flatnonzero(number % _PLACES == np.minimum(1, sizes[run] - 1))
-    # Of edges far shorter than a spacing one place for many: those of a cell that face alike.
+    # Edges far shorter than a spacing share one point: one per cell and direction.
     cells = np.floor((places[chosen] - grid.surfel_origin) / (_CELL * grid.spacing)).astype(np.int64)
     facing = np.rint(borders.normals[side[chosen]]).astype(np.int64) + 1
     key = (cells @ _CELL_NUMBER) * 27 + facing @ (1, 3, 9)

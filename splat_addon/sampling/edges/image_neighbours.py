@@ -19,7 +19,7 @@ _MARGIN = 3
 #: An image of more cells than this, and than so many a surfel, is searched instead of counted.
 _FEW_CELLS, _CELLS_A_SURFEL = 1 << 20, 16
 
-#: Of a reach, in cells, for the rounding of float32.
+#: Tolerance of a reach, in cells, for float32 rounding.
 _SLACK = 1e-3
 
 #: Pairs at a time.
@@ -74,9 +74,9 @@ def image_neighbours(
 
 
 def _near_planes(place, firsts: np.ndarray, counts: np.ndarray, edge: np.ndarray, planes: np.ndarray, depth):
-    """Of the pairs of edges and runs of surfels, `counts` from `firsts` on, those that lie near the face's plane, as
-    `image_neighbours` gives them. place: (s,) each, across, up and along the image's axis."""
-    # The surfels of a run follow one another, so what is asked of each pair is read in order.
+    """The pairs of edges and surfels that are near the face's plane, in the form of `image_neighbours`; the pairs are
+    runs of surfels, `counts` long from `firsts` on. place: (s,) each, across, up and along the image's axis."""
+    # The surfels of a run are consecutive, so the values of each pair are read in order.
     surfel = np.repeat(firsts - (np.cumsum(counts) - counts), counts)
     surfel += np.arange(len(surfel))
     above = place[2].take(surfel)

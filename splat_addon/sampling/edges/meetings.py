@@ -72,7 +72,7 @@ def by_facing(arrays: dict[str, np.ndarray]) -> Images:
 
 
 def meetings(arrays, images: Images, borders: Borders, grid: Grid, at_centres: bool = True) -> Meetings:
-    """Those of the surfels with the sides of borders.
+    """The meetings of the surfels with the sides of borders.
 
     arrays: by field of `Surfels`, positions relative to the grid's middle. at_centres: whether they lie at the centres
     of cells.

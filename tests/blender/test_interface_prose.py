@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The words of the interface: tooltips are short sentences without measured figures, and labels fit the sidebar."""
+
+import re
+
+import bpy
+import pytest
+
+from splat_addon.blender.translations.messages import messages
+from tests.test_prose import RIDDLES
+
+LONGEST_LABEL = 34
+LONGEST_TOOLTIP_SENTENCE = 30
+#: Measured figures go stale; docs/evidence has them with their commands.
+MEASURED = re.compile(
+    r"\d\s*(?:%|dB|ms|s\b|seconds?|bytes?|[kMG]i?B|megabytes)|\d(?:\.\d+)? times\b|FLIP|microsecond", re.I
+)
+
+
+def tooltips() -> list[str]:
+    """Texts of several words that explain something."""
+    return sorted({text for _, text in messages() if len(text.split()) > 5})
+
+
+def labels() -> list[str]:
+    return sorted({text for _, text in messages() if len(text.split()) <= 5})
+
+
+@pytest.mark.parametrize("pattern", RIDDLES)
+def test_tooltips_are_no_riddles(pattern):
+    assert [text for text in tooltips() if re.search(pattern, text)] == []
+
+
+def test_tooltips_have_no_measured_figures():
+    assert [text for text in tooltips() if MEASURED.search(text)] == []
+
+
+def test_a_measured_figure_is_found():
+    for text in ("in 1.3 times the time", "within 1 %", "adds 35 s", "40 to 47 dB", "takes 8 to 12 bytes a surfel"):
+        assert MEASURED.search(text), text
+
+
+def test_tooltips_begin_with_a_capital_and_end_without_a_full_stop():
+    """As Blender's own do, which adds the full stop."""
+    assert [text for text in tooltips() if text.endswith(".") or not re.match(r"[A-Z0-9]", text)] == []
+
+
+def test_sentences_of_tooltips_are_short():
+    sentences = [s for text in tooltips() for s in re.split(r"(?<=[.:;])\s+|\s\(", text)]
+    assert [s for s in sentences if len(s.split()) > LONGEST_TOOLTIP_SENTENCE] == []
+
+
+def test_labels_fit_the_sidebar():
+    assert [text for text in labels() if len(text) > LONGEST_LABEL] == []
+
+
+def test_every_setting_has_a_tooltip():
+    groups = (bpy.types.Scene, bpy.types.Object, bpy.types.ViewLayer)
+    silent = []
+    for owner in groups:
+        for prop in owner.bl_rna.properties:
+            if prop.identifier.startswith("surfel") and prop.type == "POINTER":
+                silent += [
+                    f"{prop.identifier}.{p.identifier}"
+                    for p in prop.fixed_type.properties
+                    if p.identifier not in ("rna_type", "name") and p.is_runtime and not p.is_hidden
+                    and p.type not in ("POINTER", "COLLECTION") and not p.description
+                ]  # fmt: skip
+    assert silent == []
