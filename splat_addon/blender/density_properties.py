@@ -65,8 +65,8 @@ def pixels_property(sentence: str, **more):
 
 def texture_mapped_property():
     description = (
-        "Look the base colour's image up at every pixel instead of once a surfel. Textures are much sharper, and a "
-        "frame takes 3.6 to 6 times as long in software"
+        "Look up the base colour's image for every pixel instead of once per surfel. Textures are much "
+        "sharper, but frames take several times as long without a graphics card"
     )
     return BoolProperty(name="Texture-Mapped", description=description, default=False)
 

@@ -13,7 +13,7 @@ from .shading_models import get_shading_model
 
 #: sum_format -> (label, what it costs and gains)
 SUM_FORMATS = {
-    "float32": ("Float 32", "32 bytes a sample, exact with thousands of splats over a pixel"),
+    "float32": ("Float 32", "Exact, even with thousands of splats over a pixel"),
     "float16": (
         "Float 16",
         "Takes less memory. Precise with hundreds of splats over a pixel, wrong with thousands",

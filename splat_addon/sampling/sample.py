@@ -136,7 +136,7 @@ class SamplingRun:
     def finished(
         self, arrays: dict[str, np.ndarray], images: tuple[Spans, ...], missed: tuple, report: Callable[[float], None]
     ) -> Sampling:
-        """Of all samples, what needs their neighbours. missed: as `missed_components` has it of all of them."""
+        """The result after the steps that need neighbouring samples. missed: result of `missed_components`."""
         total = len(arrays["positions"])
         if self._chosen.merge is not None:
             arrays = self._chosen.merge(arrays, self.grid.spacing)

@@ -10,7 +10,9 @@ GERMAN = {
     ),
     "3-to-1": "3 zu 1",
     "Exact, even with thousands of splats over a pixel": ("Genau, auch bei Tausenden von Splats über einem Pixel"),
-    "Takes half the memory; differences from Float 32 are invisible": "Braucht halb so viel Speicher; Unterschiede zu Float 32 sind unsichtbar",
+    "Takes half the memory; differences from Float 32 are invisible": (
+        "Braucht halb so viel Speicher; Unterschiede zu Float 32 sind unsichtbar"
+    ),
     "3D Cursor": "3D-Cursor",
     "Exact, with twice the memory of 16 Bit": "Genau, mit doppelt so viel Speicher wie 16 Bit",
     (

@@ -42,7 +42,7 @@ def depth_parts(planning, kind: str, **fields) -> Part:
 
 
 def state(planning) -> dict:
-    """Of programs that add splats up."""
+    """State of programs that sum splats."""
     rasterizer, is_linear = planning.method.rasterizer, planning.find(depth_format.linear)[0]
     settings, in_space = planning.settings, rasterizer == "object_space"
     return {

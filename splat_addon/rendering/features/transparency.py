@@ -21,7 +21,7 @@ from .drawing import SPLAT_HOSTS
 
 #: Samples that are read on each side of a layer's.
 LAYER_MARGIN = 1
-#: Of a picture along each side, for which `OCCUPANCY` holds one value each.
+#: Blocks along each side of a picture; `OCCUPANCY` stores one value for each.
 OCCUPANCY_BLOCKS = 64
 CONSTANTS = {"OCCUPANCY_BLOCKS": OCCUPANCY_BLOCKS}
 VALUES = {"alpha_threshold": ("float", lambda tile: tile.settings.alpha_threshold)}

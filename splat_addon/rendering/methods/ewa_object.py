@@ -7,7 +7,7 @@ METHOD = Method(
     "ewa_object",
     label="EWA in Space",
     paper="Ren et al. 2002; view-independent object-space surface splatting, section 3, equation 10",
-    summary="The same filter joined in each splat's plane, drawn as a larger quad",
+    summary="EWA computed in each splat's plane, which is drawn as a larger quad",
     rasterizer="object_space",
     writes_depth=True,
 )

@@ -7,7 +7,7 @@ METHOD = Method(
     "sprites_unfiltered",
     label="Sprites, Unfiltered",
     paper="Botsch and Kobbelt 2003, sections 3.1 and 3.2",
-    summary="Discs in point sprites of which the nearest is seen: nothing blends, 0.65 to 0.7 of the time of Quads",
+    summary="Discs in point sprites, of which only the nearest is drawn without blending; faster than Quads",
     rasterizer="point_sprite",
     pixel_variance=1 / 12,
 )

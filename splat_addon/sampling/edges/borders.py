@@ -30,7 +30,7 @@ _ROUNDING = 1e-6
 _BEND = 2
 
 
-#: Of a triangle, over its longest edge: a lower one is the rounding of float32 coordinates.
+#: Minimum height of a triangle relative to its longest edge; below it, height is rounding error of float32 coordinates.
 _LEAST_HEIGHT = 1e-6
 
 
