@@ -6,6 +6,7 @@ from __future__ import annotations
 import sys
 import traceback
 from collections.abc import Callable
+from dataclasses import replace
 
 import bpy
 
@@ -34,6 +35,9 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
     if given is not None:
         _hand_over_given(engine, depsgraph)
         return
+    if engine.is_preview:
+        _render_preview(engine, depsgraph)
+        return
     settings = final_settings(depsgraph.view_layer, depsgraph.scene, outputs_of(depsgraph.view_layer))
     engine.update_stats("", "Reading surfels")
     resources = _acquire_resources()
@@ -52,6 +56,27 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
     finally:
         if (is_cancelled or _is_last_of_render(engine, depsgraph)) and not depsgraph.scene.render.use_persistent_data:
             _release_resources()
+
+
+def _render_preview(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
+    """The small picture of a material, world or light, of which nothing is said and nothing stays on the device: it is
+    drawn by a thread of its own, beside a final render."""
+    settings = final_settings(depsgraph.view_layer, depsgraph.scene, outputs_of(depsgraph.view_layer))
+    settings = replace(settings, samples=min(settings.samples, _PREVIEW_SAMPLES))
+    resources = _Resources()
+    try:
+        for number, view in enumerate(engine.get_result().views):
+            engine.active_view_set(view.name)
+            frame, _ = _picture(engine, depsgraph, resources, settings, (number, 1))
+            hand_over(engine, depsgraph.view_layer, view.name, frame)
+    except RenderCancelled:
+        pass
+    finally:
+        resources.renderer.release()
+
+
+#: A ball of a hundred pixels is smooth with so many.
+_PREVIEW_SAMPLES = 4
 
 
 def _hand_over_given(engine, depsgraph) -> None:
@@ -76,7 +101,7 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
             if time is not None:
                 go(time)
             exported, said = _read(depsgraph, resources)
-            if said.left_out and stops_where_broken(scene):
+            if said.left_out and not engine.is_preview and stops_where_broken(scene):
                 raise ValueError(_left_out_sentence(said.left_out))
             notes.counts |= said.counts
             yield exported, view_camera(engine, depsgraph)
@@ -131,7 +156,8 @@ def _read(depsgraph, resources: _Resources):
 def report_failure(engine: bpy.types.RenderEngine, error: Exception) -> None:
     """Report an error to Blender, which then writes no file, stops the animation and exits with 1 in background
     mode."""
-    _release_resources()
+    if not engine.is_preview:
+        _release_resources()
     engine.report({"ERROR"}, f"Surfel render failed: {sentence_of(error)}")
 
 

@@ -13,9 +13,7 @@ class SurfelSplattingEngine(bpy.types.RenderEngine):
     bl_idname = ENGINE
     bl_label = ENGINE_LABEL
     bl_use_gpu_context = True
-    # Previews render in their own thread during F12, and a render's textures can only be freed while its context is
-    # current (`final_render._Resources`); on 4.5 previews would abort Blender.
-    bl_use_preview = False
+    bl_use_preview = True
     bl_use_eevee_viewport = True
     bl_use_shading_nodes_custom = False
 

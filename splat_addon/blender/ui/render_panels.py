@@ -178,8 +178,8 @@ _NOT_JOINED = frozenset(
         "DATA_PT_preview",
     }
 )
-#: EEVEE's panels that edit what this engine reads too: nodes, pass indices, depth of field, overrides. 4.5 has one of
-#: them under a name of its own.
+#: EEVEE's panels for what this engine reads or draws too: nodes, previews, pass indices, depth of field, overrides.
+#: 4.5 has one of them under a name of its own.
 _JOINED_FROM_EEVEE = frozenset(
     {
         "DATA_PT_camera_dof",
@@ -190,6 +190,7 @@ _JOINED_FROM_EEVEE = frozenset(
         "EEVEE_MATERIAL_PT_settings",
         "EEVEE_NEXT_MATERIAL_PT_settings",
         "EEVEE_WORLD_PT_surface",
+        "MATERIAL_PT_preview",
     }
 )
 
