@@ -37,7 +37,7 @@ class SurfelRecord(bpy.types.PropertyGroup):
     sources: CollectionProperty(type=SurfelSource)
     kind: EnumProperty(
         name="Kind",
-        description="What the sources were converted as",
+        description="Whether surfaces or points of the sources were converted",
         items=(("MESH", "Surfaces", "Their surfaces were sampled"), ("POINTS", "Points", "Their points were taken")),
     )
     mesh: PointerProperty(type=SurfelConversionSettings)

@@ -711,7 +711,7 @@ GERMAN = {
     "Material inputs that could not be read, one per line": (
         "Materialeingänge, die nicht gelesen werden konnten, einer pro Zeile"
     ),
-    "What the sources were converted as": "Als was die Quellen umgewandelt wurden",
+    "Whether surfaces or points of the sources were converted": "Ob Flächen oder Punkte der Quellen umgewandelt wurden",
     "Which samples of the three axes become surfels": "Welche Proben der drei Achsen zu Surfels werden",
     "The balance between speed and accuracy": "Das Verhältnis von Geschwindigkeit und Genauigkeit",
     "Width": "Breite",

@@ -15,7 +15,7 @@ def _count(planning) -> int:
 
 
 def passes(planning):
-    """None; it says whether there are any."""
+    """No passes; records whether there are such splats."""
     why = "splats of {count} instances blend as deep as their surface asks for"
     count = planning.find(_count)
     return planning.counts("BLEND_DEPTH", count, why, "blend depths", "all splats blend as deep as epsilon says")
@@ -27,6 +27,7 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     if p.host in _HOSTS:
-        # A light's view is compared with places that the camera sees, and moved by less, surfaces shadow themselves.
+        # A shadow map is compared with points that the camera sees; if casters moved by less, surfaces would shadow
+        # themselves.
         words = ("blends_less",) if p.kind != "shadow" else ()
         yield Part("blend_depth", words, only="splats" if p.host == "visibility.frag" else "")

@@ -23,7 +23,7 @@ def _count(planning) -> int:
 
 
 def passes(planning):
-    """None; it says whether there are any."""
+    """No passes; records whether there are such splats."""
     why = "splats of {count} instances end at creases and borders, drawn by themselves"
     return planning.counts("CLIP_LINES", planning.find(_count), why, "clip lines", "all splats are whole")
 
@@ -40,7 +40,7 @@ def parts(planning, p):
 
 
 def _words(planning, p) -> tuple[str, ...]:
-    """How lines act: on places in the ellipse or in the picture, and blurred where the method blurs rims."""
+    """How lines act: on positions in the ellipse or in the picture, and blurred if the method blurs rims."""
     if p.host == "point_sprite.frag":
         return ("of_sprites",)
     if p.host == "visibility.frag":

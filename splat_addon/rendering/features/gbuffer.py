@@ -23,7 +23,7 @@ SPRITE_DEPTH = Texture("sprite_depth", "DEPTH32F")
 
 
 def depths_are_apart(planning, kind: str) -> bool:
-    """From normals."""
+    """Whether depths are summed separately from normals."""
     return kind == "layer" or planning.settings.sum_format == "float16"
 
 

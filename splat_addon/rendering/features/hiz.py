@@ -9,7 +9,7 @@ from __future__ import annotations
 from ..plan.graph import Part, Pass, Texture, fill, of_samples
 from . import depth_bounds
 
-#: Samples along each side of what it holds one value for.
+#: Samples along each side of a cell.
 HIZ_CELL = 4
 CONSTANTS = {"HIZ_CELL": HIZ_CELL}
 
@@ -23,7 +23,7 @@ FARTHEST = Texture("hiz", "R32F", _of_cells)
 
 
 def pays(planning) -> str:
-    """Why hidden splats are looked for, or nothing."""
+    """The reason to look for hidden splats, or ""."""
     if planning.method.rasterizer != "screen_space":
         return ""
     if not planning.method.culls_hidden:

@@ -14,7 +14,7 @@ ROW_DEPTH = Texture("row_holdout_depth", "DEPTH32F", silhouettes.of_rows)
 
 
 def _count(planning) -> int:
-    """0 where the nearest splat wins: there is no depth but its own."""
+    """Number of holdouts; 0 for methods in which the nearest splat wins, because their only depth is that splat's."""
     if planning.method.rasterizer == "point_sprite":
         return 0
     return sum(instance.is_holdout for instance in planning.shown)

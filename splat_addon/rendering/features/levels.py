@@ -19,7 +19,7 @@ DRAWN = {"drawn_splats": lambda tile, placed: tile.cut(placed).numbers}
 
 
 def merging(planning) -> frozenset:
-    """The instances of which there may be merged surfels in the picture; of no others are there any in its shadows."""
+    """The instances that may have merged surfels in the picture; only these may have them in shadow maps."""
     if planning.find(lit_splats.wanted):
         return frozenset()
     tolerance = planning.settings.detail_tolerance

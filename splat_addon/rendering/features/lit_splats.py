@@ -47,7 +47,7 @@ def each(planning) -> Pass | None:
 
 
 def light(planning, instances) -> Pass:
-    """What lights the splats of one instance, of these: its texture has a texel a splat of the largest."""
+    """Light the splats of one instance; the texture has one texel per splat of the largest instance."""
     rows = max(row_count(len(instance.surfels)) for instance in instances)
     planning.facts["lit_rows"] = max(rows, planning.facts.get("lit_rows", 0))
     own = Part("lit_splats", inputs=storage_samplers(planning.settings.storage), writes=(LIT,))

@@ -12,7 +12,7 @@ def _count(planning) -> int:
 
 
 def passes(planning):
-    """None; it says whether there are any."""
+    """No passes; records whether there are any."""
     why = "{count} instances are polygons near the camera, or surfels beyond that"
     return planning.counts("SPLIT", planning.find(_count), why, "split objects", "all are drawn whole")
 

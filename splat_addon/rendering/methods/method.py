@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the registry says of a method."""
+"""A registry entry for a method."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the registry says of a shading model."""
+"""A registry entry for a shading model."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ def _judged(start, end, line, owner) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _places() -> tuple[np.ndarray, np.ndarray]:
-    """(2, p) float32 places in the unit circle, and (p,) how much of the splat is about each."""
+    """(2, p) float32 points in the unit circle, and (p,) the weight of the splat around each."""
     angles = [(np.arange(count) + 0.5) * 2 * np.pi / count for _, count in _RINGS]
     places = [radius * np.stack([np.cos(a), np.sin(a)]) for (radius, _), a in zip(_RINGS, angles, strict=True)]
     weights = [np.full(count, radius * np.exp(-2 * radius**2) / count) for radius, count in _RINGS]
