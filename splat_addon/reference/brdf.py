@@ -113,7 +113,7 @@ def _edge(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(n,) of two (n, 3)."""
+    """(n,) dot products of (n, 3) vectors."""
     return np.einsum("ij,ij->i", a, b)
 
 

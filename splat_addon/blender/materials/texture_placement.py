@@ -101,7 +101,7 @@ def _as_point(location, rotation, scale):
 
 
 def _as_texture(location, rotation, scale):
-    """The inverse of a point's; a scale of 0 divides as shaders do."""
+    """The inverse of a point mapping; a scale of 0 divides as in shaders."""
     inverse = np.divide(1, scale, out=np.zeros(3), where=scale != 0)[:, None] * rotation.T
     return inverse, -inverse @ location
 

@@ -43,10 +43,9 @@ def projected_ellipse(plane: Plane, pixel: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def in_footprint(plane: Plane, points: np.ndarray, pixel: np.ndarray, grown, end: float = 1.0) -> np.ndarray:
-    """(M,) bool: which points lie in an ellipse about the projected one or, where `end` is above 1, in the triangle
-    that is drawn around it and within so many times the ellipse. grown: its half-axes in pixels, (2,), as a function
-    of the projected ones.
-    """
+    """(M,) bool: which points are in the footprint. It is an ellipse or, if `end` is above 1, the part of the triangle
+    around it within `end` times the ellipse. grown: function from the half-axes of the projected ellipse to those of
+    the footprint, (2,), in pixels."""
     axes, size, middle = projected_ellipse(plane, pixel)
     x, y = ((((points - middle) / pixel) @ axes / grown(size)) @ axes.T).T
     return (x >= -1) & (x + 3**0.5 * abs(y) <= 2) & (x * x + y * y <= end**2)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a mesh's surface breaks off: at creases, at borders of materials and colours, and where it is open.
+"""Finds where a mesh's surface breaks off: at creases, at borders of materials and colours, and at open borders.
 
-There splats are to end: `clipping` cuts them at these edges.
+`clipping` cuts splats at these edges.
 """
 
 from __future__ import annotations
@@ -217,7 +217,7 @@ def _breaks(mesh: TriangleMesh, normals: np.ndarray, looks, one: _Corners, other
 
 
 def _looks(mesh: TriangleMesh) -> np.ndarray | None:
-    """(T,) numbers of the surfaces, the same for those that are the same; None where all triangles look alike."""
+    """(T,) numbers of the surfaces, equal for equal surfaces; None if all triangles look alike."""
     if mesh.materials is None or len(mesh.surfaces) == 1:
         return None
     names = np.arange(len(mesh.surfaces))
@@ -241,12 +241,12 @@ def _unit_normals(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(n,) of (n, 3)."""
+    """(n,) dot products of (n, 3) vectors."""
     return a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
-    """(n, 3) float64 of unit length; 0 where there is none."""
+    """(n, 3) float64 unit vectors; 0 for vectors without length."""
     vectors = np.asarray(vectors, np.float64)
     with np.errstate(invalid="ignore", over="ignore"):
         length = np.sqrt(_dots(vectors, vectors))[:, None]

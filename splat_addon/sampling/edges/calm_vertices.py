@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which vertices of a mesh can have no border edge at them: a look at every corner once, which spares a search of all
-edges for those that `borders` wants.
+"""Finds the vertices of a mesh that cannot be on a border edge. One pass over the corners saves `borders` a search of
+all edges.
 
-One direction stands for a vertex: its shading normal in some triangle. What lies within half an angle of it lies within
+One direction represents a vertex: its shading normal in some triangle. Directions within half an angle of it are within
 that angle of each other. Colours and materials are the same as in that triangle, and the triangles around close a fan.
 """
 
@@ -79,7 +79,7 @@ def _directions(mesh: TriangleMesh, some: np.ndarray, normals: np.ndarray) -> np
 
 
 def _dot(a, b) -> np.ndarray:
-    """(n,) of (3, n)."""
+    """(n,) dot products of (3, n) vectors."""
     result = a[0] * b[0]
     result += a[1] * b[1]
     result += a[2] * b[2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cuts surfels at the borders of their surface: each gets the lines of `clip_lines` that its mesh asks for.
+"""Cuts surfels at the borders of their surface: each gets the clip lines (`clip_lines`) that its mesh requires.
 
 Flow: `borders` -> which surfels meet which edges, as the ellipse sees them (`meetings`) -> one line, or the two that
 keep what lies within the border best.
@@ -17,7 +17,7 @@ from .borders import Borders
 from .meetings import BEYOND, Images, Meetings, meetings
 from .ragged_borders import two_lines
 
-#: A border within this of a line, in half-axes, is that line.
+#: A border that deviates from a line by less than this, in half-axes, is on the line.
 _SAME_LINE = 0.06
 
 #: What two lines keep: the first one's side, that of both, that of either, or all.
@@ -26,7 +26,7 @@ _FIRST, _BOTH, _EITHER, _ALL = range(4)
 #: If a splat meets more edges than this, the farther ones are ignored when looking for its corner.
 _MOST_EDGES = 6
 
-#: Keeps the whole ellipse.
+#: The line that keeps the whole ellipse.
 _NO_LINE = np.array([[1], [0], [1]], np.float32)
 
 #: Bits of what meetings of a surfel are ordered by: how near the edge is, and how far its line.
@@ -48,7 +48,7 @@ class Clipping:
 def clip(
     arrays: dict[str, np.ndarray], images: Images, borders: Borders, grid: Grid, at_centres: bool = True
 ) -> Clipping:
-    """Where surfels end.
+    """Find the clip lines of surfels.
 
     arrays: by field of `Surfels`, positions relative to the grid's middle. images: which of them each image sees.
     at_centres: whether they lie at the centres of cells.
@@ -71,7 +71,7 @@ def clip(
 
 
 def _one_side_of_each(met: Meetings, arrays: dict[str, np.ndarray], borders: Borders) -> np.ndarray:
-    """The meetings without those where another side of the same edge is more like the surfel."""
+    """The meetings without those for which another side of the same edge matches the surfel better."""
     keys = met.surfel * (borders.edges.max() + 1) + borders.edges.take(met.side)
     order = np.argsort(keys)
     keys = keys.take(order)
@@ -88,7 +88,7 @@ def _one_side_of_each(met: Meetings, arrays: dict[str, np.ndarray], borders: Bor
 
 
 def _unlikeness(met: Meetings, arrays: dict[str, np.ndarray], borders: Borders) -> np.ndarray:
-    """(m,) how much a surfel differs from the face of a side."""
+    """(m,) difference between a surfel and the face of a side."""
     surfel, side = met.surfel, met.side
     result = 2 - 2 * met.facing + 0.01 * (met.line[2] < 0)
     for values, of_side in ((arrays["normals"], borders.shading), (arrays["colors"], borders.colors)):
@@ -111,7 +111,7 @@ def _nearest_first(met: Meetings) -> np.ndarray:
     bits = len(met).bit_length()
     if int(met.surfel.max()).bit_length() + _DISTANCE_BITS + _LINE_BITS + bits > 63:
         return np.lexsort((near, met.surfel))
-    # Sorted with their numbers in the lowest bits: an order takes several times as long.
+    # Sorted together with their numbers in the lowest bits, because an argsort takes several times as long.
     keys = met.surfel << (_DISTANCE_BITS + _LINE_BITS)
     keys |= near
     keys <<= bits

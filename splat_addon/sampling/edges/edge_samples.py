@@ -75,7 +75,7 @@ def edge_samples(
 
 
 def _samples(far: TriangleMesh, triangle, shares, materials, step, number) -> Samples:
-    """What is known of the samples. step: their distance, in lengths of their edge."""
+    """Inputs for evaluating the materials of the samples. step: their distance, in lengths of their edge."""
     colors = None if far.corner_colors is None else _mean(far.corner_colors[triangle], shares).T
     if far.corner_uvs is None:
         return Samples(materials, colors)

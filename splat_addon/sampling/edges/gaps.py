@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""More surfels along borders that the others, once they end there, leave bare: corners with more lines than two, holes
-of a few cells, and faces so narrow that no ray met them and only splats from beside them hid it.
-"""
+"""Adds surfels along borders that clipped surfels leave bare: at corners with more than two lines, in holes of a few
+cells, and on faces so narrow that no ray hit them and only neighbouring splats covered them."""
 
 from __future__ import annotations
 
@@ -65,7 +64,7 @@ def gap_surfels(
 
 
 def _bare(mesh: TriangleMesh, borders: Borders, clipping: Clipping, grid: Grid):
-    """(k,) sides of borders and (k, 3) places beside them, in their triangles, that no surfel covers."""
+    """(k,) sides of borders and (k, 3) points beside them, in their triangles, that no surfel covers."""
     along = borders.end - borders.start
     counts = np.ceil(np.linalg.norm(along, axis=1) / (_STEP * grid.spacing)).astype(np.int64) + 1
     # A straight row of places beside the edge: all are moved by the same share towards the middle.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which surfels may reach which border edges: both are looked up in the layered depth image that the surfels come from.
+"""Finds the surfels that may reach each border edge, in the layered depth image that the surfels come from.
 
 Samples lie at the centres of its cells, and along its axis a splat is a disc. So an edge is scan-converted into the
 cells that it comes near to, row by row, and a run of cells is a run of the surfels, once these are in the order of
@@ -16,13 +16,13 @@ from ..ldc.scan_conversion import batches, expand
 #: Around the image, in cells: samples lie in it, other surfels and edges at most this far outside.
 _MARGIN = 3
 
-#: An image of more cells than this, and than so many a surfel, is searched instead of counted.
+#: An image with more cells than this, and more cells per surfel than this, is searched by sorting instead of counting.
 _FEW_CELLS, _CELLS_A_SURFEL = 1 << 20, 16
 
 #: Tolerance of a reach, in cells, for float32 rounding.
 _SLACK = 1e-3
 
-#: Pairs at a time.
+#: Pairs per batch.
 _PAIRS = 32768
 
 
@@ -64,7 +64,7 @@ def image_neighbours(
     there = np.flatnonzero(counts)
     edge, counts, firsts_of = edge.take(there), counts.take(there), firsts_of.take(there)
     place = [positions[:, a].take(near) * scale for a in (along, up, axis)]
-    # A part at a time, which stays in the processor's cache.
+    # In batches that fit into the processor's cache.
     parts = [
         _near_planes(place, firsts_of[part], counts[part], edge[part], planes, np.float32(depth))
         for part in batches(counts, _PAIRS)

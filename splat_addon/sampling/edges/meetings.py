@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where borders go through splats: each edge of the same piece of surface as its splat sees it.
+"""Finds where borders cross splats: each edge of the same piece of surface, relative to the splat.
 
 A place on a border is seen along the axis of the surfel's image, and given in half-axes of its splat, in which this is
 the unit circle.
@@ -19,7 +19,7 @@ from .image_neighbours import image_neighbours
 #: Rows of surfels by the axis of the image that sees them: a slice or their numbers.
 Images = list[tuple[int, slice | np.ndarray]]
 
-#: A face is looked at in the images whose axis has at least this share of its normal.
+#: A face is considered in the images whose axis has at least this share of its normal.
 _LEAST_SHARE = 0.4
 
 #: Least cosine between a surfel's plane and a face that its border belongs to: of one smooth piece of surface.
@@ -99,7 +99,7 @@ def _in_image(arrays, axis: int, rows: slice | np.ndarray, ends, normals, grid: 
     near, surfel, edge, above = image_neighbours(positions, axis, ends[:, :2], planes, search, farthest, grid)
     off = np.abs(above * normals[2].take(edge))
     inverse_spacing = np.float32(1 / grid.spacing)
-    # Only now, as few are left, what they look like.
+    # Only now that few are left, gather their attributes.
     is_left = np.zeros(len(near), bool)
     is_left[surfel] = True
     left, number = np.flatnonzero(is_left), np.cumsum(is_left)
@@ -151,7 +151,8 @@ def _in_circle(inverse: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
 
 
 def nearest_on_segment(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(m,) share of the way at which a segment of the plane is nearest to (0, 0), and (m,) its distance there."""
+    """(m,) fraction of the way along a segment in the plane at which it is nearest to (0, 0), and (m,) its distance
+    there."""
     (x, y), (u, v) = start, end - start
     share = -(x * u + y * v)
     share /= np.maximum(u * u + v * v, np.float32(1e-30))

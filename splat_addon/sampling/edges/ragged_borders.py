@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which two lines stand best for a border of many short edges in one splat: judged at places all over it.
+"""Finds the two lines that best approximate a border of many short edges in one splat, judged at points all over it.
 
 A place in the circle belongs to the surface if it is inside of the edge that is nearest to it. The first line is that
 of the surfel's nearest edge; each other one is tried as its second, at a convex and at a reflex corner, and none.
@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-#: Where a splat is judged: rings of places in the unit circle.
+#: The points at which a splat is judged: rings in the unit circle.
 _RINGS = ((0.35, 4), (0.7, 7), (0.95, 11))
 
-#: Edges at a time.
+#: Edges per batch.
 _CHUNK = 2048
 
 
@@ -25,7 +25,7 @@ def two_lines(start: np.ndarray, end: np.ndarray, line: np.ndarray, owner: np.nd
     """
     starts = np.flatnonzero(np.append(True, owner[1:] != owner[:-1]))
     parts = []
-    # Few at a time: all places of them stay in the processor's cache.
+    # In small batches, whose points stay in the processor's cache.
     stops = np.append(np.searchsorted(starts, np.arange(0, len(owner), _CHUNK)), len(starts))
     for low, high in zip(stops[:-1].tolist(), stops[1:].tolist(), strict=True):
         if high > low:
@@ -44,7 +44,7 @@ def _judged(start, end, line, owner) -> tuple[np.ndarray, np.ndarray]:
     first = inside.take(starts, axis=1).take(owner, axis=1)
     shown = first, first & inside, first | inside, np.True_
     wrongs = np.stack([weights @ (kept != belongs).astype(np.float32) for kept in shown], axis=1)
-    # One line where a second gains nothing.
+    # One line if a second gains nothing.
     wrongs[:, 0] -= 1e-4
     kind = wrongs.argmin(axis=1)
     order = np.lexsort((wrongs.min(axis=1), owner))
