@@ -100,5 +100,7 @@ void blurs_lines_bound(inout Candidate c) {
   if (c.in_space || back == vec2(0.0) || c.depth - c.seen.z > (1.0 + 4.0 * draw.epsilon) * c.plane.radius) return;
   ivec2 last = textureSize(depth_bounds, 0) - 1, at = clamp(ivec2(floor(gl_FragCoord.xy + back)), ivec2(0), last);
   float before = plane_depth(c.plane, place_at(c.plane, vec2(at) + 0.5));
-  if (before <= texelFetch(depth_bounds, at, 0).z) c.compared = min(c.compared, c.seen.z);
+  bool is_seen = before <= texelFetch(depth_bounds, at, 0).z;
+  if (!is_seen) discard;
+  c.compared = min(c.compared, c.seen.z);
 }

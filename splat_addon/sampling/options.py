@@ -54,9 +54,10 @@ class SamplingOptions(Density):
         size.
     texture_mapped: surfels whose colour is a single image also store their texture coordinates, so that the image is
         looked up at render time.
-    crease_angle: radians; splats end at clip lines (`edges.clipping`) where the surface turns by more than this, and at
-        borders of materials, colours and the surface itself; None: no clip lines. fits_blending: each surfel gets its
-        own blend depth from the surface (`attributes.blend_depths`).
+    crease_angle: radians; splats end at clip lines (`edges.clipping`) where the surface turns by more than this (less
+        beside large triangles, see `edges.borders`), and at borders of materials, colours and the surface itself;
+        None: no clip lines. fits_blending: each surfel gets its own blend depth from the surface
+        (`attributes.blend_depths`).
 
     Raises ValueError with one sentence for an unusable option.
     """

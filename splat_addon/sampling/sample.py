@@ -7,6 +7,7 @@ size.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
@@ -107,7 +108,8 @@ class SamplingRun:
         self._seams = seam_edges(mesh) if is_mapped and mesh.corner_uvs is not None else None
         self._tangents = layered_tangents(mesh) if self._sampler.needs_tangents else None
         angle = options.crease_angle if clips else DEFAULT_CREASE_ANGLE
-        self._edges = survey_edges(mesh, angle) if clips or options.fits_blending else None
+        reach = options.splat_size * self.grid.spacing if clips else math.inf
+        self._edges = survey_edges(mesh, angle, reach) if clips or options.fits_blending else None
         self._bends = (self._edges.bends, self._edges.sizes) if options.fits_blending else None
 
     @property

@@ -17,6 +17,7 @@ from splat_addon.rendering.plan.executor import describe
 from splat_addon.rendering.upload.packing import pack_clip_lines
 from splat_addon.rendering.upload.storages import STORAGES
 from splat_addon.rendering.upload.stored_order import stored_order
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Channel, Surface, TriangleMesh, VertexColors, sample_mesh
 from splat_addon.surfels import concatenate
 from tests.rendering.creased import angle_iron, clipped_iron
 
@@ -65,6 +66,29 @@ def test_in_a_concave_corner_the_filter_reaches_over_both_faces(render):
     frame, truth = render(scene, camera, replace(FLAT, method="mip", supersampling=1)), iron_truth(camera)
     apart = np.abs(over_grey(frame.color, frame.coverage) - over_grey(truth.color, truth.coverage))
     assert apart.max() < 0.13
+
+
+def lined_roof():
+    """A red roof over its windscreen, with a green lining that meets them at the fold and lies under both."""
+    ridge, eaves = np.array([(-2, 0, 0), (2, 0, 0)]), np.array([(0, -2, -0.4), (0, 1.7, -1.1)])
+    corners = [*ridge, *(ridge + eaves[0]), *(ridge + eaves[1])]
+    corners += [*(ridge + eaves[0] - (0, 0, 0.5)), *(ridge + eaves[1] - (0, 0, 0.5))]
+    triangles = np.array([(2, 3, 1), (2, 1, 0), (0, 1, 5), (0, 5, 4), (6, 1, 7), (6, 0, 1), (0, 9, 1), (0, 8, 9)])
+    colors = np.ones((8, 3, 4), np.float32)
+    colors[:4, :, 1:3], colors[4:, :, (0, 2)] = 0, 0
+    surface = Surface(Channel((1, 1, 1, 1), VertexColors()))
+    return TriangleMesh(np.array(corners, float), triangles, corner_colors=colors, surfaces=(surface,))
+
+
+@pytest.mark.parametrize("method", ["mip", "ewa"])
+@pytest.mark.parametrize(("pixels", "most"), [(48, 15), (96, 25)])
+def test_past_its_line_a_splat_does_not_show_that_is_hidden_before_it(method, pixels, most, render):
+    """Past the fold the lining's plane lies before the other face: it showed in 36 and 90 pixels."""
+    surfels = sample_mesh(lined_roof(), resolution=64, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
+    camera = Camera.perspective(look_at((1.1, -3.0, 4.2), (0.1, 0, -0.2)), 0.5, (pixels, pixels), 0.1, 100)
+    frame = render(Scene((surfels,)), camera, replace(FLAT, method=method, supersampling=1))
+    assert np.count_nonzero(frame.coverage > 0.9) > 0.4 * pixels**2
+    assert np.count_nonzero(frame.color[..., 1] > 0.2) <= most
 
 
 @pytest.mark.parametrize(("method", "truth"), [("quad", render_exact), ("ewa", render_ewa)])

@@ -97,6 +97,25 @@ def test_planes_that_differ_by_just_the_angle_make_no_crease():
     assert len(borders) == 24 and np.all(borders.start[:, 2] == borders.end[:, 2])
 
 
+@pytest.mark.parametrize(("degrees", "heights", "is_crease"), [
+    (4, (100, 100), False), (6, (100, 100), True), (14, (1, 1), False), (18, (1.8, 1.8), True), (24, (0.7, 0.7), False),
+    (31, (0.1, 0.1), True), (14, (0.2, 6), True), (14, (6, 0.2), True),
+])  # fmt: skip
+@pytest.mark.parametrize("is_smooth", [True, False])
+def test_a_fold_is_a_crease_the_sooner_the_higher_a_face_is_beside_a_splat(degrees, heights, is_crease, is_smooth):
+    """heights: of both triangles over their fold, in reaches of a splat. The crease's angle is 30 degrees."""
+    half, run = np.radians(degrees) / 2, 3 * max(heights)
+    y, z = np.cos(half), -np.sin(half)
+    there, back = np.array((0, y, z)) * heights[0], np.array((0, -y, z)) * heights[1]
+    positions = np.array([(-run, 0, 0), (run, 0, 0), there, back])
+    mesh = TriangleMesh(positions, np.array([(0, 1, 2), (1, 0, 3)]))
+    flat = np.repeat(survey_normals(mesh)[:, None], 3, axis=1)
+    mesh = TriangleMesh(positions, mesh.triangles, np.full((2, 3, 3), (0.0, 0, 1)) if is_smooth else flat)
+    for scale in (1e-5, 1, 1e5):
+        there = TriangleMesh(positions * scale, mesh.triangles, mesh.corner_normals)
+        assert len(survey_edges(there, np.radians(30), scale).borders) == (6 if is_crease else 4)
+
+
 def test_bends_are_about_the_angles_between_neighbours(sphere):
     bends = survey_edges(drop_unusable(sphere)[0]).bends
     a, b, c = sphere.positions[sphere.triangles].swapaxes(0, 1)

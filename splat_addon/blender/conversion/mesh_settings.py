@@ -119,7 +119,10 @@ class ConversionProperties:
     )
     crease_angle: FloatProperty(
         name="Crease Angle",
-        description="The surface has an edge where it, or its shading, turns by more than this angle",
+        description=(
+            "The surface has an edge where it, or its shading, turns by more than this angle. Beside faces that are "
+            "larger than a surfel, the angle is smaller, down to a sixth"
+        ),
         subtype="ANGLE",
         default=DEFAULT_CREASE_ANGLE,
         min=math.radians(1),

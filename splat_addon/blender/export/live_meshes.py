@@ -21,6 +21,7 @@ import numpy as np
 from ...rendering import Instance, Material, PolygonInstance, Polygons, SurfaceTexture
 from ...rendering.upload.packing import MAX_SPLATS
 from ...sampling import (
+    DEFAULT_CREASE_ANGLE,
     STRETCHED_SHARE,
     DeformingSurfels,
     NotSeenError,
@@ -274,13 +275,16 @@ class LiveMeshes:
         predicted = predict_count(mesh, spacing=spacing)
         if predicted > MAX_SURFELS:
             raise ValueError(f"It would be {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
-        live.deforming, live.density, live.spacing = _deforming(mesh, spacing, texture_mapped), density, spacing
+        live.deforming = _deforming(mesh, spacing, texture_mapped, ends_at_edges=live.parts is None)
+        live.density, live.spacing = density, spacing
         self.counts["sampled"] += 1
         return live.deforming.at(mesh)[0]
 
 
-def _deforming(mesh: TriangleMesh, spacing: float, texture_mapped: bool) -> DeformingSurfels:
-    return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped)
+def _deforming(mesh: TriangleMesh, spacing: float, texture_mapped: bool, ends_at_edges: bool) -> DeformingSurfels:
+    """As the operator converts it. ends_at_edges: not a part of a mesh, whose border goes on in polygons."""
+    edges = {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True} if ends_at_edges else {}
+    return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped, **edges)
 
 
 def _by_resolution(live: _LiveMesh, resolution: float, depsgraph) -> float:

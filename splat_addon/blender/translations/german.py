@@ -645,8 +645,10 @@ GERMAN = {
         "Zeichnet jeden Splat in einem Quadrat, das seinen Filter beschneidet, und große Splats abseits der "
         "Achse (Botsch et al. 2005, Abschnitte 3 und 5, im Quadrat des Artikels)"
     ),
-    "The surface has an edge where it, or its shading, turns by more than this angle": (
-        "Die Fläche hat eine Kante, wo sie oder ihre Schattierung sich um mehr als diesen Winkel dreht"
+    "The surface has an edge where it, or its shading, turns by more than this angle. Beside faces that are "
+    "larger than a surfel, the angle is smaller, down to a sixth": (
+        "Die Fläche hat eine Kante, wo sie oder ihre Schattierung sich um mehr als diesen Winkel dreht. Neben "
+        "Flächen, die größer als ein Surfel sind, ist der Winkel kleiner, bis zu einem Sechstel"
     ),
     (
         "Let the surfels follow their source, with its parent, animation and constraints. If off, they are a "

@@ -11,7 +11,11 @@ from __future__ import annotations
 import numpy as np
 
 #: In radii: with less than this, rounding would decide which of two coplanar splats is visible.
-LEAST_BLENDING = 0.05
+LEAST_BLENDING = 0.01
+
+#: The least blend depth, in radii, of splats on a triangle that bends by more than `BENT` radians: splats beside them
+#: may bend more.
+LEAST_BENT, BENT = 0.05, 0.01
 
 #: The smallest share of a bend that counts: the share for a splat over one edge of a large triangle.
 _OVER_ONE = 0.25
@@ -20,4 +24,5 @@ _OVER_ONE = 0.25
 def blend_depths(bends: np.ndarray, sizes: np.ndarray, radii: np.ndarray) -> np.ndarray:
     """(t,) float32, in radii. bends, sizes: (t,) of triangles, as `EdgeSurvey` has them. radii: (t,) of splats."""
     reach = np.maximum(radii / np.maximum(sizes, 1e-37), _OVER_ONE)
-    return np.clip(bends * reach, LEAST_BLENDING, 1).astype(np.float32)
+    least = np.where(bends > BENT, LEAST_BENT, LEAST_BLENDING)
+    return np.clip(bends * reach, least, 1).astype(np.float32)

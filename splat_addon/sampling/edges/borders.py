@@ -20,6 +20,10 @@ from .calm_vertices import calm_vertices
 #: Radians; planes that differ by more make a crease.
 DEFAULT_CREASE_ANGLE = math.radians(30)
 
+#: Beside a triangle that is higher than splats reach, the crease's angle is smaller in proportion, down to this share
+#: of it. Such folds are few. Splats that reach over them stick out of silhouettes, and hide and shadow the face beyond.
+LEAST_FOLD = 1 / 6
+
 #: Largest difference of a component of colour across an edge where it still goes on.
 COLOR_BREAK = 0.02
 
@@ -72,15 +76,18 @@ class EdgeSurvey:
     sizes: np.ndarray
 
 
-def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE) -> EdgeSurvey:
+def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE, reach: float = math.inf) -> EdgeSurvey:
     """The edges of a usable mesh.
 
     angle: radians; an edge is a crease where its faces' planes, or the shading normals at one of its ends, differ by
-    more. Vertices at one place are one. An edge of one face, or of more than two, is a border of each. Faces that wind
+    more; beside a triangle that is larger than the splats, a share of it. reach: of the splats, object units.
+    Vertices at one place are one. An edge of one face, or of more than two, is a border of each. Faces that wind
     differently are compared as if they did not.
     """
-    normals, sizes = _unit_normals(mesh)
-    triangles, numbers, edge, bends = _breaking(mesh, normals, angle)
+    normals, sizes, heights = _unit_normals(mesh)
+    angles, large = np.full(len(mesh), float(angle)), np.flatnonzero(heights > reach)
+    angles[large] *= np.maximum(reach / heights[large], LEAST_FOLD)
+    triangles, numbers, edge, bends = _breaking(mesh, normals, angles)
     a, b = mesh.triangles[triangles, numbers], mesh.triangles[triangles, (numbers + 1) % 3]
     start, end = mesh.positions.take(a, axis=0), mesh.positions.take(b, axis=0)
     corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles.take(triangles, axis=0)))
@@ -112,22 +119,24 @@ def _have_planes(corners: np.ndarray, doubled: np.ndarray) -> np.ndarray:
     return np.sqrt(_dots(doubled, doubled)) > _LEAST_HEIGHT * longest
 
 
-def _breaking(mesh: TriangleMesh, normals: np.ndarray, angle: float):
+def _breaking(mesh: TriangleMesh, normals: np.ndarray, angles: np.ndarray):
     """(B,) triangles, (B,) corners at which their edge starts, (B,) edges, ascending; and (T,) bends.
 
-    normals: (3, T) float32, unit. Of an edge with a calm end nothing more needs to be known.
+    normals: (3, T) float32, unit. angles: (T,) radians; the smaller of both faces' makes a crease. Of an edge with
+    a calm end nothing more needs to be known.
     """
     one_of = twins(mesh.places)
     places = corner_indices(mesh.triangles if one_of is None else one_of.take(mesh.triangles))
     looks = _looks(mesh)
-    calm = calm_vertices(mesh, places, normals, angle, looks)
+    calm = calm_vertices(mesh, places, normals, angles, looks)
     bends = _BEND * np.arccos(np.clip(calm.cosines, -1, 1))
     triangle, number, ends = _restless_edges(places, ~calm.is_calm)
     order, starts, counts = _grouped(mesh.places.take(ends[0]) + mesh.places.take(ends[1]))
     pairs = np.flatnonzero(counts == 2)
     sides = [order.take(starts.take(pairs) + side) for side in (0, 1)]
     one, other = (_Corners(triangle.take(side), number.take(side), ends[0].take(side)) for side in sides)
-    breaks, cosine = _breaks(mesh, normals, looks, one, other, np.float32(np.cos(angle) - _ROUNDING))
+    least = np.cos(np.minimum(angles.take(one.triangle), angles.take(other.triangle))) - _ROUNDING
+    breaks, cosine = _breaks(mesh, normals, looks, one, other, least.astype(np.float32))
     is_border = counts != 2
     is_border[pairs] = breaks
     goes_on = np.flatnonzero(~breaks & (cosine < 1))
@@ -189,8 +198,8 @@ class _Corners:
     place: np.ndarray
 
 
-def _breaks(mesh: TriangleMesh, normals: np.ndarray, looks, one: _Corners, other: _Corners, least: float):
-    """(p,) bool of edges with two sides; and (p,) cosines of their planes."""
+def _breaks(mesh: TriangleMesh, normals: np.ndarray, looks, one: _Corners, other: _Corners, least: np.ndarray):
+    """(p,) bool of edges with two sides; and (p,) cosines of their planes. least: (p,) of those that go on."""
     s, t = one.triangle, other.triangle
     ahead = one.place == other.place
     cosine = sum(component.take(s) * component.take(t) for component in normals)
@@ -226,18 +235,25 @@ def _looks(mesh: TriangleMesh) -> np.ndarray | None:
     return names.take(np.minimum(mesh.materials, len(names) - 1)) if names.any() else None
 
 
-def _unit_normals(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
-    """(3, T) float32: of the triangles' planes; and (T,) float32, the root of twice their areas."""
+def _unit_normals(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(3, T) float32: of the triangles' planes; (T,) float32, the root of twice their areas; and (T,) float32, heights
+    over their longest edges."""
     normals, sizes = np.empty((3, len(mesh)), np.float32), np.empty(len(mesh), np.float32)
+    heights = np.empty(len(mesh), np.float32)
     for chunk in triangle_chunks(len(mesh)):
-        vectors = doubled_areas(corners_at(mesh.positions.T, corner_indices(mesh.triangles[chunk])))
+        corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles[chunk]))
+        edges = corners - corners[:, (1, 2, 0)]
+        edges *= edges
+        longest = np.sqrt(np.maximum(edges.sum(axis=0).max(axis=0), 1e-300))
+        vectors = doubled_areas(corners)
         square = vectors[0] * vectors[0]
         square += vectors[1] * vectors[1]
         square += vectors[2] * vectors[2]
         length = np.sqrt(np.maximum(square, 1e-300, out=square), out=square)
         np.sqrt(length, out=sizes[chunk], casting="same_kind")
+        np.divide(length, longest, out=heights[chunk], casting="same_kind")
         np.divide(vectors, length, out=normals[:, chunk], casting="same_kind")
-    return normals, sizes
+    return normals, sizes, heights
 
 
 def _dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:

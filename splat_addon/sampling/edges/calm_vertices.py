@@ -27,10 +27,13 @@ class CalmVertices:
     cosines: np.ndarray
 
 
-def calm_vertices(mesh: TriangleMesh, places: np.ndarray, normals: np.ndarray, angle: float, looks) -> CalmVertices:
-    """places: (3, T) the vertex that stands for each corner's place. normals: (3, T) float32, unit. angle: radians, of
-    a crease. looks: (T,) of what each triangle is made of, or None where all are of the same."""
-    count, least = len(mesh), np.float32(np.cos(min(angle / 2, np.pi / 2)))
+def calm_vertices(
+    mesh: TriangleMesh, places: np.ndarray, normals: np.ndarray, angles: np.ndarray, looks
+) -> CalmVertices:
+    """places: (3, T) the vertex that stands for each corner's place. normals: (3, T) float32, unit. angles: (T,)
+    radians, of a crease; around a vertex the smallest counts. looks: (T,) of what each triangle is made of, or None
+    where all are of the same."""
+    count, least_at = len(mesh), _least_cosines(mesh, places, angles)
     some = np.zeros(len(mesh.positions), np.intp)
     for k in range(3):
         some[places[k]] = np.arange(k, 3 * count, 3)
@@ -51,6 +54,7 @@ def calm_vertices(mesh: TriangleMesh, places: np.ndarray, normals: np.ndarray, a
             direction = [component.take(vertex) for component in directions]
             cosine = toward[k, chunk]
             cosine[...] = _dot(direction, normals[:, chunk])
+            least = least_at.take(vertex)
             strange = cosine < least
             if given is not None:
                 strange |= _dot(direction, given[k]) < least * np.sqrt(_dot(given[k], given[k]))
@@ -62,6 +66,18 @@ def calm_vertices(mesh: TriangleMesh, places: np.ndarray, normals: np.ndarray, a
         row[is_restless.take(vertices)] = 1
         np.minimum(cosines, row, out=cosines)
     return CalmVertices(~is_restless, cosines)
+
+
+def _least_cosines(mesh: TriangleMesh, places: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """(V,) float32, of half the smallest angle around each vertex."""
+    largest = angles.max()
+    smallest = np.full(len(mesh.positions), largest)
+    # The last of several values at one vertex stays, and that is the smallest.
+    smaller = np.flatnonzero(angles < largest)
+    smaller = smaller[np.argsort(-angles[smaller], kind="stable")]
+    vertices = places.take(smaller, axis=1).T.ravel()
+    smallest[vertices] = np.repeat(angles.take(smaller), 3)
+    return np.cos(np.minimum(smallest / 2, np.pi / 2)).astype(np.float32)
 
 
 def _directions(mesh: TriangleMesh, some: np.ndarray, normals: np.ndarray) -> np.ndarray:

@@ -89,8 +89,7 @@ def test_it_looks_as_if_it_had_been_converted(add, live, picture, assert_same_pi
     unconverted = picture()
     assert unconverted[..., 3].any() and counts()["meshes"] == 1
     live.render_meshes = "HIDDEN"
-    # surfels of a mesh that may yet bend do not end at edges
-    bpy.ops.object.surfels_from_mesh(resolution=32, source="HIDE", clips_edges=False)
+    bpy.ops.object.surfels_from_mesh(resolution=32, source="HIDE")
     assert_same_picture(unconverted, picture())
 
 
