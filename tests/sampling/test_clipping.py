@@ -116,6 +116,21 @@ def test_a_hole_of_a_few_cells_stays_open_and_its_rim_covered(corners):
     assert bare_share(surfels, *on_surface(mesh, 4000)) < 1e-3
 
 
+@pytest.mark.parametrize("shift", np.linspace(0, 0.9, 4))
+def test_at_a_seam_of_two_sheets_each_surfel_ends_at_its_own(shift):
+    """Their edges lie on one another but share no vertex; a surfel that took the other's lost its own side."""
+    low = np.array([(-1, -1, 0), (1.2, -1, 0), (1.2, 0, 0), (-1, 0, 0)], float)
+    high = np.array([(-1.3, 0, 0), (1.4, 0, 0), (1.4, 0.8, -0.6), (-1.3, 0.8, -0.6)])
+    corners = np.concatenate([low, high])
+    corners[:, 1] += shift / 48
+    mesh = TriangleMesh(corners, np.array([(0, 1, 2), (0, 2, 3), (4, 5, 6), (4, 6, 7)]))
+    surfels = sample_mesh(mesh, resolution=96, crease_angle=ANGLE)
+    lines, reflex = surfels.clip_lines()
+    is_cut = lines[..., 2].min(axis=1) < 1
+    assert is_cut.sum() > 90
+    assert kept(np.zeros((len(surfels), 2)), lines, reflex).all()
+
+
 def test_a_face_narrower_than_a_cell_is_covered_by_surfels_of_its_own():
     """A box whose edge is cut off by a face of a tenth of a cell, which few rays meet."""
     box = trimesh.convex.convex_hull([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1) if (x, y) != (1, 1)]

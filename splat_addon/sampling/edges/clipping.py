@@ -20,6 +20,10 @@ from .ragged_borders import two_lines
 #: A border that deviates from a line by less than this, in half-axes, is on the line.
 _SAME_LINE = 0.06
 
+#: An edge that the centre lies a little beyond counts as farther by this, in half-axes: at an open seam with another
+#: sheet, the edge of the surfel's own sheet comes first.
+_BEYOND_IS_FARTHER = np.float32(0.1)
+
 #: What two lines keep: the first one's side, that of both, that of either, or all.
 _FIRST, _BOTH, _EITHER, _ALL = range(4)
 
@@ -104,7 +108,9 @@ def _nearest_first(met: Meetings) -> np.ndarray:
 
     At an end that two edges share, the one whose line is farther off says on which side the centre is.
     """
-    near = np.minimum(met.distance * (1 << _DISTANCE_BITS), (1 << _DISTANCE_BITS) - 1).astype(np.int64)
+    is_beyond = (met.line[2] < 0) & (met.line[2] >= BEYOND)
+    distance = np.where(is_beyond, met.distance + _BEYOND_IS_FARTHER, met.distance)
+    near = np.minimum(distance * (1 << _DISTANCE_BITS), (1 << _DISTANCE_BITS) - 1).astype(np.int64)
     line = np.minimum(np.abs(met.line[2]), 1) * ((1 << _LINE_BITS) - 1)
     near <<= _LINE_BITS
     near |= ((1 << _LINE_BITS) - 1) - line.astype(np.int64)
