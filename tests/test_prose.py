@@ -18,8 +18,8 @@ BUDGET = 8000
 LONGEST_SENTENCE = 45
 #: The README is one screen.
 README_LINES = 90
-#: GLSL's `inout`, a name, and a variable.
-NO_MISSPELLINGS = "inout,shepperd,acn"
+#: GLSL's `inout`, a name, a variable, and a command.
+NO_MISSPELLINGS = "inout,shepperd,acn,lod"
 #: What sends a reader to look twice -> what says it.
 RIDDLES = {
     r"\bof which\b.*\bthat of\b": "say which thing has what",
