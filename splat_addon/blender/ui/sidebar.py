@@ -51,7 +51,7 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         else:
             text = "Select surfaces, in Object Mode"
         for k, line in enumerate(text.split("\n")):
-            self.layout.label(text=line, icon="BLANK1" if k else "INFO")
+            write(self.layout, line, context, "BLANK1" if k else "INFO")
         button = self.layout.operator(SURFELS_FROM_MESH, icon="OUTLINER_OB_POINTCLOUD")
         for name in PROPERTY_NAMES:
             setattr(button, name, getattr(settings, name))

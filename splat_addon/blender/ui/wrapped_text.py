@@ -11,10 +11,16 @@ import bpy
 _LETTER, _MARGIN = 6.0, 8
 
 
-def write(layout: bpy.types.UILayout, text: str, context: bpy.types.Context) -> None:
-    """A text in as many lines as the panel's width asks for."""
+#: And of an icon.
+_ICON = 4
+
+
+def write(layout: bpy.types.UILayout, text: str, context: bpy.types.Context, icon: str = "NONE") -> None:
+    """A text in as many lines as the panel's width asks for. icon: before the first of them."""
     width = context.region.width / (_LETTER * context.preferences.system.ui_scale) - _MARGIN if context.region else 60
     column = layout.column(align=True)
     column.scale_y = 0.8
+    width -= 0 if icon == "NONE" else _ICON
     for line in wrap(text, max(int(width), 20)) or [""]:
-        column.label(text=line)
+        column.label(text=line, icon=icon)
+        icon = "NONE" if icon == "NONE" else "BLANK1"

@@ -76,6 +76,10 @@ def catch_shadows(scene, owner, lamp):
     owner.is_shadow_catcher = True
 
 
+def hide_from_gloss(scene, owner, lamp):
+    owner.visible_glossy = False
+
+
 def grow_hair(scene, owner, lamp):
     bpy.context.view_layer.objects.active = owner
     bpy.ops.object.particle_system_add()
@@ -110,6 +114,7 @@ def draw_freestyle(scene, owner, lamp):
 
 SWITCHES = {
     catch_shadows: "Square is a shadow catcher",
+    hide_from_gloss: "Square is hidden from diffuse, glossy",
     grow_hair: "Square has hair",
     hide_light_from_gloss: "lamp is hidden from diffuse or glossy rays",
     weaken_gloss: "lamp has an influence on diffuse or glossy light",
@@ -155,3 +160,40 @@ def test_a_switch_that_is_passed_over_is_named(switch, ordinary, warned):
     switch(*ordinary)
     (sentence,) = warned()
     assert sentence.startswith(SWITCHES[switch])
+
+
+#: type -> (prefixes of its switches, those that are honoured, those that the table above names). What is in neither is
+#: Blender's own affair (selection, display, animation), and is listed with the prefix that finds it.
+WALKED = {
+    "Object": (
+        ("visible_", "is_", "hide_render"),
+        {"visible_camera", "visible_shadow", "is_holdout", "hide_render"},
+        {*passed_over._OBJECT_RAYS, "is_shadow_catcher"},
+        {"is_runtime_data"},
+    ),
+    "PointLight": (
+        ("use_", "normalize", "diffuse_", "specular_", "volume_", "transmission_"),
+        {"use_shadow", "use_temperature", "use_nodes", "normalize"},
+        {"diffuse_factor", "specular_factor"},
+        # of EEVEE's own shadows and falloffs, and of what this engine names elsewhere: volumes, transmission
+        {"use_shadow_jitter", "use_soft_falloff", "use_absolute_resolution", "use_custom_distance", "use_fake_user",
+         "use_extra_user", "volume_factor", "transmission_factor", "use_shadow_filter"},
+    ),
+    "ViewLayer": (
+        ("use_", "material_", "world_", "samples"),
+        {"use_solid", "use_sky", "use_motion_blur", "material_override", "world_override", "samples"},
+        # hair, volumes and Freestyle are named where they are
+        {"use_strand", "use_volumes", "use_freestyle"},
+        {"use_ao", "use_grease_pencil", "use"},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", WALKED)
+def test_every_switch_is_honoured_named_or_blender_s_own(kind):
+    prefixes, honoured, named, others = WALKED[kind]
+    every = getattr(bpy.types, kind).bl_rna.properties
+    switches = {p.identifier for p in every if p.identifier.startswith(prefixes) and not p.is_readonly}
+    switches -= {name for name in switches if name.startswith("use_pass_")}
+    assert switches - honoured - named - others == set()
+    assert honoured & switches, "the prefixes find nothing"

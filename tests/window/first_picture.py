@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Run inside a Blender window: from the default scene to a lit, converted, rendered picture; and how wide labels are.
+
+test_first_picture.py reads the clicks, what they made, and the widths.
+"""
+
+import sys
+from pathlib import Path
+
+import blf
+import bpy
+
+sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
+
+from steps import REPORT, in_view, open_sidebar, play, show_tab, view3d  # noqa: E402
+
+import splat_addon  # noqa: E402
+from splat_addon.blender.conversion.mesh_settings import PROPERTY_NAMES  # noqa: E402
+from splat_addon.blender.engine import final_render  # noqa: E402
+from splat_addon.blender.translations import GERMAN  # noqa: E402
+
+clicks = []
+
+
+def click(what: str, press):
+    clicks.append(what)
+    return press()
+
+
+def widths(texts, region) -> dict:
+    """text -> its width as a share of a panel's in a region, in the interface's font."""
+    blf.size(0, 11 * bpy.context.preferences.system.ui_scale)
+    return {text: blf.dimensions(0, text)[0] / region.width for text in texts}
+
+
+def is_made():
+    return any(owner.name.endswith(" surfels") for owner in bpy.data.objects)
+
+
+def steps():
+    """Each yields the seconds to wait before the next; the report is the end."""
+    scene = bpy.context.scene
+    scene.render.resolution_percentage = 15
+    click("N: the sidebar", open_sidebar)
+    yield 1.0
+    click("the tab Surfels", lambda: show_tab("Surfels"))
+    yield 1.0
+    with in_view():
+        click("Convert to Surfels", lambda: bpy.ops.object.surfels_from_mesh("INVOKE_DEFAULT", True))
+    while not is_made():
+        yield 0.5
+    yield 0.5
+    with in_view():
+        click("Show with Surfel Splatting", bpy.ops.view3d.surfels_show)
+    yield 2.0
+    with in_view():
+        click("F12", bpy.ops.render.render)
+    picture = REPORT.with_name(f"{REPORT.stem}_f12.png")
+    bpy.data.images["Render Result"].save_render(str(picture))
+    settings = scene.surfel_conversion
+    # What has its name at the left; a switch's stands at the right of its box.
+    names = [
+        settings.bl_rna.properties[name].name
+        for name in PROPERTY_NAMES
+        if settings.bl_rna.properties[name].type != "BOOLEAN"
+    ]
+    sidebar = next(region for region in view3d()[0].regions if region.type == "UI")
+    return {
+        "clicks": clicks,
+        "surfels": final_render.last_frame_stats["splats"],
+        "picture": str(picture),
+        "labels": {"English": widths(names, sidebar), "German": widths([GERMAN[name] for name in names], sidebar)},
+        "font": widths(["iiii", "WWWW"], sidebar),
+    }
+
+
+splat_addon.register()
+play(steps(), and_quit=True)

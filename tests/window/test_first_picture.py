@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A new user's first minute: few clicks to a lit picture, and labels that can be read."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+SECONDS = 240
+#: Share of the sidebar's width that names at the left of their values have; "Pixels per Surfel" just fits.
+ROOM = 0.31
+
+
+@pytest.fixture(scope="module")
+def first(in_a_window):
+    return in_a_window("first_picture.py", SECONDS)[0]
+
+
+def test_five_clicks_make_a_lit_picture_of_surfels(first):
+    assert len(first["clicks"]) <= 5 and first["surfels"] > 1000
+    pixels = np.asarray(Image.open(first["picture"]).convert("L"), np.float32) / 255
+    ground = pixels[0, 0]
+    cube = pixels[np.abs(pixels - ground) > 0.02]
+    assert cube.size > 0.03 * pixels.size and np.ptp(cube) > 0.3, "the cube has no lit and no dark side"
+
+
+@pytest.mark.parametrize("language", ["English", "German"])
+def test_the_sidebar_s_labels_fit_its_default_width(first, language):
+    assert first["font"]["WWWW"] > 2 * first["font"]["iiii"], "the interface's font was not measured"
+    wide = {text: round(width, 3) for text, width in first["labels"][language].items() if width > ROOM}
+    assert not wide
