@@ -77,7 +77,7 @@ class Table:
         return Nodes({name: some.column(name) for name in self.widths})
 
     def joined(self, parts: list[Table], rows: np.ndarray) -> Table:
-        """Other tables, then rows of this one."""
+        """Other tables, followed by rows of this one."""
         return Table(self.widths, np.concatenate([*(part.rows for part in parts), self.rows[rows]]))
 
     def _place(self, name: str) -> slice:

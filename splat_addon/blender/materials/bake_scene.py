@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A scene of its own, in which Cycles bakes copies of what is converted onto one small square for each surfel.
+"""Bakes materials with Cycles in a temporary scene, from copies of the converted objects onto one small square per
+surfel.
 
 Baking from the copies to the squares ("selected to active") evaluates the materials at the surfels themselves: no UV
-map is needed, no image size chosen, and nothing of the user's scene is touched. Each square covers a surfel's cell
-and four pixels of an image, whose mean is the surfel's. (Vertex colours would do, but their bake gives bump nodes
-nothing to differentiate.)
+map is needed, no image size chosen, and the user's scene is not touched. Each square covers a surfel's cell and four
+pixels of an image, whose mean is the surfel's. (Vertex colours would do, but their bake gives bump nodes nothing to
+differentiate.)
 """
 
 from __future__ import annotations
@@ -35,9 +36,9 @@ _KINDS = {
 
 
 class BakeScene:
-    """Use it as a context: what it made is gone at the end.
+    """A context that removes everything it made at its end.
 
-    sources: the objects that are converted. Raises ValueError where Blender has no Cycles.
+    Raises ValueError if Blender has no Cycles.
     """
 
     def __init__(self, sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph):
@@ -63,7 +64,7 @@ class BakeScene:
     def bake(
         self, kind: str, channel: str, materials: set[bpy.types.Material], corners: np.ndarray, reach: float
     ) -> np.ndarray:
-        """(n, 4, 3) float32 values in the four pixels of n squares; NaN where nothing was met.
+        """(n, 4, 3) float32 values in the four pixels of n squares; NaN where the bake hit nothing.
 
         kind: "EMIT" or "NORMAL" (of world space, 0 to 1). channel: the field of `Surface` whose
         input becomes the emission of these materials. corners: (n, 4, 3) of the squares, world space. reach: world
@@ -118,9 +119,9 @@ class BakeScene:
         self._scene.cycles.device = "CPU"
 
     def _copied(self, evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> bpy.types.Mesh:
-        """A copy of an evaluated mesh, with copies of the materials that it shows there."""
+        """A copy of an evaluated mesh, with copies of its materials."""
         copy = self._keep(mesh.copy())
-        # Generated coordinates go by the box of the mesh before its modifiers.
+        # Generated coordinates refer to the bounding box before modifiers.
         plain = evaluated.original.data
         if hasattr(plain, "texspace_size"):
             copy.use_auto_texspace = False
@@ -176,7 +177,7 @@ class BakeScene:
 
 
 def _emit(material: bpy.types.Material, channel: str) -> None:
-    """Let the surface send out what feeds that channel of its shader: a colour or a number, and a strength."""
+    """Connect the inputs of that channel, a colour or a number and a strength, to an Emission shader."""
     tree, shader = material.node_tree, surface_shader(material)
     emission = tree.nodes.new("ShaderNodeEmission")
     sockets = SHADERS[shader.bl_idname][channel] if shader.bl_idname in SHADERS else ()

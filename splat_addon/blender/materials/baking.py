@@ -25,7 +25,7 @@ _CHUNK = 1_000_000
 
 @dataclass(frozen=True, eq=False)
 class Bakeable:
-    """What a bake needs to know of a conversion besides the surfels.
+    """The inputs of a bake besides the surfels.
 
     unread: the inputs of materials that could not be read. materials, surfaces: by the surfels' material.
     spacing: object units. splat_size: smaller half-axis of a splat, in spacings. reach: spacings above and below a
@@ -43,9 +43,10 @@ class Bakeable:
 
 
 def baked(surfels: Surfels, what: Bakeable, depsgraph: bpy.types.Depsgraph) -> tuple[Surfels, int]:
-    """The surfels with everything that was unread, and how many values were not met by the bake and stayed plain.
+    """The surfels with all inputs that could not be read, and the number of values that the bake missed, which stay
+    plain.
 
-    Raises ValueError with a sentence where Cycles is not there.
+    Raises ValueError with a sentence if Cycles is missing.
     """
     arrays = {name: np.array(array) for name, array in surfels.arrays().items()}
     slots = np.minimum(surfels.materials, len(what.materials) - 1)
@@ -100,7 +101,8 @@ def _passes(unread) -> dict[tuple[str, str], set[bpy.types.Material]]:
 
 
 def _target(arrays: dict[str, np.ndarray], channel: str, slots: np.ndarray, surfaces: Sequence[Surface]) -> np.ndarray:
-    """The view of the arrays that a channel is written to; an optional field is added with each material's constant."""
+    """The part of the arrays that a channel is written to; an optional field is created with each material's
+    constant."""
     if channel in OPTIONAL_LAYOUT and channel not in arrays:
         columns, dtype, default = OPTIONAL_LAYOUT[channel]
         given = [getattr(surface, channel) for surface in surfaces]
@@ -126,7 +128,7 @@ def _corners(centre: np.ndarray, half_axes: np.ndarray, matrix: np.ndarray) -> n
 
 
 def _means(cells: np.ndarray) -> np.ndarray:
-    """(n, 3) means over the pixels that were met; NaN where none was."""
+    """(n, 3) means over the pixels that were hit; NaN if none was."""
     met = np.isfinite(cells).all(axis=2)
     total = np.where(met[..., None], cells, 0).sum(axis=1)
     with np.errstate(invalid="ignore"):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The image that matcap shading looks up. Blender's own lie in the paths of `preferences.studio_lights`.
+"""The image for matcap shading. Blender's own images are in the paths of `preferences.studio_lights`.
 
-Most of those of Blender 5 are multilayer files, a diffuse layer and one of highlights, whose pixels Blender gives to no
-script. A texture evaluates the first layer of such a file: what Workbench shows without Specular Highlights.
+Most of those in Blender 5 are multilayer files with a diffuse layer and a highlight layer, whose pixels scripts cannot
+read. A texture evaluates the first layer of such a file, which Workbench shows without Specular Highlights.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _kept: tuple[tuple, Matcap] | None = None
 
 
 def matcap_of(image: bpy.types.Image) -> Matcap:
-    """Its pixels, read again only where it changed. Raises ValueError where it has none that can be read."""
+    """Its pixels, read again only if it changed. Raises ValueError if it has no readable pixels."""
     global _kept
     key = image.session_uid, tuple(image.size), image.filepath
     if _kept is None or _kept[0] != key or image.is_dirty:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A view layer's Material Override: everything is drawn as if it were made of that one material."""
+"""The Material Override of a view layer: everything is drawn with that one material."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from .material_surfaces import plain_color
 
 
 def override_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.Material | None:
-    """The material that the view layer has instead of all others."""
+    """The override material of a view layer."""
     return depsgraph.view_layer_eval.material_override
 
 
 class Overridden:
-    """Surfels as the override paints them, the same object for the same surfels and colour: known by it, they stay on
-    the device."""
+    """Surfels painted by the override: the same object for the same surfels and colour, so that they stay on the
+    device."""
 
     def __init__(self):
         self._made: dict[int, tuple[Surfels, tuple[float, ...], Surfels]] = {}
         self._used: set[int] = set()
 
     def get(self, surfels: Surfels, material: bpy.types.Material, notes) -> Surfels:
-        """In the plain colour and opacity of the material, and without fields of their own for the rest."""
+        """The surfels in the plain colour and opacity of the material, without further fields of their own."""
         color, is_textured = plain_color(material)
         if is_textured:
             notes.add(f"The overriding material {material.name!r} is textured; surfels have its socket's plain colour")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads Blender's materials as `sampling.Surface`, with the mesh layers that they use.
 
-Each input of the shader at the output is read as a product (`node_products`). One that cannot be is given the value of
-its socket, and is named, so that it can be said or baked.
+Each input of the output's shader is read as a product (`node_products`). An input that cannot be read takes the value
+of its socket and is recorded, so that it can be reported or baked.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Unread:
         return f"{CHANNEL_NAMES[self.channel]} comes from {self.reason}"
 
 
-#: field of `Surface` -> how a person calls it
+#: field of `Surface` -> its name for users
 CHANNEL_NAMES = {
     "color": "base colour",
     "opacity": "alpha",
@@ -58,7 +58,7 @@ SHADERS = {
 }
 
 
-#: data type of an attribute that can be looked up as a colour -> its property, and how many numbers it is.
+#: data type of an attribute that can be used as a colour -> its property, and its number of components
 ATTRIBUTE_TYPES = {
     "FLOAT_COLOR": ("color", 4),
     "BYTE_COLOR": ("color", 4),  # scene-linear, this one too
@@ -71,7 +71,7 @@ ATTRIBUTE_DOMAINS = ("POINT", "CORNER", "FACE")
 
 @dataclass
 class MeshLayers:
-    """The layers of a mesh that its materials are looked up by, each once, in the order in which they were met."""
+    """The layers of a mesh that its materials use, without duplicates, in the order of first use."""
 
     mesh: bpy.types.Mesh
     uvs: list[str] = field(default_factory=list)
@@ -97,7 +97,7 @@ class MeshLayers:
             raise UnreadableError("an Image Texture node without an image")
         if node.projection != "FLAT":
             raise UnreadableError(f"an image texture in {node.projection.lower()} projection")
-        # Blender's Cubic and Smart are Linear where a texture is not magnified.
+        # Blender's Cubic and Smart equal Linear where a texture is not magnified.
         interpolation = "Closest" if node.interpolation == "Closest" else "Linear"
         key = node.image.session_uid, keep_alpha, node.extension, interpolation
         if key not in self._images:
@@ -112,7 +112,7 @@ def _index(names: list[str], name: str) -> int:
 
 
 def _mapped(image: Image, source: ImageSource) -> Image:
-    """The image with the source's functions applied to its pixels; its number, if it is one, becomes the red."""
+    """The image with the source's functions applied to its pixels; a single number is stored in the red channel."""
     pixels = image.pixels.copy()
     values = pixels[..., :3] if source.weights is None else (pixels @ np.float32(source.weights))[..., None]
     for function in source.functions:
@@ -124,9 +124,9 @@ def _mapped(image: Image, source: ImageSource) -> Image:
 
 
 def material_surface(material: bpy.types.Material | None, layers: MeshLayers) -> tuple[Surface, list[Unread]]:
-    """What `material` is made of on the mesh of `layers`, and what could not be read.
+    """The material's surface on the mesh of `layers`, and the inputs that could not be read.
 
-    Without a material: the mesh's colour attribute where it has one, else Blender's grey.
+    Without a material: the mesh's colour attribute if it has one, otherwise Blender's grey.
     """
     if material is None:
         return _bare_surface(layers), []
@@ -142,7 +142,7 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
 
 
 def plain_color(material: bpy.types.Material) -> tuple[tuple[float, float, float, float], bool]:
-    """The colour and opacity that a material has without its textures, and whether it has some."""
+    """The colour and opacity of a material without its textures, and whether it has textures."""
     shader = surface_shader(material) if uses_nodes(material) else None
     sockets = SHADERS.get(shader.bl_idname) if shader is not None else None
     if sockets is None:
@@ -175,7 +175,7 @@ class _Reader:
         return Surface(color, opacity, normal_map=self._normal_map(), **rest), self._unread
 
     def _color(self, alpha: Product) -> tuple[Channel, Channel | None]:
-        """The colour, with the alpha where that comes from the same image, and what of the alpha is left."""
+        """The colour, with the alpha if it comes from the same image, and the remaining part of the alpha."""
         read = self._product("color")
         own = [s for s in alpha.sources if isinstance(s, ImageSource) and s.weights == ALPHA and not s.functions]
         images = [s.node for s in read.sources if isinstance(s, ImageSource) and s.weights is None]
@@ -195,7 +195,7 @@ class _Reader:
         return self._made(name, self._product(name))
 
     def _made(self, name: str, read: Product) -> Channel | None:
-        """The channel of a product; that of its plain socket where an image or a layer cannot be read."""
+        """The channel of a product; that of its plain socket if an image or a layer cannot be read."""
         try:
             factors = tuple(self._factor(source, _is_alpha(source)) for source in read.sources)
         except UnreadableError as error:
@@ -254,7 +254,7 @@ class _Reader:
         return NormalMap(color, max(strength.default_value, 0.0), layer, node.space)
 
 
-#: Spaces of a Normal Map node that `NormalMap` has.
+#: Spaces of a Normal Map node that `NormalMap` supports.
 _SPACES = ("TANGENT", "OBJECT")
 
 
@@ -263,7 +263,7 @@ def _is_alpha(source) -> bool:
 
 
 def default_color_layer(mesh: bpy.types.Mesh) -> str | None:
-    """The colour attribute that renders, or None. That of surfels that were joined to the mesh says nothing of it."""
+    """The colour attribute used for rendering, or None. The attribute of surfels joined to the mesh is ignored."""
     if has_surfels_beside_faces(mesh):
         return None
     name = mesh.attributes.default_color_name or mesh.attributes.active_color_name

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads a socket of a shader's node tree as a product of constants, image textures and attributes.
 
-That is what importers and painters make. A Math or Invert node over one image is read too: it is applied to the image's
-pixels. Anything else raises `UnreadableError`, whose text ends the sentence "it comes from ...".
+Importers and painters make such products. A Math or Invert node over one image is read too: it is applied to the
+image's pixels. Anything else raises `UnreadableError`, whose text ends the sentence "it comes from ...".
 """
 
 from __future__ import annotations
@@ -22,8 +22,11 @@ Node = bpy.types.Node
 
 @dataclass(frozen=True)
 class ImageSource:
-    """An Image Texture node. weights: of its r, g, b, a that make one number, None: the colour. functions: of pixels,
-    applied one after another to the colour or that number."""
+    """An Image Texture node.
+
+    weights: for its r, g, b, a, to make one number; None: the colour.
+    functions: applied to pixels, one after another, on the colour or that number.
+    """
 
     node: bpy.types.ShaderNodeTexImage
     weights: tuple[float, ...] | None = None
@@ -32,7 +35,7 @@ class ImageSource:
 
 @dataclass(frozen=True)
 class AttributeSource:
-    """A named attribute of the mesh, "" for the one that renders. weights: as of an `ImageSource`."""
+    """A named attribute of the mesh, "" for the render attribute. weights: as in `ImageSource`."""
 
     name: str
     weights: tuple[float, ...] | None = None
@@ -40,7 +43,7 @@ class AttributeSource:
 
 @dataclass(frozen=True)
 class Product:
-    """value: 3 numbers of a colour, or 1. sources: what multiplies it."""
+    """value: 3 numbers of a colour, or 1. sources: its factors."""
 
     value: tuple[float, ...]
     sources: tuple[ImageSource | AttributeSource, ...] = ()
@@ -62,13 +65,13 @@ class Product:
         if not self.sources:
             return Product((float(np.dot(self.value, weights[:3])),))
         kept = [k for k in range(3) if weights[k]]
-        # What multiplies the colour must multiply its parts alike, if the sum is to be a product again.
+        # Factors of the colour must scale its components alike, so that the sum is a product again.
         if len(self.sources) > 1 or self.sources[0].weights or len({self.value[k] for k in kept}) > 1:
             raise UnreadableError("one number of a product of colours")
         return Product((self.value[kept[0]],), (replace(self.sources[0], weights=weights),))
 
     def mapped(self, function: Callable[[np.ndarray], np.ndarray], name: str) -> Product:
-        """A function of each component; name: of the node that asks."""
+        """Apply a function to each component; name: of the node that does it."""
         if not self.sources:
             return Product(tuple(function(np.array(self.value)).tolist()))
         if len(self.sources) > 1 or not isinstance(self.sources[0], ImageSource):
@@ -81,7 +84,7 @@ class Product:
 
 
 def product(socket: Socket) -> Product:
-    """What a colour or number socket is the product of. Raises UnreadableError."""
+    """A colour or number socket as a product. Raises UnreadableError."""
     return _Reading().product(socket)
 
 
@@ -155,12 +158,12 @@ class _Reading:
 
 
 def passed_through_link(node: Node) -> bpy.types.NodeLink | None:
-    """The link inside of a muted shader, from one of its inputs to its output."""
+    """The link inside a muted shader, from one of its inputs to its output."""
     return next((link for link in node.internal_links if link.to_socket == node.outputs[0]), None)
 
 
 def _passed_through(node: Node, output: str) -> Reader | None:
-    """A muted node hands on the input that Blender links to that output inside of it; None where it links none."""
+    """A muted node passes on the input that Blender links to that output internally; None if it links none."""
     links = (link for link in node.internal_links if link.to_socket.identifier == output)
     found = next(links, None)
     return found and (lambda node, read: read(found.from_socket))
@@ -173,8 +176,8 @@ def constant(socket: Socket) -> Product:
 
 
 def linked(socket: Socket) -> tuple[Node, str] | None:
-    """The node that feeds a socket, past any reroutes, and the identifier of its output; None where nothing does, which
-    is also so for reroutes that are linked in a ring."""
+    """The node that feeds a socket, skipping reroutes, and the identifier of its output; None if there is none, or if
+    reroutes form a ring."""
     passed = set()
     while socket.links and not socket.links[0].is_muted:
         link = socket.links[0]
@@ -187,7 +190,7 @@ def linked(socket: Socket) -> tuple[Node, str] | None:
     return None
 
 
-#: Reads a socket further up the tree.
+#: Reads a socket farther up the tree.
 Read = Callable[[Socket], Product]
 #: Reads the output of a node.
 Reader = Callable[[Node, Read], Product]
@@ -222,7 +225,7 @@ def _attribute_number(weights: tuple[float, ...]) -> Reader:
     return lambda node, read: Product((1.0,), (AttributeSource(_attribute_name(node), weights),))
 
 
-#: What the Attribute node's Factor is of a colour or vector; linked to a number, its Color is the luminance.
+#: For colours and vectors, the Attribute node's Factor; linked to a number, its Color becomes the luminance.
 _MEAN = (1 / 3, 1 / 3, 1 / 3, 0.0)
 
 
@@ -255,7 +258,7 @@ _MIX_INPUTS = {
 
 
 def _safe(function: Callable) -> Callable:
-    """As shaders have it: what is not finite is 0."""
+    """As in shaders: non-finite values become 0."""
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")
     def safe(a, b):
@@ -300,7 +303,7 @@ def _invert(node: Node, read: Read) -> Product:
     return read(node.inputs[1]).mapped(lambda x: x + share * (1 - 2 * x), "Invert Color")
 
 
-#: (node, output) -> function of the node, and of what reads the sockets that it depends on, giving its `Product`
+#: (node, output) -> function of the node, and of a reader for its input sockets, that returns its `Product`
 _READERS: dict[tuple[str, str], Reader] = {
     ("ShaderNodeRGB", "Color"): _output,
     ("ShaderNodeValue", "Value"): _output,

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Turns mixed and added shaders, and those without a diffuse colour such as Glass, into colours that Cycles can bake.
 
-A tree of shaders becomes a tree of colours of the same shape, once for each thing that surfels keep: Mix Shader mixes
-them, Add Shader adds them, and each shader at an end gives its own. What a surface lets through adds up as light does,
-so opacity is 1 less that, and colours count as much as their shader covers.
+A tree of shaders becomes a tree of colours of the same shape, once for each channel of surfels: Mix Shader mixes them,
+Add Shader adds them, and each leaf shader supplies its own. Transmitted light adds up, so opacity is 1 minus the
+transmitted share, and colours are weighted by their shader's coverage.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from .node_products import linked, passed_through_link
 Node = bpy.types.Node
 Tree = bpy.types.NodeTree
 Socket = bpy.types.NodeSocket
-#: A socket, or the colour that stands for it.
+#: A socket, or a constant colour.
 Given = Socket | tuple[float, float, float]
 
 _BLACK, _WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 
-#: What a shader sends out is the product of these.
+#: The emission of a shader is the product of these.
 _EMISSION_SOCKETS = {"EMISSION": ("Color", "Strength"), "BSDF_PRINCIPLED": ("Emission Color", "Emission Strength")}
 
-#: Shaders that let everything through, and cover nothing.
+#: Shaders that transmit everything and cover nothing.
 _CLEAR = ("BSDF_TRANSPARENT", "HOLDOUT")
 
 
@@ -59,7 +59,7 @@ def _emits(end: Node) -> bool:
 
 
 def emitted(tree: Tree, shader: Node, channel: str) -> Socket:
-    """New nodes' output that is one channel of a tree of shaders; of the colour as much as is covered."""
+    """The output of new nodes for one channel of a tree of shaders; colours are weighted by coverage."""
     found = _combined(tree, shader, channel)
     if channel == "opacity":
         found = _mixed(tree, "SUBTRACT", _WHITE, found)
@@ -109,12 +109,12 @@ def _emission(tree: Tree, end: Node) -> Given:
     return _mixed(tree, "MULTIPLY", *(_given(end.inputs[name]) for name in names))
 
 
-#: channel -> what a shader at an end gives; of the opacity, what it lets through
+#: channel -> what a leaf shader supplies; for the opacity, what it transmits
 _ENDS = {"color": _color, "opacity": _let_through, "emission": _emission}
 
 
 def _given(socket: Socket) -> Given:
-    """What feeds a socket, or its own value as a colour."""
+    """The link that feeds a socket, or its own value as a colour."""
     if linked(socket) is not None:
         return socket.links[0].from_socket
     value = socket.default_value

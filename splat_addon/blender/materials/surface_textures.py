@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The image that a material's base colour is, for texture-mapped surfels: found through the object's slots when they
-are rendered, so that a repainted or exchanged image shows at once.
+"""Finds the image of a material's base colour for texture-mapped surfels, through the object's slots at render time, so
+that a repainted or replaced image is visible at once.
 
-Where the image lies on the surface is in the surfels' own coordinates, as the material had it when they were made.
+The surfels' own coordinates place the image on the surface as the material did at conversion.
 """
 
 from __future__ import annotations
@@ -34,9 +34,8 @@ def kept_textures(
 
 
 class TextureStore:
-    """Keeps the textures of materials between frames, the same object while image and constant are the same: what lies
-    on the device is known by that.
-    """
+    """Keeps the textures of materials between frames: the same object while image and constant are unchanged, by which
+    the device identifies them."""
 
     def __init__(self):
         self._images: dict = {}
@@ -45,15 +44,16 @@ class TextureStore:
         self._doubted = True
 
     def begin_frame(self, is_edited: bool, is_told: bool) -> None:
-        """is_edited: an image or a material was, and all are read again. is_told: edits are told of, as in a viewport;
-        in a final render they are not, and images with unsaved changes are read again."""
+        """Start a frame. is_edited: an image or a material was edited, so all are read again. is_told: edits are
+        reported, as in a viewport; in a final render they are not, and images with unsaved changes are read again."""
         if is_edited:
             self._images.clear()
         self._doubted = not is_told
         self._is_read.clear()
 
     def get(self, material: bpy.types.Material | None, notes) -> SurfaceTexture | None:
-        """None where the base colour is not one image times a constant, or the image cannot be read, which is noted."""
+        """The texture of a surface. None if the base colour is not a single image times a constant, or the image cannot
+        be read, which is noted."""
         try:
             found = self._read(material)
         except UnreadableError as error:

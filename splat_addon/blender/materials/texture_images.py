@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender images as scene-linear pixels, for `material_surfaces`.
 
-Blender hands out the pixels of an 8-bit image as they are encoded and straight, those of a float image linear and
-premultiplied; the sampling side wants them linear and straight, or opaque as a renderer sees an unused alpha.
+Blender returns the pixels of an 8-bit image encoded and with straight alpha, those of a float image linear and
+premultiplied. Sampling needs linear pixels with straight alpha, or opaque pixels if the alpha is unused.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 
 class UnreadableError(Exception):
-    """What an input of a shader comes from and cannot be read, as the end of the sentence "it comes from ..."."""
+    """An input of a shader comes from something that cannot be read; the text ends the sentence "it comes from ..."."""
 
 
 def linear_pixels(image: bpy.types.Image, keep_alpha: bool) -> np.ndarray:
@@ -51,7 +51,7 @@ def srgb_to_linear(encoded: np.ndarray) -> np.ndarray:
 
 
 def _stored_pixels(image: bpy.types.Image) -> np.ndarray:
-    """(h, w, channels) float32 as Blender stores them; a file is loaded from disk here, if it is not yet."""
+    """(h, w, channels) float32 as stored by Blender; the file is loaded from disk if necessary."""
     width, height = image.size
     count = len(image.pixels)
     if not count or count != width * height * image.channels:
@@ -62,7 +62,7 @@ def _stored_pixels(image: bpy.types.Image) -> np.ndarray:
 
 
 def _rgba(pixels: np.ndarray, image: bpy.types.Image) -> np.ndarray:
-    """Grey and colour without alpha, opaque, too."""
+    """Convert to RGBA, including grey and colours without alpha."""
     channels = pixels.shape[2]
     if channels not in (1, 3, 4):
         raise UnreadableError(f"the image {image.name!r} with {channels} channels")
@@ -73,7 +73,7 @@ def _rgba(pixels: np.ndarray, image: bpy.types.Image) -> np.ndarray:
     return rgba
 
 
-#: Pixels that are decoded at a time: their temporaries stay in the processor's cache.
+#: Pixels decoded per batch, few enough for temporaries to stay in the processor's cache.
 _CHUNK = 1 << 14
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where an image lies on a mesh: the UV map that an Image Texture node is looked up by, and how a Mapping moves it."""
+"""Finds the place of an image on a mesh: the UV map that an Image Texture node uses, and the effect of a Mapping
+node."""
 
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ from .texture_images import UnreadableError
 
 
 def uv_layer(name: str, mesh: bpy.types.Mesh) -> str:
-    """The UV map of this name, or for "" the one that renders. Raises UnreadableError where there is none."""
+    """The UV map of this name, or for "" the render UV map. Raises UnreadableError if there is none."""
     names = [layer.name for layer in mesh.uv_layers if layer.name == name or (not name and layer.active_render)]
     if not names:
         raise UnreadableError(f"an image texture on the UV map {name!r}, which the mesh does not have")
@@ -106,5 +107,5 @@ def _as_texture(location, rotation, scale):
     return inverse, -inverse @ location
 
 
-#: vector type -> function of location, rotation matrix and scale giving a (3, 3) matrix and a shift
+#: vector type -> function of location, rotation matrix and scale that returns a (3, 3) matrix and an offset
 _MAPPINGS = {"POINT": _as_point, "TEXTURE": _as_texture}

@@ -167,7 +167,7 @@ GERMAN = {
     "Drop": "Entfernen",
     "EWA": "EWA",
     "EWA in Space": "EWA im Raum",
-    ("Each light in a few even steps, with a highlight that has an edge (Lake et al. 2000)"): (
+    ("Shows each light in a few even steps, with a sharp-edged highlight (Lake et al. 2000)"): (
         "Jede Lampe in wenigen gleichmäßigen Stufen, mit einem scharf begrenzten Glanzlicht (Lake et al. 2000)"
     ),
     "Edge Fade": "Randverlauf",

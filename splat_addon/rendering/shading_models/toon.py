@@ -7,7 +7,7 @@ MODEL = ShadingModel(
     "toon",
     label="Toon",
     source="Lake et al. 2000",
-    summary="Each light in a few even steps, with a highlight that has an edge",
+    summary="Shows each light in a few even steps, with a sharp-edged highlight",
     is_lit=True,
     has_material=True,
     has_world=True,

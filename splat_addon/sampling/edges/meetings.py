@@ -146,7 +146,7 @@ class _Seen:
 
 
 def _in_circle(inverse: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(2, m) in half-axes of (m,) cells from the centre."""
+    """(2, m) positions in half-axes from (m,) offsets in cells from the centre."""
     return np.stack([inverse[0] * u + inverse[1] * v, inverse[2] * u + inverse[3] * v])
 
 
