@@ -47,6 +47,16 @@ void object_id_add(Candidate c) {
   identity = vec2(number, c.depth);
 }
 
+#part object_space.frag, edge_ids
+void object_id_keep() {
+  if (texelFetch(visibility_depth, ivec2(gl_FragCoord.xy), 0).r < 1.0) discard;
+}
+
+#part gbuffer, edge_ids, in_space
+void object_id_add(inout Fragment f) {
+  identity = vec2(number, f.depth);
+}
+
 #part peel.frag
 void object_id_start(ivec2 at) {
   identity_next = texelFetch(identity, at, 0).xy;

@@ -4,7 +4,8 @@
 
 #part splat_varyings
 void oit_tell(Splat splat, int index) {
-  color_weight = vec4(texelFetch(lit_splats, ivec2(index % SPLATS_PER_ROW, index / SPLATS_PER_ROW), 0).rgb, 1.0);
+  color_weight.rgb = texelFetch(lit_splats, ivec2(index % SPLATS_PER_ROW, index / SPLATS_PER_ROW), 0).rgb;
+  if (splat.is_back) color_weight.w /= BACK_WEIGHT;  // a back hides as much as a front
   opacity = splat.opacity;
 }
 

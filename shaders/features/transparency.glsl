@@ -26,7 +26,7 @@ void transparency_keep() {
 #part object_space.frag, layer
 #include "lib/layer_sample.glsl"
 void transparency_keep() {
-  if (!is_in_layer(place_depth.z, 0.5, ivec2(gl_FragCoord.xy))) discard;
+  if (!is_in_layer(layer_depth(), 0.5, ivec2(gl_FragCoord.xy))) discard;
 }
 
 #part screen_space.frag, layer

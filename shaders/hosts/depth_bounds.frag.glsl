@@ -17,6 +17,7 @@ void main() {
   #hook reach(texel, row)
   #hook write(texel, own)
   float depth = view_depth(own);
-  depth_bounds = vec4(row, own < 1.0 ? vec2(depth) : vec2(NOTHING_SEEN, -NOTHING_SEEN));
+  // The farthest depth that is stored stands for all beyond, of which none hides another.
+  depth_bounds = vec4(row, own < FARTHEST_STORED ? depth : NOTHING_SEEN, own < 1.0 ? depth : -NOTHING_SEEN);
   #hook bound(texel, own)
 }

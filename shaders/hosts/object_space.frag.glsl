@@ -9,10 +9,11 @@
 #parts
 void main() {
   float weight = kernel_weight(place_depth.xy) * color_weight.w;
-  if (!(weight > 0.0)) discard;
+  float depth = seen_depth();
+  if (!(weight > 0.0 && depth >= view.near)) discard;
   #hook keep()
-  write_depth(place_depth.z);
+  write_depth(depth);
   vec3 color = color_weight.rgb;
   #hook color(color)
-  add_to_sums(color, weight, place_depth.z);
+  add_to_sums(color, weight, depth);
 }

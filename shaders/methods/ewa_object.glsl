@@ -14,11 +14,15 @@
 const float KERNEL_VARIANCE = 0.25;
 const float FILTER_VARIANCE = 0.5;   // square pixels
 const float LEAST_FLATNESS2 = 0.004;  // flatter than 1 : 16, splats are not widened further, or quads would have no end
+const float ANY = 3e38;
+const float LEAST_DEPTH = 1e-3;       // relative to the splat's: quads are not drawn nearer to the eye's plane
 
 // The combined half-axes; their columns in terms of the splat's own are returned.
 mat2 widen(inout Splat splat) {
+  depth_reach = vec3(-splat.position.z, vec2(ANY));
   if (reaches_near(splat)) return mat2(1.0);
   Plane plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, view.is_parallel > 0.5);
+  depth_reach.yz = vec2(plane.reach, length(plane.slope));
   vec2 lengths2;
   mat2 along = principal_places(plane.a, plane.b, plane.det.z, lengths2);
   vec2 both = KERNEL_VARIANCE * lengths2 + FILTER_VARIANCE;
@@ -33,10 +37,23 @@ mat2 widen(inout Splat splat) {
 }
 
 // The clip range is that of the original splats: enlarged quads that exceed it are drawn anyway, at the depth that
-// their fragments write, except in front of the camera's near plane.
-vec4 quad_corner(vec3 eye) {
+// their fragments write. The hardware clips a quad only where it reaches behind the eye, and one that is not enlarged
+// at the near plane.
+vec4 quad_corner(Splat splat, vec3 eye) {
   vec4 corner = view.projection * vec4(eye, 1.0);
-  float end = 0.999999 * corner.w;
-  if (-eye.z >= view.near) corner.z = clamp(corner.z, -end, end);
+  float nearest = depth_reach.y == ANY ? view.near : LEAST_DEPTH * depth_reach.x;
+  corner.z = view.is_parallel > 0.5 ? 0.0 : corner.w - 2.0 * nearest;
   return corner;
+}
+
+#part fragment
+// Of the splat's plane, held near the splat, as methods in the picture hold it: where a filter reaches over a silhouette,
+// the plane runs to the eye.
+float seen_depth() {
+  return clamp(place_depth.z, depth_reach.x - depth_reach.y, depth_reach.x + depth_reach.y);
+}
+
+// Where a filter reaches over its rim, a splat is in the layers that the rim itself is in.
+float layer_depth() {
+  return clamp(place_depth.z, depth_reach.x - depth_reach.z, depth_reach.x + depth_reach.z);
 }

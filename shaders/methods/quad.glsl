@@ -11,6 +11,15 @@ mat2 widen(inout Splat splat) {
   return mat2(1.0);
 }
 
-vec4 quad_corner(vec3 eye) {
+vec4 quad_corner(Splat splat, vec3 eye) {
   return view.projection * vec4(eye, 1.0);
+}
+
+#part fragment
+float seen_depth() {
+  return place_depth.z;
+}
+
+float layer_depth() {
+  return place_depth.z;
 }

@@ -183,8 +183,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     edge_threshold: FloatProperty(
         name="Edge Fade",
         description=(
-            "With Quads, a pixel fades to the background where the splats' weights sum to less than this. Frames "
-            "take slightly longer"
+            "A pixel fades to the background where the splats' weights sum to less than this; Mip Filter has its own "
+            "silhouettes. Frames take slightly longer"
         ),
         min=0.0,
         soft_max=1.0,
@@ -241,6 +241,30 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
             "Mix all surfaces behind the last layer by their opacity, without sorting them. If off, they are left out"
         ),
         default=Settings.blends_rest,
+    )
+    lights_splats: BoolProperty(
+        name="Light Each Splat",
+        description=(
+            "Light every splat where it stands and blend the colours, as the papers before deferred shading do. The "
+            "time grows with the number of surfels instead of samples"
+        ),
+        default=Settings.lights_splats,
+    )
+    culls_backs: BoolProperty(
+        name="Leave Out Backs",
+        description=(
+            "Draw no splat whose back is seen, of open surfaces too, which then have holes. It saves up to half of the "
+            "time"
+        ),
+        default=Settings.culls_backs,
+    )
+    as_printed: BoolProperty(
+        name="As Printed",
+        description=(
+            "Draw backs as fronts, and let the last transparent layer hide as one surface, as the papers have it. It "
+            "takes no more time, and rims of open surfaces show their far sides"
+        ),
+        default=Settings.as_printed,
     )
     storage: EnumProperty(
         name="Surfel Storage",
@@ -339,6 +363,9 @@ def _settings(scene, **choices) -> Settings:
         ambient_occlusion=properties.ambient_occlusion_distance if properties.use_ambient_occlusion else 0.0,
         layers=properties.layers,
         blends_rest=properties.blends_rest,
+        lights_splats=properties.lights_splats,
+        culls_backs=properties.culls_backs,
+        as_printed=properties.as_printed,
         storage=properties.storage,
         sum_format=properties.accumulation,
         transparent_film=scene.render.film_transparent,

@@ -141,14 +141,13 @@ class SamplingRun:
         """The result after the steps that need neighbouring samples. missed: result of `missed_components`."""
         total = len(arrays["positions"])
         if self._chosen.merge is not None:
-            arrays = self._chosen.merge(arrays, self.grid.spacing)
+            arrays = self._chosen.merge(arrays, _axes_of(images), self.grid.spacing)
         gaps, gap_triangles = {}, np.empty(0, np.intp)
         if self.options.crease_angle is not None:
             arrays, gaps, gap_triangles = self._clipped(arrays, images, report)
         saved, error = 0, 0.0
         if self.options.tolerance is not None:
-            axes = np.repeat(np.arange(3), [int(spans.counts.sum(dtype=np.int64)) for spans in images])
-            arrays, error = merge_flat(arrays, axes, self.grid.spacing, self.options.tolerance)
+            arrays, error = merge_flat(arrays, _axes_of(images), self.grid.spacing, self.options.tolerance)
             saved = total - len(arrays["positions"])
         if gaps:
             arrays = _appended(arrays, gaps)
@@ -172,6 +171,11 @@ class SamplingRun:
             gaps["blend_depth"] = blend_depths(*(of[triangles] for of in bends), gaps["scales"].max(axis=1))
         report(1.0)
         return arrays | clipping.fields, gaps, triangles
+
+
+def _axes_of(images: tuple[Spans, ...]) -> np.ndarray:
+    """(N,) along which axis each sample was taken."""
+    return np.repeat(np.arange(3), [int(spans.counts.sum(dtype=np.int64)) for spans in images])
 
 
 def _rows_of(images: tuple[Spans, ...]) -> list[tuple[int, slice]]:

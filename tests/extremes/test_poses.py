@@ -62,7 +62,9 @@ POSES = {"outside": outside(), "through the surface": through_the_surface(), "pa
 
 
 #: Their papers' formulas leave gaps before large splats near the eye, which fixed poses hold (`KNOWN_FAILURES`): which
-#: random pose finds one is not known.
+#: random pose finds one is not known. `ewa`: the affine map (Zwicker et al. 2001, equation 9). `raycast_printed`: the
+#: square of 2 r / z about the centre (Botsch et al. 2005, section 3), too small off the axis. Sprites: equation 1 of
+#: Botsch and Kobbelt 2003, the size on the axis.
 WITH_GAPS = ("ewa", "raycast_printed", "sprites", "sprites_printed", "sprites_unfiltered")
 
 

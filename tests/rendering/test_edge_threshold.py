@@ -6,8 +6,15 @@ import pytest
 
 from splat_addon.reference.extremes import discs
 from splat_addon.rendering import Camera, Scene, Settings
+from splat_addon.rendering.methods import METHODS
+from tests.rendering.methods import test_twins
 
 SIZE = 48
+#: method -> why it has no threshold
+LEFT_ALONE = {
+    "mip": "mip filters silhouettes, by what is visible",
+    "sprites_unfiltered": "of sprites_unfiltered one splat is seen, whose weight is 1",
+}
 CAMERA = Camera.orthographic(np.eye(4), 2.4, (SIZE, SIZE), 0.1, 10)
 
 
@@ -40,8 +47,24 @@ def test_one_disc_fades_by_its_kernel(threshold, side, sum_format, render):
     np.testing.assert_allclose(frame.color[..., :3], expected[..., None] * (0.2, 0.5, 0.8), atol=tolerance)
 
 
-def test_a_filtering_method_is_left_alone_and_the_plan_says_so(render):
+@pytest.mark.parametrize("method", [name for name in METHODS if name not in LEFT_ALONE])
+def test_with_every_method_a_splat_fades_by_its_weights(method, render):
+    """A small one, seen tilted, so that filters count; against the method's twin."""
+    splat = test_twins.Splat(2.0, (0.1, -0.2), 40.0, 1.0, 0.3, 0.15, 0.8)
+    camera = test_twins.CAMERAS["perspective"]
+    surfels = splat.surfels(camera)
+    axes = [a.astype(np.float64) for a in (surfels.positions[0], *(h[0] for h in surfels.half_axes()))]
+    weights, _ = test_twins.twin_weights(method, axes, camera)
+    settings = Settings(method=method, shading="flat", supersampling=1, edge_threshold=0.8, transparent_film=True)
+    coverage = render(Scene((surfels,)), camera, settings).coverage
+    is_there = (weights > 0) == (coverage > 0)
+    assert np.count_nonzero(~is_there) <= 4 and np.count_nonzero((coverage > 0) & (coverage < 1)) > 10
+    np.testing.assert_allclose(coverage[is_there], np.minimum(weights / 0.8, 1)[is_there], atol=2e-3)
+
+
+@pytest.mark.parametrize(("method", "why"), LEFT_ALONE.items())
+def test_a_method_without_such_weights_is_left_alone_and_the_plan_says_so(method, why, render):
     disc = Scene((discs((0, 0, -3)),))
-    frames = [render(disc, CAMERA, Settings(supersampling=2, method="mip", edge_threshold=t)) for t in (0.0, 0.5)]
+    frames = [render(disc, CAMERA, Settings(supersampling=2, method=method, edge_threshold=t)) for t in (0.0, 0.5)]
     np.testing.assert_array_equal(frames[0].color, frames[1].color)
-    assert dict(frames[1].stats["plan"].skipped)["edge threshold"] == "the weights of mip are smaller where it filters"
+    assert dict(frames[1].stats["plan"].skipped)["edge threshold"] == why

@@ -30,6 +30,7 @@ def rubble():
 OPTIONS = {
     "plain": {"resolution": 90},
     "merged": {"resolution": 60, "reduction": "three_to_one"},
+    "by own normals": {"resolution": 60, "reduction": "surfel_normal"},
     "adaptive": {"resolution": 60, "tolerance": Tolerance(0.01)},
     "clipped": {"resolution": 40, "crease_angle": math.radians(30), "fits_blending": True},
 }

@@ -63,7 +63,7 @@ def test_small_parts_come_last_and_are_counted(cube, square):
     assert np.allclose(np.sort(sampling.surfels.positions[-4:, 0]), [0.7, 2.7, 4.7, 6.7])
 
 
-@pytest.mark.parametrize("reduction", ["none", "grazing", "normal", "three_to_one"])
+@pytest.mark.parametrize("reduction", ["none", "grazing", "normal", "surfel_normal", "three_to_one"])
 def test_every_reduction_finds_the_same_lost_part(cube, square, reduction):
     mesh = joined(placed(cube(), 10, 0.0), placed(square(), 0.2, (0.6, 0.6, 5.0)))
     assert sample_surface(mesh, spacing=SPACING, reduction=reduction).small_parts == 1

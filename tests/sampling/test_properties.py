@@ -100,7 +100,7 @@ def test_reductions_by_normals_keep_subsets_and_3_to_1_merges(mesh):
         kept = len(sampling.surfels) - sampling.small_parts
         cells[reduction] = set(map(bytes, sampling.surfels.scales[:kept])), sampling.surfels.positions[:kept]
     whole = set(map(bytes, cells["none"][1]))
-    for reduction in ("normal", "grazing"):
+    for reduction in ("normal", "surfel_normal", "grazing"):
         assert set(map(bytes, cells[reduction][1])) <= whole
     spacing = np.float32(grid_spacing(mesh, resolution=RESOLUTION))
     nodes = [set(map(tuple, np.floor(cells[r][1] / spacing).astype(int))) for r in ("none", "three_to_one")]

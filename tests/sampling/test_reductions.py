@@ -2,6 +2,7 @@
 """What each reduction keeps of the full cube: subsets, a merge on a lattice, and the counts that areas predict."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -38,7 +39,29 @@ def test_grazing_rejection_keeps_what_is_seen_within_the_angle():
     assert keep_facing(5 * tilted, math.radians(70)).tolist() == [[True] * 3, [False, True, True], [False] * 3]
 
 
-@pytest.mark.parametrize("reduction", ["normal", "grazing"])
+def test_by_its_own_normal_a_surfel_stays_in_the_image_that_this_faces_most(armadillo):
+    """Where it is that of its triangle the reduction by normals is left; smoothed, others stay."""
+    flat = replace(armadillo, corner_normals=None)
+    by_face, by_own = (sample_mesh(flat, resolution=64, reduction=r) for r in ("normal", "surfel_normal"))
+    assert rows(by_face) == rows(by_own)
+    smooth = replace(armadillo, corner_normals=smoothed(armadillo))
+    by_face, by_own = (sample_mesh(smooth, resolution=64, reduction=r) for r in ("normal", "surfel_normal"))
+    assert 10 < len(rows(by_own) - rows(by_face)) < 0.2 * len(by_own)
+    axes = np.abs(by_own.normals).argmax(axis=1)
+    seen = np.abs(by_own.geometric_normals()).argmax(axis=1)
+    assert np.count_nonzero(axes != seen) > 10
+
+
+def smoothed(mesh):
+    """(T, 3, 3) normals at corners: those of the triangles around each vertex, by area."""
+    corners = mesh.positions[mesh.triangles]
+    of_faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sums = np.zeros_like(mesh.positions)
+    np.add.at(sums, mesh.triangles, of_faces[:, None])
+    return (sums / np.linalg.norm(sums, axis=1, keepdims=True))[mesh.triangles]
+
+
+@pytest.mark.parametrize("reduction", ["normal", "surfel_normal", "grazing"])
 def test_a_reduction_by_normals_keeps_a_subset_of_the_cube(armadillo, reduction):
     whole, reduced = (sample_mesh(armadillo, resolution=64, reduction=r) for r in ("none", reduction))
     assert rows(reduced) < rows(whole)
@@ -74,13 +97,13 @@ def test_3_to_1_leaves_one_surfel_on_each_node_that_had_any(armadillo):
 
 def test_3_to_1_keeps_the_surfel_nearest_to_the_node():
     positions = np.array([(0.5, 0.5, 0.9), (0.5, 0.5, 0.6), (0.5, 0.5, 0.1), (1.5, 0.5, 0.5)], np.float32)
-    merged = nearest_to_lattice({"positions": positions, "materials": np.arange(4)}, 1.0)
+    merged = nearest_to_lattice({"positions": positions, "materials": np.arange(4)}, np.zeros(4, int), 1.0)
     assert merged["materials"].tolist() == [1, 3]
     assert merged["positions"].tolist() == [[0.5, 0.5, 0.5], [1.5, 0.5, 0.5]]
 
 
 def test_3_to_1_of_nothing_is_nothing():
-    assert len(nearest_to_lattice({"positions": np.zeros((0, 3), np.float32)}, 1.0)["positions"]) == 0
+    assert len(nearest_to_lattice({"positions": np.zeros((0, 3), np.float32)}, np.zeros(0, int), 1.0)["positions"]) == 0
 
 
 def test_3_to_1_merges_two_sheets_closer_than_a_cell_and_normal_does_not(square):

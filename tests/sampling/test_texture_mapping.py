@@ -12,7 +12,7 @@ IMAGE = Image(np.dstack([np.random.default_rng(1).uniform(0, 1, (32, 32, 3)), np
 TEXTURED = Surface(Channel((1.0, 0.5, 1.0, 1.0), Texture(IMAGE)))
 #: Texture coordinates of a point: a map that is affine in all of space, so that it is on every triangle.
 LINEAR, SHIFT = np.array([[0.4, -0.3, 0.2], [0.1, 0.5, -0.6]]), np.array([0.3, -2.0])
-REDUCTIONS = ("normal", "grazing", "none", "three_to_one")
+REDUCTIONS = ("normal", "surfel_normal", "grazing", "none", "three_to_one")
 
 
 def mapped(points):

@@ -233,7 +233,7 @@ def bake(conversion: Conversion, depsgraph: bpy.types.Depsgraph) -> None:
         conversion.mesh.surfaces,
         conversion.spacing,
         choices.splat_size,
-        _REACH if REDUCTIONS[choices.reduction].merge is None else _LATTICE_REACH,
+        _LATTICE_REACH if REDUCTIONS[choices.reduction].moves else _REACH,
     )
     conversion.surfels, missed = baked(conversion.surfels, what, depsgraph)
     if missed:

@@ -62,7 +62,8 @@ class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):
         super().draw(context)
         properties = getattr(context.scene, RENDER_SETTINGS)
         row = self.layout.row()
-        row.active = get_method(properties.method).rasterizer == "object_space"
+        method = get_method(properties.method)
+        row.active = method.rasterizer != "point_sprite" and not method.filters_silhouettes
         row.prop(properties, "edge_threshold")
 
 
@@ -121,6 +122,12 @@ class RENDER_PT_surfel_motion_blur(_RenderPanel, bpy.types.Panel):
         self.layout.prop(render, "motion_blur_shutter")
         super().draw(context)
         self.layout.template_curve_mapping(render, "motion_blur_shutter_curve")
+
+
+class RENDER_PT_surfel_papers(_RenderPanel, bpy.types.Panel):
+    bl_label = "As the Papers"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("lights_splats", "culls_backs", "as_printed")
 
 
 class RENDER_PT_surfel_film(_RenderPanel, bpy.types.Panel):
@@ -220,6 +227,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         RENDER_PT_surfel_ambient_occlusion,
         RENDER_PT_surfel_transparency,
         RENDER_PT_surfel_film,
+        RENDER_PT_surfel_papers,
         RENDER_PT_surfel_performance,
     )
 )

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from .plane import Plane, places
+from .plane import Plane, places, plane_depth
 
 KERNEL_VARIANCE = 0.25
 FILTER_VARIANCE = 0.5
 #: Minimum ratio of the squared half-axes in the picture; splats at more grazing angles are not widened.
 LEAST_FLATNESS2 = 0.004
+#: Of the splat's depth: what is widened nearer to the eye's plane is not drawn.
+LEAST_DEPTH = 1e-3
 
 
 def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -22,5 +24,5 @@ def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.nda
     half_axes = 2 * np.sqrt(KERNEL_VARIANCE + FILTER_VARIANCE / np.maximum(lengths2, 1e-30))
     with np.errstate(invalid="ignore", over="ignore"):
         rho2 = ((at.uv @ along.T / half_axes) ** 2).sum(axis=1)
-        weights = np.where((rho2 <= 1) & (at.k > 0), amplitude * np.exp(-2 * rho2), 0.0)
-        return weights, plane.depth + at.uv @ plane.slope
+        weights = np.where((rho2 <= 1) & (at.k > LEAST_DEPTH), amplitude * np.exp(-2 * rho2), 0.0)
+        return weights, plane_depth(plane, at, pixel, FILTER_VARIANCE**0.5)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The range of visible depths of each sample, for screen-space methods, which compare depths themselves."""
+"""The range of visible depths of each sample, for methods that spread splats past the visible ellipses: in screen space
+they compare depths themselves, and only visible polygons are drawn.
+"""
 
 from __future__ import annotations
 
@@ -29,17 +31,19 @@ def passes(planning):
     method = planning.method
     if not planning.shown or method.rasterizer == "point_sprite":
         return
-    if method.rasterizer == "object_space":
+    if not method.spreads:
         planning.skip(BOUNDS.name, f"{method.name} is tested by the hardware, with the depth of visibility")
         return
     compared = f"{method.name} computes its depths, which are compared in the shader"
+    if method.rasterizer == "object_space":
+        compared = f"polygons are seen where {method.name} spreads past what hides them"
     if planning.find(silhouettes.have_rows):
         compared += "; between samples, silhouettes are looked for alone"
     yield bounds(planning, compared, visibility.nearest_depth(planning))
 
 
 def is_present(planning) -> bool:
-    return planning.method.rasterizer == "screen_space"
+    return planning.method.spreads
 
 
 def parts(planning, p):

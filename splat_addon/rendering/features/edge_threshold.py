@@ -15,15 +15,20 @@ def passes(planning):
         threshold = planning.settings.edge_threshold
         if threshold == 0:
             planning.skip("edge threshold", "it is 0: whatever a splat reaches is covered")
-        elif planning.method.rasterizer != "object_space":
-            planning.skip("edge threshold", f"the weights of {planning.method.name} are smaller where it filters")
+        elif planning.method.rasterizer == "point_sprite":
+            planning.skip("edge threshold", f"of {planning.method.name} one splat is seen, whose weight is 1")
+        elif planning.method.filters_silhouettes:
+            planning.skip("edge threshold", f"{planning.method.name} filters silhouettes, by what is visible")
         else:
             planning.has("EDGE_THRESHOLD", f"pixels whose weights sum to less than {threshold:g} fade")
     return ()
 
 
 def is_present(planning) -> bool:
-    return planning.settings.edge_threshold > 0 and planning.method.rasterizer == "object_space"
+    method = planning.method
+    return (
+        planning.settings.edge_threshold > 0 and method.rasterizer != "point_sprite" and not method.filters_silhouettes
+    )
 
 
 def parts(planning, p):

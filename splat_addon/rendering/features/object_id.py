@@ -50,14 +50,14 @@ def passes(planning):
             f"Hardware samples are not told apart by object: leave {', '.join(names)} out of the outputs, or set "
             "multisampling to 0 and use supersampling."
         )
-    if method.rasterizer == "object_space" and method.writes_depth:
-        planning.skip("edge ids", f"what {method.name} spreads in space past what is visible is nobody's")
-    if method.rasterizer == "screen_space" and not method.filters_silhouettes:
+    if method.spreads and not method.filters_silhouettes:
         why = f"{method.name} spreads splats past what is visible, which is somebody's"
-        own = Part("object_id", ("edge_ids",), (visibility.DEPTH,), writes=(IDENTITY, EDGE_DEPTH), varyings=_VARYINGS)
-        state = {"depth_test": True, "depth_write": True}
-        parts = own, *rasterized(planning)
-        yield Pass("edge_ids", why, "screen_space.frag", run_edges, parts, "edge_ids", state, adds=True)
+        in_space = method.rasterizer == "object_space"
+        words = ("edge_ids", "in_space") if in_space else ("edge_ids",)
+        own = Part("object_id", words, (visibility.DEPTH,), writes=(IDENTITY, EDGE_DEPTH), varyings=_VARYINGS)
+        state = {"depth_test": True, "depth_write": True, "fragment_depth": in_space}
+        host, parts = f"{method.rasterizer}.frag", (own, *rasterized(planning))
+        yield Pass("edge_ids", why, host, run_edges, parts, "edge_ids", state, adds=True)
 
 
 def is_present(planning) -> bool:
@@ -86,5 +86,5 @@ def run_edges(tile, p: Pass):
     """Fill gaps that the visibility pass left in the numbers with the nearest splat footprint."""
     target = tile.target(p)
     target.clear(depth=1.0)
-    draw_splats(tile, p, target, tile.drawn_by(p), "screen_space.vert")
+    draw_splats(tile, p, target, tile.drawn_by(p), p.host.replace(".frag", ".vert"))
     return target

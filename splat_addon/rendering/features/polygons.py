@@ -63,7 +63,7 @@ def parts(planning, p):
 def joined(planning):
     """The parts that blend polygons with the splats' means."""
     if planning.scene.polygons:
-        share = "known" if planning.method.rasterizer == "screen_space" else "compared"
+        share = "known" if planning.method.spreads else "compared"
         yield Part("polygons", reads=(COLOR, NORMAL), choices=(("polygon_share", share),))
 
 

@@ -19,10 +19,13 @@ _PLACE = {
     ),
     "point_sprite": (("smooth", "vec2", "place"), ("flat", "vec3", "tilt_depth")),
 }
+#: Depth at the centre, and how far from it the depths of what is widened are held: where it is seen, and in layers.
+_WIDENED = (("flat", "vec3", "depth_reach"),)
 _ATTRIBUTES = (("flat", "vec4", "color_weight"), ("flat", "vec3", "normal"))
 
 
 def rasterized(planning) -> tuple[Part, ...]:
     """Parts of every pass that draws splats with the method."""
-    varyings = (*_PLACE[planning.method.rasterizer], *_ATTRIBUTES)
+    widened = _WIDENED if planning.method.widens else ()
+    varyings = (*_PLACE[planning.method.rasterizer], *widened, *_ATTRIBUTES)
     return (Part("rasterizers", inputs=storage_samplers(planning.settings.storage), varyings=varyings),)

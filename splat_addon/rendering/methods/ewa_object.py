@@ -10,4 +10,5 @@ METHOD = Method(
     summary="EWA computed in each splat's plane, which is drawn as a larger quad",
     rasterizer="object_space",
     writes_depth=True,
+    widens=True,
 )

@@ -25,6 +25,7 @@ class Method:
         their methods here.
     sprites_hide: visibility too is of its sprites. Else it is of the exact ellipses.
     writes_depth: at every pixel: the hardware's depth would differ from the one that the method corrects or clamps.
+    widens: its quads in space, past the exact ellipses that visibility is of.
     pixel_variance: of its pixel filter, samples squared; 1/12 is that of a box. Textures are looked up under it.
     """
 
@@ -38,4 +39,10 @@ class Method:
     culls_hidden: bool = False
     sprites_hide: bool = False
     writes_depth: bool = False
+    widens: bool = False
     pixel_variance: float = 0.5
+
+    @property
+    def spreads(self) -> bool:
+        """Splats reach past the exact ellipses that visibility is of."""
+        return self.widens or self.rasterizer == "screen_space"

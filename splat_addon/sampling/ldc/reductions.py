@@ -51,13 +51,24 @@ def keep_facing(normals: np.ndarray, grazing_angle: float) -> np.ndarray:
     return (normals >= math.cos(grazing_angle) * np.sqrt(x * x + y * y + z * z)) | keep_dominant(normals, grazing_angle)
 
 
+def facing_by_own_normal(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> dict[str, np.ndarray]:
+    """Of all samples those whose image their own normal faces most; ties go to the lowest axis.
+
+    View-independent object-space splatting, section 4.1, to the letter: a sample knows its interpolated normal, not
+    its triangle. Where normals turn within a cell, neighbours choose different axes, and both or neither stay.
+    """
+    stay = keep_dominant(np.abs(arrays["normals"].T), 0.0)[axes, np.arange(len(axes))]
+    return {name: array[stay] for name, array in arrays.items()}
+
+
 @dataclass(frozen=True)
 class Reduction:
     """label, description: text for the interface.
     keeps: function of (3, t) absolute normal components of any common scale and the grazing angle in radians; returns
         the (3, t) images that sample each triangle.
     counts: the same for the images whose samples remain after a merge.
-    merge: function of the arrays of `Surfels` by field and the spacing; returns those that stay. None: no merge.
+    merge: function of the arrays of `Surfels` by field, the axes of their images and the spacing; returns those that
+        stay. None: no merge. moves: whether it moves surfels.
     has_angle: whether the grazing angle has an effect.
     """
 
@@ -65,7 +76,8 @@ class Reduction:
     description: str
     keeps: Callable[[np.ndarray, float], np.ndarray]
     counts: Callable[[np.ndarray, float], np.ndarray]
-    merge: Callable[[dict[str, np.ndarray], float], dict[str, np.ndarray]] | None = None
+    merge: Callable[[dict[str, np.ndarray], np.ndarray, float], dict[str, np.ndarray]] | None = None
+    moves: bool = False
     has_angle: bool = False
 
 
@@ -75,6 +87,14 @@ REDUCTIONS: dict[str, Reduction] = {
         "Sample each face along the axis that it faces most. It leaves no holes and is the fastest",
         keeps=keep_dominant,
         counts=keep_dominant,
+    ),
+    "surfel_normal": Reduction(
+        "Surfel's Normal",
+        "Sample along all three axes and keep a surfel where its own smoothed normal faces that axis most. It leaves "
+        "small holes where normals turn, and all three images are sampled",
+        keeps=keep_all,
+        counts=keep_dominant,
+        merge=facing_by_own_normal,
     ),
     "grazing": Reduction(
         "Grazing Rejection",
@@ -92,6 +112,7 @@ REDUCTIONS: dict[str, Reduction] = {
         keeps=keep_all,
         counts=keep_dominant,
         merge=nearest_to_lattice,
+        moves=True,
     ),
     "none": Reduction("None", "Sample along all three axes and keep every sample", keeps=keep_all, counts=keep_all),
 }

@@ -14,10 +14,11 @@ from ...surfels import quaternion_axes
 from ..attributes.texture_mapping import moved
 
 
-def nearest_to_lattice(arrays: dict[str, np.ndarray], spacing: float) -> dict[str, np.ndarray]:
+def nearest_to_lattice(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> dict[str, np.ndarray]:
     """The nearest of the surfels around each lattice node, moved onto the node, in the original order.
 
-    arrays: by field of `Surfels`, positions relative to a corner of a cell. spacing: of the grid, object units.
+    arrays: by field of `Surfels`, positions relative to a corner of a cell. axes: of their images, all alike here.
+    spacing: of the grid, object units.
     """
     cells = np.floor(arrays["positions"].T / np.float32(spacing)).astype(np.int64)
     centres = (cells + 0.5) * spacing

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Edge Fade: of Quads a splat fades by its kernel, other methods are left alone."""
+"""Edge Fade: a splat fades by its kernel; Mip Filter, which filters silhouettes, is left alone."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ def test_a_disc_of_quads_fades_to_its_rim(scene, add_camera, add_surfels, pictur
     expected = np.where(distance < 1, np.minimum(np.exp(-2 * distance**2) / 0.5, 1), 0)
     np.testing.assert_allclose(row, expected, atol=1e-4)
     assert np.abs(hard - row).max() > 0.3
-    scene.surfel_splatting.method = "raycast"
+    scene.surfel_splatting.method = "mip"
     faded = picture()
     scene.surfel_splatting.edge_threshold = 0
     np.testing.assert_array_equal(picture(), faded)

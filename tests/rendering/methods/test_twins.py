@@ -36,8 +36,6 @@ EXAMPLES = 60
 BACK_WEIGHT = 1e-3
 #: Methods whose formula has no tangents for a disc that faces the ray: rounding decides whether it is seen.
 NOT_FACING = ("homogeneous_printed",)
-#: Methods whose quad, of a splat that is seen flat, may be widened until it reaches behind the eye, and is cut there.
-CUT_BEHIND_THE_EYE = ("ewa_object",)
 
 #: As `Surfels.clip_lines` gives them of one surfel: a line that keeps all, twice, and no reflex corner.
 NO_LINES = np.array([(1.0, 0, 1), (1, 0, 1)]), False
@@ -207,7 +205,6 @@ def agree_with_twins(method, kind, splats, on_device):
             assert np.isfinite(picture).all() and np.isfinite(depth).all()
             weights, depths, side = neighbours(method, surfels, camera)
             is_meant = method not in NOT_FACING or 0.1 < splat.angle < 179.9
-            is_meant &= method not in CUT_BEHIND_THE_EYE or abs(splat.angle - 90) > 10
             if side is not None and is_meant:
                 covered = (weights > 0).all(axis=0)
                 empty = ~(weights > 0).any(axis=0)
