@@ -1,5 +1,6 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 4: equations 8 to 10 (tangents lengthened until the splat is
-//             as large as the pixel's filter), section 3: their projections exact and perspective.
+//             as large as the pixel's filter), section 3: their projections exact and perspective; as printed by equations
+//             5 and 6, else relative to the centre.
 // Summary: a half-axis shorter than sqrt(2) pixels in the picture is replaced by one of that length parallel to the
 //          picture; then the kernel is evaluated as usual. The includer defines AS_PRINTED.
 
@@ -51,8 +52,27 @@ vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   return 1.01 * size;
 }
 #part fragment
-// Weight and depth.
+// Equations 4 and 6: the adjoint of the map whose columns are the half-axes and the centre, seen by this pixel and scaled
+// so that w is 1 / depth. The paper's w is b times that, to which equation 7 adds a: the depth in the window. Here depths
+// are compared along the view, so that b and a would be taken off again, and digits with them.
+vec3 by_adjoint(Plane plane, vec2 pixel) {
+  vec2 unit = view.window.zw, center = view.window.xy + plane.center * unit;
+  vec3 s = plane.depth * vec3(plane.a * unit + center * plane.gh.x, plane.gh.x);
+  vec3 t = plane.depth * vec3(plane.b * unit + center * plane.gh.y, plane.gh.y);
+  vec3 p = plane.depth * vec3(center, 1.0), third = cross(s, t);
+  return vec3(view.window.xy + pixel * unit, 1.0) * mat3(cross(t, p), cross(p, s), third) / dot(third, p);
+}
+
+vec2 printed_sample(Plane plane, vec2 pixel) {
+  vec3 uvw = by_adjoint(plane, pixel);
+  vec2 uv = uvw.xy / uvw.z;
+  float rho2 = dot(uv, uv);
+  return vec2(rho2 <= 1.0 && uvw.z > 0.0 ? exp(-2.0 * rho2) : 0.0, 1.0 / uvw.z);
+}
+
+// Weight and depth. Equation 6 is of perspective views alone.
 vec2 splat_sample(Plane plane, vec2 pixel) {
+  if (AS_PRINTED && view.is_parallel < 0.5) return printed_sample(plane, pixel);
   Place place = place_at(plane, pixel);
   float rho2 = dot(place.uv, place.uv);
   return vec2(rho2 <= 1.0 && place.k > 0.0 ? exp(-2.0 * rho2) : 0.0, plane_depth(plane, place));

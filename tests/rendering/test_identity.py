@@ -33,8 +33,8 @@ OUTPUTS = ("color", "coverage", *NUMBERED)
 #: Pixels that a method may see nothing in where something is visible: what these print leaves holes
 #: (docs/evidence/methods.md); of others one splat's rim may tie.
 TIES = {"homogeneous_printed": 8, "sprites": 4}
-#: Botsch and Kobbelt 2003, equation 4 as printed adds an offset that equation 2 gives in radii to a depth in units of the
-#: scene, with the other sign: depths are wrong by as much.
+#: Botsch and Kobbelt 2003, equation 4 as printed adds an offset that equation 2 gives in radii to a depth in units of
+#: the scene, with the other sign: depths are wrong by as much.
 MISPLACED = {"sprites_printed"}
 
 

@@ -50,8 +50,8 @@ def square_surfels(spacing: float, color, keep=lambda x, y: x > -9):
 #: angles, where the low-pass has the depth that equations 8 and 9 of Guennebaud et al. 2006 lengthen tangents to, and
 #: that of the centre in Botsch et al. 2005, section 5.
 IN_FRONT = {"sprites_unfiltered", "homogeneous_printed", "raycast", "raycast_printed"}
-#: Botsch and Kobbelt 2003, equation 4 as printed adds an offset that equation 2 gives in radii to a depth in units of the
-#: scene, with the other sign: depths are wrong by as much.
+#: Botsch and Kobbelt 2003, equation 4 as printed adds an offset that equation 2 gives in radii to a depth in units of
+#: the scene, with the other sign: depths are wrong by as much.
 MISPLACED = {"sprites_printed"}
 
 

@@ -68,7 +68,7 @@ def measured(stats: dict) -> Iterator[str]:
     drawn = [f"{stats[name]:,} {name}" for name in ("splats", "polygons") if stats[name]]
     yield f"Drawn: {' and '.join(drawn) or 'nothing'}"
     if stats.get("culled"):
-        yield f"Left out, as their backs are seen: {stats['culled']:,}, {stats['culled'] / stats['splats']:.0%} of the splats"
+        yield f"Left out as backs: {stats['culled']:,} splats, {stats['culled'] / stats['splats']:.0%} of them"
     samples = stats.get("samples", 1)
     yield f"Time: {stats['milliseconds']:,.0f} ms{f', {samples} samples' if samples > 1 else ''}"
     yield f"Textures on the device: {stats['texture_bytes'] / 1e6:,.1f} MB"

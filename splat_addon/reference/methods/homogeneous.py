@@ -13,26 +13,21 @@ from .plane import Plane, places, splat_plane
 FILTER_RADIUS = 2**0.5
 
 
-def samples(
-    plane: Plane, points: np.ndarray, pixel: np.ndarray, as_printed: bool = False
-) -> tuple[np.ndarray, np.ndarray]:
-    """(M,) weights and (M,) depths at (M, 2) picture points (Guennebaud et al. 2006, equations 8 to 10).
-
-    as_printed: discs alone, and without the repairs for those that face the ray, and for depths.
-    """
+def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(M,) weights and (M,) depths at (M, 2) picture points (Guennebaud et al. 2006, equations 8 to 10)."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        wide = adjusted(plane, pixel, as_printed)
-        weights, depths = quad.samples(wide, points, pixel)
-        if as_printed:
-            return weights, depths
+        wide = adjusted(plane, pixel)
+        weights, _ = quad.samples(wide, points, pixel)
         along = plane.gradient @ np.stack([wide.a, wide.b], axis=1)
         offset = places(wide, points).uv @ along
         return weights, plane.depth + np.clip(offset, -plane.radius, plane.radius)
 
 
 def adjusted(plane: Plane, pixel: np.ndarray, as_printed: bool = False) -> Plane:
-    """The plane of the ellipse, as printed of the disc, whose half-axes are no shorter than the filter."""
-    is_orthographic = plane.scale == 1.0 and not plane.gh.any() and plane.slope.any()
+    """The plane of the ellipse, as printed of the disc, whose half-axes are no shorter than the filter: that is 0 / 0
+    where the disc faces the ray.
+    """
+    is_orthographic = is_parallel(plane)
     depth = 1.0 if is_orthographic else plane.depth
     position = np.array([*(plane.center / plane.scale), -plane.depth])
     if as_printed:
@@ -44,6 +39,11 @@ def adjusted(plane: Plane, pixel: np.ndarray, as_printed: bool = False) -> Plane
         axes = places_of_axes @ _axes(plane)
     axes = [_at_least_filter(axis, position, pixel, depth, is_orthographic) for axis in axes]
     return replace(splat_plane(position, *axes, is_orthographic), normal=plane.normal)
+
+
+def is_parallel(plane: Plane) -> bool:
+    """Of a camera's view, as far as it makes a difference."""
+    return bool(plane.scale == 1.0 and not plane.gh.any() and plane.slope.any())
 
 
 def _axes(plane: Plane) -> list[np.ndarray]:

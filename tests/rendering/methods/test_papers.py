@@ -8,6 +8,8 @@ import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs, sheet
+from splat_addon.reference.methods.homogeneous_printed import window_map
+from splat_addon.reference.methods.plane import splat_plane
 from splat_addon.reference.methods.sprites import window_depth
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Scene, Settings, plan
@@ -112,6 +114,23 @@ def test_depths_lie_in_the_plane_of_a_tilted_disc_and_off_it_as_printed(render):
     up = (at[0] + 0.5 - 64) * 0.36 / 128
     assert render(scene, camera, SPRITES).depth[at] == pytest.approx(2 - up, abs=2e-3)
     assert render(scene, camera, SPRITES_PRINTED).depth[at] == pytest.approx(2 + up / (0.1 * 2**0.5), abs=1e-2)
+
+
+def test_equations_6_and_7_map_the_picture_to_the_splat_and_to_the_depth_in_the_window():
+    """Which is 0 at the near plane and 1 at the far one, and that of the plane wherever the splat is."""
+    plane = splat_plane((0.3, -0.2, -2.0), (0.2, 0.1, 0.15), (-0.05, 0.2, -0.1))
+    near, far = 0.5, 20.0
+    a, b = far / (far - near), -near * far / (far - near)
+    random = np.random.default_rng(0)
+    uv = random.uniform(-1, 1, (50, 2))
+    depths = plane.depth + uv @ plane.slope
+    points = np.stack(
+        [(c + uv @ axis) / depths for c, axis in zip((0.3, -0.2), ((0.2, -0.05), (0.1, 0.2)), strict=True)]
+    )
+    uw, vw, w, depth = window_map(plane, a, b) @ np.vstack([points, np.ones(50)])
+    np.testing.assert_allclose(np.stack([uw / w, vw / w], axis=1), uv, atol=1e-12)
+    np.testing.assert_allclose(w, b / depths)
+    np.testing.assert_allclose(depth, window_depth(depths, near, far), atol=1e-12)
 
 
 def test_one_pass_is_one_pass():
