@@ -2,8 +2,8 @@
 //             depth and normal in the picture).
 // Summary: the share of a sample that a line covers. Eight walks start from it over its own surface. Where one reaches
 //          the background or a drop in depth, there is a silhouette; where the normal changes between two opposite
-//          walks, and most of that within a few pixels, there is a crease, in the middle of the change. Hook: `see`,
-//          whether a surface is visible.
+//          walks, and most of that within a few pixels, there is a crease, in the middle of the change. Hooks: `see`,
+//          whether a surface is visible; `cover`, what other lines cover.
 
 #include "hosts/mean_surface.glsl"
 
@@ -127,4 +127,5 @@ void main() {
     crease = min(crease, crease_distance(texel, own.xyz, ways[i], ahead, back, beside));
   }
   lines = max(clamp(width - silhouette + 0.5, 0.0, 1.0), clamp(0.5 * width - crease + 0.5, 0.0, 1.0));
+  #hook cover(own, texel, lines)
 }

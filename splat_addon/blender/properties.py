@@ -33,6 +33,7 @@ from ..rendering.upload.storages import STORAGES
 from .enum_values import check_choices
 from .ids import RENDER_SETTINGS
 from .materials.matcap_images import matcap_of
+from .materials.ramps import ramp_of
 from .mesh_sampling_settings import MeshSamplingProperties
 from .registration import with_property
 
@@ -75,6 +76,14 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         description=("An image of a lit ball that fills the frame. A multilayer file shows its first layer"),
         type=bpy.types.Image,
     )
+    ramp: PointerProperty(
+        name="Ramp",
+        description=(
+            "A texture whose color ramp gives the color at each amount of light, black to white from left to right; "
+            "without one, three even greys. It takes as long as Toon"
+        ),
+        type=bpy.types.Texture,
+    )
     use_lines: BoolProperty(
         name="Lines",
         description=("Draw lines along silhouettes and creases, with any shading. Frames take noticeably longer"),
@@ -102,6 +111,17 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         min=math.radians(1),
         max=math.pi,
         default=Lines.crease_angle,
+    )
+    line_shallow_angle: FloatProperty(
+        name="Shallow Angle",
+        description=(
+            "Cover by a line what is seen at less than this angle to the surface; 0 covers none. It takes no more time"
+        ),
+        subtype="ANGLE",
+        min=0.0,
+        max=math.pi / 2,
+        soft_max=math.radians(45),
+        default=Lines.shallow_angle,
     )
     line_depth_threshold: FloatProperty(
         name="Depth Threshold",
@@ -355,6 +375,7 @@ def _settings(scene, **choices) -> Settings:
         toon_steps=properties.toon_steps,
         toon_softness=properties.toon_softness,
         matcap=_matcap(properties),
+        ramp=ramp_of(properties.ramp) if properties.shading == "ramp" else Settings.ramp,
         lines=_lines(properties) if properties.use_lines else None,
         epsilon=properties.epsilon,
         edge_threshold=properties.edge_threshold,
@@ -384,6 +405,7 @@ def _lines(properties) -> Lines:
         tuple(properties.line_color),
         properties.line_crease_angle,
         properties.line_depth_threshold,
+        properties.line_shallow_angle,
     )
 
 

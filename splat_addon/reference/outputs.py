@@ -15,7 +15,7 @@ from .lights import all_incident
 from .rays import RayGrid, Surface
 
 #: The shading models that look at lights, and at materials.
-LIT = ("principled", "phong", "toon")
+LIT = ("principled", "phong", "toon", "ramp")
 
 
 def _diffuse_color(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:

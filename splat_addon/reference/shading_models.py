@@ -68,6 +68,17 @@ def _toon(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, setting
     return radiance
 
 
+def _ramp(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    _, incident = _lighting(surface, grid, scene, camera, settings)
+    light = np.broadcast_to(WorldLight(scene, camera).irradiance(surface.normal), surface.normal.shape)
+    for one in incident:
+        light = light + one.irradiance * np.maximum(dot(surface.normal, one.to_light), 0)[:, None] / np.pi
+    colors = settings.ramp.colors.astype(np.float64)
+    places, luminance = np.linspace(0, 1, len(colors)), light @ LUMINANCE
+    looked_up = np.stack([np.interp(luminance, places, channel) for channel in colors.T], axis=1)
+    return surface.emission + surface.color * looked_up
+
+
 def _matcap(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
     """Maps the normal, in a basis around the ray as in Blender's Workbench, to a position in the picture."""
     view = -unit(grid.rays(surface.rays)[1])
@@ -126,6 +137,9 @@ def _lighting(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, set
     return direction, all_incident(scene, camera, position, surface.light_set, settings.epsilon)
 
 
+#: Of linear rgb (ITU-R BT.709).
+LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
+
 #: The models that show how splats add up; they treat everything as opaque.
 DIAGNOSTIC = ("overdraw", "weight")
 
@@ -134,6 +148,7 @@ SHADERS = {
     "principled": _principled,
     "phong": _phong,
     "toon": _toon,
+    "ramp": _ramp,
     "flat": _flat,
     "normals": _normals,
     "depth": _depth,

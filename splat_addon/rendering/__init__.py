@@ -22,6 +22,7 @@ from .scene.lines import Lines
 from .scene.matcap import Matcap
 from .scene.panorama import EquidistantFisheye, Equirectangular, EquisolidFisheye, Panorama
 from .scene.polygons import Polygons, make_polygons
+from .scene.ramp import Ramp
 from .settings import Settings
 
 __all__ = (
@@ -46,6 +47,7 @@ __all__ = (
     "PolygonInstance",
     "Polygons",
     "Preset",
+    "Ramp",
     "Refinement",
     "RenderCancelled",
     "Renderer",

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from .frame import OUTPUTS
 from .scene.lines import Lines
 from .scene.matcap import Matcap
+from .scene.ramp import Ramp
 from .shading_models import get_shading_model
 
 #: sum_format -> (label, what it costs and gains)
@@ -34,6 +35,8 @@ MAX_SHADOW_RESOLUTION = 2048
 
 MAX_LAYERS = 64
 
+EVEN_RAMP = Ramp.of_steps(3)
+
 #: Outputs that follow the nearest sample of a pixel.
 NEAREST = ("depth", "position", "object_index", "material_index")
 
@@ -49,7 +52,7 @@ class Settings:
     shading: a name in `rendering.shading_models`.
     toon_steps: levels of each light in the toon model, at least 2. toon_softness: width of their edges, as a share of a
         level's.
-    matcap: what that model looks up.
+    matcap: what that model looks up. ramp: the same for that model; three even greys unless another is given.
     lines: drawn along silhouettes and creases, with any shading; None for none.
     supersampling: N for N x N samples per pixel, averaged with a box filter.
     samples: number of pictures that are averaged, each with a different offset in the pixel (a box filter one pixel
@@ -87,6 +90,7 @@ class Settings:
     toon_steps: int = 3
     toon_softness: float = 0.1
     matcap: Matcap | None = None
+    ramp: Ramp = EVEN_RAMP
     lines: Lines | None = None
     supersampling: int = 1
     samples: int = 1
@@ -112,6 +116,8 @@ class Settings:
     def __post_init__(self):
         if "matcap" in get_shading_model(self.shading).tables and self.matcap is None:
             raise ValueError("Matcap shading needs a picture of a ball: choose one as its matcap.")
+        if not isinstance(self.ramp, Ramp):
+            raise ValueError(f"ramp must be a Ramp, not {self.ramp!r}.")
         if self.toon_steps not in range(2, MAX_TOON_STEPS + 1):
             raise ValueError(f"toon_steps must be 2 to {MAX_TOON_STEPS}, not {self.toon_steps}.")
         if not 0 <= self.toon_softness <= 1:

@@ -24,7 +24,7 @@ def torus():
     return replace(scene, lights=(Light("sun", energy=3.0, direction=(1, -0.5, -1)),)), camera
 
 
-@pytest.mark.parametrize("shading", ["phong", "principled", "toon", "normals"])
+@pytest.mark.parametrize("shading", ["phong", "principled", "toon", "ramp", "normals"])
 @pytest.mark.parametrize("asked", ASKED)
 def test_the_picture_is_the_references(asked, shading, render):
     settings = replace(QUADS, shading=shading, **ASKED[asked])

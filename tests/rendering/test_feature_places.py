@@ -52,7 +52,8 @@ MEETINGS = {
     ),
     "lights": (
         ("models add up what each light sends",
-         "hosts/lights.glsl shading_models/phong.glsl shading_models/principled.glsl shading_models/toon.glsl"),
+         "hosts/lights.glsl shading_models/phong.glsl shading_models/principled.glsl shading_models/ramp.glsl "
+         "shading_models/toon.glsl"),
         ("a light tells which maps are its own", "features/shadows.glsl"),
         ("polygons are of a set of objects too", "features/polygons.py"),
     ),

@@ -10,6 +10,7 @@ import pytest
 
 from splat_addon.rendering import Camera, Instance, Lines, Renderer, Scene, Settings, look_at, plan
 from splat_addon.rendering.methods import get_method
+from splat_addon.rendering.plan.executor import describe
 from splat_addon.rendering.plan.frame_plan import FILTER_MARGIN
 from splat_addon.sampling import TriangleMesh, sample_mesh
 
@@ -115,6 +116,23 @@ def test_a_crease_is_drawn_above_its_angle(cube, darkness):
 
 
 @pytest.mark.parametrize("settings", METHODS, ids=lambda s: s.method)
+def test_what_is_seen_at_a_shallow_angle_is_outlined(settings, ball, darkness):
+    """Of a ball what lies farther from its middle than the angle's cosine in radii."""
+    dark = darkness([ball], FRONT, settings, Lines(width=0.5, shallow_angle=math.radians(30)))
+    y, x = np.mgrid[: SIZE[1], : SIZE[0]] + 0.5
+    radius = np.hypot(x - SIZE[0] / 2, y - SIZE[1] / 2)
+    assert dark[radius < 24 * math.cos(math.radians(30)) - 1.5].max() < 1e-3
+    soft = 24 * math.sqrt(1 - (0.8 * math.sin(math.radians(30))) ** 2)
+    assert dark[(radius > soft + 0.7) & (radius < 23)].min() > 0.85
+
+
+def test_shallow_angles_cost_nothing_where_none_are_asked_for(cube):
+    made = [plan(Scene([cube]), FRONT, Settings(lines=Lines(shallow_angle=angle))) for angle in (0.0, 0.5)]
+    texts = [describe(m, next(p for p in m.passes if p.name == "lines")).fragment for m in made]
+    assert "line_shallow" not in texts[0] and "line_shallow" in texts[1]
+
+
+@pytest.mark.parametrize("settings", METHODS, ids=lambda s: s.method)
 def test_no_seam_shows_between_tiles(settings, cube, darkness, monkeypatch):
     camera = Camera.perspective(look_at((1, -5, 2), (0, 0, 0)), 0.7, SIZE, near=0.1, far=30)
     whole = darkness([cube], camera, settings, Lines(width=4.0))
@@ -161,6 +179,7 @@ def test_lines_are_planned_only_where_they_are_asked_for(cube):
         ({"color": (1, 2)}, "color must be three numbers"),
         ({"crease_angle": 4}, "crease_angle must be"),
         ({"depth_threshold": -1}, "depth_threshold must be"),
+        ({"shallow_angle": 2}, "shallow_angle must be"),
     ],
 )
 def test_unusable_lines_are_refused(wrong, why):

@@ -10,7 +10,19 @@ import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.shading_models import SHADERS, heat
-from splat_addon.rendering import Camera, Environment, Instance, Light, Matcap, Material, Scene, Settings, look_at, plan
+from splat_addon.rendering import (
+    Camera,
+    Environment,
+    Instance,
+    Light,
+    Matcap,
+    Material,
+    Ramp,
+    Scene,
+    Settings,
+    look_at,
+    plan,
+)
 from splat_addon.rendering.shading_models import SHADING_MODELS
 from splat_addon.surfels import Surfels
 
@@ -114,6 +126,24 @@ def test_a_toon_highlight_has_an_edge(render):
     assert len(values) <= 6  # background, three levels, the highlight on two of them
 
 
+@pytest.mark.parametrize("cosine", [0.1, 0.5, 0.9])
+def test_a_ramp_is_looked_up_at_the_diffuse_light(cosine, render):
+    """And where no light falls at its beginning."""
+    colors = np.array([(0.0, 0.1, 0.4), (0.8, 0.2, 0.2), (1, 1, 0.5)])
+    settings = Settings(shading="ramp", ramp=Ramp(colors))
+    seen = center(render(Scene([floor()], [from_above(cosine, math.pi)]), ABOVE, settings))
+    expected = [np.interp(cosine, (0, 0.5, 1), channel) for channel in colors.T]
+    assert seen == pytest.approx(COLOR * expected, abs=1e-4)
+    assert center(render(Scene([floor()], [from_above(-0.5)]), ABOVE, settings)) == pytest.approx(COLOR * colors[0])
+
+
+def test_the_default_ramp_has_the_toon_models_levels(render):
+    for cosine in (0.2, 0.5, 0.9):
+        scene = Scene([Instance(floor(), materials=(Material(roughness=1.0),))], [from_above(cosine, math.pi)])
+        ramp, toon = (Settings(shading=shading, toon_softness=0.0) for shading in ("ramp", "toon"))
+        assert center(render(scene, ABOVE, ramp)) == pytest.approx(center(render(scene, ABOVE, toon)), abs=1e-5)
+
+
 def test_a_matcap_is_looked_up_where_its_ball_faces_the_same_way(render):
     """Seen from above, a floor faces as the middle of the ball; seen from a slant, as its top."""
     scene, settings = Scene([floor()]), Settings(shading="matcap", matcap=BALL)
@@ -165,6 +195,7 @@ def test_models_plan_no_more_than_they_look_at():
     [
         ({"shading": "shiny"}, "shading must be one of principled"),
         ({"shading": "matcap"}, "needs a picture"),
+        ({"ramp": object()}, "ramp must be a Ramp"),
         ({"toon_steps": 1}, "toon_steps must be 2 to"),
         ({"toon_softness": 1.5}, "toon_softness must be 0 to 1"),
     ],

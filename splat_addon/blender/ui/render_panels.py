@@ -92,11 +92,30 @@ class RENDER_PT_surfel_matcap(_RenderPanel, bpy.types.Panel):
             self.layout.label(text="Its first layer, without Specular Highlights", icon="INFO")
 
 
+class RENDER_PT_surfel_ramp(_RenderPanel, bpy.types.Panel):
+    bl_label = "Color Ramp"
+    bl_parent_id = "RENDER_PT_surfel_surface"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and getattr(context.scene, RENDER_SETTINGS).shading == "ramp"
+
+    def draw(self, context):
+        properties = getattr(context.scene, RENDER_SETTINGS)
+        self.layout.template_ID(properties, "ramp", new="texture.new")
+        if properties.ramp is None:
+            self.layout.label(text="Three even greys, as Toon has them", icon="INFO")
+            return
+        self.layout.prop(properties.ramp, "use_color_ramp", text="Ramp")
+        if properties.ramp.use_color_ramp:
+            self.layout.template_color_ramp(properties.ramp, "color_ramp")
+
+
 class RENDER_PT_surfel_lines(_RenderPanel, bpy.types.Panel):
     bl_label = "Lines"
     bl_translation_context = TEXTS
     bl_options = frozenset({"DEFAULT_CLOSED"})
-    properties = ("line_width", "line_color", "line_crease_angle", "line_depth_threshold")
+    properties = ("line_width", "line_color", "line_crease_angle", "line_shallow_angle", "line_depth_threshold")
 
     def draw_header(self, context):
         self.layout.prop(getattr(context.scene, RENDER_SETTINGS), "use_lines", text="")
@@ -221,6 +240,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         RENDER_PT_surfel_surface,
         RENDER_PT_surfel_toon,
         RENDER_PT_surfel_matcap,
+        RENDER_PT_surfel_ramp,
         RENDER_PT_surfel_lines,
         RENDER_PT_surfel_motion_blur,
         RENDER_PT_surfel_shadows,

@@ -14,6 +14,7 @@ VALUES = {
     "line_width": ("float", lambda tile: tile.settings.lines.width * tile.plan.samples),
     "line_crease": ("float", lambda tile: math.cos(tile.settings.lines.crease_angle)),
     "line_drop": ("float", lambda tile: tile.settings.lines.depth_threshold),
+    "line_shallow": ("float", lambda tile: math.sin(tile.settings.lines.shallow_angle)),
     "line_color": ("vec4", lambda tile: (*tile.settings.lines.color, 0.0)),
 }
 COVERED = Texture("lines", "R32F")
@@ -28,6 +29,7 @@ def passes(planning):
         return
     own = Part(
         "lines",
+        ("shallow_lines",) if settings.lines.shallow_angle else (),
         writes=(COVERED,),
         constants=(("SAMPLES", settings.supersampling), ("MEAN_OF", settings.multisampling)),
         choices=(("samples", "mean" if settings.multisampling else "each"),),

@@ -19,12 +19,15 @@ class Lines:
     color: linear rgb. crease_angle: radians between normals, above which there is a crease.
     depth_threshold: how much deeper than the extrapolated surface the next one must be at a silhouette, in units of a
         pixel's width at that depth.
+    shallow_angle: radians between the view and the surface, below which a line covers it (Botsch et al. 2005, section
+        6); 0 for none.
     """
 
     width: float = 1.5
     color: tuple[float, float, float] = (0.0, 0.0, 0.0)
     crease_angle: float = math.radians(40)
     depth_threshold: float = 4.0
+    shallow_angle: float = 0.0
 
     def __post_init__(self):
         object.__setattr__(self, "color", tuple(float(c) for c in self.color))
@@ -36,6 +39,9 @@ class Lines:
             raise ValueError(f"crease_angle must be above 0 and at most pi, not {self.crease_angle}.")
         if not (math.isfinite(self.depth_threshold) and self.depth_threshold >= 0):
             raise ValueError(f"depth_threshold must be 0 or more pixels, not {self.depth_threshold}.")
+
+        if not 0 <= self.shallow_angle <= math.pi / 2:
+            raise ValueError(f"shallow_angle must be 0 to pi / 2, not {self.shallow_angle}.")
 
     @property
     def reach(self) -> float:

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.materials.matcap_images import matcap_of
+from splat_addon.blender.materials.ramps import ramp_of
+from splat_addon.blender.properties import viewport_settings
 from splat_addon.rendering.shading_models import SHADING_MODELS
 
 
@@ -42,6 +44,30 @@ def test_lines_have_their_width_and_colour(sheet, picture):
     is_line = (row[:, 2] > 0.9) & (row[:, 0] < 0.1)
     covered = np.flatnonzero(row[:, 3] > 0.5)
     assert list(np.flatnonzero(is_line)) == [*covered[:2], *covered[-2:]]
+
+
+def test_a_color_ramp_is_a_textures(sheet, scene, picture):
+    """In no light its left end is seen; without a texture black, the first of three greys."""
+    scene.world = None
+    sheet.shading = "ramp"
+    assert center(picture()) == pytest.approx((0, 0, 0), abs=1e-5)
+    texture = bpy.data.textures.new("ramp", "BLEND")
+    texture.use_color_ramp = True
+    texture.color_ramp.elements[0].color = (0.2, 0.4, 0.8, 1.0)
+    sheet.ramp = texture
+    assert center(picture()) == pytest.approx((0.2, 0.2, 0.2), abs=1e-3)
+    first = ramp_of(texture)
+    assert ramp_of(texture) is first
+    texture.color_ramp.elements[0].color = (1.0, 0.0, 0.0, 1.0)
+    assert ramp_of(texture) is not first and center(picture()) == pytest.approx((1, 0, 0), abs=1e-3)
+
+
+def test_a_line_over_shallow_angles_and_the_papers_ways_reach_the_renderer(sheet, scene):
+    sheet.use_lines, sheet.line_shallow_angle = True, 0.25
+    sheet.lights_splats = sheet.culls_backs = sheet.as_printed = True
+    settings = viewport_settings(scene)
+    assert settings.lines.shallow_angle == 0.25
+    assert settings.lights_splats and settings.culls_backs and settings.as_printed
 
 
 def test_a_matcap_is_an_image(sheet, picture):

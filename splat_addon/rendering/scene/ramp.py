@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A transfer function from how much light falls on a surface to its colour (Botsch et al. 2005, section 6)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Ramp:
+    """colors: (n, 3) linear rgb at n >= 2 even steps from no light to full light, in between linear. Compared by
+    identity.
+    """
+
+    colors: np.ndarray
+
+    def __post_init__(self):
+        colors = np.ascontiguousarray(self.colors, np.float32)
+        if colors.ndim != 2 or colors.shape[1] != 3 or len(colors) < 2:
+            raise ValueError(f"A ramp's colors must be (2 or more, 3), not {colors.shape}.")
+        if not (np.isfinite(colors).all() and (colors >= 0).all()):
+            raise ValueError("A ramp's colors must be finite and 0 or more.")
+        object.__setattr__(self, "colors", colors)
+
+    @classmethod
+    def of_steps(cls, count: int, places: int = 256) -> Ramp:
+        """As many even greys from black to white, as the toon model has them."""
+        at = np.minimum(np.arange(places) * count // places, count - 1) / (count - 1)
+        return cls(np.repeat(at[:, None], 3, axis=1))
+
+    def texels(self) -> np.ndarray:
+        """(1, n, 4) as they lie on the device."""
+        return np.concatenate([self.colors, np.ones((len(self.colors), 1), np.float32)], axis=1)[None]
