@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tables of the four papers, reproduced with our models: ratios of times within one turn, beside the printed
-ratios.
+"""The figures of the four papers, drawn with our models, and their tables: ratios of times within one turn, beside the
+printed ratios.
 
 Absolute rates of 2003 to 2007 cannot be compared with those of a processor without a graphics card; the relative cost
 of a choice can. Surfels are our models at several resolutions; none is marked solid, so back faces are drawn.
@@ -11,13 +11,14 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import lru_cache
 
+from bench.papers.figures import figures
 from measuring.drawing import draw_in_turn
 from measuring.models import in_view, load, short
 from splat_addon.rendering import Renderer, Settings, open_device
 from splat_addon.sampling import sample_mesh
 
 DEVICES = ("standalone",)
-QUICK = {"resolutions": [64], "size": 128}
+QUICK = {"resolutions": [64], "size": 64}
 MODELS = ("armadillo.obj.gz", "bunny.obj.gz")
 ONE = Settings(supersampling=1, shading="phong", shadow_resolution=0, outputs=("color", "depth"))
 QUADS = replace(ONE, method="quad")
@@ -74,11 +75,22 @@ PRINTED_OFF = {"ours": "1.7 to 2.1, 1.6 to 1.8, 1.0 to 1.2", "Ren et al.": "1.1 
 def arguments(parser) -> None:
     parser.add_argument("--resolutions", nargs="+", type=int, default=[128, 256], help="of the models' conversion")
     parser.add_argument("--size", type=int, default=512, help="pixels along each side, as in the papers' first column")
+    parser.add_argument("--only", choices=("figures", "tables"), help="leave the others out")
 
 
 def run(options, report) -> None:
     renderer = Renderer(open_device(options.device))
     report.header(renderer.device, f"{options.size} x {options.size} pixels, medians of {options.turns} turns")
+    if options.only != "tables":
+        for name, caption, pictures, enlarged in figures(renderer, options.models, options.size // 2):
+            columns = 4 if len(pictures) > 4 else 0
+            report.picture(name, pictures, columns, enlarged=enlarged, colors=128)
+            report.say(f"{name}: {caption}.")
+    if options.only != "figures":
+        _tables(renderer, options, report)
+
+
+def _tables(renderer: Renderer, options, report) -> None:
     cases = [(name, resolution) for name in MODELS for resolution in options.resolutions]
     for title, (unit, choices, printed, why) in TABLES.items():
         rows = [row for case in cases for row in _rows(renderer, case, unit, choices, options, report)]

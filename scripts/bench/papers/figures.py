@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The papers' figures of our models and scenes: name, what the paper's caption says of them, and the pictures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from measuring.models import in_view, load
+from splat_addon.reference import render_exact, scenes
+from splat_addon.reference.extremes import sheet
+from splat_addon.reference.methods import TWINS
+from splat_addon.reference.methods.plane import splat_plane
+from splat_addon.rendering import Camera, Light, Lines, Ramp, Renderer, Scene, Settings, make_polygons
+from splat_addon.sampling import sample_mesh
+
+FLAT = Settings(supersampling=1, shading="flat", outputs=("color",))
+LIT = replace(FLAT, shading="phong", shadow_resolution=0)
+UNFILTERED, FILTERED = (replace(LIT, method=name, lights_splats=True) for name in ("sprites_unfiltered", "sprites"))
+#: Half-axes in pixels of a splat that is larger than the pixel's filter, smaller, and one way larger.
+CONFIGURATIONS = (3.0, 3.0), (0.4, 0.4), (3.0, 0.3)
+WARM = Ramp(np.array([(0.1, 0.05, 0.15), (0.1, 0.05, 0.15), (0.7, 0.3, 0.2), (0.7, 0.3, 0.2), (1, 0.85, 0.6)]))
+
+Draw = Callable[..., np.ndarray]
+
+
+def figures(renderer: Renderer, models: Path, size: int) -> Iterator[tuple[str, str, list[np.ndarray], int]]:
+    """Name, caption, pictures and by how much they are enlarged. size: pixels along an edge of a model's picture."""
+
+    def draw(shot, settings: Settings, **choices) -> np.ndarray:
+        return renderer.render(*shot, replace(settings, **choices)).color
+
+    def model(name: str, resolution: int, **view):
+        return in_view(_surfels(models / name, resolution), size, **view)
+
+    yield from _of_2003(draw, model, size)
+    yield from _of_2005(draw, model, size)
+    yield from _of_2006(draw, size)
+    yield from _view_independent(draw, size)
+
+
+def _of_2003(draw: Draw, model, size: int):
+    coarse = model("bunny.obj.gz", 48)
+    squares = draw(facing_squares(*coarse), LIT, method="quad")
+    yield "2003-1", "Square splats against ellipses", [squares, draw(coarse, UNFILTERED)], 1
+    round_ones = draw(facing_discs(*coarse), UNFILTERED)
+    yield "2003-3", "The size alone; size and shape", [squares, round_ones, draw(coarse, UNFILTERED)], 1
+    yield "2003-5", "Unfiltered and filtered splats", [draw(coarse, one) for one in (UNFILTERED, FILTERED)], 1
+    crossing = scenes.torus(2_500, (size, size))
+    shown = [draw(crossing, FLAT, method=one.method) for one in (UNFILTERED, FILTERED)]
+    yield "2003-6", "One depth a splat; the depth of each pixel", shown, 1
+    board = scenes.text_board(66_000, 30, (size, size))
+    shown = [draw(board, FLAT, method=one.method) for one in (UNFILTERED, FILTERED)]
+    yield "2003-8", "Unfiltered and filtered texture", shown, 1
+
+
+def _of_2005(draw: Draw, model, size: int):
+    checker = scenes.checker_plane(40, 90_000, 6, (size, size // 2))
+    ways = {"method": "quad"}, {"method": "quad", "supersampling": 3}, {"method": "raycast_printed"}
+    shown = [draw(checker, FLAT, **how) for how in ways]
+    yield "2005-3", "No filter; supersampling; the paper's filter", shown, 1
+    methods = "quad", "ewa", "raycast", "homogeneous"
+    shown = [contour(method, *axes) for axes in CONFIGURATIONS for method in methods]
+    yield "2005-4", "Contours of filters: none, EWA, Botsch et al., Guennebaud et al.", shown, 1
+    shadowed = {"shadow_resolution": 1024, "supersampling": 2, "method": "quad"}
+    scan, lines = model("armadillo.obj.gz", 200), Lines(width=1.5, shallow_angle=math.radians(20))
+    ways = {"shading": "phong"}, {"shading": "toon", "lines": lines}, {"shading": "ramp", "ramp": WARM, "lines": lines}
+    shown = [draw(scan, LIT, **shadowed, **how) for how in ways]
+    yield "2005-5", "Phong; toon with outlines; a ramp with outlines; all with shadows", shown, 1
+
+
+def _of_2006(draw: Draw, size: int):
+    board = scenes.checker_plane(60, 360_000, 8, (size, size // 2))
+    methods = "quad", "ewa", "homogeneous_printed", "raycast_printed"
+    shown = [draw(board, FLAT, method=method) for method in methods]
+    yield "2006-3", "No filter; EWA; the paper's; Botsch et al. 2005", shown, 1
+    near = scenes.checker_plane(8, 2_500, 25, (size, size // 2))
+    yield "2006-4", "Close: Botsch et al. 2005; the paper's", [draw(near, FLAT, method=m) for m in methods[:1:-1]], 1
+    half = half_polygons(size)
+    ways = {"epsilon": 0.02}, {}, {"shading": "weight"}
+    shown = [draw(half, replace(LIT, method="quad", supersampling=2, **how)) for how in ways]
+    yield "2006-5", "Splats beside polygons: naive; blended; the weights of the splats", shown, 1
+    spheres = scenes.transparent_spheres(2_000, size=(size, size))
+    layers = (6, False), (3, False), (3, True)
+    shown = [draw(spheres, LIT, method="quad", layers=n, blends_rest=rest, as_printed=True) for n, rest in layers]
+    yield "2006-6", "6 layers; 3 layers; 3 layers, of which the last blends the rest", shown, 1
+
+
+def _view_independent(draw: Draw, size: int):
+    wide = size, size // 2
+    checker, text = scenes.checker_plane(20, 40_000, 10, wide), scenes.text_board(66_000, 35, wide)
+    ours, ren = {"method": "quad", "supersampling": 2}, {"method": "ewa_object"}
+    shown = [draw(shot, FLAT, **how) for shot in (checker, text) for how in (ours, ren)]
+    yield "view-independent-2", "Checkers and text: 2 x 2 samples; Ren et al.", shown, 1
+    textured = scenes.textured_plane(size=(size, size))
+    yield (
+        "view-independent-8",
+        "Textures: 2 x 2 samples; Ren et al.",
+        [draw(textured, FLAT, **how) for how in (ours, ren)],
+        1,
+    )
+    flat = Scene((sheet(24, 2.0, 72.0, 3.0),)), Camera.perspective(np.eye(4), 1.0, wide, 0.1, 100)
+    shown = [draw(flat, FLAT, method=method) for method in ("quad", "ewa", "sprites")]
+    yield "view-independent-9", "Ours; the affine map; sprites", shown, 1
+    shown = [draw(text, FLAT, **how) for how in ({"method": "quad"}, ours, ren)]
+    truth = render_exact(*text, FLAT, samples=4, pixel_filter="box").color
+    yield "view-independent-10", "No filter; 2 x 2 samples; Ren et al.; the truth", [*shown, truth], 1
+
+
+@cache
+def _surfels(path: Path, resolution: int):
+    return sample_mesh(load(path), resolution=resolution)
+
+
+def contour(method: str, wide: float, high: float, pixels: int = 5, places: int = 128) -> np.ndarray:
+    """(places, places, 3) of a splat's weight around it, in eighths of its largest, so many pixels across each way."""
+    plane = splat_plane((0.0, 0.0, -1.0), (wide / 100, 0.0, 1e-9), (0.0, high / 100, 0.0))
+    axis = np.linspace(-pixels, pixels, places) / 100
+    points = np.stack([a.ravel() for a in np.meshgrid(axis, axis)], axis=1)
+    weights, _ = TWINS[method](plane, points, np.array((0.01, 0.01)))
+    levels = np.ceil(8 * weights / weights.max()).reshape(places, places, 1) / 8
+    return np.repeat(1 - levels, 3, axis=2) ** 2.2
+
+
+def facing_discs(scene: Scene, camera):
+    """The same, of splats that face the viewer: of the paper's two steps the first."""
+    (instance,) = scene.surfels
+    surfels = instance.surfels
+    rotation = np.tile(_quaternion(camera.matrix_world[:3, :3]), (len(surfels), 1))
+    wide = np.repeat(surfels.scales.max(axis=1, keepdims=True), 2, axis=1)
+    return replace(scene, surfels=(replace(instance, shape=replace(surfels, rotations=rotation, scales=wide)),)), camera
+
+
+def facing_squares(scene: Scene, camera):
+    """Squares as wide as the splats, parallel to the picture, as points are drawn that nobody shapes."""
+    (instance,) = scene.surfels
+    surfels = instance.surfels
+    across, up = (camera.matrix_world[:3, k] * surfels.scales.max(axis=1, keepdims=True) for k in (0, 1))
+    middle = surfels.origin + surfels.positions.astype(np.float64)
+    places = np.stack([middle + i * across + j * up for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))], axis=1)
+    first = 4 * np.arange(len(surfels))[:, None]
+    triangles = np.concatenate([first + np.array(corners) for corners in ((0, 1, 2), (0, 2, 3))])
+    normals = np.concatenate([surfels.normals, surfels.normals])[:, None].repeat(3, axis=1)
+    polygons = make_polygons(places.reshape(-1, 3), triangles, corner_normals=normals)
+    return replace(scene, surfels=(), polygons=(polygons,)), camera
+
+
+def half_polygons(size: int):
+    """A ball of which one half is polygons and the other splats, which reach a little farther than their half."""
+    scene, camera = scenes.sphere(4_000, (size, size))
+    (instance,) = scene.surfels
+    at = instance.surfels.origin + instance.surfels.positions.astype(np.float64)
+    arrays = {name: array[at[:, 0] < 0.03] for name, array in instance.surfels.arrays().items()}
+    splats = replace(instance.surfels, **arrays | {"colors": np.ones((len(arrays["colors"]), 4))})
+    ball = scenes.round_polygons(24)
+    kept = np.repeat(ball.positions.reshape(-1, 3, 3)[:, :, 0].min(axis=1) + ball.origin[0] > -0.01, 3)
+    arrays = {name: getattr(ball, name)[kept] for name in ("positions", "normals", "materials")}
+    polygons = replace(ball, **arrays, colors=np.ones((np.count_nonzero(kept), 4)))
+    sun = Light("sun", energy=3.0, direction=(0.2, 0.6, -0.8))
+    return replace(scene, surfels=(splats,), polygons=(polygons,), lights=(sun,)), camera
+
+
+def _quaternion(matrix: np.ndarray) -> np.ndarray:
+    """(4,) w, x, y, z of a rotation; its w is not 0 for a camera that is not upside down."""
+    w = math.sqrt(max(1 + np.trace(matrix), 1e-12)) / 2
+    x, y, z = (matrix[i, j] - matrix[j, i] for i, j in ((2, 1), (0, 2), (1, 0)))
+    return np.array((w, x / (4 * w), y / (4 * w), z / (4 * w)))
