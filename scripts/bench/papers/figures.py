@@ -98,12 +98,8 @@ def _view_independent(draw: Draw, size: int):
     shown = [draw(shot, FLAT, **how) for shot in (checker, text) for how in (ours, ren)]
     yield "view-independent-2", "Checkers and text: 2 x 2 samples; Ren et al.", shown, 1
     textured = scenes.textured_plane(size=(size, size))
-    yield (
-        "view-independent-8",
-        "Textures: 2 x 2 samples; Ren et al.",
-        [draw(textured, FLAT, **how) for how in (ours, ren)],
-        1,
-    )
+    shown = [draw(textured, FLAT, **how) for how in (ours, ren)]
+    yield "view-independent-8", "Textures: 2 x 2 samples; Ren et al.", shown, 1
     flat = Scene((sheet(24, 2.0, 72.0, 3.0),)), Camera.perspective(np.eye(4), 1.0, wide, 0.1, 100)
     shown = [draw(flat, FLAT, method=method) for method in ("quad", "ewa", "sprites")]
     yield "view-independent-9", "Ours; the affine map; sprites", shown, 1
