@@ -213,7 +213,7 @@ CASES = [
     ("torus", "mip", {"shading": "matcap", "matcap": BALL}),
     *(("shadows", "quad", {"shading": shading}) for shading in ("phong", "toon", "ramp")),
     *(("torus", method, {"shading": "flat", "lines": Lines(width=2.0)}) for method in ("quad", "mip")),
-    ("torus", "quad", {"shading": "flat", "lines": Lines(shallow_angle=0.4)}),
+    ("solid_sphere", "quad", {"shading": "flat", "lines": Lines(shallow_angle=0.4)}),
     *(("polygons", method, {}) for method in METHODS if method != "quad"),
     *((name, method, {}) for name in HYBRID for method in ("quad", "mip")),
     *(("polygons", method, {"sum_format": "float16"}) for method in ("quad", "mip")),
