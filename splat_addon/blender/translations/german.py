@@ -5,6 +5,61 @@ from __future__ import annotations
 
 GERMAN = {
     "16 Bit": "16 Bit",
+    (
+        "A pixel fades to the background where the splats' weights sum to less than this; Mip Filter has its "
+        "own silhouettes. Frames take slightly longer"
+    ): (
+        "Ein Pixel verläuft zum Hintergrund, wo die Summe der Gewichte der Splats kleiner ist; Mip Filter hat"
+        " eigene Silhouetten. Einzelbilder dauern etwas länger"
+    ),
+    (
+        "A texture whose color ramp gives the color at each amount of light, black to white from left to "
+        "right; without one, three even greys. It takes as long as Toon"
+    ): (
+        "Eine Textur, deren Farbverlauf die Farbe zu jeder Menge Licht angibt, von links ohne Licht bis "
+        "rechts in vollem; ohne sie drei gleichmäßige Graustufen. Braucht so lange wie Toon"
+    ),
+    "As Printed": "Wie gedruckt",
+    "As the Papers": "Wie die Veröffentlichungen",
+    "Color Ramp": "Farbverlauf",
+    ("Cover by a line what is seen at less than this angle to the surface; 0 covers none. It takes no more time"): (
+        "Mit einer Linie bedecken, was flacher als unter diesem Winkel zur Fläche gesehen wird; 0 bedeckt "
+        "nichts. Braucht nicht mehr Zeit"
+    ),
+    (
+        "Draw backs as fronts, and let the last transparent layer hide as one surface, as the papers have it."
+        " It takes no more time, and rims of open surfaces show their far sides"
+    ): (
+        "Rückseiten wie Vorderseiten zeichnen und die letzte durchsichtige Schicht wie eine Fläche verdecken "
+        "lassen, wie in den Veröffentlichungen. Braucht nicht mehr Zeit, und Ränder offener Flächen zeigen "
+        "ihre fernen Seiten"
+    ),
+    (
+        "Draw no splat whose back is seen, of open surfaces too, which then have holes. It saves up to half of the time"
+    ): (
+        "Keinen Splat zeichnen, dessen Rückseite zu sehen ist, auch von offenen Flächen, die dann Löcher "
+        "haben. Spart bis zur Hälfte der Zeit"
+    ),
+    "Leave Out Backs": "Rückseiten weglassen",
+    "Light Each Splat": "Jeden Splat beleuchten",
+    (
+        "Light every splat where it stands and blend the colours, as the papers before deferred shading do. "
+        "The time grows with the number of surfels instead of samples"
+    ): (
+        "Jeden Splat beleuchten, wo er steht, und die Farben mischen, wie die Veröffentlichungen vor dem "
+        "Deferred Shading. Die Zeit wächst mit der Anzahl der Surfels statt der Samples"
+    ),
+    "Ramp": "Verlauf",
+    (
+        "Sample along all three axes and keep a surfel where its own smoothed normal faces that axis most. It"
+        " leaves small holes where normals turn, and all three images are sampled"
+    ): (
+        "Entlang aller drei Achsen abtasten und ein Surfel behalten, wo seine eigene geglättete Normale am "
+        "meisten zu dieser Achse zeigt. Lässt kleine Löcher, wo sich Normalen drehen, und alle drei Bilder "
+        "werden abgetastet"
+    ),
+    "Shallow Angle": "Flacher Winkel",
+    "Surfel's Normal": "Normale des Surfels",
     "Takes less memory. Precise with hundreds of splats over a pixel, wrong with thousands": (
         "Braucht weniger Speicher. Genau bei Hunderten von Splats über einem Pixel, falsch bei Tausenden"
     ),
@@ -44,6 +99,14 @@ GERMAN = {
         "erste Schicht gezeigt"
     ),
     "Angle": "Winkel",
+    (
+        "The surfels' own colour, times that of a ramp at the diffuse light that falls on them (Botsch et al."
+        " 2005, section 6)"
+    ): (
+        "Die eigene Farbe der Surfels, mal der eines Verlaufs beim diffusen Licht, das auf sie fällt (Botsch "
+        "et al. 2005, section 6)"
+    ),
+    "Three even greys, as Toon has them": "Drei gleichmäßige Graustufen wie bei Toon",
     "Use the render properties' setting Render Meshes as": (
         "Die Einstellung Meshes als der Rendereigenschaften verwenden"
     ),
@@ -719,13 +782,6 @@ GERMAN = {
     "Width": "Breite",
     "Width of a line, which lies on the nearer surface of a silhouette and on both sides of a crease": (
         "Breite einer Linie, die auf der näheren Fläche eines Umrisses und auf beiden Seiten einer Falte liegt"
-    ),
-    (
-        "With Quads, a pixel fades to the background where the splats' weights sum to less than this. Frames "
-        "take slightly longer"
-    ): (
-        "Bei Quads geht ein Pixel in den Hintergrund über, wo die Gewichte der Splats zusammen weniger als "
-        "das ergeben. Einzelbilder dauern etwas länger"
     ),
     "World": "Welt",
     "World space, so that scaled objects are as dense as others; the surfel object has a scale of 1": (

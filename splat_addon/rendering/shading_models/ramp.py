@@ -8,7 +8,6 @@ MODEL = ShadingModel(
     label="Color Ramp",
     source="Botsch et al. 2005, section 6",
     summary="The surfels' own colour, times that of a ramp at the diffuse light that falls on them",
-    cost=1.09,
     is_lit=True,
     has_material=True,
     has_world=True,
