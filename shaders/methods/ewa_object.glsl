@@ -47,8 +47,8 @@ vec4 quad_corner(Splat splat, vec3 eye) {
 }
 
 #part fragment
-// Of the splat's plane, held near the splat, as methods in the picture hold it: where a filter reaches over a silhouette,
-// the plane runs to the eye.
+// The depth of the splat's plane, held near the splat, as in screen space: where a filter reaches over a silhouette, the
+// plane runs to the eye.
 float seen_depth() {
   return clamp(place_depth.z, depth_reach.x - depth_reach.y, depth_reach.x + depth_reach.y);
 }

@@ -137,7 +137,7 @@ def _lighting(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, set
     return direction, all_incident(scene, camera, position, surface.light_set, settings.epsilon)
 
 
-#: Of linear rgb (ITU-R BT.709).
+#: Weights of linear rgb (ITU-R BT.709).
 LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
 
 #: The models that show how splats add up; they treat everything as opaque.

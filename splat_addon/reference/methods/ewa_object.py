@@ -11,7 +11,7 @@ KERNEL_VARIANCE = 0.25
 FILTER_VARIANCE = 0.5
 #: Minimum ratio of the squared half-axes in the picture; splats at more grazing angles are not widened.
 LEAST_FLATNESS2 = 0.004
-#: Of the splat's depth: what is widened nearer to the eye's plane is not drawn.
+#: Share of the splat's depth: what is enlarged nearer to the eye's plane is not drawn.
 LEAST_DEPTH = 1e-3
 
 

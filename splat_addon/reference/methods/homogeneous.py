@@ -42,7 +42,7 @@ def adjusted(plane: Plane, pixel: np.ndarray, as_printed: bool = False) -> Plane
 
 
 def is_parallel(plane: Plane) -> bool:
-    """Of a camera's view, as far as it makes a difference."""
+    """Whether the view is a parallel camera's; a splat without a slope is the same in both."""
     return bool(plane.scale == 1.0 and not plane.gh.any() and plane.slope.any())
 
 

@@ -52,7 +52,7 @@ def keep_facing(normals: np.ndarray, grazing_angle: float) -> np.ndarray:
 
 
 def facing_by_own_normal(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> dict[str, np.ndarray]:
-    """Of all samples those whose image their own normal faces most; ties go to the lowest axis.
+    """The samples whose own normal faces their image most; ties go to the lowest axis.
 
     View-independent object-space splatting, section 4.1, to the letter: a sample knows its interpolated normal, not
     its triangle. Where normals turn within a cell, neighbours choose different axes, and both or neither stay.
