@@ -55,7 +55,7 @@ TABLES = {
             "repaired": replace(ONE, method="homogeneous"),
         },
         "perspective splatting 0.59 to 0.77",
-        "Both methods share the place in the splat's plane here, which is what the paper saves; the filters differ.",
+        "As printed, the matrix is made anew for each fragment here; the square of ray casting has more fragments.",
     ),
     "View-independent paper, table 4": (
         "ours",
