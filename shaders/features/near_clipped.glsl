@@ -2,7 +2,7 @@
 // Summary: a splat that reaches the near plane is drawn in space, where the hardware clips it, without a filter.
 
 #part vertex
-const float STRADDLING_MARGIN = 1.02;
+const float NEAR_CLIPPED_MARGIN = 1.02;
 
 #include "lib/reaches_near.glsl"
 
@@ -23,7 +23,7 @@ void near_clipped_clipped(Splat splat, inout bool in_space) {
 }
 
 void near_clipped_place(Splat splat, vec2 corner, bool in_space) {
-  vec2 grown = corner * STRADDLING_MARGIN;
+  vec2 grown = corner * NEAR_CLIPPED_MARGIN;
   vec3 eye = splat.position + splat.axis_u * grown.x + splat.axis_v * grown.y;
   if (in_space && !splat.is_hidden) gl_Position = view.projection * vec4(eye, 1.0);
 }

@@ -25,8 +25,3 @@ void shadow_output_prepare(inout Shaded s) {
 void shadow_output_outputs(inout Shaded s) {
   s.outputs.shadow_overdraw.rgb = shadow_share();
 }
-
-#part lit_splats.frag
-void shadow_output_prepare(Splat splat, int index) {
-  light_arriving = light_unshadowed = vec3(0.0);
-}

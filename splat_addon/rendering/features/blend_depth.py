@@ -7,7 +7,7 @@ from __future__ import annotations
 from ..plan.graph import Part
 from .drawing import SPLAT_HOSTS
 
-_HOSTS = (*SPLAT_HOSTS, "visibility.frag", "lit_splats.frag")
+_HOSTS = (*SPLAT_HOSTS, "visibility.frag")
 
 
 def _count(planning) -> int:

@@ -42,9 +42,10 @@ def passes(planning):
 
 
 def is_present(planning) -> bool:
-    return bool(planning.find(merging))
+    return "levels" in planning.facts
 
 
 def parts(planning, p):
-    if p.host in SPLAT_HOSTS or p.host == "visibility.frag":
+    """Not where transparent instances are drawn, which have no levels."""
+    if p.host in (*SPLAT_HOSTS, "visibility.frag") and p.kind not in ("layer", "rest"):
         yield Part("levels", inputs=("drawn_splats",), only="cut")

@@ -11,7 +11,7 @@ from ..frame import HELD_BY
 from ..plan.frame_plan import FramePlan
 from ..plan.graph import Part, Texture, of_pixels
 from . import shadows
-from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
+from .drawing import LIT_HOSTS, SPLAT_HOSTS
 
 #: Maximum number of colour textures in a target, Blender's limit.
 MAX_COLORS = 6
@@ -108,7 +108,7 @@ def parts(planning, p):
         yield from _count(planning, p)
     if p.host in LIT_HOSTS and model.features:
         yield Part("weight_output")
-    if p.host in LIGHTING_HOSTS:
+    if p.host in LIT_HOSTS:
         if model.is_lit and planning.scene.lights and "shadow" in planning.settings.outputs:
             yield Part("shadow_output")
     has_layers = p.host in ("shading.frag", "resolve.frag") and bool(planning.facts.get("layers")) and not in_layer

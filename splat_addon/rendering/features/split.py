@@ -22,6 +22,9 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
+    """Not where transparent instances are drawn, which are surfels at every distance."""
+    if p.kind in ("layer", "rest"):
+        return
     varyings = (("smooth", "vec3", "split_place"),)
     if p.host in SPLAT_HOSTS:
         yield Part("split")
