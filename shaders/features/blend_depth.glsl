@@ -16,7 +16,7 @@ void blend_depth_hide(inout Splat splat) {
   if (blended < 1.0) splat.color_weight.w = 1.0;
 }
 
-#part visibility.vert, blends_less
+#part visibility.vert
 void blend_depth_blend(Splat splat, vec3 eye, inout float offset) {
   float radius = sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
   vec3 ray = view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : eye, across = cross(splat.axis_u, splat.axis_v);

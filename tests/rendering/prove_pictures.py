@@ -120,7 +120,7 @@ def less(thing: tuple, steps: tuple) -> tuple:
     for step in steps:
         if isinstance(step, Loop):
             kept.append(step._replace(body=less(thing, step.body), last=less(thing, step.last)))
-        elif (step.name, step.kind) != thing[1:]:
+        elif thing[1:] not in [(p.name, p.kind) for p in (step, step.each) if p]:
             kept.append(step)
     return tuple(kept)
 

@@ -26,8 +26,7 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.host in _HOSTS:
-        # A shadow map is compared with points that the camera sees; if casters moved by less, surfaces would shadow
-        # themselves.
-        words = ("blends_less",) if p.kind != "shadow" else ()
-        yield Part("blend_depth", words, only="splats" if p.host == "visibility.frag" else "")
+    # A shadow map is compared with points that the camera sees; if casters moved by less, surfaces would shadow
+    # themselves.
+    if p.host in _HOSTS and p.kind != "shadow":
+        yield Part("blend_depth", only="splats" if p.host == "visibility.frag" else "")

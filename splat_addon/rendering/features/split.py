@@ -22,8 +22,8 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    """Not where transparent instances are drawn, which are surfels at every distance."""
-    if p.kind in ("layer", "rest"):
+    """Not where transparent instances are drawn, which are surfels at every distance, nor where both cast shadows."""
+    if p.kind in ("layer", "rest", "shadow"):
         return
     varyings = (("smooth", "vec3", "split_place"),)
     if p.host in SPLAT_HOSTS:

@@ -71,7 +71,7 @@ def passes(planning):
 
 def _body(planning) -> tuple[Pass, ...]:
     in_space = planning.method.rasterizer == "object_space"
-    own = visibility.own_parts(planning, DEPTH)
+    own = visibility.own_parts(planning, DEPTH, has_polygons=False)
     found = visibility.drawn("visibility", "behind nearer layers, before what is opaque", own, planning, "layer")
     occupied = Part("transparency", reads=(DEPTH,), writes=(OCCUPANCY,))
     bounds = depth_bounds.bounds(planning, "depths are compared in the shader", DEPTH, "layer")

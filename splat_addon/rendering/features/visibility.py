@@ -21,18 +21,18 @@ def nearest_depth(planning) -> Texture:
     return ROW_DEPTH if planning.find(silhouettes.have_rows) else DEPTH
 
 
-def own_parts(planning, depth: Texture, reads=(), words=()) -> tuple[Part, ...]:
+def own_parts(planning, depth: Texture, has_polygons: bool = True) -> tuple[Part, ...]:
     """The parts of a pass that finds the nearest surface."""
     return (
         Part(
             "visibility",
-            ("moved_back", *words),
+            ("moved_back",),
             writes=(depth,),
             varyings=(("smooth", "vec3", "place_depth"),),
         ),
-        Part("visibility", reads=reads, inputs=storage_samplers(planning.settings.storage), only="splats"),
+        Part("visibility", inputs=storage_samplers(planning.settings.storage), only="splats"),
         Part("visibility", varyings=(("smooth", "vec3", "across_offset"),), only="linear"),
-        *((_OF_POLYGONS,) if planning.scene.polygons else ()),
+        *((_OF_POLYGONS,) if has_polygons and planning.scene.polygons else ()),
     )
 
 
