@@ -28,6 +28,8 @@ def kind(request, monkeypatch, tmp_path):
     """One of `KINDS`, whose files lie in a folder of this test."""
     monkeypatch.setattr(bpy.utils, "user_resource", lambda *_, path="", **__: _made(tmp_path / path))
     monkeypatch.setattr(bpy.utils, "preset_paths", lambda path: [str(tmp_path / "presets" / path)])
+    panel = getattr(bpy.types, KINDS[request.param][1])
+    monkeypatch.setattr(panel, "bl_label", panel.bl_label)  # Blender shows in it which preset was chosen last
     return KINDS[request.param], tmp_path
 
 

@@ -42,8 +42,9 @@ def test_a_stray_surfel_in_16_bits_is_said(stills):
     assert any("choose Float 32" in note for note in final_render.last_frame_stats["notes"])
 
 
-def test_tooltips_say_what_was_measured():
+def test_tooltips_say_what_a_smaller_format_saves_and_loses():
     properties = bpy.types.Scene.bl_rna.properties["surfel_splatting"].fixed_type.properties
     for name in ("storage", "accumulation"):
-        texts = [item.description for item in properties[name].enum_items]
-        assert all("bytes" in text for text in texts) and "dB" in texts[1]
+        exact, smaller = (item.description for item in properties[name].enum_items)
+        assert "xact" in exact, name
+        assert "memory" in smaller and smaller != exact, name
