@@ -26,6 +26,7 @@ sys.path[:0] = [str(HERE.parent), str(ROOT / "scripts")]
 import random_pictures  # noqa: E402
 
 RANDOM_CASES = 300
+CROWDED_CASES = 50
 
 
 def main() -> int:
@@ -178,6 +179,8 @@ def cases():
         yield "-".join((name, method, *named)), lambda n=name, s=settings: (*small(*makers[n]()), s), None
     for seed in range(RANDOM_CASES):
         yield f"random {seed}", lambda s=seed: random_pictures.random_case(s), 30 if seed % 7 == 0 else None
+    for seed in range(CROWDED_CASES):
+        yield f"crowded {seed}", lambda s=seed: random_pictures.crowded_case(s), None
 
 
 def small(scene, camera):

@@ -49,6 +49,43 @@ def random_case(seed: int):
     return replace(scene, surfels=[i for i in scene.surfels if i.name in shown]), camera, settings, by.some(0.1)
 
 
+def crowded_case(seed: int):
+    """A random case in which much meets that seldom does: holes, transparent or split objects with clip lines, blend
+    depths or levels, near the eye, with shadows and indices."""
+    from splat_addon.rendering import Light
+
+    by = Chance(seed)
+    scene, camera, settings, refines = random_case(seed)
+    surfels = [crowded(by, placed, bool(scene.polygons)) for placed in scene.surfels]
+    if by.some(0.4):
+        camera = replace(camera, near=by.pick(0.5, 2.5))
+    changed = {
+        "method": by.pick("mip", "ewa", "quad", "homogeneous", "sprites", "sprites_unfiltered"),
+        "detail_tolerance": by.pick(0.0, 4.0, 12.0),
+        "culls_backs": by.some(0.3),
+        "multisampling": 0,
+        "shadow_resolution": 64,
+        "outputs": ("color", "object_index", *by.pick((), ("depth", "normal"), ("overdraw",))),
+    }
+    sun = Light("sun", energy=2.0, direction=(1, 0.6, -1), casts_shadow=True)
+    return replace(scene, surfels=surfels, lights=[sun, *scene.lights]), camera, replace(settings, **changed), refines
+
+
+def crowded(by: Chance, placed, are_polygons: bool):
+    """An instance with more of what there may be."""
+    shape, count = placed.surfels, len(placed.surfels)
+    if by.some(0.6):
+        lines = by.rng.integers(-32768, 32768, (2, count, 2)).astype(np.int16)
+        lines[:, :, 1] = np.maximum(lines[:, :, 1] // 2, 0)
+        shape = replace(shape, clip_line=lines[0], clip_line_2=lines[1])
+    if by.some(0.6):
+        shape = replace(shape, blend_depth=by.rng.random(count).astype(np.float32))
+    if by.some(0.3):
+        shape = replace(shape, colors=shape.colors * (1, 1, 1, 0.6))
+    split = by.pick(None, 3.3, 4.0) if are_polygons else None
+    return replace(placed, shape=shape, is_holdout=by.some(0.4), split_distance=split)
+
+
 def random_objects(by: Chance):
     """A ball on a floor, and sometimes glass, a hole, a board, or nothing."""
     from splat_addon.images import Image

@@ -27,6 +27,6 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     # A shadow map is compared with points that the camera sees; if casters moved by less, surfaces would shadow
-    # themselves.
-    if p.host in _HOSTS and p.kind != "shadow":
+    # themselves. Whose a rim is does not depend on how deep it blends.
+    if p.host in _HOSTS and p.kind not in ("shadow", "edge_ids"):
         yield Part("blend_depth", only="splats" if p.host == "visibility.frag" else "")

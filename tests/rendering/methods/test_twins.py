@@ -90,21 +90,28 @@ def powers(low, high):
 
 
 TURNS = st.floats(0, 2 * np.pi)
-SPLATS = st.builds(
-    Splat,
-    depth=powers(0.02, 100),
-    place=st.tuples(st.floats(-1, 1), st.floats(-1, 1)),
-    angle=st.one_of(st.floats(0, 90), st.floats(80, 90), st.floats(90, 180), st.sampled_from((89.9, 89.999, 90.0))),
-    turn=TURNS,
-    spin=TURNS,
-    size=powers(1e-5, 5),
-    ratio=st.one_of(st.floats(0.1, 1), powers(1e-6, 1)),
-)
+
+
+def splats(sizes):
+    return st.builds(
+        Splat,
+        depth=powers(0.02, 100),
+        place=st.tuples(st.floats(-1, 1), st.floats(-1, 1)),
+        angle=st.one_of(st.floats(0, 90), st.floats(80, 90), st.floats(90, 180), st.sampled_from((89.9, 89.999, 90.0))),
+        turn=TURNS,
+        spin=TURNS,
+        size=sizes,
+        ratio=st.one_of(st.floats(0.1, 1), powers(1e-6, 1)),
+    )
+
+
+SPLATS = splats(powers(1e-5, 5))
 
 LINES = st.tuples(st.integers(0, TURN - 1), st.integers(1, MAX_CUT))
+#: Lines leave little of a splat, so that more of these are large.
 CLIPPED_SPLATS = st.builds(
     lambda splat, first, second: replace(splat, lines=(first, second)),
-    SPLATS,
+    splats(st.one_of(powers(1e-5, 5), powers(0.05, 5))),
     LINES,
     st.one_of(st.just((0, 0)), LINES),
 )
