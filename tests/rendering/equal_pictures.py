@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Whether two checkouts draw the same pictures, to the last bit: `python3 equal_pictures.py BEFORE [AFTER]`.
 
-The cases are those of `test_agreement.py`, small, and those of `random_pictures.py`, so that what meets only sometimes
-is met. They are drawn by the standalone device, or with `--device blender` by Blender's: in its wheel's Python that
-runs this, or in the program that `--blender` names. Pictures of the checkout before are kept in build/equal_pictures,
-by its commit, the device and these files' texts: only the first comparison draws them.
+The cases are those of `test_agreement.py`, small, and those of `random_pictures.py` and `rare_pictures.py`, so that
+what meets only sometimes is met. They are drawn by the standalone device, or with `--device blender` by Blender's: in its
+wheel's Python that runs this, or in the program that `--blender` names. Pictures of the checkout before are kept in
+build/equal_pictures, by its commit, the device and these files' texts: only the first comparison draws them.
 """
 
 import argparse
@@ -24,6 +24,7 @@ ROOT = HERE.parents[2]
 sys.path[:0] = [str(HERE.parent), str(ROOT / "scripts")]
 
 import random_pictures  # noqa: E402
+import rare_pictures  # noqa: E402
 
 RANDOM_CASES = 300
 CROWDED_CASES = 50
@@ -37,7 +38,9 @@ def main() -> int:
         return 0
     kept = ROOT / "build" / "equal_pictures"
     kept.mkdir(parents=True, exist_ok=True)
-    made_by = zlib.crc32(b"".join(Path(m).read_bytes() for m in (HERE, random_pictures.__file__)))
+    made_by = zlib.crc32(
+        b"".join(Path(m).read_bytes() for m in (HERE, random_pictures.__file__, rare_pictures.__file__))
+    )
     before = kept / f"{_commit(options.before)}-{options.device}-{options.gpu_backend}-{made_by:x}.npz"
     if not before.exists():
         drawn(options.before, before, "", options)
@@ -181,6 +184,8 @@ def cases():
         yield f"random {seed}", lambda s=seed: random_pictures.random_case(s), 30 if seed % 7 == 0 else None
     for seed in range(CROWDED_CASES):
         yield f"crowded {seed}", lambda s=seed: random_pictures.crowded_case(s), None
+    for name, case in rare_pictures.rare_cases().items():
+        yield name, lambda c=case: c, None
 
 
 def small(scene, camera):
