@@ -16,5 +16,5 @@ def check_choices(settings: bpy.types.PropertyGroup, place: str) -> None:
         if known.type == "ENUM" and not known.is_enum_flag and not getattr(settings, known.identifier):
             raise ValueError(
                 f"{known.name} in the {place} holds a choice that this version does not have, perhaps from a file that "
-                "a later one saved; choose it anew."
+                "a later one saved; choose another one."
             )

@@ -74,7 +74,7 @@ def joined_parts(paths: Iterable[str | os.PathLike], size: tuple[int, int], numb
             raise ValueError(f"{path} is no part of a picture: {error}; draw it again.") from error
     if not (covered == 1).all():
         missing, twice = np.count_nonzero(covered == 0), np.count_nonzero(covered > 1)
-        raise ValueError(f"The parts leave {missing:,} pixels out and have {twice:,} twice; draw them again.")
+        raise ValueError(f"The parts leave {missing:,} pixels empty and cover {twice:,} twice; draw them again.")
     return {name: Frame(**{output: whole.get(output) for output in OUTPUTS}) for name, whole in wholes.items()}
 
 

@@ -141,10 +141,12 @@ class Settings:
         if self.layers not in range(1, MAX_LAYERS + 1):
             raise ValueError(f"layers must be 1 to {MAX_LAYERS}, not {self.layers}.")
         if self.blends_rest and self.layers < 2:
-            raise ValueError("layers must be 2 or more where the last one blends the rest, which needs a nearer one.")
+            raise ValueError(
+                "layers must be 2 or more if the last one blends the rest, because that needs a layer in front of it."
+            )
         if self.lights_splats and (blind := set(self.outputs) & {"diffuse_color", "emission", "shadow"}):
             raise ValueError(
-                f"Splats that are lit one by one hand on no {', '.join(sorted(blind))}: leave these outputs out, or "
+                f"Splats that are lit one by one provide no {', '.join(sorted(blind))}: leave these outputs out, or "
                 "set lights_splats to False."
             )
         if not 0 <= self.alpha_threshold <= 1:

@@ -74,7 +74,7 @@ def joined_blocks(mesh: TriangleMesh, blocks: Iterable[Block], progress: Progres
     numbers, count = [block.number for block in blocks], blocks[0].count if blocks else 1
     if numbers != list(range(count)) or any(block.count != count for block in blocks):
         there = ", ".join(str(number + 1) for number in numbers) or "none"
-        raise ValueError(f"Of {count} blocks each must be there once, but there are {there}.")
+        raise ValueError(f"Each of the {count} blocks must be given once, but these were given: {there}.")
     if run.is_empty:
         return Sampling(empty_surfels())
     images, order = _in_order(blocks)

@@ -2,8 +2,8 @@
 """Whether two checkouts draw the same pictures, to the last bit: `python3 equal_pictures.py BEFORE [AFTER]`.
 
 The cases are those of `test_agreement.py`, small, and those of `random_pictures.py` and `rare_pictures.py`, so that
-what meets only sometimes is met. They are drawn by the standalone device, or with `--device blender` by Blender's: in its
-wheel's Python that runs this, or in the program that `--blender` names. Pictures of the checkout before are kept in
+what meets only sometimes is met. They are drawn by the standalone device, or with `--device blender` by Blender's: in
+its wheel's Python that runs this, or in the program that `--blender` names. Pictures of the checkout before are kept in
 build/equal_pictures, by its commit, the device and these files' texts: only the first comparison draws them.
 """
 

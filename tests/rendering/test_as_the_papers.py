@@ -72,7 +72,7 @@ def test_nothing_of_it_is_there_where_nobody_asks():
 
 def test_what_lit_splats_cannot_give_is_refused():
     scene, camera = torus()
-    with pytest.raises(ValueError, match="hand on no diffuse_color"):
+    with pytest.raises(ValueError, match="provide no diffuse_color"):
         replace(QUADS, lights_splats=True, outputs=("color", "diffuse_color"))
     polygons = make_polygons(np.eye(3), np.array([[0, 1, 2]]))
     with pytest.raises(ValueError, match="only without polygons"):

@@ -153,7 +153,7 @@ def test_splats_of_the_rest_are_lit_as_the_layers_are(method, render):
 
 
 def test_the_last_layer_needs_a_nearer_one():
-    with pytest.raises(ValueError, match="layers must be 2 or more where the last one blends the rest"):
+    with pytest.raises(ValueError, match="layers must be 2 or more if the last one blends the rest"):
         Settings(layers=1)
 
 

@@ -64,7 +64,7 @@ def test_a_mesh_without_usable_triangles_has_no_surfels_in_blocks_either():
 
 def test_blocks_that_do_not_belong_together_are_refused(rubble):
     first, second = (sample_block(rubble, number, 2, resolution=20) for number in range(2))
-    with pytest.raises(ValueError, match="each must be there once, but there are 2"):
+    with pytest.raises(ValueError, match="must be given once, but these were given: 2"):
         joined_blocks(rubble, [second], resolution=20)
     with pytest.raises(ValueError, match="other settings"):
         joined_blocks(rubble, [first, second], resolution=21)

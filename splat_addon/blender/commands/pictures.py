@@ -71,7 +71,7 @@ def prepare_scene(out: str | None) -> bpy.types.Scene:
         scene.render.filepath = out if out.startswith("//") else str(Path(out).absolute())
     scene.render.filepath = absolute(scene.render.filepath)
     if scene.render.is_movie_format:
-        raise ValueError("A film cannot be written by several machines; choose a format of single pictures.")
+        raise ValueError("Several machines cannot write one video file; choose an image format.")
     return scene
 
 

@@ -76,7 +76,7 @@ class PointsBatch(Batch):
         matrix_world, shear = without_shear(source.evaluated_get(depsgraph).matrix_world)
         points = extract_points(source, depsgraph)
         if not len(points.positions):
-            raise ValueError("It has no points.")
+            raise ValueError("It has no points to convert; give it vertices or points.")
         points = points if shear is None else sheared(points, shear)
         eye = self._viewpoint()
         eye = None if eye is None else np.array(matrix_world.inverted() @ eye)

@@ -81,7 +81,7 @@ def _panorama(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -
         drawn = ", ".join(names[kind].name for kind in _PROJECTIONS)
         raise ValueError(
             f"The panorama type of the camera {camera_object.name!r} is {names[data.panorama_type].name}; "
-            f"those that are drawn are {drawn}."
+            f"choose one of {drawn}."
         )
     projection = _PROJECTIONS[data.panorama_type](data, render)
     matrix_world = np.array(camera_object.matrix_world, np.float64)

@@ -174,7 +174,7 @@ def _is_seen(entry: bpy.types.DepsgraphObjectInstance, depsgraph: bpy.types.Deps
     if entry.object.visible_camera and owner.visible_camera and not is_indirect:
         return True
     if entry.object.type in {"MESH", *_NOT_DRAWN} and entry.object.visible_shadow:
-        notes.add(f"{owner.name} is hidden from the camera, and in this engine its shadow with it")
+        notes.add(f"{owner.name} is hidden from the camera; this engine hides its shadow too")
     return False
 
 
@@ -244,8 +244,8 @@ def _instances(
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
     if strayed:
         notes.add(
-            f"{object_.name}: {strayed:,} surfels were moved one by one, and lie as they did before; convert the "
-            "source again if it was bent"
+            f"{object_.name}: {strayed:,} surfels were moved one by one and keep their old directions; convert the "
+            "source again if it was deformed"
         )
     for sentence in passed_over.of_object(object_.original):
         notes.add(sentence)

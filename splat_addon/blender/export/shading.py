@@ -72,7 +72,7 @@ def _emission(light: bpy.types.Light, notes) -> np.ndarray:
         return np.ones(3)
     node = output_source(light.node_tree, "OUTPUT_LIGHT", "EMISSION")
     if node is None:
-        notes.add(f"The light {light.name!r} has no Emission node at its output; its nodes are passed over")
+        notes.add(f"The light {light.name!r} has no Emission node at its output; its nodes are ignored")
         return np.ones(3)
     return np.array(color_times_strength(node, f"The light {light.name!r}", notes))
 

@@ -132,7 +132,6 @@ GERMAN = {
     "Blend Depth": "Mischtiefe",
     "Blend the Rest": "Rest mischen",
     "Blur Samples": "Unschärfe-Samples",
-    "Blur at Least": "Unschärfe ab",
     "Broken Objects": "Fehlerhafte Objekte",
     "Camera": "Kamera",
     "Choose method and samples together": "Methode und Samples zusammen wählen",

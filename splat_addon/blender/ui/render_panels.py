@@ -40,7 +40,7 @@ class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
             column.prop(properties, name)
             column.prop(properties, f"viewport_{name}", text="Viewport")
             if name == "samples":
-                column.prop(properties, "blur_samples", text="Blur at Least")
+                column.prop(properties, "blur_samples")
         for blur in blurs_that_need_samples(context.scene, context.view_layer):
             self.layout.label(text=f"{blur} needs more samples", icon="INFO")
         if is_coarser_than_viewport(context.scene, context.view_layer):

@@ -37,7 +37,7 @@ def plan(
     planning = Planning(scene, camera, settings, shadow_camera or camera, is_added_up)
     if settings.multisampling and planning.method.rasterizer != "object_space":
         raise ValueError(
-            f"Method {planning.method.name} works in the picture, where hardware multisampling sees nothing; set "
+            f"Method {planning.method.name} filters in screen space, where hardware multisampling has no effect; set "
             "multisampling to 0 and use supersampling, or method quad."
         )
     found = [p for passes in PASSES for p in passes(planning)]

@@ -72,7 +72,7 @@ def blocks_in(*texts: str) -> tuple[Block, ...]:
     text = "".join(texts)
     names = set(re.findall(r"\bframe\.(\w+)", text))
     if missing := names - set(VALUES):
-        raise ValueError(f"A shader uses frame.{min(missing)}, which no feature gives.")
+        raise ValueError(f"A shader reads frame.{min(missing)}, which no feature provides.")
     used = [block for block in (VIEW, DRAW) if re.search(rf"\b{block[1]}\.", text)]
     fields = tuple((kind, name) for name, (kind, _) in VALUES.items() if name in names)
     return (*used, *((("Frame", "frame", fields),) if fields else ()))

@@ -50,7 +50,7 @@ class DeformingSurfels:
             shrunk to dots.
         """
         if not self.has_triangles_of(mesh):
-            raise ValueError("The mesh has other triangles than the one that was sampled; sample it anew.")
+            raise ValueError("The mesh has other triangles than the one that was sampled; sample it again.")
         if not have_same_values(_appearance(mesh), _appearance(self.mesh)):
             self._repaint(mesh)
         elif have_same_values(_shape(mesh), _shape(self._last[0])):

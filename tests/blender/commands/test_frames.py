@@ -64,7 +64,7 @@ def test_a_film_is_refused(animation, surfels_command):
         animation.render.image_settings.media_type = "VIDEO"
     animation.render.image_settings.file_format = "FFMPEG"
     code, said = surfels_command("render", "--frames", "1")
-    assert code == 1 and "A film cannot be written by several machines" in said
+    assert code == 1 and "Several machines cannot write one video file" in said
 
 
 def test_help_and_wrong_arguments_have_their_exit_codes(surfels_command):

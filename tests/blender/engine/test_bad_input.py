@@ -43,7 +43,7 @@ def test_a_scene_without_a_camera_is_refused(scene, add_surfels):
 
 def test_a_panorama_of_another_type_is_refused(scene, add_camera):
     add_camera(type="PANO", panorama_type="MIRRORBALL")
-    with pytest.raises(RuntimeError, match="camera 'camera' is Mirror Ball; those that are drawn are Equirectangular"):
+    with pytest.raises(RuntimeError, match="camera 'camera' is Mirror Ball; choose one of Equirectangular"):
         bpy.ops.render.render(write_still=True)
 
 

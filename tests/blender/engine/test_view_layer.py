@@ -99,4 +99,4 @@ def test_what_the_camera_does_not_see_is_left_out_and_its_shadow_named(things, s
         bpy.context.view_layer.layer_collection.children["apart"].indirect_only = True
     drawn = picture()
     assert drawn[LEFT].any() and not drawn[RIGHT].any()
-    assert "Square is hidden from the camera, and in this engine its shadow with it" in said()
+    assert "Square is hidden from the camera; this engine hides its shadow too" in said()
