@@ -27,7 +27,7 @@ import random_pictures  # noqa: E402
 import rare_pictures  # noqa: E402
 
 RANDOM_CASES = 300
-CROWDED_CASES = 50
+CROWDED_CASES = 120
 
 
 def main() -> int:

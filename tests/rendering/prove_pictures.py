@@ -26,7 +26,7 @@ from splat_addon.rendering.plan.composition import DEFAULTS  # noqa: E402
 from splat_addon.rendering.plan.graph import Loop, Pass  # noqa: E402
 
 #: Of the pictures that have a thing, how many are drawn before it counts as not told of.
-TRIES = 24
+TRIES = 40
 
 
 def main() -> int:

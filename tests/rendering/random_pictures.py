@@ -60,7 +60,7 @@ def crowded_case(seed: int):
     if by.some(0.4):
         camera = replace(camera, near=by.pick(0.5, 2.5))
     changed = {
-        "method": by.pick("mip", "ewa", "quad", "homogeneous", "sprites", "sprites_unfiltered"),
+        "method": by.pick("mip", "ewa", "ewa_object", "quad", "homogeneous", "sprites", "sprites_unfiltered"),
         "detail_tolerance": by.pick(0.0, 4.0, 12.0),
         "culls_backs": by.some(0.3),
         "multisampling": 0,

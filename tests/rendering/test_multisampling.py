@@ -101,7 +101,7 @@ def test_what_cannot_be_multisampled_is_refused(on_device, request):
             Settings(method="quad", supersampling=2, multisampling=missing)
         )
     for count in counts[:1]:
-        assert "Method mip works in the picture" in refusal(
+        assert "Method mip filters in screen space" in refusal(
             Settings(supersampling=2, method="mip", multisampling=count)
         )
 
