@@ -29,7 +29,8 @@ def rare_cases() -> dict:
     curtain = Instance(extremes.sheet(4, 2.0, 0.0, 1.5), is_holdout=True, split_distance=9.0)
     place = np.diag((0.6, 0.6, 0.6, 1.0))
     place[2, 3] = -2.5
-    torus = Instance(scenes.torus(8000)[0].surfels[0].surfels, place, is_holdout=True)
+    torus = Instance(scenes.torus(8000)[0].surfels[0].surfels, place, index=6)
+    hidden = Instance(extremes.sheet(4, 0.6, 0.0, 1.5), split_distance=9.0, index=7)
 
     def shown(*instances, **changed):
         return Scene(instances, lights), camera, replace(settings, **changed)
@@ -38,5 +39,7 @@ def rare_cases() -> dict:
         "a lone disc that ends at a line": shown(Instance(lone, index=2)),
         "glass across the near plane": shown(Instance(glass), method="homogeneous", blends_rest=True, epsilon=0.01),
         "a hole that its distance leaves out": shown(curtain, before, grazing),
-        "a hole at coarser levels": shown(torus, before, grazing, detail_tolerance=8.0),
+        "a hole at coarser levels": shown(replace(torus, is_holdout=True), before, grazing, detail_tolerance=8.0),
+        "rims that distance leaves out": shown(hidden, Instance(lone, index=2), method="ewa_object"),
+        "rims at coarser levels": shown(torus, method="ewa_object", detail_tolerance=8.0),
     }

@@ -146,7 +146,7 @@ def _handing(planning, p, in_layer: bool, has_layers: bool):
 def check(plan: FramePlan) -> None:
     """Raise ValueError for a pass with more attachments than all devices support."""
     for p in plan.passes:
-        if len(p.colors) > MAX_COLORS and p.host:
+        if len(p.fills) > MAX_COLORS and len(p.colors) > MAX_COLORS and p.host:
             names = [texture.name for texture in p.colors]
             raise ValueError(
                 f"The {p.name} pass would write {len(names)} textures at once ({', '.join(names)}), and "

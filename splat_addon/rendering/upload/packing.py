@@ -9,8 +9,6 @@ stored in the fractional part of the material.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, TURN
@@ -139,9 +137,8 @@ def shared_material(instances: tuple[Placed, ...]) -> Material | None:
     """The material shared by all surfels of the instances, or None; its emission and index are meaningless."""
     if any(i.shape.roughness is not None or i.shape.metallic is not None for i in instances):
         return None
-    given = {material for instance in instances for material in instance.materials}
-    materials = given if len(given) == 1 else {replace(m, emission=(0.0, 0.0, 0.0), index=0) for m in given}
-    return materials.pop() if len(materials) == 1 else None
+    given = [material for instance in instances for material in instance.materials]
+    return given[0] if len({(m.roughness, m.metallic, m.ior) for m in given}) == 1 else None
 
 
 def shared_emission(instances: tuple[Placed, ...]) -> tuple[float, float, float] | None:
