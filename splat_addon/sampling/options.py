@@ -76,6 +76,6 @@ class SamplingOptions(Density):
             raise ValueError(f"The splat size must be a finite number above 0, not {self.splat_size}.")
         if self.tolerance is not None and find_reduction(self.reduction).merge is not None:
             raise ValueError(
-                f"Surfels of the reduction {self.reduction!r} cannot be merged on flat areas; choose another one, or "
+                f"Surfels of the reduction {self.reduction!r} cannot be merged on flat areas; choose another, or "
                 "no tolerance."
             )
