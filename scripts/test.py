@@ -4,7 +4,7 @@
     python3 scripts/test.py [--quick] [--bpy VERSION] [--blender PATH [--gpu-backend NAME]] [PYTEST ARGUMENTS]
 
 Group "plain" draws on the standalone device; group "blender" draws inside Blender's wheel. With --blender the second
-group runs inside a Blender program, in one process per folder; of the first group only the pictures that it compares
+group runs inside a Blender program, in several processes; of the first group only the pictures that it compares
 with are drawn. Otherwise pytest-xdist runs as many processes as there are cores; -n 0 runs one.
 """
 
@@ -17,7 +17,7 @@ from pathlib import Path
 import environment
 from environment import ROOT, Problem
 from testing import program
-from testing.groups import BLENDER, PLAIN, QUICK, by_folder, paths_by_group, split_arguments
+from testing.groups import BLENDER, PLAIN, QUICK, by_process, paths_by_group, split_arguments
 
 #: pytest's exit codes.
 PASSED, NO_TESTS = 0, 5
@@ -87,7 +87,7 @@ def main(arguments: list) -> int:
         codes[PLAIN] = run(PLAIN, command, **ONE_THREAD)
         print(f"== group {PLAIN}: pytest ended with exit code {codes[PLAIN]}", flush=True)
     if groups.get(BLENDER):
-        for part in by_folder(groups[BLENDER]) if options.blender else [groups[BLENDER]]:
+        for part in by_process(groups[BLENDER]) if options.blender else [groups[BLENDER]]:
             command = blender_command(options, python, [*part, *pytest_arguments])
             codes[(BLENDER, *part)] = run(BLENDER, command, **(variables or ONE_THREAD))
     return verdict(codes)

@@ -21,6 +21,9 @@ LEAVES_PICTURES = (
     "tests/rendering/test_outputs.py",
 )
 
+#: Test files of one process of a Blender program, see by_process.
+FILES = 16
+
 #: A selection that shows within a minute whether a change broke something: the data, one picture of each kind on both
 #: devices, and Blender's operators.
 QUICK = (
@@ -78,13 +81,17 @@ def paths_by_group(paths: list[str], only_pictures: bool = False) -> dict[str, l
     return groups
 
 
-def by_folder(paths: list[str]) -> list[list[str]]:
-    """The test paths by folder, for a program: on Vulkan in background mode Blender 5.2 keeps one memory mapping per
-    draw until it ends, and Linux limits a process to 65,530 mappings."""
+def by_process(paths: list[str]) -> list[list[str]]:
+    """The test files of each process of a program: those of one folder, FILES at most.
+
+    On Vulkan in background mode Blender 5.2 keeps one memory mapping per draw until it ends, and Linux limits a process
+    to 65,530 mappings; beyond, it crashes."""
     folders = {}
     for path in paths:
-        folders.setdefault(_file(path).relative_to(ROOT).parts[:2], []).append(path)
-    return list(folders.values())
+        place = _file(path)
+        files = [f.relative_to(ROOT).as_posix() for f in sorted(place.rglob("test_*.py"))] or [path]
+        folders.setdefault(place.relative_to(ROOT).parts[:2], []).extend(files)
+    return [files[k : k + FILES] for files in folders.values() for k in range(0, len(files), FILES)]
 
 
 def _ignored() -> list[str]:

@@ -4,8 +4,8 @@
 
 #part splat_varyings
 void oit_tell(Splat splat, int index) {
-  color_weight.rgb = texelFetch(lit_splats, ivec2(index % SPLATS_PER_ROW, index / SPLATS_PER_ROW), 0).rgb;
-  if (splat.is_back) color_weight.w /= BACK_WEIGHT;  // a back hides as much as a front
+  vec3 lit = texelFetch(lit_splats, ivec2(index % SPLATS_PER_ROW, index / SPLATS_PER_ROW), 0).rgb;
+  color_weight = vec4(lit, splat.amplitude);  // a back hides as much as a front
   opacity = splat.opacity;
 }
 

@@ -15,5 +15,5 @@ void main() {
   material = frame.material.xyz;
   emission = vec3(0.0);
   #hook prepare(splat, index)
-  lit_splats = vec4(shade(splat.position, splat.normal, splat.color_weight.rgb, material) + emission, 1.0);
+  lit_splats = vec4(shade(splat.position, splat.normal, splat.color, material) + emission, 1.0);
 }

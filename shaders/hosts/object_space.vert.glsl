@@ -14,7 +14,7 @@ void main() {
   mat2 widened = widen(splat);
   vec3 eye = footprint_corner(splat.position, splat.axis_u, splat.axis_v, corner);
   place_depth = vec3(corner, -eye.z);
-  color_weight = splat.color_weight;
+  color_weight = vec4(splat.color, splat.side_weight * splat.amplitude);
   normal = splat.normal;
   hand_on(splat, index);
   #hook axes(splat, widened)

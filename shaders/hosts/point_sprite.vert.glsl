@@ -16,11 +16,11 @@ void main() {
   vec2 tilt = sprite_tilt(splat.axis_u, splat.axis_v);
   place = disc_in_sprite(tilt, triangle_corner(gl_VertexID));
   tilt_depth = vec3(tilt, depth);
-  color_weight = splat.color_weight;
+  color_weight = vec4(splat.color, splat.side_weight);
   normal = splat.normal;
   hand_on(splat, index);
   vec4 clip = view.projection * vec4((splat.position.xy + radius * place) * scale, -1.0, 1.0);
-  float behind = splat.color_weight.w < 1.0 ? BACK_EPSILON * draw.epsilon * radius : 0.0;
+  float behind = splat.side_weight < 1.0 ? BACK_EPSILON * draw.epsilon * radius : 0.0;
   bool is_before = !(depth >= view.near);
   float stored = min(2.0 * stored_depth(depth + behind) - 1.0, 1.0);
   gl_Position = splat.is_hidden || is_before ? NOWHERE : vec4(clip.xy / clip.w, stored, 1.0);

@@ -29,7 +29,7 @@ void main() {
   footprint_map = vec3(0.0);
   footprint_middle = vec2(0.0);
   #hook clipped(splat, in_space)
-  color_weight = splat.color_weight;
+  color_weight = vec4(splat.color, splat.side_weight * splat.amplitude);
   normal = splat.normal;
   hand_on(splat, index);
   #hook replaced(true_plane, plane, in_space)

@@ -9,7 +9,9 @@ struct Splat {
   vec3 position;  // view space
   vec3 axis_u;    // half-axes, view space
   vec3 axis_v;
-  vec4 color_weight;  // colour, and the weight of the visible side
+  vec3 color;
+  float side_weight;  // weight of the visible side
+  float amplitude;    // of a widened kernel
   vec3 normal;  // shading normal on the visible side, view space
   float material;     // index
   float opacity;
@@ -41,7 +43,9 @@ Splat fetch_splat(int index) {
   splat.axis_v = linear * stored.axis_v;
   splat.material = stored.material;
   float cosine = outward_cosine(splat.position, splat.axis_u, splat.axis_v, draw.orientation, view.is_parallel > 0.5);
-  splat.color_weight = vec4(stored.color.rgb, cosine < 0.0 ? BACK_WEIGHT : 1.0);
+  splat.color = stored.color.rgb;
+  splat.side_weight = cosine < 0.0 ? BACK_WEIGHT : 1.0;
+  splat.amplitude = 1.0;
   splat.normal = normalize(mat3(draw.normal_matrix) * stored.normal);
   float side = cosine < 0.0 ? -draw.orientation : draw.orientation;
   if (dot(splat.normal, cross(splat.axis_u, splat.axis_v)) * side < 0.0) splat.normal = -splat.normal;

@@ -26,7 +26,7 @@ mat2 widen(inout Splat splat) {
   vec2 lengths2;
   mat2 along = principal_places(plane.a, plane.b, plane.det.z, lengths2);
   vec2 both = KERNEL_VARIANCE * lengths2 + FILTER_VARIANCE;
-  splat.color_weight.w *= KERNEL_VARIANCE * abs(plane.det.z) * inversesqrt(both.x * both.y);
+  splat.amplitude = KERNEL_VARIANCE * abs(plane.det.z) * inversesqrt(both.x * both.y);
   lengths2.y = max(lengths2.y, LEAST_FLATNESS2 * lengths2.x);
   vec2 half_axes = 2.0 * sqrt(KERNEL_VARIANCE + FILTER_VARIANCE / max(lengths2, vec2(1e-30)));
   mat2 joined = mat2(along[0] * half_axes.x, along[1] * half_axes.y);

@@ -124,6 +124,22 @@ def test_the_rest_is_mixed_by_opacity_and_in_no_order(method, render):
     assert np.abs(render(Scene(sheets[::-1]), camera, settings).color - frame.color).max() < 1e-6
 
 
+@pytest.mark.parametrize("blend_depth", [None, 0.1])
+@pytest.mark.parametrize("method", SPACES)
+def test_backs_in_the_rest_count_as_fronts(method, blend_depth, render):
+    camera = Camera.orthographic(CAMERA.matrix_world, 2.0, (16, 16), 0.1, 50)
+    first, *rest = (sheet(-z, color, 0.5) for z, color in enumerate([(1, 1, 1), (1, 0, 0), (0, 1, 0)]))
+    if blend_depth is not None:
+        depths = np.full(256, blend_depth, np.float32)
+        rest[1] = replace(rest[1], shape=replace(rest[1].surfels, blend_depth=depths))
+    half_turn = np.diag((-1.0, 1, -1, 1))
+    half_turn[2, 3] = 2 * rest[1].surfels.positions[0, 2]
+    turned = replace(rest[1], matrix_world=half_turn)
+    settings = flat(method=method, layers=2, blends_rest=True)
+    fronts, backs = (render(Scene([first, rest[0], last]), camera, settings).color for last in (rest[1], turned))
+    assert np.abs(backs - fronts).max() < 1e-4
+
+
 @pytest.mark.parametrize("method", SPACES)
 def test_three_layers_come_close_to_all(method, render):
     """The paper's figure 6: the rest in the last layer, against the rest lost."""

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from testing.groups import BLENDER, PLAIN, QUICK, by_folder, paths_by_group, split_arguments
+from environment import ROOT
+from testing.groups import BLENDER, FILES, PLAIN, QUICK, by_process, paths_by_group, split_arguments
 
 
 @pytest.fixture(scope="module")
@@ -66,9 +67,20 @@ def test_a_test_of_the_window_runs_only_where_it_is_named():
     assert groups[PLAIN] == ["tests/window"] and not groups[BLENDER]
 
 
-def test_each_folder_has_its_process_in_a_program():
-    parts = by_folder(["tests/rendering/test_agreement.py", "tests/blender", "tests/rendering/methods"])
-    assert parts == [["tests/rendering/test_agreement.py", "tests/rendering/methods"], ["tests/blender"]]
+def test_a_process_of_a_program_has_a_few_files_of_one_folder():
+    paths = ["tests/rendering/test_agreement.py", "tests/blender", "tests/rendering/methods"]
+    parts = by_process(paths)
+    files = [file for part in parts for file in part]
+    assert len(parts) > 2 and all(len(part) <= FILES for part in parts)
+    assert all(len({Path(file).parts[1] for file in part}) == 1 for part in parts)
+    expected = {f.relative_to(ROOT).as_posix() for path in paths for f in (ROOT / path).rglob("test_*.py")}
+    assert len(files) == len(set(files)) and set(files) == expected | {paths[0]}
+
+
+def test_one_test_of_a_file_stays_one():
+    assert by_process(["tests/rendering/test_agreement.py::test_it"]) == [
+        ["tests/rendering/test_agreement.py::test_it"]
+    ]
 
 
 def test_the_quick_choice_is_of_tests_that_exist_in_both_groups():
