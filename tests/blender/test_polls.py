@@ -11,7 +11,6 @@ ALWAYS = {
     ids.RENDER_PRESET,
     ids.SHOW_SURFELS,
     ids.IMPORT_PLY,
-    ids.EXPORT_PLY,
     ids.ADD_RENDER_PRESET,
     ids.ADD_CONVERSION_PRESET,
 }

@@ -21,6 +21,8 @@ MODULE = "bl_ext.user_default.surfel_splatting"
 PACKAGE = os.environ["SURFEL_PACKAGE"]
 FILE = REPORT.with_suffix(".blend")
 PATIENCE = 120  # polls of half a second
+#: Samples of the pictures that are compared with each other; the guide's has those of a new scene.
+FEW = 2
 
 drawn = []
 
@@ -151,6 +153,9 @@ def steps():
     shot("converted")
     look_through_camera()
     show()
+    yield from at_rest()
+    shot("guide")
+    bpy.context.scene.surfel_splatting.samples = bpy.context.scene.surfel_splatting.viewport_samples = FEW
     yield from at_rest()
     shot("shown")
 

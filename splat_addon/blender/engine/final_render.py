@@ -17,7 +17,7 @@ from ..export.scene import Notes, SurfelStore, export_scene
 from ..preferences import most_bytes
 from ..properties import final_settings, stops_where_broken
 from .motion_blur import motion_blur_notes, moving_time, shutter_times
-from .render_passes import hand_over, outputs_of
+from .render_passes import absent_passes, hand_over, outputs_of
 
 #: Statistics of the last rendered frame, for scripts: see `Renderer`, plus `notes`, and in `live_meshes` the counts of
 #: `LiveMeshes`.
@@ -118,6 +118,8 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
     for sentence in depth_of_field_notes(camera_object, settings.samples):
         notes.add(sentence)
     for sentence in motion_blur_notes(scene, depsgraph.view_layer, settings.samples):
+        notes.add(sentence)
+    for sentence in absent_passes(depsgraph.view_layer):
         notes.add(sentence)
     return frame, notes
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import bpy
@@ -10,11 +11,12 @@ import numpy as np
 from bpy.props import BoolProperty
 
 from ...rendering import Cryptomatte, Frame
+from ..export.passed_over import listed
 from ..ids import LAYER_SETTINGS
 from ..registration import with_property
 
-#: Since 5.0, passes have the names that users read.
-_HAS_LONG_NAMES = bpy.app.version >= (5, 0, 0)
+#: Since 5.0, passes have the names that users read, and so have their switches: this one was "Emit".
+_HAS_LONG_NAMES = bpy.types.ViewLayer.bl_rna.properties["use_pass_emit"].name == "Emission"
 
 
 #: Names in each layer of a Cryptomatte pass.
@@ -88,6 +90,21 @@ def _matte_layers(view_layer: bpy.types.ViewLayer) -> list[str]:
 def outputs_of(view_layer: bpy.types.ViewLayer) -> tuple[str, ...]:
     """Names of the arrays that fill these passes."""
     return tuple(dict.fromkeys(p.output for p in asked_for(view_layer)))
+
+
+#: A Cryptomatte of objects is filled besides the table; Combined is always there, and so is an accurate Cryptomatte.
+_ALWAYS = frozenset({"use_pass_cryptomatte_object", "use_pass_combined", "use_pass_cryptomatte_accurate"})
+
+
+def absent_passes(view_layer: bpy.types.ViewLayer) -> Iterator[str]:
+    """A sentence about passes that the view layer asks for and this engine does not have."""
+    known = {p.flag for p in RENDER_PASSES} | _ALWAYS
+    every = (p for p in view_layer.bl_rna.properties if p.identifier.startswith("use_pass_"))
+    names = [p.name for p in every if p.identifier not in known and getattr(view_layer, p.identifier)]
+    names += [f"AOV {aov.name}" for aov in view_layer.aovs]
+    names += [f"Light Group {group.name}" for group in view_layer.lightgroups]
+    if names:
+        yield f"The view layer {view_layer.name!r} asks for {listed(names)}, passes that this engine does not have"
 
 
 def register_passes(engine: bpy.types.RenderEngine, scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:

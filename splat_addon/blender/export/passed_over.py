@@ -42,7 +42,7 @@ def of_material(material: bpy.types.Material, shader: bpy.types.Node) -> Iterato
     output = material.node_tree.get_output_node("ALL")
     names += [name for name in _OUTPUTS if output and name in output.inputs and output.inputs[name].is_linked]
     if names:
-        yield f"The material {material.name!r} has {_listed(names)}, which this engine passes over"
+        yield f"The material {material.name!r} has {listed(names)}, which this engine passes over"
 
 
 def _does_nothing(socket: bpy.types.NodeSocket, neutral: Any) -> bool:
@@ -127,5 +127,5 @@ def _said(rules: _Rules, asked: Any, name: str) -> Iterator[str]:
     return (f"{name} {sentence}" for is_asked, sentence in rules if is_asked(asked))
 
 
-def _listed(names: list[str]) -> str:
+def listed(names: list[str]) -> str:
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -13,6 +13,7 @@ import numpy as np
 from ...rendering import Light, Material
 from ...rendering.upload.packing import reflectance
 from ..materials.node_products import linked
+from ..materials.node_trees import uses_nodes
 from . import passed_over
 
 #: Blender's light type -> its emitting area, by which the energy of a non-normalised light is multiplied, as in Cycles:
@@ -68,7 +69,7 @@ _SHAPES = {
 
 def _emission(light: bpy.types.Light, notes) -> np.ndarray:
     """(3,) colour times strength of the light's Emission node, which multiplies the light's own; 1 without nodes."""
-    if not light.use_nodes:
+    if not uses_nodes(light):
         return np.ones(3)
     node = output_source(light.node_tree, "OUTPUT_LIGHT", "EMISSION")
     if node is None:
@@ -103,7 +104,7 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
 
     own: fields that the surfels have themselves, so that missing textures for them are not reported.
     """
-    if material is None or not material.use_nodes:
+    if material is None or not uses_nodes(material):
         return Material(index=material.pass_index if material else 0)
     node = output_source(material.node_tree, "OUTPUT_MATERIAL", *_SHADERS)
     if node is None:

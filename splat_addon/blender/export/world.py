@@ -11,6 +11,7 @@ from mathutils import Euler
 
 from ...rendering import Environment
 from ...rendering.upload.atlas import MAX_EDGE
+from ..materials.node_trees import uses_nodes
 from ..materials.texture_images import UnreadableError, linear_pixels
 from . import passed_over
 from .shading import MAX_RADIANCE, color_times_strength, finite_radiance, output_source
@@ -30,12 +31,12 @@ class WorldStore:
         world."""
         if world is None:
             return BLACK, None
-        node = output_source(world.node_tree, "OUTPUT_WORLD", "BACKGROUND") if world.use_nodes else None
+        node = output_source(world.node_tree, "OUTPUT_WORLD", "BACKGROUND") if uses_nodes(world) else None
         for sentence in passed_over.of_world(world):
             notes.add(sentence)
         owner = f"The world {world.name!r}"
         if node is None:
-            return (BLACK if world.use_nodes else tuple(world.color)), None
+            return (BLACK if uses_nodes(world) else tuple(world.color)), None
         picture = _picture(node.inputs["Color"], world, notes)
         if picture is None:
             return finite_radiance(color_times_strength(node, owner, notes), owner, notes), None

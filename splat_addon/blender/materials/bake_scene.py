@@ -18,8 +18,9 @@ from mathutils import Matrix
 
 from ..geometry.mesh_extraction import slot_materials
 from ..geometry.sources import shown_by
-from .material_surfaces import SHADERS, surface_shader, uses_nodes
+from .material_surfaces import SHADERS, surface_shader
 from .node_products import linked
+from .node_trees import uses_nodes
 from .shader_mixes import emitted
 
 #: Pixels along the side of a square.

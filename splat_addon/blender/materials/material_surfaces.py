@@ -17,6 +17,7 @@ from ...sampling.attributes.surfaces import ALPHA, RED
 from ..geometry.attributes import has_surfels_beside_faces
 from . import node_products
 from .node_products import AttributeSource, ImageSource, Product, constant, linked, product
+from .node_trees import uses_nodes
 from .shader_mixes import channels
 from .texture_images import UnreadableError, linear_pixels
 from .texture_placement import placement, uv_layer
@@ -268,12 +269,6 @@ def default_color_layer(mesh: bpy.types.Mesh) -> str | None:
         return None
     name = mesh.attributes.default_color_name or mesh.attributes.active_color_name
     return name if name in mesh.color_attributes else None
-
-
-def uses_nodes(material: bpy.types.Material) -> bool:
-    """Whether the material uses its node tree."""
-    # From 5.0 every material does, and the property is deprecated.
-    return bpy.app.version >= (5, 0, 0) or (material.use_nodes and material.node_tree is not None)
 
 
 def surface_shader(material: bpy.types.Material) -> bpy.types.Node | None:

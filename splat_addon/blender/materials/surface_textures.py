@@ -12,8 +12,9 @@ import numpy as np
 
 from ...rendering import SurfaceTexture
 from ...sampling import Image, Surface
-from .material_surfaces import SHADERS, MeshLayers, surface_shader, uses_nodes
+from .material_surfaces import SHADERS, MeshLayers, surface_shader
 from .node_products import ImageSource, linked, product
+from .node_trees import uses_nodes
 from .texture_images import UnreadableError
 
 

@@ -55,6 +55,13 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
         default=False,
     )
 
+    @classmethod
+    def poll(cls, context):
+        if any(map(_may_hold_surfels, context.visible_objects)):
+            return True
+        cls.poll_message_set("No visible object holds surfels; convert one first")
+        return False
+
     def draw(self, context):
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
@@ -83,6 +90,14 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
             self.report({"WARNING"}, f"Skipped {unusable:,} unusable surfels")
         self.report({"INFO"}, f"{len(surfels):,} surfels of {len(parts)} objects -> {path}")
         return {"FINISHED"}
+
+
+def _may_hold_surfels(candidate: bpy.types.Object) -> bool:
+    """Whether the object stores surfels, or has modifiers that may make some. It looks at no evaluated data, because
+    menus ask each time they are drawn."""
+    if candidate.type not in {"MESH", "POINTCLOUD"}:
+        return False
+    return has_surfels(candidate.data) or any(modifier.type == "NODES" for modifier in candidate.modifiers)
 
 
 def _world_surfels(candidates: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> tuple[list[Surfels], int]:

@@ -6,8 +6,8 @@ from __future__ import annotations
 import bpy
 from bpy.props import StringProperty
 
-#: Blender 5.2 warns scripts that pass // to a path that does not declare support for it.
-_OPTIONS = {"SKIP_PRESET"} | ({"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 2, 0) else set())
+#: Blender warns scripts that pass // to a path that does not declare support for it; 4.5 knows the option, 5.2 warns.
+_OPTIONS = {"SKIP_PRESET", "PATH_SUPPORTS_BLEND_RELATIVE"}
 
 
 def path_property(way: str, is_forgotten: bool = False):

@@ -7,6 +7,7 @@ from __future__ import annotations
 import bpy
 
 from ..ids import RENDER_SETTINGS
+from ..materials.node_trees import has_switch
 from .engine_panel import EnginePanel
 
 #: light type -> the properties of its size, with the label of each
@@ -93,14 +94,13 @@ class DATA_PT_surfel_light_nodes(_LightPanel, bpy.types.Panel):
     bl_options = frozenset({"DEFAULT_CLOSED"})
 
     def draw_header(self, context):
-        # Blender 6 is to leave it out
-        if "use_nodes" in context.light.bl_rna.properties:
+        if has_switch(context.light):
             self.layout.prop(context.light, "use_nodes", text="")
 
     def draw(self, context):
         layout, light = self.layout, context.light
         layout.use_property_split = True
-        layout.active = getattr(light, "use_nodes", True)
+        layout.active = not has_switch(light) or light.use_nodes
         tree = light.node_tree
         output = tree.get_output_node("ALL") if tree else None
         if output is None:

@@ -6,6 +6,9 @@ Each is a file in the user's presets folder. The conversion's operators have the
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import bpy
 from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
@@ -17,59 +20,83 @@ from ..properties import SurfelSplattingSettings
 #: A choice that a preset cannot hold: an image of this file.
 _OF_THIS_FILE = frozenset({"matcap"})
 
-_FOLDER = "surfel_splatting"
+
+class _Kind(NamedTuple):
+    """A kind of presets.
+
+    panel: the name of the panel that lists them. idname: the operator that adds one. label: what they are called.
+    folder: of their files, below `surfel_splatting`. what: they hold, in the operator's tooltip.
+    settings: the scene's property that they set. names(): its properties that they hold, once it is registered.
+    """
+
+    panel: str
+    idname: str
+    label: str
+    folder: str
+    what: str
+    settings: str
+    names: Callable[[], list[str]]
 
 
-class RENDER_PT_surfel_presets(PresetPanel, bpy.types.Panel):
-    bl_label = "Surfel Splatting Presets"
-    preset_subdir = f"{_FOLDER}/render"
-    preset_operator = "script.execute_preset"
-    preset_add_operator = ADD_RENDER_PRESET
+def _classes(kind: _Kind) -> tuple[type[bpy.types.Panel], type[bpy.types.Operator]]:
+    """The panel and the operator, by Blender's own bases."""
+    folder, (place, _, verb) = f"surfel_splatting/{kind.folder}", kind.idname.partition(".")
+    panel = {
+        "__module__": __name__,
+        "bl_label": f"{kind.label} Presets",
+        "preset_subdir": folder,
+        "preset_operator": "script.execute_preset",
+        "preset_add_operator": kind.idname,
+    }
+    operator = {
+        "__module__": __name__,
+        "__doc__": f"Add a preset of {kind.what}, or remove one",
+        "bl_idname": kind.idname,
+        "bl_label": f"Add {kind.label} Preset",
+        "preset_menu": kind.panel,
+        "preset_subdir": folder,
+        "preset_defines": [f"settings = bpy.context.scene.{kind.settings}"],
+        "preset_values": property(lambda self: [f"settings.{name}" for name in kind.names()]),
+    }
+    return (
+        type(kind.panel, (PresetPanel, bpy.types.Panel), panel),
+        type(f"{place.upper()}_OT_{verb}", (AddPresetBase, bpy.types.Operator), operator),
+    )
 
 
-class RENDER_OT_surfel_preset_add(AddPresetBase, bpy.types.Operator):
-    """Add a preset of all render settings of Surfel Splatting, or remove one"""
-
-    bl_idname = ADD_RENDER_PRESET
-    bl_label = "Add Surfel Splatting Preset"
-    preset_menu = "RENDER_PT_surfel_presets"
-    preset_subdir = RENDER_PT_surfel_presets.preset_subdir
-    preset_defines = [f"settings = bpy.context.scene.{RENDER_SETTINGS}"]  # noqa: RUF012 - Blender reads a list
-
-    @property
-    def preset_values(self):
-        return [f"settings.{name}" for name in _own_names(SurfelSplattingSettings)]
-
-
-class VIEW3D_PT_surfel_conversion_presets(PresetPanel, bpy.types.Panel):
-    bl_label = "Surfel Conversion Presets"
-    preset_subdir = f"{_FOLDER}/conversion"
-    preset_operator = "script.execute_preset"
-    preset_add_operator = ADD_CONVERSION_PRESET
-
-
-class OBJECT_OT_surfel_conversion_preset_add(AddPresetBase, bpy.types.Operator):
-    """Add a preset of the conversion settings in the sidebar, or remove one"""
-
-    bl_idname = ADD_CONVERSION_PRESET
-    bl_label = "Add Surfel Conversion Preset"
-    preset_menu = "VIEW3D_PT_surfel_conversion_presets"
-    preset_subdir = VIEW3D_PT_surfel_conversion_presets.preset_subdir
-    preset_defines = [f"settings = bpy.context.scene.{CONVERSION_SETTINGS}"]  # noqa: RUF012 - Blender reads a list
-    preset_values = [f"settings.{name}" for name in PROPERTY_NAMES]  # noqa: RUF012 - Blender reads a list
-
-
-def _own_names(group: type[bpy.types.PropertyGroup]) -> list[str]:
-    """The properties of a group that a file of presets can hold; choices last, which setting a number may change."""
-    every = sorted(group.bl_rna.properties, key=lambda p: p.type == "ENUM")
+def _render_names() -> list[str]:
+    """Choices come last, which setting a number may change."""
+    every = sorted(SurfelSplattingSettings.bl_rna.properties, key=lambda p: p.type == "ENUM")
     return [p.identifier for p in every if not p.is_readonly and p.identifier not in {"name", *_OF_THIS_FILE}]
 
+
+_RENDER = _Kind(
+    panel="RENDER_PT_surfel_presets",
+    idname=ADD_RENDER_PRESET,
+    label="Surfel Splatting",
+    folder="render",
+    what="all render settings of Surfel Splatting",
+    settings=RENDER_SETTINGS,
+    names=_render_names,
+)
+_CONVERSION = _Kind(
+    panel="VIEW3D_PT_surfel_conversion_presets",
+    idname=ADD_CONVERSION_PRESET,
+    label="Surfel Conversion",
+    folder="conversion",
+    what="the conversion settings in the sidebar",
+    settings=CONVERSION_SETTINGS,
+    names=lambda: list(PROPERTY_NAMES),
+)
+
+RENDER_PT_surfel_presets, _add_render_preset = _classes(_RENDER)
+VIEW3D_PT_surfel_conversion_presets, _add_conversion_preset = _classes(_CONVERSION)
 
 register, unregister = bpy.utils.register_classes_factory(
     (
         RENDER_PT_surfel_presets,
-        RENDER_OT_surfel_preset_add,
+        _add_render_preset,
         VIEW3D_PT_surfel_conversion_presets,
-        OBJECT_OT_surfel_conversion_preset_add,
+        _add_conversion_preset,
     )
 )

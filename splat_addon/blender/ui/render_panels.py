@@ -67,23 +67,26 @@ class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):
         row.prop(properties, "edge_threshold")
 
 
-class RENDER_PT_surfel_toon(_RenderPanel, bpy.types.Panel):
-    bl_label = "Toon"
+class _ShadingPanel(_RenderPanel):
+    """The settings of one kind of shading, shown while it is chosen."""
+
     bl_parent_id = "RENDER_PT_surfel_surface"
+    shading = ""
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and getattr(context.scene, RENDER_SETTINGS).shading == cls.shading
+
+
+class RENDER_PT_surfel_toon(_ShadingPanel, bpy.types.Panel):
+    bl_label = "Toon"
+    shading = "toon"
     properties = ("toon_steps", "toon_softness")
 
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and getattr(context.scene, RENDER_SETTINGS).shading == "toon"
 
-
-class RENDER_PT_surfel_matcap(_RenderPanel, bpy.types.Panel):
+class RENDER_PT_surfel_matcap(_ShadingPanel, bpy.types.Panel):
     bl_label = "Matcap"
-    bl_parent_id = "RENDER_PT_surfel_surface"
-
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and getattr(context.scene, RENDER_SETTINGS).shading == "matcap"
+    shading = "matcap"
 
     def draw(self, context):
         properties = getattr(context.scene, RENDER_SETTINGS)
@@ -92,13 +95,9 @@ class RENDER_PT_surfel_matcap(_RenderPanel, bpy.types.Panel):
             self.layout.label(text="Its first layer, without Specular Highlights", icon="INFO")
 
 
-class RENDER_PT_surfel_ramp(_RenderPanel, bpy.types.Panel):
+class RENDER_PT_surfel_ramp(_ShadingPanel, bpy.types.Panel):
     bl_label = "Color Ramp"
-    bl_parent_id = "RENDER_PT_surfel_surface"
-
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and getattr(context.scene, RENDER_SETTINGS).shading == "ramp"
+    shading = "ramp"
 
     def draw(self, context):
         properties = getattr(context.scene, RENDER_SETTINGS)

@@ -5,6 +5,7 @@ Principled BSDF is either read or named."""
 import bpy
 import pytest
 
+from splat_addon.blender.engine.render_passes import RENDER_PASSES, absent_passes, asked_for
 from splat_addon.blender.export import passed_over
 from splat_addon.blender.export.scene import Notes
 from splat_addon.blender.export.shading import shading_material
@@ -112,6 +113,18 @@ def draw_freestyle(scene, owner, lamp):
     scene.render.use_freestyle = True
 
 
+def ask_for_mist(scene, owner, lamp):
+    bpy.context.view_layer.use_pass_mist = True
+
+
+def ask_for_an_aov(scene, owner, lamp):
+    bpy.context.view_layer.aovs.add().name = "mask"
+
+
+def group_lights(scene, owner, lamp):
+    bpy.context.view_layer.lightgroups.add(name="key")
+
+
 SWITCHES = {
     catch_shadows: "Square is a shadow catcher",
     hide_from_gloss: "Square is hidden from diffuse, glossy",
@@ -122,6 +135,9 @@ SWITCHES = {
     hide_world: "The world 'sky' is hidden from some rays",
     fill_world: "The world 'sky' has a volume",
     draw_freestyle: "Freestyle is switched on",
+    ask_for_mist: "The view layer 'ViewLayer' asks for Mist, passes",
+    ask_for_an_aov: "The view layer 'ViewLayer' asks for AOV mask, passes",
+    group_lights: "The view layer 'ViewLayer' asks for Light Group key, passes",
 }
 
 
@@ -162,38 +178,105 @@ def test_a_switch_that_is_passed_over_is_named(switch, ordinary, warned):
     assert sentence.startswith(SWITCHES[switch])
 
 
-#: type -> (prefixes of its switches, those that are honoured, those that the table above names). What is in neither is
-#: Blender's own affair (selection, display, animation), and is listed with the prefix that finds it.
+#: type -> (those of its settings that are honoured, those that the table above names, those that mean nothing to a
+#: picture of this engine). Each setting that can be changed is in one of them, or begins with a word of `ELSEWHERE`.
 WALKED = {
     "Object": (
-        ("visible_", "is_", "hide_render"),
         {"visible_camera", "visible_shadow", "is_holdout", "hide_render"},
         {*passed_over._OBJECT_RAYS, "is_shadow_catcher"},
         {"is_runtime_data"},
     ),
     "PointLight": (
-        ("use_", "normalize", "diffuse_", "specular_", "volume_", "transmission_"),
         {"use_shadow", "use_temperature", "use_nodes", "normalize"},
         {"diffuse_factor", "specular_factor"},
         # of EEVEE's own shadows and falloffs, and of what this engine names elsewhere: volumes, transmission
-        {"use_shadow_jitter", "use_soft_falloff", "use_absolute_resolution", "use_custom_distance", "use_fake_user",
-         "use_extra_user", "volume_factor", "transmission_factor", "use_shadow_filter"},
+        {"use_shadow_jitter", "use_soft_falloff", "use_absolute_resolution", "use_custom_distance", "volume_factor",
+         "transmission_factor", "use_shadow_filter"},
     ),
     "ViewLayer": (
-        ("use_", "material_", "world_", "samples"),
-        {"use_solid", "use_sky", "use_motion_blur", "material_override", "world_override", "samples"},
-        # hair, volumes and Freestyle are named where they are
-        {"use_strand", "use_volumes", "use_freestyle"},
-        {"use_ao", "use_grease_pencil", "use"},
+        {"use_solid", "use_sky", "use_motion_blur", "material_override", "world_override", "samples", "use",
+         "pass_alpha_threshold", "pass_cryptomatte_depth", *(p.flag for p in RENDER_PASSES if p.flag),
+         "use_pass_cryptomatte_object", "use_pass_combined", "use_pass_cryptomatte_accurate"},
+        {p for p in bpy.types.ViewLayer.bl_rna.properties.keys() if p.startswith("use_pass_")},
+        # hair, volumes, grease pencil and Freestyle are named where they are; the rest chooses a line of a list
+        {"use_strand", "use_volumes", "use_freestyle", "use_grease_pencil", "use_ao", "active_aov_index",
+         "active_lightgroup_index", "active_layer_collection", "name"},
+    ),
+    "World": (
+        {"color", "use_nodes"},
+        set(),  # the table names a world's volume and its ray visibility, which are not its own properties
+        # of EEVEE's probes, its sun and its volumes; a light group is a pass, which the view layer asks for
+        {"use_eevee_finite_volume", "probe_resolution", "sun_threshold", "sun_angle", "use_sun_shadow", "lightgroup",
+         "sun_shadow_maximum_resolution", "sun_shadow_filter_radius", "use_sun_shadow_jitter",
+         "sun_shadow_jitter_overblur", "name"},
+    ),
+    "RenderSettings": (
+        # Blender's own evaluation honours the subdivision, normals and particles of Simplify
+        {"resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y", "engine",
+         "film_transparent", "use_motion_blur", "motion_blur_shutter", "motion_blur_position", "use_border",
+         "border_min_x", "border_min_y", "border_max_x", "border_max_y", "use_crop_to_border", "use_persistent_data",
+         "use_single_layer", "use_multiview", "views_format", "use_simplify", "simplify_subdivision",
+         "simplify_subdivision_render", "simplify_child_particles", "simplify_child_particles_render",
+         "use_simplify_normals"},
+        {"use_freestyle"},
+        # of EEVEE, Workbench and Cycles alone, and of hair and volumes, which are named where they are
+        {"filter_size", "hair_type", "hair_subdiv", "use_high_quality_normals", "anisotropic_filter",
+         "simplify_volumes", "use_texture_cache", "use_auto_generate_texture_cache", "preview_pixel_size",
+         "line_thickness_mode", "line_thickness"},
+    ),
+    "Scene": (
+        # the set's objects are in the dependency graph
+        {"camera", "world", "background_set", "frame_current", "frame_subframe", "frame_float", "frame_start",
+         "frame_end", "frame_step"},
+        set(),
+        set(),
     ),
 }  # fmt: skip
 
+#: type -> how the names of settings begin that Blender itself honours before or after an engine draws: animation,
+#: simulation, sound, the compositor, the sequencer, files and what is written into pictures; or those of its interface.
+ELSEWHERE = {
+    "World": ("tag", "asset_data"),
+    "ViewLayer": (),
+    "Scene": ("name", "tag", "asset_data", "time_jump", "lock_frame", "allow_preroll", "use_preview", "frame_preview",
+              "show_", "use_stamp", "use_custom_sim", "simulation_", "sync_mode", "playback_", "compositing_",
+              "use_nodes", "gravity", "use_gravity", "use_audio", "audio_", "annotation", "grease_pencil",
+              "active_clip"),
+    "RenderSettings": ("ppm_", "fps", "frame_map", "dither", "threads", "use_placeholder", "use_overwrite",
+                       "save_output", "use_compositing", "use_sequencer", "use_file_extension", "use_lock_interface",
+                       "filepath", "use_render_cache", "use_stamp", "stamp_", "metadata_input", "sequencer_",
+                       "simplify_gpencil", "compositor_", "bake_", "use_bake"),
+}  # fmt: skip
+
+#: Switches of objects and lights; what else they have is a value that panels show or its own type's affair.
+SWITCHES_OF = {
+    "Object": ("visible_", "is_", "hide_render"),
+    "PointLight": ("use_", "normalize", "diffuse_", "specular_", "volume_", "transmission_"),
+}
+
+#: Of every data-block: how a file keeps it.
+OF_ALL = {"use_fake_user", "use_extra_user", "is_runtime_data", "rna_type"}
+
 
 @pytest.mark.parametrize("kind", WALKED)
-def test_every_switch_is_honoured_named_or_blender_s_own(kind):
-    prefixes, honoured, named, others = WALKED[kind]
-    every = getattr(bpy.types, kind).bl_rna.properties
-    switches = {p.identifier for p in every if p.identifier.startswith(prefixes) and not p.is_readonly}
-    switches -= {name for name in switches if name.startswith("use_pass_")}
-    assert switches - honoured - named - others == set()
-    assert honoured & switches, "the prefixes find nothing"
+def test_every_setting_is_honoured_named_or_blender_s_own(kind):
+    honoured, named, others = WALKED[kind]
+    every = {p.identifier for p in getattr(bpy.types, kind).bl_rna.properties if not p.is_readonly} - OF_ALL
+    if kind in SWITCHES_OF:
+        settings = {name for name in every if name.startswith(SWITCHES_OF[kind])}
+    else:
+        settings = {name for name in every if not name.startswith(ELSEWHERE[kind])}
+    assert settings - honoured - named - others == set()
+    assert honoured & settings, "the prefixes find nothing"
+
+
+@pytest.mark.parametrize(
+    "flag", [name for name in bpy.types.ViewLayer.bl_rna.properties.keys() if name.startswith("use_pass_")]
+)
+def test_every_pass_is_there_or_named(flag):
+    view_layer = bpy.context.view_layer
+    before = asked_for(view_layer)
+    assert list(absent_passes(view_layer)) == []
+    setattr(view_layer, flag, True)
+    is_there = asked_for(view_layer) != before or flag in ("use_pass_combined", "use_pass_cryptomatte_accurate")
+    assert is_there != bool(list(absent_passes(view_layer)))

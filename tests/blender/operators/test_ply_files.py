@@ -134,8 +134,21 @@ def test_a_file_that_cannot_be_read_is_an_error_and_adds_nothing(tmp_path, conte
     assert not bpy.data.objects and not bpy.data.meshes
 
 
-def test_nothing_to_export_is_an_error(add_square, tmp_path):
+def test_without_surfels_there_is_no_export(add_square, tmp_path):
     add_square()
+    with pytest.raises(RuntimeError, match="No visible object holds surfels"):
+        bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "a.ply"))
+
+
+def test_nothing_selected_to_export_is_an_error(stored, tmp_path):
+    stored.select_set(False)
+    with pytest.raises(RuntimeError, match="No selected object is surfels"):
+        bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "a.ply"), use_selection=True)
+    assert not list(tmp_path.iterdir())
+
+
+def test_modifiers_that_make_no_surfels_leave_nothing_to_export(add_square, add_nodes, tmp_path):
+    add_nodes(add_square(), lambda tree, start, end: tree.links.new(start, end))
     with pytest.raises(RuntimeError, match="No visible object is surfels"):
         bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "a.ply"))
     assert not list(tmp_path.iterdir())
