@@ -219,7 +219,8 @@ def _breaks(mesh: TriangleMesh, normals: np.ndarray, looks, one: _Corners, other
             breaks |= product < least * np.sqrt(square)
         if has_colors:
             rows = mesh.corner_colors.reshape(-1, mesh.corner_colors.shape[2])
-            breaks |= np.abs(rows.take(mine, axis=0) - rows.take(its, axis=0)).max(axis=1) > COLOR_BREAK
+            for column in (rows.take(mine, axis=0) - rows.take(its, axis=0)).T:
+                breaks |= np.abs(column) > COLOR_BREAK
     if looks is not None:
         breaks |= looks.take(s) != looks.take(t)
     return breaks, cosine

@@ -15,7 +15,8 @@ from ...clip_lines import CLIP_FIELDS, are_reflex, pack_lines
 from ..ldc.grid import Grid
 from .borders import Borders
 from .meetings import BEYOND, Images, Meetings, meetings
-from .ragged_borders import two_lines
+from .ordering import order_of
+from .ragged_borders import ALL, BOTH, EITHER, FIRST, two_lines
 
 #: A border that deviates from a line by less than this, in half-axes, is on the line.
 _SAME_LINE = 0.06
@@ -23,9 +24,6 @@ _SAME_LINE = 0.06
 #: An edge that the centre lies a little beyond counts as farther by this, in half-axes: at an open seam with another
 #: sheet, the edge of the surfel's own sheet comes first.
 _BEYOND_IS_FARTHER = np.float32(0.1)
-
-#: What two lines keep: the first one's side, that of both, that of either, or all.
-_FIRST, _BOTH, _EITHER, _ALL = range(4)
 
 #: If a splat meets more edges than this, the farther ones are ignored when looking for its corner.
 _MOST_EDGES = 6
@@ -60,8 +58,9 @@ def clip(
     met = meetings(arrays, images, borders, grid, at_centres)
     if not len(met):
         return Clipping({}, met, np.zeros((2, 3, 0), np.float32), np.zeros(0, bool))
-    met = met.take(_one_side_of_each(met, arrays, borders))
-    met, starts, owner = _of_own_surface(met.take(_nearest_first(met)))
+    rows = _nearest_first(met, _one_side_of_each(met, arrays, borders))
+    rows, starts, owner = _of_own_surface(met, rows)
+    met = met.take(rows)
     lines = _lines(met, starts, owner)
     packed = [pack_lines(line.T) for line in lines]
     fields, count = {}, len(arrays["positions"])
@@ -76,25 +75,26 @@ def clip(
 
 def _one_side_of_each(met: Meetings, arrays: dict[str, np.ndarray], borders: Borders) -> np.ndarray:
     """The meetings without those for which another side of the same edge matches the surfel better."""
-    keys = met.surfel * (borders.edges.max() + 1) + borders.edges.take(met.side)
-    order = np.argsort(keys)
+    keys = met.surfel * (int(borders.edges.max()) + 1) + borders.edges.take(met.side)
+    order = order_of(keys)
     keys = keys.take(order)
     is_shared = np.zeros(len(keys), bool)
     np.equal(keys[1:], keys[:-1], out=is_shared[1:])
     is_shared[:-1] |= is_shared[1:]
     if not is_shared.any():
-        return np.arange(len(keys))
+        return order
     alone, shared = order.compress(~is_shared), order.compress(is_shared)
-    group, unlike = keys.compress(is_shared), _unlikeness(met.take(shared), arrays, borders)
-    ranked = np.lexsort((unlike, group))
-    is_first = np.append(True, group[ranked][1:] != group[ranked][:-1])
-    return np.concatenate([alone, shared[ranked[is_first]]])
+    _, starts, group = _groups(keys.compress(is_shared))
+    unlike = _unlikeness(met, shared, arrays, borders)
+    # The first of those that are least unlike.
+    likest = np.flatnonzero(unlike == np.minimum.reduceat(unlike, starts).take(group))
+    return np.concatenate([alone, shared.take(likest.compress(_groups(group.take(likest))[0]))])
 
 
-def _unlikeness(met: Meetings, arrays: dict[str, np.ndarray], borders: Borders) -> np.ndarray:
-    """(m,) difference between a surfel and the face of a side."""
-    surfel, side = met.surfel, met.side
-    result = 2 - 2 * met.facing + 0.01 * (met.line[2] < 0)
+def _unlikeness(met: Meetings, rows: np.ndarray, arrays: dict[str, np.ndarray], borders: Borders) -> np.ndarray:
+    """(r,) difference between a surfel and the face of a side, of r of the meetings."""
+    surfel, side = met.surfel.take(rows), met.side.take(rows)
+    result = 2 - 2 * met.facing.take(rows) + 0.01 * (met.line[2].take(rows) < 0)
     for values, of_side in ((arrays["normals"], borders.shading), (arrays["colors"], borders.colors)):
         difference = values.take(surfel, axis=0) - of_side.take(side, axis=0)
         for column in difference.T:
@@ -103,41 +103,37 @@ def _unlikeness(met: Meetings, arrays: dict[str, np.ndarray], borders: Borders) 
     return result
 
 
-def _nearest_first(met: Meetings) -> np.ndarray:
-    """The order of surfels, and of each one's meetings by how near the edge is.
+def _nearest_first(met: Meetings, rows: np.ndarray) -> np.ndarray:
+    """These meetings in the order of surfels, and of each one's by how near the edge is.
 
     At an end that two edges share, the one whose line is farther off says on which side the centre is.
     """
-    is_beyond = (met.line[2] < 0) & (met.line[2] >= BEYOND)
-    distance = np.where(is_beyond, met.distance + _BEYOND_IS_FARTHER, met.distance)
+    surfel, off, distance = met.surfel.take(rows), met.line[2].take(rows), met.distance.take(rows)
+    distance += ((off < 0) & (off >= BEYOND)) * _BEYOND_IS_FARTHER
     near = np.minimum(distance * (1 << _DISTANCE_BITS), (1 << _DISTANCE_BITS) - 1).astype(np.int64)
-    line = np.minimum(np.abs(met.line[2]), 1) * ((1 << _LINE_BITS) - 1)
+    line = np.minimum(np.abs(off), 1) * ((1 << _LINE_BITS) - 1)
     near <<= _LINE_BITS
     near |= ((1 << _LINE_BITS) - 1) - line.astype(np.int64)
-    bits = len(met).bit_length()
-    if int(met.surfel.max()).bit_length() + _DISTANCE_BITS + _LINE_BITS + bits > 63:
-        return np.lexsort((near, met.surfel))
-    # Sorted together with their numbers in the lowest bits, because an argsort takes several times as long.
-    keys = met.surfel << (_DISTANCE_BITS + _LINE_BITS)
-    keys |= near
-    keys <<= bits
-    keys |= np.arange(len(met))
-    keys.sort()
-    return keys & ((1 << bits) - 1)
+    near |= surfel << (_DISTANCE_BITS + _LINE_BITS)
+    return rows.take(order_of(near))
 
 
-def _of_own_surface(met: Meetings) -> tuple[Meetings, np.ndarray, np.ndarray]:
-    """The meetings of surfels that lie within their nearest border; else it is of a piece of surface that only looks
-    like that border's. Also the first meeting of each surfel, and the (m,) number of each one's surfel among these."""
-    is_first = np.append(True, met.surfel[1:] != met.surfel[:-1])
-    starts = np.flatnonzero(is_first)
-    owner = np.cumsum(is_first) - 1
-    is_own = met.line[2].take(starts) >= BEYOND
+def _of_own_surface(met: Meetings, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Those of m meetings whose surfels lie within their nearest border; else it is of a piece of surface that only
+    looks like that border's. Also the first of each surfel, and the (m,) number of each one's surfel among these."""
+    _, starts, owner = _groups(met.surfel.take(rows))
+    is_own = met.line[2].take(rows.take(starts)) >= BEYOND
     if is_own.all():
-        return met, starts, owner
-    met = met.take(np.flatnonzero(is_own.take(owner)))
-    is_first = np.append(True, met.surfel[1:] != met.surfel[:-1])[: len(met)]
-    return met, np.flatnonzero(is_first), np.cumsum(is_first) - 1
+        return rows, starts, owner
+    rows = rows.compress(is_own.take(owner))
+    return rows, *_groups(met.surfel.take(rows))[1:]
+
+
+def _groups(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of runs of equal values: (n,) bool, where each starts; their starts; and (n,) the number of each one's run."""
+    is_first = np.ones(len(ordered), bool)
+    np.not_equal(ordered[1:], ordered[:-1], out=is_first[1:])
+    return is_first, np.flatnonzero(is_first), np.cumsum(is_first) - 1
 
 
 def _lines(met: Meetings, starts: np.ndarray, owner: np.ndarray) -> np.ndarray:
@@ -152,7 +148,7 @@ def _lines(met: Meetings, starts: np.ndarray, owner: np.ndarray) -> np.ndarray:
     others = np.flatnonzero(off > _SAME_LINE)
     counts = np.bincount(owner.take(others), minlength=len(starts))
     single = others.compress(counts.take(owner.take(others)) == 1)
-    kind = np.where(place.take(single) < 0, _EITHER, _BOTH)
+    kind = np.where(place.take(single) < 0, EITHER, BOTH)
     rank = np.arange(len(met)) - starts.take(owner)
     several = np.flatnonzero((counts > 1).take(owner) & (rank < _MOST_EDGES))
     if len(several):
@@ -162,12 +158,12 @@ def _lines(met: Meetings, starts: np.ndarray, owner: np.ndarray) -> np.ndarray:
     owners = owner.take(single)
     one, other = first.take(owners, axis=1), met.line.take(single, axis=1)
     turn = one[0] * other[1] - one[1] * other[0]
-    swap = np.where(kind == _BOTH, turn < 0, turn > 0)
+    swap = np.where(kind == BOTH, turn < 0, turn > 0)
     for line, there in ((first, np.where(swap, other, one)), (second, np.where(swap, one, other))):
-        there[:, kind == _ALL] = _NO_LINE
+        there[:, kind == ALL] = _NO_LINE
         line[:, owners] = there
-    alone = owners.compress(kind == _FIRST)
-    first[:, alone], second[:, alone] = one.compress(kind == _FIRST, axis=1), _NO_LINE
+    alone = owners.compress(kind == FIRST)
+    first[:, alone], second[:, alone] = one.compress(kind == FIRST, axis=1), _NO_LINE
     return np.stack([first, second])
 
 

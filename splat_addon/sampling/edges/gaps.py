@@ -68,7 +68,8 @@ def _bare(mesh: TriangleMesh, borders: Borders, clipping: Clipping, grid: Grid):
     along = borders.end - borders.start
     counts = np.ceil(np.linalg.norm(along, axis=1) / (_STEP * grid.spacing)).astype(np.int64) + 1
     # A straight row of places beside the edge: all are moved by the same share towards the middle.
-    middle = mesh.positions[mesh.triangles[borders.triangles]].mean(axis=1)
+    corners = mesh.triangles.take(borders.triangles, axis=0).T
+    middle = sum(mesh.positions.take(corner, axis=0) for corner in corners) / 3
     depth = np.einsum("ij,ij->i", middle - borders.start, borders.inward)
     part = np.minimum(_INSIDE * grid.spacing / np.maximum(depth, 1e-300), _TO_MIDDLE)[:, None]
     first, last = (borders.start + along * share for share in (_ENDS, 1 - _ENDS))

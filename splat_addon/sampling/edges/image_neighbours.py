@@ -12,6 +12,7 @@ import numpy as np
 
 from ..ldc.grid import BLOCK, Grid
 from ..ldc.scan_conversion import batches, expand
+from .ordering import order_of
 
 #: Around the image, in cells: samples lie in it, other surfels and edges at most this far outside.
 _MARGIN = 3
@@ -41,9 +42,9 @@ def image_neighbours(
     # So that the centres of cells have whole numbers, of which none is below 0.
     shift = [np.float32(grid.middle[a] - 0.5 + _MARGIN) for a in (along, up)]
     size, scale = width * height, np.float32(1 / grid.spacing)
-    edge, starts, stops = _runs(ends[:, 0] + shift[0], ends[:, 1] + shift[1], reach + _SLACK, width, height)
     kind = np.int32 if size < 2**31 else np.int64
     column, row = (np.rint(positions[:, a] * scale + s).astype(kind) for a, s in zip((along, up), shift, strict=True))
+    edge, starts, stops = _runs(ends[:, 0] + shift[0], ends[:, 1] + shift[1], reach + _SLACK, width, height)
     row *= kind(width)
     row += column
     is_counted = size <= max(_FEW_CELLS, _CELLS_A_SURFEL * len(positions))
@@ -52,8 +53,9 @@ def image_neighbours(
         near = np.flatnonzero((np.cumsum(crossings) > 0).take(row, mode="clip"))
     else:
         near = np.arange(len(row))
-    cells, order = _ordered(row.take(near))
-    near = near.take(order)
+    cells = row.take(near)
+    order = order_of(cells)
+    cells, near = cells.take(order), near.take(order)
     if is_counted:
         firsts = np.zeros(size + 1, np.intp)
         np.cumsum(np.bincount(cells, minlength=size), out=firsts[1:])
@@ -117,15 +119,3 @@ def _runs(x: np.ndarray, y: np.ndarray, reach: float, width: int, height: int):
     left += row
     right += row + 1
     return edge.take(there), left.take(there), right.take(there)
-
-
-def _ordered(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The cells in ascending order, and where each was; sorted together with that number, which takes less time."""
-    bits = max(len(cells) - 1, 1).bit_length()
-    both = cells.astype(np.int64)
-    both <<= bits
-    both |= np.arange(len(cells))
-    both.sort()
-    order = both & ((1 << bits) - 1)
-    both >>= bits
-    return both, order

@@ -12,64 +12,80 @@ import numpy as np
 #: The points at which a splat is judged: rings in the unit circle.
 _RINGS = ((0.35, 4), (0.7, 7), (0.95, 11))
 
-#: Edges per batch.
+#: Edges per batch: their points stay in the processor's cache.
 _CHUNK = 2048
+
+#: What a weight is a whole number of, so that sums of them are exact, and equal in whichever order they are taken.
+_UNIT = 2.0**-18
+
+#: A second line that gains no more than this share of the splat is spared.
+_LEAST_GAIN = round(1e-4 / _UNIT)
+
+#: What two lines keep: the first one's side, that of both, that of either, or all.
+FIRST, BOTH, EITHER, ALL = range(4)
 
 
 def two_lines(start: np.ndarray, end: np.ndarray, line: np.ndarray, owner: np.ndarray):
     """For each of n surfels which of its edges gives the second line, (n,) by number among the m given ones; and (n,)
-    what the lines keep: 0 the first one's side, 1 that of both, 2 that of either, 3 all.
+    what the lines keep.
 
-    start, end: (2, m) float32 in the circle. line: (3, m). owner: (m,) ascending, 0 to n - 1; a surfel's first edge is
-    its nearest.
+    start, end: (2, m) float32 in the circle. line: (3, m). owner: (m,) ascending, 0 to n - 1, at least two of each; a
+    surfel's first edge is its nearest.
     """
     starts = np.flatnonzero(np.append(True, owner[1:] != owner[:-1]))
-    parts = []
-    # In small batches, whose points stay in the processor's cache.
-    stops = np.append(np.searchsorted(starts, np.arange(0, len(owner), _CHUNK)), len(starts))
-    for low, high in zip(stops[:-1].tolist(), stops[1:].tolist(), strict=True):
-        if high > low:
-            rows = slice(int(starts[low]), int(starts[high]) if high < len(starts) else len(owner))
-            best, kind = _judged(start[:, rows], end[:, rows], line[:, rows], owner[rows] - low)
-            parts.append((best + rows.start, kind))
-    return tuple(np.concatenate(found) for found in zip(*parts, strict=True))
+    counts = np.diff(np.append(starts, len(owner)))
+    edges = np.concatenate([start, end - start, line])
+    best, kind = np.empty(len(starts), np.intp), np.empty(len(starts), np.intp)
+    # Those that have equally many edges together, so that these are axes of arrays.
+    for count in np.unique(counts):
+        alike = np.flatnonzero(counts == count)
+        step = max(_CHUNK // int(count), 1)
+        for surfels in np.split(alike, range(step, len(alike), step)):
+            rows = np.add.outer(np.arange(count), starts.take(surfels))
+            chosen, kind[surfels] = _judged(edges.take(rows, axis=1))
+            best[surfels] = starts.take(surfels) + chosen
+    return best, kind
 
 
-def _judged(start, end, line, owner) -> tuple[np.ndarray, np.ndarray]:
-    places, weights = _places()
-    starts = np.flatnonzero(np.append(True, owner[1:] != owner[:-1]))
-    inside, distance = _inside_of_each(start, end, line, places)
-    is_nearest = distance == np.minimum.reduceat(distance, starts, axis=1).take(owner, axis=1)
-    belongs = np.logical_and.reduceat(inside | ~is_nearest, starts, axis=1).take(owner, axis=1)
-    first = inside.take(starts, axis=1).take(owner, axis=1)
-    shown = first, first & inside, first | inside, np.True_
-    wrongs = np.stack([weights @ (kept != belongs).astype(np.float32) for kept in shown], axis=1)
+def _judged(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) the edge, and (n,) what is kept. edges: (7, k, n) of n surfels; k edges of each."""
+    at, weights = places()
+    count = edges.shape[1]
+    inside, distance = _inside_of_each(edges, at)
+    belongs = (inside | (distance != distance.min(axis=1, keepdims=True))).all(axis=1)
+    first, others = inside[:, 0], inside[:, 1:]
+    alone = np.stack([first != belongs, ~belongs], axis=1)
+    shown = np.stack([others & first[:, None], others | first[:, None]], axis=2)
+    paired = (shown != belongs[:, None, None]).reshape(len(weights), 2 * (count - 1), -1)
+    wrong = np.concatenate([alone, paired], axis=1).astype(np.float32)
+    wrongs = (weights @ wrong.reshape(len(wrong), -1)).reshape(2 * count, -1)
     # One line if a second gains nothing.
-    wrongs[:, 0] -= 1e-4
-    kind = wrongs.argmin(axis=1)
-    order = np.lexsort((wrongs.min(axis=1), owner))
-    best = order[starts]
-    return best, kind[best]
+    wrongs[0] -= _LEAST_GAIN
+    found = wrongs.argmin(axis=0)
+    return found // 2, np.where(found < 2, np.where(found == 0, FIRST, ALL), np.where(found % 2 == 0, BOTH, EITHER))
 
 
-def _places() -> tuple[np.ndarray, np.ndarray]:
-    """(2, p) float32 points in the unit circle, and (p,) the weight of the splat around each."""
+def places() -> tuple[np.ndarray, np.ndarray]:
+    """(2, p) float32 points in the unit circle, and (p,) the weight of the splat around each, in
+    units."""
     angles = [(np.arange(count) + 0.5) * 2 * np.pi / count for _, count in _RINGS]
     places = [radius * np.stack([np.cos(a), np.sin(a)]) for (radius, _), a in zip(_RINGS, angles, strict=True)]
     weights = [np.full(count, radius * np.exp(-2 * radius**2) / count) for radius, count in _RINGS]
     weights = np.concatenate(weights)
-    return np.concatenate(places, axis=1).astype(np.float32), (weights / weights.sum()).astype(np.float32)
+    weights = np.rint(weights / (weights.sum() * _UNIT))
+    return np.concatenate(places, axis=1).astype(np.float32), weights.astype(np.float32)
 
 
-def _inside_of_each(start, end, line, places) -> tuple[np.ndarray, np.ndarray]:
-    """(p, m) bool, whether each place is inside of each edge's line, and (p, m) how far the edge is from it, squared.
+def _inside_of_each(edges: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(p, k, n) bool, whether each place is inside of each edge's line, and (p, k, n) how far the edge is from it,
+    squared.
 
     At an end that two edges share, both are as far, and the one whose line is farther off is right: it counts as a
     little nearer.
     """
-    (x, y), (u, v) = start, end - start
+    x, y, u, v, *line = edges
     inverse = 1 / np.maximum(u * u + v * v, np.float32(1e-30))
-    px, py = places[..., None]
+    px, py = places[..., None, None]
     across, distance = line[0] * px, px - x
     across += line[1] * py
     across += line[2]
@@ -78,9 +94,13 @@ def _inside_of_each(start, end, line, places) -> tuple[np.ndarray, np.ndarray]:
     share += to_y * (v * inverse)
     np.clip(share, 0, 1, out=share)
     distance -= share * u
-    to_y -= share * v
+    share *= v
+    to_y -= share
     distance *= distance
     to_y *= to_y
     distance += to_y
-    distance -= np.float32(1e-4) * across * across
-    return across >= 0, distance
+    inside = across >= 0
+    across *= across
+    across *= np.float32(1e-4)
+    distance -= across
+    return inside, distance

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The order of whole numbers, in less time than numpy's argsort takes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def order_of(keys: np.ndarray) -> np.ndarray:
+    """(n,) intp: the stable order of (n,) whole numbers that are not below 0.
+
+    They are sorted with their places in their lowest bits, several times as fast as an argsort, where 63 bits hold
+    both.
+    """
+    bits = len(keys).bit_length()
+    if int(keys.max(initial=0)).bit_length() + bits > 63:
+        return np.argsort(keys, kind="stable")
+    both = keys.astype(np.int64)
+    both <<= bits
+    both |= np.arange(len(keys))
+    both.sort()
+    both &= (1 << bits) - 1
+    return both.astype(np.intp, copy=False)
