@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One suite, two devices: `--device standalone` (plain Python, moderngl) or `--device blender` (inside Blender).
+"""Fixtures for both devices: `--device standalone` (plain Python, moderngl) or `--device blender` (inside Blender).
 
-They cannot share a process, so scripts/test.py runs pytest once for each.
+The devices cannot share a process, so scripts/test.py runs pytest once for each.
 """
 
 import io
@@ -39,8 +39,10 @@ def models():
 
 @pytest.fixture(scope="session")
 def on_both_devices(request):
-    """on_both_devices(name, draw, hold): calls hold(here, standalone) with the arrays by name that draw() gives here
-    and those that it gave on the standalone device, which draws them once and keeps them for the others.
+    """on_both_devices(name, draw, hold) calls hold(here, standalone) to compare the arrays of this device with the
+    standalone one's.
+
+    draw() returns arrays by name. The standalone device draws them once and keeps them for the other devices.
     """
     kept = folder("pictures", "splat_addon/**/*.py", "shaders/**/*.glsl", "tests/**/*.py")
 
@@ -60,7 +62,7 @@ def on_both_devices(request):
 
 @pytest.fixture(scope="session")
 def on_device(request):
-    """on_device(job) calls job(device) where that device can draw, and hands on what it returns or raises."""
+    """on_device(job) calls job(device) where that device can draw; returns or raises what the job does."""
     if request.config.getoption("--device") == "blender":
         yield _on_blenders_device()
     else:
@@ -79,7 +81,7 @@ def render(on_device):
 
 
 def _on_blenders_device():
-    """From Blender 5.2 on there is a graphics context for the asking; before, only inside an engine's render()."""
+    """From Blender 5.2 on a graphics context can be created at any time; before, only inside an engine's render()."""
     import bpy  # noqa: F401  in a wheel, `gpu` is there after it
     import gpu
 
@@ -130,7 +132,9 @@ def pytest_sessionfinish(session, exitstatus):
 
 @pytest.hookimpl(trylast=True)
 def pytest_unconfigure(config):
-    """Blender 4.5 may hang and 5.0 crash while the interpreter ends: it is left by the back door, after the summary."""
+    """Leave the process right after the summary, because Blender 4.5 may hang and 5.0 crash while the
+    interpreter ends.
+    """
     if "bpy" in sys.modules:
         sys.stdout.flush()
         sys.stderr.flush()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""pytest inside a Blender program: `blender --background --python tests/run_in_blender.py -- PYTEST ARGUMENTS`.
+"""Runs pytest inside a Blender program: `blender --background --python tests/run_in_blender.py -- PYTEST ARGUMENTS`.
 
 scripts/test.py --blender starts it, and names a folder with the packages that the program's Python lacks.
 """
@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 def run() -> int:
-    """pytest's exit code."""
+    """Run pytest; returns its exit code."""
     packages = os.environ.get("SURFEL_TEST_PACKAGES")
     if packages:
         sys.path.append(packages)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The floors of the house: imports never go up, and each foreign module is known in one room only."""
+"""Imports only point down the layers, and each foreign module is imported in one place only."""
 
 import ast
 from pathlib import Path
@@ -10,7 +10,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "splat_addon"
 FILES = sorted(PACKAGE.rglob("*.py"))
 
-#: room -> the rooms that it may import
+#: layer -> the layers that it may import
 MAY_IMPORT = {
     "clip_lines": set(),
     "surfels": {"clip_lines"},
@@ -24,7 +24,7 @@ MAY_IMPORT = {
 }
 #: `reference` reads rendering's data, never its passes.
 RENDERING_DATA = {"scene", "shadow", "settings", "frame", "view", "depth_range", "methods", "shading_models"}
-RENDERING_DATA |= {"upload"}  # of which the table of GGX alone
+RENDERING_DATA |= {"upload"}  # only the table of GGX
 #: foreign module -> where it may be imported
 HOMES = {
     "bpy": ("blender/",),
@@ -36,7 +36,7 @@ HOMES = {
 
 
 def imports(file: Path):
-    """(level, dotted name) of every import statement; level 0 is absolute."""
+    """The level and dotted name of every import statement; level 0 is absolute."""
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             yield from ((0, alias.name) for alias in node.names)
@@ -46,7 +46,7 @@ def imports(file: Path):
 
 
 def resolved(file: Path, level: int, name: str) -> tuple[str, ...]:
-    """Path inside the package of a relative import."""
+    """The path inside the package that a relative import refers to."""
     folder = file.relative_to(PACKAGE).parent.parts
     return (*folder[: len(folder) - (level - 1)], *name.split("."))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lines as they are packed: near enough to what was given, never deeper, and of the same places however axes turn."""
+"""Packed clip lines are close to the given ones, never cut deeper, and keep their place when axes turn."""
 
 import numpy as np
 from hypothesis import given
@@ -19,7 +19,7 @@ def line(angle, offset):
 
 
 def sides(first, second):
-    """(400,) bool of PLACES for two packed lines."""
+    """(400,) bool: which of PLACES two packed lines leave."""
     lines = np.stack([unpack_lines(first), unpack_lines(second)], axis=1)
     return kept(PLACES, np.repeat(lines, len(PLACES), 0), np.repeat(are_reflex(first, second), len(PLACES)))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Optional fields of surfels: checked like the others, kept by whatever handles surfels, absent where nobody asked."""
+"""Optional fields of surfels are validated, kept by all functions that handle surfels, and absent unless needed."""
 
 import numpy as np
 import pytest

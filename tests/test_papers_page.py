@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""docs/papers.md tells of what there is: its files and tests exist, nothing of a paper is left out, and the code cites
-sections and equations that it has rows for.
+"""docs/papers.md is complete and correct.
+
+Its files and tests exist, it lists everything in the papers, and it has a row for each section and equation that the
+code cites.
 """
 
 import re
@@ -28,7 +30,7 @@ _CITED = re.compile(rf"\b(section|equation|figure|table)s? {_NUMBERS}", re.IGNOR
 
 
 def rows(paper: str) -> list[list[str]]:
-    """Cells of the lines of its table."""
+    """The cells of each line of the page's table."""
     text = PAGE.read_text(encoding="utf-8").split(f"## {paper}\n")[1].split("\n## ")[0]
     lines = [line for line in text.splitlines() if line.startswith("| ")]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[1:]]
@@ -39,13 +41,13 @@ def numbers(text: str) -> list[str]:
 
 
 def told(paper: str, kind: str) -> set[str]:
-    """Numbers of the rows of one kind."""
+    """The numbers that the rows of one kind cover."""
     items = [item.split(",")[0] if item.startswith("Section ") else item for item, *_ in rows(paper)]
     return {number for item in items if item.startswith(kind) for number in numbers(item)}
 
 
 def parts(paper: str, kind: str) -> set[str]:
-    """Numbers of what the paper has of a kind."""
+    """The numbers of all of a paper's sections, equations or figures."""
     _, sections, *counts = PAPERS[paper]
     if kind == "Section":
         return set(sections.split())
@@ -73,7 +75,7 @@ def test_files_and_tests_that_are_named_exist():
 
 
 def citations():
-    """(file, paper, kind, number) of what code cites of the papers."""
+    """(file, paper, kind, number) for each citation of the papers in the code."""
     names = re.compile("|".join(f"(?P<p{number}>{paper[0]})" for number, paper in enumerate(PAPERS.values())))
     files = [p for folder in ("splat_addon", "shaders", "scripts", "tests") for p in (ROOT / folder).rglob("*")]
     for path in (p for p in files if p.suffix in (".py", ".glsl") and p != Path(__file__).resolve()):

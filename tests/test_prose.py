@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The words: spelt right, within their budget, in sentences that are understood at first reading."""
+"""Texts are spelt correctly, keep within their budget, and consist of sentences understood at first reading."""
 
 import ast
 import io
@@ -13,14 +13,14 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-#: Words of prose in all of docs/: what tables, commands and pictures hold is not counted.
+#: Words of prose in all of docs/, without tables, commands and pictures.
 BUDGET = 8000
 LONGEST_SENTENCE = 45
 #: The README is one screen.
 README_LINES = 90
 #: GLSL's `inout`, a name, a variable, and a command.
 NO_MISSPELLINGS = "inout,shepperd,acn,lod"
-#: What sends a reader to look twice -> what says it.
+#: Pattern of a phrase that has to be read twice -> what to write instead.
 RIDDLES = {
     r"\bof which\b.*\bthat of\b": "say which thing has what",
     r"\bas far as it\b": "say how far",
@@ -40,7 +40,7 @@ RIDDLES = {
     r"(?:^|[.;:] )Who\b": "say who does what",
     r"\b(?:have|has) not (?:its|the|a|it|them)\b": "lack, do not have",
 }
-#: And in code, where a noun without a verb makes a reader guess what it belongs to.
+#: Further patterns for code: fragments whose subject a reader has to guess.
 FRAGMENTS = {r"^Of\b": "name the thing first", r"\blet(?:s|ting)? go of\b": "free", r"^(?:That|Those) of\b": "name it"}
 #: The first sentence of a docstring says what the thing is for.
 LONGEST_SUMMARY = 50
@@ -60,7 +60,7 @@ def prose(page: Path) -> str:
 
 
 def sentences(text: str) -> list[str]:
-    """A list's points and paragraphs end sentences too."""
+    """The sentences of a text; points of a list and paragraphs end sentences too."""
     blocks = re.split(r"\n\s*\n|\n\s*(?:[*-]|\d+\.) ", text)
     ends = re.compile(r"(?<=[.!?:;])[)*\"]*\s+(?=[A-Z*`(\[])")
     return [s for block in blocks for s in ends.split(" ".join(block.split())) if s]
@@ -117,7 +117,7 @@ def docstrings(file: Path) -> list[str]:
 
 
 def comments(file: Path) -> list[str]:
-    """Each as a whole: lines that follow one another are one comment."""
+    """The comments of a file; consecutive lines are one comment."""
     text = file.read_text(encoding="utf-8")
     if file.suffix == ".py":
         tokens = tokenize.generate_tokens(io.StringIO(text).readline)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's side: every test starts from an empty file with the add-on registered."""
+"""For tests inside Blender: every test starts from an empty file with the add-on registered."""
 
 import bpy
 import numpy as np
@@ -24,14 +24,14 @@ def empty_file(add_on):
 
 @pytest.fixture
 def cube():
-    """Of edges 2, active and selected."""
+    """A cube with edges of length 2, active and selected."""
     bpy.ops.mesh.primitive_cube_add(size=2)
     return bpy.context.object
 
 
 @pytest.fixture
 def camera():
-    """The scene's camera, 10 above the origin, looking down."""
+    """The scene's camera, 10 units above the origin, looking down."""
     made = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     bpy.context.collection.objects.link(made)
     made.location.z = 10
@@ -61,7 +61,7 @@ def random_surfels():
 
 @pytest.fixture
 def add_object():
-    """add_object(mesh) -> a selected, active object of that mesh, alone selected."""
+    """add_object(mesh) -> an object of that mesh, which is active and the only selected one."""
 
     def add(mesh: bpy.types.Mesh) -> bpy.types.Object:
         made = bpy.data.objects.new(mesh.name, mesh)
@@ -77,7 +77,7 @@ def add_object():
 
 @pytest.fixture
 def add_mesh(add_object):
-    """add_mesh(name, vertices, faces) -> a selected, active object of that mesh."""
+    """add_mesh(name, vertices, faces) -> an object of that mesh, active and selected."""
 
     def add(name: str, vertices, faces) -> bpy.types.Object:
         mesh = bpy.data.meshes.new(name)
@@ -101,7 +101,9 @@ def add_square(add_mesh):
 
 @pytest.fixture
 def add_nodes():
-    """add_nodes(object, build): a Geometry Nodes modifier that build(tree, input socket, output socket) fills."""
+    """add_nodes(object, build) adds a Geometry Nodes modifier; build(tree, input socket, output socket) fills
+    its tree.
+    """
 
     def add(owner: bpy.types.Object, build) -> None:
         tree = bpy.data.node_groups.new("nodes", "GeometryNodeTree")
@@ -116,7 +118,7 @@ def add_nodes():
 
 @pytest.fixture
 def convert():
-    """convert(**settings) -> the surfel objects that the operator made of what is selected."""
+    """convert(**settings) -> the surfel objects that the operator makes from the selection."""
 
     def run(**settings) -> list[bpy.types.Object]:
         before = set(bpy.data.objects)
@@ -128,7 +130,7 @@ def convert():
 
 @pytest.fixture
 def surfels_of():
-    """surfels_of(object) -> the Surfels that it stores; none of them may be unusable."""
+    """surfels_of(object) -> the Surfels that the object stores; fails if any of them is unusable."""
 
     def read(made: bpy.types.Object) -> Surfels:
         surfels, skipped = read_surfels(made.data)

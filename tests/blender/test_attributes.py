@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels on a vertex-only mesh: named, typed, exact, and met with a sentence where they are broken."""
+"""Surfels are stored exactly, as named and typed attributes of vertices; broken attributes are reported in a
+sentence.
+"""
 
 from dataclasses import replace
 
@@ -92,7 +94,7 @@ def test_geometry_nodes_read_and_move_surfels(random_surfels, add_object):
 
 
 def raise_by_attribute(name: str) -> bpy.types.NodeTree:
-    """Geometry Nodes that add a named float to z."""
+    """A Geometry Nodes modifier that adds a named float attribute to z."""
     tree = bpy.data.node_groups.new("raise", "GeometryNodeTree")
     for direction in ("INPUT", "OUTPUT"):
         tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The default density: the camera's where there is one, a resolution where there is none, never beyond the ceiling."""
+"""The automatic density uses the camera if there is one, else a resolution, and never exceeds its maximum."""
 
 import bpy
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bake Materials: what Blender's own bake says of nodes that cannot be read, at each surfel; nothing else changes."""
+"""Bake Materials gives each surfel what Blender bakes for nodes that cannot be read, and changes nothing else."""
 
 import bpy
 import numpy as np
@@ -40,7 +40,7 @@ def square(add_square):
 
 
 def test_a_procedural_colour_is_its_value_at_each_surfel(square, convert, surfels_of, capfd):
-    """The object's coordinates as a colour: its mean over a cell is the cell's middle."""
+    """The colour is the object's coordinates, whose mean over a cell is their value in its middle."""
     nodes = Nodes(square)
     nodes.link(nodes.coordinates(), "Base Color")
     surfels = surfels_of(convert(resolution=32, bake_materials=True)[0])
@@ -92,7 +92,7 @@ def test_emission_is_colour_times_strength(square, convert, surfels_of):
 
 @pytest.mark.parametrize("scale", [(1, 1, 1), (2, 2, 2)])
 def test_a_bump_bends_the_shading_normal(square, convert, surfels_of, scale):
-    """A height that grows by 1 a unit of x: 45 degrees towards -x, whatever the object's scale."""
+    """The height grows by 1 per unit of x, so the normal leans 45 degrees towards -x at any scale of the object."""
     square.scale = scale
     nodes = Nodes(square)
     bump = nodes.tree.nodes.new("ShaderNodeBump")
@@ -106,7 +106,7 @@ def test_a_bump_bends_the_shading_normal(square, convert, surfels_of, scale):
 
 
 def test_generated_coordinates_are_those_before_the_modifiers(square, convert, surfels_of):
-    """The square twice, side by side: they go from 0 to 1 over the first and on to 2 over the second."""
+    """A modifier puts a second square beside the first: the coordinates go from 0 to 1 over the first, and on to 2."""
     array = square.modifiers.new("twice", "ARRAY")
     array.count, array.use_constant_offset, array.constant_offset_displace = 2, False, (0, 0, 0)
     array.use_relative_offset, array.relative_offset_displace = True, (1, 0, 0)
@@ -119,7 +119,7 @@ def test_generated_coordinates_are_those_before_the_modifiers(square, convert, s
 
 
 def test_a_procedural_checker_finer_than_the_spacing_is_averaged(square, convert, surfels_of):
-    """32 checks across 8 cells: of the four places in each, two are on black."""
+    """32 checks lie across 8 cells, so that two of the four places baked in each cell are black."""
     nodes = Nodes(square)
     checker = nodes.tree.nodes.new("ShaderNodeTexChecker")
     checker.inputs["Scale"].default_value = 32

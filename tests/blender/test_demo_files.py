@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the demo leaves behind is whole: Blender itself calls a file saved that a full disk has cut off."""
+"""The demo saves whole files. Blender itself reports success even if a full disk cut the file short."""
 
 import importlib
 from pathlib import Path
@@ -22,7 +22,7 @@ def demo(monkeypatch):
 
 @pytest.fixture
 def full_disk():
-    """full_disk(size): no file can be larger from now on, as on a disk with so many bytes left."""
+    """full_disk(size) limits the size of files from now on, as a disk with that many free bytes does."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     yield lambda size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
     resource.setrlimit(resource.RLIMIT_FSIZE, before)

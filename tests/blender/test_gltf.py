@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""glTF models, as Blender's own importer wires them: what is in the file is on the surfels."""
+"""Surfels have all values of a glTF model, with materials as Blender's importer builds them."""
 
 import bpy
 import numpy as np
@@ -21,7 +21,7 @@ def image(name, values, space):
 
 @pytest.fixture
 def exported(add_square, tmp_path):
-    """A glTF file of the unit square with every texture that surfels know, and their values as they are encoded."""
+    """A glTF file of the unit square with every texture that surfels know, and the encoded values."""
     square = add_square("Exported")
     material = bpy.data.materials.new("material")
     if bpy.app.version < (5, 0, 0):
@@ -89,7 +89,9 @@ def import_model(path):
 
 
 def test_the_milk_truck_has_the_colours_of_its_materials(models, convert, surfels_of, capfd):
-    """White paint with a blue and green sign, green glass, black trims; nothing is said to be missing."""
+    """White paint, a blue and green sign, green glass and black trim are found; no warning says that something is
+    missing.
+    """
     import_model(models / "CesiumMilkTruck.glb")
     body = surfels_of(convert(resolution=96)[0])
     assert "plain value" not in capfd.readouterr().out

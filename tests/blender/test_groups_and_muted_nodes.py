@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Node groups are read through, muted nodes are passed through, and what cannot be read is baked at one click."""
+"""Node groups are read, muted nodes are passed through, and one click bakes what cannot be read."""
 
 import bpy
 import numpy as np
@@ -18,7 +18,7 @@ def tree(add_square):
 
 @pytest.fixture
 def color(convert, surfels_of, capfd):
-    """color() -> the one colour that all surfels of the square have, of which nothing was left out."""
+    """color() -> the single colour of all surfels of the square; fails if a node was not read."""
 
     def read():
         (made,) = convert(resolution=4)
@@ -35,7 +35,7 @@ def principled(tree):
 
 
 def add_group(tree):
-    """A group that halves its colour, twice nested, fed with (0.8, 0.4, 0.2)."""
+    """Add a group in a group that halves its input colour, (0.8, 0.4, 0.2)."""
     inner = bpy.data.node_groups.new("half", "ShaderNodeTree")
     outer = bpy.data.node_groups.new("outer", "ShaderNodeTree")
     for each in (inner, outer):

@@ -18,7 +18,7 @@ MEASURED = re.compile(
 
 
 def tooltips() -> list[str]:
-    """Texts of several words that explain something."""
+    """The texts of more than five words, which explain something."""
     return sorted({text for _, text in messages() if len(text.split()) > 5})
 
 
@@ -41,7 +41,7 @@ def test_a_measured_figure_is_found():
 
 
 def test_tooltips_begin_with_a_capital_and_end_without_a_full_stop():
-    """As Blender's own do, which adds the full stop."""
+    """Blender's own tooltips have the same form; Blender adds the full stop."""
     assert [text for text in tooltips() if text.endswith(".") or not re.match(r"[A-Z0-9]", text)] == []
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Roughness, metallic, emission, alpha and normals of real materials, wired as importers wire them."""
+"""Surfels read roughness, metallic, emission, alpha and normals from materials built as importers build them."""
 
 import bpy
 import numpy as np
@@ -13,7 +13,7 @@ ENCODED = np.random.default_rng(5).integers(0, 256, (TEXELS, TEXELS, 4)) / 255
 
 
 class Nodes:
-    """A material's nodes, and a shorthand to connect them."""
+    """The nodes of a material, with shortcuts to connect them."""
 
     def __init__(self):
         self.material = bpy.data.materials.new("material")
@@ -58,7 +58,7 @@ def nodes():
 
 @pytest.fixture
 def made(add_square, convert, surfels_of, world_positions):
-    """made(nodes) -> (surfels, texel of each) of the unit square with this material, 4 x 4 surfels a texel."""
+    """made(nodes) -> (surfels, texel of each) of the unit square with this material, 4 x 4 surfels per texel."""
 
     def make(nodes, prepare=lambda square: None):
         square = add_square()
@@ -122,7 +122,7 @@ def test_an_inverted_colour_is_read(nodes, made):
 
 
 def test_an_alpha_that_is_cut_off_as_in_gltf_covers_the_share_of_its_pixels(nodes, made, add_square):
-    """1 - (alpha < 0.5), of which one surfel on the whole image has the mean."""
+    """The importer computes 1 - (alpha < 0.5). A single surfel on the whole image gets the mean of that."""
     texture = nodes.texture(alpha_mode="STRAIGHT")
     nodes.link(texture.outputs["Color"], "Base Color")
     nodes.link(nodes.math("SUBTRACT", 1.0, nodes.math("LESS_THAN", texture.outputs["Alpha"], 0.5)), "Alpha")
@@ -166,7 +166,7 @@ def test_a_number_of_each_face_drives_the_roughness(nodes, made):
 
 @pytest.mark.parametrize(("output", "value"), [(2, 0.5), (0, 0.1 * 0.2126 + 0.5 * 0.7152 + 0.9 * 0.0722)])
 def test_the_factor_of_a_colour_is_its_mean_and_the_colour_as_a_number_its_luminance(nodes, made, output, value):
-    """As Cycles bakes the two."""
+    """Cycles converts the same way between colours and numbers when it bakes."""
     nodes.link(nodes.add("ShaderNodeAttribute", attribute_name="given").outputs[output], "Roughness")
     surfels, _ = made(nodes, lambda square: attribute(square, "FLOAT_VECTOR", "POINT", "vector", [(0.1, 0.5, 0.9)] * 4))
     assert np.allclose(surfels.roughness, value, atol=1e-6)
@@ -174,7 +174,7 @@ def test_the_factor_of_a_colour_is_its_mean_and_the_colour_as_a_number_its_lumin
 
 @pytest.mark.parametrize("kind", ["POINT", "TEXTURE"])
 def test_a_mapping_node_places_the_texture(nodes, made, kind):
-    """A quarter turn about the corner, and a whole image up again: (u, v) -> (-v, u), or back."""
+    """The mapping is a quarter turn about the corner and a shift up by one image, (u, v) -> (-v, u), or its inverse."""
     uv = nodes.add("ShaderNodeUVMap", uv_map="UVMap").outputs[0]
     mapping = nodes.add("ShaderNodeMapping", {"Vector": uv, "Rotation": (0, 0, np.pi / 2)}, vector_type=kind)
     nodes.link(nodes.texture(vector=mapping.outputs[0]).outputs["Color"], "Base Color")
@@ -185,7 +185,7 @@ def test_a_mapping_node_places_the_texture(nodes, made, kind):
 
 @pytest.mark.parametrize(("operation", "numbers"), [("WRAP", (0.0, 1.0)), ("PINGPONG", (1.0,))])
 def test_a_texture_repeats_along_one_side_alone_as_gltf_has_it(nodes, made, operation, numbers):
-    """Moved by one and a half images along both: u is wrapped, v stays at the image's upper edge."""
+    """The coordinates are shifted by one and a half images both ways: u is wrapped, v is clamped to the upper edge."""
     uv = nodes.add("ShaderNodeUVMap", uv_map="UVMap").outputs[0]
     moved = nodes.add("ShaderNodeMapping", {"Vector": uv, "Location": (1.5, 1.5, 0)}).outputs[0]
     separate = nodes.add("ShaderNodeSeparateXYZ", {0: moved})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials -> what surfels are made of, down to the surfels of a unit square whose UV map is its x and y."""
+"""Materials become the colours and opacities of surfels, tested on a unit square whose UV map equals x and y."""
 
 from itertools import pairwise
 
@@ -12,13 +12,13 @@ ENCODED = np.random.default_rng(3).integers(0, 256, (TEXELS, TEXELS, 4)) / 255
 
 
 def decoded(encoded):
-    """sRGB to linear, written down once more."""
+    """sRGB converted to linear, by a formula written independently of the code under test."""
     return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
 
 
 @pytest.fixture
 def image():
-    """image(values, **settings) -> a generated image of (h, w, 4) values as they are stored."""
+    """image(values, **settings) -> a generated image that stores these (h, w, 4) values."""
 
     def make(values=ENCODED, alpha_mode="STRAIGHT", space="sRGB", **settings):
         made = bpy.data.images.new("texture", values.shape[1], values.shape[0], alpha=True, **settings)
@@ -31,7 +31,7 @@ def image():
 
 
 class Nodes:
-    """A material's nodes, and shorthands to connect them."""
+    """The nodes of a material, with shortcuts to connect them."""
 
     def __init__(self, name="material"):
         self.material = bpy.data.materials.new(name)
@@ -56,7 +56,9 @@ class Nodes:
 
 @pytest.fixture
 def painted(add_square, convert, surfels_of, world_positions):
-    """painted(material, ...) -> (surfels, texel of each) of the square with these materials, 4 x 4 surfels a texel."""
+    """painted(material, ...) -> (surfels, texel of each) of the square with these materials, 4 x 4 surfels per
+    texel.
+    """
 
     def make(*materials, prepare=lambda square: None):
         square = add_square()
@@ -106,7 +108,7 @@ def test_an_alpha_that_is_linked_is_the_opacity(image, painted):
 
 
 def test_an_alpha_that_is_linked_is_the_opacity_of_a_channel_packed_image_too(image, painted):
-    """As glTF's importer has all of them."""
+    """glTF's importer makes every image channel-packed."""
     nodes = Nodes()
     texture = nodes.texture(image(alpha_mode="CHANNEL_PACKED"))
     nodes.link(texture, "Color", nodes.principled, "Base Color").link(texture, "Alpha", nodes.principled, "Alpha")
@@ -273,7 +275,7 @@ def test_reroutes_in_a_ring_feed_nothing(painted, capfd):
 
 
 def test_a_node_that_takes_its_predecessor_twice_is_read_once(painted):
-    """Along 40 of them lead 2 ** 40 paths."""
+    """With 40 such nodes there are 2 ** 40 paths, so a reader that follows each path would never end."""
     nodes = Nodes()
     doubled = nodes.add("ShaderNodeValue")
     doubled.outputs[0].default_value = 2.0**-40

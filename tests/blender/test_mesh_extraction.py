@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An evaluated object -> TriangleMesh."""
+"""The evaluated mesh of an object is read correctly as a TriangleMesh."""
 
 import bpy
 import numpy as np
@@ -78,7 +78,7 @@ def test_each_triangle_keeps_its_material_slot(add_mesh):
         strip.data.materials.append(bpy.data.materials.new(name))
     strip.data.attributes.new("material_index", "INT", "FACE").data.foreach_set("value", np.array([1, 0, 9], np.int32))
     extracted = extract(strip)
-    assert list(extracted.triangles.materials) == [1, 1, 0, 0, 1, 1]  # past the last slot means the last
+    assert list(extracted.triangles.materials) == [1, 1, 0, 0, 1, 1]  # an index too large means the last slot
     assert [m.name for m in extracted.materials] == ["a", "b"]
 
 

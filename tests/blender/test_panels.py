@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the export reads of Blender can be edited while this engine is chosen, and Blender's panels that show more than
-it reads stay away.
+"""Whatever the export reads can be edited while this engine is active, and panels that show more are hidden.
 
-Both sides are read from the source: the properties that the export's modules take from a light, a camera and so on, by
-the names that their variables have everywhere, and the properties that visible panels draw.
+Both sides are read from source code: the properties that the export's modules read from variables such as `light` or
+`camera`, which have the same names everywhere, and the properties that visible panels draw.
 """
 
 import ast
@@ -29,7 +28,7 @@ VARIABLES = {
     "material": {"material": ("Material",), "mat": ("Material",)},
 }
 
-#: kind of thing -> the tabs of the properties editor in which its settings are looked for.
+#: kind of data -> the tabs of the properties editor that are searched for its settings.
 TABS = {
     "light": {"data"},
     "camera": {"data"},
@@ -39,7 +38,7 @@ TABS = {
     "material": {"material"},
 }
 
-#: kind of thing -> the modules that read it for a picture
+#: kind of data -> the modules that read it to draw a picture
 READERS = {
     "light": ("export/shading",),
     "camera": ("export/camera",),
@@ -69,7 +68,7 @@ NO_SETTINGS = {
 
 
 def properties_of(types) -> set[str]:
-    """Settings that a user can change of any of these types."""
+    """The settings of these types that a user can change."""
     every = [p for name in types for p in getattr(bpy.types, name).bl_rna.properties]
     return {p.identifier for p in every if not p.is_readonly or p.type == "POINTER"} - NO_SETTINGS
 
@@ -89,7 +88,7 @@ def reads(kind: str) -> set[str]:
 
 
 def visible_panels(tabs=frozenset({"data", "render", "output", "view_layer", "object", "material"})):
-    """The classes of panels that these tabs of the properties editor may show for this engine."""
+    """The panel classes that these tabs of the properties editor may show for this engine."""
     panels = {p.__name__: p for p in bpy.types.Panel.__subclasses__()}
     panels |= {p.__name__: p for p in _subclasses(bpy.types.Panel)}
     for panel in panels.values():
@@ -112,7 +111,7 @@ def _subclasses(base):
 
 
 class Texts(ast.NodeVisitor):
-    """All texts in a source but those that only another engine gets to."""
+    """Collects the strings in a source, except those in branches that only another engine reaches."""
 
     def __init__(self):
         self.found = set()
@@ -128,7 +127,7 @@ class Texts(ast.NodeVisitor):
 
 
 def draws(kind: str) -> set[str]:
-    """The names of all properties in the source of visible panels, and of the tables and functions beside ours."""
+    """The names of all properties in the source of visible panels and of our tables and functions beside them."""
     texts = Texts()
     for panel in visible_panels(TABS[kind]):
         is_ours = panel.__module__.startswith(blender.__name__)

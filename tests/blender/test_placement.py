@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A surfel object lies exactly over its source, however that is placed."""
+"""A surfel object lies exactly over its source, however the source is placed."""
 
 import bpy
 import numpy as np
@@ -20,9 +20,10 @@ PLACES = {
 
 @pytest.fixture
 def distances(convert, world_positions):
-    """distances(source) -> distance of each of its surfels' centres from its surface, in the source's own space.
+    """distances(source) -> the distances of its surfels' centres from its surface, in the source's own space.
 
-    There the oracle, which has float32 and does not like slivers, sees the mesh as it was modelled.
+    In that space the mesh is as it was modelled; elsewhere trimesh, which is used to measure, would suffer from
+    slivers.
     """
 
     def measure(source):
@@ -47,7 +48,7 @@ def suzanne():
 def test_surfels_lie_on_the_surface_of_their_source(suzanne, distances, place):
     suzanne.matrix_world = PLACES[place]
     distance = distances(suzanne)
-    # Suzanne is 2 wide; of the location, float32 keeps 6e-8.
+    # Suzanne is 2 wide; float32 rounds her location by 6e-8 of it.
     rounding = 6e-8 * suzanne.location.length / min(abs(s) for s in suzanne.scale)
     assert len(distance) > 300
     assert distance.max() < 1e-6 + 2 * rounding
@@ -59,7 +60,7 @@ def test_surfels_follow_a_source_that_its_parent_shears(suzanne, distances):
 
 
 def shear(source):
-    """Below an unevenly scaled parent, turned."""
+    """Turn the object below an unevenly scaled parent."""
     parent = bpy.data.objects.new("parent", None)
     bpy.context.collection.objects.link(parent)
     parent.scale = (3, 1, 0.5)
@@ -71,7 +72,7 @@ def test_normals_follow_the_shear_too(convert, surfels_of):
     bpy.ops.mesh.primitive_cube_add()
     shear(bpy.context.object)
     surfels = surfels_of(convert(resolution=16)[0])
-    # Of a flat-shaded box the shading normal is the ellipse's own.
+    # The box is flat-shaded, so its shading normals equal the ellipses' normals.
     assert np.einsum("ij,ij->i", surfels.normals, surfels.geometric_normals()).min() > 0.99999
 
 
@@ -81,7 +82,7 @@ def test_a_frozen_copy_has_no_parent(suzanne, convert):
 
 
 def test_a_place_does_not_hang_on_an_evaluated_object_s_memory(suzanne):
-    """The matrix of an object is a view of its memory, and a conversion outlives the evaluation that it began with."""
+    """An object's matrix is a view of the object's memory, which Blender frees while a conversion is still running."""
     evaluated = suzanne.evaluated_get(bpy.context.evaluated_depsgraph_get())
     assert evaluated.matrix_world.owner is not None
     assert without_shear(evaluated.matrix_world)[0].owner is None

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An operator that cannot be called says why, in a sentence of its own."""
+"""An operator that cannot be called gives the reason in a sentence."""
 
 import bpy
 import pytest
 
 from splat_addon.blender import ids
 
-#: Those that can be called at any time: they choose settings, or ask for a file.
+#: Operators that can be called at any time: they change settings, or open a file dialog.
 ALWAYS = {
     ids.RENDER_PRESET,
     ids.SHOW_SURFELS,

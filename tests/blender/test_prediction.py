@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar's count: right, cached, and forgotten when the mesh changes."""
+"""The sidebar's count is right, cached, and forgotten when the mesh changes."""
 
 import bpy
 import pytest
@@ -16,7 +16,7 @@ PLAIN = Choices({"resolution": 16})
 
 @pytest.fixture
 def known(cube):
-    """The extent of the cube, measured as the timer does it."""
+    """The extent of the cube, measured as the sidebar's timer does."""
     bpy.context.view_layer.update()
     assert prediction.known_extents([[cube]], PLAIN) is None
     prediction._measure_wanted()

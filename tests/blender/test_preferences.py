@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on's preferences are held to: the memory that a picture may take, and what new scenes convert with."""
+"""The add-on's preferences are obeyed: the memory of a picture, and the conversion settings of new scenes."""
 
 import bpy
 import pytest
@@ -11,7 +11,7 @@ from tests.blender.engine.conftest import *  # noqa: F403 - a scene that is rend
 
 @pytest.fixture
 def chosen(add_on, empty_file):
-    """The preferences of the add-on as Blender keeps them once it is enabled."""
+    """The add-on's preferences, stored where Blender keeps those of an enabled add-on."""
     bpy.context.preferences.addons.new().module = preferences.ROOT
     yield bpy.context.preferences.addons[preferences.ROOT].preferences
     bpy.context.preferences.addons.remove(bpy.context.preferences.addons[preferences.ROOT])

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Presets of one's own are files of Blender's preset system, and bring every setting back."""
+"""A user's own presets are files of Blender's preset system, and restore every setting."""
 
 from pathlib import Path
 
 import bpy
 import pytest
 
-#: the operator that adds one, its panel, the settings, and some of them changed
+#: (operator that adds a preset, its panel, its settings, changes to some of them)
 KINDS = {
     "render": (
         lambda **options: bpy.ops.render.surfel_preset_add(**options),
@@ -25,7 +25,7 @@ KINDS = {
 
 @pytest.fixture(params=KINDS)
 def kind(request, monkeypatch, tmp_path):
-    """One of `KINDS`, whose files lie in a folder of this test."""
+    """One kind of preset, whose files are kept in a folder of this test."""
     monkeypatch.setattr(bpy.utils, "user_resource", lambda *_, path="", **__: _made(tmp_path / path))
     monkeypatch.setattr(bpy.utils, "preset_paths", lambda path: [str(tmp_path / "presets" / path)])
     panel = getattr(bpy.types, KINDS[request.param][1])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on comes and goes without leaving anything behind."""
+"""The add-on can be registered and unregistered without leaving anything behind."""
 
 import bpy
 
@@ -38,7 +38,7 @@ def test_the_operator_and_the_sidebar_have_the_same_settings_with_the_same_defau
 
 
 def test_the_pass_index_of_a_material_can_be_set():
-    """In the panel that EEVEE has for it."""
+    """The panel is the one that EEVEE shows."""
     names = "EEVEE_MATERIAL_PT_settings", "EEVEE_NEXT_MATERIAL_PT_settings"
     panels = [getattr(bpy.types, name) for name in names if hasattr(bpy.types, name)]
     assert any(ids.ENGINE in panel.COMPAT_ENGINES for panel in panels)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Cycles bakes of mixed, added and colourless shaders is what they look like: never black."""
+"""What Cycles bakes for mixed, added and colourless shaders looks like the shader and is never black."""
 
 import bpy
 import numpy as np
@@ -10,7 +10,7 @@ RED, BLUE = (0.8, 0.1, 0.1, 1), (0.1, 0.2, 0.9, 1)
 
 @pytest.fixture
 def tree(add_square):
-    """The node tree of a square's material, with nothing but its output."""
+    """The node tree of a square's material, which has an output node only."""
     material = bpy.data.materials.new("made")
     if material.node_tree is None:
         material.use_nodes = True
@@ -23,7 +23,7 @@ def tree(add_square):
 
 @pytest.fixture
 def baked(tree, convert, surfels_of):
-    """baked(shader) -> the surfels of the square with that shader at its output."""
+    """baked(shader) -> the surfels of a square with that shader connected to the material's output."""
 
     def bake(shader):
         tree.links.new(shader.outputs[0], tree.get_output_node("ALL").inputs["Surface"])

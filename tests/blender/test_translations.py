@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The interface in other languages: no text is missing, none is left over, and no figure changes on the way."""
+"""Every text of the interface is translated, no translation is left over, and numbers in texts stay the same."""
 
 import re
 
@@ -12,7 +12,7 @@ from splat_addon.blender.translations.messages import DEFAULT, OPERATOR, message
 
 
 def figures(text: str) -> list[str]:
-    """Its numbers, without separators."""
+    """The numbers in a text, without separators."""
     return sorted(re.sub("[.,]", "", number) for number in re.findall(r"\d(?:[\d.,]*\d)?", text))
 
 
@@ -40,7 +40,7 @@ def test_german_has_the_figures_of_the_english():
 
 
 def test_short_names_stay_short():
-    """A name of two words must fit where the English does."""
+    """A translated label must fit in the panel where the English label fits."""
     long = {text: said for text, said in GERMAN.items() if len(text) <= 20 and len(said) > 32}
     assert not long
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The zip that a user installs, and what a Blender says that has nothing but it."""
+"""The zip that a user installs, and a report from a Blender that has only this zip."""
 
 import importlib.util
 import json
@@ -25,7 +25,7 @@ def package(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def installed(package, tmp_path_factory):
-    """What session.py reports from a Blender of its own, with the zip in an empty user folder."""
+    """The report of session.py, run in a separate Blender that installs the zip in an empty user folder."""
     folder = tmp_path_factory.mktemp("user")
     environment = {**os.environ, "BLENDER_USER_RESOURCES": str(folder)}
     environment.pop("PYTHONPATH", None)
@@ -43,7 +43,7 @@ def installed(package, tmp_path_factory):
 
 
 def _blender_command():
-    """The same Blender: the wheel's interpreter, or the program with the backend that it was started with."""
+    """The command of the Blender under test: the wheel's interpreter, or the program with its graphics backend."""
     import bpy
 
     session = str(HERE / "session.py")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs in a Blender of its own: installs the zip, converts a cube, renders it, and reports what came of it.
+"""Runs in a separate Blender: installs the zip, converts a cube, renders it, and reports the results.
 
 PYTHON -I session.py -- ZIP REPORT.json
 """
@@ -17,7 +17,7 @@ SIZE = 64
 
 
 def main(package: str, report: Path) -> dict:
-    """Facts for the tests, in the order in which they can be had."""
+    """Collect facts for the tests, in the order in which they become available."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.extensions.package_install_files(repo="user_default", filepath=package, enable_on_install=True)
     facts = {"enabled": MODULE in bpy.context.preferences.addons, "path": list(sys.path)}
@@ -33,7 +33,7 @@ def main(package: str, report: Path) -> dict:
 
 
 def picture(file: Path) -> np.ndarray:
-    """(4, 4) rgba of a pixel in the middle and of three in corners, rendered from straight above the cube."""
+    """The (4, 4) rgba of one pixel in the middle and three in corners, rendered from straight above the cube."""
     scene = bpy.context.scene
     camera = bpy.data.cameras.new("above")
     camera.type, camera.ortho_scale = "ORTHO", 4.0
@@ -60,6 +60,6 @@ def report_facts() -> None:
     Path(report).write_text(json.dumps(main(package, Path(report))))
 
 
-# By its file, for the checkout is not on the path, and shall not be.
+# Imported by its file, because the checkout must not be on the path.
 leaving = runpy.run_path(str(Path(__file__).resolve().parents[2] / "scripts" / "environment" / "leaving.py"))
 leaving["run_and_leave"](report_facts)

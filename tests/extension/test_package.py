@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is in the zip, which Blender's own builder made and its validator read."""
+"""The zip, built by Blender's own builder and checked by its validator, has the right contents."""
 
 import ast
 import hashlib
@@ -54,7 +54,7 @@ def test_no_compiled_file_is_in(files):
 
 
 def test_nothing_in_it_can_send_anything_or_start_a_program(package):
-    """docs/privacy.md says so."""
+    """docs/privacy.md promises this."""
     able = {"socket", "ssl", "urllib", "http", "ftplib", "smtplib", "xmlrpc", "requests", "subprocess", "webbrowser"}
     with zipfile.ZipFile(package) as opened:
         texts = {name: opened.read(name).decode("utf-8") for name in opened.namelist() if name.endswith(".py")}
@@ -67,7 +67,7 @@ def test_nothing_in_it_can_send_anything_or_start_a_program(package):
 
 
 def test_an_index_names_the_zip_as_blender_reads_it(package, tmp_path):
-    """By Blender's own tool, which then lists the repository as a user's Blender does."""
+    """Blender's own tool writes the index, then lists the repository as a user's Blender does."""
     import bpy
 
     hosted = tmp_path / package.name

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every fact here is held for every registered method, against the float64 truth with the same samples.
+"""Every fact in this folder holds for every registered method, compared with the float64 truth for the same samples.
 
-Hard bounds for all: no non-finite number, and no empty pixel where the truth is covered whole. Methods without a
-prefilter must also be the truth's picture within `LEAST_PSNR`. Where a paper's own formula fails, the case stands in
-`KNOWN_FAILURES`; what users get without asking has none there.
+All methods must keep hard bounds: no non-finite number, and no empty pixel that the truth covers fully. Methods without
+a prefilter must also equal the truth's picture within `LEAST_PSNR`. Cases in which a paper's own formula fails are in
+`KNOWN_FAILURES`; the default methods have none.
 """
 
 from dataclasses import replace
@@ -16,15 +16,15 @@ from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Light, Renderer, Scene, Settings
 from splat_addon.rendering.methods import METHODS
 
-#: Methods whose picture is by definition the truth's with the same samples; the others filter.
+#: Methods whose picture is by definition the truth's for the same samples; the others filter.
 UNFILTERED = ("quad",)
 
-#: What users get without asking: these may not fail.
+#: The methods of the presets; they must not fail.
 DEFAULTS = ("mip", "quad")
 
 
 def _cases(test: str, method: str, *ids) -> tuple[str, ...]:
-    """Names of a test's cases, as pytest prints them."""
+    """The names of a test's cases, as pytest prints them."""
     return tuple(f"{test}[{method}-{i}]" for i in ids)
 
 
@@ -129,9 +129,10 @@ WORLD = (0.1, 0.1, 0.1)
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_generate_tests(metafunc):
-    """Every test that draws, for every method but where it names its own; a new method joins by itself.
+    """Run each test that draws with every method, unless it names its own; new methods are included automatically.
 
-    First of all, so that a case has one name however the suite is called: the table of known failures goes by it.
+    The method is always the first parameter, so that a case has the same name however the suite is called. The table of
+    known failures needs these names.
     """
     named = any("method" in mark.args[0] for mark in metafunc.definition.iter_markers("parametrize"))
     if "method" in metafunc.fixturenames and not named:
@@ -139,7 +140,7 @@ def pytest_generate_tests(metafunc):
 
 
 def pytest_collection_modifyitems(items):
-    """What the table names must fail, and by an assertion."""
+    """The cases in the table of known failures must fail, by an assertion."""
     reasons = {case: reason for reason, cases in KNOWN_FAILURES.items() for case in cases}
     for item in items:
         if item.name in reasons and "tests/extremes" in item.path.as_posix():
@@ -148,30 +149,30 @@ def pytest_collection_modifyitems(items):
 
 @pytest.fixture
 def known_failures():
-    """Names of the cases that are known to fail."""
+    """The names of the cases that are known to fail."""
     return [case for cases in KNOWN_FAILURES.values() for case in cases]
 
 
 @pytest.fixture
 def defaults():
-    """Names of the methods that users get without asking."""
+    """The names of the methods that the presets use."""
     return DEFAULTS
 
 
 @pytest.fixture(scope="session")
 def truths():
-    """(test, its parameters but the method, label) -> the truth, which no method changes."""
+    """(test, its parameters without the method, label) -> the truth, which is the same for every method."""
     return {}
 
 
 def samples(settings: Settings, method: str) -> int:
-    """Along each side of a pixel, for this method."""
+    """The number of samples along each side of a pixel, for this method."""
     return 1 if method == Settings().method else settings.supersampling
 
 
 @pytest.fixture
 def render_all(on_device, method):
-    """render_all([(scene, camera, settings or None)]) -> [Frame], by one renderer and with the method under test."""
+    """render_all([(scene, camera, settings or None)]) -> [Frame], drawn by one renderer with the method under test."""
 
     def job(device, shots):
         renderer = Renderer(device)
@@ -189,7 +190,7 @@ def render_all(on_device, method):
 def hold(render_all, method, truths, request):
     """hold({label: (scene, camera[, settings])}, least=dB) asserts the bounds; returns {label: (frame, truth)}.
 
-    may_have_gaps: holes are let pass.
+    may_have_gaps: allow holes.
     """
 
     others = tuple((name, repr(v)) for name, v in request.node.callspec.params.items() if name != "method")
@@ -216,7 +217,7 @@ def hold(render_all, method, truths, request):
 
 
 def assert_finite(frame, label):
-    """Not one NaN or infinite number in the four arrays."""
+    """The frame's four arrays contain no NaN or infinite number."""
     for name in ("color", "depth", "normal", "coverage"):
         bad = np.count_nonzero(~np.isfinite(getattr(frame, name)))
         assert bad == 0, f"{label}: {bad} non-finite numbers in {name}"
@@ -224,25 +225,25 @@ def assert_finite(frame, label):
 
 @pytest.fixture
 def is_unfiltered(method):
-    """Whether the method's picture is by definition the truth's with the same samples."""
+    """Whether the method's picture is by definition the truth's for the same samples."""
     return method in UNFILTERED
 
 
 @pytest.fixture
 def is_default(method):
-    """Whether the method is one that users get without asking for it."""
+    """Whether a preset uses the method."""
     return method in DEFAULTS
 
 
 @pytest.fixture
 def lit():
-    """lit(*surfels or instances): a scene of them under a sun and an even world."""
+    """lit(*surfels or instances) -> a scene of them under a sun and a uniform world."""
     return lambda *surfels: Scene(surfels, (SUN,), WORLD)
 
 
 @pytest.fixture
 def camera():
-    """camera(fov=60, size=(64, 64), near=0.01, far=1000, shift=(0, 0)): at the origin, looking down -Z."""
+    """camera(fov=60, size=(64, 64), near=0.01, far=1000, shift=(0, 0)) -> a camera at the origin that looks down -Z."""
 
     def build(fov=60.0, size=(64, 64), near=0.01, far=1000.0, shift=(0.0, 0.0)):
         return Camera.perspective(np.eye(4), np.radians(fov), size, near, far, shift)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Unusable attributes are left out and counted; usable but absurd ones leave the other surfels as they are."""
+"""Unusable surfels are left out and counted; absurd but usable ones do not affect the other surfels."""
 
 from dataclasses import replace
 
@@ -45,7 +45,7 @@ def test_unusable_surfels_are_counted_and_the_rest_is_drawn(field, value, world,
 
 @pytest.mark.parametrize("value", ABSURD)
 def test_one_stray_position_leaves_the_others_as_they_are(value, world, hold):
-    """It must not drag the view's scale after it."""
+    """The view must not be scaled to it."""
     scene, camera, arrays = world
     arrays["positions"][0] = value
     surfels, _ = valid_surfels(**arrays)
@@ -54,7 +54,9 @@ def test_one_stray_position_leaves_the_others_as_they_are(value, world, hold):
 
 @pytest.mark.parametrize("distance", [1e6, 1e18, 1e30])
 def test_one_surfel_far_away_in_view_leaves_the_others_as_they_are(distance, world, hold):
-    """Also where the far plane does not keep it out: the view is scaled by what most surfels are, not by their mean."""
+    """This holds even if the far plane does not cut it off, because the view is scaled by the median depth, not the
+    mean.
+    """
     scene, camera, arrays = world
     arrays["positions"][0] = camera.matrix_world[:3, 3] - distance * camera.matrix_world[:3, 2]
     surfels, _ = valid_surfels(**arrays)

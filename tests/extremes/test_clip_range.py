@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Near and far planes from 1e-6 to 1e6: the depth resolves splats wherever they lie between them."""
+"""With near and far planes from 1e-6 to 1e6 the depth buffer distinguishes splats wherever they are in between."""
 
 from dataclasses import replace
 from importlib import import_module
@@ -23,7 +23,7 @@ def parallel(far=10.0, eye=(0.3, -3.6, 2.2), near=0.1):
 
 
 def with_disc_behind(scene, camera):
-    """Something right before the far plane."""
+    """The scene with a disc just before the far plane."""
     matrix = camera.matrix_world.copy()
     matrix[:3, 3] += 0.5 * matrix[:3, 0] - 0.9 * camera.far * matrix[:3, 2]
     disc = Instance(discs((0, 0, 0), (0.1, 0, 0), (0, 0.1, 0), (1, 0, 0)), matrix)
@@ -42,7 +42,7 @@ def world(request):
 
 
 def with_speck(scene, camera, near):
-    """Something right behind the near plane, which keeps the clip range from being narrowed to the rest."""
+    """The scene with a speck just behind the near plane, which keeps the clip range from being narrowed."""
     camera = replace(camera, near=near, far=1e6)
     return replace(scene, surfels=(*scene.surfels, speck(camera, 1.5 * near))), camera
 
@@ -57,7 +57,10 @@ def test_a_wide_clip_range_alone_costs_nothing(name, render_all):
 @pytest.mark.parametrize("fov", [1e-3, 1e-5])
 @pytest.mark.parametrize("depth", [0.3, 0.7, 1.0, 1.1, 3.7])
 def test_a_wall_as_deep_as_its_distance_rounds_is_whole(depth, fov, hold, lit, camera):
-    """Seen through a telescope: the narrowed clip range reaches beyond its ends, or rounding would clip the wall."""
+    """A telescope sees the wall.
+
+    The narrowed clip range must reach a little beyond it, or rounding would clip the wall.
+    """
     half = 0.8 * depth * np.tan(np.radians(fov / 2))
     hold({f"{depth}": (lit(sheet(20, half, 0, depth)), camera(fov))})
 
@@ -71,7 +74,10 @@ def test_the_clip_range_ends_a_thousandth_beyond_what_is_there(lit, camera):
 
 @pytest.mark.parametrize("distance", [1e-24, 1e24])
 def test_a_few_surfels_far_from_the_others_do_not_set_the_scale(distance, hold):
-    """The view's units are the depth of most surfels: of other units their squares would leave float32."""
+    """The view's unit is the median depth.
+
+    With a much larger or smaller unit, squares would leave the range of float32.
+    """
     scene, camera = WORLDS["torus"]()
     camera = replace(camera, near=1e-26, far=1e26)
     hold({f"{distance:g}": (replace(scene, surfels=(*scene.surfels, speck(camera, distance))), camera)}, least=60)
@@ -84,7 +90,7 @@ def test_something_at_the_near_plane_costs_nothing(near, world, hold):
 
 @pytest.mark.parametrize("distance", [10.0**k for k in range(-6, 7)])
 def test_depth_is_known_to_a_millionth_at_any_distance(distance, render_all, lit, camera):
-    """A disc as wide as the picture at the distance, between near 1e-6 and far 1e6, with something at both."""
+    """A disc fills the picture at the distance, with near at 1e-6 and far at 1e6 and a speck at both."""
     camera = camera(near=0.5e-6, far=2e6)
     wall = discs((0, 0, -distance), (distance, 0, 0), (0, distance, 0))
     (frame,) = render_all([(lit(wall, speck(camera, 0.6e-6), speck(camera, 1.9e6)), camera, None)])
@@ -94,12 +100,15 @@ def test_depth_is_known_to_a_millionth_at_any_distance(distance, render_all, lit
 @pytest.mark.parametrize("is_half_behind", [False, True])
 @pytest.mark.parametrize("far", [1e2, 1e4, 1e6])
 def test_something_far_behind_costs_a_parallel_camera_nothing(far, is_half_behind, hold):
-    """Also where the clip range reaches as far behind the camera, as a viewport's does."""
+    """This holds even if the clip range reaches equally far behind the camera, as a viewport's does."""
     hold({"behind": with_disc_behind(*parallel(far, near=-far if is_half_behind else 0.1))}, least=60)
 
 
 def test_a_parallel_camera_within_what_it_sees_reaches_to_a_thousand(hold):
-    """Depths behind it cannot be stored as shares of the farthest: they have 2^-24 of the whole length instead."""
+    """Depths behind the camera are negative, so they cannot be stored relative to the farthest one.
+
+    Their precision is 2^-24 of the whole range.
+    """
     hold({"within": with_disc_behind(*parallel(1e3, (0, 0, 0), -1e3))}, least=60)
 
 
@@ -109,13 +118,13 @@ def test_hardware_depth_serves_where_it_is_fine_enough():
 
 @pytest.mark.parametrize(("nearest", "is_linear"), [(0.05, False), (0.02, True)])
 def test_linear_depth_is_planned_where_the_hardwares_is_too_coarse(nearest, is_linear, lit, camera):
-    """Splats as far as 3, each far smaller than its distance."""
+    """The splats are up to 3 away, and each is much smaller than its distance."""
     tiny = discs([(0, 0, -nearest), (0, 0, -3)], (1e-3, 0, 0), (0, 1e-3, 0))
     assert plan(lit(tiny), camera(near=1e-6), Settings(supersampling=2)).linear_depth == is_linear
 
 
 def test_linear_depth_is_planned_where_a_splat_is_wide(lit, camera):
-    """Its corners, moved back along their own rays, would not be the splat moved back."""
+    """Moving each corner of a wide splat back along its own ray would deform the splat."""
     assert plan(lit(discs((0, 0, -3), (2, 0, 0), (0, 2, 0))), camera(), Settings(supersampling=2)).linear_depth
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ellipses from round to a million times longer than wide."""
+"""Ellipses may be round or up to a million times longer than wide."""
 
 import pytest
 
@@ -23,5 +23,5 @@ def test_ellipses_that_get_longer_are_the_true_ones(ratio, hold, lit, camera):
 
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_long_ellipses_at_an_angle_are_the_true_ones(ratio, hold, lit, camera):
-    """Their corners lie far outside of the picture, where float32 has few digits left for the short axis."""
+    """Their corners are far outside the picture, where float32 leaves few digits for the short axis."""
     hold({"stripes": (lit(stripes(0.08 * ratio, 0.08, TURN)), camera())}, least=35 if ratio > 1e5 else LEAST_PSNR)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Epsilon from 0 to 100 radii: the picture is the true one for that epsilon, and no splat hides itself."""
+"""With epsilon from 0 to 100 radii the picture is the true one for that epsilon, and no splat hides itself."""
 
 from importlib import import_module
 
@@ -22,7 +22,10 @@ def test_any_epsilon_gives_its_true_picture(epsilon, least, hold):
 @pytest.mark.parametrize("epsilon", [0, 1e-7, 1e-6])
 @pytest.mark.parametrize("angle", [0, 60, 85])
 def test_no_splat_hides_itself(angle, epsilon, hold, lit, camera, is_unfiltered):
-    """Moved back by less than rounding it would, here and there; which of coplanar splats is seen is left open."""
+    """With an epsilon below rounding, a splat could hide parts of itself.
+
+    Which of several coplanar splats is seen is undefined.
+    """
     settings = Settings(supersampling=2, epsilon=epsilon)
     ((frame, truth),) = hold({"sheet": (lit(sheet(30, 1.0, angle, 2.0)), camera(), settings)}, least=0).values()
     assert not is_unfiltered or np.count_nonzero(frame.coverage < truth.coverage) <= 2

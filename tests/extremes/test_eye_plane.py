@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splats across the near plane or the eye's plane, also with their centre behind the camera, keep what is before it."""
+"""Splats that cross the near plane or the eye's plane show their part in front of it, even if their centre is
+behind.
+"""
 
 import numpy as np
 import pytest
@@ -34,7 +36,7 @@ def test_a_splat_across_the_eye_hides_nothing_beyond_its_rim(name, hold, lit, ca
 
 @pytest.mark.parametrize("depth", [0.9, 0.95, 0.99])
 def test_a_splat_before_the_near_plane_hides_nothing_when_moved_back(depth, hold, lit, camera):
-    """By its epsilon it is moved to the near plane's other side, where visibility must not see it."""
+    """Epsilon moves it behind the near plane, where the visibility pass must ignore it."""
     before = discs((0, 0, -depth), (0.15, 0, 0), (0, 0.15, 0), (1, 0, 0))
     ((frame, truth),) = hold({"before": (lit(before, sheet(20, 2.0, 0, 3.0)), camera(near=1.0))}).values()
     assert np.abs(frame.depth[truth.coverage == 1] - 3).max() < 1e-3
@@ -42,7 +44,10 @@ def test_a_splat_before_the_near_plane_hides_nothing_when_moved_back(depth, hold
 
 @pytest.mark.parametrize("spin", [0, 20, 40, 60, 80, 100])
 def test_a_splat_across_the_near_plane_keeps_its_rim(spin, hold, lit, camera):
-    """All around where it is not cut, however its axes lie in its plane; no method filters it."""
+    """The rim is right wherever the plane does not cut it, for any direction of the axes in the splat's plane.
+
+    Nothing is filtered.
+    """
     angle, tilt = np.radians(spin), np.radians(60)
     across, along = np.array((1, 0, 0)), np.array((0, np.cos(tilt), np.sin(tilt)))
     u, v = (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fields of view from 1 to 170 degrees, and windows far off the axis."""
+"""Fields of view from 1 to 170 degrees, and windows far off the axis, give the true picture."""
 
 import numpy as np
 import pytest
@@ -19,14 +19,14 @@ def sphere():
 
 
 def filling(angle):
-    """A camera that the unit sphere fills, as far as one can come near it."""
+    """A camera whose picture the unit sphere fills, as far as it can approach the sphere."""
     distance = max(1.1 / np.sin(np.radians(angle / 2)), 1.3)
     eye = distance * np.array((0, -1, 0.1))
     return Camera.perspective(look_at(eye, (0, 0, 0)), np.radians(angle), SIZE, distance / 100, 10 * distance)
 
 
 def shifted(shift):
-    """A camera far to the side whose window is shifted back, in picture widths."""
+    """A camera far to the side, with its window shifted back, in picture widths."""
     matrix = look_at((0, -4, 0), (0, 0, 0))
     width = 4 * 2 * np.tan(np.radians(30))
     matrix[:3, 3] -= shift * width * matrix[:3, 0]
@@ -46,5 +46,5 @@ def test_a_window_far_off_the_axis_is_the_true_one(shift, hold, sphere):
 
 @pytest.mark.parametrize("angle", [120, 150, 170])
 def test_splats_across_a_wide_field_are_the_true_ones(angle, hold, lit, camera):
-    """At 170 degrees the outermost pixels look 85 degrees off the axis: affine approximations fail there."""
+    """At 170 degrees the outermost pixels are 85 degrees off the axis, where affine approximations fail."""
     hold({f"{angle} degrees": (lit(sheet(40, 8.0, 0, 1.0)), camera(angle))})

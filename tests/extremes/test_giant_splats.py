@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A splat may be a million times wider than the near distance: a floor of one splat."""
+"""A splat may be a million times wider than the near distance, such as a floor of a single splat."""
 
 import pytest
 
 from splat_addon.reference.extremes import discs, giant_floor
 
-#: Of the near distance, 0.01: above 1e7 the driver's clipping loses the quad (docs/evidence/numerics.md).
+#: Multiples of the near distance, 0.01. Above 1e7 the driver's clipping loses the quad (docs/evidence/numerics.md).
 RADII = [1e-2, 1e-1, 1e0, 1e1, 1e2, 1e3, 1e4]
 
 

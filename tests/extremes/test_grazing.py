@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A surface seen from 60 degrees to edge-on: no hole, no spill, no NaN; edge-on it is not there."""
+"""A surface seen from 60 degrees to edge-on has no holes, spill or NaN; exactly edge-on it is invisible."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def test_a_grazing_sheet_is_the_true_one(angle, hold, lit, camera):
 
 @pytest.mark.parametrize("height", [0.3, 0.1, 0.03, 0.01])
 def test_a_sheet_that_reaches_past_the_viewer_has_no_holes(height, hold, lit, camera):
-    """A floor from under the eye to the distance, lower and lower."""
+    """The sheet is a floor that begins under the eye; the eye gets lower and lower."""
     hold({f"height {height}": (lit(floor_below(height)), camera(near=1e-4))})
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table of known failures itself: it names cases that exist, and none of what users get without asking."""
+"""The table of known failures names only existing cases, and none of a default method."""
 
 import re
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Instances mirrored, sheared and scaled from 1e-3 to 1e3 by axis."""
+"""Instances may be mirrored, sheared and scaled from 1e-3 to 1e3 along an axis."""
 
 import numpy as np
 import pytest
@@ -20,8 +20,9 @@ LINEAR = {
 
 
 def framed(linear):
-    """A sphere under the map, turned so that its longest axis lies across the picture and its shortest along the view,
-    in a window that shows its middle axis whole.
+    """A sphere under the map, with its longest axis across the picture and its shortest along the view.
+
+    The window shows the whole of its middle axis.
     """
     scene, _ = scenes.sphere(4000)
     axes, lengths, _ = np.linalg.svd(linear)
@@ -49,6 +50,6 @@ def test_a_map_that_flattens_space_is_counted(render_all):
 
 @pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-6, 1e-8])
 def test_axes_that_are_all_but_collinear_break_nothing(gap, render_all):
-    """Beyond 1e-7 float32 cannot tell them apart: what is left may be anything but NaN."""
+    """Beyond a ratio of 1e-7, float32 cannot distinguish the axes: any picture without NaN is accepted."""
     (frame,) = render_all([(*framed(np.array([[1, 1, 0], [1, 1 + gap, 0], [0, 0, 1.0]])), None)])
     assert all(np.isfinite(getattr(frame, name)).all() for name in ("color", "depth", "normal", "coverage"))

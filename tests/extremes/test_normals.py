@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Normals that cancel, oppose one another, lie in their splat's plane or are not unit vectors."""
+"""Normals may cancel, oppose one another, lie in their splat's plane, or not be unit vectors."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ PAIRS = {
 
 
 def pair(normals):
-    """Two discs in one place that face the viewer."""
+    """Two discs at the same place that face the viewer."""
     return discs([(0, 0, -3)] * 2, (1, 0, 0), (0, 1, 0), normals=normals)
 
 
@@ -33,7 +33,7 @@ def test_a_surface_whose_normals_cancel_faces_the_viewer(render_all, lit, camera
 
 @pytest.mark.parametrize("count", [3, 7, 40])
 def test_what_rounding_leaves_of_cancelling_normals_is_no_normal(count, render_all, lit, camera):
-    """Evenly around, their sum is not exactly 0 in float32, and its direction means nothing."""
+    """Normals evenly around a circle add up to almost 0 in float32; the direction of the remainder is meaningless."""
     around = np.arange(count) * 2 * np.pi / count
     normals = np.stack([np.cos(around), np.sin(around), np.full(count, 5e-7)], axis=1)
     fan = discs(np.broadcast_to((0, 0, -3), (count, 3)), normals=normals)

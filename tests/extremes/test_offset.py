@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Far from the world's origin nothing changes: positions are made camera-relative in float64."""
+"""Far from the world's origin nothing changes, because positions are made camera-relative in float64."""
 
 from dataclasses import replace
 
@@ -33,7 +33,7 @@ def test_object_and_camera_far_away_look_the_same(offset, world, render_all):
 
 @pytest.mark.parametrize("offset", OFFSETS)
 def test_the_distance_may_lie_in_the_surfels_origin(offset, world, render_all):
-    """A scan in map coordinates: float32 positions relative to a float64 origin."""
+    """The surfels are like a scan in map coordinates: float32 positions relative to a float64 origin."""
     scene, camera = world
     far_scene, far_camera = transformed(scene, camera, moved(offset))
     instances = [replace(i, shape=replace(i.surfels, origin=offset * DIRECTION)) for i in scene.surfels]

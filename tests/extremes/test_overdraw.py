@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""1 to 5000 splats over every sample: the sums keep their digits."""
+"""With 1 to 5000 splats over every sample the sums stay precise."""
 
 import numpy as np
 import pytest

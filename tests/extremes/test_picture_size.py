@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of one pixel, of one row, and 8192 x 16."""
+"""Pictures may have one pixel, one row, or 8192 x 16 pixels."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ LONG = [(8192, 16), (16, 8192)]
 
 @pytest.mark.parametrize("size", NARROW, ids="{0[0]}x{0[1]}".format)
 def test_any_shape_of_pixel_is_the_true_picture(size, hold):
-    """One window for all of them: pixels are up to 64 times wider than high, or higher than wide."""
+    """All sizes share one window, so that pixels are up to 64 times wider than high, or higher than wide."""
     scene, camera = scenes.sphere(1000)
     hold({f"{size}": (scene, replace(camera, size=size))})
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cameras anywhere, looking anywhere: outside, in and through the surface, parallel ones. No hole, no NaN."""
+"""A camera outside, inside or in the surface, perspective or parallel, sees no holes and no NaN."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def powers(low, high):
     return st.floats(low, high).map(lambda exponent: 10.0**exponent)
 
 
-#: A direction, and one that is not along it.
+#: A direction, and another one that is not parallel to it.
 DIRECTIONS = st.tuples(vectors(-1, 1), vectors(-1, 1)).filter(lambda d: np.linalg.norm(np.cross(*d)) > 1e-3)
 
 
@@ -34,7 +34,7 @@ def outside(draw):
 
 @st.composite
 def in_the_tube(draw):
-    """A place in the outer torus's tube, on it or just before it."""
+    """A place in the tube of the outer torus, on its surface or just in front of it."""
     along, around = draw(st.floats(0, 6.28)), draw(st.floats(0, 6.28))
     ring = np.array((np.cos(along), np.sin(along), 0))
     return ring + draw(st.floats(0, 0.5)) * (np.cos(around) * ring + np.sin(around) * np.array((0, 0, 1)))
@@ -42,7 +42,7 @@ def in_the_tube(draw):
 
 @st.composite
 def through_the_surface(draw):
-    """The eye in the tube; near planes from far smaller than a splat."""
+    """Cameras in the tube, with near planes from far below a splat's size."""
     eye, (direction, up) = draw(in_the_tube()), draw(DIRECTIONS)
     near = draw(powers(-4, -1))
     return Camera.perspective(look_at(eye, eye + direction, up), np.radians(draw(st.floats(20, 150))), SIZE, near, 100)
@@ -50,7 +50,9 @@ def through_the_surface(draw):
 
 @st.composite
 def parallel(draw):
-    """Towards a place in the tube, with the near plane before the camera, or behind it as in a viewport."""
+    """A parallel camera that looks at a place in the tube; its near plane is before it, or behind it as in a
+    viewport.
+    """
     target, (direction, up) = draw(in_the_tube()), draw(DIRECTIONS)
     near, far = draw(st.sampled_from(((-5, 5), (0.01, 20))))
     return Camera.orthographic(
@@ -69,7 +71,7 @@ WITH_GAPS = ("ewa", "raycast_printed", "sprites", "sprites_printed", "sprites_un
 
 
 def test_the_eye_in_the_surface_sees_no_hole(hold):
-    """Splats all around a camera that stands in the outer torus's wall and looks along it."""
+    """The camera is in the wall of the outer torus, looks along it, and has splats all around."""
     matrix = look_at((0.706, 0.642, -0.273), (1.326, -0.142, -0.257), (0.667, 0.517, -0.537))
     camera = Camera.perspective(matrix, np.radians(50), SIZE, 4e-4, 100)
     hold({"in the wall": (scenes.torus(2500, SIZE)[0], camera)}, least=40)

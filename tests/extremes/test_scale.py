@@ -56,7 +56,10 @@ def stored_at(surfels, scale):
 
 
 def test_a_depth_beyond_that_of_nothing_is_kept(hold, is_unfiltered):
-    """1e10 marks an empty pixel; what is farther still has its depth, and the coverage says that it is there."""
+    """The depth 1e10 marks an empty pixel.
+
+    Farther surfaces still keep their depth, and their coverage shows that they exist.
+    """
     ((frame, truth),) = hold({"1e12": transformed(*perspective(), scaled(1e12))}).values()
     hit = (frame.coverage > 0) & (truth.coverage > 0)
     assert np.median(np.abs(frame.depth[hit] / truth.depth[hit] - 1)) < (1e-6 if is_unfiltered else 1e-2)
@@ -64,6 +67,6 @@ def test_a_depth_beyond_that_of_nothing_is_kept(hold, is_unfiltered):
 
 @pytest.mark.parametrize("depth", [0, 1e-30, 1e-12])
 def test_a_parallel_camera_may_stand_in_what_it_sees(depth, hold, lit):
-    """Its view is scaled by its window where depths are next to nothing."""
+    """Depths are near zero there, so the view is scaled by the window instead."""
     wall = lit(sheet(12, 1.2, 0, depth))
     hold({f"{depth}": (wall, Camera.orthographic(np.eye(4), 2.0, SIZE, -1, 1))}, least=60)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Two sheets, one behind the other: within epsilon they mix evenly, beyond it the front one hides the back one."""
+"""Of two sheets in line, those closer than epsilon blend evenly; otherwise the front one hides the back one."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ RED, GREEN = (1, 0, 0), (0, 1, 0)
 
 
 def sheets(gap):
-    """Red before green, a gap in radii apart; also the radius."""
+    """A red sheet in front of a green one, with a gap given in radii; also returns the radius."""
     front = sheet(20, 1.0, 0, DEPTH, RED)
     radius = float(front.radius[0])
     return Scene((front, sheet(20, 1.0, 0, DEPTH + gap * radius, GREEN)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""16-bit storage at the extremes: it is relative to each block, so neither unit nor distance changes what it loses."""
+"""16-bit storage is relative to each block, so its loss depends on neither unit nor distance."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ LEAST = 50
 
 @pytest.fixture
 def compare(render_all):
-    """compare(scene, camera) -> dB between the pictures of both storages."""
+    """compare(scene, camera) -> PSNR in dB between the pictures of both storages."""
 
     def render(scene, camera):
         shots = [(scene, camera, Settings(supersampling=2, storage=name)) for name in ("16-bit", "float32")]
@@ -58,7 +58,7 @@ def test_sizes_of_40_octaves_lie_in_one_block(compare, lit, camera):
 
 
 def test_a_stray_surfel_spoils_its_block_only_and_is_counted(render_all, camera):
-    """1,280 splats row by row, three blocks; the stray joins the last one, which holds the upper rows."""
+    """1,280 splats, stored row by row, fill three blocks. The stray joins the last one, which holds the upper rows."""
     place = (np.stack(np.meshgrid(np.arange(32), np.arange(40)), axis=-1).reshape(-1, 2) + 0.5) / (16, 20) - 1
     centers = np.concatenate([place, np.full((1280, 1), -3.0)], axis=1)
     stray = np.concatenate([centers, [(1e9, 1e9, 0.0)]])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A million splats on one pixel: their mean, without loss in the sums; below the rasteriser's grid they vanish."""
+"""A million splats on one pixel give their mean, without loss in the sums; invisibly small ones break nothing."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ FLAT = Settings(supersampling=2, shading="flat")
 
 
 def test_a_million_splats_give_their_mean(hold, camera, is_default):
-    """Those that users get without asking; the others a tenth of them, to save time."""
+    """The default methods draw a million; to save time, the others draw a tenth."""
     camera, count = camera(size=(4, 4)), COUNT if is_default else COUNT // 10
     hold({f"{count:,}": (Scene((crowd(camera, count, 0.2),)), camera, FLAT)}, least=100)
 
@@ -21,7 +21,7 @@ def test_a_million_splats_give_their_mean(hold, camera, is_default):
     ("radius", "count"), [(1, COUNT // 100), (0.5, COUNT // 50), (0.05, COUNT // 10), (0.01, COUNT // 10)]
 )
 def test_splats_down_to_a_hundredth_of_a_pixel_are_found(radius, count, hold, camera):
-    """By those whose ellipse holds a sample; the quad's corners are known to 1/256 pixel."""
+    """A splat is found if its ellipse contains a sample. The rasterizer knows corners to 1/256 pixel."""
     camera = camera(size=(4, 4))
     hold({f"{radius} pixels": (Scene((crowd(camera, count, radius),)), camera, FLAT)})
 
@@ -40,7 +40,7 @@ def test_splats_below_the_rasterisers_grid_break_nothing(render_all, camera):
 def test_a_splat_of_next_to_no_size_is_as_large_as_the_filter_that_it_is_joined_with(
     radius, method, render_all, camera
 ):
-    """Where squares of its size leave float32, a shape of 0 / 0 would lose it."""
+    """The square of such a size underflows in float32, and a shape computed as 0 / 0 would lose the splat."""
     splat = discs((0.003, 0.004, -1), (radius, 0, 0), (0, radius, 0), (1, 1, 1))
     settings = Settings(supersampling=1, shading="flat", transparent_film=True)
     (frame,) = render_all([(Scene((splat,)), camera(size=(16, 16)), settings)])

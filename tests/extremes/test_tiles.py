@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A picture larger than the largest target is made of tiles, and nothing shows it; nor where it is drawn in parts."""
+"""A picture larger than the largest target is drawn in tiles without seams, also if only a part of it is drawn."""
 
 from importlib import import_module
 
@@ -23,7 +23,7 @@ def test_a_tiled_picture_equals_the_whole(edge, render_all, monkeypatch):
 
 
 def test_parts_are_the_whole_picture_bit_by_bit_where_their_tiles_are(render, monkeypatch):
-    """Each with the shadow maps and the depths of the whole picture."""
+    """Each part uses the shadow maps and depths of the whole picture."""
     monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", 80)
     scene, camera = scenes.torus(3000, (93, 61))
     settings = Settings(outputs=("color", "depth", "position", "object_index", "cryptomatte"))
@@ -38,7 +38,7 @@ def test_parts_are_the_whole_picture_bit_by_bit_where_their_tiles_are(render, mo
 
 
 def test_sixteen_parts_of_a_huge_picture_have_its_own_tiles():
-    """So 16,384 x 16,384 pixels that 4 x 4 machines draw are, bit by bit, what one of them draws."""
+    """So 16,384 x 16,384 pixels drawn by 4 x 4 machines equal, bit by bit, what one machine draws."""
     scene, camera = scenes.torus(100, (16384, 16384))
     settings, edge = Settings(), 16384 // 4
     parts = [(edge * x, edge * y, edge, edge) for x in range(4) for y in range(4)]

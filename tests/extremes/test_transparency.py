@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Transparent layers where numbers are extreme: scale, distance, opacity, number, nearness; an eye in glass."""
+"""Transparent layers may have extreme scales, distances, opacities, numbers and gaps, or contain the eye."""
 
 import math
 from dataclasses import replace
@@ -16,7 +16,7 @@ METHODS = ["quad", "mip"]
 
 
 def sheets(depths, opacity, scale=1.0, origin=(0.0, 0, 0)) -> tuple[Scene, Camera]:
-    """White squares across the view, at depths from 1 on."""
+    """White squares across the view at these depths, and a camera at the origin."""
     axis = (np.arange(16) + 0.5) / 8 - 1
     x, y = (a.ravel() * 3 for a in np.meshgrid(axis, axis))
     up = np.tile((0.0, 0, 1), (256, 1))
@@ -33,7 +33,7 @@ def sheets(depths, opacity, scale=1.0, origin=(0.0, 0, 0)) -> tuple[Scene, Camer
 
 
 def through(opacity: float, count: int) -> np.ndarray:
-    """What a pixel shows of the white sheets and the world behind."""
+    """The value of a pixel that shows the white sheets and the world behind them."""
     left = (1 - opacity) ** count
     return np.array([1 - left + left * c for c in WORLD])
 
@@ -65,7 +65,7 @@ def test_any_opacity_is_one_from_0_to_1(method, opacity, render):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_sixty_layers(method, render):
-    """In the middle, which the farthest sheets cover, too."""
+    """The farthest sheets only cover the middle of the picture."""
     frame = render(*sheets(4 + np.arange(60) / 2, 0.05), peeled(method=method))
     assert frame.stats["layers"] == 60
     assert np.abs(frame.color[7:9, 7:9, :3] - through(0.05, 60)).max() < 1e-4
@@ -73,7 +73,7 @@ def test_sixty_layers(method, render):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_sheets_closer_than_epsilon_are_one(method, render):
-    """Splats of 0.6 move back by 0.3: what is closer than that is one surface, what is farther apart is another."""
+    """Splats of radius 0.6 are moved back by 0.3: closer sheets are one surface, sheets farther apart are two."""
     for gap, count in ((0.2, 1), (0.45, 2)):
         frame = render(*sheets((4, 4 + gap), 0.4), peeled(method=method))
         assert frame.stats["layers"] == count
@@ -83,7 +83,7 @@ def test_sheets_closer_than_epsilon_are_one(method, render):
 @pytest.mark.parametrize("blends_rest", [False, True])
 @pytest.mark.parametrize("method", METHODS)
 def test_an_eye_inside_glass_sees_one_surface(method, blends_rest, render):
-    """The inner side of a ball all around, and splats that reach the near plane."""
+    """The eye sees the inside of a ball all around, with splats that reach the near plane."""
     scene, _ = scenes.transparent_spheres(count=4000)
     ball = replace(scene.surfels[0], matrix_world=np.eye(4))
     camera = Camera.perspective(look_at((0.9, 0, 0), (-1, 0.2, 0)), math.radians(70), (48, 48), near=0.02, far=10)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A sample that only rims of splats or their backs reach, with weights near zero, has their colour all the same."""
+"""A sample that only rims or backs of splats reach still has their colour, although its weights are near zero."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sets of surfels to build hierarchies over, and what each node of one stands for."""
+"""Makes sets of surfels to build hierarchies from, and lists which surfels each node stands for."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from splat_addon.surfels import Surfels, axes_quaternions
 
 
 def make_surfels(positions, normals, half=0.05, **fields):
-    """Discs of half-axes `half` with these normals, grey unless told otherwise."""
+    """Discs with half-axes `half` and these normals, grey by default."""
     positions, normals = np.asarray(positions, float), np.asarray(normals, float)
     normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     other = np.where(np.abs(normals[:, :1]) < 0.9, [[1.0, 0, 0]], [[0, 1.0, 0]])
@@ -25,14 +25,14 @@ def make_surfels(positions, normals, half=0.05, **fields):
 
 
 def sheet(count=40, height=0.0, normal=(0, 0, 1), spacing=0.04):
-    """Positions and normals of a square grid of count x count samples."""
+    """The positions and normals of a square grid of count x count samples."""
     x, y = np.meshgrid(np.arange(count) * spacing, np.arange(count) * spacing)
     positions = np.stack([x.ravel(), y.ravel(), np.full(x.size, height)], axis=1)
     return positions, np.tile(np.asarray(normal, float), (x.size, 1))
 
 
 def ball(count=6000, seed=0):
-    """Positions and normals all over the unit sphere."""
+    """Positions and normals spread over the unit sphere."""
     k = np.arange(count) + 0.5
     z, turn = 1 - 2 * k / count, np.pi * (1 + 5**0.5) * k
     r = np.sqrt(1 - z * z)
@@ -41,7 +41,7 @@ def ball(count=6000, seed=0):
 
 
 def leaves_of(surfels):
-    """[(number, surfels below it)] of every merged node, and its (M, 3) errors, nodes and levels."""
+    """[(number, surfels below it)] for every merged node, and the nodes' (M, 3) errors, the nodes and the levels."""
     nodes, errors, levels, _ = build_levels(surfels)
     below = {k: np.array([k]) for k in range(len(surfels))}
     numbers = np.arange(len(surfels))

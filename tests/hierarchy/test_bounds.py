@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a merged surfel differs by from those that it stands for is within its bounds, whatever they are."""
+"""A merged surfel differs from those that it stands for by no more than its bounds, whatever these surfels are."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ CIRCLE = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
 
 
 def ellipse_points(surfels, rows, places):
-    """(n, k, 3) of places (k, 2) in half-axes."""
+    """The (n, k, 3) points of ellipses at places (k, 2) given in half-axes."""
     u, v = (axis[rows].astype(float) for axis in surfels.half_axes())
     return surfels.positions[rows][:, None] + places[:, :1] * u[:, None] + places[:, 1:] * v[:, None]
 
@@ -33,7 +33,7 @@ def check(surfels):
         offsets = ellipse_points(surfels, rows, CIRCLE) - nodes.positions[k]
         assert np.abs(offsets @ z[k]).max() <= off
         flat = np.stack([offsets @ x[k], offsets @ y[k]], axis=-1) / nodes.scales[k]
-        # along the ray to the middle, which is no less than the distance
+        # measured along the ray to the middle, which is at least the true distance
         beyond = np.linalg.norm(flat * nodes.scales[k], axis=-1) * (
             1 - 1 / np.maximum(np.linalg.norm(flat, axis=-1), 1)
         )
@@ -47,13 +47,13 @@ def check(surfels):
         )
         covered = covered - nodes.positions[k]
         apart = np.stack([own @ x[k], own @ y[k]], -1)[:, None] - np.stack([covered @ x[k], covered @ y[k]], -1)
-        # what is covered is known at some places alone, a quarter of a half-axis apart
+        # coverage is tested at places a quarter of a half-axis apart
         assert np.linalg.norm(apart, axis=-1).min(axis=1).max() <= extent + surfels.radius[rows].max() / 4
     return errors
 
 
 def nearest_outside(flat, scales, beyond):
-    """Largest distance from the ellipse of places (in half-axes) outside of it, at most `beyond`."""
+    """The largest distance from the ellipse of places (in half-axes) outside it, at most `beyond`."""
     outside = np.linalg.norm(flat, axis=-1) > 1
     if not outside.any():
         return 0.0
@@ -70,7 +70,7 @@ def test_no_point_of_any_surfel_is_farther_than_its_node_says(seed):
 
 
 def strays(seed, count=150, **fields):
-    """A bumpy surface of uneven discs of both sides, some far from it."""
+    """A bumpy surface of irregular discs that face both ways, some of them far away."""
     random = np.random.default_rng(seed)
     place = random.uniform(-1, 1, (count, 2))
     positions = np.column_stack([place, random.uniform(0, 0.5) * np.sin(place @ random.uniform(-4, 4, 2))])
@@ -125,7 +125,7 @@ def test_what_is_shown_changes_by_no_more_than_the_bound():
 
 
 def test_a_smooth_surface_is_known_to_a_share_of_its_cells():
-    """Bounds that hold but say nothing would be of no use: a cell's size is what a level may be off by, not more."""
+    """Bounds must also be tight: on a smooth surface a level is off by at most the size of its cells."""
     count = 20000
     surfels = make_surfels(*ball(count), half=1.25 * (4 * np.pi / count) ** 0.5)
     _, nodes, errors, levels = leaves_of(surfels)

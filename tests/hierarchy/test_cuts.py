@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whatever the view, its cut draws every surfel that it may see once: as itself, or in one of the nodes above it."""
+"""In every view, the cut draws each visible surfel exactly once: itself, or in one of the nodes above it."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ BELOW = leaves_of(SURFELS)[0]
 
 
 def sight(eye, tolerance=1.0, pixels=500.0, hides_backs=False, planes=((0, 0, 0, 1),)):
-    """From a point towards the origin."""
+    """A view from a point towards the origin."""
     eye = np.asarray(eye, float)
     forward = -eye / np.linalg.norm(eye)
     depth = np.append(forward, -forward @ eye)
@@ -27,7 +27,7 @@ def sight(eye, tolerance=1.0, pixels=500.0, hides_backs=False, planes=((0, 0, 0,
 
 
 def drawn(view):
-    """How often each surfel of the ball is drawn, itself or by a node, and how many are drawn in all."""
+    """How often each surfel of the ball is drawn, itself or by a node, and the total number drawn."""
     entries = cut_entries(HIERARCHY, view)
     entries = np.arange(COUNT) if entries is None else entries
     return np.bincount(np.concatenate([BELOW[e] for e in entries]), minlength=COUNT), len(entries)
@@ -54,7 +54,7 @@ def test_what_faces_the_eye_is_drawn_where_backs_are_hidden(eye, tolerance):
 @settings(deadline=None, max_examples=30)
 @given(st.tuples(*[st.floats(-4, 4)] * 3))
 def test_a_hollow_ball_is_drawn_where_it_faces_the_eye(eye):
-    """Places and normals of one block then turn against one another."""
+    """Places and normals in one block then point in opposite directions."""
     entries = cut_entries(HOLLOW, sight(np.asarray(eye) + 1e-3, 0, hides_backs=True))
     entries = np.arange(COUNT) if entries is None else entries
     facing = (SURFELS.positions * (np.asarray(eye) + 1e-3 - SURFELS.positions)).sum(axis=1) < 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What becomes one surfel, and what it shows."""
+"""Which surfels merge into one, and what the merged surfel looks like."""
 
 import numpy as np
 import pytest
@@ -62,7 +62,7 @@ def test_colours_are_means_of_light_and_of_what_is_let_through():
 
 
 def test_what_the_mean_normal_loses_in_length_is_roughness():
-    """Two normals at an angle b to the mean: length cos b, alpha^2 = alpha0^2 + 2 (1 - cos b) / cos b."""
+    """Two normals at angle b to their mean give a length of cos b, and alpha^2 = alpha0^2 + 2 (1 - cos b) / cos b."""
     positions, up = sheet(count=3, spacing=0.01)
     tilt = np.array([(0.6 if k % 2 else -0.6, 0, 0.8) for k in range(9)])
     roughness = np.full(9, 0.2)

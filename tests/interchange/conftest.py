@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels of random values, files of given bytes, and a comparison of every bit."""
+"""Random surfels, files with given bytes, and a comparison of every bit."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def surfels():
 
 @pytest.fixture
 def assert_same_bits():
-    """assert_same_bits(a, b): every array of two sets of surfels, and what else they hold."""
+    """assert_same_bits(a, b): every array and every other value of two sets of surfels is equal."""
 
     def check(a, b):
         for name in LAYOUT:
@@ -41,7 +41,9 @@ def assert_same_bits():
 
 @pytest.fixture
 def ply(tmp_path):
-    """ply(head, body=b"") -> the path of a file with these lines between "ply" and "end_header", and these bytes."""
+    """ply(head, body=b"") -> the path of a file with these lines between "ply" and "end_header", followed by these
+    bytes.
+    """
 
     def write(head, body=b""):
         path = tmp_path / "given.ply"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frames that follow their centres: what was moved together, however it was moved, is as if the ellipses had been."""
+"""If only the centres were moved, the ellipses are turned and stretched as if they had been moved too."""
 
 import numpy as np
 import pytest
@@ -14,13 +14,13 @@ SHIFTED = np.array([(1, 0, 0, 9), (0, 1, 0, -2), (0, 0, 1, 0.5), (0, 0, 0, 1.0)]
 
 
 def moved(surfels: Surfels, matrix) -> Surfels:
-    """The whole ellipses, with the origin at 0."""
+    """The surfels with whole ellipses moved, and the origin at 0."""
     made = transformed(surfels, matrix)
     return Surfels(**(made.arrays() | {"positions": made.positions + made.origin}))
 
 
 def torn(surfels: Surfels, matrix) -> Surfels:
-    """The centres alone, as Blender moves them."""
+    """The surfels with only their centres moved, as Blender does it."""
     return Surfels(**(surfels.arrays() | {"positions": moved(surfels, matrix).positions}))
 
 
@@ -52,7 +52,7 @@ def test_a_flat_sheet_is_turned_and_stretched_with_its_plane(surfels, normal):
 
 
 def test_parts_that_went_different_ways(surfels):
-    """As after Array, Mirror or Join, part behind part, and as in edit mode, in any order."""
+    """Parts follow one another, as after Array, Mirror or Join, or are mixed in any order, as after edit mode."""
     stored, maps = surfels(4000), (np.eye(4), TURNED, SKEWED, MIRRORED, SHIFTED)
     kept = [Surfels(**{n: a[k::5] for n, a in stored.arrays().items()}) for k in range(5)]
     runs = [Surfels(**{n: a[k * 800 : k * 800 + 800] for n, a in stored.arrays().items()}) for k in range(5)]

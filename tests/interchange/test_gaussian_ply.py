@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels as flat Gaussians and back, and the Gaussians of other writers."""
+"""Surfels can be written and read as flat Gaussians, and Gaussians of other programs can be read."""
 
 import numpy as np
 import plyfile
@@ -14,7 +14,9 @@ NAMES = ("x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "opacity
 
 @pytest.fixture
 def gaussian_file(tmp_path):
-    """gaussian_file(rows, leave_out=()) -> path of a file with a Gaussian for each dict of properties, the rest 0."""
+    """gaussian_file(rows, leave_out=()) -> the path of a file with one Gaussian per dict of properties; the others are
+    0.
+    """
 
     def write(rows, leave_out=(), extra=()):
         names = [n for n in (*NAMES, *extra) if n not in leave_out]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Damaged and hostile files: one sentence each, and no large memory, whatever they claim."""
+"""Damaged and hostile files give one sentence each and never take much memory, whatever they claim."""
 
 import tracemalloc
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels under an affine map are the images of their ellipses."""
+"""Surfels under an affine map are the images of their ellipses under it."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ordinary point files, as other programs write them."""
+"""Ordinary point files from other programs can be read."""
 
 import gzip
 
@@ -39,7 +39,7 @@ def test_float_colours_are_scene_linear(ply):
 
 
 def test_points_after_other_elements_are_found(models, tmp_path):
-    """A camera stands before them, and faces with lists behind."""
+    """A camera comes before them in the file, and faces with lists after them."""
     (tmp_path / "map.ply").write_bytes(gzip.decompress((models / "rangemap_lato315.ply.gz").read_bytes()))
     vertex = plyfile.PlyData.read(tmp_path / "map.ply")["vertex"]
     assert np.array_equal(read_contents(tmp_path / "map.ply").positions, np.stack([vertex[n] for n in "xyz"], axis=1))

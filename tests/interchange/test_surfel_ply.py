@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels through a file of their own layout, and what another PLY reader sees in it."""
+"""Surfels survive a file of their own layout, which other PLY readers can read too."""
 
 import numpy as np
 import plyfile

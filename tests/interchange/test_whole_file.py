@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A written file is there as a whole or not at all, and nobody else's file is touched."""
+"""A written file exists as a whole or not at all, and no other file is touched."""
 
 import os
 import stat
@@ -14,7 +14,7 @@ needs_posix = pytest.mark.skipif(os.name != "posix", reason="links and modes are
 
 @pytest.fixture
 def written(surfels, tmp_path):
-    """written(name="a.ply") -> the path, after ten surfels were written there."""
+    """written(name="a.ply") -> the path of a file with ten surfels."""
 
     def write(name="a.ply"):
         write_ply(tmp_path / name, surfels(10))
@@ -25,7 +25,7 @@ def written(surfels, tmp_path):
 
 @pytest.fixture
 def mask():
-    """Files that are made get rw-r-----."""
+    """Sets the process's umask so that new files get rw-r-----."""
     old = os.umask(0o027)
     yield
     os.umask(old)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the reference's tests are built from: ellipses by their half-axis vectors, and two plain cameras."""
+"""Ellipses given by their half-axes, and two simple cameras, for the tests of the reference."""
 
 import math
 
@@ -12,7 +12,9 @@ from splat_addon.surfels import Surfels, axes_quaternions
 
 @pytest.fixture
 def ellipses():
-    """ellipses(centers, u, v, colors, normals): Surfels from rows or single vectors; u and v orthogonal half-axes."""
+    """ellipses(centers, u, v, colors, normals) -> Surfels. u, v: orthogonal half-axes; each is rows or one vector for
+    all.
+    """
 
     def build(centers, u=(1, 0, 0), v=(0, 1, 0), colors=(1, 1, 1), normals=None):
         centers = np.atleast_2d(np.asarray(centers, float))
@@ -35,7 +37,7 @@ def ellipses():
 
 @pytest.fixture
 def perspective():
-    """perspective(size, near, far): at the origin, looking down -Z, window +-1 at distance 1."""
+    """perspective(size, near, far) -> a camera at the origin, looking down -Z, with a window of +-1 at distance 1."""
 
     def build(size=(32, 32), near=0.1, far=100.0):
         return Camera.perspective(np.eye(4), math.pi / 2, size, near, far)
@@ -45,7 +47,7 @@ def perspective():
 
 @pytest.fixture
 def orthographic():
-    """orthographic(size, height): at the origin, looking down -Z."""
+    """orthographic(size, height) -> a camera at the origin, looking down -Z."""
 
     def build(size=(32, 32), height=2.0, near=0.1, far=100.0):
         return Camera.orthographic(np.eye(4), height, size, near, far)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The renderer against the same definition written as two loops over single rays and splats, by other formulas."""
+"""The reference agrees with the same definition written as two loops over rays and splats, with other formulas."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def random_surfels(count: int) -> Surfels:
 
 
 def plain_ray(origin, direction, forward, camera, splats, epsilon):
-    """Colour and depth of one ray in world space: its ellipse coordinates from a 3 x 3 linear system."""
+    """Colour and depth of one ray in world space; a 3 x 3 linear system gives its coordinates on each ellipse."""
     hits = []
     for center, u, v, color in splats:
         is_back = np.dot(-np.cross(u, v), forward if camera.is_orthographic else center - origin) > 0  # mirrored

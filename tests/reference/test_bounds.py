@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A splat's box on the picture holds all of it and no more."""
+"""A splat's box in the picture contains all of it and no more."""
 
 import math
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table that ships is what its fit gives: the lobe's albedo and mean direction at some of its entries."""
+"""The shipped table has the values that its fit gives: the lobe's albedo and mean direction for some entries."""
 
 import numpy as np
 import pytest

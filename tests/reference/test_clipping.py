@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The exact picture of splats that end at lines, and of splats that blend only as deep as their surface asks for."""
+"""The exact picture of splats that end at clip lines, and of splats with a blend depth of their own."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ LEFT, LOW = pack_lines(np.array([[1.0, 0, 0]])), pack_lines(np.array([[0, 1.0, 0
 
 
 def share(surfels, camera, matrix=None):
-    """Of an unclipped disc's pixels those that are covered."""
+    """The number of covered pixels, relative to those of the disc without clip lines."""
     scenes = (Scene((Instance(s, np.eye(4) if matrix is None else matrix),)) for s in surfels)
     one, whole = (render_exact(scene, camera, SETTINGS, samples=4).coverage.sum() for scene in scenes)
     return one / whole
@@ -24,7 +24,7 @@ def share(surfels, camera, matrix=None):
 
 @pytest.fixture
 def disc(ellipses):
-    """disc(**lines): a disc that faces the camera, with these clip lines, and the same disc without."""
+    """disc(**lines) -> a disc that faces the camera with these clip lines, and the same disc without."""
     plain = ellipses((0, 0, -4), (1.5, 0, 0), (0, 1.0, 0))
     return lambda **lines: (replace(plain, **lines), plain)
 
@@ -71,7 +71,7 @@ def test_clipped_splats_hide_nothing_where_they_are_cut(disc, ellipses, perspect
 
 
 def test_a_clipped_splat_shadows_with_what_is_left_of_it(disc, ellipses):
-    """A disc at height 1 under a sun from above: half of it shadows half as much."""
+    """Half a disc at height 1, under a vertical sun, shadows half as much as the whole disc."""
     floor = ellipses((0, 0, 0), (4, 0, 0), (0, 4, 0))
     places = np.stack([*np.meshgrid(*[np.linspace(-2, 2, 41)] * 2), np.zeros((41, 41))], axis=2).reshape(-1, 3)
     camera = Camera.orthographic(np.eye(4), 4, (8, 8), -10, 10)

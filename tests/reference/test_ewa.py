@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Two definitions of the picture that share no formula of the projection meet where projections are affine."""
+"""Two definitions of the picture with no projection formula in common agree where projections are affine."""
 
 import math
 
@@ -29,9 +29,10 @@ def test_without_a_low_pass_parallel_rays_make_the_exact_picture(shading):
 
 @pytest.mark.parametrize("distance", [10, 100, 1000])
 def test_from_afar_the_pictures_differ_by_no_more_than_the_perspective_within_a_splat(distance):
-    """Along a splat of radius r at depth d the scale varies by r / d, and so do places in it: weights exp(-2 rho^2)
-    by 4 r / d of themselves, their averages of colours below 1 by twice that; and over a share of 2 r / d of its
-    area a splat is in one picture and not in the other, which may change all of the average.
+    """Within a splat of radius r at depth d, scale and place vary by the ratio r / d.
+
+    So weights exp(-2 rho^2) vary by 4 r / d of themselves, and averages of colours below 1 by twice that. Over a share
+    of 2 r / d of its area a splat is in only one of the pictures, which may change the whole average there.
     """
     scene, _ = scenes.checker_plane(10, 2_500, size=SIZE)
     splats = scene.surfels[0]
@@ -47,11 +48,12 @@ def test_from_afar_the_pictures_differ_by_no_more_than_the_perspective_within_a_
 
 
 def test_small_splats_under_the_low_pass_are_the_exact_picture_under_the_pixels_gaussian(ellipses):
-    """Filtered averages against averages of filtered kernels. They differ by the ripple of the sum of kernels, whose
-    mean over a cell is 0: times how much colours vary over a cell and its kernels, and how much the pixel's Gaussian
-    does over a cell (its gradient's mass is sqrt(pi / 2) / sigma), twice; by the variance that a kernel loses where
-    it ends (0.313 of it at two sigma), through the Gaussian's curvature (0.97 / sigma^2 of its mass along each axis);
-    and by the mass beyond the filters' ends.
+    """One picture has averages of filtered kernels, the other filtered averages; the bound adds up three differences.
+
+    First, the ripple of the sum of kernels, whose mean over a cell is 0: it counts twice, times the change of colours
+    over a cell and its kernels, and the change of the pixel's Gaussian over a cell (its gradient's mass is sqrt(pi / 2)
+    / sigma). Second, the variance that a kernel loses where it ends (0.313 of it at two sigma), through the Gaussian's
+    curvature (0.97 / sigma^2 of its mass along each axis). Third, the mass beyond the filters' ends.
     """
     spacing, radius, cutoff, pixels = 0.05, 0.2, 4.0, 6
     axis = np.arange(-pixels, pixels, spacing) + spacing / 2
@@ -73,7 +75,7 @@ def test_small_splats_under_the_low_pass_are_the_exact_picture_under_the_pixels_
 
 
 def _ripple(spacing, radius):
-    """How far the sum of a square lattice's kernels departs from its mean, as a share of it."""
+    """The largest deviation of the sum of a square lattice's kernels from its mean, relative to the mean."""
     reach = math.ceil(radius / spacing) + 1
     k = np.arange(-reach, reach + 1) * spacing
     at = np.linspace(0, spacing, 33)

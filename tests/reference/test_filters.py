@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pixel filters shift nothing, lose nothing and blur as much as they say."""
+"""Pixel filters do not shift the picture, lose no light, and blur exactly as much as they should."""
 
 import math
 
@@ -45,7 +45,7 @@ def test_the_gaussian_reaches_three_sigma(samples):
 @every_filter
 @pytest.mark.parametrize("samples", [4, 5])
 def test_an_edge_is_filtered_where_it_stands(ellipses, orthographic, name, samples):
-    """A half-plane's edge at x = 16 px gives the integral of the filter, in all 32 columns of the picture."""
+    """The edge of a half-plane at x = 16 px gives the filter's integral in all 32 columns of the picture."""
     big = 1e4
     scene = Scene([ellipses((-big, 0, -2), (big, 0, 0), (0, big, 0))])
     frame = render_exact(scene, orthographic(), Settings(shading="flat"), samples=samples, pixel_filter=name)

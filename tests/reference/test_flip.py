@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""FLIP is read as its authors mean it."""
+"""FLIP gives the values that its authors define."""
 
 import numpy as np
 import pytest
@@ -11,14 +11,17 @@ from splat_addon.reference.metrics import mean_flip
     ("a", "b"), [((0, 0, 0), (1, 1, 1)), ((0.2, 0.5, 0.1), (0.2, 0.4, 0.3)), ((0.5,) * 3, (0.5,) * 3)]
 )
 def test_flip_of_two_plain_colours_is_the_papers(a, b):
-    """Andersson et al. 2020: without detail only the colour pipeline is left."""
+    """Without detail only the colour part of the metric is left (Andersson et al. 2020)."""
     pictures = (np.broadcast_to(np.float64(color), (32, 32, 3)) for color in (a, b))
     assert mean_flip(*pictures) == pytest.approx(flip_of_colours(a, b), abs=2e-4)
 
 
 def flip_of_colours(a, b):
-    """Sections 4.1 and 4.3: Hunt-adjusted CIELAB, HyAB distance to the power 0.7, compressed beyond 0.4 of the
-    distance of green and blue onto 0.95 to 1. The colours are linear."""
+    """The FLIP of two linear colours by sections 4.1 and 4.3 of the paper.
+
+    It is the HyAB distance in Hunt-adjusted CIELAB to the power 0.7; values beyond 0.4 of the distance between green
+    and blue are compressed to 0.95 to 1.
+    """
     to_xyz = np.array([(0.4123908, 0.3575843, 0.1804808), (0.2126390, 0.7151687, 0.0721923),
                        (0.0193308, 0.1191948, 0.9505322)])  # fmt: skip
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a single splat lies on the picture and how deep, against closed forms."""
+"""The position and depth of a single splat in the picture agree with closed forms."""
 
 import math
 
@@ -15,7 +15,7 @@ FLAT = Settings(shading="flat")
 
 
 def tilted(angle, radius):
-    """Half-axes of a disc that faces the camera, turned by `angle` radians about x."""
+    """The half-axes of a disc that faces the camera, turned by `angle` radians about x."""
     return (radius, 0, 0), (0, radius * math.cos(angle), radius * math.sin(angle))
 
 

@@ -13,7 +13,7 @@ NORMAL = np.array((0.4, 0.2, 0.9))
 
 
 def both(ellipses, camera, stretch):
-    """Frames of two ellipses stretched by an instance, and of the same ellipses built stretched."""
+    """The frames of two ellipses stretched by an instance, and of the same ellipses built in stretched form."""
     centers = np.array([(0.4, 0.2, -2.0), (-0.3, -0.4, -2.5)])
     colors = [(1, 0.5, 0.2), (0.2, 0.4, 1)]
     stretch = np.array(stretch, float)

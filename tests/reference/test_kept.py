@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is kept between processes is found again for equal arguments alone, and falls with its sources."""
+"""Values kept between processes are found again only for equal arguments, and are discarded when their sources
+change.
+"""
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from splat_addon.reference import kept
 
 @pytest.fixture
 def counted():
-    """A kept function that notes each time that it runs."""
+    """A kept function that counts how often it runs."""
     runs = []
 
     def doubled(values, add=0):
@@ -21,7 +23,7 @@ def counted():
 
 @pytest.fixture(autouse=True)
 def elsewhere(tmp_path, monkeypatch):
-    """A product of one file, in a folder of its own."""
+    """A product of one file, stored in a separate folder."""
     monkeypatch.setattr(kept, "ROOT", tmp_path)
     (tmp_path / "splat_addon").mkdir()
     (tmp_path / "splat_addon" / "product.py").write_text("1")

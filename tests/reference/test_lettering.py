@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Letters of dots, for scenes with text."""
+"""Letters made of dots, for scenes with text, are drawn correctly."""
 
 import numpy as np
 import pytest

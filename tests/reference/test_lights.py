@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lights with a size against the integral over their lamps, and spots against their cone."""
+"""Lights with a size agree with the integral over their lamps, and spots with their cone."""
 
 import math
 
@@ -19,7 +19,7 @@ def area(position, direction=(0, 0, -1), u=(0.5, 0, 0), v=(0, 0.3, 0), **options
 
 
 def lamp_points(light, side=600):
-    """(side^2, 3) places on an area light, and each one's share of its area."""
+    """(side^2, 3) points on an area light, and the share of its area that each stands for."""
     ticks = (np.arange(side) + 0.5) / side * 2 - 1
     a, b = (x.ravel()[:, None] for x in np.meshgrid(ticks, ticks))
     u, v = np.array(light.half_axes)
@@ -28,7 +28,7 @@ def lamp_points(light, side=600):
 
 
 def weighted(light, brdf):
-    """Integral of radiance times brdf(directions) over the lamp, seen from the origin."""
+    """The integral of radiance times brdf(directions) over the lamp, seen from the origin."""
     points, share = lamp_points(light)
     distance = np.linalg.norm(points, axis=1)
     directions = points / distance[:, None]

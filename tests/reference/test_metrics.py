@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""PSNR and the sRGB curve."""
+"""PSNR and the sRGB curve have their defined values."""
 
 import math
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whole pictures: background, crops, filters' margins, and an analytic sphere."""
+"""Whole pictures are right: background, crops, filter margins, and an analytic sphere."""
 
 import math
 

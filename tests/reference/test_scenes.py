@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scenes that the engine is compared on are the same every time and have no holes."""
+"""The scenes that the engine is compared on are reproducible and have no holes."""
 
 import numpy as np
 import pytest
@@ -34,7 +34,7 @@ def test_a_scene_has_the_surfels_asked_for(name):
 
 @every_scene
 def test_a_scene_has_no_holes(name):
-    """A pixel whose eight neighbours are covered is covered."""
+    """If the eight neighbours of a pixel are covered, so is the pixel."""
     scene, camera = BUILDERS[name](count=4000, size=(48, 48))
     coverage = render_exact(scene, camera, Settings(shading="flat"), samples=2).coverage
     windows = np.lib.stride_tricks.sliding_window_view(coverage == 1, (3, 3)).reshape(46, 46, 9)
@@ -52,7 +52,7 @@ def test_the_inner_torus_shows_only_through_the_cut():
 
 
 def test_the_text_board_can_be_read():
-    """Seen from straight above at 4 pixels a dot, the ink is where the page's dots are."""
+    """Seen from straight above at 4 pixels per dot, the ink is where the text's dots are."""
     columns = 4
     scene, _ = scenes.text_board(count=40_000, columns=columns)
     ink = page(columns, 2)

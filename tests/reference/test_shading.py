@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The principled shading against closed forms, and the laws that a BRDF obeys."""
+"""The principled shading agrees with closed forms and obeys the laws of a BRDF."""
 
 import math
 
@@ -15,12 +15,12 @@ from splat_addon.rendering.scene import Instance, Material, Scene
 from splat_addon.rendering.scene.light import Light
 from splat_addon.rendering.settings import Settings
 
-#: No dielectric coat and no highlight: what is left is Lambert's law, to 0.3 %.
+#: Without a dielectric coat and highlight, Lambert's law remains, within 0.3 %.
 CHALK = Material(roughness=1.0, ior=1.0)
 
 
 def radiance(ellipses, orthographic, *lights, world=(0, 0, 0), material=CHALK, color=(1, 1, 1), normal=(0, 0, 1)):
-    """(3,) radiance of the middle of a disc at depth 2 that faces the camera."""
+    """The (3,) radiance in the middle of a disc at depth 2 that faces the camera."""
     surfels = ellipses((0, 0, -2), colors=color, normals=normal)
     scene = Scene([Instance(surfels, materials=(material,))], lights, world)
     return render_exact(scene, orthographic((33, 33)), samples=1).color[16, 16, :3]
@@ -83,7 +83,7 @@ def test_a_white_surface_in_a_white_world_gives_back_no_more_than_it_gets(
 
 @pytest.mark.parametrize("roughness", [0.1, 0.5, 1.0])
 def test_a_white_metal_vanishes_in_a_white_world(ellipses, orthographic, roughness):
-    """Light that the lobe loses is given back as scattered more than once."""
+    """Light that the lobe loses is returned as multiple scattering."""
     material = Material(roughness=roughness, metallic=1.0)
     np.testing.assert_allclose(radiance(ellipses, orthographic, world=(1, 1, 1), material=material), 1, rtol=1e-3)
 
@@ -121,7 +121,7 @@ def test_light_and_viewer_can_be_swapped(view, light, roughness):
 
 @pytest.mark.parametrize("tilt", [0, 60, 85])
 def test_a_coat_without_reflectance_is_not_there(ellipses, orthographic, tilt):
-    """An index of refraction of 1 leaves the Lambertian base: 0.6 of an even world from every side, black for black."""
+    """With an index of refraction of 1 only the Lambertian base is left: 0.6 in a uniform world, 0 for black."""
     for color in (0.6, 0.0):
         seen = radiance(
             ellipses,

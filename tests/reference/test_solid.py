@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Backs of a solid are left out, but only while the camera is outside it."""
+"""Back faces of a solid are not drawn, but only while the camera is outside it."""
 
 from dataclasses import replace
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The picture of a mesh itself: closed forms, and trimesh's rays, which share nothing with it."""
+"""The picture of a mesh agrees with closed forms and with trimesh's rays, which share no code with it."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ ONES = np.ones((1, 3, 3))
 
 
 def front(corners):
-    """(1, 3, 3) corners at z = -2 of x and y."""
+    """The (1, 3, 3) corners of a triangle at z = -2, from x and y."""
     return np.array([[(x, y, -2.0) for x, y in corners]])
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which splats a ray sees: the nearest, and what lies within its epsilon behind it."""
+"""A ray sees the nearest splat, and those behind it within its epsilon."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ RED, GREEN = (1, 0, 0), (0, 1, 0)
 
 
 def sheets(ellipses, gap, radius=1.0):
-    """A red disc at depth 4 and a green one of the same size `gap` behind it."""
+    """A red disc at depth 4, and a green one of the same size `gap` behind it."""
     return Scene([ellipses([(0, 0, -4), (0, 0, -4 - gap)], (radius, 0, 0), (0, radius, 0), [RED, GREEN])])
 
 
@@ -71,7 +71,7 @@ def test_normals_are_in_world_space(ellipses):
 
 
 def test_a_shading_normal_may_lean_away_from_the_viewer(ellipses, perspective):
-    """The splat's plane decides which side is seen, so a normal bent past the horizon is not turned round."""
+    """The splat's plane decides which side is seen, so a shading normal that leans past the horizon is not reversed."""
     steep = np.radians(80)
     u, v = (1, 0, 0), (0, np.cos(steep), -np.sin(steep))
     bent = (0, np.sin(np.radians(100)), np.cos(np.radians(100)))
@@ -80,7 +80,7 @@ def test_a_shading_normal_may_lean_away_from_the_viewer(ellipses, perspective):
 
 
 def test_a_front_hides_the_back_of_a_splat_in_its_place(ellipses, orthographic):
-    """Behind a silhouette splats stick out by their radius; the front that they overlap must win."""
+    """At a silhouette, splats of the back stick out by their radius; front splats that overlap them must win."""
     surfels = ellipses([(0, 0, -4), (0, 0, -4.2)], (1, 0, 0), [(0, -1, 0), (0, 1, 0)], [RED, GREEN])
     frame = render_exact(Scene([surfels]), orthographic((33, 33)), Settings(shading="flat"), samples=1)
     np.testing.assert_allclose(frame.color[16, 16, :3], GREEN, atol=2e-3)
@@ -94,7 +94,7 @@ def test_a_back_alone_is_drawn_as_any_splat(ellipses, orthographic):
 
 @pytest.mark.parametrize("degrees", [91, 105, 112])
 def test_a_back_is_turned_to_the_viewer_however_flat_it_is_seen(ellipses, orthographic, degrees):
-    """An open sheet has two sides. What is the rim of a front weighs too little to show."""
+    """An open sheet has two sides, and even at a flat angle its back must not pass for the rim of a front."""
     outward = np.array((0, np.sin(np.radians(degrees)), np.cos(np.radians(degrees))))
     surfels = ellipses((0, 0, -4), (1, 0, 0), np.cross(outward, (1, 0, 0)))
     normal = render_exact(Scene([surfels]), orthographic((33, 33)), samples=1).normal[16, 16]

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a rough metal reflects of a sky with a lamp, by the blurred levels, against the integral over all directions."""
+"""A rough metal's reflection of a sky with a lamp, from blurred levels, agrees with the integral over all
+directions.
+"""
 
 import numpy as np
 import pytest
@@ -16,13 +18,13 @@ CAMERA = Camera.perspective(np.eye(4), 1.0, (16, 16), near=0.1, far=100)
 
 
 def sky(lamp) -> np.ndarray:
-    """(h * w, 3) a gradient, and a lamp 16 degrees wide and twenty times as bright."""
+    """(h * w, 3) radiance of a gradient with a lamp 16 degrees wide and twenty times as bright."""
     gradient = 0.6 + 0.4 * DIRECTIONS[:, 2:]
     return np.repeat(np.where(DIRECTIONS @ lamp[:, None] > np.cos(np.radians(8)), 20.0, gradient), 3, axis=1)
 
 
 def integral(radiance, normal, view, roughness) -> float:
-    """Mean of the radiance, weighted by the lobe."""
+    """The mean radiance, weighted by the lobe."""
     up = DIRECTIONS @ normal > 1e-4
     light, count = DIRECTIONS[up], np.count_nonzero(up)
     nl, nv = light @ normal, np.full(count, view @ normal)
@@ -33,7 +35,7 @@ def integral(radiance, normal, view, roughness) -> float:
 
 @pytest.fixture(scope="module")
 def skies():
-    """(radiance, what surfaces see of it) of four."""
+    """(radiance, what surfaces see of it) for four skies."""
     lamps = unit(np.random.default_rng(1).normal(size=(4, 3)))
     pixels = [sky(lamp) for lamp in lamps]
     environments = [Environment(p.reshape(ROWS, 2 * ROWS, 3)) for p in pixels]
@@ -45,7 +47,9 @@ def skies():
 
 @pytest.mark.parametrize(("roughness", "median", "tenth"), [(0.3, 0.02, 0.1), (0.6, 0.04, 0.13), (0.8, 0.04, 0.12)])
 def test_a_lamp_in_the_sky_is_reflected_as_the_integral_says(roughness, median, tenth, skies):
-    """median: of the relative error, over random lamps, normals and viewers. tenth: exceeded by a tenth of them."""
+    """median: bound of the median relative error over random lamps, normals and viewers. tenth: the error that at most
+    a tenth of them exceed.
+    """
     off = []
     for k, (normal, view) in enumerate(unit(np.random.default_rng(0).normal(size=(2 * TRIALS, 3))).reshape(-1, 2, 3)):
         view = view * np.sign(view @ normal)

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An angle iron: a solid of flat faces with convex, concave and reflex corners, one colour a face, in no axis' way."""
+"""An angle iron for tests of edges: a solid of flat faces with convex, concave and reflex corners.
+
+Each face has one colour, and none is parallel to an axis.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ _OUTLINE = np.array(((0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)), np.float64
 
 
 def angle_iron() -> TriangleMesh:
-    """Coloured by its faces' normals."""
+    """The angle iron, coloured by the normals of its faces."""
     flat = np.concatenate([np.column_stack([_OUTLINE, np.full(6, z)]) for z in (-0.5, 0.5)])
     below = [(0, k + 1, k) for k in range(1, 5)]
     above = [(6, 6 + k, 7 + k) for k in range(1, 5)]
@@ -39,9 +42,9 @@ def angle_iron() -> TriangleMesh:
 
 
 def clipped_iron(size: tuple[int, int], resolution: float = 48, **changes) -> tuple[Scene, Camera]:
-    """Scene and camera of its surfels, that end at its edges and blend no deeper than its faces ask for.
+    """The scene and camera of the angle iron's surfels, which end at its edges and have blend depths.
 
-    changes: of the options of `sample_surface`.
+    changes: options of `sample_surface` that differ.
     """
     mesh, options = angle_iron(), {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True} | changes
     surfels = sample_surface(mesh, resolution=resolution, **options).surfels

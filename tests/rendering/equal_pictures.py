@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether two checkouts draw the same pictures, to the last bit: `python3 equal_pictures.py BEFORE [AFTER]`.
+"""Compares the pictures of two checkouts bit by bit: `python3 equal_pictures.py BEFORE [AFTER]`.
 
-The cases are those of `test_agreement.py`, small, and those of `random_pictures.py` and `rare_pictures.py`, so that
-what meets only sometimes is met. They are drawn by the standalone device, or with `--device blender` by Blender's: in
-its wheel's Python that runs this, or in the program that `--blender` names. Pictures of the checkout before are kept in
-build/equal_pictures, by its commit, the device and these files' texts: only the first comparison draws them.
+The cases are those of `test_agreement.py`, at a small size, and of `random_pictures.py` and `rare_pictures.py`, which
+also combine what seldom occurs together. The standalone device draws them; with `--device blender` it is Blender's, in
+the wheel's Python that runs this script, or in the program that `--blender` names. Pictures of the checkout BEFORE are
+kept in build/equal_pictures under its commit, the device and these files' texts, so that only the first comparison
+draws them.
 """
 
 import argparse
@@ -68,7 +69,7 @@ def _commit(checkout: Path) -> str:
 
 
 def drawn(checkout: Path, file: Path, only: str, options) -> None:
-    """The pictures of a checkout, drawn by a process of its own."""
+    """The pictures of a checkout, drawn in a separate process."""
     own, environment = [str(checkout), "--draw", str(file), "-k", only, "--device", options.device], {}
     command = [sys.executable, str(HERE), *own]
     if options.blender:
@@ -80,7 +81,7 @@ def drawn(checkout: Path, file: Path, only: str, options) -> None:
 
 
 def compared(before, after, only: str) -> int:
-    """Prints what differs; the number of cases that do."""
+    """Print the cases that differ; returns their number."""
     different, cases = {}, set()
     names = {name for name in (*before, *after) if only in name}
     for name in sorted(names):
@@ -103,11 +104,11 @@ def compared(before, after, only: str) -> int:
     return len(different)
 
 
-# What follows runs in the checkout that draws.
+# Everything below runs in the checkout whose pictures are drawn.
 
 
 def draw(file: Path, only: str, device: str) -> None:
-    """Every case's arrays, or its error."""
+    """The arrays of every case, or its error."""
     sys.path[:0] = [str(Path.cwd()), str(Path.cwd() / "tests" / "rendering")]
     if packages := os.environ.get("SURFEL_TEST_PACKAGES"):
         sys.path.append(packages)
@@ -134,7 +135,7 @@ def draw(file: Path, only: str, device: str) -> None:
 
 
 def edge_module():
-    """The module that knows how large tiles may be."""
+    """The module that holds the largest size of a tile."""
     for name in ("splat_addon.rendering.plan.tiles", "splat_addon.rendering.plan"):
         try:
             module = import_module(name)
@@ -146,7 +147,7 @@ def edge_module():
 
 
 def pictures(renderer, scene, camera, settings, refines=False) -> dict:
-    """The arrays of a frame; of a view that refines, what is shown after each sample."""
+    """The arrays of a frame; for a view that refines, the pictures shown after each sample."""
     from splat_addon.rendering import Refinement
 
     if refines:
@@ -168,7 +169,7 @@ def pictures(renderer, scene, camera, settings, refines=False) -> dict:
 
 
 def cases():
-    """(name, maker of scene, camera and settings, largest edge of a target or None)."""
+    """(name, function that makes scene, camera and settings, largest edge of a target or None) for each case."""
     import test_agreement as agreement
 
     from splat_addon.rendering import Settings
@@ -189,7 +190,9 @@ def cases():
 
 
 def small(scene, camera):
-    """The scene with every fourth of its surfels, twice as large: what is drawn is the code's, not the model's."""
+    """The scene with every fourth of its surfels, twice as large: the comparison is of code, so fewer surfels
+    suffice.
+    """
     from splat_addon.surfels import Surfels
 
     def thinned(surfels):

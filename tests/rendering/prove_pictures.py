@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether the pictures of `equal_pictures.py` would show that something is missing: `python3 prove_pictures.py`.
+"""Finds out whether the pictures of `equal_pictures.py` show a missing part: `python3 prove_pictures.py`.
 
-Every part of every pass of their plans, every file that a part or a plan chooses, and every pass is taken out in turn;
-then some picture must be another, or the plan or the device refuse. Prints what nothing tells of: it needs a picture,
-or is not needed.
+Every part of every pass in their plans, every file that a part or plan chooses, and every pass is removed in turn. Then
+a picture must change, or the plan or the device must refuse. It prints what can be removed without effect: such a thing
+needs a picture, or is not needed.
 """
 
 import argparse
@@ -25,7 +25,7 @@ from splat_addon.rendering.plan import build, programs  # noqa: E402
 from splat_addon.rendering.plan.composition import DEFAULTS  # noqa: E402
 from splat_addon.rendering.plan.graph import Loop, Pass  # noqa: E402
 
-#: Of the pictures that have a thing, how many are drawn before it counts as not told of.
+#: The number of pictures with a part that are drawn before the part counts as having no effect.
 TRIES = 40
 
 
@@ -47,7 +47,7 @@ def main() -> int:
 
 
 def found(cases) -> dict[tuple, list[str]]:
-    """Thing -> the cases whose plan has it."""
+    """Removable thing -> the cases whose plan contains it."""
     having = defaultdict(list)
     for name, (make, _) in cases.items():
         scene, camera, settings, *_ = make()
@@ -62,7 +62,7 @@ def found(cases) -> dict[tuple, list[str]]:
 
 
 def things(p: Pass):
-    """What may be taken out of a pass."""
+    """What can be removed from a pass."""
     for part in p.parts:
         yield "part", p.host, p.kind, part.feature, part.words, part.only
         for name, file in part.choices:
@@ -73,7 +73,7 @@ def things(p: Pass):
 
 
 def without(thing: tuple, p: Pass) -> Pass:
-    """The pass with a part or a choice less."""
+    """The pass without a part or choice."""
     kind, host, of, *which = thing
     if (host, of) != (p.host, p.kind):
         return p
@@ -86,7 +86,7 @@ def without(thing: tuple, p: Pass) -> Pass:
 
 
 def is_told(renderer, thing: tuple, names: list[str], cases, before: dict) -> bool:
-    """Whether some picture is another without it."""
+    """Whether some picture changes without it."""
     for name in names[:: max(len(names) // TRIES, 1)]:
         if name not in before:
             before[name] = drawn(renderer, *cases[name])
@@ -101,7 +101,7 @@ def is_told(renderer, thing: tuple, names: list[str], cases, before: dict) -> bo
 
 
 def taken_out(thing: tuple):
-    """Plans are made without it while this is entered."""
+    """A context in which plans are made without it."""
     if thing[0] == "plan chooses":
         usual, taken = ((thing[1], DEFAULTS[thing[1]]),), programs._taken
         return patch.object(
@@ -115,7 +115,7 @@ def taken_out(thing: tuple):
 
 
 def less(thing: tuple, steps: tuple) -> tuple:
-    """The steps without a pass."""
+    """The steps without one pass."""
     kept = []
     for step in steps:
         if isinstance(step, Loop):
@@ -126,7 +126,7 @@ def less(thing: tuple, steps: tuple) -> tuple:
 
 
 def drawn(renderer, make, edge) -> dict[str, np.ndarray]:
-    """Arrays of a case, or its error."""
+    """The arrays of a case, or its error."""
     limits = equal_pictures.edge_module()
     normal, limits.MAX_TARGET_EDGE = limits.MAX_TARGET_EDGE, edge or limits.MAX_TARGET_EDGE
     try:

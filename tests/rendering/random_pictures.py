@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scenes and settings put together at random from everything that there may be: `equal_pictures.py` draws them."""
+"""Makes random scenes and settings from everything that the renderer supports, for `equal_pictures.py`."""
 
 from dataclasses import replace
 
@@ -24,7 +24,7 @@ OUTPUTS = (
 
 
 class Chance:
-    """Choices of one random case."""
+    """The random choices of one case."""
 
     def __init__(self, seed: int):
         self.rng = np.random.default_rng(seed)
@@ -37,7 +37,7 @@ class Chance:
 
 
 def random_case(seed: int):
-    """Scene, camera, settings and whether the view refines."""
+    """A random scene, camera and settings, and whether the view refines."""
     from splat_addon.rendering import Environment, Scene
 
     by = Chance(seed)
@@ -50,8 +50,11 @@ def random_case(seed: int):
 
 
 def crowded_case(seed: int):
-    """A random case in which much meets that seldom does: holes, transparent or split objects with clip lines, blend
-    depths or levels, near the eye, with shadows and indices."""
+    """A random case with a rare combination of features.
+
+    It has holes, or transparent or split objects with clip lines, blend depths or levels, near the eye, with shadows
+    and indices.
+    """
     from splat_addon.rendering import Light
 
     by = Chance(seed)
@@ -72,7 +75,7 @@ def crowded_case(seed: int):
 
 
 def crowded(by: Chance, placed, are_polygons: bool):
-    """An instance with more of what there may be."""
+    """The instance with further optional features."""
     shape, count = placed.surfels, len(placed.surfels)
     if by.some(0.6):
         lines = by.rng.integers(-32768, 32768, (2, count, 2)).astype(np.int16)
@@ -87,7 +90,7 @@ def crowded(by: Chance, placed, are_polygons: bool):
 
 
 def random_objects(by: Chance):
-    """A ball on a floor, and sometimes glass, a hole, a board, or nothing."""
+    """A ball on a floor, with a chance of glass, a hole, a board, or nothing at all."""
     from splat_addon.images import Image
     from splat_addon.reference import extremes, scenes
     from splat_addon.rendering import Instance, Material, SurfaceTexture
@@ -126,7 +129,7 @@ def random_objects(by: Chance):
 
 
 def random_ball(by: Chance):
-    """700 surfels, sometimes with materials of their own, texture coordinates, or the word that they are solid."""
+    """700 surfels that may have their own materials or texture coordinates, or be marked as solid."""
     from splat_addon.reference import extremes, scenes
 
     points = scenes.fibonacci_sphere(700)
@@ -151,7 +154,7 @@ def random_ball(by: Chance):
 
 
 def random_polygons(by: Chance, turned, material, board_material, texture, split):
-    """A board, and the ball's near half where it is split by its distance."""
+    """A board, and the polygons of the ball's near half if it is split by distance."""
     from splat_addon.reference import scenes
     from splat_addon.rendering import PolygonInstance, make_polygons
 
@@ -169,7 +172,7 @@ def random_polygons(by: Chance, turned, material, board_material, texture, split
 
 
 def random_lights(by: Chance):
-    """A sun and a lamp, or one of them, or none."""
+    """A sun, a lamp, both or neither."""
     from splat_addon.rendering import Light
 
     lights = []
@@ -184,7 +187,7 @@ def random_lights(by: Chance):
 
 
 def random_view(by: Chance, scene):
-    """A camera, and the scene with a disc far behind it where it sees that far."""
+    """A camera, and the scene; if the camera sees that far, the scene has a disc far away."""
     from splat_addon.reference import extremes
     from splat_addon.rendering import Camera, Instance, look_at
 
@@ -201,7 +204,7 @@ def random_view(by: Chance, scene):
 
 
 def random_settings(by: Chance, among_polygons: bool):
-    """Settings, and names of the objects that they can show."""
+    """Random settings, and names for the objects if the settings can show them."""
     from splat_addon.rendering import Lines, Matcap, Settings
     from splat_addon.rendering.methods import METHODS
     from splat_addon.rendering.shading_models import SHADING_MODELS

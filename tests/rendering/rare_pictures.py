@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scenes for what the random ones never show: `equal_pictures.py` draws them."""
+"""Scenes for cases that the random ones never show, for `equal_pictures.py`."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ from random_pictures import SIZE
 
 
 def rare_cases() -> dict:
-    """Name -> scene, camera, settings. The camera looks along -Z from the origin."""
+    """Name -> scene, camera, settings. The camera is at the origin and looks along -Z."""
     from splat_addon.reference import extremes, scenes
     from splat_addon.rendering import Camera, Instance, Light, Scene, Settings
 

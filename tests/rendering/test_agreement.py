@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The same scene gives the same picture on every device and backend, and that picture is the true one."""
+"""The same scene gives the same picture on every device and graphics backend, and it is the true picture."""
 
 from dataclasses import replace
 
@@ -40,7 +40,7 @@ NORMAL_TOLERANCE = 5e-4
 #: A float16 sum is rounded at every splat, to one side or the other of what differs in the last digit of float32; of 1,
 #: and of the value in highlights, which magnify it.
 FLOAT16_TOLERANCE = 6e-3
-#: The share of samples in which a splat's rim, or two depths, may tie and fall either way.
+#: The share of samples that may tie at a splat's rim or between two depths, and fall either way.
 TIES = 1 / 20_000
 SIZE = (256, 256)
 #: Layers behind one another in the transparent spheres, peeled or in the last one.
@@ -48,13 +48,13 @@ SURFACES = 8
 
 
 def solid(scene, camera):
-    """The scene with its instances declared solid."""
+    """The scene with its instances marked as solid."""
     instances = (replace(i, shape=i.surfels.as_solid()) for i in scene.surfels)
     return replace(scene, surfels=tuple(instances)), camera
 
 
 def lit(scene, camera):
-    """The scene under one light of each kind, with a size."""
+    """The scene under one light of each kind, all with a size."""
     lights = (
         Light("sun", energy=1.0, direction=(1, -0.5, -1), size=0.3),
         Light("point", (1, 0.6, 0.3), energy=60, position=(-2, 1, 2), size=0.3),
@@ -65,14 +65,14 @@ def lit(scene, camera):
 
 
 def linked(scene, camera):
-    """Two lights, of which one object has the first and the other both."""
+    """The scene under two lights; one object is lit by the first, the other by both."""
     first, second = scene.surfels
     lights = Light("sun", energy=2.0, direction=(1, -0.5, -1)), Light("sun", energy=2.0, receivers=(1,))
     return replace(scene, surfels=(first, replace(second, light_set=1)), lights=lights), camera
 
 
 def shadowed(scene, camera):
-    """The scene under a sun and a lamp, hard and soft, that cast shadows."""
+    """The scene under a sun and a lamp that cast shadows, hard or soft."""
     lights = (
         Light("sun", energy=2.0, direction=(1, -0.5, -1), casts_shadow=True),
         Light("point", energy=60, position=(-2, 1, 2), size=0.3, casts_shadow=True),
@@ -81,7 +81,7 @@ def shadowed(scene, camera):
 
 
 def under_large_lamps(scene, camera):
-    """The scene under lamps so large and close that looks for what is in their way go over several faces of a cube."""
+    """The scene under lamps so large and close that the search for blockers crosses several faces of a cube map."""
     lights = (
         Light("point", energy=30, position=(-1.2, -0.6, 1.2), size=0.5, casts_shadow=True),
         Light("area", energy=40, position=(1, -1, 1.5), direction=(-0.4, 0.5, -1), casts_shadow=True),
@@ -90,13 +90,13 @@ def under_large_lamps(scene, camera):
 
 
 def holed(scene, camera):
-    """The scene with its second instance cutting a hole."""
+    """The scene with its second instance as a holdout."""
     first, second = scene.surfels
     return replace(scene, surfels=(first, replace(second, is_holdout=True))), camera
 
 
 def environment():
-    """A sky, a floor and a red lamp in a picture of 32 x 64 pixels."""
+    """A 32 x 64 image of a sky, a floor and a red lamp."""
     pixels = np.empty((32, 64, 3), np.float32)
     pixels[:16], pixels[16:] = (0.1, 0.08, 0.05), (0.3, 0.5, 0.9)
     pixels[20:23, 40:44] = 3, 0.6, 0.2
@@ -104,26 +104,26 @@ def environment():
 
 
 def blurred(scene, camera):
-    """The scene through a lens of six blades, focused on its middle."""
+    """The scene through a lens with six blades, focused on its middle."""
     return scene, replace(camera, lens=Lens(0.1, float(np.linalg.norm(camera.matrix_world[:3, 3])), 6))
 
 
 def around(scene, camera):
-    """The scene in a panorama from where the camera is, that looks past it."""
+    """A panorama of the scene from the camera's place, looking past the objects."""
     turned = camera.matrix_world.copy()
     turned[:3, :3] = turned[:3, :3] @ look_at((0, 0, 0), (1, 0.4, -1))[:3, :3]
     return scene, Panorama(turned, Equirectangular(), (128, 64))
 
 
 def in_a_picture(scene, camera):
-    """The scene in a world that is a picture; its two materials reflect it."""
+    """The scene in an image of a world, which its two materials reflect."""
     rough, metal = scene.surfels
     metal = replace(metal, materials=(Material(roughness=0.3, metallic=1.0),))
     return replace(scene, surfels=(rough, metal), world=(1, 0.9, 0.8), environment=environment()), camera
 
 
 def own_materials(scene, camera):
-    """The scene with roughness, metallic and emission that vary over one of its instances, and a glow on another."""
+    """The scene with roughness, metallic and emission per surfel on one instance, and a glow on another."""
     first, *others = scene.surfels
     x, y, z = (first.surfels.positions / np.abs(first.surfels.positions).max()).T
     own = replace(
@@ -137,7 +137,7 @@ def own_materials(scene, camera):
 
 
 def deep(scene, camera):
-    """The scene before a parallel camera, and a disc 1e5 behind it: linear depth."""
+    """The scene before a parallel camera with a disc 1e5 behind it, which needs linear depth."""
     matrix = camera.matrix_world.copy()
     matrix[:3, 3] += 0.5 * matrix[:3, 0] - 1e5 * matrix[:3, 2]
     disc = Instance(discs((0, 0, 0), (0.2, 0, 0), (0, 0.2, 0), (1, 0, 0)), matrix)
@@ -161,18 +161,18 @@ SCENES = {
     "clip_lines": lambda: clipped_iron(SIZE),
 }
 
-#: Compared with the truth, with as many layers as there are, in tests/rendering/test_transparency.py.
+#: tests/rendering/test_transparency.py compares them with the truth, with all their layers.
 TRANSPARENT = {
     "transparent_spheres": lambda: scenes.transparent_spheres(count=600, size=SIZE),
     "transparent_shadows": lambda: shadowed(*scenes.transparent_spheres(count=600, size=SIZE)),
 }
 
-#: Looked up under footprints, which rays do not have: tests/rendering/test_textured.py compares them with the truth.
+#: Rays cannot filter textures under footprints: tests/rendering/test_textured.py compares them with the truth.
 TEXTURED = {"textured_plane": lambda: scenes.textured_plane(size=SIZE)}
 
 
 def split(scene, camera):
-    """The ball of splats, and polygons in its place up to a distance; the floor has a texture."""
+    """A ball that is polygons up to a distance and splats beyond it, on a textured floor."""
     (ball,), (floor, other) = scene.surfels, scene.polygons
     uvs = floor.polygons.positions[:, :2] * 0.7
     paper = SurfaceTexture(Image(scenes.checks(64, 8)))
@@ -196,7 +196,7 @@ BLURRED = {"depth_of_field": lambda: blurred(*scenes.checker_plane(size=SIZE))}
 #: Its faces' edges lie across the torus; tests/rendering/test_panorama.py has closed forms.
 ALL_AROUND = {"panorama": lambda: around(*scenes.torus(size=SIZE))}
 
-#: Models that show the surface and not its light.
+#: Shading models that show the surface without light.
 UNLIT = [model.name for model in SHADING_MODELS.values() if not model.is_lit]
 
 #: scene, method, other settings
@@ -249,7 +249,7 @@ def test_picture_is_the_same_on_every_device(name, method, options, render, on_b
         apart = ties(here["color"] / brightness, standalone["color"] / brightness, tolerance)
         assert_few(spots(apart) if filters else apart, samples)
         assert_few(ties(here["normal"], standalone["normal"], max(tolerance, NORMAL_TOLERANCE)), samples)
-        # what layers hide is a product of roundings, and a filter's share a sum of them
+        # layers multiply rounding errors, and filters add them up
         apart = TOLERANCE if has_layers else ROUNDING if filters else 0
         assert_few(np.abs(here["coverage"] - standalone["coverage"]) > apart, samples)
         assert_few(hit & (np.abs(here["depth"] - standalone["depth"]) > TOLERANCE), samples)
@@ -270,12 +270,14 @@ def test_picture_is_the_exact_one(name, render):
 
 
 def ties(picture, other, tolerance=TOLERANCE):
-    """(h, w) bool: where two pictures are not equal within the tolerance."""
+    """(h, w) bool: the pixels at which two pictures differ by more than the tolerance."""
     return np.abs(picture - other).max(axis=2) > tolerance
 
 
 def spots(tied):
-    """One pixel of each group of neighbours that a filter may have made of one sample; larger groups as they are."""
+    """One pixel for each group of neighbours small enough to be the filtered image of one sample; larger groups
+    unchanged.
+    """
     labels, _ = ndimage.label(tied, np.ones((3, 3)))
     kept = np.zeros_like(tied)
     for number, (rows, columns) in enumerate(ndimage.find_objects(labels), 1):
@@ -286,7 +288,7 @@ def spots(tied):
 
 
 def assert_few(tied, samples):
-    """At most a counted handful of pixels, each of `samples` samples."""
+    """At most a counted handful of pixels are set; each has `samples` samples."""
     allowed = max(TIES * samples * tied.size, 1)
     count = np.count_nonzero(tied)
     assert count <= allowed, f"{count} of {tied.size} pixels differ, not at most {allowed:.0f}"

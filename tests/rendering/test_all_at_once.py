@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Everything that a scene may have and every pass, in one picture: it is the same with the passes and without."""
+"""A picture with every feature of a scene is the same with all passes as without them."""
 
 from dataclasses import replace
 
@@ -25,7 +25,7 @@ CAMERA = Camera.perspective(np.eye(4), 0.9, (40, 30))
 
 
 def everything() -> Scene:
-    """Surfels with materials of their own, glass, a hole and polygons, under linked lights with shadows and a world."""
+    """A scene of surfels with own materials, glass, a holdout and polygons, with linked lights, shadows and a world."""
     wall = sheet(40, 2.0, 10.0, 4.0)
     x, y, _ = wall.positions.T
     own = replace(
@@ -58,7 +58,7 @@ def everything() -> Scene:
 
 @pytest.mark.parametrize("method", ["quad", "mip", "raycast"])
 def test_all_passes_of_all_that_there_may_be(method, render):
-    """A driver that has room for fewer textures than a shader reads would refuse this."""
+    """The shaders must not read more textures than a driver allows."""
     settings = Settings(method=method, lines=Lines(), shadow_resolution=256)
     plain = render(everything(), CAMERA, settings)
     frame = render(everything(), CAMERA, replace(settings, outputs=OUTPUTS))

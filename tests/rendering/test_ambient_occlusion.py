@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ambient occlusion against its twin, which looks at every pixel, and the twin against what is known of a wall."""
+"""Ambient occlusion agrees with its twin, which looks at every pixel, and the twin with the closed form of a wall."""
 
 from dataclasses import replace
 
@@ -27,14 +27,14 @@ from splat_addon.rendering.plan.tiles import MAX_TARGET_EDGE
 from splat_addon.surfels import Surfels
 
 SETTINGS = Settings(method="quad", ambient_occlusion=4.0)
-#: Dark, so that next to nothing is reflected more than once, and without a coat.
+#: Dark and without a coat, so that almost no light is reflected twice.
 SOOT, MATT = 0.01, (Material(roughness=1.0, ior=1.0),)
 SIZE = (96, 48)
 HEIGHT, HALF_LENGTH = 1.0, 40.0
 
 
 def corner(side=True):
-    """A floor before a wall of height 1, both very long."""
+    """A floor in front of a wall of height 1, both very long."""
     points = [(-HALF_LENGTH, -9, 0), (HALF_LENGTH, -9, 0), (HALF_LENGTH, 0, 0), (-HALF_LENGTH, 0, 0)]
     points += [(-HALF_LENGTH, 0, HEIGHT), (HALF_LENGTH, 0, HEIGHT)]
     faces = [(0, 1, 2), (0, 2, 3)] + [(3, 2, 5), (3, 5, 4)] * side
@@ -54,14 +54,15 @@ def camera(is_parallel=True, size=SIZE, height=4.0):
 
 
 def wall_share(distance):
-    """Of the floor at a distance from an endless wall: the view factor of a strip up to the angle under which it is
-    seen, (1 - cos) / 2, is hidden.
+    """The share of the world that an endless wall hides from a point of the floor at a distance.
+
+    It is the view factor of a strip up to the angle at which its top is seen, (1 - cos) / 2.
     """
     return (1 + distance / np.hypot(distance, HEIGHT)) / 2
 
 
 def floor_and_wall(view):
-    """A frame of closed forms: depth and normal of what rays hit."""
+    """A frame with the depths and normals that rays give in closed form."""
     near, far = (view.points_at(np.full(view.size[::-1], depth)) for depth in (1.0, 2.0))
     ray = far - near
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -76,7 +77,7 @@ def floor_and_wall(view):
 
 
 def test_the_twin_is_the_view_factor_of_a_wall():
-    """What the picture does not show of it would hide up to 0.02 more."""
+    """The part of the wall outside the picture would hide up to 0.02 more."""
     view = camera(height=4.0, size=(400, 100))
     frame, hit, is_floor = floor_and_wall(view)
     share = open_share(frame, view, 1000.0)
@@ -88,7 +89,7 @@ def test_the_twin_is_the_view_factor_of_a_wall():
 
 @pytest.mark.parametrize("is_parallel", [True, False])
 def test_the_picture_is_the_twins(is_parallel, render):
-    """8 steps along 4 slices a sample pass over some of what is between them: 0.02 on average, 0.06 a sample."""
+    """8 steps along 4 slices per sample miss a little: 0.02 on average, 0.06 for a single sample."""
     view = camera(is_parallel)
     with_it = render(scene(), view, SETTINGS)
     without = render(scene(), view, replace(SETTINGS, ambient_occlusion=0.0))
@@ -101,7 +102,7 @@ def test_the_picture_is_the_twins(is_parallel, render):
 
 
 def test_a_plane_does_not_hide_itself(render):
-    """However it is seen; and 1.0 is not reached by a world that is counted twice."""
+    """From any angle, a plane alone is as bright as without ambient occlusion."""
     alone = Scene(polygons=[Polygons(corner(side=False), materials=MATT)], world=(1, 1, 1))
     for is_parallel in (True, False):
         view = camera(is_parallel)
@@ -132,7 +133,7 @@ def test_lamps_are_not_occluded(render):
 
 
 def test_a_picture_in_tiles_has_no_seam(render):
-    """What is looked for beyond a tile is drawn beside it."""
+    """The tile's margin contains the surfaces beyond its edge that may occlude."""
     edge = MAX_TARGET_EDGE // 16
     view = camera(size=(edge + 32, 12))
     settings = replace(SETTINGS, supersampling=16, ambient_occlusion=2.0)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the papers do otherwise than this project, asked for by settings: splats that are lit one by one, backs that are
-left out or drawn as fronts. Each is what the reference says, and nothing of it is there where nobody asks.
+"""Settings that reproduce the papers: splats lit one by one, and backs left out or drawn as fronts.
+
+Each gives what the reference gives, and the plan has nothing of it by default.
 """
 
 from dataclasses import replace
@@ -35,7 +36,7 @@ def test_the_picture_is_the_references(asked, shading, render):
 
 
 def test_each_changes_the_picture(render):
-    """Those that tell backs from fronts where backs are seen: the torus is open."""
+    """The torus is open, so that settings about backs have a visible effect."""
     before = render(*torus(), QUADS).color
     for asked in ASKED.values():
         assert np.abs(render(*torus(), replace(QUADS, **asked)).color - before).max() > 1e-3, asked
@@ -43,7 +44,7 @@ def test_each_changes_the_picture(render):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_lit_splats_of_one_normal_are_what_lit_samples_are(method, render):
-    """Under a sun every splat of a wall has one colour, whatever the method."""
+    """Under a sun, all splats of a wall have the same colour with every method."""
     x, y = (a.reshape(-1, 1) for a in np.meshgrid(np.arange(-1, 1.01, 0.1), np.arange(-1, 1.01, 0.1)))
     tilted = np.array((0.8, 0, 0.6)) * 0.15
     wall = discs(x * (0.8, 0, 0.6) + y * (0, 1, 0) + (0, 0, -3), tilted, (0, 0.15, 0), (0.8, 0.4, 0.2))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splats that end at lines: faces meet sharply, as the mesh's do, in every method and in every kind of pass."""
+"""With clip lines faces meet as sharply as the mesh's do, in every method and every kind of pass."""
 
 from dataclasses import replace
 
@@ -24,7 +24,7 @@ from tests.rendering.creased import angle_iron, clipped_iron
 FLAT = Settings(shading="flat", transparent_film=True)
 SIZE = (96, 96)
 STRAIGHT = Camera.perspective(np.eye(4), 0.6, SIZE, 0.1, 100)
-#: A disc that faces the viewer vanishes in that method.
+#: With that method a disc that faces the viewer vanishes.
 FACING = [method for method in METHODS if method != "homogeneous_printed"]
 LINE = np.array([[0.6, 0.8, 0.1]])
 
@@ -35,7 +35,7 @@ def disc(**lines):
 
 
 def halves():
-    """Its two halves at a slanting line."""
+    """The two halves of the disc, cut at a slanting line."""
     return disc(clip_line=pack_lines(LINE)), disc(clip_line=pack_lines(-LINE))
 
 
@@ -50,7 +50,10 @@ def over_grey(picture, alpha):
 
 @pytest.mark.parametrize("storage", STORAGES)
 def test_an_angle_iron_is_the_meshs_own(storage, render):
-    """By mip at one sample a pixel, beside float64 triangles. Measured: 46.1 and 46.0 dB, and 28.4 without lines."""
+    """Mip Filter with one sample per pixel is compared with float64 triangles.
+
+    Measured: 46.1 and 46.0 dB, and 28.4 dB without lines.
+    """
     scene, camera = clipped_iron(SIZE)
     frame, truth = render(scene, camera, replace(FLAT, method="mip", storage=storage)), iron_truth(camera)
     shown, true = over_grey(frame.color, frame.coverage), over_grey(truth.color, truth.coverage)
@@ -59,7 +62,7 @@ def test_an_angle_iron_is_the_meshs_own(storage, render):
 
 
 def test_in_a_concave_corner_the_filter_reaches_over_both_faces(render):
-    """Measured: 0.10 off at most, and 0.16 where one face hides the filtered end of the other."""
+    """Measured: an error of at most 0.10; it was 0.16 when one face hid the filtered end of the other."""
     scene, camera = clipped_iron(SIZE)
     eye = look_at((1.0, 0.55, 0.4), (0, 0, 0))[:3, :3] @ (4, 4, 2.5)
     camera = replace(camera, matrix_world=look_at(tuple(eye), (0, 0, 0)))
@@ -69,7 +72,7 @@ def test_in_a_concave_corner_the_filter_reaches_over_both_faces(render):
 
 
 def lined_roof():
-    """A red roof over its windscreen, with a green lining that meets them at the fold and lies under both."""
+    """A red roof above its windscreen, with a green lining below both that meets them at the fold."""
     ridge, eaves = np.array([(-2, 0, 0), (2, 0, 0)]), np.array([(0, -2, -0.4), (0, 1.7, -1.1)])
     corners = [*ridge, *(ridge + eaves[0]), *(ridge + eaves[1])]
     corners += [*(ridge + eaves[0] - (0, 0, 0.5)), *(ridge + eaves[1] - (0, 0, 0.5))]
@@ -83,7 +86,9 @@ def lined_roof():
 @pytest.mark.parametrize("method", ["mip", "ewa"])
 @pytest.mark.parametrize(("pixels", "most"), [(48, 15), (96, 25)])
 def test_past_its_line_a_splat_does_not_show_that_is_hidden_before_it(method, pixels, most, render):
-    """Past the fold the lining's plane lies before the other face: it showed in 36 and 90 pixels."""
+    """Past the fold, the lining's plane is in front of the other face: without clip lines it showed in 36 and 90
+    pixels.
+    """
     surfels = sample_mesh(lined_roof(), resolution=64, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
     camera = Camera.perspective(look_at((1.1, -3.0, 4.2), (0.1, 0, -0.2)), 0.5, (pixels, pixels), 0.1, 100)
     frame = render(Scene((surfels,)), camera, replace(FLAT, method=method, supersampling=1))
@@ -141,7 +146,7 @@ def test_whose_a_sample_is_ends_at_the_line_too(render):
 
 @pytest.mark.parametrize("method", ["quad", "mip"])
 def test_a_clipped_layer_lets_through_what_lies_beside_its_line(method, render):
-    """Half a veil of 50 % before a wall."""
+    """Half of a veil with opacity 0.5 is in front of a wall."""
     first, _ = halves()
     veil = replace(first, colors=np.array([[1.0, 0, 0, 0.5]]))
     wall = discs((0, 0, -6), (5, 0, 0), (0, 5, 0), (0, 1, 0))
@@ -151,7 +156,7 @@ def test_a_clipped_layer_lets_through_what_lies_beside_its_line(method, render):
 
 @pytest.mark.parametrize("kind", ["sun", "point"])
 def test_a_clipped_splat_shadows_with_what_is_left_of_it(kind, render):
-    """In a map of a parallel camera, and in the faces of a cube."""
+    """This holds for a shadow map with a parallel camera, and for the faces of a cube map."""
     light = Light(kind, energy=3 if kind == "sun" else 900, position=(0, 0, 4), direction=(0, 0, -1), casts_shadow=True)
     above = discs((0, 0, 0), (0.7, 0, 0), (0, 0.7, 0), (1, 1, 1))
     floor = discs((0, 0, -2), (6, 0, 0), (0, 6, 0), (1, 1, 1))
@@ -211,7 +216,7 @@ def test_a_sheet_behind_shines_through_only_as_deep_as_splats_blend(storage, ble
 
 @pytest.mark.parametrize("blend", [0.0, 0.004, 0.5, 0.999, 1.0])
 def test_blend_depths_leave_materials_as_they_are(blend, render):
-    """Both are in one number."""
+    """Both are packed into one number."""
     materials = tuple(Material(index=k) for k in range(300))
     surfels = replace(disc(), blend_depth=np.array([blend]), materials=np.array([257]))
     settings = Settings(method="quad", outputs=("color", "material_index"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shaders are hosts and features: composed, never switched, and no two parts can stand in one another's way."""
+"""Shaders are composed of hosts and features, never switched by conditionals, and names of parts never clash."""
 
 import re
 from collections import defaultdict
@@ -11,7 +11,7 @@ from splat_addon.rendering.plan.compose import main
 from splat_addon.rendering.plan.composition import FOLDER, compose
 
 FILES = sorted(FOLDER.rglob("*.glsl"))
-#: Folders of which a text has one file.
+#: Folders from which a shader includes only one file.
 CHOICES = {
     "methods",
     "shading_models",
@@ -29,13 +29,13 @@ GLOBAL = re.compile(r"^(?:const )?(?:struct (\w+)|\w+ (\w+)(?:\[\d*\])?(?:\(| =|
 
 
 def global_names(text: str) -> set[str]:
-    """What a text defines outside of functions."""
+    """The names that a text defines outside functions."""
     plain = re.sub(r"//.*", "", text)
     return {a or b for a, b in GLOBAL.findall(plain) if (a or b) != "main"}
 
 
 def home(file) -> str:
-    """The folder of a file of which a text has one; else the file."""
+    """The folder of a file if a shader includes only one file of that folder; else the file itself."""
     if file.parent.name == "lib" and file.stem in SHARED:
         return "methods"
     return file.parent.name if file.parent.name in CHOICES else file.relative_to(FOLDER).as_posix()
@@ -48,7 +48,10 @@ def test_no_text_is_switched_by_a_conditional():
 
 
 def test_global_names_are_unique():
-    """Of two files that a text may have together; those of which it has one may answer to the same names."""
+    """No two files that a shader may include together define the same name.
+
+    Alternatives, such as methods, may share names.
+    """
     homes = defaultdict(set)
     for file in FILES:
         for name in global_names(file.read_text(encoding="utf-8")):
@@ -58,7 +61,7 @@ def test_global_names_are_unique():
 
 
 def test_nothing_is_named_as_a_block_is():
-    """Blender 4.5 makes a macro of a block's name, which would take the place of a field or variable of that name."""
+    """Blender 4.5 turns a block's name into a macro, which would replace any field or variable of that name."""
     for file in FILES:
         plain = re.sub(r"//.*", "", file.read_text(encoding="utf-8"))
         taken = re.findall(r"\.(?:view|draw|frame)\b|\b\w+ (?:view|draw|frame)\s*[;,=)\[(]", plain)
@@ -128,6 +131,6 @@ def write(folder, name, text):
 
 
 def use(folder, monkeypatch):
-    """Compose from that folder, remembering nothing of it."""
+    """Compose from that folder, with an empty cache."""
     monkeypatch.setattr(composing, "FOLDER", folder)
     forget()

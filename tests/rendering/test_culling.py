@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splats that are hidden, and backs of solids, are not drawn, and nothing but time tells where they collapse to."""
+"""Hidden splats and backs of solids are not drawn, and the picture is the same as if they were."""
 
 from dataclasses import replace
 
@@ -20,14 +20,14 @@ MIP = Settings(method="mip", outputs=("color", "depth", "normal", "coverage", "o
 
 
 def near_torus():
-    """Splats of many pixels, some across the border and some across the near plane."""
+    """Splats of many pixels, some of which cross the picture's border or the near plane."""
     scene, _ = scenes.torus(count=4_000, size=SIZE)
     pose = look_at((1.45, 0.1, 0.35), (0.6, 0.2, 0.0))
     return scene, Camera.perspective(pose, 1.4, SIZE, near=0.05)
 
 
 def deep_torus():
-    """So deep that fragments write their depths, with a torus that cuts holes."""
+    """A scene so deep that fragments write their depths, with a torus that is a holdout."""
     (scene, camera), far = scenes.torus(count=6_000, size=SIZE), np.eye(4)
     far[:3, 3] = 300 * (camera.matrix_world[:3, :3] @ (0.1, 0.1, -1))
     far[:3, :3] *= 40
@@ -43,7 +43,7 @@ def transparent_torus():
 
 
 def parallel():
-    """The eye's plane is amid what is seen: half of its depths are negative."""
+    """A parallel camera in the middle of the scene, so that half of the depths are negative."""
     scene, _ = scenes.torus(count=6_000, size=SIZE)
     return scene, Camera.orthographic(look_at((0, 0, 0.2), (0, 1, 0)), 2.4, SIZE, -10, 10)
 
@@ -78,7 +78,7 @@ def test_the_picture_is_the_same_without(name, supersampling, render, monkeypatc
 
 
 def test_a_cell_holds_the_farthest_that_is_seen_around_it(on_device, monkeypatch):
-    """And what lies behind that alone is left out: told that nothing is seen, the pass draws nothing."""
+    """Splats behind a cell's depth are skipped: with all cells set to "nothing seen", the pass draws nothing."""
     scene, camera = scenes.torus(count=6_000, size=SIZE)
     found = {}
 
@@ -109,7 +109,7 @@ def test_a_cell_holds_the_farthest_that_is_seen_around_it(on_device, monkeypatch
 
 
 def solids():
-    """Surfels and polygons."""
+    """A scene of solid surfels and polygons."""
     scene, camera = scenes.polygons(size=SIZE)
     surfels = tuple(replace(i, shape=i.surfels.as_solid()) for i in scene.surfels)
     floor, ball = scene.polygons
@@ -120,7 +120,7 @@ def solids():
 
 @pytest.mark.parametrize("method", ["quad", "mip", "raycast", "sprites_unfiltered"])
 def test_backs_of_solids_may_collapse_in_the_view_or_before_it(method, render, monkeypatch):
-    """In it where the camera sees the whole object; either way the picture is the same."""
+    """They collapse in the view if the camera sees the whole object; either way the picture is the same."""
     scene, camera = solids()
     places = []
 

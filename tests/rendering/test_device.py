@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stays on a device: programs, which all renderers share, and nothing else that a released renderer made."""
+"""Programs stay on a device, shared by all renderers; everything else of a renderer is freed when it is released."""
 
 import gc
 
@@ -58,7 +58,7 @@ def test_frames_of_other_sizes_and_methods_leave_no_more_than_the_last_needs(on_
 
 
 def test_no_picture_takes_more_than_the_device_may(on_device):
-    """A frame lets textures go before it ends, so twice what is left suffices."""
+    """The limit is twice what a frame holds at its end, because it frees some textures before."""
 
     def bounded(device):
         scene, camera = scenes.torus(count=500, size=SIZE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The normalisation threshold of the view-independent paper, section 4.5: weak sums fade to the background."""
+"""Weak sums fade to the background below a threshold (view-independent paper, section 4.5)."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ CAMERA = Camera.orthographic(np.eye(4), 2.4, (SIZE, SIZE), 0.1, 10)
 
 
 def place():
-    """Each pixel's distance from the axis."""
+    """The distance of each pixel from the axis."""
     x = (np.arange(SIZE) + 0.5) / SIZE * 2.4 - 1.2
     return np.hypot(*np.meshgrid(x, x))
 
@@ -28,7 +28,7 @@ def place():
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("threshold", [0.0, 0.2, 0.5, 1.0])
 def test_one_disc_fades_by_its_kernel(threshold, side, sum_format, render):
-    """Also where its back is seen, which weighs less and is as much a surface."""
+    """This also holds for its back, which has a smaller weight but is as much a surface."""
     disc = discs((0, 0, -3), (1, 0, 0), (0, side, 0), (0.2, 0.5, 0.8))
     settings = Settings(
         method="quad",
@@ -49,7 +49,7 @@ def test_one_disc_fades_by_its_kernel(threshold, side, sum_format, render):
 
 @pytest.mark.parametrize("method", [name for name in METHODS if name not in LEFT_ALONE])
 def test_with_every_method_a_splat_fades_by_its_weights(method, render):
-    """A small one, seen tilted, so that filters count; against the method's twin."""
+    """A small, tilted splat, for which filters matter, is compared with the method's twin."""
     splat = test_twins.Splat(2.0, (0.1, -0.2), 40.0, 1.0, 0.3, 0.15, 0.8)
     camera = test_twins.CAMERAS["perspective"]
     surfels = splat.surfels(camera)

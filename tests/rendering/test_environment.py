@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The blurred levels of a picture of the world, against the integrals that they stand for."""
+"""The blurred levels of a world image agree with the integrals that they stand for."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ def test_solid_angles_add_up_to_the_sphere():
 
 
 def test_a_linear_sky_gives_a_matt_surface_two_thirds_of_its_slope():
-    """Radiance 1 + d.z: its cosine-weighted mean is 1 + 2/3 n.z (the first order of spherical harmonics)."""
+    """The cosine-weighted mean of the radiance 1 + d.z is 1 + 2/3 n.z (the first order of spherical harmonics)."""
     directions, _ = equirectangular_directions((64, 128))
     sky = np.repeat(1 + directions[:, 2:], 3, axis=1).reshape(64, 128, 3)
     expected = 1 + 2 / 3 * level_directions()[..., 2]

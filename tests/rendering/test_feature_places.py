@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A feature is one place: its module, its GLSL file, the order; and the meetings that are declared here, with a reason.
+"""A feature's code is in its module and GLSL file; every other file that names it is listed here with a reason.
 
-A file names a feature where it imports its module, hands `Part` the name of one of its files, or looks up what it has
-found out (`facts`, `has`); and in GLSL where it has a section for it, samples one of its textures or reads one of its
-values or constants.
+A Python file names a feature if it imports its module, gives `Part` the name of one of its files, or looks up its
+results (`facts`, `has`). A GLSL file names it if it has a section for it, samples one of its textures, or reads one of
+its values or constants.
 """
 
 import ast
@@ -17,10 +17,10 @@ from splat_addon.rendering.plan.compose import FOLDER
 from splat_addon.rendering.plan.graph import Texture
 
 RENDERING = Path(features.__file__).parents[1]
-#: name of a file in shaders/features -> the feature whose it is
+#: name of a file in shaders/features -> its feature
 FILES = {name: name_of(f) for f in FEATURES for name in (name_of(f), *getattr(f, "NAMES", ()))}
 
-#: feature -> ((why, the files that name it), ...). A file that is not here must not name it.
+#: feature -> ((reason, the files that name it), ...). No other file may name it.
 MEETINGS = {
     "back_culling": (("a frame tells how many splats were left out", "renderer.py"),),
     "depth_bounds": (
@@ -125,7 +125,7 @@ def test_a_feature_is_named_where_it_lives_and_where_a_meeting_is_declared():
 
 
 def places() -> dict[str, set[str]]:
-    """feature -> the files beside its own that name it, relative to rendering/ and shaders/."""
+    """feature -> other files that name it, relative to rendering/ and shaders/."""
     found = defaultdict(set)
     owners = _owners()
     trees = {file: ast.parse(file.read_text(encoding="utf-8")) for file in sorted(RENDERING.rglob("*.py"))}
@@ -145,7 +145,9 @@ def places() -> dict[str, set[str]]:
 
 
 def _own_texts(feature: str, hosts: set[str], folders: set[str]) -> set[str]:
-    """A feature's sections, the hosts of its passes, folders that it chooses a file of, what nobody else includes."""
+    """The GLSL files of a feature: its sections, its passes' hosts, folders it chooses from, and files only these
+    include.
+    """
     own = {f"features/{name}.glsl" for name, of in FILES.items() if of == feature}
     own |= {f"hosts/{host}.glsl" for host in hosts}
     own |= {f.relative_to(FOLDER).as_posix() for folder in folders for f in (FOLDER / "lib" / folder).glob("*.glsl")}
@@ -159,7 +161,7 @@ def _own_texts(feature: str, hosts: set[str], folders: set[str]) -> set[str]:
 
 
 def _owners() -> dict[str, str]:
-    """What shaders know a feature's textures, values, inputs and constants by -> the feature."""
+    """The name of a texture, value, input or constant in shaders -> its feature."""
     owners = {}
     for feature in FEATURES:
         name = name_of(feature)
@@ -174,7 +176,7 @@ def _owners() -> dict[str, str]:
 
 
 def _facts(trees) -> dict[str, str]:
-    """What features keep for when passes run, or say of themselves -> the feature."""
+    """The name of what a feature stores for its passes or reports about itself -> the feature."""
     facts = {}
     for file, tree in trees.items():
         if file.parent.name != "features":
@@ -200,7 +202,7 @@ def _hosts(trees) -> dict[str, set[str]]:
 
 
 def _folders(trees) -> dict[str, set[str]]:
-    """feature -> the folders of which its parts choose a file."""
+    """feature -> the folders from which its parts choose a file."""
     folders = defaultdict(set)
     for file, tree in trees.items():
         for node in ast.walk(tree):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Passes over typed textures: what nobody reads is trimmed, loops end early, what is updated changes places."""
+"""Passes over typed textures: unread ones are trimmed, loops end early, and updated textures are swapped."""
 
 import pytest
 
@@ -72,7 +72,7 @@ def test_every_pass_can_be_changed():
 
 @pytest.mark.parametrize(("surfaces", "turns", "ends"), [(0, 0, False), (2, 2, False), (3, 4, True), (9, 4, True)])
 def test_a_loop_ends_where_nothing_is_left(surfaces, turns, ends):
-    """turns: counted with the last, which runs where none was empty."""
+    """turns: the expected number, including the last one, which finds nothing left."""
     tile = Tile(surfaces)
     execution = Execution(False, lambda p, number: None, lambda p, target: None)
     execution.run((LOOP,), tile)
@@ -92,7 +92,7 @@ def test_what_is_made_once_is_made_with_the_first_tile():
 
 
 class Tile:
-    """Runs nothing; of its surfaces one is peeled a turn."""
+    """A stand-in that draws nothing; each turn of the loop peels one of its surfaces."""
 
     def __init__(self, surfaces):
         self.surfaces, self.ran, self.swapped = surfaces, [], 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that cut holes: in closed form, and against the exact picture."""
+"""Holdouts cut holes as in closed forms and as in the exact picture."""
 
 from dataclasses import replace
 
@@ -42,7 +42,7 @@ def flat(**choices) -> Settings:
 @pytest.mark.parametrize("film", [False, True])
 @pytest.mark.parametrize("method", METHODS)
 def test_a_hole_has_no_alpha_where_it_is_seen_first(method, film, render):
-    """Left a wall, right a hole before it; what is before the hole stays."""
+    """On the left there is a wall, on the right a hole in front of it; objects in front of the hole stay visible."""
     wall, hole = sheet(-1, (1, 0.5, 0.2, 1)), sheet(0, left=0.8, is_holdout=True)
     settings = flat(method=method, transparent_film=film)
     frame = render(Scene([wall, hole], world=WORLD), CAMERA, settings)
@@ -82,7 +82,7 @@ BOARD = make_polygons([(-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)], [(0, 1, 
 @pytest.mark.parametrize("kind", ["surfels", "polygons", "surfels, linear depth"])
 @pytest.mark.parametrize("method", ["mip", "ewa", "raycast"])
 def test_no_silhouette_of_what_is_behind_a_hole_shows_through_it(method, kind, render):
-    """A ball's rim is seen flat, and there a filter's plane runs as far ahead as the hole."""
+    """The rim of a ball is seen at a flat angle, where a filter extends the plane as far forward as the hole."""
     (ball,) = scenes.sphere(count=4000)[0].surfels
     for ahead in (0.15, 0.3):
         camera = Camera.perspective(look_at((2.2, 0.3, 3.2), (0, 0, 0.3), (0, 1, 0)), 0.7, (128, 128), 0.1, 50)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whose each pixel is: indices that nothing mixes, and shares that add up to the coverage."""
+"""Indices are never mixed, and the shares of the objects in a pixel add up to its coverage."""
 
 import json
 from dataclasses import replace
@@ -45,7 +45,7 @@ def moved(x, y, z) -> np.ndarray:
 
 
 def three() -> Scene:
-    """A wall of two materials, left and right of its middle, a ball of discs before it, a disc before that."""
+    """A disc in front of a ball of discs, in front of a wall with different materials left and right of its middle."""
     wall = sheet(50, 1.6, 0.0, 4.0)
     wall = replace(wall, materials=(wall.positions[:, 0] > 0).astype(np.int32))
     random = np.random.default_rng(3).normal(size=(400, 3))
@@ -67,7 +67,7 @@ def settings(**choices) -> Settings:
 
 
 def test_names_become_the_published_hashes():
-    """Test vectors of MurmurHash3_x86_32."""
+    """The expected values are published test vectors of MurmurHash3_x86_32."""
     vectors = {"": 0, "hello": 0x248BFA47, "hello, world": 0x149BBB7F}
     vectors["The quick brown fox jumps over the lazy dog"] = 0x2E4FF723
     assert {text: murmur3_32(text.encode()) for text in vectors} == vectors
@@ -95,7 +95,7 @@ def test_shares_add_up_to_the_coverage(method, supersampling, render):
 
 @pytest.mark.parametrize("method", [name for name in METHODS if name not in MISPLACED])
 def test_indices_are_those_of_what_is_nearest(method, render):
-    """By depth: the disc at 2, the ball from 2.5 to 3.5, the wall at 4, whose materials change at x = 0."""
+    """The disc is at depth 2, the ball from 2.5 to 3.5, the wall at 4; its materials change at x = 0."""
     frame = render(three(), CAMERA, settings(method=method, outputs=(*OUTPUTS, "position")))
     seen = (frame.object_index > 0) & (frame.depth < EMPTY_DEPTH)
     assert seen.mean() > 0.3 and set(np.unique(frame.object_index)) == {0, 1, 3, 70_001}
@@ -109,10 +109,10 @@ def test_indices_are_those_of_what_is_nearest(method, render):
 
 
 def test_a_share_is_the_part_of_the_pixel(render):
-    """A wall whose edge stands at a known place between pixels."""
+    """The edge of the wall is at a known place between pixel centres."""
     wall = Surfels(
         [[-50, 0, -4.0]], [[1, 0, 0, 0]], [[1000.0, 1000.0]], [[0, 0, 1.0]], np.ones((1, 4)), [0]
-    )  # one disc, whose rim is all but straight
+    )  # a disc so large that its rim is almost straight
     x = -50 + 1000.0
     camera = Camera.orthographic(moved(x - 0.3, 0, 0), 4.0, (8, 8))
     frame = render(Scene([Instance(wall, name="wall")]), camera, settings(supersampling=10))
@@ -122,7 +122,7 @@ def test_a_share_is_the_part_of_the_pixel(render):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_polygons_are_told_apart_from_surfels(method, render):
-    """A polygon of two materials before the wall, behind the ball."""
+    """A polygon with two materials is in front of the wall and behind the ball."""
     corners = np.array([(-0.8, -0.3, 0), (0.8, -0.3, 0), (0.8, 0.3, 0), (-0.8, 0.3, 0)])
     slots = np.repeat((0, 1), 3).astype(np.int32)
     polygons = make_polygons(corners, [(0, 1, 2), (0, 2, 3)], materials=slots)
@@ -138,7 +138,7 @@ def test_polygons_are_told_apart_from_surfels(method, render):
 
 @pytest.mark.parametrize("method", ["quad", "mip", "raycast"])
 def test_what_holds_out_is_nobodys(method, render):
-    """The disc cuts a hole into the wall behind it."""
+    """The disc cuts a hole into the wall behind it, which belongs to no object."""
     wall, _, disc = three().surfels
     whole, cut = (render(Scene([wall, front]), CAMERA, settings(method=method)) for front in (disc, hole_of(disc)))
     hole = whole.cryptomatte.share_of("disc") > 0.9
@@ -172,7 +172,7 @@ def test_ranks_are_sorted_and_cut(render):
 
 @pytest.mark.parametrize(("method", "supersampling"), [("quad", 3), ("mip", 1), ("mip", 2)])
 def test_shares_are_those_of_plain_sums(method, supersampling):
-    """Of random numbers, every pixel's window added up one by one."""
+    """The inputs are random; the window of every pixel is added up sample by sample."""
     random = np.random.default_rng(0)
     made = plan(three(), CAMERA, settings(method=method, supersampling=supersampling))
     step, (width, height), (_, between) = made.samples, (6, 5), (None, made.facts["identity_rows"])
@@ -196,8 +196,10 @@ def test_shares_are_those_of_plain_sums(method, supersampling):
 
 
 def row_weight(made, pixel, row, between):
-    """Of a row of numbers, so many to a row of samples, in a row of pixels: of mip, the mean of Gaussians of variance
-    1/2 about the pixel's samples, cut 2 samples away; of others an even share.
+    """The weight of one row of numbers in a row of pixels; `between` rows of numbers make a row of samples.
+
+    With mip it is the mean of Gaussians of variance 1/2 around the pixel's samples, cut off 2 samples away; with other
+    methods each of the pixel's own samples has an equal share.
     """
     own = (made.margin + pixel) * made.samples + np.arange(made.samples)
     if made.method != "mip":
@@ -208,7 +210,7 @@ def row_weight(made, pixel, row, between):
 
 
 def column_weight(made, pixel, column):
-    """Of mip, 1 2 1 about the pixel's samples."""
+    """The weight of one column of numbers in a pixel: with mip the filter 1 2 1 around the pixel's samples."""
     if made.method != "mip":
         return row_weight(made, pixel, column, 1)
     own = (made.margin + pixel) * made.samples + np.arange(made.samples)
@@ -264,7 +266,7 @@ def test_hardware_samples_are_refused_with_a_sentence():
 
 
 def test_metadata_is_that_of_the_specification():
-    """The key is 7 digits of the layer's hash; the manifest has every name, as JSON."""
+    """The key has 7 digits of the layer's hash; the manifest lists every name, as JSON."""
     names = {name: name_hash(name) for name in ('a "b"', "Würfel")}
     matte = Cryptomatte((1, 1), np.zeros(0, np.uint64), np.zeros(0), names)
     fields = matte.metadata("ViewLayer.CryptoObject")

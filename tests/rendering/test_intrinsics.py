@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A calibrated camera puts a point where computer vision's pinhole does: fx X / Z + cx, and fy Y / Z + cy downwards."""
+"""A calibrated camera projects as computer vision's pinhole does: to fx X / Z + cx, and fy Y / Z + cy downwards."""
 
 import numpy as np
 import pytest

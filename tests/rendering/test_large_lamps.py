@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Large lamps close above a floor with a post: their penumbrae cross the faces of a cube of shadow maps."""
+"""Penumbrae of large lamps close above a floor with a post are right where they cross faces of a cube shadow map."""
 
 import math
 from dataclasses import replace
@@ -16,7 +16,7 @@ SETTINGS = Settings(
     method="quad", supersampling=1, shadow_resolution=512, outputs=("color", "depth", "shadow"), blends_rest=False
 )
 CHALK = (Material(roughness=1.0, ior=1.0),)
-#: From the lamp outwards, across and up; the lamp is over the origin.
+#: Axes: away from the lamp, across, and up; the lamp is above the origin.
 POST = np.array([(0.6, -0.1, 0.0), (0.8, 0.1, 0.6)])
 LAMP_POINTS = 400
 
@@ -55,7 +55,10 @@ def camera(angle: float) -> Camera:
 
 @pytest.fixture
 def share(render, casters):
-    """share(lamp, angle) -> (h, w): of the lamp, what arrives around the post when all but the faces is turned."""
+    """share(lamp, angle) -> (h, w): the share of the lamp's light that arrives around the post.
+
+    Everything except the cube map's faces is turned by the angle.
+    """
 
     def measure(lamp: Light, angle: float) -> np.ndarray:
         around = [replace(i, matrix_world=turned(angle)) for i in casters]
@@ -66,7 +69,7 @@ def share(render, casters):
 
 
 def seen_share(lamp: Light) -> np.ndarray:
-    """(h, w) by rays to places of the lamp, which faces what it lights unless it is flat."""
+    """The (h, w) share of the lamp that rays to points on it reach; a lamp that is not flat faces each lit point."""
     at = ((np.arange(SIZE) + 0.5) / SIZE - 0.5) * WIDTH
     x, y = np.meshgrid(at + 1.2, at)
     place = np.stack([x, y, 0 * x], axis=2).reshape(-1, 3)
@@ -91,7 +94,7 @@ def seen_share(lamp: Light) -> np.ndarray:
 
 
 def on_the_floor() -> np.ndarray:
-    """(h, w) bool: where neither the post nor what sticks out of it by a splat is."""
+    """(h, w) bool: pixels that show neither the post nor splats that stick out of it."""
     at = ((np.arange(SIZE) + 0.5) / SIZE - 0.5) * WIDTH
     x, y = np.meshgrid(at + 1.2, at)
     return ~((np.abs(x - 0.7) < 0.14) & (np.abs(y) < 0.14))
@@ -99,8 +102,10 @@ def on_the_floor() -> np.ndarray:
 
 @pytest.mark.parametrize("name", LAMPS)
 def test_where_faces_of_the_cube_meet_shadows_are_as_elsewhere(name, share):
-    """However all is turned about the lamp's axis, which the faces do not turn with: 0.003 on average, where looks that
-    follow the faces and end with them have 0.03, and 0.08 of the large lamp.
+    """The scene is turned about the lamp's axis, but the faces are not; so only the faces can change the shadows.
+
+    The mean difference is 0.003. A search that is aligned with the faces and ends at their edges has 0.03, and 0.08 for
+    the large lamp.
     """
     usual = share(LAMPS[name], 0.0)
     for angle in (math.pi / 4, 0.6):
@@ -112,7 +117,10 @@ def test_where_faces_of_the_cube_meet_shadows_are_as_elsewhere(name, share):
 @pytest.mark.parametrize("name", LAMPS)
 @pytest.mark.parametrize("angle", [0.0, math.pi / 4, 0.6])
 def test_a_penumbra_is_what_rays_to_the_lamp_say(angle, name, share):
-    """As elsewhere in the picture, 0.03 to 0.04 on average: looks that end with a face have 0.08 of the large lamp."""
+    """The mean error is 0.03 to 0.04, as elsewhere in the picture.
+
+    A search that ends at a face's edge has 0.08 for the large lamp.
+    """
     difference = (share(LAMPS[name], angle) - seen_share(LAMPS[name]))[on_the_floor()]
     assert np.abs(difference).mean() < 0.042
     assert np.sqrt((difference**2).mean()) < 0.062

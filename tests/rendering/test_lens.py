@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A point out of focus becomes the circle of confusion of a thin lens, by its closed form."""
+"""A point out of focus becomes the circle of confusion of a thin lens, as in the closed form."""
 
 import math
 from dataclasses import replace
@@ -20,7 +20,7 @@ RADIUS = 2.0  # of the disc, pixels
 
 
 def disc(distance, x=0.0):
-    """A disc of RADIUS pixels, facing the camera, `x` pixels from the middle of the picture."""
+    """A disc of RADIUS pixels that faces the camera, `x` pixels from the middle of the picture."""
     pixel = FIELD / SIZE * distance
     return Surfels(
         positions=[(x * pixel, 0, -distance)],
@@ -46,17 +46,17 @@ def moments(alpha):
 
 
 def confusion(radius, distance):
-    """Radius in pixels of the circle of confusion: R |1/d - 1/f| on the plane at distance 1."""
+    """The radius in pixels of the circle of confusion: R |1/d - 1/f| on the plane at distance 1."""
     return radius * abs(1 / distance - 1 / FOCUS) * SIZE / FIELD
 
 
-#: Of a disc of RADIUS, and of a pixel: what a blurred picture has beside its blur.
+#: The variances of a disc of RADIUS and of a pixel, which add to that of the blur.
 SHARP_VARIANCE = RADIUS**2 / 4 + 1 / 12
 
 
 @pytest.mark.parametrize(("distance", "x"), [(2.0, 0.0), (2.0, 7.0), (3.0, 0.0), (9.0, 0.0), (60.0, -5.0)])
 def test_the_circle_of_confusion_has_its_diameter(distance, x, render):
-    """A disc's variance along each axis is a quarter of its radius squared; those of what is blurred add up."""
+    """A disc has the variance radius^2 / 4 along each axis, and the variances of disc and blur add up."""
     total, center, variance = moments(render(Scene((disc(distance, x),)), camera(radius=0.6), MANY).color[..., 3])
     blur = confusion(0.6, distance)
     assert total == pytest.approx(math.pi * RADIUS**2, rel=0.03)
@@ -75,7 +75,7 @@ def pinhole():
 
 @pytest.mark.parametrize(("blades", "rotation"), [(3, 0.4), (4, 0.0), (6, 1.0)])
 def test_an_opening_with_corners_has_its_moments(blades, rotation, render):
-    """A regular polygon's variance: (2 + cos(2 pi / n)) / 12 of its circumradius squared, along any axis."""
+    """A regular polygon has, along any axis, the variance (2 + cos(2 pi / n)) / 12 times its circumradius squared."""
     made = camera(radius=0.6, blades=blades, rotation=rotation)
     _, center, variance = moments(render(Scene((disc(2.0),)), made, MANY).color[..., 3])
     share = (2 + math.cos(2 * math.pi / blades)) / 12

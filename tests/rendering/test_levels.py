@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Levels of detail: fewer splats draw the same picture, a tolerance of 0 draws all, a still view uploads nothing."""
+"""Levels of detail draw the same picture with fewer splats; a tolerance of 0 draws all, a still view uploads
+nothing.
+"""
 
 from dataclasses import replace
 from importlib import import_module
@@ -19,13 +21,13 @@ SOME = replace(EVERY, detail_tolerance=1.5)
 
 
 def far_torus(count=80_000, size=SIZE):
-    """Some twenty surfels a pixel, under a sun and a lamp that cast shadows."""
+    """Some twenty surfels per pixel, under a sun and a lamp that cast shadows."""
     scene, camera = scenes.torus(count, size)
     return replace(scene, lights=tuple(replace(light, casts_shadow=True) for light in scene.lights)), camera
 
 
 def with_surfels(scene, **fields):
-    """Other fields for all surfels; fields: name -> what gives an array for so many."""
+    """The scene with other fields for all surfels. fields: name -> function from a number of surfels to an array."""
     changed = (
         replace(i, shape=replace(i.surfels, **{n: of(len(i.surfels)) for n, of in fields.items()}))
         for i in scene.surfels
@@ -44,7 +46,7 @@ def parallel():
 
 
 def turned():
-    """Mirrored, stretched and far from the origin."""
+    """The scene mirrored, stretched and far from the origin."""
     scene, camera = far_torus()
     matrix = np.diag([-1, 1.2, 0.7, 1.0])
     moved = tuple(replace(i, matrix_world=matrix @ i.matrix_world) for i in scene.surfels)
@@ -57,7 +59,7 @@ def solid():
 
 
 def clipped():
-    """Half of the surfels end at lines that take next to nothing away; some of them are seen one by one."""
+    """Half of the surfels end at lines that cut almost nothing away; some of them are drawn individually."""
     scene, camera = far_torus()
 
     def lines(n):
@@ -72,7 +74,7 @@ def test_fewer_splats_draw_the_same_picture(shot, render):
     every, some = (render(scene, camera, settings) for settings in (EVERY, SOME))
     assert every.stats["splats_drawn"] == every.stats["splats"] == some.stats["splats"]
     assert some.stats["splats_drawn"] < 0.3 * every.stats["splats"]
-    # where surfels have a roughness of their own, what normals lose in length adds to it
+    # with a roughness per surfel, the length that mean normals lose adds to it
     assert psnr(some.color, every.color) > (35 if shot is rough else 37)
     inside = every.coverage > 0.999
     assert inside.sum() > 200 and some.coverage[inside].min() > 0.99
@@ -83,7 +85,7 @@ def test_every_method_draws_them(method, render):
     scene, camera = far_torus()
     every, some = (render(scene, camera, replace(settings, method=method)) for settings in (EVERY, SOME))
     assert some.stats["splats_drawn"] < 0.3 * every.stats["splats"]
-    # of those without a filter one of many splats is seen in a pixel, and now fewer
+    # without a filter a pixel shows one of many splats, now of fewer
     assert psnr(some.color, every.color) > (37 if METHODS[method].filters_silhouettes else 19)
 
 
@@ -118,7 +120,7 @@ def test_a_tolerance_of_0_is_the_picture_of_the_surfels_bit_by_bit(on_device):
 
 
 def test_what_merges_nothing_is_drawn_as_it_is(render):
-    """Surfels that are seen one by one, though a hierarchy is over them."""
+    """All surfels are drawn individually, although they have a hierarchy."""
     scene, camera = far_torus()
     near = replace(camera, window=tuple(edge / 20 for edge in camera.window))
     render(scene, camera, SOME)
@@ -151,7 +153,9 @@ LAMPS = {
 
 @pytest.mark.parametrize("name", LAMPS)
 def test_each_shadow_map_has_a_cut_of_its_own(name, on_device):
-    """One an instance, a map and the camera, of those that may be seen; a still view and more samples make no more."""
+    """There is one cut for each visible instance and each shadow map or camera; a still view and more samples
+    add none.
+    """
     scene, camera = far_torus()
     light, maps = LAMPS[name]
     scene = replace(scene, lights=(light,))
@@ -191,8 +195,10 @@ def test_the_faces_of_a_panorama_have_cuts_of_their_own(on_device):
 @pytest.mark.parametrize("resolution", [128, 512, 2048])
 @pytest.mark.parametrize("tolerance", [1.25, 2.5])
 def test_what_is_merged_casts_no_shadow_on_itself(tolerance, resolution, render):
-    """Camera and shadow map draw different levels, coarser or finer than one another; they never differ by so much
-    that a surface which a light shines on hides itself."""
+    """The camera and the shadow map draw different levels, either of which may be coarser.
+
+    They never differ so much that a lit surface shadows itself.
+    """
     scene, camera = far_torus()
     light = replace(LAMPS["sun"][0], direction=tuple(camera.matrix_world[:3, :3] @ (0.2, -0.3, -1)))
     scene = replace(scene, lights=(light,))
@@ -202,7 +208,7 @@ def test_what_is_merged_casts_no_shadow_on_itself(tolerance, resolution, render)
     falsely = inside & (truth.shadow[..., 0] > 0.999) & (some.shadow[..., 0] < 0.5)
     lost = inside & (truth.shadow[..., 0] < 0.001) & (some.shadow[..., 0] > 0.5)
     assert some.stats["splats_drawn"] < 0.5 * truth.stats["splats_drawn"] and inside.sum() > 200
-    # a shadow's edge may move as far as the tolerance is
+    # a shadow's edge may move by the tolerance
     assert not falsely.any() and lost.sum() <= 0.02 * inside.sum()
 
 

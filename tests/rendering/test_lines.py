@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lines along silhouettes and creases: where they are and how wide, counted in pixels."""
+"""Lines along silhouettes and creases have the right place and width, counted in pixels."""
 
 import math
 from dataclasses import replace
@@ -42,13 +42,13 @@ def box(size, center=(0, 0, 0), turn=0.0, resolution=90):
 
 @pytest.fixture(scope="module")
 def cube():
-    """Sides of 2, an edge towards the viewer."""
+    """A cube with sides of 2 and an edge towards the viewer."""
     return box((2, 2, 2), turn=math.pi / 4)
 
 
 @pytest.fixture(scope="module")
 def ball():
-    """Of radius 1.5, 24 pixels; smooth."""
+    """A smooth ball of radius 1.5, which is 24 pixels."""
     around, up = np.meshgrid(np.arange(48) * math.tau / 48, np.linspace(-math.pi / 2, math.pi / 2, 25))
     normals = np.stack([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)], axis=2).reshape(-1, 3)
     row, column = (i.ravel() for i in np.mgrid[:24, :48])
@@ -60,7 +60,7 @@ def ball():
 
 @pytest.fixture
 def darkness(on_device):
-    """darkness(scene, camera, settings, lines) -> (h, w), 1 where a white scene is covered by a black line."""
+    """darkness(scene, camera, settings, lines) -> (h, w), 1 where a black line covers the white scene."""
 
     def render(instances, camera, settings, lines):
         chosen = replace(settings, shading="flat", lines=lines)
@@ -117,7 +117,7 @@ def test_a_crease_is_drawn_above_its_angle(cube, darkness):
 
 @pytest.mark.parametrize("settings", METHODS, ids=lambda s: s.method)
 def test_what_is_seen_at_a_shallow_angle_is_outlined(settings, ball, darkness):
-    """Of a ball what lies farther from its middle than the angle's cosine in radii."""
+    """On a ball these are the pixels farther from its middle than the cosine of the angle, in radii."""
     dark = darkness([ball], FRONT, settings, Lines(width=0.5, shallow_angle=math.radians(30)))
     y, x = np.mgrid[: SIZE[1], : SIZE[0]] + 0.5
     radius = np.hypot(x - SIZE[0] / 2, y - SIZE[1] / 2)

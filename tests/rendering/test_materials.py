@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Roughness, metallic and emission: of the material, or of each surfel; only what differs is summed."""
+"""Roughness, metallic and emission belong to a material or to each surfel; only values that differ are summed."""
 
 from dataclasses import replace
 
@@ -19,7 +19,7 @@ def sphere(**options):
 
 
 def with_own(scene, **fields):
-    """The scene, whose one instance's surfels have these fields, the same number for all."""
+    """The scene with these fields, each the same number for all surfels of its one instance."""
     (instance,) = scene.surfels
     count = len(instance.surfels)
     own = {name: np.broadcast_to(value, (count, *np.shape(value))) for name, value in fields.items()}
@@ -106,7 +106,7 @@ def test_materials_that_differ_in_emission_alone_add_no_material_sum():
 
 
 def test_an_instance_that_has_no_own_values_stands_beside_one_that_has(render):
-    """Two halves of a sphere, the left with its own emission, the right with its material's."""
+    """The left half of a sphere has emission of its own, the right half has that of its material."""
     scene, camera = sphere(lights=(), world=(0, 0, 0))
     surfels = scene.surfels[0].surfels
     left, right = (

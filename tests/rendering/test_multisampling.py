@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hardware multisampling of quads: where there is any, what each way of shading gives; elsewhere a clear refusal."""
+"""With hardware multisampling of quads each way of shading gives its result; without it a clear error is raised."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ FOUR_EACH = Settings(method="quad", supersampling=1, multisampling=4, sample_sha
 
 @pytest.fixture
 def render(on_device):
-    """render(scene, camera, settings) on a device with 4 samples a pixel; others skip the test."""
+    """render(scene, camera, settings) on a device with 4 samples per pixel; skips the test on others."""
 
     def job(device, *shot):
         if 4 not in device.multisample_counts:
@@ -33,7 +33,7 @@ def camera(size=(64, 64)):
 
 @pytest.mark.parametrize("name", ["checker_plane", "torus"])
 def test_shading_every_sample_is_as_true_as_supersampling(name, render):
-    """At 128 x 128: 44 and 44 dB, 4 regular samples 35 and 44 dB, one 26 and 35 dB."""
+    """Measured at 128 x 128: 44 and 44 dB; 4 regular samples give 35 and 44 dB, one sample 26 and 35 dB."""
     scene, view = getattr(scenes, name)(size=(48, 48))
     truth = render_exact(scene, view, FOUR, samples=6)
     one, regular, each = (
@@ -47,7 +47,7 @@ def test_shading_every_sample_is_as_true_as_supersampling(name, render):
 
 @pytest.mark.parametrize("settings", [FOUR, FOUR_EACH])
 def test_textures_are_looked_up_under_what_is_evaluated_once(settings, render):
-    """The paper's way: anisotropic lookups once a pixel, or under the smaller footprint of each sample."""
+    """As in the paper, an anisotropic lookup happens once per pixel, or per sample with its smaller footprint."""
     scene, view = scenes.textured_plane(size=(64, 64), elevation=50)
     settings = replace(settings, shading="flat")
     truth = render_exact(scene, view, settings, samples=6)
@@ -56,7 +56,7 @@ def test_textures_are_looked_up_under_what_is_evaluated_once(settings, render):
 
 
 def test_shading_once_a_pixel_keeps_the_pixel_s_kernel(render):
-    """The kernel is looked up at the pixel's centre: the rim of a disc stays hard, as in the papers' hardware."""
+    """The kernel is evaluated at the pixel's centre, so the rim of a disc stays hard, as with the papers' hardware."""
     disc = Scene((discs((0.01, 0.02, -3), (0.5, 0, 0), (0, 0.5, 0), (1, 1, 1)),))
     single, once, each = (
         render(disc, camera(), s).coverage for s in (Settings(method="quad", supersampling=1), FOUR, FOUR_EACH)
@@ -69,7 +69,7 @@ def test_shading_once_a_pixel_keeps_the_pixel_s_kernel(render):
 
 
 def test_depth_is_tested_at_every_sample_even_when_shading_once(render):
-    """A wall cuts through a floor: along the edge, samples of one pixel see the one and the other."""
+    """A wall cuts through a floor; along the edge, samples of one pixel see one or the other."""
     floor = discs((0, 0, -5), (0.7, 0, 0), (0, 0.7, 0), (1, 0, 0))
     tilted = discs((0, 0, -5), (0.5, 0.15, 0.4), (-0.15, 0.5, 0), (0, 0, 1))
     scene, settings = Scene((floor, tilted)), Settings(method="quad", supersampling=1, shading="flat", epsilon=1e-6)
@@ -112,7 +112,7 @@ def test_settings_refuse_other_counts():
 
 
 def test_hardware_samples_count_for_the_size_of_tiles():
-    """Targets of 4 samples a pixel take as much memory as of 2 x 2."""
+    """Targets with 4 samples per pixel take as much memory as targets with 2 x 2 pixels."""
     scene, view = Scene((discs((0, 0, -3)),)), camera((4096, 4096))
     plans = [plan(scene, view, s) for s in (*(replace(FOUR, supersampling=n, multisampling=0) for n in (1, 2)), FOUR)]
     assert [len(p.tiles) for p in plans] == [1, 4, 4]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a frame hands on beside its colour: against closed forms, against the exact picture, and on every device."""
+"""A frame's other outputs agree with closed forms and with the exact picture, on every device."""
 
 from dataclasses import replace
 
@@ -65,7 +65,7 @@ def test_the_passes_of_a_wall_are_its_own(method, render):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_polygons_hand_on_theirs(method, render):
-    """A metallic square that glows, before the wall of another emission."""
+    """A metallic, glowing square is in front of a wall with another emission."""
     corners = np.array([(-3.0, -3, 0), (-1, -3, 0), (-1, 3, 0), (-3, 3, 0)])
     board = make_polygons(corners, [(0, 1, 2), (0, 2, 3)], color=(*GREY[::-1], 1.0))
     material = Material(metallic=0.5, emission=(2, 1, 0))
@@ -89,7 +89,7 @@ def test_polygons_hand_on_theirs(method, render):
 
 
 def test_half_a_pixel_has_half_of_each(render):
-    """Means over samples, of which empty ones count as 0: as the coverage has it."""
+    """Outputs are means over samples; empty samples count as 0, as in the coverage."""
     frame = render(wall(emission=(1, 1, 1)), CAMERA, outputs(method="quad", supersampling=8))
     edge = (frame.coverage > 0) & (frame.coverage < 1)
     assert edge.sum() >= 30
@@ -115,7 +115,7 @@ def test_models_blind_to_materials_and_lights_have_neither(render):
 
 
 def sunlit(casts_shadow=True):
-    """The wall under a red sun from the front, which a large disc before it shadows, and a blue one without shadows."""
+    """A wall under a red sun from the front, which a large disc shadows, and a blue sun without shadows."""
     disc = discs((-1.2, 0, -2), (0.4, 0, 0), (0, 0.4, 0))
     suns = (
         Light("sun", (1, 0, 0), 2.0, direction=(0, 0, -1), casts_shadow=casts_shadow),
@@ -125,7 +125,7 @@ def sunlit(casts_shadow=True):
 
 
 def test_shadow_is_the_share_of_each_colour_that_arrives(render):
-    """Behind the disc a third of the red, all of the blue; of green there is no light at all."""
+    """Behind the disc a third of the red light arrives and all of the blue; there is no green light at all."""
     frame = render(sunlit(), CAMERA, outputs(method="quad"))
     is_wall = frame.depth > 3
     behind = is_wall & (np.linalg.norm(frame.position[..., :2] - (-1.2, 0), axis=2) < 0.3) & (frame.depth < 10)
@@ -138,7 +138,7 @@ def test_shadow_is_the_share_of_each_colour_that_arrives(render):
 
 
 def veiled(alpha, glow=(4.0, 0, 0)):
-    """The wall behind two sheets of another material, the nearer one thinner."""
+    """A wall behind two sheets of another material; the nearer one is thinner."""
     veils = [
         Instance(
             replace(sheet(40, 2.5, 0.0, depth), colors=np.tile((0.8, 0.1, 0.3, opacity), (1600, 1))),
@@ -155,7 +155,7 @@ def veiled(alpha, glow=(4.0, 0, 0)):
 
 @pytest.mark.parametrize("method", ["quad", "mip", "raycast"])
 def test_transparent_layers_hand_on_their_share(method, render):
-    """Front to back: each veil what it hides of what nearer ones let through, the wall the rest."""
+    """Each veil contributes what it hides of what nearer ones let through, and the wall contributes the rest."""
     frame = render(veiled(0.4), CAMERA, outputs(method=method))
     inside = np.s_[8:-8, 4:16]
     front, middle, back = 0.2, 0.8 * 0.4, 0.8 * 0.6
@@ -171,7 +171,7 @@ def test_transparent_layers_hand_on_their_share(method, render):
 @pytest.mark.parametrize("method", ["quad", "mip"])
 @pytest.mark.parametrize(("alpha", "index"), [(0.4, 1), (0.9, 3), (0.9999, 3)])
 def test_an_index_is_of_the_surface_that_depth_is_of(method, alpha, index, render):
-    """Of the first that is opaque enough."""
+    """It is the first surface that is opaque enough."""
     frame = render(veiled(alpha), CAMERA, outputs(method=method, outputs=(*OUTPUTS, *NUMBERED)))
     inside = np.s_[8:-8, 4:16]
     depths = {1: 4.0, 2: 3.0, 3: 3.5}
@@ -219,7 +219,7 @@ def test_whatever_the_sums_and_the_storage(options, render):
 
 
 def test_a_position_is_that_of_the_nearest_sample(render):
-    """Each on the torus, and at its pixel's depth; through whichever sample's camera."""
+    """Each position is on the torus and at its pixel's depth, whichever sample's camera saw it."""
     scene, camera = glowing()
     frame = render(scene, camera, outputs(method="quad", samples=5))
     hit = frame.depth < EMPTY_DEPTH

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""No surface shadows itself: coarse meshes that are shaded smooth, against rays from what is seen to the lights."""
+"""No surface shadows itself: coarse, smooth-shaded meshes are compared with rays from the surface to the lights."""
 
 import math
 from dataclasses import replace
@@ -27,12 +27,12 @@ LIGHTS = {
         "area", energy=300, position=PLACE, direction=(-2, 3, -3.2), half_axes=((0.5, 0, 0), (0, 0.38, 0.35))
     ),
 }
-#: Where a sun's rays are followed to.
+#: The distance to which a sun's rays are followed.
 FAR_AWAY = 1e4
 
 
 def uv_sphere(segments=16, rings=8) -> trimesh.Trimesh:
-    """Blender's: quads between rings, each as two triangles, and triangles at the poles."""
+    """Blender's UV sphere: rings of quads, each split into two triangles, with triangles at the poles."""
     down, around = np.meshgrid(np.arange(rings + 1) * math.pi / rings, np.arange(segments) * 2 * math.pi / segments)
     places = np.stack([np.sin(down) * np.cos(around), np.sin(down) * np.sin(around), np.cos(down)], axis=2)
     index = np.arange(segments * (rings + 1)).reshape(segments, rings + 1)
@@ -63,7 +63,7 @@ def instance(mesh: trimesh.Trimesh, resolution: int, is_smooth=True, matrix=None
 
 
 def lamp_places(light: Light) -> np.ndarray:
-    """(k, 3) its middle and its rim."""
+    """(k, 3) points: the middle and the rim of the lamp."""
     if light.kind == "sun":
         way = np.asarray(light.direction) / np.linalg.norm(light.direction)
         u = np.cross(way, (0.3, 0.8, 0.5))
@@ -77,7 +77,9 @@ def lamp_places(light: Light) -> np.ndarray:
 
 
 def arriving(mesh: trimesh.Trimesh, light: Light, camera: Camera) -> np.ndarray:
-    """(h, w) which share of the lamp's places each pixel's place of the mesh sees by rays in float64; NaN beside it."""
+    """(h, w): the share of the lamp's points that the mesh sees at each pixel, by rays in float64; NaN beside
+    the mesh.
+    """
     width, height = camera.size
     left, right, bottom, top = camera.window
     x = left + (np.arange(width) + 0.5) * (right - left) / width
@@ -97,7 +99,7 @@ def arriving(mesh: trimesh.Trimesh, light: Light, camera: Camera) -> np.ndarray:
 
 
 def inside(mask: np.ndarray) -> np.ndarray:
-    """Where all eight neighbours are, too."""
+    """The set pixels whose eight neighbours are all set too."""
     h, w = mask.shape
     wide = np.pad(mask, 1)
     return np.logical_and.reduce([wide[i : i + h, k : k + w] for i in range(3) for k in range(3)])
@@ -105,7 +107,7 @@ def inside(mask: np.ndarray) -> np.ndarray:
 
 @pytest.fixture
 def with_and_without(render):
-    """(instances, light, camera) -> two (h, w): brightness with its shadow and without."""
+    """with_and_without(instances, light, camera) -> two (h, w): the brightness with and without the light's shadow."""
 
     def draw(instances, light, camera=CAMERA, **settings):
         lights = replace(light, casts_shadow=True), light
@@ -115,7 +117,7 @@ def with_and_without(render):
 
 
 def falsely_dark(truth, with_shadow, without) -> float:
-    """Share of the pixels that all of the lamp lights, and that are darker with its shadow."""
+    """The share of the pixels lit by the whole lamp that its shadow nevertheless darkens."""
     clear = inside(truth == 1) & (without > 0.05 * without.max())
     assert clear.sum() > 500
     return np.count_nonzero(clear & (with_shadow < 0.98 * without)) / np.count_nonzero(clear)
@@ -124,7 +126,7 @@ def falsely_dark(truth, with_shadow, without) -> float:
 @pytest.mark.parametrize("light", LIGHTS)
 @pytest.mark.parametrize("name", MESHES)
 def test_a_coarse_smooth_mesh_does_not_shadow_itself(name, light, with_and_without):
-    """Up to 11 % where depths are compared with the plane of the shading normal."""
+    """It would be up to 11 % of the pixels if depths were compared with the plane of the shading normal."""
     mesh = MESHES[name]()
     truth = arriving(mesh, LIGHTS[light], CAMERA)
     for resolution in (64, 256):
@@ -135,7 +137,10 @@ def test_a_coarse_smooth_mesh_does_not_shadow_itself(name, light, with_and_witho
 @pytest.mark.parametrize("light", LIGHTS)
 @pytest.mark.parametrize("is_smooth", [True, False])
 def test_nor_does_one_with_folds_that_ends_at_them(is_smooth, light, with_and_without):
-    """As the operator converts it. 3.3 % where splats reach over folds of less than 30 degrees."""
+    """The mesh is sampled as the operator does it.
+
+    If splats reached over folds of less than 30 degrees, it would be 3.3 %.
+    """
     mesh, edges = jug(), {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True}
     truth = arriving(mesh, LIGHTS[light], CAMERA)
     for resolution in (64, 256):
@@ -161,7 +166,7 @@ def test_nor_by_other_methods_sums_and_storages(settings, with_and_without):
 
 
 def test_nor_where_it_is_transparent(with_and_without):
-    """Its layers have planes of their own, too."""
+    """Each transparent layer has its own plane to compare depths with."""
     surfels = instance(uv_sphere(), 96).surfels
     glass = Instance(replace(surfels, colors=np.tile((1, 1, 1, 0.995), (len(surfels), 1))), materials=CHALK)
     assert glass.is_transparent

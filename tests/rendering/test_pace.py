@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A view that moves too slowly is drawn coarser until it holds its rate, and at rest as the settings say."""
+"""A view that moves too slowly is drawn coarser until it reaches its rate; at rest it is drawn as the settings say."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ SETTINGS = Settings(outputs=("color",), detail_tolerance=1.25, shadow_resolution
 
 
 class Clock:
-    """Seconds that a test sets."""
+    """A clock whose seconds a test sets."""
 
     now = 0.0
 
@@ -23,7 +23,7 @@ class Clock:
 
 
 def tolerances(seconds, settings=SETTINGS, pictures=20, rate=10.0):
-    """Of pictures that take as long as `seconds`, a function of the tolerance, tells."""
+    """The tolerances chosen for successive pictures; `seconds` gives a picture's time for a tolerance."""
     clock, found = Clock(), []
     pace = Pace(rate, clock)
     for _ in range(pictures):
@@ -63,7 +63,7 @@ def test_it_becomes_finer_again():
 
 @pytest.mark.parametrize("samples", [1, 3])
 def test_at_rest_the_picture_is_that_of_the_settings(samples, on_device):
-    """The clock says that each picture takes 0.4 s."""
+    """Before, each picture takes 0.4 s by the clock, so that moving pictures are coarser."""
     scene, camera = scenes.torus(80_000, (48, 40))
     settings, clock = replace(SETTINGS, samples=samples), Clock()
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panoramas from six views: each pixel shows what lies in its direction, and no edge of a face is to be seen."""
+"""Panoramas are made of six views: each pixel shows what lies in its direction, and edges of faces are invisible."""
 
 import math
 from dataclasses import replace
@@ -47,14 +47,14 @@ def smooth(direction):
 
 
 def striped(direction):
-    """Black and white along meridians and parallels, with sharp edges."""
+    """(..., 3) world directions -> black and white stripes along meridians and parallels, with sharp edges."""
     x, y, z = np.moveaxis(direction, -1, 0)
     fields = np.floor(np.arctan2(y, x) * 5 / math.pi) + np.floor(np.arcsin(np.clip(z, -1, 1)) * 5 / math.pi)
     return np.repeat((fields % 2)[..., None], 3, axis=-1)
 
 
 def ball(color_of, count=40_000):
-    """A ball of RADIUS around the camera, facing it, coloured by direction."""
+    """The inside of a ball of RADIUS around the camera, coloured by direction."""
     number = np.arange(count) + 0.5
     z, longitude = 1 - 2 * number / count, number * math.pi * (3 - math.sqrt(5))
     ring = np.sqrt(1 - z * z)
@@ -75,7 +75,7 @@ def ball(color_of, count=40_000):
 
 
 def truth(panorama, color_of, across=1):
-    """(h, w, 3) float64: the mean of across x across directions a pixel; NaN where the picture looks nowhere."""
+    """(h, w, 3) float64: the mean of `across` x `across` directions per pixel; NaN where the picture shows nothing."""
     places = (np.arange(across) + 0.5) / across
     total = 0.0
     for place in ((x, y) for x in places for y in places):
@@ -119,7 +119,9 @@ def test_no_edge_of_a_face_is_seen(render):
 
 
 def test_samples_converge_to_box_filtered_pixels(render):
-    """Measured: 26, 29 and 34 dB from the means of 8 x 8 pixels of a larger panorama, in stripes of 5 pixels."""
+    """Measured: 26, 29 and 34 dB, compared with the means of 8 x 8 pixels of a larger panorama with stripes of 5
+    pixels.
+    """
     scene, colors = ball(striped, 30_000), replace(FLAT, outputs=("color",))
     large = render(scene, Panorama(MATRIX, Equirectangular(), (768, 384)), colors).color
     expected = large.reshape(48, 8, 96, 8, 4).mean(axis=(1, 3))
@@ -131,7 +133,7 @@ def test_samples_converge_to_box_filtered_pixels(render):
 
 
 def test_a_part_is_the_whole_pictures(render):
-    """What a border shows, from cropped faces."""
+    """A border's pixels, drawn from cropped faces, equal those of the whole picture."""
     panorama = Panorama(MATRIX, Equirectangular(), (128, 64))
     whole = render(ball(striped), panorama, FLAT).color
     for x, y, width, height in ((0, 0, 40, 20), (50, 30, 13, 9), (127, 63, 1, 1)):
@@ -141,7 +143,7 @@ def test_a_part_is_the_whole_pictures(render):
 
 
 def test_a_hidden_thing_is_hidden(render):
-    """A small ball before the large one, on the corner where three faces meet, is nearer and whole."""
+    """A small ball in front of the large one, on the corner where three faces meet, is nearer and complete."""
     near = ball(lambda p: np.ones_like(p), 4000).surfels[0]
     places = np.eye(4)
     places[:3, :3] *= 0.5 / RADIUS
@@ -194,7 +196,7 @@ def test_shadow_maps_of_lamps_are_drawn_once_for_all_faces(render, monkeypatch):
 
 
 def test_lines_are_as_wide_as_asked(render):
-    """The smaller ball's silhouette, straight ahead: 3 pixels wide, all on the nearer surface."""
+    """The silhouette of the smaller ball, straight ahead, is 3 pixels wide, all of it on the nearer surface."""
     near = ball(lambda p: np.ones_like(p), 20_000).surfels[0]
     places = np.eye(4)
     places[:3, :3] *= 1 / RADIUS

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each feature of a scene adds to the plan: exactly its passes, its textures and what its shaders read."""
+"""Each feature of a scene adds exactly its passes, textures and shader inputs to the plan."""
 
 from dataclasses import replace
 
@@ -30,7 +30,7 @@ PICTURE = Environment(np.ones((4, 8, 3)))
 
 
 def surfels(**fields) -> Surfels:
-    """Two discs."""
+    """Surfels of two discs."""
     up = np.tile((0.0, 0, 1), (2, 1))
     return Surfels(
         up * 0.1, np.tile((1.0, 0, 0, 0), (2, 1)), np.full((2, 2), 0.5), up, np.ones((2, 4)), [0, 0], **fields
@@ -48,7 +48,7 @@ OTHERS = replace(
     PLAIN, polygons=(PolygonInstance(TRIANGLE, materials=(GLOWING,)),), lights=(Light("sun", receivers=(1,)),)
 )
 
-#: Of the plain scene by Quads.
+#: For the plain scene, drawn with Quads.
 PASSES = ("visibility", "attributes", "shading")
 AMONG = ("visibility", "attributes", "polygons", "shading")
 AMONG_TEXTURES = "polygon_color polygon_normal polygon_depth"
@@ -75,7 +75,7 @@ def of(*materials) -> Scene:
     return Scene([Instance(surfels(), materials=(material,)) for material in materials])
 
 
-#: name: scene, settings, passes, textures beside TEXTURES (or "-" and one less), reads beside READS, features
+#: name: scene, settings, passes, textures added to TEXTURES ("-" removes one), reads added to READS, features
 TABLE = {
     "plain": (PLAIN, {}, PASSES, "", "", ()),
     "flat": (PLAIN, {"shading": "flat"}, PASSES, "", "-brdf_table", ()),
@@ -220,13 +220,13 @@ def test_a_scene_gets_what_it_needs_and_nothing_else(name):
 
 
 def changed(usual: set[str], words: str) -> set[str]:
-    """With each of the words, and without those that follow a minus."""
+    """The list with these words added, and those after a minus removed."""
     less = {word[1:] for word in words.split() if word.startswith("-")}
     return (usual | {word for word in words.split() if not word.startswith("-")}) - less
 
 
 def test_more_textures_than_a_target_has_are_refused_with_what_to_do():
-    """Of sums over materials, emission, light sets, overdraw and depth."""
+    """The scene needs sums for materials, emission, light sets, overdraw and depth."""
     full = replace(of(GLOWING, ROUGH), lights=(Light("sun", receivers=(1,)),))
     outputs = ("color", "overdraw")
     assert plan(full, CAMERA, Settings(outputs=outputs))

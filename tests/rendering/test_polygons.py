@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Polygons among the splats: exact depth, the same models, and a border that is not seen (Guennebaud et al. 2006)."""
+"""Polygons among splats have exact depth and shading, and their border is invisible (Guennebaud et al. 2006)."""
 
 import math
 from dataclasses import replace
@@ -57,7 +57,7 @@ MISPLACED = {"sprites_printed"}
 
 @pytest.mark.parametrize("method", [name for name in METHODS if name not in MISPLACED])
 def test_the_nearer_of_splats_and_polygons_is_seen(method, render):
-    """A ball cut by a floor. Methods that filter may differ within a pixel of the curve."""
+    """A floor cuts a ball. Methods that filter may differ within a pixel of the curve."""
     scene, camera = scenes.polygons(size=SIZE)
     scene = replace(scene, polygons=scene.polygons[:1])
     exact = render_exact(scene, camera, Settings(), samples=1)
@@ -70,7 +70,7 @@ def test_the_nearer_of_splats_and_polygons_is_seen(method, render):
 
 
 def opened(mask):
-    """Where whole squares of 3 x 3 pixels are set."""
+    """The mask without parts narrower than 3 x 3 pixels."""
     inner = mask.copy()
     for axis in (0, 1):
         inner &= np.roll(inner, 1, axis) & np.roll(inner, -1, axis)
@@ -79,7 +79,9 @@ def opened(mask):
 
 @pytest.mark.parametrize("camera", ["perspective", "parallel", "far"])
 def test_attributes_are_the_exact_ones(camera, render):
-    """Own roughness, metallic and emission at the corners, a mirrored, sheared place, from near and far."""
+    """The corners have roughness, metallic and emission; the object is mirrored and sheared, and seen from near and
+    far.
+    """
     ball = scenes.round_polygons(8)
     x, y, z = ball.positions.T
     ball = replace(
@@ -133,14 +135,14 @@ def test_a_texture_is_filtered_under_the_pixel(method, pixel_filter, least, rend
 
 @pytest.mark.parametrize("method", ["quad", "mip", "ewa"])
 def test_splats_go_over_into_polygons_of_their_surface(method, render):
-    """Red splats end on a blue square: the colour changes over a splat's width and not at an edge."""
+    """Red splats end on a blue square: the colour changes gradually over a splat's width."""
     surfels = square_surfels(0.1, (1, 0, 0, 1), keep=lambda x, y: x < 0)
     scene = Scene((surfels,), polygons=(square((0, 0, 1, 1)),))
     frame = render(scene, ABOVE, Settings(method=method, shading="flat"))
     row = frame.color[48, 16:-16, :3]
     assert np.abs(row.sum(axis=1) - 1).max() < 1e-3 and not row[:, 1].any()
     assert row[0, 0] > 0.99 and row[-1, 2] > 0.99
-    assert np.abs(np.diff(row[:, 0])).max() < 0.45  # 4 pixels a splat's radius; a hard border is 1
+    assert np.abs(np.diff(row[:, 0])).max() < 0.45  # a splat's radius is 4 pixels; a hard border would be 1 pixel wide
 
 
 def test_splats_before_a_polygon_of_another_surface_do_not_fade(render):
@@ -155,7 +157,7 @@ def test_splats_before_a_polygon_of_another_surface_do_not_fade(render):
 
 @pytest.mark.parametrize("method", ["quad", "mip"])
 def test_a_surface_of_both_looks_like_one_of_polygons(method, render):
-    """Splats on half of a ball of polygons, of its colour: no seam, under a light."""
+    """Splats lie on half of a ball of polygons of the same colour: under a light there is no seam."""
     ball = scenes.round_polygons(40)
     mesh = TriangleMesh(
         ball.positions + ball.origin, np.arange(len(ball)).reshape(-1, 3), ball.normals.reshape(-1, 3, 3)
@@ -208,7 +210,7 @@ def test_a_ball_split_by_distance_has_no_seam(method, camera, render):
 
 
 def test_silhouettes_are_filtered_as_those_of_splats(render):
-    """The coverage of an edge that crosses pixels at a slant is its area under the pixel's Gaussian."""
+    """Where an edge crosses pixels at a slant, the coverage is the area under the pixel's Gaussian."""
     camera = Camera.orthographic(look_at((0, 0, 5), (0, 0, 0), (0, 1, 0)), 2.0, SIZE)
     triangle = make_polygons([(-3, -2, 0), (3, -2, 0), (-0.4, 0.9, 0)], [(0, 1, 2)])
     scene = Scene(polygons=(triangle,))
@@ -233,7 +235,7 @@ def test_a_floor_reaches_from_behind_the_eye_to_the_horizon(method, render):
 
 
 def test_shadows_of_polygons_fall_on_splats_and_back(render):
-    """A square over a square, either of polygons or of splats: the same shadow."""
+    """One square shadows another; whether either is polygons or splats, the shadow is the same."""
     matrix = np.diag((0.4, 0.4, 1.0, 1.0))
     matrix[2, 3] = 0.8
     light = Light("sun", energy=3, direction=(0.3, 0.2, -1), casts_shadow=True)
@@ -269,7 +271,7 @@ def test_a_polygon_does_not_shadow_itself(render):
 
 @pytest.mark.parametrize("size", [0.0, 0.1])
 def test_normals_that_lean_do_not_shadow_their_own_plane(size, render):
-    """What is shaded as if it faced another way, as a warped face is, in grazing light."""
+    """The shading normals lean away from the plane, as on a warped face, and the light grazes it."""
     lean = np.array((0.2, -0.97, 0.1)) / np.linalg.norm((0.2, -0.97, 0.1))
     wall = make_polygons([(-1, 0, 0), (1, 0, 0), (1.6, -0.5, 2), (-1, 0, 2)], HALVES, np.tile(lean, (2, 3, 1)))
     camera = Camera.perspective(look_at((1, -6, 2), (0, 0, 1)), 0.5, SIZE)

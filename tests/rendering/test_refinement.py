@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A view that rests becomes the render of as many samples; one that changes is drawn as with a single one."""
+"""A view at rest becomes the render with as many samples; while it changes, it is drawn with a single sample."""
 
 from dataclasses import replace
 from importlib import import_module
@@ -15,7 +15,7 @@ SETTINGS = Settings(method="quad", samples=4, outputs=("color",))
 
 
 def shown_picture(renderer, parts, size):
-    """(h, w, 4) of what a viewport shows: each part, cropped and scaled; every pixel once."""
+    """(h, w, 4) of what a viewport shows: all parts, cropped and scaled, with every pixel covered once."""
     picture, count = np.zeros((size[1], size[0], 4), np.float32), np.zeros(size[::-1], int)
     for part in parts:
         (x, y, width, height), (left, bottom, *_) = part.place, part.part
@@ -30,7 +30,7 @@ def shown_picture(renderer, parts, size):
 
 @pytest.fixture
 def redraws(on_device):
-    """redraws([(scene, camera, settings), ...]) -> pictures, and Refinement.samples and wants_more after each."""
+    """redraws([(scene, camera, settings), ...]) -> pictures, with Refinement.samples and wants_more after each."""
 
     def run(views):
         def job(device):
@@ -53,7 +53,7 @@ def small_tiles(monkeypatch):
 
 @pytest.fixture
 def drawn(monkeypatch):
-    """Names of the last passes that ran."""
+    """The names of the passes of the last frame."""
     names = []
     run = executor.run_pass
 
@@ -97,7 +97,7 @@ def test_a_view_at_rest_becomes_the_render(method, lens, redraws, render):
 
 @pytest.mark.parametrize("method", ["quad", "mip"])
 def test_a_view_of_several_tiles_has_no_seams(method, small_tiles, redraws, render):
-    """Margins are not shown: each pixel is shown once, by its own tile."""
+    """Margins are not shown: each pixel is shown once, by the tile that it belongs to."""
     scene, camera = torus()
     settings = replace(SETTINGS, method=method, transparent_film=True)
     assert len(plan(scene, camera, settings).tiles) > 3

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Samples converge to the box filter of the exact picture, and cost nothing where there is one."""
+"""With more samples the picture converges to the box-filtered exact one; a single sample costs nothing extra."""
 
 import numpy as np
 import pytest
@@ -38,14 +38,14 @@ def test_a_depth_is_the_nearest_samples(checker, render):
 
 
 def test_one_sample_is_the_picture_as_it_was(checker, render):
-    """The first of any number of samples is the pixel's centre."""
+    """A single sample is at the pixel's centre, and its picture clearly differs from one with two samples."""
     np.testing.assert_array_equal(sample_points(1)[0], 0.5)
     frame = render(*checker, Settings(**FLAT))
     assert "samples" not in frame.stats and psnr(frame.color, render(*checker, Settings(samples=2, **FLAT)).color) < 40
 
 
 def test_any_first_points_are_spread_evenly():
-    """Each of 16 boxes of the pixel, and of the lens, has its share of 64 points, within 2."""
+    """Each of 16 boxes of the pixel, and of the lens, has its share of 64 points, give or take 2."""
     points = sample_points(64)
     for pair in (points[:, :2], points[:, 2:]):
         counts, *_ = np.histogram2d(*pair.T, bins=4, range=[(0, 1)] * 2)

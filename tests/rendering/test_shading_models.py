@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Each shading model against what it says by hand, and against its float64 twin."""
+"""Each shading model agrees with values computed by hand and with its float64 twin."""
 
 import math
 from dataclasses import replace
@@ -31,12 +31,12 @@ SIZE = (16, 16)
 ABOVE = Camera.orthographic(look_at((0, 0, 5), (0, 0.001, 0)), 1.0, SIZE, near=0.1, far=20)
 
 
-#: Brighter to the right in red, to the top in green.
+#: Red grows to the right, green to the top.
 BALL = Matcap(np.stack([*np.meshgrid(np.linspace(0, 1, 32), np.linspace(0, 1, 16)), np.full((16, 32), 0.5)], axis=2))
 
 
 def floor(height=0.0, half=2.0, side=24):
-    """Surfels on a square that faces up."""
+    """Surfels of a square that faces up."""
     axis = (np.arange(side) + 0.5) * 2 * half / side - half
     x, y = (a.ravel() for a in np.meshgrid(axis, axis))
     count = len(x)
@@ -55,7 +55,7 @@ def center(frame):
 
 
 def from_above(cosine, energy=2.0, **others):
-    """A sun whose light meets the floor at that cosine."""
+    """A sun whose direction has that cosine with the floor's normal."""
     return Light("sun", energy=energy, direction=(math.sqrt(1 - cosine**2), 0, -cosine), **others)
 
 
@@ -73,7 +73,7 @@ def test_normals_are_those_of_the_world(render):
 
 @pytest.mark.parametrize("edge", [None, 4])
 def test_depth_runs_from_the_nearest_to_the_farthest(edge, render, monkeypatch):
-    """Also where tiles see different parts of the scene."""
+    """This also holds if tiles see different parts of the scene."""
     if edge:
         monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", edge)
     step = replace(floor(2.0, half=0.5), positions=floor(2.0, half=0.5).positions + np.float32((-0.5, 0, 0)))
@@ -88,7 +88,7 @@ def test_depth_runs_from_the_nearest_to_the_farthest(edge, render, monkeypatch):
 @pytest.mark.parametrize("metallic", [0.0, 1.0])
 @pytest.mark.parametrize("roughness", [0.3, 1.0])
 def test_phong_is_lambert_and_blinns_lobe(roughness, metallic, render):
-    """Light, viewer and normal in one line, so that all cosines are 1."""
+    """Light, viewer and normal are in one line, so that all cosines are 1."""
     material = Material(roughness=roughness, metallic=metallic)
     scene = Scene([Instance(floor(), materials=(material,))], [from_above(1.0)], world=(0.1, 0.2, 0.3))
     seen = center(render(scene, ABOVE, Settings(shading="phong")))
@@ -114,7 +114,7 @@ def test_toon_light_comes_in_even_levels(steps, render):
 
 
 def test_a_toon_highlight_has_an_edge(render):
-    """On a ball every sample is in the highlight or beside it, and all in it are equally bright."""
+    """On a ball every sample is inside or outside the highlight, and all inside are equally bright."""
     scene, camera = scenes.sphere(size=(48, 48))
     (ball,) = scene.surfels
     white = replace(ball.surfels, colors=np.ones_like(ball.surfels.colors))
@@ -128,7 +128,7 @@ def test_a_toon_highlight_has_an_edge(render):
 
 @pytest.mark.parametrize("cosine", [0.1, 0.5, 0.9])
 def test_a_ramp_is_looked_up_at_the_diffuse_light(cosine, render):
-    """And where no light falls at its beginning."""
+    """Where no light arrives, the start of the ramp is seen."""
     colors = np.array([(0.0, 0.1, 0.4), (0.8, 0.2, 0.2), (1, 1, 0.5)])
     settings = Settings(shading="ramp", ramp=Ramp(colors))
     seen = center(render(Scene([floor()], [from_above(cosine, math.pi)]), ABOVE, settings))
@@ -145,7 +145,7 @@ def test_the_default_ramp_has_the_toon_models_levels(render):
 
 
 def test_a_matcap_is_looked_up_where_its_ball_faces_the_same_way(render):
-    """Seen from above, a floor faces as the middle of the ball; seen from a slant, as its top."""
+    """A floor seen from above faces as the middle of the ball does; seen at a slant, as its top."""
     scene, settings = Scene([floor()]), Settings(shading="matcap", matcap=BALL)
     assert center(render(scene, ABOVE, settings)) == pytest.approx(COLOR * (0.5, 0.5, 0.5), abs=1e-3)
     slant = Camera.orthographic(look_at((0, -5, 5 * math.tan(math.radians(30))), (0, 0, 0)), 1.0, SIZE, 0.1, 20)
@@ -155,7 +155,7 @@ def test_a_matcap_is_looked_up_where_its_ball_faces_the_same_way(render):
 
 @pytest.mark.parametrize("count", [1, 4, 16, 64])
 def test_overdraw_and_weight_are_counted(count, render):
-    """So many splats at one place, whose centre is looked at."""
+    """That many splats lie at one place, and the pixel shows their centre."""
     names = ("rotations", "scales", "normals", "colors", "materials")
     splat = Surfels(np.zeros((count, 3)), **{name: getattr(floor(), name)[:count] for name in names})
     for shading, value in (("overdraw", count), ("weight", 16 * count)):

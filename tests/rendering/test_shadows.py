@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shadow maps against rays from every lit place to its light."""
+"""Shadow maps agree with rays from every lit point to its light."""
 
 import math
 from dataclasses import replace
@@ -53,7 +53,7 @@ def casting(light):
 
 @pytest.fixture
 def shot(on_device):
-    """shot(scene, camera) -> (h, w) brightness and the plan's passes."""
+    """shot(scene, camera) -> (h, w) brightness, and the plan's passes."""
 
     def render(scene, camera=CAMERA, settings=SETTINGS):
         frame = on_device(lambda device: Renderer(device).render(scene, camera, settings))
@@ -88,7 +88,7 @@ def test_a_soft_shadow_is_as_wide_as_the_lamp_makes_it(name, still_life, shot):
 
 
 def test_a_surface_does_not_shadow_itself(still_life, shot):
-    """Acne: a ball alone, lit from the camera's side, is as bright with shadows as without."""
+    """A ball alone, lit from the camera's side, is as bright with shadows as without: it has no acne."""
     for light in (*LIGHTS.values(), *SOFT_LIGHTS.values()):
         ball = still_life[:1]
         with_shadow, _ = shot(Scene(ball, [casting(light)]))
@@ -105,7 +105,7 @@ def test_no_light_leaks_into_a_closed_box(shot):
         seen, _ = shot(Scene([room], [casting(light)]), camera)
         bare, _ = shot(Scene([room], [light]), camera)
         assert bare.max() > 0.1
-        # Where walls meet, what lies closer to the roof than its splats are moved back is not in its shadow.
+        # Where walls meet the roof, points closer to it than its splats are moved back are not in its shadow.
         assert np.count_nonzero(seen > 0.02 * bare.max()) < 0.065 * np.count_nonzero(bare > 0.02 * bare.max())
 
 
@@ -126,7 +126,9 @@ def test_scale_does_not_matter(name, scale, still_life, shot):
 
 @pytest.mark.parametrize("where", ["behind", "beside"])
 def test_something_far_along_the_sun_s_light_costs_its_shadows_nothing(where, still_life, shot):
-    """Behind all that is seen, or beside all that is over it: a map is as deep as what matters."""
+    """The far object is behind everything visible, or above it to one side; the map only covers the depths that
+    matter.
+    """
     light = casting(LIGHTS["sun"])
     forward = np.array(light.direction) / np.linalg.norm(light.direction)
     across = np.cross(forward, (0, 0, 1))

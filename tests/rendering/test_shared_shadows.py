@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Samples of one picture share their shadow maps, but where a lens moves what a sun's map is fitted to."""
+"""All samples of a picture share their shadow maps, unless a lens changes the region that a sun's map must cover."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ LAMP = Light("point", energy=60, position=(-2, 1, 2), casts_shadow=True)
 
 @pytest.fixture
 def drawn(monkeypatch):
-    """The plans of the frames whose shadow maps were drawn."""
+    """The plans of the frames for which shadow maps were drawn."""
     plans, run = [], executor.run_pass
 
     def counting(tile, p):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A sheet has two sides: its back is lit as the front of the same sheet turned over, however flat it is seen."""
+"""A sheet has two sides: at any angle its back is lit like the front of the sheet turned over."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ FROM_BELOW = Light("sun", energy=3, direction=(0.2, 1, -0.3))
 
 
 def turned_over(surfels):
-    """Each about its first axis."""
+    """The surfels, each turned over about its first axis."""
     w, x, y, z = surfels.rotations.T
     return replace(surfels, rotations=np.stack([-x, w, z, -y], axis=1), normals=-surfels.normals)
 
@@ -27,8 +27,10 @@ def colors_of(draw, surfels):
 
 @pytest.mark.parametrize("tilt", [98, 100, 105, 120])
 def test_a_lone_back_is_lit_as_a_front(tilt, render):
-    """Tilted by more than 90 degrees it shows its back, from below where the sun is. Were its normals left as they are,
-    they would be in the dark."""
+    """Tilted by more than 90 degrees it shows its back, seen from below, where the sun is.
+
+    If its normals were not reversed, it would be dark.
+    """
     back = sheet(24, 1.5, tilt, 5, (0.8, 0.7, 0.6))
     for draw in (render, render_exact):
         picture, front = colors_of(draw, back), colors_of(draw, turned_over(back))
@@ -38,7 +40,7 @@ def test_a_lone_back_is_lit_as_a_front(tilt, render):
 
 
 def test_the_far_side_of_an_open_box_colours_none_of_its_edges(render):
-    """Surfels of the white side, which faces away, stick out over the edge by less than a pixel, edge-on."""
+    """The white side faces away; its surfels, seen edge-on, stick out over the edge by less than a pixel."""
     corners = np.array([(x, y, z) for x in (-1, 1) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
     sides = np.array(((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (1, 5, 7, 3)))
     surfels = sample_mesh(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""16-bit storage loses no more than it says, and every device reads it as it is written."""
+"""16-bit storage loses no more than it promises, and every device reads what was written."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ BLOCK = 512
 
 @st.composite
 def surfel_sets(draw):
-    """1 to 1100 surfels of any place, size, ratio, brightness and spread."""
+    """1 to 1100 surfels with random places, sizes, ratios, brightness and spread."""
     random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     count = draw(st.sampled_from((1, 2, 511, 512, 513, 1100)))
     scale, far = 10.0 ** draw(st.floats(-15, 15)), draw(st.floats(-1e3, 1e3))
@@ -39,7 +39,7 @@ def surfel_sets(draw):
 
 
 def unpacked(texels, table, count):
-    """The numbers back, in float64, by the words of packing_16_bit's docstring."""
+    """The unpacked numbers in float64, computed by the rules in packing_16_bit's docstring."""
     texels, table = texels.astype(np.float64).reshape(-1, BLOCK, 4, 4), table.astype(np.float64)[:, None]
     signed = (texels * 65535 - 32767) / 32767
     low, size, tint = table[..., 0, :], table[..., 1, :], table[..., 2, :]
@@ -99,7 +99,7 @@ def test_the_order_holds_everyone_once_and_gathers_neighbours(seed, count):
 
 
 def test_levels_lie_after_the_surfels_and_move_none():
-    """From a row of their own on, and every surfel and node has one place, the first that holds it."""
+    """Levels begin in a new row. An entry may be stored twice; its place is the first one."""
     surfels = _sheet(5000)
     levels = build_hierarchy(surfels)
     alone, both = stored_order(surfels), stored_order(surfels, levels)
@@ -115,7 +115,7 @@ def test_levels_lie_after_the_surfels_and_move_none():
 
 def test_a_sort_by_the_word_is_the_stable_one():
     keys = np.random.default_rng(1).integers(0, 1000, 5000)
-    for bits in (10, 55):  # with room for the numbers of 5000, and without
+    for bits in (10, 55):  # with 10, keys and numbers fit into one word; with 55 they do not
         ordered, order = sorted_with_order(keys, bits)
         np.testing.assert_array_equal(order, np.argsort(keys, kind="stable"))
         np.testing.assert_array_equal(ordered, np.sort(keys))
@@ -137,7 +137,7 @@ def test_storage_halves_the_memory():
 
 
 def test_devices_read_what_was_packed(render):
-    """Surfels that are given as 16 bits hold them are drawn alike from both storages: the shader reads them right."""
+    """The surfels have values that 16 bits store exactly, so both storages must give the same picture."""
     surfels = _sheet(3000)
     held = unpacked(*pack_16_bit(surfels, stored_order(surfels))[0], len(surfels))
     held = Surfels(**{name: held[name].astype(dtype) for name, (_, dtype) in LAYOUT.items()})
@@ -152,7 +152,7 @@ def test_devices_read_what_was_packed(render):
 
 @pytest.mark.parametrize("method", ["quad", "mip"])
 def test_what_lies_beside_the_splats_follows_their_order(method, render):
-    """Texture coordinates are stored apart from the splats that 16-bit storage sorts. Measured: 90 and 95 dB."""
+    """Texture coordinates are stored apart from the splats, which 16-bit storage sorts. Measured: 90 and 95 dB."""
     scene, camera = scenes.textured_plane(size=(64, 64))
     sixteen, exact = (
         render(scene, camera, Settings(method=method, supersampling=1, storage=name)) for name in ("16-bit", "float32")
@@ -161,7 +161,7 @@ def test_what_lies_beside_the_splats_follows_their_order(method, render):
 
 
 def test_a_stray_surfel_makes_its_block_coarse_and_that_is_counted(render):
-    """One block of 512 holds the stray; the other 2,488 keep their place."""
+    """Only the block of 512 surfels that contains the stray changes; the other 2,488 keep their places."""
     surfels = _sheet(3000)
     positions = surfels.positions.copy()
     positions[7] = 1e6
@@ -198,7 +198,7 @@ def test_an_unknown_storage_is_refused(render):
 
 
 def _sheet(count):
-    """Surfels of many colours, sizes and slants on a wall at distance 3."""
+    """Surfels of many colours, sizes and tilts on a wall at distance 3."""
     random = np.random.default_rng(5)
     tilt = random.normal((1, 0, 0, 0), 0.1, (count, 4))
     normals = random.normal((0, 0, 1), 0.2, (count, 3))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Textures under footprints: the GLSL is its numpy twin, and the twin is the true mean under the footprint."""
+"""Texture lookups in GLSL agree with their numpy twin, and the twin with the true mean under the footprint."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from splat_addon.rendering.scene import SurfaceTexture
 from splat_addon.rendering.upload.atlas import make_atlas
 from splat_addon.rendering.upload.texture_lookup import texture_colors
 
-#: Of a pixel filtered with a Gaussian of sigma 0.7071, pixels squared.
+#: The variance of a pixel's Gaussian of sigma 0.7071, in pixels squared.
 PIXEL_VARIANCE = 0.5
 QUERIES = 400
 SIZES = (2, 4, 8, 16, 32, 64)
@@ -26,7 +26,9 @@ void main() {
 
 
 def random_textures(random):
-    """One of each extension, two closest ones, sizes odd and even, with and without alpha, and an empty slot."""
+    """One texture of each extension, two with closest lookup, odd and even sizes, with and without alpha, and an empty
+    slot.
+    """
     textures = [None]
     for number, extension in enumerate([*EXTENSIONS, "REPEAT", "CLIP"]):
         height, width = random.integers(1, 40, 2)
@@ -39,7 +41,7 @@ def random_textures(random):
 
 
 def random_queries(random, slots):
-    """Slots, uvs and variances from far magnified to the whole texture in a pixel, up to 1000 : 1 stretched."""
+    """Slots, uvs and variances, from strong magnification to a whole texture in a pixel, stretched up to 1000 : 1."""
     size = 10 ** random.uniform(-4, 0.5, (QUERIES, 1, 1))
     turns = [np.linalg.qr(random.normal(size=(QUERIES, 2, 2)))[0] for _ in range(2)]
     stretch = np.stack([np.ones(QUERIES), 10 ** random.uniform(-3, 0, QUERIES)], axis=1)
@@ -48,12 +50,14 @@ def random_queries(random, slots):
 
 
 def variances_of(footprints):
-    """(n, 2, 2) of the pixel's Gaussian; the columns of a footprint are what a pixel along x and y moves uv."""
+    """The (n, 2, 2) variances of the pixel's Gaussian in uv; a footprint's columns are the steps of uv per pixel along
+    x and y.
+    """
     return PIXEL_VARIANCE * footprints @ np.swapaxes(footprints, 1, 2)
 
 
 def gpu_colors(device, atlas, slots, uvs, variances):
-    """(n, 3), one query a pixel."""
+    """(n, 3) colours from the device, with one query per pixel."""
     columns = variances[:, (0, 1, 0, 0), (0, 1, 1, 0)]
     data = np.stack([np.column_stack([uvs, slots, slots]), columns], axis=1).reshape(1, -1, 4).astype(np.float32)
     description = PipelineDescription(
@@ -82,7 +86,7 @@ def test_the_shader_is_its_twin(on_device):
         at = np.flatnonzero(slots == slot)
         twin[at] = texture_colors(atlas, slot, uvs[at].astype(np.float32), variances[at])
     is_smooth = np.array([t is not None and t.image.interpolation == "Linear" for t in textures])[slots]
-    # where nearest texels, or the numbers of probes, tie
+    # pixels at which nearest texels, or numbers of probes, tie
     differ = np.abs(colors - twin).max(axis=1) > 1e-4
     assert np.count_nonzero(differ[is_smooth]) <= 2
     assert np.count_nonzero(differ) <= QUERIES // 50
@@ -99,7 +103,7 @@ def test_a_footprint_without_size_is_the_mean_of_the_texture(bad, on_device):
 
 
 def true_mean(pixels, uv, footprint):
-    """The texture under the Gaussian footprint, from 120 x 120 lookups in plain numpy (repeated, bilinear)."""
+    """The mean of the texture under the Gaussian footprint, from 120 x 120 bilinear lookups in numpy (repeated)."""
     t = np.linspace(-3.5, 3.5, 120)
     x, y = (a.ravel() for a in np.meshgrid(t, t))
     weights = np.exp(-(x**2 + y**2) / 2)
@@ -118,7 +122,9 @@ def true_mean(pixels, uv, footprint):
 
 @pytest.mark.parametrize(("across", "stretch"), [(0.1, 1), (0.5, 1), (1, 1), (3, 1), (0.2, 8), (1, 2), (1, 4), (2, 6)])
 def test_a_lookup_is_the_mean_under_the_footprint(across, stretch):
-    """across: texels a pixel; stretch: of the footprint. The texture has as much contrast at every scale."""
+    """The texture has equal contrast at every scale. across: texels per pixel. stretch: ratio of the
+    footprint's axes.
+    """
     random = np.random.default_rng(4)
     octaves = [np.kron(random.uniform(0, 1, (size, size, 4)), np.ones((64 // size, 64 // size, 1))) for size in SIZES]
     pixels = np.mean(octaves, axis=0)

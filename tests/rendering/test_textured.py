@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Texture-mapped splats show the texture: against the texture itself, and against the float64 reference."""
+"""Texture-mapped splats agree with the texture itself and with the float64 reference."""
 
 import math
 from dataclasses import replace
@@ -17,12 +17,12 @@ from splat_addon.rendering.scene import SurfaceTexture
 from splat_addon.surfels import Surfels, concatenate
 
 SIZE = 96
-#: What each pixel filter is the truth of, and how close to it the methods come that have it.
+#: method -> the pixel filter of its picture; the others have the Gaussian.
 FILTERS = {"quad": "box", "sprites": "box"}
 
 
 def whole_plane(elevation):
-    """A plane of 4 x 4 surfels with one texture of 8 x 8 checks, coordinates -0.25 to 1.25, and a camera on it."""
+    """A plane of 4 x 4 surfels with a texture of 8 x 8 checks, coordinates from -0.25 to 1.25, and a camera."""
     scene, camera = scenes.textured_plane(side=4, elevation=elevation, size=(SIZE, SIZE))
     (instance,) = scene.surfels
     surfels = replace(instance.surfels, materials=np.zeros(16, int))
@@ -30,7 +30,7 @@ def whole_plane(elevation):
 
 
 def on_plane(eye, rays):
-    """Where rays meet the plane z = 0: texture coordinates, and whether it is well inside of the texture."""
+    """The texture coordinates at which rays meet the plane z = 0, and whether they are well inside the texture."""
     points = (eye - rays * (eye[2] / rays[:, 2:]))[:, :2]
     return points * 0.75 + 0.5, (rays[:, 2] < 0) & (np.abs(points) < 0.9).all(axis=1)
 
@@ -62,8 +62,10 @@ def test_without_texture_coordinates_so_few_surfels_show_next_to_nothing(render)
 
 @pytest.mark.parametrize("method", [name for name, m in METHODS.items() if m.rasterizer != "point_sprite"])
 def test_every_method_shows_what_the_reference_shows(method, render):
-    """Methods whose silhouettes are not filtered, and sprites, are farther away: those as printed the most, as by
-    equation 4 of Botsch and Kobbelt 2003 the wrong splats hide one another.
+    """Methods with unfiltered silhouettes, and sprites, have lower bounds.
+
+    The sprites as printed have the lowest: with equation 4 of Botsch and Kobbelt 2003 the wrong splats hide one
+    another.
     """
     least = {"mip": 36, "quad": 40, "sprites": 24, "sprites_printed": 20, "ewa": 24}.get(method, 30)
     scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
@@ -98,7 +100,7 @@ def test_coordinates_that_differ_by_whole_images_show_the_same(render):
 
 
 def test_surfels_without_a_change_of_coordinates_show_their_own_colour(render):
-    """What joining with surfels that have none leaves."""
+    """Such surfels result from joining with an object that has no texture coordinates."""
     scene, camera = scenes.textured_plane(size=(SIZE, SIZE))
     (instance,) = scene.surfels
     bare = replace(instance.surfels, uvs=None, uv_along_x=None, uv_along_y=None)
@@ -106,7 +108,7 @@ def test_surfels_without_a_change_of_coordinates_show_their_own_colour(render):
     held = replace(joined, uv_along_x=0 * joined.uv_along_x, uv_along_y=0 * joined.uv_along_y)
     own, shown = (render(replace(scene, surfels=(replace(instance, shape=s),)), camera) for s in (bare, held))
     differs = np.abs(own.color - shown.color).max(axis=2)
-    # Two shaders: what lies just at the end of a neighbour's reach may be within it in one of them.
+    # The two shaders may round differently at the very end of a neighbour's reach.
     assert differs.max() < 2e-4 and np.count_nonzero(differs > 1e-5) <= 2
 
 
@@ -174,7 +176,7 @@ def test_an_atlas_leaves_with_the_last_frame_that_uses_it(on_device):
 
 @pytest.mark.parametrize("method", ["quad", "mip"])
 def test_a_splat_over_a_seam_shows_nothing_of_the_next_chart(method, render):
-    """A plane whose image is red beyond the line at which the map of every splat ends."""
+    """The plane's image is red beyond the line at which every splat's map ends."""
     scene, camera = whole_plane(50)
     (instance,) = scene.surfels
     image = np.ones((64, 64, 4), np.float32) * (0.1, 0.6, 0.2, 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Transparent layers: closed forms, and the picture by definition (Guennebaud et al. 2006, section 6)."""
+"""Transparent layers agree with closed forms and with their definition (Guennebaud et al. 2006, section 6)."""
 
 import math
 from dataclasses import replace
@@ -23,7 +23,7 @@ WORLD = (0.2, 0.4, 0.8)
 
 
 def sheet(z: float, color, opacity: float, half: float = 3.0) -> Instance:
-    """A square across the view: 16 x 16 overlapping discs."""
+    """A square across the view, made of 16 x 16 overlapping discs."""
     axis = (np.arange(16) + 0.5) / 8 - 1
     x, y = (a.ravel() * half for a in np.meshgrid(axis, axis))
     up = np.tile((0.0, 0, 1), (256, 1))
@@ -45,7 +45,9 @@ def flat(**choices) -> Settings:
 
 @pytest.mark.parametrize("method", PEELING)
 def test_sheets_cover_what_is_behind_them_by_their_opacity(method, render):
-    """k sheets of opacity a over b: b (1 - a)^k, and each sheet what the nearer ones let through of it."""
+    """Of a background b, k sheets of opacity a leave b (1 - a)^k; each sheet adds its share of what nearer ones let
+    through.
+    """
     opacity, colors = 0.4, ((1.0, 0, 0), (0, 1.0, 0), (0, 0, 1.0))
     scene = Scene([sheet(-z, c, opacity) for z, c in enumerate(colors)], world=WORLD)
     frame = render(scene, CAMERA, flat(method=method))
@@ -74,7 +76,7 @@ def test_what_lies_behind_the_last_layer_is_lost(method, render):
 
 @pytest.mark.parametrize("method", SPACES)
 def test_colours_of_little_opacity_count_for_little(method, render):
-    """A sheet whose left half is white and hardly there stays red up to its middle."""
+    """A red sheet whose left half is white but almost invisible stays red up to its middle."""
     red = sheet(0, (1, 0, 0), 0.5)
     colors = red.surfels.colors.copy()
     colors[red.surfels.positions[:, 0] < 0] = (1, 1, 1, 0.001)
@@ -87,7 +89,9 @@ def test_colours_of_little_opacity_count_for_little(method, render):
 
 @pytest.mark.parametrize("method", [m for m in PEELING if m != "homogeneous_printed"])  # which has no parallel cameras
 def test_the_rest_hides_as_many_surfaces_as_there_are(method, render):
-    """Before a parallel camera each of k even sheets weighs the same: b (1 - a)^k, whatever the number of layers."""
+    """Before a parallel camera each of k even sheets has the same weight, so b (1 - a)^k remains with any number of
+    layers.
+    """
     camera = Camera.orthographic(CAMERA.matrix_world, 2.0, (16, 16), 0.1, 50)
     opacity, white = 0.3, (1.0, 1.0, 1.0)
     for layers in (2, 3, 4):
@@ -100,7 +104,7 @@ def test_the_rest_hides_as_many_surfaces_as_there_are(method, render):
 
 @pytest.mark.parametrize("method", SPACES)
 def test_as_printed_the_rest_hides_as_one_surface(method, render):
-    """Of the mean opacity, under weights that are opacities: of sheets of 0.3 and 0.6 that is 0.5."""
+    """The surface has the mean opacity, weighted by opacity: sheets of 0.3 and 0.6 give 0.5."""
     camera = Camera.orthographic(CAMERA.matrix_world, 2.0, (16, 16), 0.1, 50)
     sheets = [sheet(-z, (1, 1, 1), opacity) for z, opacity in enumerate((0.5, 0.3, 0.6))]
     settings = flat(method=method, layers=2, blends_rest=True)
@@ -142,7 +146,7 @@ def test_backs_in_the_rest_count_as_fronts(method, blend_depth, render):
 
 @pytest.mark.parametrize("method", SPACES)
 def test_three_layers_come_close_to_all(method, render):
-    """The paper's figure 6: the rest in the last layer, against the rest lost."""
+    """As in figure 6 of the paper, the rest is estimated in the last layer or left out."""
     scene, camera = spheres(96)
     every, lost, blended = (
         render(scene, camera, Settings(method=method, layers=layers, blends_rest=blends)).color
@@ -154,7 +158,7 @@ def test_three_layers_come_close_to_all(method, render):
 
 @pytest.mark.parametrize("method", SPACES)
 def test_splats_of_the_rest_are_lit_as_the_layers_are(method, render):
-    """Own materials, emission, linked lights, shadows: a sheet in the last layer looks as it does in a peeled one."""
+    """A sheet in the last layer has the same materials, emission, linked lights and shadows as a peeled one."""
     lamp = Light("point", (1, 0.9, 0.8), energy=300, position=(1, 1, 3), casts_shadow=True)
     lights = lamp, Light("sun", energy=1.0, direction=(0.3, 0, -1), receivers=(1,))
     nearer, *sheets = (sheet(-z, (0.8, 0.5, 0.3), 0.5) for z in range(3))
@@ -192,7 +196,7 @@ def test_picture_is_the_exact_one(shading, render):
 @pytest.mark.parametrize("blends_rest", [False, True])
 @pytest.mark.parametrize("method", SPACES)
 def test_a_transparent_film_composites_over_any_background(method, blends_rest, render):
-    """Premultiplied edges have no rim: over a background, the picture is the one before that background."""
+    """Premultiplied edges have no rim: composited over a background, the picture equals one rendered with it."""
     scene, camera = spheres(96)
     choices = {"method": method, "layers": 4, "blends_rest": blends_rest}
     film = render(scene, camera, flat(**choices, transparent_film=True)).color
@@ -255,13 +259,13 @@ def test_tiles_hide_no_seam(render, monkeypatch):
     monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", 60)
     assert len(plan(scene, camera, Settings()).tiles) > 1
     differs = np.abs(render(scene, camera, Settings()).color - whole).max(axis=2)
-    assert differs.max() < 1e-3 and np.count_nonzero(differs > 1e-4) <= 2  # where depths or weights tie
+    assert differs.max() < 1e-3 and np.count_nonzero(differs > 1e-4) <= 2  # pixels at which depths or weights tie
 
 
 @pytest.mark.parametrize("edge", [40, 60])
 @pytest.mark.parametrize("method", SPACES)
 def test_tiles_store_the_depths_of_the_whole(method, edge, render, monkeypatch):
-    """What ties with a layer's end is then in the same layer; the rasteriser's own rounding is left."""
+    """A depth that ties with a layer's end is then in the same layer; only the rasterizer's rounding can differ."""
     scene, camera = scenes.transparent_spheres(count=600, size=(160, 160))
     settings = Settings(method=method, layers=8, blends_rest=False, supersampling=1)
     whole = render(scene, camera, settings).color
@@ -303,14 +307,14 @@ def test_nothing_of_an_opaque_scene_is_for_layers():
 
 
 def under_the_sun(*casters, **options) -> Scene:
-    """A white floor across the view, and what hangs between it and the sun behind the eye."""
+    """A white floor across the view, and objects between it and the sun, which is behind the eye."""
     chalk = (Material(roughness=1.0, ior=1.0),)
     floor = replace(sheet(-1, (1, 1, 1), 1.0), materials=chalk)
     return Scene([floor, *casters], [Light("sun", energy=2.0, direction=(0.4, 0, -1), casts_shadow=True, **options)])
 
 
 def half(opacity: float, z: float) -> Instance:
-    """Over the left half of the floor, lower than the eye."""
+    """A sheet over the left half of the floor, at a height z below the eye."""
     made = sheet(z, (0, 0, 0), opacity)
     keep = made.surfels.positions[:, 0] < -0.2
     fields = {name: array[keep] for name, array in made.surfels.arrays().items()}
@@ -320,8 +324,9 @@ def half(opacity: float, z: float) -> Instance:
 @pytest.mark.parametrize("size", [0.0, 0.05])
 @pytest.mark.parametrize("opacities", [(0.25,), (0.5,), (0.8,), (0.5, 0.5), (0.25, 0.75), (0.5, 0.25, 0.5)])
 def test_shadows_are_as_transparent_as_their_casters(opacities, size, render):
-    """Of what lies out of the picture: light arrives through each sheet in its share, to a sixteenth. Masks are even in
-    pairs, so that a third sheet lets an eighth more or less of it through.
+    """Each caster is outside the picture and lets its share of light through, within a sixteenth.
+
+    Only pairs of masks are even, so a third sheet lets up to an eighth more or less through.
     """
     camera = Camera.orthographic(look_at((0.4, 0, -0.5), (0.4, 0, -1), (0, 1, 0)), 0.5, (24, 24), 0.05, 50)
     casters = [half(opacity, 1.0 + 0.3 * number) for number, opacity in enumerate(opacities)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Penumbrae of transparent surfaces, in closed form: what a straight edge hides of a round lamp."""
+"""Penumbrae of transparent surfaces agree with the closed form of a straight edge in front of a round lamp."""
 
 import math
 from dataclasses import replace
@@ -14,13 +14,13 @@ SETTINGS = Settings(method="quad", supersampling=1, shadow_resolution=512, blend
 SIZE, WIDTH = 64, 0.7
 CAMERA = Camera.orthographic(look_at((0, 0, -0.5), (0, 0, -1), (0, 1, 0)), WIDTH, (SIZE, SIZE), 0.05, 50)
 CHALK = (Material(roughness=1.0, ior=1.0),)
-RADIUS, HEIGHT, TURN = 0.15, 1.5, 0.3  # of the discs, over the floor, and of the edge
-#: Each has masks of its own, by its number in the scene.
+RADIUS, HEIGHT, TURN = 0.15, 1.5, 0.3  # radius of the discs, height above the floor, and rotation of the edge
+#: The numbers of an object in the scene; each number has its own masks.
 MASKS = range(5)
 
 
 def discs(places, z: float, color, turn=0.0, **options) -> Instance:
-    """Upright discs at (n, 2) places."""
+    """An instance of discs at (n, 2) places that face along z."""
     count = len(places)
     c, s = math.cos(turn), math.sin(turn)
     positions = np.column_stack([places @ np.array([[c, s], [-s, c]]), np.full(count, z)])
@@ -37,7 +37,10 @@ FLOOR = discs(grid(np.arange(-1, 1, 0.15), np.arange(-1, 1, 0.15)), -1, (1, 1, 1
 
 
 def casters(opacity: float, mask: int, edge: float) -> list[Instance]:
-    """A sheet that ends at x = edge, in coordinates turned by TURN: discs, dense along it. It is the mask-th."""
+    """A sheet of discs, dense at its edge x = edge, in coordinates turned by TURN.
+
+    `mask` objects come before it, so that it gets the mask of that number.
+    """
     along = np.arange(-3, 3, 0.03)
     rows = grid([edge - RADIUS], along), grid(np.arange(edge - 3, edge - RADIUS, 0.15), along[::5])
     sheet = discs(np.concatenate(rows), HEIGHT - 1, (0, 0, 0, opacity), TURN)
@@ -51,7 +54,7 @@ def wide_sun(size: float) -> Light:
 
 @pytest.fixture
 def darkness(render):
-    """darkness(casters, light) -> (h, w): which share of it does not arrive on the floor under them."""
+    """darkness(casters, light) -> (h, w): the share of the light that does not reach the floor under the casters."""
 
     def measure(hanging, light, camera=CAMERA):
         shaded, free = (
@@ -64,7 +67,10 @@ def darkness(render):
 
 
 def hidden_share(edge: float, size: float) -> np.ndarray:
-    """(h, w) of the sun's disc behind the sheet's edge, from the floor; the map has splats half a radius lower."""
+    """(h, w): the share of the sun's disc behind the sheet's edge, seen from the floor.
+
+    The shadow map has splats half a radius lower.
+    """
     at = ((np.arange(SIZE) + 0.5) / SIZE - 0.5) * WIDTH
     across = at * math.cos(TURN) + at[:, None] * math.sin(TURN) - edge
     t = np.clip(across / (math.tan(size / 2) * (HEIGHT - RADIUS / 2)), -1, 1)
@@ -75,8 +81,10 @@ def hidden_share(edge: float, size: float) -> np.ndarray:
 @pytest.mark.parametrize("opacity", [0.25, 0.5, 0.75])
 @pytest.mark.parametrize("size", [0.04, 0.16])
 def test_a_penumbra_has_no_comb(size, opacity, mask, darkness):
-    """As even as that of an opaque sheet, which has 0.022 and 0.09: looks that follow their masks have 0.022 to 0.06
-    and 0.1 to 0.3."""
+    """It is as even as an opaque sheet's, whose errors are 0.022 (rms) and 0.09 (largest).
+
+    With lookups whose pattern repeats that of the masks, they were 0.022 to 0.06 and 0.1 to 0.3.
+    """
     expected = hidden_share(0.0, size)
     difference = np.abs(darkness(casters(opacity, mask, 0.0), wide_sun(size)) - opacity * expected)
     inside = (expected > 0) & (expected < 1)
@@ -86,7 +94,10 @@ def test_a_penumbra_has_no_comb(size, opacity, mask, darkness):
 
 @pytest.mark.parametrize("opacities", [(0.5, 0.5), (0.25, 0.75)])
 def test_sheets_behind_one_another_are_as_even_as_opaque_ones(opacities, darkness):
-    """Curvature from pixel to pixel: 0.021 before opaque sheets, half of it here; where looks follow masks, 0.046."""
+    """Unevenness is the curvature from pixel to pixel: 0.021 for opaque sheets and half of that here.
+
+    With lookups whose pattern repeats that of the masks, it was 0.046.
+    """
     lower, turned = np.eye(4), np.eye(4)
     lower[2, 3] = -0.9
     turned[:2, :2] = (math.cos(1.4), -math.sin(1.4)), (math.sin(1.4), math.cos(1.4))
@@ -102,14 +113,14 @@ def test_sheets_behind_one_another_are_as_even_as_opaque_ones(opacities, darknes
 
 @pytest.mark.parametrize("mask", MASKS)
 def test_masks_are_whole_beyond_the_maps_border(mask, darkness):
-    """Two of the maps of a lamp meet in the picture, and looks go over their border."""
+    """Two of the lamp's shadow maps meet in the picture, and lookups cross their border."""
     lamp = Light("point", energy=60, position=(-3, 0, 2), casts_shadow=True, size=0.3)
     assert np.abs(darkness(casters(0.25, mask, 1.0), lamp) - 0.25).max() < 1e-5
 
 
 @pytest.mark.parametrize("opacity", [0.5, 1.0])
 def test_a_part_of_the_picture_has_the_shadows_of_the_whole(opacity, darkness):
-    """A sun's map is fitted to the picture, and reaches as far beside it as what softens the shadows in it."""
+    """A sun's map is fitted to the picture, plus the distance from which a soft shadow may reach into it."""
     sheet, sun = casters(opacity, 0, 0.0), wide_sun(0.3)
     whole = darkness(sheet, sun)
     for x, y, side in ((0, 10, 40), (12, 20, 40)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes that the sampling tests measure, and the rays of a layered depth cube."""
+"""Meshes for the sampling tests, and the rays of a layered depth cube."""
 
 import gzip
 
@@ -15,7 +15,7 @@ from splat_addon.sampling.refine.missed_components import SampledSurface
 
 @pytest.fixture
 def cube():
-    """cube(offset): the unit cube with a corner there, 12 triangles, normals outwards."""
+    """cube(offset) -> the unit cube with a corner there: 12 triangles with normals outwards."""
 
     def build(offset=0.0):
         corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
@@ -56,13 +56,13 @@ def read_obj(path):
 
 @pytest.fixture
 def triangle():
-    """triangle(a, b, c, **fields): a mesh of one triangle."""
+    """triangle(a, b, c, **fields) -> a mesh of one triangle."""
     return lambda *corners, **fields: TriangleMesh(np.array(corners, float), np.array([[0, 1, 2]]), **fields)
 
 
 @pytest.fixture
 def square():
-    """square(edge, **fields): z = 0, from the origin, two triangles, normal +z."""
+    """square(edge, **fields) -> a square at z = 0 with a corner at the origin: two triangles, normal +z."""
 
     def build(edge=1.0, **fields):
         positions = np.array([(0, 0, 0), (edge, 0, 0), (edge, edge, 0), (0, edge, 0)])
@@ -73,7 +73,9 @@ def square():
 
 @pytest.fixture(scope="session")
 def rays():
-    """rays(mesh, resolution): the grid, and for each axis the (n, 2) column and row of every sample, unreduced."""
+    """rays(mesh, resolution) -> the grid and, for each axis, the (n, 2) column and row of every sample before
+    reduction.
+    """
 
     def shoot(mesh, resolution):
         mesh, _ = drop_unusable(mesh)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Distances from a triangle that hold for slivers, of which trimesh's own are 1e-4 of a cell off."""
+"""Distances from a triangle that are exact for slivers too; trimesh's own are off by 1e-4 of a cell there."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 
 
 def distances(points: np.ndarray, a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """(n,) from (n, 3) points to one triangle, in float64."""
+    """(n,) float64 distances of (n, 3) points from one triangle."""
     normal = np.cross(b - a, c - a)
     square = max(normal @ normal, np.finfo(float).tiny)
     w1 = np.cross(points - a, c - a) @ normal / square
@@ -17,6 +17,6 @@ def distances(points: np.ndarray, a: np.ndarray, b: np.ndarray, c: np.ndarray) -
 
 
 def to_segment(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(n,) from (n, 3) points to the segment from a to b."""
+    """(n,) distances of (n, 3) points from the segment from a to b."""
     along = np.clip((points - a) @ (b - a) / max((b - a) @ (b - a), np.finfo(float).tiny), 0, 1)
     return np.linalg.norm(a + along[:, None] * (b - a) - points, axis=1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Larger surfels where the surface is flat: fewer, within the tolerance, without holes, and never over an edge."""
+"""Adaptive sampling: fewer, larger surfels on flat parts, within the tolerance, without holes, never across an edge."""
 
 import numpy as np
 import pytest
@@ -11,20 +11,20 @@ from splat_addon.sampling import Channel, Surface, Tolerance, TriangleMesh, Vert
 
 
 def adaptive(mesh, resolution, cells=0.1, **limits):
-    """Sampled with a tolerance in cells."""
+    """The mesh sampled with a tolerance, given in cells."""
     spacing = grid_spacing(mesh, resolution=resolution)
     return sample_surface(mesh, resolution=resolution, tolerance=Tolerance(cells * spacing, **limits))
 
 
 def turned(mesh, angles):
-    """The mesh turned by three angles, so that no face lies along the grid."""
+    """The mesh turned by three angles, so that no face is parallel to the grid."""
     from scipy.spatial.transform import Rotation
 
     return TriangleMesh(Rotation.from_euler("xyz", angles).apply(mesh.positions), mesh.triangles)
 
 
 def test_a_flat_square_keeps_small_surfels_along_its_border_alone(square):
-    """64 x 64 cells: 8 x 8 blocks of 8 inside, one block of the ring less at each side, then 4, 2 and 1."""
+    """64 x 64 cells become 6 x 6 blocks of 8 x 8 inside, surrounded by a ring of blocks of 4, then 2, then 1."""
     sampling = adaptive(square(), 64)
     surfels = sampling.surfels
     middle = np.abs((surfels.origin + surfels.positions)[:, :2] - 0.5).max(axis=1) < 0.3
@@ -48,7 +48,7 @@ def test_a_cube_in_any_position_has_no_holes(cube):
 @settings(deadline=None, max_examples=15)
 @given(st.tuples(*[st.floats(-3, 3)] * 3))
 def test_merged_surfels_lie_on_flat_faces_in_every_position(angles):
-    """A plane through the origin stays one: every surfel is on it and faces along it."""
+    """On a plane through the origin every merged surfel lies in the plane and faces along its normal."""
     import trimesh
 
     sheet = TriangleMesh(np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0.0)]), np.array([(0, 1, 2), (0, 2, 3)]))
@@ -63,7 +63,7 @@ def test_merged_surfels_lie_on_flat_faces_in_every_position(angles):
 
 @pytest.mark.parametrize("cells", [0.05, 0.2, 0.5])
 def test_the_error_stays_within_the_tolerance_on_a_sphere(sphere, cells):
-    """The sphere's own distance is measured, not the bound that is reported."""
+    """The distance from the sphere is measured; the bound that the sampling reports is not used."""
     spacing = grid_spacing(sphere, resolution=200)
     sampling = adaptive(sphere, 200, cells, angle=1.0)
     off = np.abs(np.linalg.norm(sampling.surfels.origin + sampling.surfels.positions, axis=1) - 1)
@@ -77,7 +77,7 @@ def test_a_larger_tolerance_leaves_fewer(sphere):
 
 
 def test_normals_that_turn_are_not_merged(sphere):
-    """2 cells of 200 along the radius turn by 0.02."""
+    """With 200 cells, normals two cells apart on the sphere differ by 0.02 rad."""
     assert adaptive(sphere, 200, 0.5, angle=0.001).saved == 0
 
 
@@ -97,7 +97,7 @@ def test_materials_are_not_merged(square):
 
 @pytest.mark.parametrize("field", ["materials", "colors", "normals"])
 def test_odd_cells_inside_a_block_are_not_merged(field):
-    """Neither is its block's first; colours and normals of the two cancel out, so that the block's mean is even."""
+    """Neither odd cell is the first of its block, and their colours or normals cancel out in the block's mean."""
     x, y = (a.ravel() for a in np.meshgrid(np.arange(33), np.arange(33)))
     corner = (np.arange(32)[:, None] * 33 + np.arange(32)).ravel()[:, None]
     triangles = np.concatenate([corner + np.array(step) for step in ((0, 1, 34), (0, 34, 33))])
@@ -119,7 +119,7 @@ def test_odd_cells_inside_a_block_are_not_merged(field):
 
 @pytest.mark.parametrize(("cells", "angle", "color"), [(9, 9, 0.06), (9, 0.06, 9), (0.1, 9, 9)])
 def test_each_sample_is_within_the_tolerances_of_the_surfel_in_its_place(sphere, cells, angle, color):
-    """A coloured sphere of radius 50 cells; each bound in turn is the one that counts."""
+    """The mesh is a coloured sphere with a radius of 50 cells; each tolerance in turn is the limiting one."""
     from scipy.spatial import cKDTree
 
     colors = np.concatenate([sphere.positions, np.ones((len(sphere.positions), 1))], axis=1)[sphere.triangles]

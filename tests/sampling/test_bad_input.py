@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What cannot be sampled is left out and counted; what makes no sense is refused in a sentence."""
+"""Triangles that cannot be sampled are left out and counted; senseless input is refused in a sentence."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ EMPTY = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), int))
 
 
 def with_extra(mesh, vertices, triangles):
-    """The mesh and more triangles, which count their vertices from the mesh's last one on."""
+    """The mesh with more triangles, whose indices start at the mesh's last vertex."""
     triangles = np.concatenate([mesh.triangles, np.array(triangles) + len(mesh.positions)])
     return TriangleMesh(np.concatenate([mesh.positions, np.array(vertices, float)]), triangles)
 

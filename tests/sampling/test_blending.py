@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How deep surfels blend: hardly where the surface is flat, and where it bends as far as other splats of it lie off."""
+"""Blend depths are almost 0 on flat surfaces, and on curved ones as large as the offsets between overlapping splats."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ def test_it_is_absent_where_nobody_asks(cube):
 
 
 def test_it_holds_how_far_neighbours_lie_off_a_splats_plane(sphere):
-    """On a ball of radius 1, splats that overlap on it lie off each other's planes by about their radius squared."""
+    """Overlapping splats on a ball of radius 1 are off each other's planes by about their radius squared."""
     surfels = sample_mesh(sphere, resolution=40, fits_blending=True)
     off = surfels.blend_depth * surfels.radius
     sagitta = surfels.radius**2 / 2

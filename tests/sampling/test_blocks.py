@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh that several machines sample in blocks of the grid has the surfels of one machine, bit by bit."""
+"""A mesh that several machines sample in blocks of the grid has the same surfels, bit by bit, as on one machine."""
 
 import math
 from dataclasses import replace

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What spares work finds what a look at everything finds: borders of a mesh, and surfels near them."""
+"""The fast searches for a mesh's borders, and for surfels near them, find what an exhaustive search finds."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from splat_addon.sampling.ldc.grid import make_grid
 
 
 def bumpy(steps=14, height=0.12, turned=False, split=False, seed=5):
-    """An open sheet with bumps, of which some edges are creases."""
+    """An open, bumpy sheet on which some edges are creases."""
     random = np.random.default_rng(seed)
     x, y = (axis.ravel() for axis in np.meshgrid(*2 * [np.linspace(0, 1, steps)]))
     positions = np.stack([x, y, height * random.random(len(x))], axis=1)
@@ -47,7 +47,7 @@ def survey_normals(mesh):
 
 
 def borders_by_hand(mesh, angle):
-    """{(triangle, corner at which a border edge starts)}, edge by edge."""
+    """{(triangle, corner at which a border edge starts)}, found edge by edge."""
     sides, names = {}, {}
     place = [names.setdefault(tuple(p), len(names)) for p in mesh.positions.tolist()]
     for t, triangle in enumerate(mesh.triangles.tolist()):
@@ -103,7 +103,10 @@ def test_planes_that_differ_by_just_the_angle_make_no_crease():
 ])  # fmt: skip
 @pytest.mark.parametrize("is_smooth", [True, False])
 def test_a_fold_is_a_crease_the_sooner_the_higher_a_face_is_beside_a_splat(degrees, heights, is_crease, is_smooth):
-    """heights: of both triangles over their fold, in reaches of a splat. The crease's angle is 30 degrees."""
+    """With larger faces a smaller angle already makes a crease; the crease angle is 30 degrees.
+
+    heights: of both triangles above their fold, in units of a splat's reach.
+    """
     half, run = np.radians(degrees) / 2, 3 * max(heights)
     y, z = np.cos(half), -np.sin(half)
     there, back = np.array((0, y, z)) * heights[0], np.array((0, -y, z)) * heights[1]

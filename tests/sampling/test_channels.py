@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Roughness, metallic, emission and opacity of a surfel: there where a texture or vertex colours drive them."""
+"""Surfels have roughness, metallic, emission and opacity only if a texture or vertex colours define them."""
 
 import numpy as np
 import pytest
@@ -46,7 +46,9 @@ def test_green_is_the_roughness_and_blue_the_metallic_of_one_image(square):
 
 @pytest.mark.parametrize("per_cell", [4, 16])
 def test_a_texture_finer_than_the_spacing_gives_its_mean_roughness(square, per_cell):
-    """A checker of single pixels, 4 or 16 to a cell: every surfel has the half, none the 0 or 1 of a point."""
+    """The texture is a checker of single pixels, 4 or 16 to a cell: each surfel gets 0.5, not the 0 or 1 of a single
+    pixel.
+    """
     checker = np.ones((8 * per_cell, 8 * per_cell, 4))
     checker[..., 1] = np.indices(checker.shape[:2]).sum(axis=0) % 2
     surfels = sampled(square, Surface(roughness=Channel((1,), Texture(Image(checker), weights=GREEN))), 8)

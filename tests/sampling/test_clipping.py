@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splats end where their surface does: nothing sticks out over an edge, and nothing is left bare beside it."""
+"""Splats end where their surface ends: nothing sticks out over an edge, and no surface beside it is left bare."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,9 @@ DISC = np.array([(r * np.cos(t), r * np.sin(t)) for r in (0.3, 0.7, 0.999) for t
 
 
 def shown(surfels):
-    """(n, 3) points of the splats that are not cut away, in object space, and (n,) the surfel of each."""
+    """(n, 3) points in object space of the parts of splats that are not cut off, and the (n,) index of each point's
+    surfel.
+    """
     lines, reflex = surfels.clip_lines()
     row = np.repeat(np.arange(len(surfels)), len(DISC))
     places = np.tile(DISC, (len(surfels), 1))
@@ -34,7 +36,7 @@ def shown(surfels):
 
 
 def bare_share(surfels, points, normals):
-    """The share of (n, 3) points of the surface that no splat of it shows."""
+    """The share of (n, 3) points of the surface that no splat shows."""
     lines, reflex = surfels.clip_lines()
     u, v = (axis.astype(float) for axis in surfels.half_axes())
     z, bare = surfels.geometric_normals(), 0
@@ -60,7 +62,7 @@ def plate(outline, triangles, **fields):
 
 @pytest.fixture
 def tilted():
-    """tilted(mesh): turned against all axes."""
+    """tilted(mesh) -> the mesh turned so that no face is parallel to an axis."""
     turn = trimesh.transformations.euler_matrix(0.4, 0.7, 0.2)[:3, :3]
     return lambda mesh: TriangleMesh(mesh.positions @ turn.T, mesh.triangles, materials=mesh.materials), turn
 
@@ -72,7 +74,7 @@ def test_no_splat_of_a_cube_sticks_out_and_no_point_is_bare(cube, tilted, resolu
     surfels = sample_mesh(mesh, resolution=resolution, crease_angle=ANGLE)
     points, _ = shown(surfels)
     inside = points @ turn
-    # Of a corner of a few hundredths of a splat, a second line is spared.
+    # Where a corner is only a few hundredths of a splat, the second line is left out.
     assert inside.min() > -0.05 / resolution and inside.max() < 1 + 0.05 / resolution
     before, _ = shown(sample_mesh(mesh, resolution=resolution))
     assert (before @ turn).max() > 1 + 0.3 / resolution
@@ -83,7 +85,7 @@ def test_an_open_plate_ends_at_its_border(square):
     surfels = sample_mesh(square(), resolution=9, crease_angle=ANGLE)
     points, _ = shown(surfels)
     assert points[:, :2].min() > -1e-3 and points[:, :2].max() < 1 + 1e-3
-    # Its diagonal is no border.
+    # The square's diagonal is not a border.
     assert (surfels.clip_line[:, 1] > 0).mean() < 0.6
 
 
@@ -118,7 +120,10 @@ def test_a_hole_of_a_few_cells_stays_open_and_its_rim_covered(corners):
 
 @pytest.mark.parametrize("shift", np.linspace(0, 0.9, 4))
 def test_at_a_seam_of_two_sheets_each_surfel_ends_at_its_own(shift):
-    """Their edges lie on one another but share no vertex; a surfel that took the other's lost its own side."""
+    """The sheets' edges coincide but share no vertex.
+
+    A surfel cut at the other sheet's edge would lose its own side.
+    """
     low = np.array([(-1, -1, 0), (1.2, -1, 0), (1.2, 0, 0), (-1, 0, 0)], float)
     high = np.array([(-1.3, 0, 0), (1.4, 0, 0), (1.4, 0.8, -0.6), (-1.3, 0.8, -0.6)])
     corners = np.concatenate([low, high])
@@ -132,7 +137,7 @@ def test_at_a_seam_of_two_sheets_each_surfel_ends_at_its_own(shift):
 
 
 def test_a_face_narrower_than_a_cell_is_covered_by_surfels_of_its_own():
-    """A box whose edge is cut off by a face of a tenth of a cell, which few rays meet."""
+    """The mesh is a box with an edge bevelled by a face a tenth of a cell wide, which few rays hit."""
     box = trimesh.convex.convex_hull([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1) if (x, y) != (1, 1)]
                                      + [(0.99, 1, z) for z in (0, 1)] + [(1, 0.99, z) for z in (0, 1)])  # fmt: skip
     mesh = TriangleMesh(box.vertices, box.faces)
@@ -246,7 +251,10 @@ def test_surfels_that_fill_gaps_follow_a_mesh_too():
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_triangle_that_rounding_keeps_from_being_flat_gets_no_surfels(seed):
-    """Text that Blender 4.5 fills has them, and instances turn them, so that their normals point anywhere."""
+    """Text that Blender 4.5 fills contains such triangles.
+
+    Turned instances give them normals in arbitrary directions.
+    """
     turn = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
     flat = plate([(0, 0), (0.3, 0), (1, 0), (1, 1), (0, 1)], [(0, 2, 1), (1, 3, 4), (1, 2, 3), (0, 1, 4)])
     turned = TriangleMesh(flat.positions @ turn, flat.triangles)

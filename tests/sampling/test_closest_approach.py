@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The spacing for a camera: a surfel covers the pixels asked for where the surface comes closest."""
+"""The spacing for a camera: a surfel covers the given number of pixels where the surface is closest."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ import pytest
 from splat_addon.rendering import Camera, look_at
 from splat_addon.sampling import TriangleMesh, camera_spacing, outline
 
-#: The outline stands for the surface within 1.5 / 96 of its longest edge.
+#: The outline is within 1.5 / 96 of the box's longest edge from the surface.
 REACH = 1.5 / 96
 
 
@@ -24,7 +24,7 @@ def spacing(mesh, camera, pixels=1.0, scale=(1, 1, 1)):
 
 
 def pinhole(eye, target=(0, 0, 0), size=(200, 100)):
-    """A pixel is 0.01 wide at distance 1, the picture 90 degrees wide."""
+    """A camera with a field of view of 90 degrees whose pixels are 0.01 wide at distance 1."""
     return Camera.perspective(look_at(eye, target), 2 * np.arctan(0.5), size)
 
 
@@ -48,7 +48,7 @@ def test_a_parallel_camera_sees_the_same_at_any_distance(ball):
 
 
 def test_only_the_part_in_view_counts(cube):
-    """A long floor under the camera begins for it where the picture's lower edge meets it."""
+    """The camera is above a long floor; the visible part begins where the picture's lower edge meets it."""
     floor = TriangleMesh(cube().positions * (40, 40, 0.001) - (20, 20, 0), cube().triangles)
     camera = pinhole((0, 0, 10), target=(10, 0, 10))
     assert spacing(floor, camera) == pytest.approx(0.01 * 20, rel=0.1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The colour of a surfel: constants, vertex colours and textures, and their product."""
+"""The colour of a surfel comes from constants, vertex colours and textures, or products of them."""
 
 import numpy as np
 import pytest
@@ -44,7 +44,7 @@ def test_the_factors_multiply(square):
 
 
 def test_a_ramp_in_a_texture_comes_back_unshifted(square):
-    """Pixel k is centred at (k + 1/2) / size: with value k + 1/2 over size it is the coordinate itself."""
+    """The centre of pixel k is at (k + 1/2) / size; its value is the same number, so lookups return the coordinate."""
     ramp = np.ones((16, 16, 4))
     ramp[..., 0], ramp[..., 1] = np.meshgrid((np.arange(16) + 0.5) / 16, (np.arange(16) + 0.5) / 16)
     surfels = sample_mesh(surfaced(square, Surface(Channel((1, 1, 1, 1), Texture(Image(ramp))))), resolution=64)
@@ -69,7 +69,7 @@ def test_extension_modes_follow_the_image_texture_node(square, extension, interp
 
 
 def test_a_texture_finer_than_the_spacing_does_not_alias(square):
-    """A checker of single pixels, eight to a cell: point lookups would give pure black and white."""
+    """The texture is a checker of single pixels, eight to a cell: point lookups would give pure black and white."""
     checker = np.ones((512, 512, 4))
     checker[..., :3] = (np.indices((512, 512)).sum(axis=0) % 2)[..., None]
     surfels = sample_mesh(surfaced(square, Surface(Channel((1, 1, 1, 1), Texture(Image(checker))))), resolution=64)

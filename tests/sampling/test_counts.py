@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many surfels there are, against closed forms and against the prediction."""
+"""The number of surfels agrees with closed forms and with the prediction."""
 
 import math
 from functools import partial
@@ -16,7 +16,9 @@ from splat_addon.sampling.refine.missed_components import SampledSurface
 
 @pytest.mark.parametrize("shift", [0, 0.25, 0.5])
 def test_each_face_of_a_cube_gets_one_sample_a_cell_wherever_the_grid_starts(cube, shift):
-    """At half a cell the outermost rays run along the cube's edges, and half-open rules must keep one side."""
+    """If the grid starts at half a cell, the outermost rays run along edges of the cube; half-open rules must keep one
+    side only.
+    """
     mesh = cube()
     grid = Grid(np.full(3, -shift / 32), 1 / 32, subcells=1024, size=33)
     keeps = partial(keep_dominant, grazing_angle=0)
@@ -30,7 +32,7 @@ def test_each_face_of_a_cube_gets_one_surfel_a_cell(cube):
 
 
 def test_a_sphere_has_the_count_of_the_closed_form(sphere):
-    """Each of six patches projects to {2 x^2 + y^2 <= 1, x^2 + 2 y^2 <= 1}, area 2 sqrt(2) atan(1 / sqrt(2))."""
+    """Each of six patches projects to {2 x^2 + y^2 <= 1, x^2 + 2 y^2 <= 1}, with area 2 sqrt(2) atan(1 / sqrt(2))."""
     expected = 6 * 2 * math.sqrt(2) * math.atan(1 / math.sqrt(2)) * 64**2
     assert len(sample_mesh(sphere, resolution=128)) == pytest.approx(expected, rel=2e-3)
 
@@ -55,7 +57,7 @@ def test_spacing_and_resolution_are_two_names_of_one_grid(sphere):
 
 
 def test_a_resolution_of_8192_stays_exact(cube):
-    """One face of the cube's box is a strip, so that the grid is fine and the count is small."""
+    """The box is a thin bar, so that the grid is fine but has few samples."""
     strip = cube()
     strip = TriangleMesh(strip.positions * (1, 8 / 8192, 8 / 8192), strip.triangles)
     assert len(sample_mesh(strip, resolution=8192)) == 4 * 8192 * 8 + 2 * 8 * 8

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels follow a mesh: moved as a whole exactly, bent and stretched without holes, the same ones all along."""
+"""Surfels follow a deforming mesh: rigid motion is exact, bending leaves no holes, and the surfels stay the
+same ones.
+"""
 
 from dataclasses import replace
 
@@ -17,7 +19,7 @@ TURN = rotation_matrix(1.1, (1, 2, 3))[:3, :3]
 
 @pytest.fixture(scope="module")
 def bar():
-    """A rounded bar along z, 1 x 1 x 4, of small triangles, smooth; with a speck that no ray meets, beside it."""
+    """A smooth, rounded bar along z, 1 x 1 x 4, of small triangles, with a speck beside it that no ray hits."""
     made = trimesh.creation.capsule(height=3, radius=0.5, count=(24, 24)).subdivide()
     speck = np.array([(0.83, 0.83, 1), (0.831, 0.83, 1), (0.83, 0.831, 1)])
     positions = np.concatenate([made.vertices, speck])
@@ -34,7 +36,7 @@ def deforming(bar):
 
 
 def moved(mesh, place, normals=None):
-    """The mesh with its vertices at place((V, 3)); smooth normals anew, or those given."""
+    """The mesh with its vertices at place((V, 3)), and with the given normals or recomputed smooth ones."""
     positions = place(mesh.positions)
     if normals is None:
         solid = trimesh.Trimesh(positions, mesh.triangles, process=False)
@@ -53,7 +55,7 @@ def test_a_rigid_motion_moves_every_surfel_exactly(bar, deforming, shift):
     rest = deforming.sampling.surfels
     turned = moved(bar, lambda p: p @ TURN.T + shift, bar.corner_normals @ TURN.T)
     surfels, stretched = deforming.at(turned)
-    # a float64 position of 1e7 is good to 2e-9, over an edge of 0.03
+    # float64 rounds a position of 1e7 by 2e-9; edges are 0.03 long
     tight = {"atol": 2e-6}
     wanted = (rest.origin + rest.positions.astype(np.float64)) @ TURN.T + shift
     assert np.allclose(surfels.positions + (surfels.origin - shift), wanted - shift, **tight)
@@ -101,7 +103,7 @@ def test_a_deformed_surface_stays_covered(bar, deforming, shape):
 
 @pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
 def test_surfels_stay_on_the_surface_in_their_own_triangles(bar, deforming, shape):
-    """Their number and order are those of the sampling: each lies in the triangle that it lay in."""
+    """Their number and order stay the same, and each lies in the triangle that it was sampled in."""
     rest, mesh = deforming.sampling.surfels, moved(bar, shape)
     surfels, _ = deforming.at(mesh)
     assert len(surfels) == len(rest)
@@ -113,7 +115,7 @@ def test_surfels_stay_on_the_surface_in_their_own_triangles(bar, deforming, shap
         for m, p in zip((before, after), places, strict=True)
     ]
     assert np.allclose(*weights, atol=1e-3)
-    # of a place on an edge the oracle may name the other triangle
+    # for a point on an edge, the oracle may return the other triangle
     same = np.isclose(frames(surfels)[:-1, :, 2], after.face_normals[triangle], atol=1e-4).all(axis=1)
     assert same.mean() > 0.97
     own = trimesh.triangles.barycentric_to_points(after.triangles[triangle], weights[0])
@@ -121,13 +123,13 @@ def test_surfels_stay_on_the_surface_in_their_own_triangles(bar, deforming, shap
 
 
 def test_the_ellipse_is_the_image_of_the_ellipse(bar, deforming):
-    """Under one linear map, of all points of all rims: none lies off the new rim."""
+    """Under one linear map, every point of every rim is mapped onto the new rim."""
     linear = np.array([[1.0, 0.3, 0], [0, 1.2, 0.4], [0.2, 0, 0.8]])
     rest, (surfels, _) = deforming.sampling.surfels, deforming.at(moved(bar, lambda p: p @ linear.T))
     angle = np.linspace(0, 2 * np.pi, 9)[:-1]
     rims = frames(rest)[:, :, :2] @ np.stack([np.cos(angle), np.sin(angle)])
     local = np.linalg.solve(frames(surfels), linear @ rims)
-    # of the speck's disc, which does not lie in its triangle's plane, only nearly
+    # the speck's disc is only nearly in the plane of its triangle
     assert np.allclose((local[:-1, :2] ** 2).sum(axis=1), 1, atol=1e-3)
     assert np.abs(local[:-1, 2]).max() < 1e-5
 
@@ -138,7 +140,7 @@ def test_too_much_stretch_is_said(bar, deforming):
 
 
 def test_a_part_that_grows_from_nothing_is_said(bar):
-    """It had no area to be sampled, so it has no surfel."""
+    """The part had no area when it was sampled, so it has no surfels."""
     top = bar.positions[:, 2] > 0.5
     collapsed = replace(bar, positions=np.where(top[:, None], (0, 0, 2), bar.positions))
     deforming = DeformingSurfels(collapsed, spacing=0.05)
@@ -180,7 +182,7 @@ def test_a_solid_that_is_turned_inside_out_is_none_any_more(bar):
 
 
 def test_texture_coordinates_keep_their_direction_on_the_surface(bar):
-    """u = x, v = z on the bar; sheared, the change of u and v along the new axes is that of the old x and z."""
+    """On the bar u = x and v = z; after shearing, u and v still change along the axes as x and z did before."""
     deforming = DeformingSurfels(bar, spacing=0.1)
     rest = deforming.sampling.surfels
     u, v = rest.half_axes()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Discs along the edges between the part of a mesh that is polygons and the part that is splats."""
+"""Discs along the edges between a mesh's polygons and its splats, where one mesh is drawn as both."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Splats lie in the triangle's plane and cover the surface without holes."""
+"""Splats lie in their triangle's plane and cover the surface without holes."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ def test_a_level_surface_has_a_round_splat(axis, sign):
 
 
 def test_conjugate_half_diameters_follow_the_corrected_tangent(triangle):
-    """(h, 0, dz) with dz = -Nx h / Nz, and (0, h, dz'), lie on the ellipse's rim."""
+    """The points (h, 0, dz) with dz = -Nx h / Nz, and (0, h, dz'), lie on the ellipse's rim."""
     surfels = sample_mesh(triangle((0, 0, 0), (8, 0, 3), (0, 8, -5)), spacing=0.25, splat_size=2)
     (x, y), (nx, ny, nz) = surfels.half_axes(), surfels.geometric_normals()[0]
     for tangent in (0.5, 0, -0.5 * nx / nz), (0, 0.5, -0.5 * ny / nz):
@@ -50,16 +50,16 @@ def test_no_splat_is_longer_than_the_square_root_of_three(sphere, reduction):
     "model, resolution, splat_size", [("sphere", 40, 1), ("armadillo", 256, 1), ("armadillo", 64, 1.25)]
 )
 def test_splats_cover_all_but_a_few_ten_thousandths_of_the_surface(request, model, resolution, splat_size):
-    """What is left lies at the seams between the regions of two axes; its share falls as 1 / resolution."""
+    """The rest is at the seams between regions of different axes; its share falls as 1 / resolution."""
     assert uncovered_share(request.getfixturevalue(model), resolution, splat_size) <= 5e-4
 
 
 def test_splats_of_half_the_cell_leave_holes(sphere):
-    """The measure itself must see a hole."""
+    """This shows that the measure of coverage can find holes."""
     assert uncovered_share(sphere, 40, splat_size=0.5) > 0.01
 
 
 def uncovered_share(mesh, resolution, splat_size):
-    """Share of random points of the surface under no splat, within half a cell of it."""
+    """The share of random points of the surface that no splat within half a cell covers."""
     surfels = sample_mesh(mesh, resolution=resolution, splat_size=splat_size)
     return len(uncovered_points(mesh, surfels, grid_spacing(mesh, resolution=resolution))) / 40_000

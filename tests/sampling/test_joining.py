@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes moved and joined, held to trimesh's word on their volume and area."""
+"""Meshes that are moved and joined have the volume and area that trimesh computes."""
 
 from dataclasses import replace
 
@@ -49,7 +49,7 @@ def test_shading_normals_stay_on_the_outside(ball, matrix):
 
 @pytest.mark.parametrize("matrix", MAPS.values(), ids=MAPS)
 def test_corner_values_stay_at_their_corners(ball, matrix):
-    """The colour is the position before, so the map of the colour is the position after."""
+    """Each corner's colour is its position before the move, so the moved colour must be the position after it."""
     colors = np.concatenate([ball.positions[ball.triangles], np.ones((len(ball), 3, 1))], axis=2)
     named = TriangleMesh(ball.positions, ball.triangles, corner_colors=colors)
     moved = transformed(named, matrix)
@@ -70,7 +70,7 @@ def test_joined_meshes_are_all_there(ball):
 
 
 def test_layers_of_coordinates_stay_those_of_their_mesh(ball):
-    """Two layers beside one: the second is 0 where a mesh has not got it, and nobody there looks it up."""
+    """One mesh has two layers of coordinates, the other has one: its second layer is 0 and is never looked up."""
     two = replace(ball, corner_uvs=np.full((len(ball), 3, 4), 0.5))
     one = replace(ball, corner_uvs=np.full((len(ball), 3, 2), 0.25))
     both = joined([two, one]).corner_uvs
@@ -79,7 +79,7 @@ def test_layers_of_coordinates_stay_those_of_their_mesh(ball):
 
 
 def test_what_one_mesh_lacks_is_filled_in(ball):
-    """A box without normals beside a smooth ball is shaded flat; its material stays the first."""
+    """A box without normals, joined with a smooth ball, is shaded flat and keeps its material."""
     painted = mesh_of(
         trimesh.creation.icosphere(subdivisions=2),
         corner_normals=ball.corner_normals,

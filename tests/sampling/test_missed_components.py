@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A part that lies between all rays gets one surfel, and only such a part."""
+"""A part of a mesh that no ray hits gets one surfel; parts that are hit get none of these."""
 
 import numpy as np
 import pytest
@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from splat_addon.sampling import Channel, Surface, Texture, TriangleMesh, VertexColors, sample_surface
 from splat_addon.sampling.mesh.connectivity import part_labels
 
-#: A spacing whose rays pass a small part near the origin by: they lie at odd halves of it.
+#: With this spacing all rays miss a small part near the origin, because they are at odd multiples of half of it.
 SPACING = 1.0
 
 
 def joined(*meshes):
-    """One mesh of several, without fields."""
+    """One mesh made of several, without optional fields."""
     starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
     triangles = [mesh.triangles + start for mesh, start in zip(meshes, starts, strict=False)]
     return TriangleMesh(np.concatenate([mesh.positions for mesh in meshes]), np.concatenate(triangles))
@@ -43,7 +43,7 @@ def test_the_disc_faces_the_way_of_the_winding(square, axis, sign):
 
 
 def test_a_closed_part_gets_a_disc_as_large_as_it_is_seen(cube):
-    """Seen along an axis, a cube is one face; its mean normal is zero."""
+    """Seen along an axis a cube shows one face, although its mean normal is zero."""
     surfels = sample_surface(placed(cube(), 0.2, 0.1), spacing=SPACING).surfels
     assert np.allclose(surfels.origin + surfels.positions, 0.2)
     assert np.pi * surfels.radius[0] ** 2 == pytest.approx(0.2**2, rel=1e-5)
@@ -70,7 +70,7 @@ def test_every_reduction_finds_the_same_lost_part(cube, square, reduction):
 
 
 def test_an_unsampled_triangle_of_a_sampled_part_gets_nothing(sphere):
-    """81,920 triangles and a few hundred samples: nearly all triangles are without one."""
+    """With 81,920 triangles and a few hundred samples, almost no triangle has a sample."""
     sampling = sample_surface(sphere, resolution=12)
     assert sampling.small_parts == 0 and len(sampling.surfels) < 1000
 
@@ -82,7 +82,7 @@ def test_triangles_that_share_positions_are_one_part_whatever_their_indices(sphe
 
 
 def test_a_part_without_measurable_area_is_still_one_finite_surfel(triangle):
-    """On the grid its corners are one point."""
+    """On the grid all its corners are the same point."""
     mesh = triangle((0, 0, 0), (1e-25, 0, 0), (0, 1e-25, 0))
     sampling = sample_surface(mesh, spacing=SPACING)
     assert sampling.small_parts == 1 and 0 < sampling.surfels.radius[0] < 0.01
@@ -117,7 +117,7 @@ def test_a_textured_small_part_has_the_mean_of_its_texture(square):
 @settings(deadline=None, max_examples=200)
 @given(st.lists(st.tuples(*[st.integers(0, 30)] * 3), min_size=1, max_size=40))
 def test_parts_are_the_connected_components(triangles):
-    """Against scipy's, over the same edges."""
+    """The expected components are scipy's, for the same edges."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Normal maps: the shading normal follows them, in the frame of the texture, and the ellipse does not."""
+"""Shading normals follow a normal map, in the texture's frame; the ellipses do not."""
 
 import numpy as np
 import pytest
@@ -45,20 +45,20 @@ def test_the_map_follows_the_directions_of_the_texture(square, uvs, expected):
 
 
 def test_a_mirrored_texture_keeps_its_bitangent(square):
-    """Green leans to growing v, which still is +y where u grows along -x."""
+    """Green leans towards growing v, which is still +y where u grows along -x."""
     surfels = mapped(square, pixels((0, 0.6, 0.8)), UVS * (-1, 1))
     assert np.allclose(surfels.normals, (0, 0.6, 0.8), atol=1e-6)
 
 
 @pytest.mark.parametrize(("strength", "tangent"), [(0, 0), (0.5, 0.3 / 0.9), (1, 0.75), (2, 1.5)])
 def test_strength_scales_what_is_across_and_mixes_what_is_along(square, strength, tangent):
-    """Along: 1 + (0.8 - 1) * min(strength, 1)."""
+    """The part along the normal is 1 + (0.8 - 1) * min(strength, 1)."""
     x, y, z = mapped(square, pixels(TILTED), strength=strength).normals.T
     assert np.allclose(x / z, tangent, atol=1e-5) and np.allclose(y, 0, atol=1e-6)
 
 
 def test_ripples_finer_than_the_spacing_give_the_mean_direction(square):
-    """Leaning to +x and -x by turns, once to +y: what is left is y and z."""
+    """The normals lean to +x and -x alternately, and once to +y: the mean has only y and z."""
     ripples = np.tile(pixels((0.6, 0, 0.8), (-0.6, 0, 0.8), (0, 0.6, 0.8), (0, 0, 1)), (128, 32, 1))
     mean = np.array((0, 0.15, 0.85)) / np.hypot(0.15, 0.85)
     assert np.allclose(mapped(square, ripples).normals, mean, atol=1e-6)
@@ -81,7 +81,7 @@ def test_a_texture_without_area_leaves_what_is_along_the_normal(square):
 
 
 def test_tangents_on_a_ball_are_unit_and_across_the_normals(sphere):
-    """Longitude and latitude: the tangent of growing longitude is east."""
+    """The coordinates are longitude and latitude, so the tangent of growing u points east."""
     x, y, z = np.moveaxis(sphere.corner_normals, 2, 0)
     uvs = np.stack([np.arctan2(y, x), np.arcsin(np.clip(z, -1, 1))], axis=2)
     seam = np.ptp(uvs[..., 0], axis=1) > 3
@@ -95,7 +95,9 @@ def test_tangents_on_a_ball_are_unit_and_across_the_normals(sphere):
 
 
 def test_tangents_are_smooth_only_where_everything_is_shared():
-    """Two triangles of a roof that share an edge: with the same normals and coordinates they share tangents, too."""
+    """Two triangles of a roof share an edge; they share tangents only if their normals and coordinates there
+    are equal.
+    """
     positions = np.array([(0, 0, 0), (1, 0, 0.5), (0, 1, 0), (-1, 0, 0.7)])
     triangles = np.array([(0, 1, 2), (0, 2, 3)])
     uvs = positions[triangles][..., :2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shading normals are interpolated between corners, geometric ones follow the winding."""
+"""Shading normals are interpolated between corners, and geometric normals follow the winding."""
 
 import numpy as np
 import pytest
@@ -53,7 +53,7 @@ def test_tiny_and_huge_corner_normals_keep_their_direction(square):
 
 
 def test_the_axis_is_chosen_by_the_face_and_not_by_its_shading(cube):
-    """Vertex normals that are means over triangles lean off the faces; by them one sample in seven would be lost."""
+    """Smooth normals lean away from the faces; choosing by them would lose one sample in seven."""
     box = cube()
     a, b, c = np.moveaxis(box.positions[box.triangles], 1, 0)
     means = np.zeros((8, 3))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where surfels lie: on the surface, on the grid, wherever and however large the mesh is."""
+"""Surfels lie on the surface and on the grid, wherever the mesh is and however large."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from splat_addon.sampling.mesh import triangle_mesh as mesh_module
 
 
 def test_surfels_lie_on_the_faceted_sphere(sphere):
-    """The facets' middles lie below the sphere by the sagitta, about edge^2 / 6 for edges of 0.02."""
+    """Facets are below the sphere by up to the sagitta, about edge^2 / 6 for edges of 0.02."""
     surfels = sample_mesh(sphere, resolution=64)
     radius = np.linalg.norm(surfels.origin + surfels.positions, axis=1)
     assert radius.max() < 1 + 1e-6 and radius.min() > 1 - 1e-4
@@ -24,14 +24,14 @@ def test_surfels_lie_on_their_ray_in_the_middle_of_a_cell(cube):
 
 
 def test_a_tilted_plane_holds_its_surfels(triangle):
-    """z = x / 3 - 4 y / 9."""
+    """The plane is z = x / 3 - 4 y / 9."""
     surfels = sample_mesh(triangle((0, 0, 0), (9, 0, 3), (0, 9, -4)), resolution=200)
     x, y, z = (surfels.origin + surfels.positions).T
     assert np.abs(z - (x / 3 - y * 4 / 9)).max() < 1e-6
 
 
 def test_surfels_are_measured_from_the_middle_of_the_mesh(armadillo):
-    """To 8 cells: float32 rounds numbers half as large by half as much."""
+    """The origin is within 8 cells of the middle: float32 rounds numbers half as large by half as much."""
     low, high = armadillo.bounds()
     spacing = (high - low).max() / 256
     surfels = sample_mesh(armadillo, resolution=256)
@@ -40,7 +40,7 @@ def test_surfels_are_measured_from_the_middle_of_the_mesh(armadillo):
 
 @pytest.mark.parametrize("offset", [1e7, -1e7])
 def test_a_mesh_far_from_the_origin_keeps_every_bit(armadillo, offset):
-    """Vertices on multiples of 2^-20 survive the move exactly, so nothing may change but the origin."""
+    """Vertices at multiples of 2^-20 are moved without rounding, so that only the origin may change."""
     near = TriangleMesh(np.rint(armadillo.positions * 2**20) / 2**20, armadillo.triangles)
     far = TriangleMesh(near.positions + offset, near.triangles)
     a, b = sample_mesh(near, resolution=64), sample_mesh(far, resolution=64)
@@ -73,7 +73,7 @@ def test_a_flat_mesh_keeps_its_exact_height(square):
 
 
 def slivers(thicknesses, count=1000):
-    """Triangles of two random corners and one that far from the line between them, coloured 0 and 1 at random."""
+    """Triangles with one corner that far from the line between two random ones; their colours are 0 or 1 at random."""
     random = np.random.default_rng(3)
     a, b = random.random((2, count * len(thicknesses), 3))
     middle = a + random.random((len(a), 1)) * (b - a)
@@ -86,13 +86,13 @@ def slivers(thicknesses, count=1000):
 
 
 def test_collinear_and_sliver_triangles_give_finite_surfels_inside_the_box():
-    """Slivers thinner than a sub-cell open up when snapped (the trap); Surfels refuses what is not finite."""
+    """Snapping widens slivers thinner than a sub-cell; Surfels refuses values that are not finite."""
     surfels = sample_mesh(slivers([0, 1e-17, 1e-9]), resolution=4096)
     places = surfels.origin + surfels.positions
     assert len(surfels) > 100 and (places > -1e-3).all() and (places < 1.001).all()
 
 
 def test_a_sample_beside_its_sliver_takes_no_value_beyond_the_corners():
-    """Snapping moves the outline by up to a sub-cell, a good part of these triangles' width."""
+    """Snapping moves a triangle's outline by up to a sub-cell, which is much of a sliver's width."""
     colors = sample_mesh(slivers([1e-6, 1e-7, 1e-8]), resolution=4096).colors
     assert len(colors) > 1000 and colors.min() > -1e-6 and colors.max() < 1 + 1e-6

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What holds for any mesh: random, degenerate, sliver, coincident and self-intersecting triangles, closed or not."""
+"""Facts that hold for every mesh: random, degenerate, sliver, coincident and self-intersecting triangles, closed or
+not.
+"""
 
 import numpy as np
 import pytest
@@ -29,7 +31,7 @@ PAINTED = (Surface(color=Channel((1.0, 1.0, 1.0, 1.0), VertexColors())),)
 
 
 def soup(kind: str, seed: int, count: int = 30) -> TriangleMesh:
-    """Random triangles in the unit cube, each with vertices of its own."""
+    """Random triangles in the unit cube that share no vertices."""
     random = np.random.default_rng(seed)
     corners = random.random((count, 3, 3))
     corners[0, :2] = (0, 0, 0), (1, 1, 1)
@@ -37,7 +39,7 @@ def soup(kind: str, seed: int, count: int = 30) -> TriangleMesh:
 
 
 def on_quarter_cells(corners, random):
-    """Corners on multiples of a quarter of a cell, so that many edges run through cell centres."""
+    """Triangles with corners at multiples of a quarter of a cell, so that many edges run through cell centres."""
     return np.rint(corners * 4 * RESOLUTION) / (4 * RESOLUTION)
 
 
@@ -48,14 +50,14 @@ def slivers(corners, random):
 
 
 def coincident(corners, random):
-    """Coplanar and overlapping: all in one of three planes."""
+    """Coplanar, overlapping triangles, each in one of three planes."""
     for triangle in corners[1:]:
         triangle[:, random.integers(3)] = 0.5
     return corners
 
 
 def degenerate(corners, random):
-    """Collinear, or with two corners at one place, or all three; one in four is sound."""
+    """Triangles with collinear corners, or with two or three corners at one place; one in four is sound."""
     a, b = corners[1::4], corners[2::4]
     a[:, 2] = a[:, 0] + random.random((len(a), 1)) * (a[:, 1] - a[:, 0])
     b[:, 2] = b[:, random.integers(2)]
@@ -76,7 +78,7 @@ fast = settings(deadline=None, max_examples=20)
 
 
 def rows(surfels):
-    """One line of bytes a surfel, sorted: the set, whatever its order."""
+    """The bytes of each surfel, sorted: equal for equal sets of surfels in any order."""
     fields = surfels.positions, surfels.rotations, surfels.scales, surfels.normals, surfels.colors
     return sorted(map(bytes, np.concatenate(fields, axis=1)))
 
@@ -84,7 +86,7 @@ def rows(surfels):
 @fast
 @given(meshes, st.randoms(use_true_random=False))
 def test_the_order_of_the_triangles_does_not_matter(mesh, random):
-    """Up to the order of the surfels; the sets are equal bit by bit."""
+    """Only the order of the surfels may change; the sets are equal bit by bit."""
     order = list(range(len(mesh)))
     random.shuffle(order)
     shuffled = TriangleMesh(mesh.positions, mesh.triangles[order])
@@ -108,16 +110,19 @@ def test_reductions_by_normals_keep_subsets_and_3_to_1_merges(mesh):
 
 
 def farthest(resolution):
-    """In H. Float32 leaves of a coordinate 2^-25 or 2^-24 of it, by where its powers of two lie, and none is more than
-    half the longest edge and 8 cells; snapping moves the outline by 0.71 sub-cells, of which there are at least 2^24
-    along that edge. See docs/evidence/conversion.md."""
+    """The largest distance, in H, of a surfel from its triangle.
+
+    Float32 rounds a coordinate by 2^-25 or 2^-24 of its value, which is at most half the longest edge plus 8 cells.
+    Snapping moves the outline by 0.71 sub-cells, of which there are at least 2^24 along the longest edge. See
+    docs/evidence/conversion.md.
+    """
     return (np.sqrt(3) * min(resolution, resolution / 2 + 8) + 0.71 * resolution) * 2.0**-24
 
 
 @settings(deadline=None, max_examples=40)
 @given(meshes, st.sampled_from([7, 64, 97, 256, 1024]))
 def test_surfels_lie_on_their_triangles_within_float32(mesh, resolution):
-    """1e-5 H up to resolution 97. Whatever the shape: slivers too."""
+    """This is 1e-5 H up to resolution 97, for triangles of any shape, including slivers."""
     few = 8 if resolution < 100 else 3
     mesh, _ = drop_unusable(TriangleMesh(mesh.positions[: 3 * few], mesh.triangles[:few]))
     sampling = sample_surface(mesh, resolution=resolution)
@@ -149,7 +154,7 @@ def test_normals_and_frames_are_unit_vectors(mesh):
     st.sampled_from([0.0, 1e7, -1e7]),
 )
 def test_no_ray_meets_closed_surfaces_an_odd_number_of_times(rays, shape, seed, power, offset):
-    """Tetrahedra that cut through each other and touch; in float64 their moved and scaled vertices still are closed."""
+    """The surfaces are tetrahedra that intersect and touch; moving and scaling them in float64 keeps them closed."""
     mesh = tetrahedra(shape, seed)
     scale = 10.0**power
     _, images = rays(TriangleMesh(mesh.positions * scale + offset * scale, mesh.triangles), RESOLUTION)
@@ -158,7 +163,7 @@ def test_no_ray_meets_closed_surfaces_an_odd_number_of_times(rays, shape, seed, 
 
 
 def tetrahedra(shape: str, seed: int, count: int = 8) -> TriangleMesh:
-    """Closed, with vertices of their own."""
+    """Closed tetrahedra that share no vertices."""
     random = np.random.default_rng(seed)
     corners = random.random((count, 4, 3))
     corners[0, :2] = (0, 0, 0), (1, 1, 1)
@@ -176,8 +181,11 @@ def tetrahedra(shape: str, seed: int, count: int = 8) -> TriangleMesh:
 @fast
 @given(meshes, st.integers(-20, 20), st.sampled_from([0, 1, -1]))
 def test_scale_and_place_change_nothing_but_the_numbers(mesh, power, side):
-    """Scales of 2^-20 to 2^20, 1e-6 to 1e6, and moves by 1e7 times the size. Vertices on multiples of 2^-27 of the box
-    survive both without rounding, so that surfels are equal bit by bit, but for the scale."""
+    """Vertices at multiples of 2^-27 of the box can be scaled and moved without rounding.
+
+    So after scales of 2^-20 to 2^20 or 1e-6 to 1e6, and moves by 1e7 times the size, surfels are equal bit by bit,
+    except for the scale.
+    """
     near = TriangleMesh(np.rint(mesh.positions * 2**27) / 2**27, mesh.triangles)
     scale, offset = 2.0**power, side * 1e7
     far = TriangleMesh((near.positions + offset) * scale, near.triangles)
@@ -191,7 +199,9 @@ def test_scale_and_place_change_nothing_but_the_numbers(mesh, power, side):
 @fast
 @given(meshes, st.floats(-6, 6))
 def test_any_scale_gives_the_same_within_rounding(mesh, power):
-    """A scale that is no power of two rounds vertices in their 16th digit, which may move a sample over an edge."""
+    """A scale that is not a power of two rounds vertices in their 16th digit, which may move a sample across an
+    edge.
+    """
     scale, spacing = 10.0**power, np.float32(grid_spacing(mesh, resolution=RESOLUTION))
     samplings = [
         sample_surface(TriangleMesh(mesh.positions * factor, mesh.triangles), resolution=RESOLUTION)
@@ -223,7 +233,7 @@ def test_chunks_and_batches_of_any_size_give_the_same(mesh, chunk, rows, samples
 @fast
 @given(meshes)
 def test_each_ray_meets_each_triangle_at_most_once(mesh):
-    """One sample per ray and surface: no two surfels of one triangle share a ray."""
+    """There is one sample per ray and surface, so no two surfels of a triangle share a ray."""
     alone = TriangleMesh(mesh.positions, mesh.triangles[:1])
     sampling = sample_surface(alone, resolution=RESOLUTION)
     kept = len(sampling.surfels) - sampling.small_parts
@@ -235,7 +245,7 @@ def test_each_ray_meets_each_triangle_at_most_once(mesh):
 @settings(deadline=None, max_examples=12)
 @given(st.integers(0, 2**31), st.sampled_from([0.0, 0.1, 0.3]))
 def test_at_most_3_points_in_10000_of_a_random_closed_surface_are_bare(seed, roughness):
-    """Spheres that are stretched, turned and dented; the dents' creases run through the regions of all axes."""
+    """The surfaces are stretched, turned and dented spheres; creases of the dents cross the regions of all axes."""
     import trimesh
 
     random = np.random.default_rng(seed)
@@ -255,7 +265,7 @@ def test_the_default_splats_leave_at_most_1_point_in_10000_of_the_armadillo_bare
 
 
 def test_what_is_bare_of_the_truck_lies_on_faces_narrower_than_a_cell(truck):
-    """Such a strip between creases may lie between all rays, and its neighbours' splats face another way."""
+    """A narrow strip between creases may lie between all rays, and the splats beside it face another way."""
     import trimesh
 
     mesh, _ = drop_unusable(truck)

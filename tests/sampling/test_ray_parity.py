@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every ray of the cube counts every surface once: parity on a closed mesh, and another ray caster's hits."""
+"""Every ray of the cube counts every surface once: an even number on a closed mesh, and as many as another ray
+caster.
+"""
 
 import numpy as np
 import pytest

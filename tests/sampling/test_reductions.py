@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each reduction keeps of the full cube: subsets, a merge on a lattice, and the counts that areas predict."""
+"""Each reduction keeps the right samples of the full cube: subsets, a merge on a lattice, and counts predicted by
+areas.
+"""
 
 import math
 from dataclasses import replace
@@ -40,7 +42,7 @@ def test_grazing_rejection_keeps_what_is_seen_within_the_angle():
 
 
 def test_by_its_own_normal_a_surfel_stays_in_the_image_that_this_faces_most(armadillo):
-    """Where it is that of its triangle the reduction by normals is left; smoothed, others stay."""
+    """With the triangle's normal this is the normal-based reduction; with smooth normals other samples stay."""
     flat = replace(armadillo, corner_normals=None)
     by_face, by_own = (sample_mesh(flat, resolution=64, reduction=r) for r in ("normal", "surfel_normal"))
     assert rows(by_face) == rows(by_own)
@@ -53,7 +55,7 @@ def test_by_its_own_normal_a_surfel_stays_in_the_image_that_this_faces_most(arma
 
 
 def smoothed(mesh):
-    """(T, 3, 3) normals at corners: those of the triangles around each vertex, by area."""
+    """(T, 3, 3) corner normals: area-weighted means of the triangles around each vertex."""
     corners = mesh.positions[mesh.triangles]
     of_faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     sums = np.zeros_like(mesh.positions)

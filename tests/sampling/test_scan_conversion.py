@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scan conversion is exact: adversarial fractions, and no sample lost or shared at an edge."""
+"""Scan conversion is exact, even for adversarial fractions, and no sample is lost or doubled at an edge."""
 
 import math
 
@@ -14,7 +14,7 @@ LARGEST = 2**25
 
 
 def samples(u, v, subcells):
-    """Set of (triangle, column, row) of (3, t) corners."""
+    """The set of (triangle, column, row) for (3, t) corners."""
     spans = Spans.joined(list(scan_convert(np.array(u, float), np.array(v, float), subcells)))
     owner, step = expand(spans.counts)
     return list(zip(spans.triangles[owner], spans.columns[owner] + step, spans.rows[owner], strict=True))
@@ -22,7 +22,9 @@ def samples(u, v, subcells):
 
 @pytest.mark.parametrize("remainder", [1, -1])
 def test_an_edge_that_misses_a_cell_centre_by_the_least_fraction_is_on_the_right_side(remainder):
-    """Edges A-B built so that the column's numerator is 1 or -1 modulo its denominator, the worst case for rounding."""
+    """Edges A-B are built so that the column's numerator is 1 or -1 modulo its denominator, the worst case for
+    rounding.
+    """
     random, subcells, checked = np.random.default_rng(0), 1024, 0
     while checked < 300:
         du, dv = (
@@ -48,7 +50,9 @@ def test_an_edge_that_misses_a_cell_centre_by_the_least_fraction_is_on_the_right
 @settings(deadline=None, max_examples=200)
 @given(st.integers(-60, 60), st.integers(1, 60), st.integers(1, 30), st.sampled_from([64, 1024, 8192]))
 def test_an_edge_through_cell_centres_passes_them_exactly(columns, rows, repeats, subcells):
-    """From (2000, 0) by (columns, rows) cells, `repeats` times: each end of a step is a cell centre on the edge."""
+    """The edge starts at (2000, 0) and takes `repeats` steps of (columns, rows) cells; every step ends at a cell
+    centre.
+    """
     u = np.array([[2000], [2000 + columns * repeats], [4000]], float) * subcells
     v = np.array([[0], [rows * repeats], [0]], float) * subcells
     spans = Spans.joined(list(scan_convert(u, v, subcells)))
@@ -58,7 +62,7 @@ def test_an_edge_through_cell_centres_passes_them_exactly(columns, rows, repeats
 @settings(deadline=None, max_examples=200)
 @given(st.lists(st.tuples(st.integers(-32, 32 * 64), st.integers(-32, 32 * 64)), min_size=4, max_size=4))
 def test_two_halves_of_a_quad_have_the_samples_of_the_whole(corners):
-    """Signed by their winding, the triangles 012 and 023 have the samples of 013 and 123, each as often."""
+    """Counted with the sign of their winding, the triangles 012 and 023 have the same samples as 013 and 123."""
 
     def signed(*ids):
         (ax, ay), (bx, by), (cx, cy) = (corners[i] for i in ids)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh is called solid only where no back can be seen from outside."""
+"""A mesh is marked as solid only if no back face can be seen from outside."""
 
 import gzip
 

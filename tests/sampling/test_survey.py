@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What one look at all triangles finds, against slower ways to find it."""
+"""A single pass over all triangles finds what slower, separate ways find."""
 
 import numpy as np
 import pytest
@@ -16,13 +16,13 @@ TRIANGLES = st.lists(st.tuples(*[st.integers(0, 5)] * 3), min_size=1, max_size=3
 
 
 def mesh_of(triangles):
-    """Over the corners of an octahedron, one of them twice: 1 and 5 lie at one place."""
+    """A mesh of these triangles over the corners of an octahedron; vertices 1 and 5 are at the same place."""
     places = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, 0, -1), (0, 1, -0.0)])
     return TriangleMesh(places, np.array(triangles))
 
 
 def boundary(triangles):
-    """The directed edges that no other runs against, as counts: an empty dictionary where the boundary vanishes."""
+    """The directed edges without an opposite edge, with their counts; empty if the mesh is closed."""
     counts = {}
     for corners in np.where(np.array(triangles) == 5, 1, triangles).tolist():
         for a, b in zip(corners, corners[1:] + corners[:1], strict=True):

@@ -10,7 +10,7 @@ from splat_addon.sampling.attributes.texture_mapping import UV_FIELDS
 
 IMAGE = Image(np.dstack([np.random.default_rng(1).uniform(0, 1, (32, 32, 3)), np.ones((32, 32))]))
 TEXTURED = Surface(Channel((1.0, 0.5, 1.0, 1.0), Texture(IMAGE)))
-#: Texture coordinates of a point: a map that is affine in all of space, so that it is on every triangle.
+#: Texture coordinates of a point, affine in all of space and so on every triangle.
 LINEAR, SHIFT = np.array([[0.4, -0.3, 0.2], [0.1, 0.5, -0.6]]), np.array([0.3, -2.0])
 REDUCTIONS = ("normal", "surfel_normal", "grazing", "none", "three_to_one")
 
@@ -20,13 +20,13 @@ def mapped(points):
 
 
 def textured(mesh, surface=TEXTURED, **fields):
-    """The mesh with the map's coordinates at its corners, all of one surface."""
+    """The mesh with one surface, and with the map's coordinates at its corners."""
     uvs = mapped(mesh.positions)[mesh.triangles]
     return TriangleMesh(mesh.positions, mesh.triangles, corner_uvs=uvs, surfaces=(surface,), **fields)
 
 
 def coordinates(surfels, x, y):
-    """(N, 2) texture coordinates, and (N, 3) points, of the ellipses at a place of the unit disc."""
+    """The (N, 2) texture coordinates and (N, 3) points of the ellipses at a place of the unit disc."""
     u, v = surfels.half_axes()
     points = surfels.origin + surfels.positions.astype(np.float64) + u * x + v * y
     return surfels.uvs + surfels.uv_along_x * x + surfels.uv_along_y * y, points
@@ -66,7 +66,7 @@ def test_merged_surfels_continue_it_too_whatever_the_texture_shows(square):
 
 
 def test_surfels_do_not_merge_over_a_bent_map(square):
-    """The coordinates of one corner pull the map out of the affine."""
+    """A single corner's coordinates are moved, so that the map is not affine."""
     mesh = textured(square(3.0))
     bent = mesh.corner_uvs.copy()
     bent[1, 2] += 0.2
@@ -135,7 +135,7 @@ def test_nothing_is_kept_where_nobody_asks_or_nothing_is_textured(square):
 
 
 def charts(cube):
-    """The cube with a chart for each face, 3 x 2 of them side by side without a margin."""
+    """A cube with one chart for each face: 3 x 2 charts without a margin."""
     mesh = cube(-0.5)
     square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float)
     uvs = np.zeros((12, 3, 2))
@@ -146,7 +146,9 @@ def charts(cube):
 
 
 def test_the_map_ends_at_the_edges_between_charts(cube):
-    """On a face the diagonal is no border, its outline is: the nearest such edge of the surfel's own triangle."""
+    """The outline of a face is a border, its diagonal is not; the map ends at the border of the surfel's triangle that
+    is nearest.
+    """
     surfels = sample_surface(charts(cube), resolution=8, texture_mapped=True).surfels
     lined = (surfels.uv_border != 0).any(axis=1)
     centre = surfels.origin + surfels.positions.astype(np.float64)
@@ -156,7 +158,7 @@ def test_the_map_ends_at_the_edges_between_charts(cube):
     inside = np.sort(np.abs(ends), axis=1)
     np.testing.assert_allclose(inside[:, 1:], 0.5, atol=1e-5)  # on an edge of the cube
     is_near = np.sort(np.abs(centre), axis=1)[:, 1] > 0.5 - 1.5 / 8
-    # all but those in the corners whose nearest edge is the other triangle's
+    # all except those in corners whose nearest edge belongs to the other triangle
     assert lined[is_near].mean() > 0.8 and 0.2 < lined.mean() < 0.8
 
 

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lets the tests import the scripts as they import each other; last on the path, where Python's own `test` wins."""
+"""Lets the tests import the scripts as these import each other.
+
+The scripts' folder is last on the path, because Python's own `test` must be found first.
+"""
 
 import subprocess
 import sys
@@ -14,7 +17,7 @@ if str(SCRIPTS) not in sys.path:
 
 @pytest.fixture(scope="session")
 def bench():
-    """bench(name, arguments ...) is the finished `scripts/bench.py NAME ARGUMENTS`, in the Python of the tests."""
+    """bench(name, arguments ...) -> the finished `scripts/bench.py NAME ARGUMENTS`, run by the tests' Python."""
     from environment.module import module_process
 
     def run(*arguments):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/bench.py: what it lists, what it refuses, and that everything it lists can be started."""
+"""scripts/bench.py lists its modules, refuses unknown ones, and can start everything that it lists."""
 
 import subprocess
 import sys
@@ -14,7 +14,7 @@ from measuring.registry import modules, summary
 
 SCRIPT = Path(package.__file__).resolve().parents[1] / "bench.py"
 
-#: Those that draw or measure within a second where they are told to be quick, and need no Blender.
+#: Modules that need no Blender and take about a second with --quick.
 SWIFT = ("passes", "representation", "textured")
 
 

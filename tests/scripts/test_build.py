@@ -11,7 +11,7 @@ import pytest
 from environment import Problem
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "build.py"
-#: Stands for Blender's tool: `build` makes a zip, and `validate` refuses one that says so.
+#: Stands in for Blender's tool: `build` makes a zip, and `validate` refuses one that says so.
 TOOL = """
 import pathlib, sys, zipfile
 if sys.argv[1] == "build":
@@ -26,7 +26,7 @@ elif b"bad" in pathlib.Path(sys.argv[-1]).read_bytes():
 
 @pytest.fixture(scope="module")
 def build():
-    """scripts/build.py, loaded by its path: a folder of what was built has its name."""
+    """The module scripts/build.py, loaded by its path because a folder of build products has its name."""
     specification = importlib.util.spec_from_file_location("build_script", SCRIPT)
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
@@ -35,7 +35,7 @@ def build():
 
 @pytest.fixture
 def blender_scripts(tmp_path, build):
-    """blender_scripts(content) -> a folder of Blender's scripts, whose tool builds a zip of that content."""
+    """blender_scripts(content) -> a folder of Blender's scripts with a tool that builds a zip of that content."""
 
     def make(content):
         tool = tmp_path / "scripts" / build.BUILDER
@@ -48,7 +48,7 @@ def blender_scripts(tmp_path, build):
 
 @pytest.fixture
 def out(tmp_path):
-    """A folder with an earlier zip."""
+    """A folder with an earlier zip in it."""
     folder = tmp_path / "out"
     folder.mkdir()
     (folder / "surfel_splatting-0.1.0.zip").write_text("good")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The demo's arguments: each wrong one is a sentence and exit code 2, before anything is made."""
+"""Each wrong argument of the demo gives a sentence and exit code 2 before anything is made."""
 
 import sys
 from types import SimpleNamespace
@@ -16,7 +16,7 @@ def no_environment(monkeypatch):
 
 @pytest.fixture
 def rejected(capsys):
-    """rejected(arguments) is the sentence on stderr; anything but one line and exit code 2 fails."""
+    """rejected(arguments) -> the sentence on stderr; fails unless it is one line and the exit code is 2."""
 
     def run(*arguments):
         assert demo.main(list(arguments)) == 2

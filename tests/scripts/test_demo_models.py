@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Gzipped models are unpacked beside what they name."""
+"""Gzipped models are unpacked together with the files that they refer to."""
 
 import gzip
 import json
@@ -12,7 +12,7 @@ from environment import Problem
 
 @pytest.fixture
 def unpacked(tmp_path):
-    """unpacked(name, content) packs a model into tmp_path/source and is its unpacked file."""
+    """unpacked(name, content) packs a model into tmp_path/source; returns the file that the demo unpacks."""
     for folder in ("source", "target"):
         (tmp_path / folder).mkdir()
 

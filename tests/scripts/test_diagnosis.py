@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the loader and pip print becomes one sentence with the remedy."""
+"""Output of the system's loader and of pip becomes one sentence with the remedy."""
 
 import pytest
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""When an environment is made, when it is used as it lies, and what is said where it cannot be made."""
+"""An environment is created or reused as needed, and a failure is explained in a sentence."""
 
 import os
 import sys
@@ -13,7 +13,7 @@ from environment.virtual_environment import make
 
 @pytest.fixture
 def machine(tmp_path, monkeypatch):
-    """A clone in an empty folder on a machine with Python 3.13, where venv, pip and the check only leave a note."""
+    """A clone in an empty folder on a machine with Python 3.13; venv, pip and the check are replaced by notes."""
     done = []
 
     def make_venv(folder, command):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The costs of features: each is there on one side only, and the table says what the plan adds for it."""
+"""Each row of the costs of features has the feature on one side only, and the table lists what the plan adds for it."""
 
 import csv
 import platform
@@ -16,7 +16,7 @@ SIZE = (48, 48)
 
 
 def sides(feature):
-    """The picture without it and the one with it."""
+    """The pictures without and with the feature."""
     return [change(plain(1000, SIZE)) for change in (feature.absent, feature.present)]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The code's form, and the Python that a script may be started with."""
+"""The code is formatted, and the scripts start on old versions of Python."""
 
 import subprocess
 import sys
@@ -18,7 +18,7 @@ def test_ruff_finds_nothing():
 
 
 def start_demo(version):
-    """What the demo says to a model that is not there, on a Python that can only start it."""
+    """What the demo reports about a missing model, on a Python that can only start it."""
     for command in candidate_commands(version):
         if probe(command)[:1] == (version,):
             script = [str(ROOT / "scripts" / "demo.py"), "nowhere.obj"]

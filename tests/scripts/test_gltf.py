@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The comparison of a glTF model with Blender's own renderers runs, and the two look alike."""
+"""The comparison of a glTF model with Blender's own renderers runs, and the pictures are alike."""
 
 import importlib.util
 import re

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The search for a Python of a given version, with candidates that refuse, lie or lack something."""
+"""A Python of a given version is found among candidates that refuse, lie or lack something."""
 
 import os
 import sys
@@ -12,7 +12,7 @@ from environment.interpreters import find_interpreter
 
 @pytest.fixture
 def candidate(tmp_path):
-    """candidate(source) is a command that runs this source whatever it is asked."""
+    """candidate(source) -> a command that runs this source whatever its arguments are."""
 
     def make(source):
         file = tmp_path / f"candidate{len(list(tmp_path.iterdir()))}.py"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The stick that representation error is measured with: its meshes, and what it says of pictures that are off."""
+"""The measure of representation error works: its meshes are right, and it detects wrong pictures."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rays that another ray caster gets are those of our grids that meet the mesh."""
+"""The rays given to another ray caster are those of our grids that hit the mesh."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ trimesh = pytest.importorskip("trimesh")
 
 
 def test_a_cube_is_met_by_the_rays_of_its_faces_cells():
-    pytest.importorskip("bpy")  # the rivals of Blender's own
+    pytest.importorskip("bpy")  # `rivals` imports it
     from bench.conversion.rivals import hitting_rays
     from splat_addon.sampling import TriangleMesh, drop_unusable
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which tests scripts/test.py runs in which process, and what its exit code says."""
+"""scripts/test.py runs each test in the right process and returns the right exit code."""
 
 import importlib.util
 from pathlib import Path
@@ -12,7 +12,7 @@ from testing.groups import BLENDER, FILES, PLAIN, QUICK, by_process, paths_by_gr
 
 @pytest.fixture(scope="module")
 def test_script():
-    """scripts/test.py, loaded by its path: `test` is a module of Python's own."""
+    """The module scripts/test.py, loaded by its path because Python has a module `test` of its own."""
     path = Path(__file__).resolve().parents[2] / "scripts" / "test.py"
     specification = importlib.util.spec_from_file_location("test_script", path)
     module = importlib.util.module_from_spec(specification)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The trade of speed for accuracy: what it leaves behind on both devices."""
+"""The bench `trade` writes its tables, plots and pictures on both devices."""
 
 import csv
 import platform
@@ -13,7 +13,7 @@ TINY = ["--quick", "--size", "32", "--samples", "2", "--turns", "2", "--scenes",
 
 @pytest.fixture(scope="module", params=["standalone", "blender"])
 def measured(request, bench, tmp_path_factory):
-    """(the finished run, its folder)"""
+    """(the finished run, its output folder)."""
     folder = tmp_path_factory.mktemp(request.param)
     done = bench("trade", "--device", request.param, "--out", folder, *TINY)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -91,7 +91,7 @@ def test_every_case_can_be_built_and_every_choice_is_its_own(models):
 
 
 def test_no_time_holds_the_packing_of_surfels():
-    """Whose textures another storage takes the place of: the frame after a change of storage is not the one counted."""
+    """After a change of storage the surfels are packed again; that frame must not be timed."""
     from types import SimpleNamespace
 
     from measuring.drawing import draw_in_turn

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A real Blender window on a virtual screen, by ../shared/blender/window, which also saves a screenshot of it.
+"""A real Blender window on a virtual screen, opened by ../shared/blender/window, which also saves a screenshot.
 
 Run with `python3 scripts/test.py tests/window`; reports and screenshots stay in build/window.
 """
@@ -21,8 +21,8 @@ FOLDER = ROOT / "build" / "window"
 def in_a_window(request):
     """in_a_window(script, seconds, *arguments, **environment) -> (report, path of the screenshot).
 
-    script: a file of this folder, run inside the window by `steps.play`. seconds: when the screenshot is taken and
-    Blender is ended.
+    script: a file in this folder, which `steps.play` runs inside the window. seconds: after this time a screenshot is
+    taken and Blender is ended.
     """
     if not WINDOW.exists() or subprocess.run([str(WINDOW.with_name("blender")), "--version"]).returncode:
         pytest.skip("no Blender program with a virtual screen is installed beside this checkout")

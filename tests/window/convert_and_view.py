@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run inside a Blender window: convert Suzanne with the sidebar's operator, open its tab, look at the rendered view.
+"""Runs inside a Blender window: converts Suzanne with the sidebar's operator, and shows its tab and the rendered view.
 
-test_window.py reads what happened beside the screenshot.
+test_window.py reads the report and the screenshot.
 """
 
 import sys
@@ -19,7 +19,7 @@ POLL_SECONDS = 0.2
 
 
 def prepare():
-    """A smooth, red Suzanne, alone and selected, in the middle of the view; the sidebar open."""
+    """Put a smooth, red Suzanne alone in the view, selected, and open the sidebar."""
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     with in_view():
         bpy.ops.mesh.primitive_monkey_add(size=3)
@@ -30,14 +30,14 @@ def prepare():
 
 
 def convert():
-    """As a press of the button: the operator runs modally, and Blender's window lives on."""
+    """Call the operator as its button does: it runs modally while Blender's window stays responsive."""
     with in_view():
         result = bpy.ops.object.surfels_from_mesh("INVOKE_DEFAULT", True, resolution=80, source="HIDE")
     return list(result)
 
 
 def adjust():
-    """As Adjust Last Operation does."""
+    """Change a setting of the operator as Adjust Last Operation does."""
     bpy.context.window_manager.operators[-1].properties.resolution = 160
     with in_view():
         bpy.ops.ed.undo_redo()
@@ -48,7 +48,7 @@ def made():
 
 
 def look():
-    """Rendered view by our engine; the sidebar on our tab."""
+    """Show the rendered view with our engine, and our tab in the sidebar."""
     bpy.context.scene.render.engine = "SURFEL_SPLATTING"
     area, _ = view3d()
     area.spaces[0].overlay.show_overlays = False
@@ -57,7 +57,7 @@ def look():
 
 
 def steps():
-    """Each yields the seconds to wait before the next; the report is the end."""
+    """Yields the seconds to wait after each step, and returns the report."""
     prepare()
     yield 1.0
     result = convert()

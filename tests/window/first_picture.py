@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run inside a Blender window: from the default scene to a lit, converted, rendered picture; and how wide labels are.
+"""Runs inside a Blender window: goes from the default scene to a rendered picture, and measures labels.
 
-test_first_picture.py reads the clicks, what they made, and the widths.
+test_first_picture.py reads the number of clicks, their results, and the widths of labels.
 """
 
 import sys
@@ -28,7 +28,7 @@ def click(what: str, press):
 
 
 def widths(texts, region) -> dict:
-    """text -> its width as a share of a panel's in a region, in the interface's font."""
+    """text -> its width in the interface's font, as a share of a panel's width in a region."""
     blf.size(0, 11 * bpy.context.preferences.system.ui_scale)
     return {text: blf.dimensions(0, text)[0] / region.width for text in texts}
 
@@ -38,7 +38,7 @@ def is_made():
 
 
 def steps():
-    """Each yields the seconds to wait before the next; the report is the end."""
+    """Yields the seconds to wait after each step, and returns the report."""
     scene = bpy.context.scene
     scene.render.resolution_percentage = 15
     click("N: the sidebar", open_sidebar)
@@ -58,7 +58,7 @@ def steps():
     picture = REPORT.with_name(f"{REPORT.stem}_f12.png")
     bpy.data.images["Render Result"].save_render(str(picture))
     settings = scene.surfel_conversion
-    # What has its name at the left; a switch's stands at the right of its box.
+    # Settings with their name at the left; a switch has it at the right of its box.
     names = [
         settings.bl_rna.properties[name].name
         for name in PROPERTY_NAMES

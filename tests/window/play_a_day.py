@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run inside a Blender window: a user's day with the installed extension, from the default scene to a file that is
-opened again.
+"""Runs inside a Blender window: a user's day with the installed extension, from the default scene to reopening a file.
 
-test_a_day.py reads what happened. Pictures of the window are saved on the way; docs/guide.md shows some of them.
+test_a_day.py reads the report. Pictures of the window are saved on the way, and docs/guide.md shows some of them.
 """
 
 import os
@@ -28,7 +27,7 @@ drawn = []
 
 
 def watch_drawing():
-    """Notes how many samples a view has whenever the installed extension has drawn it."""
+    """Record a view's number of samples whenever the installed extension has drawn it."""
     viewport = sys.modules[f"{MODULE}.splat_addon.blender.engine.viewport"]
     draw = viewport.draw
 
@@ -40,7 +39,7 @@ def watch_drawing():
 
 
 def at_rest():
-    """Waits until the view has been drawn anew and has all its samples."""
+    """Wait until the view has been drawn again and has all its samples."""
     drawn.clear()
     view3d()[0].tag_redraw()
 
@@ -52,12 +51,12 @@ def at_rest():
 
 
 def shot(name: str) -> None:
-    """A picture of the whole screen: Blender's own of its window is black on OpenGL."""
+    """Save a picture of the whole screen, because Blender's own picture of its window is black on OpenGL."""
     subprocess.run(["import", "-window", "root", REPORT.with_name(f"{REPORT.stem}_{name}.png")], check=True)
 
 
 def surfel_object():
-    """Looked up anew: undo and opening a file free what Python holds."""
+    """Look up the surfel object each time, because undo and opening a file free Python's references."""
     return next((o for o in bpy.data.objects if o.name.endswith(" surfels")), None)
 
 
@@ -70,7 +69,7 @@ def until(condition):
 
 
 def build_scene():
-    """Suzanne on a floor in place of the cube, a large lamp, a camera on them."""
+    """Replace the cube with Suzanne on a floor, a large lamp, and a camera."""
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     with in_view():
         bpy.ops.mesh.primitive_plane_add(size=8, location=(0, 0, -1))
@@ -89,7 +88,7 @@ def is_converted():
 
 
 def convert():
-    """As a press of the button, on what is selected."""
+    """Convert the selection as a press of the button does."""
     with in_view():
         result = bpy.ops.object.surfels_from_mesh("INVOKE_DEFAULT", resolution=128, density="RESOLUTION")
     assert result == {"RUNNING_MODAL"}, result
@@ -100,7 +99,9 @@ def look_through_camera():
 
 
 def show():
-    """The one click that the sidebar offers after a conversion, and after opening a file, which Blender shows Solid."""
+    """Press the button that the sidebar offers after a conversion, and after opening a file, which Blender shows as
+    Solid.
+    """
     view3d()[0].spaces[0].overlay.show_overlays = False
     with in_view():
         bpy.ops.view3d.surfels_show()
@@ -113,7 +114,7 @@ def orbit():
 
 
 def edit():
-    """The surfels are turned in edit mode."""
+    """Turn the surfels in edit mode."""
     made = surfel_object()
     bpy.context.view_layer.objects.active = made
     made.select_set(True)
@@ -136,7 +137,7 @@ def first_x():
 
 
 def steps():
-    """Each yields the seconds to wait before the next; the report is the end."""
+    """Yields the seconds to wait after each step, and returns the report."""
     facts = {}
     bpy.ops.extensions.package_install_files(repo="user_default", filepath=PACKAGE, enable_on_install=True)
     watch_drawing()

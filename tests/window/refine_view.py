@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run inside a Blender window: a view through a camera out of focus, in small tiles, at rest, changed, at rest.
+"""Runs inside a Blender window: a view through a camera out of focus, in small tiles, at rest and while it changes.
 
-test_refinement.py reads what happened.
+test_refinement.py reads the report.
 """
 
 import sys
@@ -32,7 +32,7 @@ def counted(draw):
 
 
 def prepare():
-    """A row of balls, of which the middle one is in focus."""
+    """Make a row of balls with the middle one in focus."""
     scene = bpy.context.scene
     cube = bpy.data.objects["Cube"]
     bpy.data.objects.remove(cube)
@@ -53,7 +53,7 @@ def prepare():
 
 
 def at_rest():
-    """Waits until the view is done, and then a second more."""
+    """Wait until the view is complete, and then for one more second."""
     for _ in range(PATIENCE):
         yield 0.1
         if draws and draws[-1] == SAMPLES:
@@ -62,7 +62,7 @@ def at_rest():
 
 
 def steps():
-    """Each yields the seconds to wait before the next; the report is the end."""
+    """Yields the seconds to wait after each step, and returns the report."""
     report = {"samples": SAMPLES}
     prepare()
     yield from at_rest()

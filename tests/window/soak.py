@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run inside a Blender window: many frames are rendered and many edits made, and memory is looked at on the way.
+"""Runs inside a Blender window: renders many frames, makes many edits, and records memory on the way.
 
-test_soak.py reads the figures. SURFEL_SOAK holds the numbers of frames and of edits.
+test_soak.py reads the figures. SURFEL_SOAK contains the numbers of frames and of edits.
 """
 
 import gc
@@ -23,7 +23,7 @@ FRAMES, EDITS = map(int, os.environ["SURFEL_SOAK"].split(","))
 
 
 def resident() -> float:
-    """Megabytes of this process that lie in memory."""
+    """The resident memory of this process, in megabytes."""
     pages = int(Path("/proc/self/statm").read_text().split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
 
@@ -35,7 +35,7 @@ def figures() -> dict:
 
 
 def build_scene():
-    """A turning Suzanne, as surfels that follow her, on a floor of polygons."""
+    """Make a turning Suzanne, as surfels that follow her, on a floor of polygons."""
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     with in_view():
         bpy.ops.mesh.primitive_plane_add(size=8, location=(0, 0, -1))
@@ -124,7 +124,7 @@ EDIT_KINDS = (move, paint, light, turn_points, update, undo_a_move, add_and_dele
 
 
 def steps():
-    """Each yields the seconds to wait before the next; the report is the end."""
+    """Yields the seconds to wait after each step, and returns the report."""
     build_scene()
     yield 0.5
     scene, series, kinds = bpy.context.scene, [], cycle(EDIT_KINDS)

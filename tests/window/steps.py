@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the scripts that run inside a Blender window share: the 3D view, and steps between which the window lives on.
+"""Shared by the scripts inside a Blender window: access to the 3D view, and steps between which the window is redrawn.
 
-It is found beside the scripts, whose folder they put on the path.
+The scripts find this module because their folder is on the path.
 """
 
 import json
@@ -12,7 +12,7 @@ from pathlib import Path
 import bpy
 
 ROOT = Path(__file__).resolve().parents[2]
-#: What happened goes to the file named after `--`, as JSON.
+#: The report is written as JSON to the file named after `--`.
 REPORT = Path(sys.argv[sys.argv.index("--") + 1])
 
 
@@ -23,13 +23,13 @@ def view3d():
 
 
 def in_view():
-    """The context of a mouse over the 3D view."""
+    """A context override as if the mouse were over the 3D view."""
     area, region = view3d()
     return bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area, region=region)
 
 
 def open_sidebar() -> None:
-    """Its tabs are there once the window was drawn."""
+    """Open the sidebar; its tabs exist once the window has been drawn."""
     view3d()[0].spaces[0].show_region_ui = True
 
 
@@ -40,7 +40,7 @@ def show_tab(category: str) -> None:
 
 
 def smooth_and_red(color: tuple[float, ...]) -> None:
-    """The active object, of four times as many faces."""
+    """Make the active object smooth and red, with four times as many faces."""
     made = bpy.context.object
     made.modifiers.new("Subdivision", "SUBSURF").levels = 2
     bpy.ops.object.shade_smooth()
@@ -51,7 +51,7 @@ def smooth_and_red(color: tuple[float, ...]) -> None:
 
 
 def play(steps, and_quit: bool = False) -> None:
-    """Runs a generator from a timer. It yields the seconds to wait before the next step, and returns the report."""
+    """Run a generator from a timer; it yields the seconds to wait before the next step, and returns the report."""
 
     def run():
         try:

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A day in a real window with the installed extension: convert, look, orbit, edit, undo, F12, save, open, disable."""
+"""A day with the installed extension in a real window works: convert, look, orbit, edit, undo, F12, save, open,
+disable.
+"""
 
 import subprocess
 from pathlib import Path
@@ -12,13 +14,13 @@ ROOT = Path(__file__).resolve().parents[2]
 SECONDS = 300
 #: Rows and columns of the screen that show Suzanne through the camera, in a window of 1200 x 800 at its foot.
 VIEW = slice(475, 835), slice(250, 600)
-#: The share of pixels that may change between two views of the same: ties at edges. None was seen to.
+#: The share of pixels that may differ between two equal views because of ties at edges; none was observed.
 SAME = 0.001
 
 
 @pytest.fixture(scope="module")
 def day(in_a_window, tmp_path_factory):
-    """(report, name -> picture of the 3D view (h, w, 3))."""
+    """(report, name -> (h, w, 3) picture of the 3D view)."""
     folder = tmp_path_factory.mktemp("user")
     subprocess.run(["python3", "scripts/build.py"], cwd=ROOT, check=True)
     [package] = (ROOT / "build").glob("surfel_splatting-*.zip")
@@ -37,7 +39,7 @@ def _read(file: Path) -> np.ndarray:
 
 
 def difference(one: np.ndarray, other: np.ndarray) -> float:
-    """The share of pixels that differ by more than a value in 85."""
+    """The share of pixels in which two pictures differ by more than 3 of 255."""
     return float((np.abs(one - other).max(axis=-1) > 3 / 255).mean())
 
 

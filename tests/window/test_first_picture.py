@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A new user's first minute: few clicks to a lit picture, and labels that can be read."""
+"""In a new user's first minute few clicks lead to a lit picture, and all labels can be read."""
 
 import numpy as np
 import pytest
 from PIL import Image
 
 SECONDS = 240
-#: Share of the sidebar's width that names at the left of their values have; "Pixels per Surfel" just fits.
+#: The share of the sidebar's width for names at the left of values; "Pixels per Surfel" just fits.
 ROOM = 0.31
 
 

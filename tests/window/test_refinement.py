@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A rendered view in a real window: at rest it refines to its samples and idles, a change starts it anew."""
+"""A rendered view in a real window refines to its samples at rest and then idles; a change starts it again."""
 
 import pytest
 
@@ -8,7 +8,7 @@ SECONDS = 50
 
 @pytest.fixture(scope="module")
 def session(in_a_window):
-    """What one run of refine_view.py reports."""
+    """The report of one run of refine_view.py."""
     return in_a_window("refine_view.py", SECONDS, "--window-geometry", "0", "0", "1000", "700")[0]
 
 

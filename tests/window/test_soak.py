@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Many frames and edits in a window leave memory flat. SURFEL_SOAK=1000,200 plays the full count, about six minutes."""
+"""Memory stays constant over many frames and edits in a window.
+
+SURFEL_SOAK=1000,200 plays the full count, about six minutes.
+"""
 
 import os
 import statistics
@@ -9,9 +12,9 @@ import pytest
 FRAMES = os.environ.get("SURFEL_SOAK", "120,60")
 SECONDS = 2400
 
-#: Megabytes by which the last third may lie above the middle one; a frame's textures alone are 13.
+#: Megabytes by which the last third may exceed the middle one; the textures of one frame take 13.
 GROWTH = 40
-#: Megabytes that Blender 5.2 itself keeps of each render on Vulkan; one by Workbench keeps 1.5 in this window too.
+#: Megabytes that Blender 5.2 itself keeps after each render on Vulkan; a render by Workbench keeps 1.5 too.
 VULKAN_KEEPS = 2.0
 #: Blender keeps a wrapper of each geometry instance, here the surfels' points, whenever a script looks at it: in the
 #: view and in the render. One texture, plan or mesh that stayed would be dozens of objects a frame.
@@ -20,7 +23,7 @@ OBJECTS_A_FRAME = 10
 
 @pytest.fixture(scope="module")
 def series(in_a_window):
-    """The figures of a run of soak.py, a dictionary for each moment, without what Blender itself keeps."""
+    """The figures of a run of soak.py, one dictionary for each moment, without the memory that Blender itself keeps."""
     geometry = "--window-geometry", "0", "0", "520", "400"
     report, shot = in_a_window("soak.py", SECONDS, *geometry, SURFEL_SOAK=FRAMES)
     kept = VULKAN_KEEPS if "vulkan" in shot.name else 0.0
@@ -29,7 +32,7 @@ def series(in_a_window):
 
 
 def thirds(series, name):
-    """Its medians in the middle and in the last third; in the first, Blender still fills its caches."""
+    """The medians in the middle and in the last third; in the first, Blender still fills its caches."""
     values = [moment[name] for moment in series]
     third = len(values) // 3
     return statistics.median(values[third : 2 * third]), statistics.median(values[2 * third :])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A real Blender window: the operator from the interface, the sidebar's tab, the rendered view."""
+"""In a real Blender window the operator, the sidebar's tab and the rendered view work."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's command line as far as the templates use it, on the wheel: --background FILE --command NAME ARGUMENTS."""
+"""Stands in for Blender's command line where the tests run on the wheel: it understands what the templates use.
+
+The form is `--background FILE --command NAME ARGUMENTS`.
+"""
 
 import runpy
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A small animated scene in a file of its own, and the commands as the command line gives them."""
+"""A small animated scene in a file of its own, and a way to call the commands as the command line does."""
 
 import math
 from pathlib import Path
@@ -15,7 +15,7 @@ SIZE = (48, 32)
 
 @pytest.fixture
 def animation(empty_file, tmp_path):
-    """A ball of surfels that moves over frames 1 to 4, with its shadow on a floor of polygons; saved as anim.blend."""
+    """A file anim.blend: a ball of surfels that moves over frames 1 to 4 and shadows a floor of polygons."""
     scene = bpy.context.scene
     scene.render.engine = "SURFEL_SPLATTING"
     bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=0.8, location=(-1, 0, 0.8))
@@ -46,7 +46,7 @@ def animation(empty_file, tmp_path):
 
 @pytest.fixture
 def surfels_command(capfd):
-    """surfels_command(*arguments) -> exit code and what was printed."""
+    """surfels_command(*arguments) -> the command's exit code and what it printed."""
 
     def run(*arguments) -> tuple[int, str]:
         capfd.readouterr()

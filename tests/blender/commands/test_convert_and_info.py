@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`surfels convert` saves a file of surfels or nothing; `surfels info` tells what a file holds."""
+"""`surfels convert` saves a complete file of surfels or none; `surfels info` describes what a file contains."""
 
 import json
 
@@ -36,7 +36,7 @@ def test_a_file_is_told_of(animation, surfels_command):
 
 
 def test_blocks_are_the_file_that_one_machine_makes(animation, surfels_command, surfels_of, tmp_path):
-    """Two objects at once, bit by bit; a block that is missing is named."""
+    """Two objects are converted in blocks and merged: the file is equal bit by bit, and a missing block is named."""
     bpy.data.objects["ball"].hide_set(False)
     bpy.ops.wm.save_mainfile()
     made_from, objects = str(tmp_path / "anim.blend"), ("--objects", "ball", "floor", "--resolution", 40)

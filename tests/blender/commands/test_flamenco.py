@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The job types compile in an engine for JavaScript that offers what Flamenco's documentation says its own does, and
-their tasks are command lines of the extension.
+"""Flamenco's job types compile, and the tasks that they make are command lines that the extension understands.
 
-Flamenco itself is not run here. What its manager gives a script is written down in COMPILER from its documentation
-(Usage: Job Types, Commands) and its manager's interface: `author`, `path`, `print`, `frameChunker`.
+Flamenco itself is not run here. An engine for JavaScript runs the job types; COMPILER gives them what Flamenco's
+manager gives a script (`author`, `path`, `print`, `frameChunker`), written from its documentation (Usage: Job Types,
+Commands).
 """
 
 import argparse
@@ -16,7 +16,7 @@ quickjs = pytest.importorskip("quickjs")
 
 SCRIPTS = Path(__file__).resolve().parents[3] / "farm" / "flamenco"
 
-#: Goja runs scripts strictly; this refuses what its interface would refuse.
+#: Goja, Flamenco's engine, runs scripts in strict mode; this refuses what it would refuse.
 COMPILER = """
 "use strict";
 function only(object, names, what) {
@@ -125,7 +125,7 @@ def test_settings_are_ones_that_flamenco_knows(name):
 
 @pytest.mark.parametrize("name", ["surfel_frames", "surfel_conversion"])
 def test_the_extension_takes_each_command_line(name):
-    """By the parser of the commands, where Blender is."""
+    """The commands' own parser accepts each task's arguments. Only a process with Blender can import that parser."""
     commands = pytest.importorskip("splat_addon.blender.commands")
     settings = {**FRAMES, "frames": "1-3", "blocks": 2, "object_name": "a", "result": "/r.blend", "tile_columns": 2}
     for task in compiled(name, **settings):

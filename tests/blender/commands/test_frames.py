@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`surfels render` and `surfels merge` of frames: the pictures of an animation, whole or not there."""
+"""`surfels render` and `surfels merge` of frames: each picture of an animation is written as a whole or not at all."""
 
 import argparse
 

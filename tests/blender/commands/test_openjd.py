@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The templates do with two workers, one of which is killed, what one machine does. Each task is run by Open Job
-Description's own command line.
+"""Two workers that follow the templates, one of which is killed, produce what one machine does.
+
+Open Job Description's own command line runs each task.
 """
 
 import os
@@ -32,7 +33,7 @@ STAND_IN = Path(__file__).with_name("blender_stand_in.py")
 
 @pytest.fixture(scope="session")
 def blender_program(tmp_path_factory):
-    """What the templates call Blender: the wheel has no program of its own."""
+    """A program that the templates can call as Blender; the wheel contains none."""
     file = tmp_path_factory.mktemp("program") / "blender"
     file.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} {shlex.quote(str(STAND_IN))} "$@"\n')
     file.chmod(0o755)
@@ -41,10 +42,10 @@ def blender_program(tmp_path_factory):
 
 @pytest.fixture
 def farm(blender_program):
-    """farm(template, tasks, kill_when, **parameters) -> how many workers were killed.
+    """farm(template, tasks, kill_when, **parameters) -> the number of workers that were killed.
 
-    Runs the template's first step, whose tasks are given, by two workers, then its last step. kill_when: gives true
-    when the worker of the first task is to be killed, with all that it runs; the task goes back to the queue.
+    Two workers run the given tasks of the template's first step; then its last step runs. As soon as kill_when() is
+    true, the worker of the first task is killed with all its processes, and the task goes back to the queue.
     """
 
     def run(template: str, tasks: list[dict], kill_when=lambda: False, **parameters) -> int:
@@ -81,7 +82,7 @@ def _started(command: list[str]) -> subprocess.Popen:
 
 
 def _kill(process: subprocess.Popen) -> None:
-    """As when a machine's power goes: everything that it runs, at once and without a word."""
+    """Kill a worker and all its processes at once, as a power cut does."""
     listed = subprocess.run(["ps", "-A", "-o", "pid=,ppid="], stdout=subprocess.PIPE, text=True, check=True).stdout
     parents = dict(tuple(map(int, line.split())) for line in listed.splitlines())
     family = {process.pid}
@@ -109,7 +110,7 @@ def nothing_unfinished(folder) -> bool:
 def test_frames_are_the_single_machines_bit_by_bit(animation, farm, pixels, tmp_path):
     tasks = [{"First": 1}, {"First": 3}]
     about = {"BlendFile": tmp_path / "anim.blend", "Folder": tmp_path, "Name": "farm_####", "LastFrame": 4}
-    # frame 1 is on its way, or just there
+    # frame 1 is being written, or just was
     kill_when = lambda: any("farm_0001" in path.name for path in tmp_path.iterdir())  # noqa: E731
     assert farm("frames", tasks, kill_when, ChunkSize=2, **about) == 1
     animation.render.filepath = str(tmp_path / "whole_")

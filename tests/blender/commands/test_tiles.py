@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A frame that workers draw in tiles is the frame that one machine draws, with everything that comes after drawing."""
+"""A frame that several workers draw in tiles is the frame that one machine draws, including all work after drawing."""
 
 from importlib import import_module
 
@@ -14,7 +14,7 @@ TILES = [(column, row) for row in (1, 2) for column in (1, 2, 3)]
 
 @pytest.fixture
 def draw(animation, surfels_command, pixels, tmp_path):
-    """draw() -> the frame drawn whole, and in 3 x 2 tiles."""
+    """draw() -> the frame drawn as a whole, and the same frame drawn in 3 x 2 tiles."""
 
     def run() -> tuple[np.ndarray, np.ndarray]:
         assert surfels_command("render", "--frames", 2, "--out", "//whole_")[0] == 0
@@ -31,7 +31,7 @@ def draw(animation, surfels_command, pixels, tmp_path):
 
 
 def test_tiles_that_are_the_engines_own_are_the_whole_picture_bit_by_bit(draw, monkeypatch):
-    """48 x 32 pixels in tiles of 16, as 16,384 x 16,384 are in tiles of 2,048."""
+    """48 x 32 pixels in tiles of 16 stand for 16,384 x 16,384 pixels in the engine's tiles of 2,048."""
     monkeypatch.setattr(import_module("splat_addon.rendering.plan.build"), "tile_edge", lambda planning: 16)
     whole, tiled = draw()
     assert whole.any() and np.array_equal(tiled, whole)

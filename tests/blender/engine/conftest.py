@@ -14,7 +14,9 @@ IMAGE_FORMATS = {"OPEN_EXR": "IMAGE", "OPEN_EXR_MULTILAYER": "MULTI_LAYER_IMAGE"
 
 @pytest.fixture
 def scene(empty_file, tmp_path):
-    """An empty scene for our engine: 32 x 32 pixels of one unfiltered sample, unlit, transparent film, exact file."""
+    """An empty scene for our engine: 32 x 32 pixels, one unfiltered sample, no lighting, transparent film,
+    float file.
+    """
     made = bpy.context.scene
     made.render.engine = "SURFEL_SPLATTING"
     made.render.resolution_x = made.render.resolution_y = 32
@@ -22,7 +24,7 @@ def scene(empty_file, tmp_path):
     made.surfel_splatting.shading = "flat"
     made.surfel_splatting.method, made.surfel_splatting.supersampling = "quad", 1
     made.surfel_splatting.samples = made.surfel_splatting.blur_samples = 1
-    # Where it is not told, a render in background stops at what it cannot draw.
+    # By default a render in background stops at an object that it cannot draw.
     made.surfel_splatting.broken_objects = "WARN"
     made.render.filepath = str(tmp_path / "picture.exr")
     set_format(made.render, "OPEN_EXR")
@@ -30,7 +32,7 @@ def scene(empty_file, tmp_path):
 
 
 def set_format(render: bpy.types.RenderSettings, file_format: str) -> None:
-    """Float files, with alpha; from 5.0 the kind of media comes first."""
+    """Write float files with alpha. From Blender 5.0 on, the type of media must be set first."""
     if hasattr(render.image_settings, "media_type"):
         render.image_settings.media_type = IMAGE_FORMATS[file_format]
     render.image_settings.file_format = file_format
@@ -58,9 +60,9 @@ def add_camera(scene):
 
 @pytest.fixture
 def add_surfels(add_object):
-    """add_surfels(positions, normals, size, colors) -> an object of surfels; one normal, size or colour serves all.
+    """add_surfels(positions, normals, size, colors) -> an object of surfels; one normal, size or colour may serve all.
 
-    is_shown: it has the modifier that converted objects have.
+    is_shown: whether the object gets the modifier that shows converted objects as points.
     """
 
     def add(
@@ -106,7 +108,7 @@ def add_sheet(add_surfels):
 
 @pytest.fixture
 def read_picture():
-    """read_picture(path) -> (h, w, 4) float32 of a file with one picture, row 0 at the bottom."""
+    """read_picture(path) -> (h, w, 4) float32 from a file with a single picture, row 0 at the bottom."""
 
     def read(path) -> np.ndarray:
         (only,) = read_passes(path).values()
@@ -117,7 +119,7 @@ def read_picture():
 
 @pytest.fixture
 def picture(scene, read_picture):
-    """picture() -> (h, w, 4) float32: a still, as its file has it."""
+    """picture() -> (h, w, 4) float32 of a rendered still, read back from its file."""
 
     def render() -> np.ndarray:
         bpy.ops.render.render(write_still=True)
@@ -128,7 +130,7 @@ def picture(scene, read_picture):
 
 @pytest.fixture
 def passes(scene):
-    """passes() -> the pictures in the multilayer file that a render writes: name of layer and pass -> array."""
+    """passes() -> name of layer and pass -> array, read from the multilayer file that a render writes."""
 
     def render() -> dict[str, np.ndarray]:
         set_format(scene.render, "OPEN_EXR_MULTILAYER")
@@ -157,13 +159,13 @@ def _joined(letters: dict[str, np.ndarray]) -> np.ndarray:
 
 @pytest.fixture
 def said(capfd):
-    """said() -> what Blender has reported so far, as a user reads it in the console."""
+    """said() -> all that Blender has reported so far, as a user reads it in the console."""
     return lambda: capfd.readouterr().out
 
 
 @pytest.fixture
 def switch_to_cycles(scene):
-    """switch_to_cycles(samples, filter_width): the truth from outside."""
+    """switch_to_cycles(samples, filter_width) makes the next picture one of Cycles, to compare ours with."""
 
     def switch(samples=1, filter_width=1.5):
         scene.render.engine = "CYCLES"
@@ -175,7 +177,7 @@ def switch_to_cycles(scene):
 
 @pytest.fixture
 def assert_same_picture():
-    """assert_same_picture(a, b, ties): equal within 1e-4, save a counted handful of pixels on a splat's edge."""
+    """assert_same_picture(a, b, ties): equal within 1e-4, except for at most `ties` pixels at splats' edges."""
 
     def check(a: np.ndarray, b: np.ndarray, ties: int = 0) -> None:
         assert a.shape == b.shape and bool(a.any()) and bool(b.any())

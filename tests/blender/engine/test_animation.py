@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An animation's frames differ as they should, and what stays the same lies on the device only once."""
+"""Frames of an animation differ where things move, and unchanged surfels are uploaded only once."""
 
 from pathlib import Path
 
@@ -27,7 +27,7 @@ def frames(scene, read_picture):
 
 @pytest.fixture
 def uploads(monkeypatch):
-    """The surfels that were packed for the device, one entry each time."""
+    """A list that gets one entry whenever surfels are packed for the device."""
     packed, pack = [], storages.pack_surfels
     monkeypatch.setattr(storages, "pack_surfels", lambda surfels, order: packed.append(surfels) or pack(surfels, order))
     return packed
@@ -35,7 +35,7 @@ def uploads(monkeypatch):
 
 @pytest.fixture
 def two(add_camera, add_surfels):
-    """A surfel that stands, and one that moves by 2 units a frame to the right."""
+    """A surfel at rest, and one that moves to the right by 2 units per frame."""
     add_camera(location=(0, 0, 10))
     standing, moving = add_surfels([(0, 3, 0)], size=0.4), add_surfels([(-2, -1, 0)], size=0.4)
     for number in (1, 2, 3):
@@ -48,7 +48,7 @@ def two(add_camera, add_surfels):
 
 
 def curves_of(animated) -> list:
-    """Its F-curves, wherever this version keeps them."""
+    """The F-curves of an action, wherever this version of Blender keeps them."""
     action = animated.animation_data.action
     if hasattr(action, "fcurves"):
         return list(action.fcurves)
@@ -100,7 +100,9 @@ def test_values_that_a_script_changes_before_a_frame_are_seen(two, frames):
 
 
 def test_surfels_under_unchanging_modifiers_are_uploaded_once(two, frames, uploads, add_nodes):
-    """Blender evaluates them anew for each frame, if anything of theirs moves."""
+    """Blender evaluates these surfels again for each frame because something of theirs moves; the result is the
+    same.
+    """
     for made in two:
         add_nodes(made, lambda tree, start, end: tree.links.new(start, end))
     frames()

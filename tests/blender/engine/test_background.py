@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is behind the surfels: the world, or nothing, and an edge that belongs to neither."""
+"""The background shows the world or is transparent, and edges in front of it blend with it correctly."""
 
 import bpy
 import numpy as np
@@ -22,7 +22,7 @@ def add_world(scene):
 
 @pytest.fixture
 def discs(scene, add_camera, add_surfels):
-    """A few slanted discs with nothing between them, nine samples a pixel."""
+    """A few slanted discs with gaps between them, drawn with nine samples per pixel."""
     scene.surfel_splatting.supersampling = 3
     add_camera()
     random = np.random.default_rng(2)
@@ -31,7 +31,7 @@ def discs(scene, add_camera, add_surfels):
 
 @pytest.fixture
 def as_cycles(switch_to_cycles, picture):
-    """Whether Cycles draws the same picture of a scene without surfaces."""
+    """Whether Cycles draws the same picture if the scene has no surfaces."""
 
     def same() -> bool:
         ours = picture()
@@ -86,7 +86,7 @@ def test_edges_are_premultiplied(discs, picture):
 
 
 def test_over_the_world_s_colour_a_transparent_picture_is_the_opaque_one(scene, discs, add_world, picture):
-    """The compositor's Alpha Over then gives no dark rim, and no rim of the world."""
+    """So the compositor's Alpha Over gives no dark rim, and no rim in the world's colour."""
     add_world((1, 1, 1))
     transparent = picture()
     scene.render.film_transparent = False

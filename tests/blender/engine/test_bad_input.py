@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bad input: a sentence that names it, nothing crashes, what was skipped is counted, and the rest is rendered."""
+"""Bad input never crashes: a sentence names it, what was skipped is counted, and everything else is rendered."""
 
 from pathlib import Path
 
@@ -22,7 +22,7 @@ def good(add_camera, add_surfels):
 
 @pytest.fixture
 def assert_good_is_drawn(good, picture):
-    """... as if nothing else were there."""
+    """assert_good_is_drawn(): the picture is the one of the good disc alone."""
 
     def check():
         drawn = picture()
@@ -150,7 +150,7 @@ def test_an_object_at_an_unusable_place_is_named_and_left_out(add_surfels, asser
 
 @pytest.mark.parametrize("size", [1e20, 1e30, 3e38])
 def test_huge_coordinates_beside_usable_ones_do_no_harm(size, good, add_surfels, picture, assert_same_picture):
-    """In the same object, so that the bounds reach from one end of float32 to the other."""
+    """Both are in one object, so that its bounds reach from one end of float32 to the other."""
     alone = picture()
     good.hide_render = True
     signs = np.stack(np.meshgrid(*[(-1, 1)] * 3), axis=-1).reshape(-1, 3)
@@ -300,7 +300,7 @@ def test_an_object_with_a_choice_of_a_later_version_is_left_out(add_square, good
 
 
 def store_number(owner, name, number):
-    """As a file of a later version has it: the number of a choice that is not known here."""
+    """Store a choice that this version does not know, as a file of a later version does."""
     owner.surfel_splatting.property_unset(name)
     if hasattr(owner, "bl_system_properties_get"):
         first = owner.surfel_splatting.bl_rna.properties[name].enum_items[1].identifier

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A blur that is switched on is seen in a final render, without a look at its samples."""
+"""A final render with depth of field or motion blur takes enough samples to show the blur, even if Samples is 1."""
 
 import bpy
 import numpy as np
@@ -11,7 +11,7 @@ from splat_addon.blender.ui import report_panel
 
 @pytest.fixture
 def blurred(scene, add_camera, add_surfels):
-    """A camera whose lens blurs a disc; the least samples of a blur are those of a new scene."""
+    """A disc seen through a lens that blurs it; Blur Samples has its default."""
     made = add_camera()
     made.data.dof.use_dof, made.data.dof.focus_distance, made.data.dof.aperture_fstop = True, 5, 0.05
     add_surfels([(0, 0, 0)], size=1.0)

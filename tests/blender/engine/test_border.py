@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A render border shows the same pixels as the whole picture does there, and has the size that Blender expects."""
+"""A render border shows the pixels that the whole picture has there, and has the size that Blender expects."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ SIZES = [(64, 64), (50, 70), (10, 10), (53, 61)]
 
 @pytest.fixture
 def garden(scene, add_camera, add_surfels):
-    """Random surfels of random colours all over the picture, before a grey world."""
+    """Surfels of random colours all over the picture, in front of a grey world."""
     random = np.random.default_rng(3)
     add_camera((0, 0, 8), (0.1, 0.2, 0.3))
     colors = np.concatenate([random.uniform(size=(300, 3)), np.ones((300, 1))], axis=1)
@@ -21,7 +21,9 @@ def garden(scene, add_camera, add_surfels):
 
 @pytest.fixture
 def set_frame(scene):
-    """set_frame(size, percentage, border, crop): without a border the whole frame."""
+    """set_frame(size, percentage, border, crop) sets the render's size; without a border the whole frame is
+    rendered.
+    """
 
     def apply(size, percentage=100, border=None, crop=False):
         render = scene.render
@@ -56,7 +58,7 @@ def test_a_crop_is_the_border_alone(size, border, garden, set_frame, picture):
 
 
 def test_every_border_has_the_size_that_blender_expects(garden, set_frame, picture):
-    """A picture of another size is not shown at all: Blender leaves the frame empty, and says nothing."""
+    """If the size were wrong, Blender would leave the frame empty without a message."""
     random = np.random.default_rng(1)
     for _ in range(40):
         (left, right), (bottom, top) = np.sort(random.integers(0, 20, (2, 2)) / 20, axis=1)

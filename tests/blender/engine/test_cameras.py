@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A surfel appears where Blender's own `world_to_camera_view` says, whatever the camera."""
+"""For every kind of camera a surfel appears where Blender's own `world_to_camera_view` puts it."""
 
 import bpy
 import numpy as np
@@ -75,7 +75,7 @@ def set_size(scene, width, height, percentage, aspect_x, aspect_y):
 
 @pytest.fixture
 def assert_in_place(scene, add_surfels, picture):
-    """Renders discs at random places, and holds the centre of each to the projected one within 0.08 pixels."""
+    """Render discs at random places and compare each one's centre with the projected one, within 0.08 pixels."""
 
     def check():
         bpy.context.view_layer.update()
@@ -102,12 +102,12 @@ def assert_in_place(scene, add_surfels, picture):
 
 
 def project(scene, place) -> np.ndarray:
-    """(2,) float64: 0 to 1 over the picture."""
+    """The (2,) float64 position of a point in the picture, from 0 to 1."""
     return np.array(world_to_camera_view(scene, scene.camera, place)[:2])
 
 
 def centroid(alpha: np.ndarray, around: np.ndarray) -> np.ndarray:
-    """(2,) pixels: of what is drawn within 2 radii."""
+    """The (2,) centre, in pixels, of what is drawn within 2 radii of a place."""
     y, x = np.indices(alpha.shape) + 0.5
     weight = alpha * (np.maximum(np.abs(x - around[0]), np.abs(y - around[1])) < 2 * RADIUS)
     return np.array([(x * weight).sum(), (y * weight).sum()]) / weight.sum()

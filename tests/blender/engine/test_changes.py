@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Between two renders anything may change, and the second picture is that of the scene as it is then."""
+"""Whatever changes between two renders, the second picture shows the scene in its new state."""
 
 import bpy
 import numpy as np

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`blender --background file.blend -E SURFEL_SPLATTING -o //frame_ -f 1`: files and exit codes."""
+"""`blender --background file.blend -E SURFEL_SPLATTING -o //frame_ -f 1` writes files and returns exit codes."""
 
 import os
 import subprocess
@@ -24,7 +24,7 @@ bpy.ops.wm.save_userpref()
 
 @pytest.fixture(scope="module")
 def user_folder(tmp_path_factory):
-    """A user's folder in which the checkout is an enabled add-on."""
+    """A Blender user folder in which the checkout is an enabled add-on."""
     folder = tmp_path_factory.mktemp("user")
     add_ons = folder / "scripts" / "addons"
     add_ons.mkdir(parents=True)
@@ -37,7 +37,7 @@ def user_folder(tmp_path_factory):
 
 
 def blender(user_folder, *arguments) -> subprocess.CompletedProcess:
-    """This program, with the graphics backend that it was started with."""
+    """Start this Blender again, with the graphics backend that the tests run on."""
     before = sys.argv[: sys.argv.index("--")]
     at = before.index("--gpu-backend") if "--gpu-backend" in before else len(before)
     return subprocess.run(
@@ -52,7 +52,9 @@ def blender(user_folder, *arguments) -> subprocess.CompletedProcess:
 
 @pytest.fixture
 def render_file(user_folder, scene, add_surfels, tmp_path):
-    """render_file(arguments) -> what became of the scene's file, saved for another engine, on the command line."""
+    """render_file(arguments) saves the scene for another engine, and returns the finished command line that rendered
+    it.
+    """
 
     def run(*arguments) -> subprocess.CompletedProcess:
         scene.render.engine = "BLENDER_WORKBENCH"

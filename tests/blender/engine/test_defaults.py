@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a new scene renders without a choice: the mip filter, one sample a pixel."""
+"""A new scene renders with the Mip Filter and one sample per pixel."""
 
 import bpy
 import numpy as np
@@ -17,7 +17,7 @@ def test_a_new_scene_has_the_balanced_preset():
 
 
 def test_a_new_scene_s_final_render_has_the_samples_of_the_viewport_at_rest(scene, add_camera, add_surfels, picture):
-    """The viewport's redraws are held to final renders of as many samples in tests/rendering/test_refinement.py."""
+    """tests/rendering/test_refinement.py compares the viewport's redraws with final renders of as many samples."""
     properties, layer = scene.surfel_splatting, scene.view_layers[0]
     for name in ("method", "supersampling", "samples"):
         properties.property_unset(name)
@@ -39,7 +39,7 @@ def _use_defaults(scene):
 
 @pytest.mark.parametrize("pixels", [2.5, 9.0])
 def test_a_disc_covers_its_area_under_the_pixels_gaussian(pixels, scene, add_camera, add_surfels, picture):
-    """A hard-edged picture has no more than a few values."""
+    """Without the filter the edge would be hard, and the picture would have at most six different values."""
     _use_defaults(scene)
     add_camera((0, 0, 10), type="ORTHO", ortho_scale=32)
     add_surfels([(0.2, -0.1, 0)], size=pixels)
@@ -49,7 +49,7 @@ def test_a_disc_covers_its_area_under_the_pixels_gaussian(pixels, scene, add_cam
 
 
 def test_separate_discs_smaller_than_a_pixel_cover_their_area_on_average(scene, add_camera, add_surfels, picture):
-    """One of them has a sample or none; all places in the pixel together are right."""
+    """A single small disc may contain a pixel's sample or miss it; the mean over many positions is the area."""
     _use_defaults(scene)
     add_camera((0, 0, 10), type="ORTHO", ortho_scale=64)
     scene.render.resolution_x = scene.render.resolution_y = 64

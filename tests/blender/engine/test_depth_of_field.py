@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's depth of field blurs as Cycles does: the same opening, in the same place, of the same size."""
+"""Depth of field blurs as it does in Cycles: with the same aperture, at the same place, by the same amount."""
 
 import bpy
 import numpy as np
@@ -14,7 +14,7 @@ OPENINGS = {
 
 @pytest.fixture
 def camera(scene, add_camera):
-    """camera(**depth of field) -> the camera, 10 above the floor, focused at 4."""
+    """camera(**depth of field) -> the camera, 10 units above the floor, focused at distance 4."""
 
     def add(**options):
         made = add_camera((0.3, 0.2, 10), (0, 0, 0.4), lens=60, shift_x=0.05)
@@ -28,7 +28,7 @@ def camera(scene, add_camera):
 
 @pytest.fixture
 def discs(scene, add_surfels, add_mesh):
-    """Two discs, behind the focus and before it: surfels, and for Cycles the same in faces."""
+    """Two discs, one behind the focus and one before it, as surfels and, for Cycles, as faces."""
     scene.surfel_splatting.render_meshes = "HIDDEN"
     places, radii = np.array([(0.2, 0.0, 0.0), (-0.2, 0.4, 7.5)]), np.array([0.8, 0.2])
     add_surfels(places, size=np.repeat(radii[:, None], 2, axis=1))
@@ -52,7 +52,7 @@ def test_the_blur_is_cycles(opening, scene, camera, discs, picture, switch_to_cy
 
 
 def test_the_focus_object_is_sharp(scene, camera, add_surfels, picture):
-    """Its distance counts along the camera's axis."""
+    """Its distance is measured along the camera's axis."""
     focus = bpy.data.objects.new("focus", None)
     focus.location = (3, -2, 5)
     scene.collection.objects.link(focus)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Edge Fade: a splat fades by its kernel; Mip Filter, which filters silhouettes, is left alone."""
+"""Edge Fade lets a splat fade by its kernel. It leaves the Mip Filter alone, which filters silhouettes itself."""
 
 import numpy as np
 

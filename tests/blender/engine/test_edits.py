@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfel objects survive Blender's own edits, which move centres and leave frames behind: each picture is the one that
-moved objects give."""
+"""Surfel objects survive Blender's own edits, which move centres but not frames.
+
+Each picture is the same as if the whole object had been moved.
+"""
 
 import bpy
 import numpy as np
@@ -12,7 +14,7 @@ PLACE = Matrix.LocRotScale((0.4, -0.3, 0.2), Euler((0.5, 0.9, 0.3)), (1.2, 0.7, 
 
 @pytest.fixture
 def discs(add_camera, add_surfels):
-    """discs(name) -> an object of slanted coloured discs, not far from the origin."""
+    """discs(name) -> an object of slanted, coloured discs near the origin."""
     add_camera(location=(0, 0, 9))
 
     def add(name="discs", seed=3):
@@ -26,7 +28,7 @@ def discs(add_camera, add_surfels):
 
 @pytest.fixture
 def assert_drawn_as(picture, assert_same_picture):
-    """assert_drawn_as(expected): the scene gives that picture, up to what rounding moves over the edges of discs."""
+    """assert_drawn_as(expected): the scene gives that picture, except where rounding moves the edge of a disc."""
     return lambda expected: assert_same_picture(picture(), expected, ties=4)
 
 
@@ -56,7 +58,7 @@ def test_apply_twice(discs, picture, assert_drawn_as):
 
 
 def test_moving_the_points_of_a_part(discs, picture, assert_drawn_as):
-    """As edit mode does: half of the points are turned."""
+    """Half of the points are turned, as in edit mode."""
     made = discs()
     other = twin(made, PLACE)
     other.data = other.data.copy()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The render properties' formats reach the picture, and what 16-bit storage moves visibly is said."""
+"""The storage formats of the render properties change the picture, and a visible loss is reported."""
 
 import bpy
 import numpy as np
@@ -10,7 +10,7 @@ from splat_addon.blender.engine import final_render
 
 @pytest.fixture
 def stills(scene, add_camera, add_surfels, picture):
-    """stills(positions, **properties) -> the picture of those surfels with these render properties."""
+    """stills(positions, **properties) -> the picture of surfels at these positions with these render properties."""
 
     def render(positions, **properties):
         add_camera(location=(0, 0, 10))

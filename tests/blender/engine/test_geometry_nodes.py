@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry Nodes edit surfels: the picture is that of surfels made so in the first place."""
+"""Surfels edited by Geometry Nodes look like surfels that were created that way."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ def surfels(add_camera, add_surfels):
 
 
 def replaced(surfels, add_surfels, positions, **options):
-    """Other surfels in place of these."""
+    """Hide these surfels and add others in their place."""
     surfels.hide_render = True
     return add_surfels(positions, **options)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Object Index, Material Index and Cryptomatte: in a multilayer file and in the compositor, beside Cycles' own."""
+"""Object Index, Material Index and Cryptomatte, in a multilayer file and in the compositor, are those of Cycles."""
 
 import json
 
@@ -17,7 +17,7 @@ MATERIAL_INDEX = "Material Index" if HAS_LONG_NAMES else "IndexMA"
 
 @pytest.fixture
 def two_sheets(scene, add_camera, add_sheet):
-    """A sheet of 2 x 2 at the left before a larger one, of other indices, names and materials; half of each is seen."""
+    """A sheet of 2 x 2 on the left that covers half of a larger one; indices, names and materials differ."""
     add_camera((0, 0, 6))
     back, front = add_sheet(side=3, count=120, name="Back"), add_sheet(side=2, count=120, name="Würfel")
     front.location = (-0.6, 0, 1)
@@ -33,7 +33,7 @@ def two_sheets(scene, add_camera, add_sheet):
 
 
 def matte(stored: dict, name: str, layers: int = 3) -> np.ndarray:
-    """(h, w) share of a name, as a reader of the file adds it up."""
+    """The (h, w) coverage of a name, added up from the passes as a reader of the file does."""
     total = 0.0
     for number in range(layers):
         ranks = stored[f"ViewLayer.CryptoObject{number:02d}"]
@@ -62,7 +62,7 @@ def test_the_file_says_whose_each_pixel_is(method, scene, two_sheets, passes):
 
 
 def test_the_matte_is_cycles_matte(scene, two_sheets, passes, switch_to_cycles):
-    """Its names, and shares within what two pixel filters differ by."""
+    """The names are equal, and the shares differ no more than two pixel filters do."""
     scene.surfel_splatting.supersampling = 8
     ours = passes()
     for sheet, side in zip(two_sheets, (3, 2), strict=True):
@@ -100,7 +100,9 @@ def test_there_are_as_many_layers_as_levels_ask_for(levels, layers, scene, two_s
 
 @pytest.fixture
 def composed(scene, picture):
-    """composed(make) -> the red of the picture that is composed of what make(nodes, layers node) gives."""
+    """composed(make) -> the red channel of the composited picture; make(nodes, layers node) returns the compositor's
+    output.
+    """
 
     def render(make) -> np.ndarray:
         if HAS_LONG_NAMES:
@@ -155,13 +157,13 @@ def test_the_compositor_masks_by_index(scene, two_sheets, composed, passes):
 def test_the_compositor_reads_normals_and_positions(scene, two_sheets, composed):
     scene.view_layers[0].use_pass_normal = scene.view_layers[0].use_pass_position = True
     normal = composed(lambda tree, layers: layers.outputs["Normal"])
-    assert normal.shape == (32, 32) and not normal.any()  # x of what faces up
+    assert normal.shape == (32, 32) and not normal.any()  # x coordinates of the surfels that face up
     position = composed(lambda tree, layers: layers.outputs["Position"])
     assert position.min() < -1 and position.max() > 1
 
 
 def test_instances_and_live_meshes_have_their_objects_names_and_indices(scene, add_camera, passes):
-    """A mesh that the engine samples itself, and a collection's instance of it."""
+    """The scene has a mesh that the engine samples itself, and a collection instance of it."""
     add_camera((0, 0, 8))
     bpy.ops.mesh.primitive_cube_add(size=1, location=(-1.2, 0, 0))
     cube = bpy.context.object

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Instances of every kind look as Blender's own "Make Instances Real" makes them."""
+"""Instances of every kind look like the objects that Blender's "Make Instances Real" makes of them."""
 
 import bpy
 import numpy as np
@@ -19,7 +19,9 @@ def motif(add_camera, add_surfels):
 
 @pytest.fixture
 def assert_as_made_real(motif, picture, assert_same_picture):
-    """assert_as_made_real(instancer, count): the picture stays when its instances are made objects of their own."""
+    """assert_as_made_real(instancer, count): the picture stays the same when the instances become `count` real
+    objects.
+    """
 
     def check(instancer: bpy.types.Object, count: int) -> None:
         instanced = picture()
@@ -63,7 +65,7 @@ def test_geometry_nodes_instances_on_points(scene, motif, add_mesh, add_nodes, a
 
 
 def instances_of(source, scale):
-    """Geometry Nodes that put an object on every point."""
+    """A Geometry Nodes modifier that puts an object on every point."""
 
     def build(tree, start, end):
         info, instance = tree.nodes.new("GeometryNodeObjectInfo"), tree.nodes.new("GeometryNodeInstanceOnPoints")
@@ -99,7 +101,7 @@ def test_linked_duplicates_are_drawn_in_their_own_places(scene, motif, picture, 
 
 
 def test_duplicates_of_one_mesh_keep_their_own_modifiers(scene, motif, add_nodes, picture, assert_same_picture):
-    """Their evaluated meshes have one name."""
+    """The difficulty: Blender gives their evaluated meshes the same name."""
     motif.location.x = -2.5
     alone = picture()
     moved = motif.copy()
@@ -146,7 +148,7 @@ def test_what_is_in_an_excluded_collection_is_not_drawn(scene, motif, picture):
 
 
 def test_five_hundred_instances_are_all_drawn(scene, add_camera, add_surfels, add_mesh, add_nodes, picture):
-    """Every one in its own block of 4 x 4 pixels; Vulkan runs out of descriptors where draws hoard them."""
+    """Each one has its own block of 4 x 4 pixels. Vulkan runs out of descriptors if draws keep them."""
     scene.render.resolution_x, scene.render.resolution_y = 100, 80
     add_camera(type="ORTHO", ortho_scale=25, clip_end=100)
     dot = add_surfels([(0, 0, 0)], size=0.3)

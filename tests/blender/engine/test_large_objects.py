@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An object with more surfels than the renderer holds in one set is drawn in several, and looks the same."""
+"""An object with more surfels than one set holds is drawn as several sets, and looks the same."""
 
 import bpy
 import numpy as np
@@ -27,7 +27,7 @@ def test_the_picture_of_several_sets_is_that_of_one(sheet, picture, monkeypatch)
 
 
 def test_the_sets_stay_the_same_from_frame_to_frame(sheet, monkeypatch):
-    """What lies on the device is known by identity."""
+    """The renderer recognises uploaded sets by their identity, so other objects would be uploaded again."""
     monkeypatch.setattr(scene, "MAX_SPLATS", 150)
     store, live = scene.SurfelStore(), LiveMeshes()
     frames = []

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A sheet of surfels answers Blender's lights as Cycles' mesh of the same material does: within 3 %, or a hundredth
-of the brightest pixel.
+"""Blender's lights make a sheet of surfels as bright as Cycles makes a mesh of the same material.
+
+The tolerance is 3 %, or a hundredth of the brightest pixel.
 """
 
 import bpy
@@ -35,7 +36,7 @@ LIGHTS = {
 
 @pytest.fixture
 def add_light(scene):
-    """add_light(type, energy, location, rotation, properties) -> an object."""
+    """add_light(type, energy, location, rotation, properties) -> the light's object."""
 
     def add(kind, energy, location, rotation, properties) -> bpy.types.Object:
         data = bpy.data.lights.new("light", kind)
@@ -52,7 +53,7 @@ def add_light(scene):
 
 @pytest.fixture
 def assert_as_cycles(scene, switch_to_cycles, add_camera, add_sheet, picture):
-    """Renders a sheet of a matt material by both engines, and holds the pictures to each other."""
+    """Render a matt sheet with both engines and compare the pictures."""
 
     def check(rtol=0.03, **sockets):
         scene.render.resolution_x = scene.render.resolution_y = 16
@@ -151,7 +152,7 @@ def test_a_shadow_falls_as_in_cycles(name, scene, add_light, add_camera, add_she
     scene.cycles.max_bounces = 0
     switch_to_cycles(samples=64, filter_width=1.0)
     theirs = picture()[..., 0]
-    # Pixels' filters differ, so what is compared is how much light is missing in all.
+    # The pixel filters differ, so the total missing light is compared.
     dark = np.minimum(ours, theirs) < 0.95 * unshadowed
     assert dark.sum() > 20
     assert (unshadowed - ours)[dark].sum() == pytest.approx((unshadowed - theirs)[dark].sum(), rel=0.1)
@@ -173,7 +174,7 @@ def test_a_light_lights_what_it_is_linked_to(state, scene, add_camera, add_light
 
 
 def gradient_world(scene, rotation=(0, 0, 0)):
-    """A world whose picture is brighter upwards and to one side, with a lamp in it."""
+    """A world image that gets brighter upwards and to one side, with a bright lamp in it."""
     image = bpy.data.images.new("sky", 64, 32, float_buffer=True)
     pixels = np.ones((32, 64, 4), np.float32)
     pixels[..., 0] = np.linspace(0.1, 1, 32)[:, None]
@@ -195,7 +196,9 @@ def gradient_world(scene, rotation=(0, 0, 0)):
 @pytest.mark.parametrize("rotation", [(0, 0, 0), (0.5, -0.3, 1.2)])
 @pytest.mark.parametrize(("metallic", "rtol"), [(0.0, 0.03), (1.0, 0.2)])
 def test_a_world_that_is_a_picture_lights_the_surface(metallic, rtol, rotation, scene, assert_as_cycles):
-    """A metal's lobe has its own direction but is taken as round: up to 17 % off beside a lamp twenty times the sky."""
+    """A metal's lobe is treated as round, though it is not: up to 17 % error beside a lamp twenty times as bright as
+    the sky.
+    """
     gradient_world(scene, rotation)
     assert_as_cycles(rtol, **{"Metallic": metallic, "Roughness": 0.6, "Specular IOR Level": 0.5 * metallic})
 

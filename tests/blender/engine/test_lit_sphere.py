@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A sphere of surfels under each kind of light, beside Cycles' sphere and EEVEE's: within 10 % where there is light."""
+"""A sphere of surfels under each kind of light is within 10 % of Cycles' and EEVEE's sphere, where it is lit."""
 
 from dataclasses import replace
 
@@ -38,7 +38,7 @@ BLOCK = 4
 
 @pytest.fixture
 def spheres(scene, add_camera, add_object):
-    """A smooth sphere and its surfels, of one material."""
+    """A smooth sphere and its surfels, with the same material."""
     scene.render.resolution_x = scene.render.resolution_y = 64
     scene.surfel_splatting.shading = "principled"
     scene.render.film_transparent = True
@@ -61,7 +61,7 @@ def spheres(scene, add_camera, add_object):
 
 @pytest.fixture
 def light_up(scene, spheres):
-    """light_up(name of a light, name of a material)."""
+    """light_up(name of a light, name of a material) sets up the scene."""
 
     def job(name, material):
         _, _, sockets = spheres
@@ -82,7 +82,9 @@ def light_up(scene, spheres):
 
 @pytest.fixture
 def assert_as_in_other_engine(spheres, picture):
-    """assert_as_in_other_engine(switch): both spheres where they are lit, ours and the one after `switch()`."""
+    """assert_as_in_other_engine(switch) compares the lit parts of our sphere and of the one rendered after
+    `switch()`.
+    """
 
     def check(switch):
         sphere, made, _ = spheres
@@ -119,6 +121,6 @@ def test_a_lit_sphere_is_eevees_sphere(name, scene, light_up, assert_as_in_other
 
 
 def blocks(picture):
-    """Means of BLOCK x BLOCK pixels."""
+    """The means of blocks of BLOCK x BLOCK pixels."""
     h, w = (n // BLOCK for n in picture.shape[:2])
     return picture.reshape(h, BLOCK, w, BLOCK, *picture.shape[2:]).mean(axis=(1, 3))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Render Meshes as Surfels: what was not converted looks as if it had been, and keeps its surfels while it deforms."""
+"""Render Meshes as Surfels: meshes look as if they had been converted, and keep their surfels while they deform."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from splat_addon.rendering.upload import storages
 
 @pytest.fixture
 def live(scene, add_camera):
-    """The scene with the option on, at a resolution of 32, seen from above."""
+    """The scene with Render Meshes as Surfels at resolution 32, seen from above."""
     add_camera(location=(0, 0, 10))
     scene.surfel_splatting.render_meshes = "SURFELS"
     scene.surfel_splatting.mesh_resolution = 32
@@ -24,7 +24,7 @@ def live(scene, add_camera):
 
 @pytest.fixture
 def sampled(monkeypatch):
-    """The surfels that were packed for the device, in order."""
+    """The list of surfels packed for the device, in order."""
     packed, pack = [], storages.pack_surfels
     monkeypatch.setattr(storages, "pack_surfels", lambda surfels, order: packed.append(surfels) or pack(surfels, order))
     return packed
@@ -32,7 +32,7 @@ def sampled(monkeypatch):
 
 @pytest.fixture
 def render_frames(scene):
-    """render_frames(last): an animation from frame 1 to there; returns the counts of its last frame."""
+    """render_frames(last) renders frames 1 to `last`; returns the counts of the last one."""
 
     def render(last: int = 3) -> dict:
         scene.frame_start, scene.frame_end = 1, last
@@ -110,7 +110,7 @@ def test_what_has_been_converted_is_not_drawn_twice(live, picture):
 
 
 def test_neither_is_an_instance_of_its_collection(live, scene, picture):
-    """Where the surfels are too."""
+    """A source is not drawn in an instance of its collection either, if its surfels are in that collection too."""
     hidden = bpy.data.collections.new("hidden")
     add_coloured_mirrored_mesh()
     bpy.ops.object.surfels_from_mesh(resolution=24)
@@ -130,7 +130,7 @@ def test_an_object_can_be_left_out(live, picture):
 
 
 def test_instances_share_one_sampling(live, scene, sampled, picture, add_mesh, add_nodes):
-    """Boxes on two points, and a linked duplicate of one of those boxes beside: two meshes, three places."""
+    """Boxes on two points and a linked duplicate of one of them make two meshes in three places."""
     points = add_mesh("points", [(-2, 0, 0), (2, 0, 0)], [])
 
     def build(tree, start, end):
@@ -160,7 +160,7 @@ def test_a_collection_instance_shows_where_it_stands(live, scene, picture):
 
 
 def add_bar():
-    """A bar along x, 4 long, smooth, of many quads."""
+    """A smooth bar along x, 4 units long, of many quads."""
     bpy.ops.mesh.primitive_cylinder_add(vertices=24, radius=0.4, depth=4, rotation=(0, np.pi / 2, 0))
     bpy.ops.object.transform_apply()
     bar = bpy.context.object
@@ -216,7 +216,7 @@ DEFORMERS = {f.__name__: f for f in (by_armature, by_shape_key, by_lattice)}
 
 @pytest.mark.parametrize("deform", DEFORMERS.values(), ids=DEFORMERS)
 def test_a_deforming_mesh_keeps_its_surfels(deform, live, scene, sampled, render_frames):
-    """Each lies, on every frame, in its own triangle of the mesh as Blender deforms it."""
+    """On every frame each surfel lies in its own triangle of the mesh that Blender has deformed."""
     bar = add_bar()
     deform(bar)
     said = render_frames()
@@ -239,7 +239,7 @@ def test_a_deforming_mesh_keeps_its_surfels(deform, live, scene, sampled, render
 
 
 def triangles_of(object_) -> np.ndarray:
-    """(T, 3, 3) corners of the evaluated mesh's triangles, which by construction are cut the same on every frame."""
+    """The (T, 3, 3) corners of the evaluated mesh's triangles. Faces are split alike on every frame by construction."""
     evaluated = object_.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh = evaluated.to_mesh()
     # An array before the mesh is cleared: a vertex's vector is a view of the mesh's memory.
@@ -337,7 +337,7 @@ def test_the_neediest_of_an_objects_linked_copies_decides(live, sampled, picture
 
 
 def test_for_the_camera_a_surfel_covers_as_many_pixels_as_asked(live, scene, sampled, picture):
-    """The square is 10 from a camera whose picture is 1 wide at distance 1; another is behind it."""
+    """The square is at distance 10 from a camera whose picture is 1 wide at distance 1; another square is behind it."""
     scene.camera.data.sensor_width = scene.camera.data.lens = 36
     bpy.ops.mesh.primitive_plane_add(size=2)
     live.mesh_density, live.mesh_pixels = "CAMERA", 0.5

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A square whose material's inputs come from one image, converted and rendered, beside the mesh in Cycles."""
+"""A square whose material reads its inputs from one image: its surfels are compared with the mesh in Cycles."""
 
 import bpy
 import numpy as np
 import pytest
 
-#: Left half and right half of the image: red, green, blue.
+#: The colours of the image's left and right half.
 HALVES = np.array([(0.2, 0.25, 0.0), (0.9, 0.8, 1.0)])
 NORMALS = (np.array([(0.4, 0.0, 0.916), (-0.8, 0.2, 0.566)]) + 1) / 2
 
 
 @pytest.fixture
 def square(scene, add_camera, add_square):
-    """The unit square under a camera that it fills with a margin, a lamp, and its material's nodes."""
+    """The unit square, with a lamp and a camera that sees all of it, and the nodes of its material."""
     scene.surfel_splatting.shading = "principled"
     scene.render.film_transparent = True
     add_camera((0.5, 0.5, 2), type="ORTHO", ortho_scale=1.25)
@@ -29,7 +29,7 @@ def square(scene, add_camera, add_square):
 
 
 def texture(tree, values):
-    """An Image Texture node of these two halves, raw."""
+    """An Image Texture node with two given halves, as raw values."""
     image = bpy.data.images.new("halves", 2, 1, alpha=False, float_buffer=True)
     image.colorspace_settings.name = "Non-Color"
     image.pixels.foreach_set(np.append(values, np.ones((2, 1)), axis=1).astype(np.float32).ravel())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Motion blur: closed forms of what moves evenly, Cycles' picture of what moves and bends, and the frame restored."""
+"""Motion blur is right by closed forms and beside Cycles, and leaves the scene at its frame."""
 
 import bpy
 import numpy as np
@@ -12,7 +12,7 @@ FAST = 8.0  # units a frame; a unit is a pixel
 
 @pytest.fixture
 def flat_camera(scene, add_camera):
-    """A parallel camera 32 units wide over 32 pixels, and 64 samples with motion blur."""
+    """A parallel camera, 32 units wide over 32 pixels; motion blur is on, with 64 samples."""
     scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
     scene.surfel_splatting.samples = 64
     scene.frame_set(10)
@@ -20,7 +20,7 @@ def flat_camera(scene, add_camera):
 
 
 def move(moved, frames=(9, 11), step=FAST):
-    """Keys of an even motion to the right; at frame 10 it is where it is."""
+    """Animate an even motion to the right that passes the object's own place at frame 10."""
     start = moved.location.x
     for number in frames:
         moved.location.x = start + step * (number - 10)
@@ -34,7 +34,7 @@ def move(moved, frames=(9, 11), step=FAST):
 
 
 def moments(alpha):
-    """Sum, centre and variance along x, in pixels from the middle."""
+    """The sum, centre and variance along x, in pixels from the middle."""
     x = np.arange(alpha.shape[1]) + 0.5 - alpha.shape[1] / 2
     weights = alpha.sum(axis=0)
     center = (weights * x).sum() / weights.sum()
@@ -46,7 +46,7 @@ def moments(alpha):
 def test_a_moving_discs_moments_are_those_of_its_path(
     position, middle, shutter, scene, flat_camera, add_surfels, picture
 ):
-    """A disc's variance is a quarter of its radius squared, an even path's a twelfth of its length squared."""
+    """A disc has the variance radius^2 / 4, an even path length^2 / 12; the two add up."""
     move(add_surfels([(0, 0, 0)], size=3.0))
     scene.render.motion_blur_position, scene.render.motion_blur_shutter = position, shutter
     total, center, variance = moments(picture()[..., 3])
@@ -56,7 +56,7 @@ def test_a_moving_discs_moments_are_those_of_its_path(
 
 
 def test_a_moving_edge_is_an_even_ramp(scene, flat_camera, add_surfels, picture):
-    """Its coverage falls from 1 to 0 over the 8 pixels that it crosses."""
+    """The coverage falls evenly from 1 to 0 over the 8 pixels that the edge crosses."""
     move(add_surfels([(-5000, 0, 0)], size=5000.0))
     row = picture()[16, :, 3]
     x = np.arange(32) + 0.5 - 16
@@ -75,7 +75,7 @@ def test_a_moving_camera_blurs_as_what_moves_the_other_way(scene, flat_camera, a
 
 
 def test_a_curve_says_when_the_shutter_is_open(scene, flat_camera, add_surfels, picture):
-    """Under a rising ramp, the mean time is two thirds of the shutter's and the variance an eighteenth."""
+    """If the shutter's curve rises evenly, the mean time is 2/3 of the shutter's and the variance 1/18."""
     move(add_surfels([(0, 0, 0)], size=3.0))
     scene.render.motion_blur_position = "START"
     curve = scene.render.motion_blur_shutter_curve.curves[0]
@@ -102,7 +102,7 @@ def test_fewer_steps_are_so_many_pictures(scene, flat_camera, add_surfels, pictu
 
 @pytest.mark.parametrize("kind", ["moves", "bends", "surfels shift"])
 def test_the_blur_is_cycles(kind, scene, add_camera, add_object, add_surfels, picture, switch_to_cycles):
-    """A ball that moves, or whose shape key bends or shifts it, without a conversion and as surfels."""
+    """A ball moves, or a shape key bends or shifts it; it is drawn both as a mesh and as surfels."""
     bpy.ops.mesh.primitive_uv_sphere_add(segments=96, ring_count=48)
     ball = bpy.context.object
     if kind == "moves":
@@ -129,7 +129,9 @@ def test_the_blur_is_cycles(kind, scene, add_camera, add_object, add_surfels, pi
 
 
 def animate_key(moved, kind):
-    """A shape key, evenly from frame 9 to 11, that moves all to the right, or the higher the further."""
+    """Animate a shape key from frame 9 to 11 that moves vertices to the right: all alike, or the more the higher they
+    are.
+    """
     moved.shape_key_add(name="Basis")
     key = moved.shape_key_add(name="bent")
     for point, vertex in zip(key.data, moved.data.vertices, strict=True):
@@ -184,7 +186,7 @@ def test_what_stands_still_is_as_without(scene, flat_camera, add_surfels, pictur
 def test_every_frame_of_an_animation_is_the_still_of_its_moment(
     scene, flat_camera, add_surfels, picture, read_picture, tmp_path
 ):
-    """Also in each of two view layers, which restore the frame for one another."""
+    """With two view layers each of them must leave the scene at its frame for the other."""
     move(add_surfels([(0, 0, 0)], size=3.0), step=4)
     scene.surfel_splatting.samples = 4
     scene.view_layers.new("Second")

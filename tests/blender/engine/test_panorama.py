@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panoramic cameras show what Cycles' of the same settings do, also through borders, with shifts and in stereo."""
+"""Panoramic cameras show what Cycles shows with the same settings, also with borders, shifts and in stereo."""
 
 import math
 
@@ -42,7 +42,7 @@ PLACE = (0.3, 0.2, 0.4)
 
 @pytest.fixture
 def discs(scene, add_surfels, add_mesh):
-    """Discs all around: surfels, and for Cycles the same in faces. Some lie where faces of the cube meet."""
+    """Discs all around, some on edges of the cube's faces, as surfels and, for Cycles, as faces."""
     scene.surfel_splatting.render_meshes = "HIDDEN"
     random = np.random.default_rng(2)
     ways = random.normal(size=(40, 3))
@@ -61,7 +61,7 @@ def discs(scene, add_surfels, add_mesh):
 
 @pytest.fixture
 def camera(scene, add_camera, discs):
-    """camera(name) -> the panoramic camera, turned, with the picture's size set."""
+    """camera(name) -> the panoramic camera of that projection, turned; also sets the picture's size."""
 
     def add(name):
         properties, size, aspect = CAMERAS[name]
@@ -116,7 +116,7 @@ def test_a_border_shows_what_the_whole_picture_does_there(crop, scene, camera, p
 
 
 def test_what_is_seen_from_the_middle_is_sampled_as_finely_as_its_pixels(scene, add_camera, picture):
-    """A mesh behind the camera, by pixels."""
+    """A mesh behind the camera is sampled for a panorama, with a density given in pixels."""
     bpy.ops.mesh.primitive_uv_sphere_add(location=(0, 0, 4))
     add_camera(type="PANO", panorama_type="EQUIRECTANGULAR")
     scene.surfel_splatting.render_meshes = "SURFELS"

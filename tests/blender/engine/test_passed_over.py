@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Nothing is silent: what this engine does not show is named where a scene asks for it, and every socket of a
-Principled BSDF is either read or named."""
+"""What this engine cannot show is named in a warning if a scene uses it.
+
+Every socket of a Principled BSDF is either read or named.
+"""
 
 import bpy
 import pytest
@@ -11,7 +13,7 @@ from splat_addon.blender.export.scene import Notes
 from splat_addon.blender.export.shading import shading_material
 from splat_addon.blender.materials.material_surfaces import SHADERS
 
-#: Sockets that mean something only where another is above 0: prefix -> that one.
+#: Sockets that only matter if another one is above 0: prefix -> the other socket.
 LEADERS = {
     "Subsurface": "Subsurface Weight",
     "Anisotropic": "Anisotropic",
@@ -143,7 +145,7 @@ SWITCHES = {
 
 @pytest.fixture
 def ordinary(scene, add_camera, add_square):
-    """A square, a lamp and a world in which nothing is passed over."""
+    """A square, a lamp and a world, all of which the engine supports fully."""
     add_camera()
     lamp = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "POINT"))
     scene.collection.objects.link(lamp)
@@ -155,7 +157,7 @@ def ordinary(scene, add_camera, add_square):
 
 @pytest.fixture
 def warned(scene):
-    """warned() -> what a render of one pixel warned of, as Blender's list of reports has it."""
+    """warned() -> the warnings of a render of one pixel, from Blender's list of reports."""
     from splat_addon.blender.engine import final_render
 
     scene.render.resolution_x = scene.render.resolution_y = 4

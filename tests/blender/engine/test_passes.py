@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Passes: as Cycles' of the same surface, and exact in a multilayer file."""
+"""Passes are equal to Cycles' passes of the same surface, and exact in a multilayer file."""
 
 import bmesh
 import bpy
@@ -12,7 +12,7 @@ from splat_addon.rendering import EMPTY_DEPTH, Renderer
 
 @pytest.fixture
 def layer(scene):
-    """The view layer, with all three passes."""
+    """The view layer, with the passes Combined, Depth and Normal."""
     layer = scene.view_layers[0]
     layer.use_pass_z = layer.use_pass_normal = True
     return layer
@@ -20,7 +20,7 @@ def layer(scene):
 
 @pytest.fixture
 def frames(monkeypatch):
-    """Every Frame that the renderer has given out."""
+    """A list of all Frames that the renderer has returned."""
     given, render = [], Renderer.render_moments
 
     def recorded(self, *arguments, **options):
@@ -33,7 +33,7 @@ def frames(monkeypatch):
 
 @pytest.fixture
 def cycles_passes(switch_to_cycles, passes):
-    """Cycles' passes, each pixel seen through its centre."""
+    """Cycles' passes, with one ray through each pixel's centre."""
 
     def render() -> dict[str, np.ndarray]:
         switch_to_cycles(filter_width=0.01)
@@ -63,7 +63,7 @@ def test_depth_of_nothing_is_cycles_depth_of_nothing(layer, add_camera, passes, 
 
 
 def test_normals_on_a_sphere_are_cycles_normals(layer, add_camera, add_surfels, add_object, passes, cycles_passes):
-    """World space, and from a camera and an object that are both turned: within a degree."""
+    """They are in world space, and within a degree even if both the camera and the object are turned."""
     add_camera((0, -6, 0.5), (1.5, 0.1, 0), type="ORTHO", ortho_scale=2.4)
     turn = Matrix.Rotation(0.7, 4, (1, 2, 3)) @ Matrix.Diagonal((1, 0.8, 0.6, 1))
     k = np.arange(8000) + 0.5
@@ -154,7 +154,7 @@ def ask_for(layer, flag):
 
 @pytest.fixture
 def glowing_sheet(scene, add_camera, add_sheet):
-    """A metallic sheet that glows, and a sun over it, seen from the side."""
+    """A metallic sheet that glows, under a sun, seen from the side."""
     scene.surfel_splatting.shading = "principled"
     add_camera((1, 0, 3), (0.1, 0.3, 0.2))
     sheet = add_sheet(colors=(0.1, 0.7, 1 / 3, 1))
@@ -215,8 +215,9 @@ def test_positions_are_cycles_positions(layer, add_camera, add_sheet, passes, cy
 
 
 def test_the_shadow_is_eevees_shadow(scene, layer, add_camera, add_sheet, passes):
-    """Under a sun that casts shadows, twice as strong as one that casts none: 1/3 of the light in the shadow of what is
-    beside the picture, 1 beside it and where there is nothing.
+    """Two thirds of the light come from a sun that casts shadows, the rest from one that casts none.
+
+    So the pass is 1/3 in the shadow of an object out of view, and 1 elsewhere, also where nothing is seen.
     """
     layer.use_pass_shadow = True
     add_camera((0, 0, 6))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Persistent Data: what lies on the device stays there for the next render, which shows what has changed since."""
+"""Persistent Data keeps uploaded surfels on the device for the next render, which still shows every change."""
 
 import bpy
 import numpy as np
@@ -11,7 +11,7 @@ from splat_addon.rendering.upload import storages
 
 @pytest.fixture
 def uploads(monkeypatch):
-    """The surfels that were packed for the device, one entry each time."""
+    """A list that gets one entry whenever surfels are packed for the device."""
     packed, pack = [], storages.pack_surfels
     monkeypatch.setattr(storages, "pack_surfels", lambda surfels, order: packed.append(surfels) or pack(surfels, order))
     return packed
@@ -19,7 +19,7 @@ def uploads(monkeypatch):
 
 @pytest.fixture
 def persistent(scene, picture):
-    """The scene with persistent data; in the end a render without lets it go."""
+    """The scene with persistent data; afterwards a render without it frees the device."""
     scene.render.use_persistent_data = True
     yield scene
     scene.render.use_persistent_data = False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfel objects are points to every other engine, and the same surfels as ever to this one."""
+"""Other engines see surfel objects as points; this engine sees the same surfels as before."""
 
 import bpy
 import numpy as np
@@ -13,7 +13,7 @@ COLORS = np.concatenate([np.random.default_rng(5).uniform(0.2, 1, (12, 3)), np.o
 
 @pytest.fixture
 def discs(add_camera, add_surfels):
-    """discs(is_shown) -> an object of coloured discs that look in all directions."""
+    """discs(is_shown) -> an object of coloured discs that face in all directions."""
     add_camera()
     normals = np.random.default_rng(6).normal(size=(12, 3))
     return lambda is_shown: add_surfels(POSITIONS, normals, 0.4, COLORS, is_shown=is_shown)
@@ -34,7 +34,7 @@ def in_a_collection(scene, discs, add_mesh, add_nodes):
 
 
 def as_hidden_source_of_instances(scene, discs, add_mesh, add_nodes):
-    """Blender leaves the points out of such instances in renders."""
+    """Hide the object and place instances of it; Blender leaves the points out of such instances in renders."""
     discs.hide_render = True
 
     def build(tree, start, end):

@@ -12,7 +12,7 @@ from splat_addon.rendering.upload import resources
 
 @pytest.fixture
 def packed(monkeypatch):
-    """The polygons that were packed for the device, in order."""
+    """A list of the polygons packed for the device, in order."""
     made, pack = [], polygons.pack_polygons
     monkeypatch.setattr(resources, "pack_polygons", lambda shape: made.append(shape) or pack(shape))
     return made
@@ -44,7 +44,9 @@ def add_sun(scene, rotation=(0.5, 0.3, 0), energy=3.0, **properties):
 
 
 def as_cycles_has_it(ours, truth, share):
-    """Where both are whole, the brightness is the same up to that share, in the mean and in all but a few pixels."""
+    """Compare brightness where both pictures are covered: in the mean, and in all but a few pixels, within that
+    share.
+    """
     inside = (ours[..., 3] == 1) & (truth[..., 3] > 0.999)
     mine, other = ours[inside][:, :3], truth[inside][:, :3]
     assert inside.sum() > 100
@@ -55,7 +57,7 @@ def as_cycles_has_it(ours, truth, share):
 
 @pytest.fixture
 def look(scene, add_camera):
-    """Lit as by Cycles, from above at a slant, at 64 x 64 pixels."""
+    """Set up 64 x 64 pixels, lit as Cycles lights them, seen from above at a slant."""
     scene.surfel_splatting.shading, scene.surfel_splatting.supersampling = "principled", 2
     scene.render.resolution_x = scene.render.resolution_y = 64
     add_camera((0, -6, 5), (0.87, 0, 0), lens=60)
@@ -91,7 +93,7 @@ def test_the_slots_of_a_mesh_and_its_colour_attribute_are_shown(look, picture):
 
 
 def test_an_image_is_looked_up_at_every_pixel(look, picture, switch_to_cycles):
-    """Through a Mapping node, repeated."""
+    """The image passes through a Mapping node and is repeated."""
     look.surfel_splatting.shading = "flat"
     look.surfel_splatting.supersampling = 4
     image = bpy.data.images.new("checks", 16, 16, float_buffer=True)
@@ -113,7 +115,7 @@ def test_an_image_is_looked_up_at_every_pixel(look, picture, switch_to_cycles):
     bpy.ops.mesh.primitive_plane_add(size=3)
     bpy.context.object.data.materials.append(material)
     ours = picture()
-    # what leaves a white world of even light is the colour
+    # under a uniform white world the radiance is the colour
     look.world = bpy.data.worlds.new("white")
     look.world.color = (1, 1, 1)
     if bpy.app.version < (5, 0, 0):
@@ -163,7 +165,7 @@ def test_what_polygons_do_not_show_is_said(look, picture, said):
 
 
 def test_what_is_transparent_becomes_surfels_unless_its_object_says_otherwise(look, picture, said):
-    """One material of two is enough, where some face has it."""
+    """One transparent material of two is enough, if some face has it."""
     bpy.ops.mesh.primitive_plane_add()
     mesh = bpy.context.object.data
     mesh.materials.append(principled(Alpha=1.0))
@@ -205,7 +207,7 @@ def test_a_mesh_in_edit_mode_is_drawn(look, picture):
 
 @pytest.fixture
 def ball(look):
-    """A ball with smooth colours, lit by a sun, sampled finely where it is sampled."""
+    """A ball with smooth colours under a sun, with a fine spacing if it is sampled."""
     look.surfel_splatting.mesh_resolution = 90
     bpy.ops.mesh.primitive_uv_sphere_add(radius=1.5, segments=48, ring_count=24)
     bpy.ops.object.shade_smooth()
@@ -264,7 +266,7 @@ def test_a_group_that_is_not_there_is_named(group, sentence, ball, picture, said
 
 
 def leaf_card(pixels) -> bpy.types.Object:
-    """A plane with one image as Base Color and as Alpha."""
+    """A plane whose Base Color and Alpha come from one image."""
     image = bpy.data.images.new("leaf", *pixels.shape[1::-1], alpha=True, float_buffer=True)
     image.pixels.foreach_set(np.float32(pixels).ravel())
     material = principled(Roughness=1.0)
@@ -279,14 +281,14 @@ def leaf_card(pixels) -> bpy.types.Object:
 
 
 def leaf(size=32) -> np.ndarray:
-    """A green disc; what is clear around it is black, as in a card of leaves."""
+    """The pixels of a green disc; the transparent ones around it are black, as in a real leaf card."""
     x, y = np.meshgrid(*2 * [(np.arange(size) + 0.5) / size - 0.5])
     inside = x * x + y * y < 0.35**2
     return inside[..., None] * np.array((0.1, 0.6, 0.2, 1.0))
 
 
 def test_a_leaf_card_is_seen_through_as_in_cycles(look, picture, switch_to_cycles):
-    """Its mesh is drawn as surfels: polygons are opaque."""
+    """Its mesh is drawn as surfels, because polygons are always opaque."""
     leaf_card(leaf())
     add_sun(look)
     ours = picture()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Previews of materials are drawn by this engine, and leave a final render's state alone."""
+"""This engine draws previews of materials, and they do not disturb a final render."""
 
 import bpy
 import numpy as np
@@ -10,7 +10,7 @@ from splat_addon.blender.engine import final_render
 
 @pytest.fixture
 def preview():
-    """preview(colour) -> (h, w, 4) of a material of that base colour, as the asset browser shows it."""
+    """preview(colour) -> (h, w, 4) preview of a material with that base colour, as in the asset browser."""
 
     def draw(color) -> np.ndarray:
         material = bpy.data.materials.new("shown")

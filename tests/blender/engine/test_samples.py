@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Samples in a final render: smooth edges of the right area, also through a border and in every view layer's passes."""
+"""Samples in a final render smooth edges and keep areas, also inside a border and in every view layer's passes."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ import pytest
 
 @pytest.fixture
 def disc(scene, add_camera, add_surfels):
-    """A hard-edged disc of 9.3 pixels' radius."""
+    """A hard-edged disc with a radius of 9.3 pixels."""
     add_camera((0, 0, 10), type="ORTHO", ortho_scale=32)
     add_surfels([(0.2, -0.1, 0)], size=9.3)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender's properties make of shading models, lines and matcaps."""
+"""Blender's properties set shading models, lines and matcaps."""
 
 import bpy
 import numpy as np
@@ -13,7 +13,7 @@ from splat_addon.rendering.shading_models import SHADING_MODELS
 
 @pytest.fixture
 def sheet(scene, add_sheet, add_camera):
-    """A sheet that faces the camera from below it."""
+    """The engine's render settings, in a scene with a sheet that faces the camera."""
     add_sheet(colors=(1.0, 0.5, 0.25, 1.0), is_shown=False)
     add_camera((0, 0, 10), type="ORTHO", ortho_scale=3.0)
     return scene.surfel_splatting
@@ -38,7 +38,7 @@ def test_a_model_is_rendered(sheet, picture):
 
 
 def test_lines_have_their_width_and_colour(sheet, picture):
-    """Of the sheet's silhouette: 2 / 3 of 32 pixels a side, its splats half a pixel more."""
+    """The line is the sheet's silhouette: the sheet is 2/3 of 32 pixels wide, and its splats half a pixel more."""
     sheet.use_lines, sheet.line_width, sheet.line_color = True, 2.0, (0.0, 0.0, 1.0)
     row = picture()[16]
     is_line = (row[:, 2] > 0.9) & (row[:, 0] < 0.1)
@@ -47,7 +47,7 @@ def test_lines_have_their_width_and_colour(sheet, picture):
 
 
 def test_a_color_ramp_is_a_textures(sheet, scene, picture):
-    """In no light its left end is seen; without a texture black, the first of three greys."""
+    """Without light the ramp's left end is seen. Without a texture that is black, the first of three greys."""
     scene.world = None
     sheet.shading = "ramp"
     assert center(picture()) == pytest.approx((0, 0, 0), abs=1e-5)
@@ -78,7 +78,7 @@ def test_a_matcap_is_an_image(sheet, picture):
 
 
 def test_a_painted_matcap_is_another_one_only_where_its_pixels_are():
-    """It stays dirty until it is saved; a view refines while nothing changes."""
+    """A painted image stays dirty until it is saved; a view refines only if this does not count as a change."""
     image = bpy.data.images.new("ball", 8, 8, float_buffer=True)
     image.pixels.foreach_set(np.full(256, 0.5, np.float32))
     assert image.is_dirty
@@ -89,7 +89,7 @@ def test_a_painted_matcap_is_another_one_only_where_its_pixels_are():
 
 
 def workbench(scene, light):
-    """What Workbench shows of a matcap on what faces the viewer, without highlights."""
+    """The colour of a surface that faces the viewer, under a matcap in Workbench without highlights."""
     scene.render.engine = "BLENDER_WORKBENCH"
     shading = scene.display.shading
     shading.light, shading.color_type, shading.single_color = "MATCAP", "SINGLE", (1.0, 0.5, 0.25)
@@ -98,7 +98,7 @@ def workbench(scene, light):
 
 @pytest.mark.parametrize("number", [0, 2, 13])
 def test_blenders_own_matcaps_are_what_workbench_shows_without_highlights(number, sheet, scene, picture):
-    """Within a few of its pixels: Workbench turns the ball's rim and its 8 bits of normals round."""
+    """The tolerance is a few of the matcap's pixels: Workbench turns the ball's rim, and rounds normals to 8 bits."""
     light = own_matcaps()[number]
     sheet.shading, sheet.matcap = "matcap", bpy.data.images.load(light.path)
     ours = center(picture())
@@ -110,7 +110,7 @@ def test_blenders_own_matcaps_are_what_workbench_shows_without_highlights(number
 
 
 def test_a_multilayer_matcap_whose_first_layer_is_black_is_said(sheet, picture):
-    """Metals of Blender 5 are all highlight."""
+    """Blender 5's metal matcaps are such files: they consist of highlights only."""
     lights = [light for light in own_matcaps() if light.name == "metal_bronze.exr"]
     if not lights:
         pytest.skip("this Blender has no such matcap")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Each view of a stereo render is what its eye sees, as Cycles has it; each of several cameras is its own still."""
+"""Each view of a stereo render is what its eye sees in Cycles; each of several cameras gives its own still."""
 
 from pathlib import Path
 
@@ -26,7 +26,7 @@ def eyes(scene, read_picture):
 
 @pytest.fixture
 def discs(scene, add_surfels, add_mesh):
-    """Three discs at several depths: surfels, and for Cycles the same in faces."""
+    """Three discs at different depths, as surfels and, for Cycles, as faces."""
     scene.surfel_splatting.render_meshes = "HIDDEN"
     places, radii = np.array([(0.5, 0.0, 0.0), (-0.8, 0.7, 4.0), (-0.1, -0.5, 7.0)]), np.array([0.9, 0.5, 0.2])
     add_surfels(places, size=np.repeat(radii[:, None], 2, axis=1), is_shown=False)

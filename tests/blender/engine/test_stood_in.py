@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A source is left out of the picture for as long as its surfels are in the scene."""
+"""A source is not drawn as long as its surfels are in the scene."""
 
 import bpy
 import numpy as np

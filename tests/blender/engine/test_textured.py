@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Texture-mapped surfels in Blender: converted, stored, rendered with the image as it is then."""
+"""Texture-mapped surfels in Blender are converted, stored, and rendered with the current state of the image."""
 
 import bpy
 import numpy as np
@@ -13,7 +13,7 @@ MIDDLES = np.s_[2 :: SIZE // TEXELS, 2 :: SIZE // TEXELS]
 
 
 def random_pixels(seed=1):
-    """(8, 8, 4) of linear values."""
+    """(8, 8, 4) random linear values."""
     pixels = np.random.default_rng(seed).uniform(0.05, 0.95, (TEXELS, TEXELS, 4)).astype(np.float32)
     pixels[..., 3] = 1
     return pixels
@@ -25,7 +25,7 @@ def paint(image, pixels):
 
 
 def pixels_of(image):
-    """(8, 8, 3) as Blender has them; Blender 4.5 encodes a generated float image when it saves it."""
+    """The image's (8, 8, 3) pixels in Blender; 4.5 encodes a generated float image when saving it."""
     pixels = np.empty(TEXELS * TEXELS * 4, np.float32)
     image.pixels.foreach_get(pixels)
     return pixels.reshape(TEXELS, TEXELS, 4)[..., :3]
@@ -33,7 +33,7 @@ def pixels_of(image):
 
 @pytest.fixture
 def image():
-    """A generated float image, whose values are linear."""
+    """A generated float image, which stores linear values."""
     made = bpy.data.images.new("texture", TEXELS, TEXELS, alpha=True, float_buffer=True)
     paint(made, random_pixels())
     return made
@@ -61,7 +61,7 @@ def textured_material(image, interpolation="Closest", tint=None):
 
 @pytest.fixture
 def add_textured(scene, add_camera, add_square, convert):
-    """add_textured(material, ...) -> the 4 x 4 surfels of the square with these materials, seen from above."""
+    """add_textured(material, ...) -> 4 x 4 surfels of a square with these materials, seen from above."""
     add_camera(location=(0.5, 0.5, 5), type="ORTHO", ortho_scale=1.0)
 
     def add(*materials, resolution=4, **settings):
@@ -86,7 +86,10 @@ def test_the_constant_multiplies(add_textured, image, picture):
 
 
 def test_a_smooth_texture_is_what_cycles_shows(scene, add_textured, image, picture, passes, switch_to_cycles):
-    """The colour pass of Cycles with box-filtered pixels; without a coat, which would keep some of it."""
+    """The comparison is with Cycles' colour pass and box-filtered pixels.
+
+    The material has no coat, which would absorb some colour.
+    """
     material = textured_material(image, "Linear")
     material.node_tree.nodes["Principled BSDF"].inputs["Specular IOR Level"].default_value = 0.0
     surfels = add_textured(material)
@@ -130,7 +133,7 @@ def test_a_reloaded_file_shows(add_textured, image, picture, tmp_path):
 
 
 def test_every_slot_has_its_own_image(scene, add_camera, add_mesh, convert, picture):
-    """Two faces side by side, and a third without an image."""
+    """Two faces side by side have images, a third one has none."""
     add_camera(location=(0.5, 0.5, 5), type="ORTHO", ortho_scale=1.0)
     corners = [(x / 3, y, 0) for x in range(4) for y in (0, 1)]
     board = add_mesh("board", corners, [(2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1) for k in range(3)])
@@ -195,7 +198,7 @@ def test_the_plan_says_what_is_looked_up(add_textured, image, picture):
 
 @pytest.fixture
 def live_square(scene, add_camera, add_square, image):
-    """The square as it is, rendered as 4 x 4 texture-mapped surfels."""
+    """The unconverted square, rendered as 4 x 4 texture-mapped surfels."""
     add_camera(location=(0.5, 0.5, 5), type="ORTHO", ortho_scale=1.0)
     square = add_square()
     square.data.materials.append(textured_material(image))
@@ -213,7 +216,7 @@ def test_a_mesh_that_is_rendered_as_surfels_shows_its_texture(live_square, scene
 
 
 def test_the_texture_follows_a_mesh_that_deforms(live_square, scene, image, tmp_path, read_picture):
-    """Sheared, so that the ellipses get other axes; and back, which is the picture of the first frame."""
+    """Shearing changes the axes of the ellipses; undoing it gives the first frame's picture again."""
     live_square.shape_key_add(name="Basis")
     key = live_square.shape_key_add(name="Key")
     for point, x in zip(key.data, (0.0, 1.0, 1.4, 0.4), strict=True):
@@ -234,7 +237,7 @@ def test_the_texture_follows_a_mesh_that_deforms(live_square, scene, image, tmp_
 
 
 def test_a_viewport_reads_an_image_again_only_where_it_is_told(image):
-    """A painted image stays dirty until it is saved, and every move of an object updates the view."""
+    """A painted image stays dirty until it is saved, so every move of an object would otherwise read it again."""
     from splat_addon.blender.export.scene import Notes
     from splat_addon.blender.materials.surface_textures import TextureStore
 

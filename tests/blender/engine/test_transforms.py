@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels under an object's transform look as the same surfels moved one by one in float64."""
+"""Surfels under an object's transform look the same as surfels that were transformed one by one in float64."""
 
 import bpy
 import numpy as np
@@ -27,7 +27,7 @@ TRANSFORMS = {
 
 @pytest.fixture
 def shell(scene, add_camera, add_surfels):
-    """A closed shell of surfels of many colours below a camera, lit from the side."""
+    """A closed shell of colourful surfels below a camera, lit from the side."""
     scene.render.resolution_x = scene.render.resolution_y = 48
     scene.surfel_splatting.shading = "principled"
     add_camera(clip_start=1e-4, clip_end=1e6)
@@ -66,7 +66,10 @@ def test_a_scene_of_any_size_looks_the_same(size, scene, shell, picture, assert_
 
 
 def mapped(surfels: Surfels, linear: np.ndarray) -> Surfels:
-    """An ellipse's image under a (3, 3) map is an ellipse, whose axes are the singular vectors of the mapped ones."""
+    """The surfels under a (3, 3) map.
+
+    An ellipse's image is an ellipse; its axes are the singular vectors of the mapped ones.
+    """
     axes = np.stack(surfels.half_axes(), axis=2).astype(np.float64)
     directions, lengths, _ = np.linalg.svd(linear @ axes, full_matrices=False)
     x, y = directions[..., 0], directions[..., 1]

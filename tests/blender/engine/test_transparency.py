@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Transparent surfels and materials as a user renders them, beside Cycles."""
+"""Transparent surfels and materials look as they do in Cycles."""
 
 import bpy
 import numpy as np
@@ -34,7 +34,7 @@ def test_layers_are_as_many_as_the_user_says(scene, add_camera, add_sheet, pictu
 
 @pytest.mark.parametrize("threshold", [0.0, 0.5, 0.9])
 def test_depth_is_as_cycles_has_it_behind_what_is_transparent(scene, add_camera, add_sheet, passes, threshold):
-    """The view layer's Alpha Threshold says how opaque a surface must be to have a depth."""
+    """The view layer's Alpha Threshold sets how opaque a surface must be to have a depth."""
     add_camera()
     add_sheet(side=8, count=30, colors=(1, 1, 1, 0.4)).location.z = 1
     add_sheet(side=8, count=30, colors=(1, 1, 1, 0.8))
@@ -47,7 +47,7 @@ def test_depth_is_as_cycles_has_it_behind_what_is_transparent(scene, add_camera,
 
 @pytest.mark.parametrize("film", [False, True])
 def test_a_holdout_cuts_the_alpha_that_cycles_cuts(scene, add_camera, add_object, switch_to_cycles, picture, film):
-    """An object and one in a collection that the view layer holds out, before a wall and before the world."""
+    """An object and a collection are held out, in front of a wall and in front of the world."""
     scene.render.film_transparent = film
     add_camera(type="ORTHO", ortho_scale=4)
     wall = mesh_square(add_object, 8, (1, 0, -1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a view layer overrides and includes, of surfels and of meshes that were not converted."""
+"""A view layer's material override and its visible collections apply to surfels and to polygons."""
 
 import bpy
 import numpy as np

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the 3D view shows, pixel by pixel: the render of the same camera, of one tile or of several."""
+"""The 3D view shows, pixel by pixel, the render of the same camera, in one tile or several."""
 
 from dataclasses import replace
 from importlib import import_module
@@ -17,7 +17,7 @@ SETTINGS = Settings(method="mip", samples=3, outputs=("color",), transparent_fil
 
 @pytest.fixture
 def shown(request, on_device):
-    """shown(scene, camera, turns) -> (h, w, 4) of a view over a clear ground, after so many redraws."""
+    """shown(scene, camera, turns) -> (h, w, 4) of a view over a transparent background after that many redraws."""
     if request.config.getoption("--device") != "blender":
         pytest.skip("Blender's own shaders need its device: --device blender")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whatever is selected, the operator answers with a sentence, and converts the rest."""
+"""Whatever is selected, the operator reports a sentence about what it cannot convert, and converts the rest."""
 
 import bpy
 import numpy as np

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels that end at edges: kept as attributes, and not there where they are switched off."""
+"""Surfels that end at edges keep their clip lines as attributes; without End at Edges there are none."""
 
 import bpy
 import numpy as np
@@ -31,34 +31,52 @@ def test_lines_and_depths_are_point_attributes(add_cube, convert, surfels_of):
     assert attributes["blend_depth"].data_type == "FLOAT"
     surfels = surfels_of(made)
     assert surfels.is_solid
-    # All but those of the inner 7 x 7 of a face's 9 x 9 cells reach over an edge.
+    # Of a face's 9 x 9 surfels, all but the inner 7 x 7 reach over an edge.
     assert (surfels.clip_line[:, 1] > 0).mean() == pytest.approx(32 / 81, abs=0.02)
 
 
-def test_edges_marked_sharp_and_split_by_angle_are_found(add_mesh, convert, surfels_of):
-    """Two squares that meet at 4 degrees: beside faces that are larger than the splats, a part of the angle counts."""
+@pytest.fixture
+def roof(add_mesh):
+    """Two smooth-shaded squares that meet along y = 1 at an angle of 4 degrees."""
     rise = np.tan(np.radians(4))
-    roof = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (1, 2, rise), (0, 2, rise)]
-    made = add_mesh("roof", roof, [(0, 1, 2, 3), (3, 2, 4, 5)])
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (1, 2, rise), (0, 2, rise)]
+    made = add_mesh("roof", corners, [(0, 1, 2, 3), (3, 2, 4, 5)])
     for polygon in made.data.polygons:
         polygon.use_smooth = True
-    ridge = next(edge for edge in made.data.edges if set(edge.vertices) == {2, 3})
+    return made
 
-    def clipped_beside_ridge(**options):
-        bpy.context.view_layer.objects.active = made
-        made.select_set(True)
-        (surfels,) = convert(resolution=16, clips_edges=True, **options)
-        stored = surfels_of(surfels)
-        x, y, _ = (stored.positions + np.array(surfels.location)).T
-        middle = (np.abs(y - 1) < 0.1) & (np.abs(x - 0.5) < 0.3)
-        bpy.data.objects.remove(surfels)
-        assert middle.any()
-        return stored.clip_line[middle, 1].any()
 
-    assert not clipped_beside_ridge()
-    assert clipped_beside_ridge(crease_angle=np.radians(12))
-    ridge.use_edge_sharp = True
-    assert clipped_beside_ridge(crease_angle=np.radians(15))
+@pytest.fixture
+def ends_at_ridge(roof, convert, surfels_of):
+    """ends_at_ridge(**settings) -> whether surfels beside the middle of the ridge have clip lines."""
+
+    def measure(**settings):
+        (made,) = convert(resolution=16, clips_edges=True, **settings)
+        surfels = surfels_of(made)
+        x, y, _ = (surfels.positions + np.array(made.location)).T
+        beside = (np.abs(y - 1) < 0.1) & (np.abs(x - 0.5) < 0.3)
+        assert beside.any()
+        return surfels.clip_line[beside, 1].any()
+
+    return measure
+
+
+def test_a_shallow_fold_is_no_edge_by_default(ends_at_ridge):
+    assert not ends_at_ridge()
+
+
+def test_a_smaller_crease_angle_finds_a_shallow_fold(ends_at_ridge):
+    """The faces are larger than the splats, so the fold counts although 4 degrees are less than the angle."""
+    assert ends_at_ridge(crease_angle=np.radians(12))
+
+
+@pytest.mark.parametrize(("degrees", "is_edge"), [(40, True), (2, False)])
+def test_custom_normals_that_break_make_an_edge(degrees, is_edge, roof, ends_at_ridge):
+    """The custom normals of the two faces differ by this angle; the default crease angle is 30 degrees."""
+    half = np.radians(degrees / 2)
+    lean = (0, -np.sin(half), np.cos(half)), (0, np.sin(half), np.cos(half))
+    roof.data.normals_split_custom_set([lean[face] for face in (0, 1) for _ in range(4)])
+    assert ends_at_ridge() == is_edge
 
 
 def test_surfels_with_lines_outlive_a_saved_file(add_cube, convert, surfels_of, tmp_path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels stay with their source: they follow it, stand in its place, are converted again, and give it back."""
+"""Surfels follow their source, replace it in the picture, can be converted again, and restore it when deleted."""
 
 import bpy
 import numpy as np
@@ -23,7 +23,7 @@ def update(*made):
 
 
 def add_turned(square):
-    """A parent that is turned and unevenly scaled, so that the source is sheared."""
+    """A parent that is turned and unevenly scaled, so that it shears its children."""
     parent = bpy.data.objects.new("parent", None)
     bpy.context.collection.objects.link(parent)
     parent.scale, square.rotation_euler = (1, 2, 0.5), (0.5, 0.3, 0.7)
@@ -53,7 +53,7 @@ def test_surfels_go_where_their_source_goes(kind, square, convert, world_positio
 
 
 def test_they_have_its_origin(add_mesh, convert):
-    """And not the middle of what they cover."""
+    """The surfel object's origin is the source's, not the middle of the surfels."""
     add_mesh("Aside", [(2, 0, 0), (3, 0, 0), (3, 1, 0), (2, 1, 0)], [(0, 1, 2, 3)])
     (made,) = convert(resolution=8)
     bpy.context.view_layer.update()
@@ -87,7 +87,7 @@ def test_without_their_source_they_stay(square, convert, world_positions):
 
 
 def test_render_levels_are_sampled(square, convert, surfels_of):
-    """A square that is subdivided becomes round, and smaller."""
+    """A square becomes rounder and smaller with each level of subdivision, so its surfels show the level."""
     modifier = square.modifiers.new("subdivision", "SUBSURF")
     modifier.levels, modifier.render_levels = 0, 4
     hidden = square.modifiers.new("wave", "DISPLACE")
@@ -166,7 +166,7 @@ def test_a_source_out_of_the_scene_is_named(square, convert):
 
 
 def test_the_operator_may_be_adjusted_when_its_surfels_are_selected(square, convert):
-    """Blender asks this before it takes the surfels back."""
+    """Blender checks the operator's poll while the surfels still exist, before it undoes the conversion."""
     convert(resolution=8)
     assert bpy.ops.object.surfels_from_mesh.poll()
     bpy.ops.object.select_all(action="DESELECT")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels are bent with their source: after a while they are the surfels that a new conversion would make."""
+"""Surfels bend with their source; after it has deformed they are what a new conversion would make."""
 
 import bpy
 import numpy as np
@@ -11,7 +11,7 @@ from splat_addon.blender.geometry.points_proxy import shown_points
 
 @pytest.fixture
 def sheet(add_mesh):
-    """A square of 8 x 8 faces in x and y from 0 to 1."""
+    """A square of 8 x 8 faces, from 0 to 1 in x and y."""
     axis = np.linspace(0, 1, 9)
     vertices = [(x, y, 0) for y in axis for x in axis]
     faces = [(k, k + 1, k + 10, k + 9) for row in range(8) for k in range(9 * row, 9 * row + 8)]
@@ -20,7 +20,7 @@ def sheet(add_mesh):
 
 @pytest.fixture
 def bent_surfels():
-    """bent_surfels(object) -> its surfels as its modifiers make them."""
+    """bent_surfels(object) -> its surfels after its modifiers."""
 
     def read(made):
         evaluated = made.evaluated_get(bpy.context.evaluated_depsgraph_get())
@@ -33,7 +33,7 @@ def bent_surfels():
 
 
 def add_keys(sheet):
-    """Shape keys that stretch the sheet to twice its width, and tilt it by 45 degrees in y; weight 0 and 1."""
+    """Add a shape key that stretches the sheet to twice its width in x and tilts it by 45 degrees in y."""
     sheet.shape_key_add(name="Basis")
     key = sheet.shape_key_add(name="Bent")
     for point in key.data:
@@ -63,7 +63,7 @@ def test_shape_keys_bend_surfels(clips_edges, sheet, convert, bent_surfels):
 
 
 def add_armature(sheet):
-    """One bone at x = 1, to which the right half belongs."""
+    """Add an armature with one bone at x = 1, which moves the right half."""
     bpy.ops.object.armature_add(location=(1, 0, 0))
     armature = bpy.context.object
     group = sheet.vertex_groups.new(name="Bone")

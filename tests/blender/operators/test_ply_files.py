@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""File > Export and Import of surfels."""
+"""File > Export and File > Import write and read surfels."""
 
 from pathlib import Path
 from types import SimpleNamespace

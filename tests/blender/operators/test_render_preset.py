@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A preset sets what it names in the render settings, and says what was measured."""
+"""A preset sets the render settings that it names, in one step of undo, and its description says what it is for."""
 
 import bpy
 import pytest

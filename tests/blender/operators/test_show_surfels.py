@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From a conversion to its picture in one click, which the report of the conversion points to."""
+"""One click leads from a conversion to its picture, and the conversion's report names the button."""
 
 import bpy
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Object > Convert to Surfels leaves behind."""
+"""Object > Convert to Surfels makes the right objects and leaves the rest of the scene alone."""
 
 import bpy
 import numpy as np
@@ -31,7 +31,9 @@ def test_a_count_is_met(cube, convert, surfels_of):
 
 
 def test_for_the_camera_surfels_lie_as_many_pixels_apart_as_asked(cube, convert):
-    """The cube's top is 9 under a camera whose picture is 1 wide at distance 1; its scale does not matter."""
+    """The top of the cube is 9 units below a camera whose picture is 1 wide at distance 1; the cube's scale does not
+    matter.
+    """
     bpy.ops.object.camera_add(location=(0, 0, 10))
     camera, scene = bpy.context.object, bpy.context.scene
     camera.data.sensor_width = camera.data.lens = 36

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Object > Convert Points to Surfels makes of vertex-only meshes, meshes and point clouds."""
+"""Object > Convert Points to Surfels works on vertex-only meshes, other meshes and point clouds."""
 
 import bpy
 import numpy as np
@@ -98,7 +98,7 @@ def test_a_point_cloud_is_converted(scan, convert_points, surfels_of):
 
 
 def test_points_of_geometry_nodes_are_converted(scan, add_nodes, convert_points, surfels_of, world_positions):
-    """They are no mesh any more, and belong to a geometry set that Blender makes for whoever asks."""
+    """Such points are no longer a mesh; they are in a geometry set that Blender evaluates on request."""
 
     def to_points(tree, start, end):
         convert = tree.nodes.new("GeometryNodeMeshToPoints")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What may stand in a scene besides plain meshes, and what its surface is."""
+"""Objects of all kinds that a scene may contain besides plain meshes, and their exact surfaces."""
 
 import bpy
 import numpy as np
@@ -9,7 +9,7 @@ import trimesh
 
 @pytest.fixture
 def select():
-    """select(*objects): these alone are selected, the last is active."""
+    """select(*objects) selects these only; the last one becomes active."""
 
     def only(*objects: bpy.types.Object) -> None:
         bpy.context.view_layer.update()
@@ -22,7 +22,7 @@ def select():
 
 @pytest.fixture
 def made_real():
-    """made_real() -> trimesh of everything in the scene, in the world, as Blender's own operators make it real."""
+    """made_real() -> everything in the scene as one trimesh in world space, made real by Blender's own operators."""
 
     def make() -> trimesh.Trimesh:
         bpy.context.view_layer.update()
@@ -47,8 +47,9 @@ def made_real():
 
 @pytest.fixture
 def world_surfels(surfels_of):
-    """world_surfels(object) -> positions, geometric normals, shading normals, all (N, 3) in the world, and (N, 2)
-    half-axes in the world."""
+    """world_surfels(object) -> its surfels in world space: (N, 3) positions, geometric and shading normals, (N, 2)
+    half-axes.
+    """
 
     def read(made: bpy.types.Object):
         bpy.context.view_layer.update()

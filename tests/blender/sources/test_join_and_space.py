@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Several objects as one, and spacing in the object's or the world's units; the sidebar's count says the same."""
+"""Several objects become one, with spacings in the object's or the world's units, as the sidebar predicts."""
 
 import bpy
 import numpy as np
@@ -28,7 +28,7 @@ RED, BLUE = (1, 0, 0, 1), (0, 0, 1, 1)
 
 @pytest.fixture
 def red_and_mirrored_blue(select):
-    """A red cube of side 2 and, mirrored and turned, a blue box of 2 x 2 x 6, which is active."""
+    """A red cube of side 2, and a blue box of 2 x 2 x 6 that is mirrored, turned and active."""
     red = add_cube("red", color=RED)
     blue = add_cube("blue", (10, 0, 0), (-1, 1, 3), (0, 0, np.pi / 2), BLUE)
     select(red, blue)
@@ -110,7 +110,7 @@ def test_object_spacing_is_stretched_by_the_scale(select, convert, world_surfels
 
 @pytest.mark.parametrize("space", ["OBJECT", "WORLD"])
 def test_a_resolution_is_each_objects_own(select, convert, space):
-    """Per object: as many surfels whatever the size."""
+    """Each object gets the same number of surfels, whatever its size."""
     select(add_cube("small"), add_cube("large", (9, 0, 0), (5, 5, 5)))
     assert [len(made.data.vertices) for made in convert(resolution=8, space=space)] == [6 * 8**2] * 2
 

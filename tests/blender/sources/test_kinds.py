@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Everything that has a surface becomes surfels on that surface, as Blender makes the same thing real."""
+"""Every kind of object with a surface becomes surfels on the surface that Blender makes real."""
 
 import bpy
 import numpy as np
@@ -66,7 +66,7 @@ def test_objects_that_are_no_meshes(add, assert_covers):
 
 @pytest.fixture
 def cubes_on_corners(add_square, add_nodes):
-    """A square that Geometry Nodes put boxes on, of several sizes and turns, beside the square itself."""
+    """A square on which Geometry Nodes put boxes of different sizes and orientations, joined with the square itself."""
     square = add_square()
     square.location, square.scale = (1, 2, 3), (2, 2, 2)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Method "ewa" is the EWA of the papers: the float64 `render_ewa`, which shares no formula with its shader."""
+"""The method "ewa" agrees with `render_ewa`, the papers' EWA in float64, which shares no formula with its shader."""
 
 import pytest
 

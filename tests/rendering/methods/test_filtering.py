@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The bounds that the project promises: how true one filtered sample a pixel is, under the pixel's Gaussian."""
+"""The promised accuracy of one filtered sample per pixel, compared with the exact picture under the pixel's
+Gaussian.
+"""
 
 from dataclasses import replace
 from functools import cache
@@ -20,7 +22,7 @@ def orthographic_torus():
     return scene, Camera.orthographic(camera.matrix_world, 2.9, SIZE, camera.near, camera.far)
 
 
-#: Splats smaller than a pixel, as large, and larger.
+#: Scenes with splats smaller than a pixel, as large as one, and larger.
 SCENES = {
     "checker of 360,000": lambda: scenes.checker_plane(200, 360_000, 6, SIZE),
     "checker at 6 degrees": lambda: scenes.checker_plane(40, 40_000, 6, SIZE),
@@ -34,13 +36,13 @@ SCENES = {
 
 @cache
 def exact(name):
-    """The truth of 16 rays a pixel; 64 change the decibels below by less than 0.3."""
+    """The truth with 16 rays per pixel; with 64 the decibels below change by less than 0.3."""
     return render_exact(*SCENES[name](), FLAT, samples=4, pixel_filter="gaussian")
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_mip_is_above_39_db_and_6_above_the_papers(name, render):
-    """36 dB are promised; what it reaches is held, so that a fault in a few rows of pixels shows."""
+    """The promise is 36 dB; the test holds what is reached, so that an error in a few rows of pixels is noticed."""
     scene, camera = SCENES[name]()
     frames = {m: render(scene, camera, replace(FLAT, method=m)) for m in ("mip", "raycast", "homogeneous")}
     true = {method: psnr(frame.color, exact(name).color) for method, frame in frames.items()}
@@ -67,8 +69,9 @@ def test_mip_leaves_no_hole_where_the_surface_covers_the_filter(name, render):
     ("name", "samples", "rays"), [("checker at 6 degrees", 4, 5), ("text", 4, 5), ("checker of 360,000", 5, 7)]
 )
 def test_supersampled_quads_are_above_36_db_under_a_box(name, samples, rays, render):
-    """Against other rays than the samples, or the same picture would be compared with itself. Checks far below a pixel
-    need 5 x 5.
+    """The truth uses other rays than the samples, or the picture would be compared with itself.
+
+    Checks far below a pixel need 5 x 5 samples.
     """
     scene, camera = SCENES[name]()
     truth = render_exact(scene, camera, FLAT, samples=rays, pixel_filter="box")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a paper's own level or formula is beside the method that was made of it."""
+"""What a paper's printed level or formula gives, beside the method derived from it."""
 
 from dataclasses import replace
 
@@ -46,7 +46,9 @@ def test_a_disc_that_faces_the_ray_vanishes_as_printed_and_stays_repaired(render
 
 
 def test_tangents_of_equation_10_meet_in_the_picture_at_60_to_90_degrees():
-    """In a frustum of 90 degrees, 81.7 on average as printed: 81.3 of places and normals that are spread evenly."""
+    """The paper prints a mean of 81.7 degrees for a field of view of 90 degrees; evenly spread places and normals give
+    81.3.
+    """
     random = np.random.default_rng(0)
     places = np.concatenate([random.uniform(-1, 1, (200_000, 2)), np.ones((200_000, 1))], axis=1)
     normals = random.normal(size=places.shape)
@@ -67,7 +69,9 @@ def test_an_ellipse_keeps_its_shape_and_is_the_disc_of_its_longer_axis_as_printe
 
 
 def test_the_papers_square_cuts_the_low_pass_of_a_small_splat(render):
-    """Beside a pixel's corner the square of 2 x 2 pixels has the centres of 4, the disc of sqrt(2) of more."""
+    """Beside a pixel's corner, the paper's square of 2 x 2 pixels contains 4 pixel centres, and the disc of radius
+    sqrt(2) more.
+    """
     scene = Scene((discs((0, 0, -2), (1e-5, 0, 0), (0, 1e-5, 0)),))
     moved = Camera.orthographic(np.eye(4), 1.28, SIZE, 0.1, 10, shift=(0.25 / 128, 0.25 / 128))
     whole, cut = (render(scene, moved, replace(FLAT, method=m)).coverage.sum() for m in ("raycast", "raycast_printed"))
@@ -82,7 +86,7 @@ def test_a_grazing_sheet_is_truer_where_its_small_splats_keep_the_depth_of_their
 
 
 def test_sprites_hide_by_their_own_shape_and_depth(render):
-    """What one pass of them covers both passes do; with the visibility of quads fewer pixels were."""
+    """Both passes cover the same pixels as a single pass does. With the visibility of quads there were fewer."""
     scene, camera = scenes.checker_plane(40, 10_000, 6, SIZE)
     one, both = (render(scene, camera, settings).coverage > 0 for settings in (ONE_PASS, SPRITES))
     assert np.count_nonzero(one) > 3000
@@ -106,8 +110,10 @@ def test_equation_4_runs_from_0_at_the_near_plane_to_1_at_the_far_one_and_not_as
 
 
 def test_depths_lie_in_the_plane_of_a_tilted_disc_and_off_it_as_printed(render):
-    """Of a disc of radius 0.1 that leans by 45 degrees the plane is 0.05 nearer half a radius up; as printed, half a
-    unit farther."""
+    """A disc of radius 0.1 leans by 45 degrees.
+
+    Half a radius up, its plane is 0.05 nearer; by the printed formula it is half a unit farther.
+    """
     beside = discs((0.15, 0, -5), (0.01, 0, 0), (0, 0.01, 0))
     scene, at = Scene((discs((0, 0, -2), (0.1, 0, 0), (0, 0.1, 0.1)), beside)), (82, 64)
     camera = Camera.orthographic(np.eye(4), 0.36, SIZE, 0.1, 10)
@@ -117,7 +123,7 @@ def test_depths_lie_in_the_plane_of_a_tilted_disc_and_off_it_as_printed(render):
 
 
 def test_equations_6_and_7_map_the_picture_to_the_splat_and_to_the_depth_in_the_window():
-    """Which is 0 at the near plane and 1 at the far one, and that of the plane wherever the splat is."""
+    """The window's depth is 0 at the near plane and 1 at the far one, and it lies in the splat's plane."""
     plane = splat_plane((0.3, -0.2, -2.0), (0.2, 0.1, 0.15), (-0.05, 0.2, -0.1))
     near, far = 0.5, 20.0
     a, b = far / (far - near), -near * far / (far - near)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is a pixel wide, before or between other surfaces: silhouettes on both of its sides, filtered by mip as any."""
+"""Mip Filter also filters silhouettes of features a pixel wide, on both sides, in front of or between other
+surfaces.
+"""
 
 import math
 from dataclasses import replace
@@ -11,7 +13,7 @@ from splat_addon.reference import render_exact
 from splat_addon.reference.extremes import discs
 from splat_addon.rendering import Camera, Scene, Settings, look_at
 
-SIDE = 24  # pixels; one is as wide as 1 at a depth of 100
+SIDE = 24  # pixels; at a depth of 100 a pixel is 1 wide
 BLACK, WHITE = (0.02, 0.02, 0.02), (0.9, 0.9, 0.9)
 CAMERAS = {
     "perspective": Camera.perspective(
@@ -22,8 +24,10 @@ CAMERAS = {
 
 
 def strip(low: float, high: float, depth: float, turn: float, tilt: float, color, opacity: float):
-    """From x = low to high and endless along y, turned in the picture and then tilted away from it: ellipses of 0.6 to
-    each side, overlapping until the edges are straight."""
+    """A strip from x = low to high, endless along y, turned in the picture and then tilted away from it.
+
+    Its ellipses reach 0.6 to each side and overlap so much that the edges are straight.
+    """
     x, y = (a.reshape(-1, 1) for a in np.meshgrid(np.arange(low + 0.6, high - 0.59, 0.4), np.arange(-40, 40.5, 0.7)))
     turned = np.array(((math.cos(turn), math.sin(turn), 0), (-math.sin(turn), math.cos(turn), 0)))
     across, up = turned * (1, math.cos(tilt), 0) + turned[:, 1:2] * (0, 0, math.sin(tilt))
@@ -47,7 +51,7 @@ def scene_of(kind: str, turn: float, tilt: float, opacity: float = 1, distance: 
 @pytest.mark.parametrize("name", CAMERAS)
 @pytest.mark.parametrize("kind", ["wire", "gap"])
 def test_both_silhouettes_are_filtered(kind, name, turn, tilt, opacity, render):
-    """Unfiltered, a pixel in the gap or on the wire is all white: 0.25 to 0.55 off."""
+    """Without a filter, a pixel in the gap or on the wire is all white, an error of 0.25 to 0.55."""
     scene, settings = scene_of(kind, turn, tilt, opacity), Settings(shading="flat")
     frame = render(scene, CAMERAS[name], settings)
     truth = render_exact(scene, CAMERAS[name], settings, samples=4, pixel_filter="gaussian")
@@ -58,8 +62,11 @@ def test_both_silhouettes_are_filtered(kind, name, turn, tilt, opacity, render):
 @pytest.mark.parametrize(("turn", "tilt"), [(0, 0), (0.3, 0), (1.2, 0.2)])
 @pytest.mark.parametrize("kind", ["wire", "gap"])
 def test_so_they_are_before_a_close_surface(kind, turn, tilt, render):
-    """2.5 behind, where up to 1 would mix. Visibility moved both back by 1; if that is forgotten, what is before the
-    other passes for it and is not filtered: 0.27 to 0.31 off."""
+    """The surface is 2.5 behind; surfaces up to 1 apart would blend.
+
+    The visibility pass moves both back by 1. If that is forgotten, the front surface is taken for the rear one and is
+    not filtered: an error of 0.27 to 0.31.
+    """
     scene, camera, settings = scene_of(kind, turn, tilt, distance=2.5), CAMERAS["parallel"], Settings(shading="flat")
     truth = render_exact(scene, camera, settings, samples=4, pixel_filter="gaussian")
     off = np.abs(render(scene, camera, settings).color - truth.color)[2:-2, 2:-2, 0]
@@ -68,8 +75,11 @@ def test_so_they_are_before_a_close_surface(kind, turn, tilt, render):
 
 @pytest.mark.parametrize("turn", [0.1, 0.3, 1.2])
 def test_the_scallops_of_a_crease_are_filtered(turn, render):
-    """Two planes meet in a ridge, in one depth: discs of either stick out of the other, and only their normals tell
-    them apart. Unfiltered, pixels there are all white or all black."""
+    """Two planes meet in a ridge at the same depth. Discs of each stick out of the other, and only their normals
+    distinguish them.
+
+    Without a filter, pixels there are all white or all black.
+    """
     along, up = (a.reshape(-1, 1) for a in np.meshgrid(np.arange(0, 30, 1.1), np.arange(-30, 30, 1.1)))
     roll = np.array(((math.cos(turn), math.sin(turn), 0), (-math.sin(turn), math.cos(turn), 0), (0, 0, 1)))
     flanks = []
@@ -85,7 +95,9 @@ def test_the_scallops_of_a_crease_are_filtered(turn, render):
 
 @pytest.mark.parametrize("lean", [0.02, 0.05])
 def test_what_is_edge_on_behind_the_back_of_a_wall_does_not_shine_through_it(lean, render):
-    """Beyond its rim its plane runs ahead of the wall, as far as the filter reaches; and a front weighs more there."""
+    """Beyond its rim an edge-on splat's plane runs in front of the wall, as far as the filter reaches, and fronts weigh
+    more than the wall's back.
+    """
     across, up = (a.reshape(-1, 1) for a in np.meshgrid(np.arange(-30, 30, 0.7), np.arange(-30, 30, 0.7)))
     wall = discs(across * (1, 0, 0) + up * (0, 1, 0) + (0, 0, -100), (0.6, 0, 0), (0, -0.6, 0), WHITE)
     into, along = (a.reshape(-1, 1) for a in np.meshgrid(np.arange(4.5, 20, 0.7), np.arange(-30, 30, 0.7)))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Each method's GLSL does what its numpy twin says, splat by splat: from sub-pixel to giant, round to a million times
-longer than wide, from facing the viewer to edge-on, before, across and behind the near plane.
+"""Each method's GLSL does what its numpy twin does, splat by splat, in all poses.
 
-float32 cannot know more than its inputs: a weight may be anything between the twin's of splats that differ by a few
-roundings, and rims may fall either way by a fraction of a pixel.
+The splats are sub-pixel to giant, round to a million times longer than wide, facing the viewer to edge-on, and before,
+across and behind the near plane. float32 cannot be more precise than its inputs: a weight may lie anywhere between the
+twin's weights of splats that differ by a few roundings, and rims may be off by a fraction of a pixel.
 """
 
 from dataclasses import dataclass, replace
@@ -25,11 +25,11 @@ from splat_addon.surfels import Surfels, axes_quaternions
 
 SIZE = 48
 NEAR, FAR = 0.01, 1000.0
-#: Pixels; rims and boxes of footprints are snapped to 1 / 256 of one.
+#: In pixels: rims and boxes of footprints are snapped to 1 / 256 of a pixel.
 SNAP = 0.01
-#: Of inputs, relative: what float32 makes of them on their way through matrices and divisions.
+#: Relative rounding of the inputs by matrices and divisions in float32.
 ROUNDING = 5e-7
-#: How many splats within that rounding a weight is held against.
+#: The number of splats within that rounding that a weight is compared with.
 NEIGHBOURS = 12
 TOLERANCE = 2e-4
 EXAMPLES = 60
@@ -37,7 +37,7 @@ BACK_WEIGHT = 1e-3
 #: Methods whose formula has no tangents for a disc that faces the ray: rounding decides whether it is seen.
 NOT_FACING = ("homogeneous_printed",)
 
-#: As `Surfels.clip_lines` gives them of one surfel: a line that keeps all, twice, and no reflex corner.
+#: In the form of `Surfels.clip_lines` for one surfel: two lines that cut nothing, and no reflex corner.
 NO_LINES = np.array([(1.0, 0, 1), (1, 0, 1)]), False
 
 CAMERAS = {
@@ -48,9 +48,10 @@ CAMERAS = {
 
 @dataclass(frozen=True)
 class Splat:
-    """angle: degrees between its normal and the viewer; turn, spin: of the normal and in the plane. place: in the
-    picture's half-widths. size: the longer half-axis over the depth. ratio: the shorter one over it. lines: direction
-    and cut of both clip lines, as they are stored.
+    """One pose. angle: degrees between its normal and the viewer. turn, spin: rotation of the normal, and in the plane.
+
+    place: in half-widths of the picture. size: the longer half-axis divided by the depth. ratio: the shorter one
+    divided by the longer. lines: direction and cut of both clip lines, as stored.
     """
 
     depth: float
@@ -85,7 +86,7 @@ class Splat:
 
 
 def powers(low, high):
-    """Numbers evenly spread over their orders of magnitude."""
+    """Numbers spread evenly over their orders of magnitude."""
     return st.floats(np.log10(low), np.log10(high)).map(lambda e: 10.0**e)
 
 
@@ -108,7 +109,7 @@ def splats(sizes):
 SPLATS = splats(powers(1e-5, 5))
 
 LINES = st.tuples(st.integers(0, TURN - 1), st.integers(1, MAX_CUT))
-#: Lines leave little of a splat, so that more of these are large.
+#: Lines cut off most of a splat, so more of these splats are large.
 CLIPPED_SPLATS = st.builds(
     lambda splat, first, second: replace(splat, lines=(first, second)),
     splats(st.one_of(powers(1e-5, 5), powers(0.05, 5))),
@@ -118,23 +119,23 @@ CLIPPED_SPLATS = st.builds(
 
 
 def drawn(renderer, method, surfels, camera):
-    """(SIZE, SIZE) sums of weights that the attribute pass leaves, and the frame's depths."""
+    """The (SIZE, SIZE) sums of weights after the attribute pass, and the frame's depths."""
     settings = Settings(method=method, supersampling=1, shading="flat", epsilon=1e9)
     frame = renderer.render(Scene((surfels,)), camera, settings)
     return sum_of(renderer, "gbuffer_color")[..., 3], frame.depth
 
 
 def sum_of(renderer, name):
-    """(SIZE, SIZE, 4) of what was drawn last."""
+    """The (SIZE, SIZE, 4) sums of the last picture."""
     texture = next(texture for key, texture in renderer.resources.textures.items() if key[0] == name)
     margin = (texture.size[0] - SIZE) // 2
     return renderer.device.target([texture]).read(0)[margin : margin + SIZE, margin : margin + SIZE]
 
 
 def twin_weights(method, axes, camera, shift=(0.0, 0.0), lines=NO_LINES):
-    """(SIZE, SIZE) weights and depths at the pixels' centres, or `shift` pixels beside them.
+    """The twin's (SIZE, SIZE) weights and depths at the pixels' centres, or `shift` pixels beside them.
 
-    axes: position and half-axes, float64. lines: (2, 3) clip lines and whether they make a reflex corner.
+    axes: position and half-axes, float64. lines: (2, 3) clip lines, and whether they form a reflex corner.
     """
     left, right, bottom, top = camera.window
     pixel = np.array([right - left, top - bottom]) / SIZE
@@ -156,7 +157,7 @@ def inside(lines, places):
 
 
 def side_weight(axes, camera):
-    """Of the side that is seen; None where rounding decides which it is."""
+    """The weight of the visible side; None if rounding decides which side is visible."""
     position, u, v = axes
     plane, to_eye = np.cross(u, v), (np.array((0, 0, 1.0)) if camera.is_orthographic else -position)
     cosine = plane @ to_eye / (np.linalg.norm(plane) * np.linalg.norm(to_eye))
@@ -164,8 +165,8 @@ def side_weight(axes, camera):
 
 
 def neighbours(method, surfels, camera):
-    """(K, SIZE, SIZE) weights and depths of twins of splats and at places that differ by rounding, and the weight of
-    the side that is seen.
+    """The (K, SIZE, SIZE) weights and depths of twins whose splats and places differ by rounding, and the visible
+    side's weight.
     """
     random = np.random.default_rng(0)
     axes = [a.astype(np.float64) for a in (surfels.positions[0], *(a[0] for a in surfels.half_axes()))]
@@ -179,7 +180,7 @@ def neighbours(method, surfels, camera):
 
 
 def is_within(found, known, tolerance):
-    """Whether `found` lies between the least and the greatest of `known`, or half of what lies between them beyond."""
+    """Whether `found` lies in the range of `known`, extended on both sides by the tolerance and half the range."""
     low, high = known.min(axis=0), known.max(axis=0)
     spread = tolerance + 0.5 * (high - low)
     return (found >= low - spread) & (found <= high + spread)
@@ -230,7 +231,7 @@ def agree_with_twins(method, kind, splats, on_device):
 @pytest.mark.parametrize("kind", CAMERAS)
 @pytest.mark.parametrize("method", ["mip", "ewa"])
 def test_depths_that_a_filter_reaches_beyond_a_grazing_splat_are_held_near_it(method, kind, on_device):
-    """At some pixels as far as the twin says, where the plane goes on."""
+    """At some pixels the depth is as far as the twin allows, although the plane continues."""
     camera, is_held = CAMERAS[kind], []
     splats = [
         Splat(1.0, (0.1, -0.2), angle, 1.0, 0.3, size, 0.8)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points on surfaces whose normals are known."""
+"""Points on surfaces with known normals."""
 
 import gzip
 
@@ -36,7 +36,7 @@ def torus_points():
 
 @pytest.fixture
 def grid_points():
-    """grid_points(columns, rows, dx=1, dy=1) -> points of a grid in the plane z = 0."""
+    """grid_points(columns, rows, dx=1, dy=1) -> the points of a grid in the plane z = 0."""
 
     def make(columns, rows, dx=1.0, dy=1.0):
         x, y = np.meshgrid(np.arange(columns) * dx, np.arange(rows) * dy, indexing="ij")
@@ -47,7 +47,7 @@ def grid_points():
 
 @pytest.fixture(scope="session")
 def range_map_mesh(models):
-    """(62702, 3) vertices of a range map, seen by a scanner at the origin, and its (120995, 3) faces."""
+    """The (62702, 3) vertices of a range map, seen by a scanner at the origin, and its (120995, 3) faces."""
     data = gzip.decompress((models / "rangemap_lato315.ply.gz").read_bytes())
     head, body = data.split(b"end_header\n", 1)
     assert b"element vertex 62702" in head and b"element face 120995" in head
@@ -60,5 +60,5 @@ def range_map_mesh(models):
 
 @pytest.fixture(scope="session")
 def range_map(range_map_mesh):
-    """The vertices without the faces."""
+    """The range map's vertices without the faces."""
     return range_map_mesh[0]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ellipses of bare points: as wide as the points are apart, and no hole between them."""
+"""Surfels of bare points are as wide as the points are apart, and leave no holes."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from splat_addon.sampling.points.footprints import tangent_frames
 
 
 def uncovered_share(surfels, points, normals, near=32):
-    """Share of points of the surface, with their normals, that lie on no splat."""
+    """The share of points of the surface, given with normals, that lie on no splat."""
     from scipy.spatial import cKDTree
 
     positions, (x, y) = surfels.origin + surfels.positions, surfels.half_axes()
@@ -53,7 +53,9 @@ def test_random_points_of_a_sphere_are_covered(sphere_points):
 
 
 def test_the_range_map_has_no_hole_where_its_mesh_has_none(range_map_mesh):
-    """Random points of the faces, which the surfels never knew, without those that bridge a step in depth."""
+    """The test points are on the mesh's faces, which the surfels were made without; faces across a step in depth are
+    left out.
+    """
     vertices, faces = range_map_mesh
     surfels, _ = surfels_from_points(vertices, viewpoint=(0, 0, 0))
     random = np.random.default_rng(8)
@@ -89,7 +91,7 @@ def test_a_gap_is_not_filled(grid_points):
 
 
 def test_a_gap_that_neighbours_bridge_is_not_filled(grid_points):
-    """With 80 of them, a border sees the points on the far side, at a distance of 7."""
+    """With 80 neighbours, a point at the border also sees points on the far side of the gap, at a distance of 7."""
     points = grid_points(40, 20)
     points[:, 0] += 6 * (points[:, 0] >= 20)
     surfels, _ = surfels_from_points(points, neighbours=80)

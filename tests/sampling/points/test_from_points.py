@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is left out is counted, what is given is used, what cannot be done is a sentence."""
+"""Surfels of bare points: unusable points are counted, given values are used, and errors are sentences."""
 
 import time
 
@@ -36,7 +36,7 @@ def test_points_that_stand_alone_are_counted_and_left_out_or_kept(grid_points, c
 
 @pytest.mark.parametrize("choice", ["drop", "keep"])
 def test_a_point_at_the_end_of_the_range_costs_the_others_neither_time_nor_digits(sphere_points, choice):
-    """All others would share one of cells that are counted from end to end: 1.6 billion distances."""
+    """With cells counted from end to end, all other points would share one cell: 1.6 billion distances."""
     points, _ = sphere_points(40_000)
     started = time.process_time()
     surfels, report = surfels_from_points(np.concatenate([points, [(5e17, -5e17, 0)]]), isolated=choice)
@@ -51,7 +51,7 @@ def test_a_point_at_the_end_of_the_range_costs_the_others_neither_time_nor_digit
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("choice", ["drop", "keep"])
 def test_damaged_points_cost_no_others_and_no_warning(choice):
-    """Whatever is damaged: positions, normals, radii or colours."""
+    """The damage is in positions, normals, radii or colours."""
     random = np.random.default_rng(2)
     damaged = [0, np.nan, np.inf, 1e38, 1e300, -1e300, 1e-300, 1e-45, 5e17]
     for _ in range(20):

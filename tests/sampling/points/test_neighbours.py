@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The grid finds what a kd-tree finds, however the points are spread."""
+"""The grid finds the same neighbours as a kd-tree, however the points are spread."""
 
 import numpy as np
 import pytest

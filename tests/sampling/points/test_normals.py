@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Estimated normals against those of a sphere, a torus and a scanned mesh, and the side they are on."""
+"""Estimated normals agree with those of a sphere, a torus and a scanned mesh, and face the right side."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from splat_addon.sampling.points.orientation import consistent_signs
 
 
 def angles(surfels, normals):
-    """Degrees between the estimated normals and the true ones, side included."""
+    """Degrees between the estimated normals and the true ones; a normal on the wrong side has up to 180."""
     return np.degrees(np.arccos(np.clip((surfels.normals * normals).sum(axis=1), -1, 1)))
 
 
@@ -43,7 +43,7 @@ def test_a_flat_sheet_faces_up(grid_points):
 
 
 def test_normals_turn_with_a_sharp_edge():
-    """Neighbouring normals there are at right angles, which says nothing about their sides; the reflection does."""
+    """Normals of neighbours across the edge are at right angles, which does not tell their sides; a reflection does."""
     side = (np.stack(np.meshgrid(np.arange(20), np.arange(20)), -1).reshape(-1, 2) + 0.5) / 20
     faces = [np.insert(side, axis, end, axis=1) for axis in range(3) for end in (0.0, 1.0)]
     points = np.concatenate(faces)
@@ -52,7 +52,7 @@ def test_normals_turn_with_a_sharp_edge():
 
 
 def test_exact_normals_of_a_tetrahedron_turn_with_its_edges():
-    """Across them the normals are 109 degrees apart, so that their cosine alone is on the wrong side."""
+    """Across an edge the normals are 109 degrees apart, so their cosine alone would choose the wrong side."""
     corners = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], float)
     random = np.random.default_rng(0)
     faces = [random.dirichlet((1, 1, 1), 500) @ np.delete(corners, k, axis=0) for k in range(4)]
