@@ -7,10 +7,15 @@
 const vec2 TABLE_STEPS = vec2(31.0, 47.0);  // angles, roughnesses
 const float TABLE_LEAST_ROUGHNESS = 0.03;
 
+// In units of the table's texels.
+vec2 table_place(float roughness, float cosine) {
+  vec2 at = vec2(sqrt(max(1.0 - cosine, 0.0)), (roughness - TABLE_LEAST_ROUGHNESS) / (1.0 - TABLE_LEAST_ROUGHNESS));
+  return clamp(at, 0.0, 1.0) * TABLE_STEPS;
+}
+
 // part 0: the transform's entries xx, xz, zx, zz; part 1: the albedo's terms, x and z of the mean direction.
 vec4 table_at(float roughness, float cosine, int part) {
-  vec2 at = vec2(sqrt(max(1.0 - cosine, 0.0)), (roughness - TABLE_LEAST_ROUGHNESS) / (1.0 - TABLE_LEAST_ROUGHNESS));
-  at = clamp(at, 0.0, 1.0) * TABLE_STEPS;
+  vec2 at = table_place(roughness, cosine);
   ivec2 low = ivec2(min(at, TABLE_STEPS - 1.0)), first = ivec2(int(TABLE_STEPS.x + 1.0) * part, 0);
   vec2 share = at - vec2(low);
   vec4 below = mix(texelFetch(brdf_table, first + low, 0), texelFetch(brdf_table, first + low + ivec2(1, 0), 0), share.x);
@@ -31,6 +36,17 @@ vec3 specular_albedo(vec2 terms, vec3 f0, float f90, out vec3 scattered) {
 vec3 mean_direction(vec2 mean, vec3 to_eye, vec3 normal) {
   vec3 across = to_eye - normal * dot(to_eye, normal);
   return normalize(normal * mean.y + across * (mean.x / max(length(across), 1e-6)));
+}
+
+#part specular_tint
+// The lobe's mean of c (1 - c)^6, where c is the cosine to the half vector.
+float edge_at(float roughness, float cosine) {
+  vec2 at = table_place(roughness, cosine);
+  ivec2 low = ivec2(min(at, TABLE_STEPS - 1.0));
+  vec2 share = at - vec2(low);
+  float below = mix(texelFetch(edge_table, low, 0).x, texelFetch(edge_table, low + ivec2(1, 0), 0).x, share.x);
+  float above = mix(texelFetch(edge_table, low + ivec2(0, 1), 0).x, texelFetch(edge_table, low + ivec2(1, 1), 0).x, share.x);
+  return mix(below, above, share.y);
 }
 
 #part sized_lights

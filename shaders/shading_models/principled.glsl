@@ -1,7 +1,8 @@
 // References: Walter, Marschner, Li, Torrance, "Microfacet Models for Refraction", 2007 (GGX);
 //             Heitz, "Understanding the Masking-Shadowing Function", 2014, equation 99 (height-correlated Smith);
-//             Schlick 1994 (Fresnel); Heitz et al. 2016 (lights with a size).
-// Summary: a surface like Principled: metal, or a dielectric coat over a Lambertian base that loses what the coat
+//             Schlick 1994 (Fresnel); Heitz et al. 2016 (lights with a size); Kutz, Hasan, Edmondson, "Novel aspects of
+//             the Adobe Standard Material", 2021 (a metal's tint, F82).
+// Summary: a surface like Principled: metal, or a dielectric over a Lambertian base that loses what the dielectric
 //          reflects, under lights and the world. The twin of reference/shading.py.
 
 #include "lib/brdf.glsl"
@@ -10,7 +11,7 @@
 const float PI = 3.14159265358979;
 const float LEAST_ROUGHNESS = 0.03;
 const float MIN_COSINE = 1e-4;
-// A coat with almost no reflectance at normal incidence is effectively absent, and does not reflect at grazing
+// A dielectric with almost no reflectance at normal incidence is effectively absent, and does not reflect at grazing
 // incidence as in Schlick's formula (Lagarde & de Rousiers, "Moving Frostbite to PBR", 2014, section 3.1.1).
 const float GRAZING_GAIN = 50.0;
 
@@ -23,7 +24,8 @@ struct Lobe {
   vec3 f0;  // reflectance at normal incidence
   float f90;  // at grazing incidence
   vec3 specular_albedo;
-  vec3 scattered;  // factor for multiple scattering in the coat
+  vec3 scattered;  // factor for multiple scattering
+  vec3 edge;  // what a metal's tint takes off its reflectance, times c (1 - c)^6
 };
 
 #parts
@@ -35,20 +37,52 @@ vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
   lobe.roughness = clamp(material.x, LEAST_ROUGHNESS, 1.0);
   lobe.nv = max(dot(normal, lobe.to_viewer), MIN_COSINE);
   float metallic = clamp(material.y, 0.0, 1.0);
-  lobe.f0 = mix(vec3(material.z), base, metallic);
-  float coat_f90 = min(GRAZING_GAIN * material.z, 1.0);
-  lobe.f90 = mix(coat_f90, 1.0, metallic);
+  vec3 dielectric = vec3(material.z);
+  #hook reflect(dielectric)
+  lobe.f0 = mix(dielectric, base, metallic);
+  float dielectric_f90 = min(GRAZING_GAIN * material.z, 1.0);
+  lobe.f90 = mix(dielectric_f90, 1.0, metallic);
   vec4 terms_mean = table_at(lobe.roughness, lobe.nv, 1);
   vec2 terms = terms_mean.xy;
   vec3 scattered;
-  vec3 coat = specular_albedo(terms, vec3(material.z), coat_f90, scattered);
-  lobe.diffuse_albedo = base * (1.0 - metallic) * (1.0 - coat);
+  vec3 lost = specular_albedo(terms, dielectric, dielectric_f90, scattered);
+  #hook lose(lost)
+  lobe.diffuse_albedo = base * (1.0 - metallic) * (1.0 - lost);
   lobe.specular_albedo = specular_albedo(terms, lobe.f0, lobe.f90, lobe.scattered);
+  #hook dim(lobe, base, metallic)
   vec3 reflected = mean_direction(terms_mean.zw, lobe.to_viewer, normal);
   vec3 radiance = lobe.diffuse_albedo * world_irradiance(normal)
       + lobe.specular_albedo * world_reflection(reflected, lobe.roughness);
   #hook lit(radiance, lobe, position, normal)
   return radiance;
+}
+
+#part finish
+#include "lib/finish.glsl"
+
+#part specular_tint
+// It is the reflectance at a cosine of 1 / 7, 82 degrees, as a share of what Schlick's formula has there.
+const float EDGE_SCHLICK = 0.462664366;  // (6 / 7)^5
+const float EDGE_GAIN = 17.6513846;  // 1 / (1 / 7 (6 / 7)^6)
+
+void specular_tint_reflect(inout vec3 dielectric) {
+  dielectric = min(dielectric * finish_texel(0).rgb, vec3(1.0));
+}
+
+// The base loses as much of each colour as of the one that is reflected most.
+void specular_tint_lose(inout vec3 lost) {
+  lost = vec3(max(max(lost.r, lost.g), lost.b));
+}
+
+void specular_tint_dim(inout Lobe lobe, vec3 base, float metallic) {
+  vec3 taken = 1.0 - min(finish_texel(0).rgb, vec3(1.0));
+  lobe.edge = metallic * EDGE_GAIN * mix(base, vec3(1.0), EDGE_SCHLICK) * taken;
+  lobe.specular_albedo -= lobe.edge * edge_at(lobe.roughness, lobe.nv) * lobe.scattered;
+}
+
+#part specular_tint, lights
+void specular_tint_edge(inout vec3 fresnel, Lobe lobe, float vh) {
+  fresnel -= lobe.edge * vh * pow(1.0 - vh, 6.0);
 }
 
 #part lights
@@ -65,7 +99,9 @@ vec3 from_point(Lobe lobe, vec3 to_light, vec3 irradiance) {
   float d = (nh > 0.0 ? dot(sine, sine) : 1.0) + nh * nh * a2;
   float distribution = a2 / (PI * d * d);
   float masking = 0.5 / (nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2));
-  vec3 fresnel = (lobe.f0 + (lobe.f90 - lobe.f0) * pow(1.0 - vh, 5.0)) * lobe.scattered;
+  vec3 fresnel = lobe.f0 + (lobe.f90 - lobe.f0) * pow(1.0 - vh, 5.0);
+  #hook edge(fresnel, lobe, vh)
+  fresnel *= lobe.scattered;
   return (lobe.diffuse_albedo / PI + distribution * masking * fresnel) * irradiance * nl;
 }
 

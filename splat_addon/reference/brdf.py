@@ -9,36 +9,55 @@ Sources:
 - Heitz, Dupuy, Hill, Neubelt 2016, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines".
 - Lagarde & de Rousiers 2014, "Moving Frostbite to PBR", section 4.9.3: the lobe's dominant direction.
 - Turquin 2019, "Practical multiple scattering compensation for microfacet models", eq. 16.
+- Kutz, Hasan, Edmondson 2021, "Novel aspects of the Adobe Standard Material": a metal's tint, F82.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..rendering.upload.brdf_table import LEAST_ROUGHNESS, brdf_table
+from ..rendering.upload.brdf_table import LEAST_ROUGHNESS, brdf_table, edge_table
 
 #: Below this ratio of half-axes to distance a quad counts as a point with its area, which float32 needs; the error is
 #: at most 4e-4.
 SMALL_QUAD = 0.02
 
 
-def specular_term(normal, view, to_light, nl, nv, roughness, f0, f90=1.0) -> np.ndarray:
+def specular_term(normal, view, to_light, nl, nv, roughness, f0, f90=1.0, edge=0.0) -> np.ndarray:
     """(n, 3) value of the GGX specular BRDF, D Vis F. Vectors (n, 3) unit; cosines and roughness (n,); f0 (n, 3).
 
-    f90: (n, 1) reflectance at grazing incidence.
+    f90: (n, 1) reflectance at grazing incidence. edge: (n, 3) what a metal's tint takes off, times c (1 - c)^6.
     """
     half = unit(view + to_light)
     nh, vh = np.maximum(dot(normal, half), 0), np.maximum(dot(view, half), 0)
     a2 = roughness**4
     distribution = a2 / (np.pi * (nh**2 * (a2 - 1) + 1) ** 2)
     visibility = 0.5 / (nl * np.sqrt(nv**2 * (1 - a2) + a2) + nv * np.sqrt(nl**2 * (1 - a2) + a2))
-    fresnel = f0 + (f90 - f0) * (1 - vh[:, None]) ** 5
+    vh = vh[:, None]
+    fresnel = f0 + (f90 - f0) * (1 - vh) ** 5 - edge * vh * (1 - vh) ** 6
     return (distribution * visibility)[:, None] * fresnel
 
 
 def table_at(roughness, nv) -> np.ndarray:
     """(n, 8) entries of `brdf_table` between its rows and columns."""
-    table = brdf_table().astype(np.float64)
+    return _looked_up(brdf_table(), roughness, nv)
+
+
+def edge_at(roughness, nv) -> np.ndarray:
+    """(n, 1) entries of `edge_table` between its rows and columns."""
+    return _looked_up(edge_table()[..., None], roughness, nv)
+
+
+def metal_edge(f0, tint) -> np.ndarray:
+    """(n, 3) what a metal's tint (n, 3) takes off its reflectance by Schlick's formula, times c (1 - c)^6.
+
+    At c = 1 / 7, 82 degrees, the tint is what is left of it. f0: (n, 3).
+    """
+    return (f0 + (1 - f0) * (6 / 7) ** 5) * 7 / (6 / 7) ** 6 * (1 - np.minimum(tint, 1))
+
+
+def _looked_up(table: np.ndarray, roughness, nv) -> np.ndarray:
+    table = table.astype(np.float64)
     rows, columns = np.array(table.shape[:2]) - 1
     y = np.clip((roughness - LEAST_ROUGHNESS) / (1 - LEAST_ROUGHNESS), 0, 1) * rows
     x = np.sqrt(np.clip(1 - nv, 0, 1)) * columns

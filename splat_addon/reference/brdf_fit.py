@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes splat_addon/rendering/upload/brdf_table.npy: what the principled shading needs to know of GGX, tabulated.
+"""Makes brdf_table.npy and edge_table.npy in splat_addon/rendering/upload: what the principled shading needs to know of
+GGX, tabulated.
 
-    python -m splat_addon.reference.brdf_fit [--out FILE]
+    python -m splat_addon.reference.brdf_fit [--out FOLDER]
 
 For each roughness and angle of view: the linear transform that turns a clamped cosine into the lobe (Heitz, Dupuy,
 Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016, by their fit: least cubed
 error, simplex search), the lobe's directional albedo in two terms, so that Schlick's Fresnel can be applied to it
-(Karis 2013, "Real Shading in Unreal Engine 4", the split sum), and its mean direction. Needs scipy;
-takes a minute and a half.
+(Karis 2013, "Real Shading in Unreal Engine 4", the split sum), and its mean direction; in the other table, the term of
+a metal's tint (Kutz, Hasan, Edmondson 2021). Needs scipy; takes a minute and a half.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import numpy as np
 from rich.progress import track
 from scipy.optimize import minimize
 
-TABLE = Path(__file__).resolve().parents[1] / "rendering" / "upload" / "brdf_table.npy"
+FOLDER = Path(__file__).resolve().parents[1] / "rendering" / "upload"
 ROUGHNESS, ANGLES = 48, 32
 LEAST_ROUGHNESS = 0.03
 SIDE = 40  # samples along each side of the unit square
@@ -70,6 +71,29 @@ def albedo_and_mean(lobe: Lobe) -> tuple[float, float, np.ndarray]:
     fresnel = (1 - vh) ** 5
     mean = np.array([(weight * light[0]).mean(), 0.0, (weight * light[2]).mean()])
     return (weight * (1 - fresnel)).mean(), (weight * fresnel).mean(), mean / np.linalg.norm(mean)
+
+
+def edge_table() -> np.ndarray:
+    """(48, 32) float32 of `edge_term`."""
+    table = np.zeros((ROUGHNESS, ANGLES), np.float32)
+    for i, j in np.ndindex(table.shape):
+        table[i, j] = edge_term(Lobe(roughness_of(i), cosine_of(j)))
+    return table
+
+
+def edge_term(lobe: Lobe) -> float:
+    """What the lobe has of c (1 - c)^6, with c the cosine to the half vector."""
+    value, density, vh = lobe.masked(lobe.directions(200))
+    return (np.where(value > 0, value / density, 0.0) * vh * (1 - vh) ** 6).mean()
+
+
+def roughness_of(row: int) -> float:
+    return LEAST_ROUGHNESS + (1 - LEAST_ROUGHNESS) * row / (ROUGHNESS - 1)
+
+
+def cosine_of(column: int) -> float:
+    """The cosine to the viewer."""
+    return max(1 - (column / (ANGLES - 1)) ** 2, 1e-3)
 
 
 def matrix(frame: np.ndarray, parameters) -> np.ndarray:
@@ -125,16 +149,14 @@ def fitted(lobe: Lobe, albedo: float, mean: np.ndarray, start, is_straight: bool
 def main() -> None:
     """Fit row by row, from rough and straight on, each from its neighbour."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=TABLE)
+    parser.add_argument("--out", type=Path, default=FOLDER)
     out = parser.parse_args().out
     table = np.zeros((ROUGHNESS, ANGLES, 8))
     start_of_row = np.array([1.0, 1.0, 0.0])
     for i in track(range(ROUGHNESS - 1, -1, -1), "roughness"):
-        roughness = LEAST_ROUGHNESS + (1 - LEAST_ROUGHNESS) * i / (ROUGHNESS - 1)
         start = start_of_row
         for j in range(ANGLES):
-            cosine = max(1 - (j / (ANGLES - 1)) ** 2, 1e-3)
-            lobe = Lobe(roughness, cosine)
+            lobe = Lobe(roughness_of(i), cosine_of(j))
             scale, bias, mean = albedo_and_mean(lobe)
             frame, start = fitted(lobe, scale + bias, mean, start, j == 0)
             if j == 0:
@@ -142,7 +164,8 @@ def main() -> None:
             inverse = np.linalg.inv(matrix(frame, start))
             inverse /= inverse[1, 1]
             table[i, j] = inverse[0, 0], inverse[0, 2], inverse[2, 0], inverse[2, 2], scale, bias, mean[0], mean[2]
-    np.save(out, table.astype(np.float32))
+    np.save(out / "brdf_table.npy", table.astype(np.float32))
+    np.save(out / "edge_table.npy", edge_table())
     print(f"{out}: {table.shape[0]} roughnesses x {table.shape[1]} angles")
 
 

@@ -34,7 +34,7 @@ def lit_splats(splats: Splats, scene: Scene, camera: Camera, settings: Settings)
     no ray and are left as they are.
     """
     before = np.flatnonzero(-splats.center[:, 2] > 0)
-    roughness, metallic, f0, emission, light_set = np.split(splats.surface[before], (1, 2, 3, 6), axis=1)
+    roughness, metallic, f0, emission, light_set, finish = np.split(splats.surface[before], (1, 2, 3, 6, 10), axis=1)
     surface = Surface(
         rays=before,
         color=splats.color[before],
@@ -45,6 +45,7 @@ def lit_splats(splats: Splats, scene: Scene, camera: Camera, settings: Settings)
         f0=f0[:, 0],
         emission=emission,
         light_set=light_set,
+        finish=finish,
         weight=np.ones(len(before)),
         count=np.ones(len(before)),
         opacity=np.ones(len(before)),

@@ -9,10 +9,10 @@ import numpy as np
 
 from ..rendering.scene import PolygonInstance, Scene
 from ..rendering.scene.camera import Camera
-from ..rendering.scene.light import MAX_LIGHT_SETS
+from ..rendering.scene.finish import PLAIN
 from ..rendering.view import overlapping_radii
 from .rays import RayGrid, Surface
-from .splats import BACK_WEIGHT
+from .splats import BACK_WEIGHT, has_finish, material_table
 from .textures import point_colors
 
 #: The least weight of a front, the least cosine between normals of one surface: shaders/hosts/mean_surface.glsl.
@@ -26,8 +26,8 @@ CHUNK_PAIRS = 50_000
 @dataclass(frozen=True, eq=False)
 class Hits:
     """The nearest polygon of each of n rays: depth (n,), infinite where there is none; how far behind it splats of its
-    surface may lie (n,); color (n, 3), unit normal (n, 3) on the side that is seen, and (n, 10) as `Splats.surface`.
-    """
+    surface may lie (n,); color (n, 3), unit normal (n, 3) on the side that is seen, and (n, 10 + F) as
+    `Splats.surface`."""
 
     depth: np.ndarray
     overlap: np.ndarray
@@ -40,7 +40,8 @@ def polygon_hits(scene: Scene, camera: Camera, grid: RayGrid, epsilon: float) ->
     """What the rays of the grid see of polygons alone."""
     origin, direction = grid.rays(np.arange(grid.count))
     n = grid.count
-    found = Hits(np.full(n, np.inf), np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 10)))
+    columns = 10 + len(PLAIN.numbers) * has_finish(scene)
+    found = Hits(np.full(n, np.inf), np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, columns)))
     radii = overlapping_radii(scene)
     for instance in scene.polygons:
         corners = eye_corners(instance, camera)
@@ -125,14 +126,11 @@ def _take(instance, camera, corners, rays, triangle, shares, direction, found: H
         for texture in set(of_slot) - {None}:
             at = of_slot == texture
             found.color[rays[at]] = point_colors(texture, mean(shape.uvs)[at])
-    table = [(m.roughness, m.metallic, ((m.ior - 1) / (m.ior + 1)) ** 2, *m.emission) for m in instance.materials]
-    surface = np.array(table)[slots]
+    surface = material_table(instance, found.surface.shape[1] > 10)[slots]
     for columns, own in ((0, shape.roughness), (1, shape.metallic), (slice(3, 6), shape.emission)):
         if own is not None:
             surface[:, columns] = mean(own)
-    found.surface[rays] = np.concatenate(
-        [surface, np.tile(np.eye(MAX_LIGHT_SETS)[instance.light_set], (len(rays), 1))], 1
-    )
+    found.surface[rays] = surface
 
 
 def joined(splats: Surface, polygons: Hits, contact: float) -> Surface:
@@ -159,7 +157,8 @@ def joined(splats: Surface, polygons: Hits, contact: float) -> Surface:
     of_polygon = {
         "color": polygons.color, "normal": polygons.normal, "depth": np.where(share > 0, polygons.depth, 0.0),
         "roughness": polygons.surface[:, 0], "metallic": polygons.surface[:, 1], "f0": polygons.surface[:, 2],
-        "emission": polygons.surface[:, 3:6], "light_set": polygons.surface[:, 6:],
+        "emission": polygons.surface[:, 3:6], "light_set": polygons.surface[:, 6:10],
+        "finish": polygons.surface[:, 10:],
     }  # fmt: skip
     for name, other in of_polygon.items():
         s = share.reshape(-1, *(1,) * (other.ndim - 1))

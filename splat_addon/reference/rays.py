@@ -79,7 +79,8 @@ class Surface:
     """What the n rays that hit something see, averaged over the splats with their weights, eye space.
 
     rays: (n,) numbers in the grid. color: (n, 3). normal: (n, 3) unit. depth: (n,).
-    roughness, metallic, f0: (n,). emission: (n, 3). light_set: (n, 4) the share of each set of objects.
+    roughness, metallic, f0: (n,). emission: (n, 3). light_set: (n, 4) the share of each set of objects. finish: (n, F)
+        the numbers of a `Finish`, none if the scene has no finishes.
     weight: (n,) sum of the splats' weights. count: (n,) of splats.
     opacity: (n,); the splats' own weigh their colours, too.
     """
@@ -93,6 +94,7 @@ class Surface:
     f0: np.ndarray
     emission: np.ndarray
     light_set: np.ndarray
+    finish: np.ndarray
     weight: np.ndarray
     count: np.ndarray
     opacity: np.ndarray
@@ -169,16 +171,16 @@ def _seen(splats: Splats, boxes, grid: RayGrid, visibility: np.ndarray, after=-n
 
 def average(splats: Splats, grid: RayGrid, contributions) -> Surface:
     """Weighted means. contributions: chunks of rays, splats, weights and depths, each (m,), and places (m, 2)."""
-    sums, count = np.zeros((19, grid.count)), np.zeros(grid.count)
     attributes = np.concatenate([splats.color, splats.normal, splats.surface], axis=1).T
+    sums, count = np.zeros((3 + len(attributes), grid.count)), np.zeros(grid.count)
     for ray, splat, weight, depth, place in contributions:
         count += np.bincount(ray, minlength=grid.count)
         sums[0] += np.bincount(ray, weight, grid.count)
         sums[1] += np.bincount(ray, weight * depth, grid.count)
         values, shown = attributes[:, splat], weight * splats.opacity[splat]
-        sums[18] += np.bincount(ray, shown, grid.count)
+        sums[-1] += np.bincount(ray, shown, grid.count)
         _look_textures_up(splats, splat, place, values[:3])
-        for k, (total, row) in enumerate(zip(sums[2:18], values, strict=True)):
+        for k, (total, row) in enumerate(zip(sums[2:-1], values, strict=True)):
             total += np.bincount(ray, (shown if k < 3 else weight) * row, grid.count)
     return _averages(sums, count)
 
@@ -195,14 +197,15 @@ def _look_textures_up(splats: Splats, splat: np.ndarray, place: np.ndarray, colo
 
 def _averages(sums: np.ndarray, count: np.ndarray) -> Surface:
     rays = np.flatnonzero(sums[0] > 0)
-    depth, *columns = sums[1:18, rays] / sums[0, rays]
-    columns[:3] = sums[2:5, rays] / sums[18, rays]
+    depth, *columns = sums[1:-1, rays] / sums[0, rays]
+    columns[:3] = sums[2:5, rays] / sums[-1, rays]
     color, normal = np.stack(columns[:3], axis=1), np.stack(columns[3:6], axis=1)
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = np.where(length > CANCELLED, normal / np.maximum(length, CANCELLED), TO_VIEWER)
-    emission, light_set = np.stack(columns[9:12], axis=1), np.stack(columns[12:], axis=1)
-    weight, opacity = sums[0, rays], sums[18, rays] / sums[0, rays]
-    return Surface(rays, color, normal, depth, *columns[6:9], emission, light_set, weight, count[rays], opacity)
+    emission, light_set, finish = np.split(np.stack(columns[9:], axis=1), (3, 7), axis=1)
+    weight, opacity = sums[0, rays], sums[-1, rays] / sums[0, rays]
+    rest = emission, light_set, finish, weight, count[rays], opacity
+    return Surface(rays, color, normal, depth, *columns[6:9], *rest)
 
 
 def splats_in(splats: Splats, bounds, grid: RayGrid):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .brdf import dot, mean_direction, quad_form_factors, specular_albedo, specular_term, unit
+from .brdf import dot, edge_at, mean_direction, metal_edge, quad_form_factors, specular_albedo, specular_term, unit
 from .lights import Incident
 from .rays import Surface
 from .world import WorldLight
@@ -19,8 +19,8 @@ MIN_ROUGHNESS = 0.03
 #: The least cosine to the viewer, which rays at the silhouette would bring to 0 or, by averaging, below.
 MIN_VIEW_COSINE = 1e-4
 
-#: A coat reflects this many times its reflectance at normal incidence, and 1 at most, at grazing incidence: one that is
-#: hardly there does not shine as Schlick's formula has it (Lagarde & de Rousiers 2014, section 3.1.1).
+#: A dielectric reflects this many times its reflectance at normal incidence, and 1 at most, at grazing incidence: one
+#: that is hardly there does not shine as Schlick's formula has it (Lagarde & de Rousiers 2014, section 3.1.1).
 GRAZING_GAIN = 50.0
 
 
@@ -33,18 +33,26 @@ def principled_radiance(surface: Surface, direction, lights: list[Incident], wor
     normal = surface.normal
     nv = np.maximum(dot(normal, view), MIN_VIEW_COSINE)
     roughness = np.clip(surface.roughness, MIN_ROUGHNESS, 1)
-    metallic, coat_f0 = np.clip(surface.metallic, 0, 1)[:, None], surface.f0[:, None] * np.ones(3)
-    f0 = coat_f0 + (surface.color - coat_f0) * metallic
-    coat_f90 = np.minimum(GRAZING_GAIN * surface.f0[:, None], 1)
-    f90 = coat_f90 + (1 - coat_f90) * metallic
-    coat, _ = specular_albedo(roughness, nv, coat_f0, coat_f90)
-    diffuse = surface.color * (1 - metallic) * (1 - coat)
+    metallic, dielectric = np.clip(surface.metallic, 0, 1)[:, None], surface.f0[:, None] * np.ones(3)
+    has_finish, edge = surface.finish.shape[1] > 0, np.zeros((1, 3))
+    if has_finish:
+        tint = surface.finish[:, :3]
+        dielectric = np.minimum(dielectric * tint, 1)
+        edge = metallic * metal_edge(surface.color, tint)
+    f0 = dielectric + (surface.color - dielectric) * metallic
+    dielectric_f90 = np.minimum(GRAZING_GAIN * surface.f0[:, None], 1)
+    f90 = dielectric_f90 + (1 - dielectric_f90) * metallic
+    lost, _ = specular_albedo(roughness, nv, dielectric, dielectric_f90)
+    if has_finish:  # as much of each colour as of the one that is reflected most
+        lost = lost.max(axis=1, keepdims=True)
+    diffuse = surface.color * (1 - metallic) * (1 - lost)
     specular, scattered = specular_albedo(roughness, nv, f0, f90)
+    specular = specular - edge * edge_at(roughness, nv) * scattered
     reflected = mean_direction(roughness, nv, view, normal)
     radiance = diffuse * world.irradiance(normal) + specular * world.reflection(reflected, roughness)
     for light in lights:
         nl = np.maximum(dot(normal, light.to_light), 0)
-        lobe = specular_term(normal, view, light.to_light, nl, nv, roughness, f0, f90) * scattered
+        lobe = specular_term(normal, view, light.to_light, nl, nv, roughness, f0, f90, edge) * scattered
         from_light = (diffuse / np.pi + lobe) * light.irradiance * nl[:, None]
         sized = np.flatnonzero(light.is_sized)
         of_cosine, of_lobe = quad_form_factors(

@@ -10,8 +10,9 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from ..rendering.scene import Instance, Scene
+from ..rendering.scene import Instance, Placed, Scene
 from ..rendering.scene.camera import Camera
+from ..rendering.scene.finish import PLAIN
 from ..rendering.scene.light import MAX_LIGHT_SETS
 from ..rendering.settings import Settings
 from .textures import surfel_textures
@@ -33,8 +34,8 @@ class Splats:
 
     center: (N, 3). u, v: (N, 3) conjugate half-diameters, world units. plane: (N, 3) u x v, not unit.
     normal: (N, 3) unit shading normal turned to the viewer. color: (N, 3) scene-linear.
-    surface: (N, 10) roughness, metallic, reflectance at normal incidence, r, g, b of the emission, and 1 in the
-        column of the set of objects that it belongs to.
+    surface: (N, 10 + F) roughness, metallic, reflectance at normal incidence, r, g, b of the emission, 1 in the
+        column of the set of objects that it belongs to, and the numbers of its finish, if the scene has any.
     is_back: (N,) bool: its inward side is seen.
     texture: (N,) objects, the `SurfaceTexture` that takes the place of color, or None. uv: (N, 2) at the centre;
     uv_along: (N, 2, 2), its change along u (row 0) and v (row 1). uv_border: (N, 2) m of the line m . q = 1 behind
@@ -104,15 +105,15 @@ class Splats:
 
 def eye_splats(scene: Scene, camera: Camera) -> Splats:
     """Every instance's surfels in the eye space of `camera`."""
-    parts = [_instance_splats(instance, camera) for instance in scene.surfels]
+    parts = [_instance_splats(instance, camera, has_finish(scene)) for instance in scene.surfels]
     if not parts:
         vectors, flags = np.zeros((6, 0, 3)), np.zeros((4, 0), bool)
         rest = flags[0], np.zeros(0, object), *_no_uvs(0), np.zeros((0, 2, 3)), flags[1], *np.zeros((2, 0)), *flags[2:]
-        return Splats(*vectors, np.zeros((0, 10)), *rest)
+        return Splats(*vectors, np.zeros((0, 10 + len(PLAIN.numbers) * has_finish(scene))), *rest)
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
 
 
-def _instance_splats(instance: Instance, camera: Camera) -> Splats:
+def _instance_splats(instance: Instance, camera: Camera, with_finish: bool) -> Splats:
     surfels, matrix = instance.surfels, instance.matrix_world
     to_view = camera.world_to_view()[:3, :3]
     linear = to_view @ matrix[:3, :3]
@@ -138,7 +139,9 @@ def _instance_splats(instance: Instance, camera: Camera) -> Splats:
         opacity = np.clip(surfels.colors[:, 3].astype(np.float64), 0, 1)
     blend = np.full(count, np.inf) if surfels.blend_depth is None else surfels.blend_depth.astype(np.float64)
     rest = *surfels.clip_lines(), blend, opacity, is_transparent, np.full(count, instance.is_holdout)
-    splats = Splats(center, u, v, plane, normal, color, _surface(instance), cosine < 0, textures, *uvs, *rest)
+    splats = Splats(
+        center, u, v, plane, normal, color, _surface(instance, with_finish), cosine < 0, textures, *uvs, *rest
+    )
     return splats.take(np.flatnonzero(cosine >= 0)) if instance.hides_backs(camera) else splats
 
 
@@ -170,18 +173,31 @@ def _turned(normal: np.ndarray, side: np.ndarray) -> np.ndarray:
     return np.where(np.einsum("ij,ij->i", normal, side)[:, None] < 0, -normal, normal)
 
 
-def _surface(instance: Instance) -> np.ndarray:
-    """(N, 10) roughness, metallic, f0 and emission of each surfel, its own or its material's; and its light set."""
+def has_finish(scene: Scene) -> bool:
+    """Whether any surface has one."""
+    return any(material.finish.layers for placed in scene.shown for material in placed.materials)
+
+
+def material_table(placed: Placed, with_finish: bool) -> np.ndarray:
+    """(M, 6 + 4 + F) roughness, metallic, f0, emission, light set and, if wanted, finish of each of its slots."""
+    light_set = np.eye(MAX_LIGHT_SETS)[placed.light_set]
+    rows = [
+        (m.roughness, m.metallic, ((m.ior - 1) / (m.ior + 1)) ** 2, *m.emission, *light_set)
+        + m.finish.numbers * with_finish
+        for m in placed.materials
+    ]
+    return np.array(rows)
+
+
+def _surface(instance: Instance, with_finish: bool) -> np.ndarray:
+    """(N, 10 + F) `Splats.surface`: its own values, or its material's."""
     surfels = instance.surfels
-    table = np.array(
-        [(m.roughness, m.metallic, ((m.ior - 1) / (m.ior + 1)) ** 2, *m.emission) for m in instance.materials]
-    )
+    table = material_table(instance, with_finish)
     surface = table[np.minimum(surfels.materials, len(table) - 1)]
     for columns, own in ((0, surfels.roughness), (1, surfels.metallic), (slice(3, 6), surfels.emission)):
         if own is not None:
             surface[:, columns] = own
-    light_set = np.tile(np.eye(MAX_LIGHT_SETS)[instance.light_set], (len(surfels), 1))
-    return np.concatenate([surface, light_set], axis=1)
+    return surface
 
 
 def projected_bounds(splats: Splats, camera: Camera) -> tuple[np.ndarray, np.ndarray]:

@@ -16,6 +16,7 @@ from splat_addon.rendering import (
     Camera,
     Environment,
     Equirectangular,
+    Finish,
     Instance,
     Lens,
     Light,
@@ -136,6 +137,16 @@ def own_materials(scene, camera):
     return replace(scene, surfels=(replace(first, shape=own), *glow)), camera
 
 
+def finished(scene, camera):
+    """The scene under lights with and without a size, with a finish on a dielectric instance and another on a metal."""
+    (scene, camera), tints = lit(scene, camera), ((1.0, 0.3, 0.1), (0.2, 1.0, 0.4))
+    first, second = (
+        replace(i, materials=tuple(replace(m, finish=Finish(specular_tint=tint)) for m in i.materials))
+        for i, tint in zip(scene.surfels, tints, strict=True)
+    )
+    return replace(scene, surfels=(first, second), world=(1, 0.9, 0.8), environment=environment()), camera
+
+
 def deep(scene, camera):
     """The scene before a parallel camera with a disc 1e5 behind it, which needs linear depth."""
     matrix = camera.matrix_world.copy()
@@ -153,6 +164,7 @@ SCENES = {
     "light_linking": lambda: linked(*scenes.torus(size=SIZE)),
     "shadows": lambda: shadowed(*scenes.torus(size=SIZE)),
     "environment": lambda: in_a_picture(*scenes.torus(size=SIZE)),
+    "finishes": lambda: finished(*scenes.torus(size=SIZE)),
     "own_materials": lambda: own_materials(*scenes.torus(size=SIZE)),
     "holdout": lambda: holed(*scenes.torus(size=SIZE)),
     "deep": lambda: deep(*scenes.torus(size=SIZE)),
@@ -221,6 +233,7 @@ CASES = [
     *(("clip_lines", method, {"shading": "flat"}) for method in METHODS if method != "quad"),
     *(("clip_lines", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
     ("own_materials", "mip", {}),
+    *(("finishes", "mip", options) for options in ({}, {"sum_format": "float16"}, {"lights_splats": True})),
     ("holdout", "mip", {}),
     ("own_materials", "mip", {"storage": "16-bit"}),
     ("depth_of_field", "quad", {"samples": 3}),

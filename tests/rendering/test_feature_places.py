@@ -36,6 +36,11 @@ MEETINGS = {
         ("the extent of depths tells whether any splat is so near", "features/near_clipped.py"),
         ("it shows depth between the ends of that range", "shading_models/depth.glsl"),
     ),
+    "finish": (
+        ("its shares are stored beside a material", "features/materials.py"),
+        ("polygons have a finish too", "features/polygons.py"),
+        ("principled shading looks at the finish and its table", "lib/finish.glsl lib/brdf.glsl"),
+    ),
     "gbuffer": (
         ("the mean of a splat's attributes is what is lit, looked at for lines and occlusion",
          "hosts/mean_surface.glsl hosts/lines.frag.glsl features/ambient_occlusion.py"),
@@ -65,6 +70,7 @@ MEETINGS = {
     "materials": (
         ("the one material of all is there where none differ", "hosts/lit_splats.frag.glsl hosts/shaded_sample.glsl"),
         ("polygons have materials too", "features/polygons.py features/polygon_material.glsl"),
+        ("a finish is stored beside them", "features/finish.py"),
     ),
     "object_id": (("indices and mattes are made of the numbers that are read back", "identity.py renderer.py"),),
     "oit": (("the last layer", "features/transparency.py"),),
@@ -76,7 +82,8 @@ MEETINGS = {
     ),
     "polygons": (
         ("of a sample that is a polygon's too, an attribute is mixed with the polygon's",
-         "features/emission.glsl features/light_links.glsl features/materials.glsl features/shadows.glsl"),
+         "features/emission.glsl features/finish.glsl features/light_links.glsl features/materials.glsl "
+         "features/shadows.glsl"),
         ("they occlude", "features/ambient_occlusion.py"),
         ("they are looked up in textures by their planes", "features/textures.py"),
     ),

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
-from splat_addon.rendering import Instance, Light, Material, Scene, Settings, plan
+from splat_addon.rendering import Finish, Instance, Light, Material, PolygonInstance, Scene, Settings, plan
+from splat_addon.rendering.upload.packing import MAX_FINISHES, finish_shares
 from splat_addon.surfels import LAYOUT, Surfels
 
 SETTINGS = Settings(method="quad", supersampling=1)
@@ -119,6 +120,75 @@ def test_an_instance_that_has_no_own_values_stands_beside_one_that_has(render):
     seen = frame.coverage == 1
     assert np.allclose(frame.color[seen & (frame.normal[..., 0] < -0.15)][:, :3], (1, 0, 0), atol=1e-6)
     assert np.allclose(frame.color[seen & (frame.normal[..., 0] > 0.15)][:, :3], (0, 1, 0), atol=1e-6)
+
+
+#: Finishes with one of their parts each.
+FINISHES = {"specular_tint": Finish(specular_tint=(1.0, 0.2, 0.1))}
+
+
+def halves(first, second):
+    """A sphere's left and right half with one of these finishes each."""
+    scene, camera = sphere()
+    surfels = replace(scene.surfels[0].surfels, materials=scene.surfels[0].surfels.positions[:, 0] > 0)
+    materials = tuple(Material(roughness=0.4, finish=finish) for finish in (first, second))
+    return replace(scene, surfels=(Instance(surfels, materials=materials),)), camera
+
+
+@pytest.mark.parametrize("layer", FINISHES)
+def test_every_part_of_a_finish_is_seen_where_it_is(layer, render):
+    """Alone and as the finish of one half, whatever the other half has."""
+    finish, whole = FINISHES[layer], {}
+    assert finish.layers == (layer,)
+    for one in (Finish(), finish):
+        whole[one] = render(*halves(one, one), SETTINGS).color
+    assert np.abs(whole[finish] - whole[Finish()]).max() > 0.02
+    mixed = render(*halves(Finish(), finish), SETTINGS).color
+    left, right = np.s_[:, :26], np.s_[:, 38:]
+    assert np.allclose(mixed[left], whole[Finish()][left], atol=1e-5)
+    assert np.allclose(mixed[right], whole[finish][right], atol=1e-5)
+
+
+@pytest.mark.parametrize("layer", FINISHES)
+def test_polygons_have_a_finish_as_surfels_have(layer, render):
+    plain, finish = scenes.polygons(size=(64, 64)), FINISHES[layer]
+    scene, camera = plain
+
+    def with_finishes(of_surfels, of_polygons):
+        surfels = (replace(i, materials=(Material(finish=of_surfels),)) for i in scene.surfels)
+        polygons = (replace(i, materials=(Material(finish=of_polygons),)) for i in scene.polygons)
+        made = replace(scene, surfels=tuple(surfels), polygons=tuple(polygons))
+        assert all(isinstance(i, PolygonInstance) for i in made.polygons)
+        return render(made, camera, SETTINGS).color
+
+    bare, alone, both = (with_finishes(*pair) for pair in ((Finish(), Finish()), (Finish(), finish), (finish, finish)))
+    on_polygons, on_surfels = (np.abs(a - b).max(axis=2) > 2e-3 for a, b in ((alone, bare), (both, alone)))
+    assert on_polygons.sum() > 100 and on_surfels.sum() > 100
+    assert (on_polygons & on_surfels).sum() < 40  # only where they touch
+
+
+def test_other_shading_models_do_not_look_at_a_finish():
+    made = plan(*halves(Finish(), FINISHES["specular_tint"]), replace(SETTINGS, shading="phong"))
+    assert "gbuffer_finish" not in made.textures and "finish" in dict(made.skipped)
+
+
+def test_more_finishes_than_a_picture_shows_are_the_most_similar_ones_and_the_plan_says_so():
+    scene, camera = sphere()
+    tints = [(k / 10, 1.0, 1.0) for k in range(MAX_FINISHES + 2)]
+    materials = [Material(finish=Finish(tint)) for tint in tints]
+    many = replace(scene, surfels=(replace(scene.surfels[0], materials=(*materials, *materials[:MAX_FINISHES])),))
+    made = plan(many, camera, SETTINGS)
+    assert made.facts["finishes"] == tuple(m.finish for m in materials[:MAX_FINISHES])
+    assert "7 different Specular Tints" in dict(made.skipped)["finishes"]
+    for material in materials[MAX_FINISHES:]:
+        assert list(finish_shares(material.finish, made.facts["finishes"])) == [0, 0, 0, 1]
+    few = replace(scene, surfels=(replace(scene.surfels[0], materials=tuple(materials[:MAX_FINISHES])),))
+    assert "finishes" not in dict(plan(few, camera, SETTINGS).skipped)
+
+
+@pytest.mark.parametrize("tint", [(np.nan, 1, 1), (-0.1, 1, 1), (1, 1)])
+def test_a_finish_of_unusable_numbers_is_refused(tint):
+    with pytest.raises(ValueError, match="finite numbers of 0 and more"):
+        Finish(specular_tint=tint)
 
 
 def test_an_emission_that_is_not_finite_is_refused():

@@ -9,6 +9,7 @@ import pytest
 from splat_addon.rendering import (
     Camera,
     Environment,
+    Finish,
     Instance,
     Light,
     Material,
@@ -40,6 +41,7 @@ def surfels(**fields) -> Surfels:
 PLAIN = Scene([Instance(surfels())])
 TURNED_OVER = Scene([Instance(surfels(), np.diag((1.0, -1, -1, 1)))])
 IN_PICTURE = replace(PLAIN, environment=PICTURE)
+TINTED = Material(finish=Finish(specular_tint=(1, 0.5, 0)))
 ROUGH, SHINY, GLOWING = Material(roughness=0.9), Material(roughness=0.1), Material(emission=(1, 2, 3))
 
 TRIANGLE = make_polygons([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
@@ -97,6 +99,9 @@ TABLE = {
     "two materials, flat": (of(ROUGH, SHINY), {"shading": "flat"}, PASSES, "", "-brdf_table", ()),
     "one emission": (of(GLOWING), {}, PASSES, "", "", ("EMISSION",)),
     "two emissions": (of(GLOWING, Material()), {}, PASSES, "gbuffer_emission", "", ()),
+    "one finish": (of(TINTED), {}, PASSES, "", "finishes edge_table", ("FINISH",)),
+    "two finishes": (of(TINTED, Material()), {}, PASSES, "gbuffer_finish", "finishes edge_table", ("FINISH",)),
+    "two finishes, flat": (of(TINTED, Material()), {"shading": "flat"}, PASSES, "", "-brdf_table", ()),
     "own roughness": (Scene([Instance(surfels(roughness=[0.1, 0.9]))]), {}, PASSES, "gbuffer_material", "", ()),
     "float16 sums": (PLAIN, {"sum_format": "float16"}, PASSES, "gbuffer_depth", "", ()),
     "colour alone": (PLAIN, {"outputs": ("color",)}, PASSES, "-normal_coverage", "", ()),

@@ -133,8 +133,9 @@ def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
     """Report on a picture to the user and to scripts."""
     notes.add(_FLATTENED, frame.stats["instances_degenerate"])
     notes.add(_COARSE, frame.stats["surfels_coarse"])
-    if why := dict(frame.stats["plan"].skipped).get("transparency"):
-        notes.add(why[0].upper() + why[1:])
+    for what in ("transparency", "finishes"):
+        if why := dict(frame.stats["plan"].skipped).get(what):
+            notes.add(why[0].upper() + why[1:])
     for sentence in notes.sentences():
         engine.report({"WARNING"}, sentence)
     last_frame_stats.clear()

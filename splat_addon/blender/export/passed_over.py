@@ -19,7 +19,6 @@ SOCKETS = {
         "Thin Wall": False,
         "Diffuse Roughness": 0.0,
         "Subsurface Weight": 0.0,
-        "Specular Tint": (1.0, 1.0, 1.0, 1.0),
         "Anisotropic": 0.0,
         "Transmission Weight": 0.0,
         "Coat Weight": 0.0,

@@ -10,7 +10,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
-from ...rendering import Light, Material
+from ...rendering import Finish, Light, Material
 from ...rendering.upload.packing import reflectance
 from ..materials.node_products import linked
 from ..materials.node_trees import uses_nodes
@@ -121,17 +121,29 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
     linked = [name for name, field in fields.items() if node.inputs[name].is_linked and field not in own]
     if not any(made.emission):
         linked = [name for name in linked if fields[name] != "emission" or "Strength" in name]
-    if linked:
+    if missing := [name for name in linked if fields[name]]:
         notes.add(
-            f"The material {material.name!r} textures {', '.join(linked)}, which the surfels do not have; the sockets' "
-            "plain values are used. Convert the mesh again to sample them"
+            f"The material {material.name!r} textures {', '.join(missing)}, which the surfels do not have; the "
+            "sockets' plain values are used. Convert the mesh again to sample them"
+        )
+    if uniform := [name for name in linked if not fields[name]]:
+        notes.add(
+            f"The material {material.name!r} textures {', '.join(uniform)}, which this engine has once for a material; "
+            "the sockets' plain values are used"
         )
     return replace(made, index=material.pass_index)
 
 
 def _principled(plain: dict) -> Material:
     ior = _levelled(plain["IOR"], plain["Specular IOR Level"])
-    return Material(plain["Roughness"], plain["Metallic"], ior, _sent(plain, "Emission Color", "Emission Strength"))
+    sent = _sent(plain, "Emission Color", "Emission Strength")
+    finish = Finish(specular_tint=_positive(plain["Specular Tint"]))
+    return Material(plain["Roughness"], plain["Metallic"], ior, sent, finish=finish)
+
+
+def _positive(color) -> tuple[float, float, float]:
+    """A colour as Cycles takes it: negative channels are 0."""
+    return tuple(max(channel, 0.0) for channel in color[:3])
 
 
 def _sent(plain: dict, color: str, strength: str) -> tuple[float, float, float]:
@@ -147,6 +159,7 @@ _SHADERS = {
             "Metallic": "metallic",
             "IOR": "",
             "Specular IOR Level": "",
+            "Specular Tint": "",
             "Emission Color": "emission",
             "Emission Strength": "emission",
         },

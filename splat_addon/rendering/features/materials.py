@@ -30,8 +30,10 @@ VALUES = {
 
 
 def _drawn(tile, placed):
-    instance, emissions_differ = placed.instance, tile.plan.facts["emissions_differ"]
-    return tile.resources.materials(instance, emissions_differ, tile.levels(instance))
+    instance, facts = placed.instance, tile.plan.facts
+    return tile.resources.materials(
+        instance, facts["emissions_differ"], facts["summed_finishes"], tile.levels(instance)
+    )
 
 
 DRAWN = {"materials": _drawn}
@@ -62,8 +64,10 @@ def passes(planning):
 
 
 def texels(planning):
-    """The constant for the number of texels per material."""
-    return (("TEXELS_PER_MATERIAL", 2 if differ(planning)[1] else 1),)
+    """The constants for the number of texels per material, and for the one of its finish, if there is one: the last."""
+    glow, finish = differ(planning)[1], bool(planning.facts["summed_finishes"])
+    count = 1 + glow + finish
+    return ("TEXELS_PER_MATERIAL", count), *((("FINISH_TEXEL", count - 1),) if finish else ())
 
 
 def parts(planning, p):

@@ -150,7 +150,8 @@ def check(plan: FramePlan) -> None:
             names = [texture.name for texture in p.colors]
             raise ValueError(
                 f"The {p.name} pass would write {len(names)} textures at once ({', '.join(names)}), and "
-                f"devices have room for {MAX_COLORS}. Leave Overdraw, indices and mattes out, or choose float32 sums."
+                f"devices have room for {MAX_COLORS}. Leave Overdraw, indices and mattes out, choose float32 sums, or "
+                "give all materials one Specular Tint."
             )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture
 from ..view import overlapping_radii
-from . import depth_format, lights, materials, shadows
+from . import depth_format, finish, lights, materials, shadows
 from .drawing import LIT_HOSTS, draw_polygons
 
 NAMES = ("polygons", "polygon_plane", "polygon_material")
@@ -18,6 +18,7 @@ COLOR = Texture("polygon_color", is_multisampled=True)
 NORMAL = Texture("polygon_normal", is_multisampled=True)
 MATERIAL = Texture("polygon_material", is_multisampled=True)
 EMISSION = Texture("polygon_emission", is_multisampled=True)
+FINISH = Texture("polygon_finish", is_multisampled=True)
 PLANE = Texture("polygon_plane", is_multisampled=True)
 DEPTH = Texture("polygon_depth", "DEPTH32F", is_multisampled=True)
 
@@ -56,6 +57,8 @@ def parts(planning, p):
             yield Part("polygon_material", reads=(MATERIAL,))
         if glow:
             yield Part("emission", reads=(EMISSION,))
+        if finish.summed(planning):
+            yield Part("finish", reads=(FINISH,))
         if planning.find(shadows.maps):
             yield Part("polygon_plane", reads=(PLANE,))
 
@@ -78,6 +81,8 @@ def _drawn(planning):
     if glow:
         varyings = (("smooth", "vec3", "emission"),)
         yield Part("emission", ("gbuffer_emission",), writes=(EMISSION,), varyings=varyings, **drawn)
+    if finish.summed(planning):
+        yield Part("finish", writes=(FINISH,), varyings=(("smooth", "vec4", "finish"),), **drawn)
     if planning.find(shadows.maps):
         varyings = (("flat", "vec3", "triangle_plane"),)
         yield Part("polygon_plane", ("writes_polygon_plane",), writes=(PLANE,), varyings=varyings)

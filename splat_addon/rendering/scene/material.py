@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ...images import Image
+from .finish import PLAIN, Finish
 
 
 @dataclass(frozen=True)
@@ -17,7 +18,7 @@ class Material:
 
     roughness, metallic: 0 to 1. ior: index of refraction of the dielectric coat, which sets its reflectance at normal
         incidence, ((ior - 1) / (ior + 1))^2. emission: scene-linear radiance, the same in all directions.
-    index: what the frame's `material_index` shows of it.
+    index: what the frame's `material_index` shows of it. finish: what `principled` shading adds to it.
     Surfels may have their own roughness, metallic and emission, which take the place of these.
     """
 
@@ -26,6 +27,7 @@ class Material:
     ior: float = 1.5
     emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
     index: int = 0
+    finish: Finish = PLAIN
 
     def __post_init__(self):
         numbers = [self.roughness, self.metallic, self.ior, *self.emission]

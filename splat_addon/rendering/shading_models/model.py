@@ -16,6 +16,7 @@ class ShadingModel:
 
     is_lit: it uses lights, with their shadows and light linking.
     has_material: it uses roughness, metallic, reflectance and emission.
+    has_finish: it uses what else a surface has (`scene.finish`).
     has_world: it uses the light of the world.
     tables: sampler -> the texture for a tile that its file reads beside the sums.
     values: name -> (type, value for a tile) that its file reads from the frame's block.
@@ -29,6 +30,7 @@ class ShadingModel:
     summary: str
     is_lit: bool = False
     has_material: bool = False
+    has_finish: bool = False
     has_world: bool = False
     tables: Mapping[str, Callable] = field(default_factory=dict)
     values: Mapping[str, tuple[str, Callable]] = field(default_factory=dict)

@@ -11,6 +11,7 @@ MODEL = ShadingModel(
     summary="Diffuse and GGX specular light of the scene's lights and world",
     is_lit=True,
     has_material=True,
+    has_finish=True,
     has_world=True,
     tables={"brdf_table": lambda tile: tile.resources.constant(brdf_texels)},
 )

@@ -24,6 +24,20 @@ def brdf_table() -> np.ndarray:
     return table
 
 
+@cache
+def edge_table() -> np.ndarray:
+    """(48, 32) float32, by the same: what the lobe has of c (1 - c)^6, with c the cosine to the half vector, by which a
+    metal's tint takes off its reflectance (Kutz, Hasan, Edmondson 2021)."""
+    table = np.load(Path(__file__).with_name("edge_table.npy"))
+    table.flags.writeable = False
+    return table
+
+
+def edge_texels() -> np.ndarray:
+    """(48, 32, 4) float32: that, and nothing beside it."""
+    return np.pad(edge_table()[..., None], ((0, 0), (0, 0), (0, 3)))
+
+
 def brdf_texels() -> np.ndarray:
     """(48, 64, 4) float32: the first four entries, and beside them the others."""
     table = brdf_table()

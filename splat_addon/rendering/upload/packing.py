@@ -13,7 +13,7 @@ import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, TURN
 from ...surfels import Surfels
-from ..scene import Material, Placed
+from ..scene import Finish, Material, Placed
 from .stored_order import SPLATS_PER_ROW
 
 TEXELS_PER_SPLAT = 4
@@ -96,25 +96,49 @@ def octahedral(normals: np.ndarray) -> np.ndarray:
     return np.stack([np.where(below, folded_x, x), np.where(below, folded_y, y)])
 
 
-def pack_materials(materials: tuple[Material, ...], with_emission: bool = False) -> np.ndarray:
+def pack_materials(
+    materials: tuple[Material, ...], with_emission: bool = False, finishes: tuple[Finish, ...] = ()
+) -> np.ndarray:
     """(1, M, 4) float32: roughness, metallic, reflectance at normal incidence, 0.
 
-    with_emission: two texels each, (1, 2 M, 4), the second r, g, b of the emission, 0.
+    with_emission: another texel each, (1, 2 M, 4): r, g, b of the emission, 0. finishes: if there are any, a last texel
+    each, with the share of each of them but the first.
     """
-    texels = np.zeros((1, len(materials), 2, 4), np.float32)
-    texels[0, :, 0, :3] = [(m.roughness, m.metallic, reflectance(m.ior)) for m in materials]
-    texels[0, :, 1, :3] = [m.emission for m in materials]
-    return texels[:, :, : 1 + with_emission].reshape(1, -1, 4)
+    texels = [[(m.roughness, m.metallic, reflectance(m.ior), 0) for m in materials]]
+    if with_emission:
+        texels.append([(*m.emission, 0) for m in materials])
+    if finishes:
+        texels.append([finish_shares(m.finish, finishes) for m in materials])
+    return np.array(texels, np.float32).transpose(1, 0, 2).reshape(1, -1, 4)
+
+
+#: Finishes that one picture tells apart: the share of the first is what is left by four others, a texel.
+MAX_FINISHES = 5
+
+
+def finish_shares(finish: Finish, finishes: tuple[Finish, ...]) -> np.ndarray:
+    """(4,) 1 for the most similar of these at most `MAX_FINISHES`, without the first, for which all are 0."""
+    distance = [np.sum(np.subtract(finish.numbers, other.numbers) ** 2) for other in finishes]
+    return np.eye(MAX_FINISHES)[np.argmin(distance), 1:]
+
+
+def pack_finishes(finishes: tuple[Finish, ...]) -> np.ndarray:
+    """(F, T, 4) float32 texels of their numbers, one row each."""
+    return np.array([finish.numbers for finish in finishes], np.float32).reshape(len(finishes), -1, 4)
 
 
 def pack_own_materials(
-    surfels: Surfels, materials: tuple[Material, ...], order=slice(None), with_emission: bool = False
+    surfels: Surfels,
+    materials: tuple[Material, ...],
+    order=slice(None),
+    with_emission: bool = False,
+    finishes: tuple[Finish, ...] = (),
 ) -> np.ndarray:
-    """(rows, 512 or 1024, 4) float32: as `pack_materials`, but one per surfel, with 1 at the end of the first texel.
+    """(rows, 512 T, 4) float32, T texels each: as `pack_materials`, but one per surfel, and 1 at the end of its first.
 
     Values that surfels lack come from their slot. order: storage order of the surfels.
     """
-    slots = pack_materials(materials, with_emission).reshape(len(materials), -1, 4)
+    slots = pack_materials(materials, with_emission, finishes).reshape(len(materials), -1, 4)
     chosen = surfels.materials[order]
     rows, count = row_count(len(chosen)), len(chosen)
     texels = np.zeros((rows * SPLATS_PER_ROW, *slots.shape[1:]), np.float32)

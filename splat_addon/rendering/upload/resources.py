@@ -13,7 +13,7 @@ from ...hierarchy import Hierarchy
 from ...surfels import Surfels, concatenate
 from ..device import Device
 from ..device.interface import Pipeline, PipelineDescription, Texture
-from ..scene import Placed, SurfaceTexture
+from ..scene import Finish, Placed, SurfaceTexture
 from ..scene.polygons import Polygons, pack_polygon_uvs, pack_polygons
 from .atlas import FORMAT, make_atlas
 from .cuts import Cuts
@@ -73,19 +73,28 @@ class Resources:
         """The texture coordinates of polygons, uploaded once."""
         return self._once(polygons, "uvs", None, lambda: self.data(pack_polygon_uvs(polygons)))
 
-    def materials(self, instance: Placed, with_emission: bool, levels: Hierarchy | None = None) -> Texture:
-        """The materials of an instance's slots; if surfels or corners have their own, one each. Uploaded once."""
+    def materials(
+        self,
+        instance: Placed,
+        with_emission: bool,
+        finishes: tuple[Finish, ...],
+        levels: Hierarchy | None = None,
+    ) -> Texture:
+        """The materials of an instance's slots; if surfels or corners have their own, one each. Uploaded once.
+
+        with_emission, finishes: as in `pack_materials`.
+        """
         shape, slots = instance.shape, instance.materials
         if not shape.has_own_material:
-            return self.data(pack_materials(slots, with_emission))
+            return self.data(pack_materials(slots, with_emission, finishes))
 
         def own() -> Texture:
             if not isinstance(shape, Surfels):
-                return self.data(pack_own_materials(shape, slots, slice(None), with_emission))
+                return self.data(pack_own_materials(shape, slots, slice(None), with_emission, finishes))
             every, order = _with_nodes(shape, levels), self._order(shape, levels)
-            return self.data(pack_own_materials(every, slots, order, with_emission))
+            return self.data(pack_own_materials(every, slots, order, with_emission, finishes))
 
-        return self._with_levels(shape, "materials", (slots, with_emission), levels, own)
+        return self._with_levels(shape, "materials", (slots, with_emission, finishes), levels, own)
 
     def surfel_uvs(self, surfels: Surfels, levels: Hierarchy | None = None) -> Texture:
         """Their texture coordinates, uploaded once."""

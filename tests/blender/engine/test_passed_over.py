@@ -22,8 +22,10 @@ LEADERS = {
     "Sheen": "Sheen Weight",
     "Thin Film": "Thin Film Thickness",
 }
+#: What surfels have no attribute for.
+ONCE_FOR_A_MATERIAL = ("IOR", "Specular IOR Level", "Specular Tint")
 #: What the export reads besides the channels of surfaces; a Weight is of a Mix Shader's making, and disabled.
-READ_BESIDES = {"IOR", "Specular IOR Level", "Weight"}
+READ_BESIDES = {*ONCE_FOR_A_MATERIAL, "Weight"}
 
 
 @pytest.fixture
@@ -66,6 +68,14 @@ def test_a_socket_that_is_passed_over_is_named_when_it_is_set_or_linked(principl
     assert said_of(principled) == []
     tree.links.new(tree.nodes.new("ShaderNodeValue").outputs[0], socket)
     assert said_of(principled) == [expected]
+
+
+@pytest.mark.parametrize("name", ONCE_FOR_A_MATERIAL)
+def test_a_socket_that_is_read_once_for_a_material_is_named_when_it_is_linked(principled, name):
+    tree = bpy.data.materials["paint"].node_tree
+    tree.links.new(tree.nodes.new("ShaderNodeValue").outputs[0], principled.inputs[name])
+    (sentence,) = said_of(principled)
+    assert sentence.startswith(f"The material 'paint' textures {name}, which this engine has once for a material")
 
 
 @pytest.mark.parametrize(("output", "node"), [("Volume", "VolumeAbsorption"), ("Displacement", "Displacement")])

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A ball whose Principled BSDF has a tint of its reflections, beside Cycles' ball."""
+
+import bpy
+import numpy as np
+import pytest
+
+#: What each ball has.
+BALLS = {
+    "tinted": {"Specular Tint": (1.0, 0.2, 0.1, 1.0), "Specular IOR Level": 1.0},
+    "tinted_smooth": {"Specular Tint": (0.2, 1.0, 0.2, 1.0), "Roughness": 0.3, "Base Color": (0.1, 0.1, 0.1, 1)},
+    "tinted_metal": {"Specular Tint": (1.0, 0.2, 0.1, 1.0), "Metallic": 1.0},
+    "half_metal": {"Specular Tint": (0.1, 0.2, 1.0, 1.0), "Metallic": 0.5, "Roughness": 0.3},
+}
+
+
+@pytest.fixture
+def inputs(scene, add_camera, add_object):
+    """Inputs of the Principled BSDF of a smooth ball that a parallel camera looks down on, under a lamp and a world."""
+    scene.surfel_splatting.shading = "principled"
+    scene.surfel_splatting.supersampling = 2
+    scene.render.resolution_x = scene.render.resolution_y = 48
+    add_camera((0, 0, 5), type="ORTHO", ortho_scale=2.2)
+    lamp = bpy.data.lights.new("lamp", "POINT")
+    lamp.energy, lamp.shadow_soft_size, lamp.use_shadow = 900, 0.0, False
+    placed = bpy.data.objects.new("lamp", lamp)
+    placed.location = (3, 2, 6)
+    scene.collection.objects.link(placed)
+    scene.world = bpy.data.worlds.new("sky")
+    scene.world.use_nodes = True
+    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.4, 0.5, 0.6, 1)
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=6, radius=1)
+    ball = bpy.context.object
+    ball.data.shade_smooth()
+    material = bpy.data.materials.new("paint")
+    material.use_nodes = True
+    ball.data.materials.append(material)
+    return material.node_tree.nodes["Principled BSDF"].inputs
+
+
+def seen(pixels):
+    """(n, 3) within 0.95 of the ball's radius: to 72 degrees."""
+    y, x = (np.mgrid[:48, :48] - 23.5) / 24 * 1.1
+    return pixels[np.hypot(x, y) < 0.95][:, :3]
+
+
+@pytest.mark.parametrize("name", BALLS)
+def test_a_ball_is_cycles_ball(name, inputs, picture, switch_to_cycles):
+    def both():
+        bpy.context.scene.render.engine = "SURFEL_SPLATTING"
+        ours = seen(picture())
+        switch_to_cycles(samples=64)
+        return ours, seen(picture())
+
+    for socket, value in BALLS[name].items():
+        if "Tint" not in socket:
+            inputs[socket].default_value = value
+    plain, _ = both()
+    for socket, value in BALLS[name].items():
+        inputs[socket].default_value = value
+    ours, theirs = both()
+    # root mean square differences as a share of the mean radiance, without and with the finish; the rest is Schlick's
+    # formula, and Cycles' noise
+    before, after = (np.sqrt(((mine - theirs) ** 2).mean()) / theirs.mean() for mine in (plain, ours))
+    assert after < 0.06 and after < 0.7 * before
