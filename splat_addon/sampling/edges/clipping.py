@@ -104,7 +104,7 @@ def _unlikeness(met: Meetings, rows: np.ndarray, arrays: dict[str, np.ndarray], 
 
 
 def _nearest_first(met: Meetings, rows: np.ndarray) -> np.ndarray:
-    """These meetings in the order of surfels, and of each one's by how near the edge is.
+    """The (m,) rows of meetings, ordered by surfel, and for each surfel by how near the edge is.
 
     At an end that two edges share, the one whose line is farther off says on which side the centre is.
     """
@@ -119,8 +119,9 @@ def _nearest_first(met: Meetings, rows: np.ndarray) -> np.ndarray:
 
 
 def _of_own_surface(met: Meetings, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Those of m meetings whose surfels lie within their nearest border; else it is of a piece of surface that only
-    looks like that border's. Also the first of each surfel, and the (m,) number of each one's surfel among these."""
+    """The meetings, by row, of surfels that lie within their nearest border; a surfel beyond it is of another piece of
+    surface that only looks like that border's. Also the first meeting of each surfel, and the (m,) number of each one's
+    surfel among these."""
     _, starts, owner = _groups(met.surfel.take(rows))
     is_own = met.line[2].take(rows.take(starts)) >= BEYOND
     if is_own.all():
@@ -130,7 +131,7 @@ def _of_own_surface(met: Meetings, rows: np.ndarray) -> tuple[np.ndarray, np.nda
 
 
 def _groups(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of runs of equal values: (n,) bool, where each starts; their starts; and (n,) the number of each one's run."""
+    """Runs of equal values: (n,) bool, whether a run starts there; the runs' starts; and (n,) the number of the run."""
     is_first = np.ones(len(ordered), bool)
     np.not_equal(ordered[1:], ordered[:-1], out=is_first[1:])
     return is_first, np.flatnonzero(is_first), np.cumsum(is_first) - 1
