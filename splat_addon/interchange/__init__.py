@@ -8,7 +8,8 @@ Reading: `ply_header`, then `ply_file` (vertices as named columns), then `conten
 
 from .contents import read_contents
 from .following import followed
-from .gaussian_ply import DEFAULT_FLATNESS, Gaussians, write_gaussian_ply
+from .gaussian_ply import write_gaussian_ply
+from .gaussians import DEFAULT_FLATNESS, Gaussians, flat_gaussians
 from .placement import joined, transformed
 from .point_ply import Points
 from .surfel_ply import StoredSurfels, read_ply, write_ply
@@ -18,6 +19,7 @@ __all__ = [
     "Gaussians",
     "Points",
     "StoredSurfels",
+    "flat_gaussians",
     "followed",
     "joined",
     "read_contents",

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import os
 
-from .gaussian_ply import DEFAULT_FLATNESS, Gaussians, gaussians, is_gaussians
+from .gaussian_ply import gaussians, is_gaussians
+from .gaussians import DEFAULT_FLATNESS, Gaussians
 from .ply_file import read_vertices
 from .point_ply import Points, points
 from .surfel_ply import StoredSurfels, is_surfels, stored_surfels

@@ -31,11 +31,18 @@ def day(in_a_window, tmp_path_factory):
         BLENDER_USER_RESOURCES=str(folder),
         SURFEL_PACKAGE=str(package),
     )
-    return report, lambda name: _read(shot.with_name(f"{shot.stem}_{name}.png"))
+    return report, lambda name, part=VIEW: _read(shot.with_name(f"{shot.stem}_{name}.png"), part)
 
 
-def _read(file: Path) -> np.ndarray:
-    return np.asarray(Image.open(file).convert("RGB"), np.float32)[VIEW] / 255
+#: The guide's picture -> the moment of the day that it shows, and its rows and columns of the screen.
+GUIDE = {"before": "before", "shown": "guide"}
+GUIDE_VIEW = slice(280, 1080), slice(0, 1000)
+#: The share of its pixels that may differ; another panel or another text changes more.
+AS_OLD = 0.01
+
+
+def _read(file: Path, part: tuple[slice, ...] = ()) -> np.ndarray:
+    return np.asarray(Image.open(file).convert("RGB"), np.float32)[part] / 255
 
 
 def difference(one: np.ndarray, other: np.ndarray) -> float:
@@ -65,3 +72,11 @@ def test_the_picture_comes_back(day, later):
 
 def test_disabling_leaves_nothing_and_enabling_finds_the_engine_again(day):
     assert day[0]["left"] == [] and day[0]["engine"] == "SURFEL_SPLATTING"
+
+
+@pytest.mark.parametrize("name", GUIDE)
+def test_the_guide_shows_the_window_as_it_is(day, name):
+    """What the window shows now is kept beside the screenshots, for docs/guide if this fails."""
+    now = day[1](GUIDE[name], GUIDE_VIEW)
+    Image.fromarray(np.uint8(np.round(now * 255))).save(ROOT / "build" / "window" / f"guide_{name}.png", optimize=True)
+    assert difference(now, _read(ROOT / "docs" / "guide" / f"{name}.png")) < AS_OLD

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Settings for turning bare points into surfels, shared by the converting operator and the PLY import."""
+"""Settings for turning bare points and Gaussian splats into surfels, shared by the converting operator and the PLY
+import."""
 
 from __future__ import annotations
 
 import bpy
-from bpy.props import EnumProperty, IntProperty
+from bpy.props import EnumProperty, FloatProperty, IntProperty
 from mathutils import Vector
 
+from ...interchange import DEFAULT_FLATNESS
 from ...sampling.points import DEFAULT_NEIGHBOURS, ISOLATED_CHOICES, MAX_NEIGHBOURS
 from ..density_properties import splat_size_property
 
@@ -45,7 +47,19 @@ class PointsProperties:
         ),
         default="OUTWARD",
     )
+    flatness: FloatProperty(
+        name="Flatness",
+        description=(
+            "Maximum thickness of a Gaussian relative to its middle radius; thicker ones are left out. 1 accepts all"
+        ),
+        default=DEFAULT_FLATNESS,
+        min=0.0,
+        max=1.0,
+    )
 
+
+#: Settings that only Gaussian splats have.
+GAUSSIAN_NAMES = ("flatness",)
 
 #: Arguments of `surfels_from_points` that are properties of the same name.
 _KEYWORDS = {"neighbours": int, "splat_size": float, "isolated": str.lower}
@@ -68,8 +82,15 @@ def viewpoint(properties: PointsProperties, context: bpy.types.Context) -> Vecto
 
 
 def draw_points_properties(layout: bpy.types.UILayout, properties: PointsProperties) -> None:
-    """The settings in Blender's own style."""
+    """The settings of bare points in Blender's own style."""
     layout.use_property_split = True
     layout.use_property_decorate = False
     for name in PointsProperties.__annotations__:
+        if name not in GAUSSIAN_NAMES:
+            layout.prop(properties, name)
+
+
+def draw_gaussian_properties(layout: bpy.types.UILayout, properties: PointsProperties) -> None:
+    """The settings of Gaussian splats."""
+    for name in GAUSSIAN_NAMES:
         layout.prop(properties, name)

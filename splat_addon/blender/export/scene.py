@@ -18,6 +18,7 @@ from ...rendering.upload.packing import MAX_SPLATS
 from ...surfels import Surfels, portions
 from ..conversion.source_record import is_stood_in, sources_in
 from ..geometry.attributes import Points, has_surfels, has_surfels_beside_faces, have_same_values, read_stored
+from ..geometry.gaussian_clouds import is_gaussian_cloud
 from ..geometry.points_proxy import is_solid, shown_points, shows_as_points
 from ..geometry.sources import asked_of, owner_of
 from ..materials.material_override import Overridden, override_of
@@ -147,7 +148,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                 if "points" in what:
                     notes.add(_BARE_POINTS)
             elif object_.type in _NOT_DRAWN and not shows_as_points(object_.original):
-                notes.add(f"Objects of type {_NOT_DRAWN[object_.type]} are not drawn; convert them to meshes first")
+                notes.add(_not_drawn(object_))
         except ValueError as error:
             notes.leave_out(object_.name, error)
     sampled, polygons = live_meshes.instances(
@@ -204,7 +205,18 @@ _NO_FORM = Form("HIDDEN")
 _NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "volume", "GREASEPENCIL": "grease pencil"}
 
 
-_BARE_POINTS = "Meshes of points without faces are not drawn; convert them with Object > Convert Points to Surfels"
+#: What can be converted besides, and where.
+_POINTS = "are not drawn; convert them with Object > Convert Points to Surfels"
+
+
+def _not_drawn(object_: bpy.types.Object) -> str:
+    """The sentence about an evaluated object of one of the types above."""
+    if object_.type == "POINTCLOUD":
+        return f"{'Gaussian splats' if is_gaussian_cloud(object_.data) else 'Point clouds'} {_POINTS}"
+    return f"Objects of type {_NOT_DRAWN[object_.type]} are not drawn; convert them to meshes first"
+
+
+_BARE_POINTS = f"Meshes of points without faces {_POINTS}"
 
 
 def _content(entry: bpy.types.DepsgraphObjectInstance) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ import numpy as np
 from ...interchange import followed
 from ...surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
 from ..ids import POINT_ATTRIBUTES, REST, SOLID, PointAttribute
+from .gaussian_clouds import is_gaussian_cloud
 
 #: Data-blocks whose points can be surfels.
 Points = bpy.types.Mesh | bpy.types.PointCloud
@@ -36,9 +37,11 @@ def has_surfels(mesh: Points) -> bool:
 
     One of them is enough, so that surfels that lost the other are reported by `read_surfels` instead of being ignored
     silently. A point cloud that this extension did not make needs both, because others use one of these names for other
-    purposes.
+    purposes, and is no surfels if it is Gaussian splats, which have both.
     """
     if isinstance(mesh, bpy.types.PointCloud):
+        if is_gaussian_cloud(mesh):
+            return False
         return REST.name in mesh.attributes or all(name in mesh.attributes for name in MARKS)
     return not mesh.polygons and any(name in mesh.attributes for name in MARKS)
 

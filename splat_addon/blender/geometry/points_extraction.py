@@ -47,7 +47,7 @@ def has_points(source: bpy.types.Object) -> bool:
 def extract_points(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> ExtractedPoints:
     """The points of an object, as its modifiers make them."""
     evaluated = source.evaluated_get(depsgraph)
-    materials = tuple(slot.material and slot.material.original for slot in evaluated.material_slots)
+    materials = materials_of(evaluated)
     # The geometry set owns its point cloud, so it must live until the points are copied.
     geometry = _evaluated_geometry(evaluated)
     cloud = evaluated.data if evaluated.type == "POINTCLOUD" else geometry and geometry.pointcloud
@@ -58,6 +58,11 @@ def extract_points(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> 
         if points.normals is None and mesh.polygons:
             points = replace(points, normals=_values(mesh.vertex_normals, "vector", 3, len(mesh.vertices)))
     return points
+
+
+def materials_of(evaluated: bpy.types.Object) -> tuple[bpy.types.Material | None, ...]:
+    """The materials of the file in an evaluated object's slots, None for an empty one."""
+    return tuple(slot.material and slot.material.original for slot in evaluated.material_slots)
 
 
 def sheared(points: ExtractedPoints, linear: np.ndarray) -> ExtractedPoints:

@@ -6,14 +6,20 @@ from __future__ import annotations
 from pathlib import Path
 
 import bpy
-from bpy.props import FloatProperty, StringProperty
+from bpy.props import StringProperty
 from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
 from mathutils import Matrix
 
-from ...interchange import DEFAULT_FLATNESS, Gaussians, Points, StoredSurfels, read_contents
+from ...interchange import Gaussians, Points, StoredSurfels, read_contents
 from ...sampling import surfels_from_points
 from ...surfels import Surfels
-from ..conversion.points_settings import PointsProperties, draw_points_properties, keywords, viewpoint
+from ..conversion.points_settings import (
+    PointsProperties,
+    draw_gaussian_properties,
+    draw_points_properties,
+    keywords,
+    viewpoint,
+)
 from ..conversion.surfel_objects import add_surfel_object, select_only
 from ..ids import IMPORT_PLY
 from .file_paths import absolute, file_sentence, path_property
@@ -30,15 +36,6 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
     filename_ext = ".ply"
     filepath: path_property("reading from", is_forgotten=True)
     filter_glob: StringProperty(default="*.ply", options={"HIDDEN"})
-    flatness: FloatProperty(
-        name="Flatness",
-        description=(
-            "Maximum thickness of a Gaussian relative to its middle radius; thicker ones are left out. 1 accepts all"
-        ),
-        default=DEFAULT_FLATNESS,
-        min=0.0,
-        max=1.0,
-    )
 
     def invoke(self, context, event):
         if not self.filepath:
@@ -52,7 +49,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
         header, body = self.layout.panel("surfels_ply_gaussians")
         header.label(text="Gaussian Splats")
         if body:
-            body.prop(self, "flatness")
+            draw_gaussian_properties(body, self)
         header, body = self.layout.panel("surfels_ply_points")
         header.label(text="Points")
         if body:
@@ -81,14 +78,7 @@ def _from_surfels(contents: StoredSurfels, properties, context) -> tuple[Surfels
 
 
 def _from_gaussians(contents: Gaussians, properties, context) -> tuple[Surfels, list[str]]:
-    skipped = {
-        "thicker than the flatness allows": contents.not_flat,
-        "with unusable numbers": contents.unusable,
-    }
-    notes = [f"Skipped {count:,} of {contents.total:,} Gaussians {why}" for why, count in skipped.items() if count]
-    if contents.view_dependent:
-        notes.append("Skipped the part of the colours that changes with the view, which surfels do not have")
-    return contents.surfels, notes
+    return contents.surfels, contents.notes()
 
 
 def _from_points(contents: Points, properties, context) -> tuple[Surfels, list[str]]:

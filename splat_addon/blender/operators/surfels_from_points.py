@@ -7,7 +7,13 @@ import bpy
 from bpy.props import EnumProperty
 
 from ..conversion.points_conversion import PointsBatch
-from ..conversion.points_settings import PointsProperties, draw_points_properties, keywords, viewpoint
+from ..conversion.points_settings import (
+    PointsProperties,
+    draw_gaussian_properties,
+    draw_points_properties,
+    keywords,
+    viewpoint,
+)
 from ..geometry.points_extraction import has_points
 from ..ids import SURFELS_FROM_POINTS
 from .menu_entry import with_menu_entry
@@ -50,11 +56,12 @@ directions, is estimated from neighbouring points"""
 
     def draw(self, context):
         draw_points_properties(self.layout, self)
+        draw_gaussian_properties(self.layout, self)
         for name in ("source", "follow"):
             self.layout.prop(self, name)
 
     def _new_batch(self, context):
-        return PointsBatch(selected_points(context), keywords(self), lambda: viewpoint(self, context))
+        return PointsBatch(selected_points(context), keywords(self), lambda: viewpoint(self, context), self.flatness)
 
 
 def draw_points_menu_entry(menu, context):

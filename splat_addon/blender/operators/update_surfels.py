@@ -83,7 +83,8 @@ def _batch(made: bpy.types.Object, context: bpy.types.Context) -> Batch:
         if source.name not in context.view_layer.objects:
             raise ValueError(f"Its source {source.name!r} is not in this view layer; put it back into the scene first.")
     if record.kind == "POINTS":
-        return PointsBatch(sources, keywords(record.points), lambda: viewpoint(record.points, context))
+        points = record.points
+        return PointsBatch(sources, keywords(points), lambda: viewpoint(points, context), points.flatness)
     return ConversionBatch(sources, choices(record.mesh), sources[0])
 
 

@@ -194,7 +194,7 @@ def test_point_clouds_are_said_to_be_left_out(good, add_mesh, add_nodes, picture
 
     add_nodes(add_mesh("points", [(0, 0, 1)], []), to_points)
     assert np.array_equal(picture()[16, 16], (0, 1, 0, 1))
-    assert "Objects of type point cloud are not drawn; convert them to meshes first" in said()
+    assert "Point clouds are not drawn; convert them with Object > Convert Points to Surfels" in said()
 
 
 @pytest.mark.parametrize("modifier", [None, "SMOOTH"])
