@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from . import commands, mesh_sampling_settings, operators, preferences, properties, translations
+from . import commands, manual, mesh_sampling_settings, operators, preferences, properties, translations
 from .conversion import bring_back, mesh_settings, prediction, source_record
 from .engine import render_engine, render_passes
 from .ui import (
@@ -43,6 +43,7 @@ MODULES = (
     sidebar,
     points_panel,
     commands,
+    manual,
     translations,
 )
 

@@ -12,6 +12,8 @@ from pathlib import Path, PurePosixPath
 
 import pytest
 
+from splat_addon.blender.manual import PAGES
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -31,8 +33,14 @@ def test_every_shader_is_in(files):
 
 
 def test_nothing_else_is_in(files):
-    others = [f for f in files if f.parts[0] not in ("splat_addon", "shaders") and len(f.parts) > 1]
+    others = [f for f in files if f.parts[0] not in ("splat_addon", "shaders", "docs") and len(f.parts) > 1]
     assert others == []
+
+
+def test_the_pages_of_the_manual_are_in_and_no_pictures(files):
+    docs = {str(f) for f in files if f.parts[0] == "docs"}
+    assert {f"docs/{target.partition('#')[0]}" for _, target in PAGES} <= docs
+    assert docs == {f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")}
 
 
 def test_the_float64_reference_is_not_in(files):

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Online Manual in the context menu of a setting or a button: the page of docs/ that explains it.
+
+The pages are at the manifest's `website` if it names one, and come with the extension in any case.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import bpy
+
+_ROOT = Path(__file__).resolve().parents[2]
+
+_SETTINGS = "bpy.types.surfelsplattingsettings"
+_CONVERT, _POINTS = "guide.md#convert-a-mesh", "guide.md#convert-points-and-scans"
+_LIGHT = "guide.md#light-materials-and-cameras"
+
+#: Blender's name of a setting or an operator in lower case, with * for any letters -> page and heading; the first that
+#: fits counts.
+PAGES = (
+    (f"{_SETTINGS}.method", "choose.md#method"),
+    (f"{_SETTINGS}.as_printed", "choose.md#method"),
+    (f"{_SETTINGS}.storage", "choose.md#memory"),
+    (f"{_SETTINGS}.accumulation", "choose.md#memory"),
+    (f"{_SETTINGS}.mesh_*", "choose.md#density"),
+    (f"{_SETTINGS}.render_meshes", _CONVERT),
+    (f"{_SETTINGS}.*samples", "guide.md#render"),
+    (f"{_SETTINGS}.*supersampling", "choose.md#preset"),
+    (f"{_SETTINGS}.broken_objects", "guide.md#render"),
+    (f"{_SETTINGS}*", _LIGHT),
+    ("bpy.types.viewlayerpasses*", _LIGHT),
+    ("bpy.types.surfelobjectsettings*", _CONVERT),
+    ("bpy.types.surfelconversionsettings.density", "choose.md#density"),
+    ("bpy.types.surfelconversionsettings*", _CONVERT),
+    ("bpy.types.surfelpointssettings*", _POINTS),
+    ("bpy.types.surfelsource*", _CONVERT),
+    ("bpy.types.surfelrecord*", _CONVERT),
+    ("bpy.types.surfelpreferences.most_megabytes", "choose.md#memory"),
+    ("bpy.types.surfelpreferences*", _CONVERT),
+    ("bpy.ops.object.surfels_from_mesh*", _CONVERT),
+    ("bpy.ops.object.surfels_update*", _CONVERT),
+    ("bpy.ops.object.surfel_conversion_preset_add*", _CONVERT),
+    ("bpy.ops.view3d.surfels_show*", _CONVERT),
+    ("bpy.ops.object.surfels_from_points*", _POINTS),
+    ("bpy.ops.import_scene.surfels_ply*", _POINTS),
+    ("bpy.ops.export_scene.surfels_ply*", _POINTS),
+    ("bpy.ops.render.surfel_preset*", "choose.md#preset"),
+)
+
+
+def manual_map() -> tuple[str, tuple[tuple[str, str], ...]]:
+    """As Blender asks for it: the beginning of every address, and `PAGES`."""
+    manifest = tomllib.loads((_ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
+    return f"{manifest.get('website', _ROOT.as_uri()).rstrip('/')}/docs/", PAGES
+
+
+def register():
+    bpy.utils.register_manual_map(manual_map)
+
+
+def unregister():
+    bpy.utils.unregister_manual_map(manual_map)
