@@ -89,7 +89,9 @@ class Pyramid:
         return np.clip(wanted, 0, self.count - 1).astype(np.intp)
 
     def lookup(self, uvs: np.ndarray, levels: np.ndarray) -> np.ndarray:
-        """(n, 4) float32 colours, not premultiplied, at (2, n) texture coordinates; a non-finite one counts as 0."""
+        """(n, 4) float32 colours, not premultiplied, at (2, n) texture coordinates; a non-finite coordinate
+        counts as 0.
+        """
         uvs = np.where(np.isfinite(uvs), uvs, 0)
         colors = np.empty((uvs.shape[1], 4), np.float32)
         for level in np.unique(levels):

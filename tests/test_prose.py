@@ -41,12 +41,27 @@ RIDDLES = {
     r"\b(?:have|has) not (?:its|the|a|it|them)\b": "lack, do not have",
 }
 #: Further patterns for code: fragments whose subject a reader has to guess.
-FRAGMENTS = {r"^Of\b": "name the thing first", r"\blet(?:s|ting)? go of\b": "free", r"^(?:That|Those) of\b": "name it"}
+FRAGMENTS = {
+    r"^(?:Of|By|Whose|Nor)\b(?!.*, )": "name the thing first",
+    r"^As [^,]*$": "say what is so",
+    r"^(?:\.\.\.|Not where\b)": "write a sentence",
+    r"^(?:That|Those) (?:of|in|which)\b": "name it",
+    r"\blet(?:s|ting)? go of\b": "free",
+}
+#: A test's docstring says what holds, so each of its sentences has one of these verbs. Add the verb that yours has.
+VERBS = re.compile(
+    r"\b(?:is|are|was|were|has|have|had|does|do|did|can|could|may|might|must|will|would|shall|should|cannot"
+    r"|(?:accept|add|become|begin|belong|change|check|coincide|come|compare|compute|consist|contain|contribute|convert"
+    r"|cover|cross|cut|decide|depend|differ|distinguish|draw|enclose|end|equal|exist|face|fall|fill|get|give|go|grow|happen|hold"
+    r"|interpolate|join|keep|know|lack|lean|leave|lie|list|look|make|mark|match|meet|miss|move|name|need|pass|point|print|project"
+    r"|promise|prove|put|reach|read|refuse|remain|return|run|see|set|show|stand|start|stay|stick|store|take|tell|turn|use"
+    r"|vary|widen|wrap|write)(?:s|es)?|falls|goes|shadows|varies)\b"
+)
 #: The first sentence of a docstring says what the thing is for.
 LONGEST_SUMMARY = 50
 SOURCES = sorted(
     file
-    for folder in ("splat_addon", "shaders", "scripts")
+    for folder in ("splat_addon", "shaders", "scripts", "tests")
     for file in (ROOT / folder).rglob("*")
     if file.suffix in (".py", ".glsl") and "translations" not in file.parts
 )
@@ -139,6 +154,28 @@ def test_code_is_explained_without_riddles():
         if re.search(riddle, text)
     ]
     assert said == []
+
+
+def is_sentence(text: str) -> bool:
+    """Whether a text has a verb, or only explains a parameter, or gives a measurement."""
+    return bool(VERBS.search(text) or re.match(r"[a-z_]+(?:, [a-z_]+)*: |Measured\b", text))
+
+
+def test_what_a_test_holds_is_said_in_sentences():
+    fragments = [
+        f"{file.relative_to(ROOT)}: {node.name}: {sentence!r}"
+        for file in sorted((ROOT / "tests").rglob("test_*.py"))
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")
+        for sentence in sentences(ast.get_docstring(node) or "")
+        if not is_sentence(sentence)
+    ]
+    assert fragments == []
+
+
+@pytest.mark.parametrize("text", ["Of edges 2, active and selected.", "By the commands' own parser.", "As Blender's."])
+def test_a_fragment_is_found(text):
+    assert not is_sentence(text) or any(re.search(fragment, text) for fragment in FRAGMENTS)
 
 
 def test_docstrings_begin_with_a_short_sentence_and_end_one():

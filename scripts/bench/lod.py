@@ -70,7 +70,7 @@ def run(options, report) -> None:
 
 
 def dolly(renderer: Renderer, surfels, options) -> list[float]:
-    """The pop of each picture after the first."""
+    """The pop of each picture after the first while the camera approaches."""
     before, pops = None, []
     for step in np.linspace(0, 2, 300)[150 - options.dolly // 2 :][: options.dolly]:
         scene, camera = in_view(surfels, options.size, tuple(2**step * x for x in VIEWS["filling"]))
@@ -84,7 +84,7 @@ def dolly(renderer: Renderer, surfels, options) -> list[float]:
 
 
 def measure(device, surfels, view: str, eye, shadow: int, options, passes: list) -> tuple:
-    """A row, and one for `passes`. Either kind has a renderer of its own."""
+    """One row of the table of frames, and one of the table of passes. Each kind of frame has its own renderer."""
     (scene, camera), every = in_view(surfels, options.size, eye), Settings(detail_tolerance=0.0)
     camera = replace(camera, far=camera.far * 100)
     every = replace(every, shadow_resolution=shadow, outputs=("color",))

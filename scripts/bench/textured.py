@@ -65,7 +65,9 @@ def run(options, report) -> None:
 
 
 def on_sphere(eye: np.ndarray, rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where rays hit the unit sphere: longitude and latitude, and whether the angle is small enough to be measured."""
+    """The longitude and latitude at which rays hit the unit sphere, and whether the angle is small enough to be
+    measured.
+    """
     along = -rays @ eye
     inside = along**2 - eye @ eye + 1
     points = eye + rays * (along - np.sqrt(np.maximum(inside, 0)))[:, None]

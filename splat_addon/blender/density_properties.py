@@ -41,7 +41,7 @@ DENSITIES = {
 
 
 def resolution_property(whose: str, **limits):
-    """whose: bounding box is meant."""
+    """The property `resolution`. whose: the object whose bounding box is meant, as in the tooltip."""
     description = (
         f"Grid cells along the longest edge of {whose} bounding box. Doubling it makes four times as many surfels, and "
         "takes four times the memory and time"
@@ -50,14 +50,14 @@ def resolution_property(whose: str, **limits):
 
 
 def spacing_property(units: str, **more):
-    """units: how it is measured, with what stands before that."""
+    """The property `spacing`. units: the end of the tooltip, which says in whose units it is measured."""
     description = f"Distance between surfels{units}. Half of it takes four times the memory and time"
     fields = {"default": 0.01, "soft_max": 10.0, "precision": 4, "step": 0.1}
     return FloatProperty(name="Spacing", description=description, **fields, **more)
 
 
 def pixels_property(sentence: str, **more):
-    """sentence: what else there is to say."""
+    """The property for pixels per surfel. sentence: what the tooltip adds."""
     where = "Distance between surfels in pixels of the render, where the object comes closest to the camera"
     fields = {"default": 0.75, "soft_max": 10.0}
     return FloatProperty(name="Pixels per Surfel", description=f"{where}. {sentence}", **fields, **more)

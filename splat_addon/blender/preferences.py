@@ -52,7 +52,7 @@ class SurfelPreferences(bpy.types.AddonPreferences):
 
 
 def preferences() -> SurfelPreferences | None:
-    """None where the package was registered by a script, and is no add-on of this Blender."""
+    """The add-on's preferences; None if a script registered the package, so that it is not an add-on."""
     add_on = bpy.context.preferences.addons.get(ROOT)
     return add_on.preferences if add_on else None
 
@@ -78,7 +78,7 @@ def _known_device() -> tuple[str, ...]:
 
 
 def use_defaults(scene: bpy.types.Scene) -> None:
-    """The preferences' conversion settings in a scene whose own were never touched."""
+    """Copy the preferences' conversion settings to a scene whose own settings were never changed."""
     chosen, settings = preferences(), getattr(scene, CONVERSION_SETTINGS)
     if chosen is None or any(settings.is_property_set(name) for name in PROPERTY_NAMES):
         return

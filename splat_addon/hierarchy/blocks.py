@@ -73,8 +73,9 @@ def ranges(starts: np.ndarray, counts: np.ndarray) -> np.ndarray:
 
 
 def depth_first(levels: list[Level], surfels: int) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Numbers of each level's entries in the order of their parents, the surfels' first, and how many children each of
-    those above has."""
+    """The entries of each level, the surfels' level first, in the order of their parents; and each parent's
+    number of children.
+    """
     entries, counts = [], []
     rows = np.arange(len(levels[-1].numbers) if levels else surfels, dtype=np.int32)
     for level in reversed(levels):
@@ -111,7 +112,7 @@ def make_blocks(entries: list[np.ndarray], counts: list[np.ndarray], geometry: G
 
 
 def _between(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Runs cut into equal ones of at most `BLOCK`: starts, ends, and into how many each was cut."""
+    """Runs cut into equal pieces of at most `BLOCK`: starts, ends, and the number of pieces of each run."""
     size = last - first
     parts = -(-size // BLOCK)
     owner = np.repeat(np.arange(len(first)), parts)
@@ -121,8 +122,9 @@ def _between(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def _bounds(entries, starts, geometry: Geometry, errors, below, children):
-    """low, high, axes, angles and errors of a level's blocks. below: the values of the level below, children: where
-    each block's children begin."""
+    """low, high, axes, angles and errors of a level's blocks. below: these values for the level below.
+    children: the first child of each block.
+    """
     if not len(entries):
         return np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3))
     radii = geometry.radii[entries]

@@ -35,7 +35,9 @@ class Frame:
     shortest: np.ndarray
 
     def reach(self, children: Nodes, runs: Runs, offsets: np.ndarray, share: np.float32) -> np.ndarray:
-        """(n,) at least how many half-axes of its parent's ellipse a share of each child's reaches from its centre."""
+        """(n,) a lower bound: how many half-axes of the parent's ellipse a given share of each child's ellipse
+        reaches.
+        """
         first, second = (runs.spread(a / h) for a, h in ((self.first, self.longest), (self.second, self.shortest)))
         beside = _dot(first, offsets) ** 2 + _dot(second, offsets) ** 2
         (a, b), (c, d) = ([_dot(axis, half) for half in children.axes] for axis in (first, second))

@@ -67,7 +67,7 @@ def build_hierarchy(surfels: Surfels) -> Hierarchy:
 
 
 def build_levels(surfels: Surfels) -> tuple[Surfels, np.ndarray, list[Level], Geometry]:
-    """Merged nodes, their (M, 3) errors, the levels from below, and where surfels and nodes lie."""
+    """Merged nodes, their (M, 3) errors, the levels from the bottom up, and the places of surfels and nodes."""
     current = leaves(surfels)
     numbers, worst = np.arange(len(surfels), dtype=np.int32), np.zeros((len(surfels), 3), np.float32)
     made, errors, levels, places = [empty_surfels(surfels.origin)], [worst[:0]], [], [_geometry(current)]
@@ -94,7 +94,7 @@ def build_levels(surfels: Surfels) -> tuple[Surfels, np.ndarray, list[Level], Ge
 
 
 def _cells(surfels: Surfels) -> Iterator[float]:
-    """Edges of the levels' cells, until one holds everything."""
+    """The cell sizes of the levels, up to one cell that contains everything."""
     if not len(surfels):
         return
     low, high = surfels.local_bounds
@@ -107,7 +107,7 @@ def _cells(surfels: Surfels) -> Iterator[float]:
 
 
 def _merge(current: Table, cell: float) -> tuple[Table, np.ndarray, Runs, np.ndarray] | None:
-    """Parents, the rows of their children, the runs of these, and the rows that wait; None if too few merge."""
+    """The parents, their children's rows in runs, and the rows that wait for larger cells; None if too few merge."""
     is_large = current.column("radii") > _LARGEST * cell
     rows = np.flatnonzero(~is_large)
     if len(rows) < 2:

@@ -23,7 +23,7 @@ _STEPS = 16
 
 
 def clustered(table: Table, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) order that brings those in some rows together by cluster, and (m,) the clusters' sizes in it."""
+    """(n,) order that brings the given rows together by cluster, and the (m,) sizes of the clusters in that order."""
     order, is_first, depth = _sorted(table, rows, cell)
     is_first[1:] |= depth[1:] - depth[:-1] > GAP * _STEPS
     # a chain of small gaps is cut if it gets too deep
@@ -36,7 +36,9 @@ def clustered(table: Table, rows: np.ndarray, cell: float) -> tuple[np.ndarray, 
 
 
 def _sorted(table: Table, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(n,) order by place and depth; in it, (n,) bool where another place begins, and (n,) the depths in steps."""
+    """(n,) order by place and depth; in this order, (n,) bool that marks each new place, and the (n,) depths in
+    steps.
+    """
     positions, normals = table.column("positions"), table.column("normals")
     materials = table.column("materials").astype(np.int64)
     low, cells = positions.min(axis=1), int(np.ptp(positions, axis=1).max() / cell) + 2
@@ -62,7 +64,7 @@ def _sorted(table: Table, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np
 
 
 def _packed(columns: list[np.ndarray], bits: list[int]) -> np.ndarray:
-    """As one number each."""
+    """The rows packed into one number each."""
     key = columns[0]
     for column, width in zip(columns[1:], bits[1:], strict=True):
         key = key << width | column
@@ -70,7 +72,9 @@ def _packed(columns: list[np.ndarray], bits: list[int]) -> np.ndarray:
 
 
 def _places(positions, normals, materials, low: np.ndarray, cell: float) -> list[np.ndarray]:
-    """Whole numbers from 0: of material and side, of the cell's column and row, and of the depth over its middle."""
+    """Non-negative integers for each surfel: its material and side, its cell's column and row, and its depth in
+    the cell.
+    """
     facing = np.abs(normals).argmax(axis=0)
     columns = np.empty((4, len(facing)), np.int64)
     for axis in range(3):

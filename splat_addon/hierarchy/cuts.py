@@ -36,7 +36,7 @@ class Sight:
 
     @property
     def key(self) -> bytes:
-        """Equal views have equal keys."""
+        """A key that is equal for equal views."""
         numbers = (self.planes, self.depth, self.eye, (self.pixels, self.near, self.hides_backs, self.tolerance))
         return b"".join(np.asarray(n, np.float64).tobytes() for n in numbers)
 
@@ -56,7 +56,7 @@ def cut_entries(hierarchy: Hierarchy, sight: Sight) -> np.ndarray | None:
 
 
 def _cut(blocks: Blocks, sight: Sight) -> np.ndarray:
-    """The blocks that are drawn."""
+    """The indices of the blocks that are drawn."""
     front, drawn = np.arange(int(blocks.roots)), []
     while len(front):
         front = front[_may_be_seen(blocks, front, sight)]

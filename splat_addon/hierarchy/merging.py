@@ -30,12 +30,12 @@ _CORE = np.float32(np.sqrt(0.5) / MERGED_OVERLAP)
 _MOST_WIDENED = np.float32(1.5)
 #: Minimum ratio of the shorter to the longer half-axis.
 _NARROWEST = np.float32(0.02)
-#: As in `sampling.blending` for single samples.
+#: The limit is that of `sampling.blending` for single samples.
 _LEAST_BLENDING = 0.05
 
 
 def merged(children: Nodes, runs: Runs, cell: float) -> Nodes:
-    """The parents of runs of children."""
+    """The merged parents of runs of children."""
     areas = runs.sum(children["areas"])
     shares = children["areas"] / runs.spread(areas)
     centre = runs.sum(children["positions"] * shares)
@@ -93,7 +93,7 @@ def as_surfels(nodes: Table, like: Surfels) -> Surfels:
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
-    """Unit sums of normals that face one axis, so that the sum cannot vanish."""
+    """Unit sums of normals. They all face one axis, so a sum cannot vanish."""
     return vectors / np.sqrt(np.einsum("kn,kn->n", vectors, vectors))
 
 
@@ -132,7 +132,7 @@ def _tangents(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _colors(children: Nodes, runs: Runs, shares: np.ndarray) -> np.ndarray:
-    """(4, m): the mean opacity, and colours weighted by it where there is any."""
+    """(4, m): the mean opacity, and colours weighted by opacity unless all are fully transparent."""
     if (children["colors"][3] == 1).all():
         result = np.ones((4, len(runs.starts)), np.float32)
         result[:3] = runs.sum(children["colors"][:3] * shares)

@@ -67,12 +67,12 @@ class Table:
         return table
 
     def column(self, name: str) -> np.ndarray:
-        """(n,) or (columns, n)."""
+        """The values of one column, (n,) or (columns, n)."""
         array = np.ascontiguousarray(self.rows[:, self._place(name)].T)
         return array[0] if name in _SINGLE else array
 
     def take(self, rows: np.ndarray) -> Nodes:
-        """Some of them, column by column."""
+        """Some rows as nodes, column by column."""
         some = Table(self.widths, np.take(self.rows, rows, axis=0))
         return Nodes({name: some.column(name) for name in self.widths})
 
@@ -87,7 +87,7 @@ class Table:
 
 
 def leaves(surfels: Surfels) -> Table:
-    """The surfels themselves, exact but for what their clip lines take away of them."""
+    """The surfels themselves as nodes, with exact values except for the area that clip lines cut off."""
     parts = [Table.of(_leaves(part)) for part in portions(surfels, PORTION)]
     return Table(parts[0].widths, np.concatenate([part.rows for part in parts]))
 
@@ -124,10 +124,10 @@ def _has(surfels: Surfels, name: str) -> bool:
 
 
 def _cut_off(surfels: Surfels) -> np.ndarray:
-    """(n,) float32: how far the ellipses stick out beyond what their clip lines keep, object units.
+    """(n,) float32 distance by which ellipses extend beyond what their clip lines keep, object units.
 
-    A line that leaves the centre cuts no deeper than its cut; with two of them, or beyond the centre, what is kept may
-    be anywhere in the ellipse.
+    A single line on the far side of the centre removes no more than its depth. With two lines, or a line that removes
+    the centre, the kept part may be anywhere in the ellipse.
     """
     if not surfels.is_clipped:
         return np.zeros(len(surfels), np.float32)

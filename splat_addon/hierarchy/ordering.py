@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Orders that bring together what lies together: of whole numbers, and of places along a Morton curve."""
+"""Sorts integers together with their order, and orders places along a Morton curve so that neighbours are close."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ _PORTION = 1 << 15
 
 
 def sorted_with_order(keys: np.ndarray, bits: int) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) int64 keys, sorted, and the order that sorts them, equal ones as they were. bits: that the keys have.
+    """(n,) int64 keys in ascending order, and the stable order that sorts them. bits: the number of bits of a key.
 
-    Where key and number fit into one word, that word is sorted: in a tenth of the time that an indirect sort takes.
+    If key and index fit into one 64-bit word, these words are sorted, which takes a tenth of the time of an indirect
+    sort.
     """
     width = max(len(keys) - 1, 1).bit_length()
     if bits + width > BITS:
@@ -29,8 +30,9 @@ def sorted_with_order(keys: np.ndarray, bits: int) -> tuple[np.ndarray, np.ndarr
 
 
 def spatial_order(positions: np.ndarray) -> np.ndarray:
-    """(N,) indices that bring neighbours of (N, 3) positions together: along a Morton curve through their box, equal
-    cells in their own order.
+    """(N,) indices that order (N, 3) positions along a Morton curve through their box.
+
+    Neighbours come close together; positions in the same cell keep their order.
     """
     if not len(positions):
         return np.zeros(0, int)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a PLY file holds, by its properties: surfels, Gaussians, or bare points."""
+"""Finds out what a PLY file contains from its properties: surfels, Gaussians, or bare points."""
 
 from __future__ import annotations
 

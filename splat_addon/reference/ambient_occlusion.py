@@ -20,7 +20,7 @@ LEAST_FACING = 0.2
 
 
 def open_share(frame: Frame, camera: Camera, distance: float) -> np.ndarray:
-    """(h, w) of the half-space around the normal, weighted by the cosine; 1 where nothing is seen.
+    """(h, w) unoccluded share of the half-space around the normal, weighted by the cosine; 1 where nothing is visible.
 
     frame: its depth and normal are used. distance: occluders count fully up to half of it, and not at all beyond it.
     """
@@ -45,7 +45,7 @@ def open_share(frame: Frame, camera: Camera, distance: float) -> np.ndarray:
 
 
 def _slices():
-    """((2,) whole steps, the angle that they stand for) around half a turn."""
+    """((2,) whole steps, angle that they stand for) for directions over half a turn."""
     steps = range(-MOST_STEP, MOST_STEP + 1)
     found = [(x, y) for x in steps for y in steps if math.gcd(x, y) == 1 and (y > 0 or (y == 0 and x > 0))]
     found.sort(key=lambda along: math.atan2(along[1], along[0]))

@@ -10,7 +10,7 @@ NEIGHBOURS = 32
 
 
 def uncovered_points(mesh, surfels, spacing: float, count: int = 40_000) -> np.ndarray:
-    """(n, 3) the points, out of `count` random points on a mesh's surface, that no splat covers.
+    """(n, 3) those of `count` random points on a mesh's surface that no splat covers.
 
     A splat covers a point if its projection onto the splat's plane is inside the ellipse, within half a cell of the
     plane.

@@ -27,7 +27,7 @@ SIDE = 40  # samples along each side of the unit square
 
 
 def unit_square(side: int) -> tuple[np.ndarray, np.ndarray]:
-    """Two (side^2,) arrays: the middles of a grid."""
+    """Two (side^2,) arrays: the centres of the cells of a grid on the unit square."""
     ticks = (np.arange(side) + 0.5) / side
     return tuple(a.ravel() for a in np.meshgrid(ticks, ticks, indexing="ij"))
 
@@ -40,11 +40,11 @@ class Lobe:
         self.view = np.array([np.sqrt(1 - cosine**2), 0.0, cosine])
 
     def value(self, light: np.ndarray) -> np.ndarray:
-        """(n,) of unit directions (3, n)."""
+        """(n,) values of the lobe for unit directions (3, n)."""
         return self.masked(light)[0]
 
     def masked(self, light: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Value, density of `directions`, and cosine between view and half vector."""
+        """For `directions`: the lobe's value, its density, and the cosine between view and half vector."""
         half = light + self.view[:, None]
         half /= np.linalg.norm(half, axis=0)
         nl, nv, nh = np.maximum(light[2], 0), self.view[2], half[2]
@@ -64,7 +64,7 @@ class Lobe:
 
 
 def albedo_and_mean(lobe: Lobe) -> tuple[float, float, np.ndarray]:
-    """The parts of the directional albedo that F0 scales and that it does not, and the mean direction."""
+    """The part of the directional albedo that F0 scales, the other part, and the mean direction."""
     light = lobe.directions(200)
     value, density, vh = lobe.masked(light)
     weight = np.where(value > 0, value / density, 0.0)
@@ -97,7 +97,7 @@ def cosine_of(column: int) -> float:
 
 
 def matrix(frame: np.ndarray, parameters) -> np.ndarray:
-    """(3, 3) from clamped cosine to lobe."""
+    """The (3, 3) matrix from a clamped cosine to the lobe."""
     stretch_x, stretch_y, skew = parameters
     return frame @ np.array([[max(stretch_x, 1e-5), 0, skew], [0, max(stretch_y, 1e-5), 0], [0, 0, 1]])
 
@@ -109,7 +109,7 @@ def cosine_directions(side: int) -> np.ndarray:
 
 
 def transformed_density(m: np.ndarray, light: np.ndarray) -> np.ndarray:
-    """(n,) of the transformed cosine at unit directions (3, n)."""
+    """(n,) density of the transformed cosine at unit directions (3, n)."""
     inverse = np.linalg.inv(m)
     back = inverse @ light
     length = np.linalg.norm(back, axis=0)
@@ -117,7 +117,7 @@ def transformed_density(m: np.ndarray, light: np.ndarray) -> np.ndarray:
 
 
 def error(lobe: Lobe, albedo: float, m: np.ndarray, of_lobe, of_cosine) -> float:
-    """Integral of the cubed difference, by samples of both (balance heuristic)."""
+    """The integral of the cubed difference, from samples of both densities (balance heuristic)."""
     transformed = m @ of_cosine
     total = 0.0
     for light in (of_lobe, transformed / np.linalg.norm(transformed, axis=0)):
@@ -128,7 +128,7 @@ def error(lobe: Lobe, albedo: float, m: np.ndarray, of_lobe, of_cosine) -> float
 
 
 def fitted(lobe: Lobe, albedo: float, mean: np.ndarray, start, is_straight: bool) -> np.ndarray:
-    """The three parameters of `matrix`. Seen straight on, the lobe is round."""
+    """The three fitted parameters of `matrix`. A lobe seen along the normal is round."""
     frame = np.array([[mean[2], 0, mean[0]], [0, 1, 0], [-mean[0], 0, mean[2]]])
     of_lobe, of_cosine = lobe.directions(SIDE), cosine_directions(SIDE)
 
@@ -147,7 +147,9 @@ def fitted(lobe: Lobe, albedo: float, mean: np.ndarray, start, is_straight: bool
 
 
 def main() -> None:
-    """Fit row by row, from rough and straight on, each from its neighbour."""
+    """Fit row by row, starting with a rough surface seen along the normal; each fit starts from its neighbour's
+    result.
+    """
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=FOLDER)
     out = parser.parse_args().out

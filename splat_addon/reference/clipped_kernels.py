@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Resampling kernels of clipped splats in `render_ewa`: what a pixel sees of them, and what hides them.
+"""Resampling kernels of clipped splats in `render_ewa`: how much of a splat a pixel sees, and what hides it.
 
-The twin of shaders/features/clip_lines.glsl, for many splats at once and from rays.
+The twin of shaders/features/clip_lines.glsl, for many splats at once and for rays.
 """
 
 from __future__ import annotations

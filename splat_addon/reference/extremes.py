@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scenes at the limits of arithmetic: sheets seen edge-on, specks at the near plane, moved and scaled worlds.
 
-Builders that tests/extremes and `scripts/bench.py numerics` share; `scenes` holds the everyday ones.
+tests/extremes and `scripts/bench.py numerics` share these functions; `scenes` has the ordinary scenes.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ SHEET_OVERLAP = 1.2
 
 
 def discs(centers, u=(1, 0, 0), v=(0, 1, 0), colors=None, normals=None) -> Surfels:
-    """Ellipses by their centres and orthogonal half-axes, (N, 3) or one row; random colours without `colors`."""
+    """Ellipses from centres and orthogonal half-axes, (N, 3) or one row each; colours are random if not given."""
     centers = np.atleast_2d(np.asarray(centers, np.float64))
     u, v = (np.broadcast_to(np.asarray(a, np.float64), centers.shape) for a in (u, v))
     lengths = np.stack([np.linalg.norm(a, axis=1) for a in (u, v)], axis=1)
@@ -41,7 +41,9 @@ def discs(centers, u=(1, 0, 0), v=(0, 1, 0), colors=None, normals=None) -> Surfe
 
 
 def sheet(side: int, half: float, tilt: float, depth: float, colors=None) -> Surfels:
-    """A square of side x side discs around (0, 0, -depth), `half` to each side; tilt: degrees from facing +Z."""
+    """A square of side x side discs around (0, 0, -depth), extending `half` to each side; tilt: degrees from
+    facing +Z.
+    """
     axis = ((np.arange(side) + 0.5) * 2 / side - 1) * half
     x, y = (a.reshape(-1, 1) for a in np.meshgrid(axis, axis))
     angle = math.radians(tilt)
@@ -51,37 +53,37 @@ def sheet(side: int, half: float, tilt: float, depth: float, colors=None) -> Sur
 
 
 def speck(camera: Camera, depth: float) -> Instance:
-    """One red disc a little right of the camera's axis at a depth, a thirtieth of it wide."""
+    """One red disc slightly to the right of the camera's axis; its width is a thirtieth of its depth."""
     matrix = camera.matrix_world.copy()
     matrix[:3, 3] += (0.25 * matrix[:3, 0] - matrix[:3, 2]) * depth
     return Instance(discs((0, 0, 0), (depth / 30, 0, 0), (0, depth / 30, 0), (1, 0, 0)), matrix)
 
 
 def floor_below(height: float) -> Surfels:
-    """24 x 24 discs that pass under the eye at the origin: the nearest reach behind it."""
+    """24 x 24 discs that form a floor under an eye at the origin; the nearest ones extend behind the eye."""
     return replace(sheet(24, 2.0, 90.0, 0.0), origin=(0.0, -height, 0.0))
 
 
 def giant_floor(radius: float) -> Surfels:
-    """One disc, from under the eye to its horizon."""
+    """One disc that extends from under the eye to the horizon."""
     return discs((0.1, -1.03, -5), (radius, 0, 0), (0, 0.1 * radius, -radius), (0.2, 0.5, 0.9))
 
 
 def stripes(long: float, short: float, turn: float) -> Surfels:
-    """21 parallel ellipses side by side, turned about the axis by radians."""
+    """21 parallel ellipses side by side, turned about the axis by an angle in radians."""
     u, v = np.array(((math.cos(turn), math.sin(turn), 0), (-math.sin(turn), math.cos(turn), 0)))
     return discs(np.linspace(-1, 1, 21)[:, None] * v + (0, 0, -3), u * long, v * short)
 
 
 def pile(layers: int, colors=None) -> Surfels:
-    """Discs right behind one another, each over the whole picture."""
+    """Discs close behind one another, each of which covers the whole picture."""
     random = np.random.default_rng(1)
     centers = np.concatenate([random.normal(0, 0.02, (layers, 2)), -3 - 1e-3 * random.random((layers, 1))], axis=1)
     return discs(centers, (1.5, 0, 0), (0, 1.5, 0), colors)
 
 
 def crowd(camera: Camera, count: int, radius: float) -> Surfels:
-    """Splats of a radius in pixels, spread over the pixel right above the middle."""
+    """Splats with a radius in pixels, spread over the pixel just above and right of the picture's middle."""
     pixel = 3 * (camera.window[1] - camera.window[0]) / camera.size[0]
     centers = np.random.default_rng(1).random((count, 3)) * (pixel, pixel, 1e-3) - (0, 0, 3)
     return discs(centers, (radius * pixel, 0, 0), (0, radius * pixel, 0))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Each feature paired with its absence, as two pictures: a table in which a new feature is one line."""
+"""Pairs of pictures with and without each feature, as a table in which a new feature is one line."""
 
 from __future__ import annotations
 

@@ -37,6 +37,6 @@ def page(columns: int, rows: int, text: str = TEXT) -> np.ndarray:
 
 
 def _glyph(letter: str) -> np.ndarray:
-    """(9, 6) bool, top row first: the letter in the middle of its place's rows."""
+    """(9, 6) bool, top row first: the letter, centred in its cell."""
     dots = np.array([[code >> shift & 1 for shift in range(4, -1, -1)] for code in bytes.fromhex(_ROWS[letter])], bool)
     return np.pad(dots, ((1, PLACE[1] - LETTER[1] - 1), (0, PLACE[0] - LETTER[0])))

@@ -17,7 +17,7 @@ from .splats import Splats
 
 @dataclass(frozen=True, eq=False)
 class _RaysThroughCentres:
-    """What shading asks of a `RayGrid`: the rays from the eye through the splats' centres."""
+    """Stands in for a `RayGrid` in shading: the rays from the eye through the splats' centres."""
 
     splats: Splats
     camera: Camera
@@ -30,8 +30,9 @@ class _RaysThroughCentres:
 
 
 def lit_splats(splats: Splats, scene: Scene, camera: Camera, settings: Settings) -> Splats:
-    """The splats in the colours that `settings.shading` gives each at its centre. Those beside the eye's plane have
-    no ray and are left as they are.
+    """The splats with the colours that `settings.shading` gives each one at its centre.
+
+    Splats beside the eye's plane have no such ray and keep their colours.
     """
     before = np.flatnonzero(-splats.center[:, 2] > 0)
     roughness, metallic, f0, emission, light_set, finish = np.split(splats.surface[before], (1, 2, 3, 6, 10), axis=1)

@@ -29,7 +29,7 @@ def _emission(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, set
 
 
 def _shadow(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
-    """Irradiance that arrives over irradiance without shadows, of each colour; 0 of 0 is 0."""
+    """For each colour, the irradiance that arrives divided by the irradiance without shadows; 0 / 0 counts as 0."""
     if settings.shading not in LIT:
         return np.zeros_like(surface.color)
     origin, direction = grid.rays(surface.rays)

@@ -37,7 +37,7 @@ class Hits:
 
 
 def polygon_hits(scene: Scene, camera: Camera, grid: RayGrid, epsilon: float) -> Hits:
-    """What the rays of the grid see of polygons alone."""
+    """The nearest polygon of each of the grid's rays, ignoring splats."""
     origin, direction = grid.rays(np.arange(grid.count))
     n = grid.count
     columns = 10 + len(PLAIN.numbers) * has_finish(scene)

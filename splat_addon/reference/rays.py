@@ -115,7 +115,8 @@ class Hits:
 
 
 def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float, limit=np.inf) -> Surface:
-    """What every ray of the grid sees. bounds: `projected_bounds` of the splats. epsilon: in radii of each splat.
+    """The surfaces that the rays of the grid see. bounds: `projected_bounds` of the splats. epsilon: in radii of each
+    splat.
 
     limit: (count,) depth beyond which something else hides splats.
     """
@@ -125,9 +126,9 @@ def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float, limit
 
 
 def visible_depth(splats: Splats, boxes, grid: RayGrid, epsilon: float, after=-np.inf, until=np.inf) -> np.ndarray:
-    """(count,) how deep each ray may look: the nearest of its hits, each splat moved back by its epsilon.
+    """(count,) depth up to which each ray sees: that of its nearest hit, with each splat moved back by its epsilon.
 
-    after, until: depths, or (count,) of them; only the hits beyond the one and not beyond the other count.
+    after, until: depths, or (count,) of them; only hits beyond `after` and not beyond `until` count.
     """
     push, blend = splats.push(epsilon), splats.blend_depth()
     visibility = np.full(grid.count, np.inf)
@@ -140,10 +141,10 @@ def visible_depth(splats: Splats, boxes, grid: RayGrid, epsilon: float, after=-n
 
 
 def layer_surfaces(splats: Splats, bounds, grid: RayGrid, epsilon: float, opaque: np.ndarray) -> Iterator[Surface]:
-    """What every ray sees of each transparent layer, from the nearest (Guennebaud et al. 2006, section 6).
+    """The surfaces that every ray sees in each transparent layer, nearest first (Guennebaud et al. 2006, section 6).
 
-    A layer holds the hits beyond the last one's depth, and not beyond its own: that of the nearest of them, moved back.
-    opaque: (count,) how deep each ray may look for what is opaque.
+    A layer contains the hits beyond the previous layer's depth, up to its own depth, which is that of the nearest of
+    these hits, moved back. opaque: (count,) depth up to which each ray sees opaque splats.
     """
     splats, boxes = splats_in(splats, bounds, grid)
     peeled = np.full(grid.count, -np.inf)

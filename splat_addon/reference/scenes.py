@@ -47,9 +47,8 @@ def sphere(count: int = 20_000, size=(128, 128), seed: int = 0) -> tuple[Scene, 
 
 
 def transparent_spheres(count: int = 3000, opacity: float = 0.35, size=(128, 128)) -> tuple[Scene, Camera]:
-    """27 spheres in a cube that something shows through, of six colours, as in figure 6 of Guennebaud et al. 2006.
-
-    count: surfels of each.
+    """27 transparent spheres in a cube, in six colours, as in figure 6 of Guennebaud et al. 2006. count:
+    surfels of each.
     """
     colors = ((0.8, 0.1, 0.1), (0.1, 0.5, 0.8), (0.15, 0.7, 0.2), (0.9, 0.7, 0.1), (0.6, 0.2, 0.7), (0.85, 0.85, 0.85))
     points, spacing = fibonacci_sphere(count), math.sqrt(4 * math.pi / count)
@@ -153,7 +152,7 @@ def grains(texels: int, seed: int = 3) -> np.ndarray:
 
 
 def _eye(elevation: float, distance: float, aside: float) -> tuple[float, float, float]:
-    """In front of a board at the origin, at `elevation` degrees above it."""
+    """A place in front of a board at the origin, `elevation` degrees above the board."""
     angle = math.radians(elevation)
     return aside, -distance * math.cos(angle), distance * math.sin(angle)
 

@@ -23,7 +23,9 @@ Hits = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 def seen_texture(
     texture: SurfaceTexture, camera: Camera, pixel_filter: str, hits: Hits
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(h, w, 3) the texture, and (h, w) bool where nothing but it is in the pixel. camera: square, in perspective."""
+    """(h, w, 3) picture of the texture, and (h, w) bool: pixels in which nothing else is visible. camera:
+    square, in perspective.
+    """
     weights = filter_weights(pixel_filter, RAYS)
     margin = (len(weights) // RAYS - 1) // 2
     size, (left, right, bottom, top) = camera.size[0], camera.window

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shadows by definition: a ray from every lit place to its light, against every splat, in float64."""
+"""Shadows by definition: a ray from every visible point to its light is tested against every splat, in float64."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def lit_share(light: Light, scene: Scene, camera: Camera, position: np.ndarray, 
 
 
 def _is_lit(casters: Scene, camera: Camera, splats: Splats, epsilon: float, lamp: np.ndarray, position: np.ndarray):
-    """(n,) bool."""
+    """(n,) bool: whether light reaches each position."""
     lit = are_lit(casters, camera, lamp, position, OWN_SURFACE)
     return lit & _is_seen(splats, epsilon * _moved(splats, lamp[0]), lamp, position) if len(splats) else lit
 
@@ -72,7 +72,7 @@ def _without_solids(scene: Scene) -> Scene:
 
 
 def _lamp(light: Light, camera: Camera, position: np.ndarray, extent: float) -> np.ndarray:
-    """(k, 1 or n, 3) places on the lamp: by the golden angle over a disc that faces the places it lights."""
+    """(k, 1 or n, 3) points on the lamp, spaced by the golden angle over a disc that faces the positions it lights."""
     rotation = camera.matrix_world[:3, :3].T
     axis = rotation @ np.asarray(light.direction, np.float64)
     axis /= np.linalg.norm(axis)
@@ -100,7 +100,9 @@ def _lamp(light: Light, camera: Camera, position: np.ndarray, extent: float) -> 
 
 
 def _is_seen(splats: Splats, moved: np.ndarray, lamp: np.ndarray, position: np.ndarray) -> np.ndarray:
-    """(n,) bool. moved: (N,) how far each splat is moved away from the lamp. lamp: (1, 3)."""
+    """(n,) bool: whether no splat hides the lamp's point. moved: (N,) distance that each splat is moved away
+    from the lamp. lamp: (1, 3).
+    """
     rows = max(CHUNK_PAIRS // len(splats), 1)
     parts = np.split(position, range(rows, len(position), rows))
     return np.concatenate([_part_is_seen(splats, moved, lamp[0], part) for part in parts])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The plain picture, which has nothing that it need not have, and what changes it.
+"""A plain picture that uses no optional feature, and functions that change it.
 
-Two tori in one material under an even world, drawn by Quads with one sample a pixel.
+It shows two tori of one material in a uniform world, drawn with Quads and one sample per pixel.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Change = Callable[[Shot], Shot]
 
 
 def plain(count: int, size: tuple[int, int]) -> Shot:
-    """count: splats of both tori together."""
+    """The plain picture. count: number of splats of both tori together."""
     scene, camera = scenes.torus(count, size)
     bare = tuple(replace(instance, materials=(Material(),)) for instance in scene.surfels)
     settings = Settings(method="quad", supersampling=1)
@@ -78,7 +78,7 @@ same = together()
 
 
 def among(*polygons: PolygonInstance) -> Change:
-    """Polygons beside the surfels."""
+    """The picture with polygons among the surfels."""
     return world(polygons=polygons)
 
 
@@ -89,18 +89,18 @@ def a_floor() -> PolygonInstance:
 
 
 def round_one(rings: int, at: float | None = None) -> PolygonInstance:
-    """A ball in the middle of the tori, of 4 rings^2 triangles but for its poles."""
+    """A ball of polygons in the middle of the tori, with 4 rings^2 triangles except at its poles."""
     return PolygonInstance(scenes.round_polygons(rings), split_distance=at)
 
 
 def round_surfels(count: int, at: float | None = None) -> Instance:
-    """The same ball of surfels."""
+    """The same ball, made of surfels."""
     (instance,) = scenes.sphere(count)[0].surfels
     return Instance(instance.surfels, split_distance=at)
 
 
 def ring(count: int, **values) -> tuple[Light, ...]:
-    """Point lights around the tori."""
+    """Point lights in a ring around the tori."""
     angles = np.arange(count) * 2 * np.pi / count
     places = np.stack([3 * np.cos(angles), 3 * np.sin(angles), 1.5 + 0 * angles], axis=1)
     return tuple(Light("point", energy=200 / count, position=tuple(place), **values) for place in places)
@@ -122,7 +122,9 @@ def ball() -> Matcap:
 
 
 def own(**fields) -> Change:
-    """Surfels with values of their own, which vary along x. fields: name -> channels, 0 for one number each."""
+    """The surfels with their own values, which vary along x. fields: name -> number of channels, 0 for single
+    numbers.
+    """
 
     def changed(number: int, instance: Instance) -> Instance:
         x = 0.5 + 0.5 * instance.surfels.positions[:, 0] / np.abs(instance.surfels.positions[:, 0]).max()
@@ -133,12 +135,12 @@ def own(**fields) -> Change:
 
 
 def materials(*slots: Material) -> Change:
-    """The first instance has the first, and so on."""
+    """Give each instance its own material, in order."""
     return instances(lambda number, instance: replace(instance, materials=(slots[number % len(slots)],)))
 
 
 def page(is_looked_up: bool, shot: Shot) -> Shot:
-    """A board of large splats, with textures in two of three strips, or their own colours."""
+    """A board of large splats; two of its three strips are textured, the third has the surfels' own colours."""
     scene, camera = scenes.textured_plane(side=64, size=shot.camera.size)
     if not is_looked_up:
         scene = replace(scene, surfels=tuple(replace(instance, textures=()) for instance in scene.surfels))
@@ -146,7 +148,7 @@ def page(is_looked_up: bool, shot: Shot) -> Shot:
 
 
 def glass(alpha: float, *numbers: int) -> Change:
-    """Those instances let so much of what is behind them through."""
+    """Make the given instances transparent, with this opacity."""
 
     def changed(number: int, instance: Instance) -> Instance:
         if number not in numbers:
@@ -159,18 +161,18 @@ def glass(alpha: float, *numbers: int) -> Change:
 
 
 def all_around(shot: Shot) -> Shot:
-    """As many pixels all around the camera, from the middle of the scene."""
+    """A panorama from the middle of the scene, with as many pixels."""
     width, height = shot.camera.size
     return shot._replace(camera=Panorama(np.eye(4), Equirectangular(), (width, height)))
 
 
 def from_within(shot: Shot) -> Shot:
-    """A perspective from the middle of the scene, ninety degrees wide."""
+    """A perspective view from the middle of the scene, with a field of view of ninety degrees."""
     return shot._replace(camera=Camera.perspective(np.eye(4), np.pi / 2, shot.camera.size, 0.01, 100.0))
 
 
 def with_disc(depth: float, shot: Shot) -> Shot:
-    """A small disc in a corner of the picture at a depth, under a clip range that leaves it in."""
+    """The scene with a small disc at a depth in a corner of the picture, and a clip range that includes it."""
     camera = replace(shot.camera, near=0.01, far=1e4)
     matrix = camera.matrix_world.copy()
     matrix[:3, 3] += depth * (camera.window[0] * 0.8 * matrix[:3, 0] - matrix[:3, 2])

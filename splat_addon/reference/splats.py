@@ -74,19 +74,19 @@ class Splats:
 
     @property
     def is_clipped(self) -> bool:
-        """Whether a line reaches into one of them."""
+        """Whether a clip line cuts any of the splats."""
         return bool((self.clip[:, :, 2] < 1).any())
 
     def side_weight(self) -> np.ndarray:
-        """(N,) of the side that is seen: a back's is little, unless it blends as deep as its surface asks for."""
+        """(N,) weight of the visible side: small for a back, unless the surfels have blend depths."""
         return np.where(self.is_back & (self.blend > FITTED_BLENDING), BACK_WEIGHT, 1.0)
 
     def push(self, epsilon: float) -> np.ndarray:
-        """(N,) how far each is moved away to find what hides it, world units. epsilon: in radii."""
+        """(N,) distance by which each splat is moved back to find what hides it, world units. epsilon: in radii."""
         return epsilon * self.radius() * np.where(self.is_back, BACK_EPSILON, 1.0)
 
     def blend_depth(self) -> np.ndarray:
-        """(N,) how far off its plane each blends with others, world units."""
+        """(N,) distance from its plane up to which each splat blends with others, world units."""
         return self.blend * self.radius()
 
     def take(self, rows: np.ndarray) -> Splats:
@@ -94,12 +94,12 @@ class Splats:
         return Splats(*(getattr(self, f.name)[rows] for f in fields(self)))
 
     def as_asked(self, settings: Settings) -> Splats:
-        """Without backs, or with backs as fronts, where the settings say so."""
+        """The splats without backs, or with backs as fronts, if the settings say so."""
         splats = self.take(np.flatnonzero(~self.is_back)) if settings.culls_backs else self
         return replace(splats, is_back=np.zeros(len(splats), bool)) if settings.as_printed else splats
 
     def as_opaque(self) -> Splats:
-        """The same, and nothing shows through them."""
+        """The same splats, made opaque."""
         return replace(self, opacity=np.ones(len(self)), is_transparent=np.zeros(len(self), bool))
 
 

@@ -110,7 +110,9 @@ def _samples(places: np.ndarray, over_depth: np.ndarray, colors: np.ndarray, sha
 
 
 def _share_planes(places: np.ndarray) -> np.ndarray:
-    """(T, 3, 3) p of the barycentric coordinates p0 column + p1 row + p2; not finite for a triangle without area."""
+    """(T, 3, 3) coefficients p of the barycentric coordinates p0 column + p1 row + p2; not finite for a
+    triangle without area.
+    """
     (x, y), planes = np.moveaxis(places, 2, 0), np.empty((len(places), 3, 3))
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3

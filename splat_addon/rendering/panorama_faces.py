@@ -161,8 +161,10 @@ def _bilinear(values: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarr
 
 
 def _cubic(values: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
-    """As `_bilinear`, with Keys' cubic convolution (1981), which does not widen the filter of many samples; clamped to
-    the range of the four nearest pixels, so that nothing rings."""
+    """Samples as in `_bilinear`, with Keys' cubic convolution (1981), which does not widen the filter of many samples.
+
+    They are clamped to the range of the four nearest pixels, so that edges do not ring.
+    """
     inner = [pixels for _, _, pixels in _around(values, camera, looks, lambda t: (1 - t, t), first=0)]
     mixed = sum(along * up * pixels for along, up, pixels in _around(values, camera, looks, _keys, first=-1))
     return np.clip(mixed, np.minimum.reduce(inner), np.maximum.reduce(inner))
@@ -190,7 +192,7 @@ def _around(values: np.ndarray, camera: Camera, looks: np.ndarray, weights, firs
 
 
 def _nearest(values: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
-    """As `_bilinear`, but the nearest value, for arrays that must not be filtered."""
+    """The nearest value, with the arguments of `_bilinear`, for arrays that must not be filtered."""
     return values.reshape(-1, *values.shape[2:])[_pixel_numbers(camera, looks)]
 
 

@@ -27,7 +27,7 @@ FACE_WINDOW = 1.05
 MAX_SPOT_WINDOW = 2.5
 #: fields of `Scene` that contain shadow casters
 _KINDS = ("surfels", "polygons")
-#: As a fraction of the farthest caster's distance: closer casters cast no shadow.
+#: The nearest distance of a caster, as a fraction of the farthest one's; closer casters cast no shadow.
 NEAREST = 1e-4
 
 

@@ -109,8 +109,10 @@ def build_view(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | 
 
 
 def _split_distance(instance: Placed) -> float:
-    """Where the instance begins or ends, world units. Splats begin before polygons end: their weights then sum to 1 and
-    more where polygons end (Guennebaud et al. 2006, section 5.1).
+    """The distance at which the instance begins or ends, world units.
+
+    Splats begin before polygons end, so that their weights sum to 1 or more where polygons end (Guennebaud et al. 2006,
+    section 5.1).
     """
     if instance.split_distance is None or instance.shape.is_transparent:
         return 0.0

@@ -160,7 +160,9 @@ class SamplingRun:
         return Sampling(surfels, small_parts, keeps_both_sides, saved, error, gap_triangles)
 
     def _clipped(self, arrays: dict[str, np.ndarray], images: tuple[Spans, ...], report: Callable[[float], None]):
-        """The samples with their clip lines; and on what these leave bare, arrays of more and their triangles."""
+        """The samples with their clip lines; and the arrays and triangles of additional surfels on what these
+        leave bare.
+        """
         borders, bends = self._edges.borders, self._bends
         seen = _rows_of(images) if self.options.reduction == "normal" else by_facing(arrays)
         clipping = clip(arrays, seen, borders, self.grid)
@@ -174,7 +176,7 @@ class SamplingRun:
 
 
 def _axes_of(images: tuple[Spans, ...]) -> np.ndarray:
-    """(N,) along which axis each sample was taken."""
+    """(N,) the axis along which each sample was taken."""
     return np.repeat(np.arange(3), [int(spans.counts.sum(dtype=np.int64)) for spans in images])
 
 

@@ -26,7 +26,7 @@ def subclasses(base):
 
 
 def names() -> list[str]:
-    """Blender's name of everything that has the entry in its context menu."""
+    """Blender's names of everything whose context menu has the entry Online Manual."""
     groups = [made for base in GROUPS for made in ours(base)]
     assert len(groups) >= 7
     settings = [f"{made.__name__}.{p.identifier}" for made in groups for p in made.bl_rna.properties]
@@ -36,12 +36,12 @@ def names() -> list[str]:
 
 
 def address(name: str) -> str | None:
-    """Where Blender itself leads."""
+    """The address that Blender itself opens."""
     return bpy.types.WM_OT_doc_view_manual._lookup_rna_url(name, verbose=False)
 
 
 def headings(page: Path) -> set[str]:
-    """As every renderer of Markdown makes anchors of them."""
+    """The anchors that renderers of Markdown make from the page's headings."""
     lines = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", line.lower()).replace(" ", "-") for line in lines}
 

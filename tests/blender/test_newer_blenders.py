@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What newer Blenders change is found by asking for the feature, so that a version nobody has seen works too."""
+"""Changes in newer Blenders are found by testing for the feature, so that unknown versions work too."""
 
 import re
 from pathlib import Path
@@ -21,7 +21,7 @@ def test_no_version_is_compared():
 
 
 def owner(**switch):
-    """A material as some Blender has it, with a node tree and its switch off."""
+    """A stand-in for a material, with a node tree and its switch off, in an old or a new Blender."""
     properties = {"use_nodes": SimpleNamespace(**switch)} if switch else {}
     return SimpleNamespace(bl_rna=SimpleNamespace(properties=properties), node_tree="nodes", use_nodes=False)
 
@@ -42,7 +42,7 @@ def test_a_new_data_block_uses_its_nodes_where_there_is_no_switch(collection):
 
 
 def test_passes_have_the_names_that_this_blender_s_own_engine_gives_them():
-    """EEVEE's, as a Render Layers node lists them."""
+    """The names are those of EEVEE, which a Render Layers node lists."""
     scene, view_layer = bpy.context.scene, bpy.context.view_layer
     scene.render.engine = "BLENDER_EEVEE" if "BLENDER_EEVEE" in _engines() else "BLENDER_EEVEE_NEXT"
     ours = [p for p in RENDER_PASSES if p.flag and not p.is_ours and hasattr(view_layer, p.flag)]

@@ -19,7 +19,7 @@ def sphere():
 
 
 def filling(angle):
-    """A camera whose picture the unit sphere fills, as far as it can approach the sphere."""
+    """A camera so close to the unit sphere that the sphere fills its picture."""
     distance = max(1.1 / np.sin(np.radians(angle / 2)), 1.3)
     eye = distance * np.array((0, -1, 0.1))
     return Camera.perspective(look_at(eye, (0, 0, 0)), np.radians(angle), SIZE, distance / 100, 10 * distance)

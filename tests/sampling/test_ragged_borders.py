@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Of a border of many edges, the two lines are chosen that a look at every pair of them finds best."""
+"""For a border of many edges, the search finds the same two lines as a comparison of all pairs of edges."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def ragged(random, count):
 
 
 def is_inside(border):
-    """(p,) bool, by the crossings of a ray: places at the border's left."""
+    """(p,) bool: which places are to the left of the border, found by counting the crossings of a ray."""
     (x, y), turned = border[:, :-1], border[:, 1:] - border[:, :-1]
     axis = border[:, -1] - border[:, 0]
     along = axis / np.hypot(*axis)

@@ -31,7 +31,9 @@ def linked_object(mesh, is_smooth: bool = False) -> bpy.types.Object:
 
 
 def our_operator(mesh, resolution, count):
-    """From a smooth-shaded mesh object to a surfel object: reading, cleaning, sampling, and writing attributes."""
+    """The whole operator, from a smooth-shaded mesh object to a surfel object: reads, cleans, samples, and
+    writes attributes.
+    """
     bpy.ops.wm.read_factory_settings(use_empty=True)
     source = linked_object(mesh, is_smooth=True)
 

@@ -107,7 +107,7 @@ def _scene(path, resolution: int, size: int):
 
 
 def _rows(renderer: Renderer, case, unit: str, choices: dict, options, report):
-    """One line of a table."""
+    """The cells of one line of a table."""
     name, resolution = case
     scene, camera = _scene(options.models / name, resolution, options.size)
     drawn = draw_in_turn(
@@ -121,7 +121,7 @@ def _rows(renderer: Renderer, case, unit: str, choices: dict, options, report):
 
 
 def _without(renderer: Renderer, case, options):
-    """1 / (1 - the pass's share of the time), for both methods of the paper."""
+    """The speed-up without a pass, 1 / (1 - the pass's share of the time), for both methods of the paper."""
     name, resolution = case
     scene, camera = _scene(options.models / name, resolution, options.size)
     for label, method in (("ours", "quad"), ("Ren et al.", "ewa_object")):

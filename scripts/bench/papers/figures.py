@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The papers' figures of our models and scenes: name, what the paper's caption says of them, and the pictures."""
+"""The papers' figures, drawn with our models and scenes: for each its name, the paper's caption in short, and
+the pictures.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,7 @@ Draw = Callable[..., np.ndarray]
 
 
 def figures(renderer: Renderer, models: Path, size: int) -> Iterator[tuple[str, str, list[np.ndarray], int]]:
-    """Name, caption, pictures and by how much they are enlarged. size: pixels along an edge of a model's picture."""
+    """(name, caption, pictures, enlargement) for each figure. size: pixels along an edge of a model's picture."""
 
     def draw(shot, settings: Settings, **choices) -> np.ndarray:
         return renderer.render(*shot, replace(settings, **choices)).color
@@ -114,7 +116,9 @@ def _surfels(path: Path, resolution: int):
 
 
 def contour(method: str, wide: float, high: float, pixels: int = 5, places: int = 128) -> np.ndarray:
-    """(places, places, 3) of a splat's weight around it, in eighths of its largest, so many pixels across each way."""
+    """(places, places, 3) picture of a splat's weight, in steps of an eighth of its largest; it shows that many
+    pixels each way.
+    """
     plane = splat_plane((0.0, 0.0, -1.0), (wide / 100, 0.0, 1e-9), (0.0, high / 100, 0.0))
     axis = np.linspace(-pixels, pixels, places) / 100
     points = np.stack([a.ravel() for a in np.meshgrid(axis, axis)], axis=1)
@@ -124,7 +128,7 @@ def contour(method: str, wide: float, high: float, pixels: int = 5, places: int 
 
 
 def facing_discs(scene: Scene, camera):
-    """The same, of splats that face the viewer: of the paper's two steps the first."""
+    """The same surfels with discs that face the viewer: the first of the paper's two steps."""
     (instance,) = scene.surfels
     surfels = instance.surfels
     rotation = np.tile(_quaternion(camera.matrix_world[:3, :3]), (len(surfels), 1))
@@ -133,7 +137,7 @@ def facing_discs(scene: Scene, camera):
 
 
 def facing_squares(scene: Scene, camera):
-    """Squares as wide as the splats, parallel to the picture, as points are drawn that nobody shapes."""
+    """Squares as wide as the splats and parallel to the picture, as plain points are drawn."""
     (instance,) = scene.surfels
     surfels = instance.surfels
     across, up = (camera.matrix_world[:3, k] * surfels.scales.max(axis=1, keepdims=True) for k in (0, 1))
@@ -147,7 +151,7 @@ def facing_squares(scene: Scene, camera):
 
 
 def half_polygons(size: int):
-    """A ball of which one half is polygons and the other splats, which reach a little farther than their half."""
+    """A ball of which one half is polygons and the other is splats, which overlap the polygons a little."""
     scene, camera = scenes.sphere(4_000, (size, size))
     (instance,) = scene.surfels
     at = instance.surfels.origin + instance.surfels.positions.astype(np.float64)
@@ -162,7 +166,10 @@ def half_polygons(size: int):
 
 
 def _quaternion(matrix: np.ndarray) -> np.ndarray:
-    """(4,) w, x, y, z of a rotation; its w is not 0 for a camera that is not upside down."""
+    """The (4,) quaternion w, x, y, z of a rotation.
+
+    It requires w > 0, which holds for a camera that is not upside down.
+    """
     w = math.sqrt(max(1 + np.trace(matrix), 1e-12)) / 2
     x, y, z = (matrix[i, j] - matrix[j, i] for i, j in ((2, 1), (0, 2), (1, 0)))
     return np.array((w, x / (4 * w), y / (4 * w), z / (4 * w)))

@@ -24,7 +24,7 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
 
 
 def template() -> str:
-    """The same for the same texts."""
+    """The text of the template, which is the same for the same texts of the interface."""
     header = 'msgid ""\nmsgstr ""\n"Content-Type: text/plain; charset=UTF-8\\n"\n'
     return "\n".join([header, *(_entry(context, text) for context, text in sorted(messages()))])
 

@@ -59,8 +59,10 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
 
 
 def _render_preview(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
-    """The small picture of a material, world or light, of which nothing is said and nothing stays on the device: it is
-    drawn by a thread of its own, beside a final render."""
+    """Draw the small picture of a material, world or light.
+
+    It reports nothing and keeps nothing on the device, because it runs in its own thread beside a final render.
+    """
     settings = final_settings(depsgraph.view_layer, depsgraph.scene, outputs_of(depsgraph.view_layer))
     settings = replace(settings, samples=min(settings.samples, _PREVIEW_SAMPLES))
     resources = _Resources()

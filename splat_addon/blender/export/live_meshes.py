@@ -282,7 +282,9 @@ class LiveMeshes:
 
 
 def _deforming(mesh: TriangleMesh, spacing: float, texture_mapped: bool, ends_at_edges: bool) -> DeformingSurfels:
-    """As the operator converts it. ends_at_edges: not a part of a mesh, whose border goes on in polygons."""
+    """A mesh sampled as the operator does. ends_at_edges: False for a part of a mesh whose border continues as
+    polygons.
+    """
     edges = {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True} if ends_at_edges else {}
     return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped, **edges)
 

@@ -258,7 +258,7 @@ _MIX_INPUTS = {
 
 
 def _safe(function: Callable) -> Callable:
-    """As in shaders: non-finite values become 0."""
+    """The product with non-finite values set to 0, as in shaders."""
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")
     def safe(a, b):

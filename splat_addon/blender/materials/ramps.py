@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The colour ramp that a user draws in a texture, which Blender gives add-ons no ramp of their own for."""
+"""The colour ramp for the ramp shading.
+
+It is the ramp of a texture, because Blender offers add-ons no ramp of their own.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +18,9 @@ _kept = Settings.ramp
 
 
 def ramp_of(texture: bpy.types.Texture | None) -> Ramp:
-    """Three even steps without a texture, or where its ramp is switched off; the same object until it changes, with
-    which a view refines.
+    """The ramp of a texture; three even steps without a texture or if its ramp is switched off.
+
+    Until the colours change it is the same object, so that a view can refine.
     """
     global _kept
     if texture is None or not texture.use_color_ramp:

@@ -23,10 +23,9 @@ def uv_layer(name: str, mesh: bpy.types.Mesh) -> str:
 def placement(
     node: bpy.types.ShaderNodeTexImage, mesh: bpy.types.Mesh
 ) -> tuple[str, np.ndarray | None, tuple[str, str] | None]:
-    """The UV map of an Image Texture node, the (2, 3) matrix from its coordinates to the image's, None: the same, and
-    how these are wrapped then, as `sampling.Texture` has it.
+    """The UV map of an Image Texture node, and the (2, 3) matrix from its coordinates to the image's (None: identity).
 
-    Raises UnreadableError.
+    Also how the image's coordinates are wrapped, in the form of `sampling.Texture`. Raises UnreadableError.
     """
     matrix, wraps = np.eye(3), None
     socket, passed = node.inputs["Vector"], set()
@@ -54,9 +53,11 @@ def placement(
 
 
 def _wrapped(combine: bpy.types.ShaderNodeCombineXYZ) -> tuple[tuple[str, str], bpy.types.NodeSocket]:
-    """How u and v are wrapped one by one, as glTF's importer has it where they differ, and the socket that both are of.
+    """How u and v are wrapped separately, as built by glTF's importer if they differ, and the socket that both come
+    from.
 
-    Separate XYZ, a Math node (or none) over each of X and Y, Combine XYZ. Raises UnreadableError for anything else.
+    The nodes are Separate XYZ, a Math node or none for each of X and Y, and Combine XYZ. Raises UnreadableError for
+    anything else.
     """
     wraps, separates = [], []
     for axis in ("X", "Y"):
@@ -85,7 +86,7 @@ def _rows(matrix: np.ndarray) -> np.ndarray | None:
 
 
 def _mapping(node: bpy.types.ShaderNodeMapping) -> np.ndarray:
-    """(3, 3) matrix of a Mapping node over u, v, 1; the third coordinate of a texture is 0 and is not looked at."""
+    """(3, 3) matrix of a Mapping node for u, v, 1; the third coordinate of a texture is 0 and is ignored."""
     names = ("Location", "Rotation", "Scale")
     sockets = [node.inputs[name] for name in names]
     if node.vector_type not in _MAPPINGS or any(linked(s) for s in sockets if s.enabled):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The interface in other languages: a file a language, registered with Blender, which looks texts up as it draws them.
+"""The interface in other languages: one file per language, registered with Blender, which translates while drawing.
 
-`blender --command surfels template FILE` writes the template for another one.
+`blender --command surfels template FILE` writes a template for a new language.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ LANGUAGES = {"de_DE": GERMAN, "de": GERMAN}
 
 
 def catalogue() -> dict[str, dict[Message, str]]:
-    """As Blender takes it."""
+    """The translations in the form that Blender registers."""
     return {
         language: {(context, text): said for text, said in texts.items() for context in (DEFAULT, OPERATOR, TEXTS)}
         for language, texts in LANGUAGES.items()

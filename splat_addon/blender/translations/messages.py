@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every text of the interface that Blender translates: names and tooltips of what is registered, and the labels that
-the panels' sources spell out.
+"""Lists the interface texts that Blender translates: names and tooltips of registered classes, and labels in panels.
 
-A text that is put together while a panel is drawn, with a number or a name in it, stays English, as do reports.
+Texts that are composed while a panel is drawn, with a number or a name, stay English, and so do reports.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ Message = tuple[str, str]
 
 
 def messages() -> set[Message]:
-    """(context, text) of everything that is shown, once the add-on is registered."""
+    """(context, text) for every text of the interface; the add-on must be registered."""
     found = {*_of_classes(), *_of_operators(), *_of_sources()}
     return {(context, text) for context, text in found if any(letter.isalpha() for letter in text)}
 
@@ -70,7 +69,7 @@ def _of_properties(properties) -> Iterator[Message]:
 
 
 def _of_sources() -> Iterator[Message]:
-    """The constants that labels, headings and buttons are given."""
+    """The constant texts given to labels, headings and buttons in the panels' sources."""
     for path in sorted(_SOURCES.rglob("*.py")):
         for call in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute):

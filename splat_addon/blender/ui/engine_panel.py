@@ -7,7 +7,7 @@ from ..ids import ENGINE
 
 
 class EnginePanel:
-    """A base beside `bpy.types.Panel`; `bl_context` says in which of the properties it is."""
+    """A base class beside `bpy.types.Panel`; `bl_context` names the panel's tab in the properties editor."""
 
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"

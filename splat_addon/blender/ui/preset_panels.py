@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Presets of one's own, by Blender's own preset system, in the headers of the render's and the conversion's panels.
+"""Lets users save presets in the headers of the render and conversion panels, with Blender's own preset system.
 
-Each is a file in the user's presets folder. The conversion's operators have theirs in Adjust Last Operation besides.
+Each preset is a file in the user's presets folder. The converting operators also have theirs in Adjust Last Operation.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ _OF_THIS_FILE = frozenset({"matcap"})
 class _Kind(NamedTuple):
     """A kind of presets.
 
-    panel: the name of the panel that lists them. idname: the operator that adds one. label: what they are called.
-    folder: of their files, below `surfel_splatting`. what: they hold, in the operator's tooltip.
-    settings: the scene's property that they set. names(): its properties that they hold, once it is registered.
+    panel: the name of the panel that lists them. idname: the operator that adds one. label: the name of the kind.
+    folder: of the files, below `surfel_splatting`. what: their contents, in the operator's tooltip. settings: the
+    scene's property that they set. names(): the properties that they contain; call it after registration.
     """
 
     panel: str
@@ -39,7 +39,7 @@ class _Kind(NamedTuple):
 
 
 def _classes(kind: _Kind) -> tuple[type[bpy.types.Panel], type[bpy.types.Operator]]:
-    """The panel and the operator, by Blender's own bases."""
+    """The panel and operator classes of a kind of presets, derived from Blender's own."""
     folder, (place, _, verb) = f"surfel_splatting/{kind.folder}", kind.idname.partition(".")
     panel = {
         "__module__": __name__,
@@ -65,7 +65,10 @@ def _classes(kind: _Kind) -> tuple[type[bpy.types.Panel], type[bpy.types.Operato
 
 
 def _render_names() -> list[str]:
-    """Choices come last, which setting a number may change."""
+    """The properties that a preset of the render settings contains.
+
+    Choices come last, because setting a number may change one.
+    """
     every = sorted(SurfelSplattingSettings.bl_rna.properties, key=lambda p: p.type == "ENUM")
     return [p.identifier for p in every if not p.is_readonly and p.identifier not in {"name", *_OF_THIS_FILE}]
 

@@ -48,7 +48,7 @@ class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
 
 
 def blurs_that_need_samples(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> Iterator[str]:
-    """What is switched on and would not be seen in a final render, since that has one sample."""
+    """Enabled effects that a final render would not show, because it has only one sample."""
     properties = getattr(scene, RENDER_SETTINGS)
     if max(view_layer.samples or properties.samples, properties.blur_samples) == 1:
         yield from blurs(scene, view_layer)
@@ -221,7 +221,7 @@ _JOINED_FROM_EEVEE = frozenset(
 
 
 def stock_panels() -> Iterator[type]:
-    """Blender's panels that show settings which this engine honours."""
+    """Blender's own panels whose settings this engine supports."""
     for panel in bpy.types.Panel.__subclasses__():
         engines = getattr(panel, "COMPAT_ENGINES", ())
         # of a panel that the shader editor shows too there is a second class, with the same set of engines

@@ -30,7 +30,7 @@ class RENDER_PT_surfel_report(EnginePanel, bpy.types.Panel):
 
 
 class _ReportPart(EnginePanel):
-    """A part of the report that is there where the last picture has the statistic."""
+    """A part of the report; it is shown if the last picture has the statistic."""
 
     bl_context = "render"
     bl_parent_id = "RENDER_PT_surfel_report"

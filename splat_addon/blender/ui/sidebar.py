@@ -78,7 +78,7 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
 
 
 def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], asked: Choices) -> str:
-    """What the sources will become, and in lines of their own why that density; or why they cannot."""
+    """Lines about what the sources will become and why at that density, or why they cannot be converted."""
     parts = groups(sources, context.active_object, asked.join)
     extents = known_extents(parts, asked)
     if extents is None:
@@ -93,7 +93,7 @@ def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], aske
 
 
 def _density_of(sources, extent: Extent, asked: Choices, depsgraph) -> tuple[dict[str, float], str]:
-    """In terms that `Extent.predict` knows, and why, where it is found by itself. Raises ValueError."""
+    """The density in the form that `Extent.predict` takes, and the reason if it is automatic. Raises ValueError."""
     detail, frame = detail_of(sources[0]), frame_of(sources[0], asked.in_world_units)
     if "automatic" not in asked.density:
         return without_camera(finer(asked.density, detail), lambda: extent.surface, frame, depsgraph), ""

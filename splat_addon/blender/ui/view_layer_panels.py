@@ -25,7 +25,7 @@ class VIEWLAYER_PT_surfel_filter(EnginePanel, bpy.types.Panel):
 
 
 class VIEWLAYER_PT_surfel_override(EnginePanel, bpy.types.Panel):
-    """As Blender's own, which before 5.0 is Cycles' alone."""
+    """The material override, as in Blender's own panel, which before 5.0 exists for Cycles only."""
 
     bl_label = "Override"
     bl_context = "view_layer"

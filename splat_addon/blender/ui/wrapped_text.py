@@ -16,7 +16,7 @@ _ICON = 4
 
 
 def write(layout: bpy.types.UILayout, text: str, context: bpy.types.Context, icon: str = "NONE") -> None:
-    """A text in as many lines as the panel's width asks for. icon: before the first of them."""
+    """Draw a text in as many lines as the panel's width requires. icon: shown before the first line."""
     width = context.region.width / (_LETTER * context.preferences.system.ui_scale) - _MARGIN if context.region else 60
     column = layout.column(align=True)
     column.scale_y = 0.8

@@ -18,7 +18,7 @@ LARGEST_PIXEL = 1e8
 
 
 def clipped_samples(method: str, plane: Plane, points: np.ndarray, pixel: np.ndarray, lines: np.ndarray, reflex: bool):
-    """(M,) weights and (M,) depths as the method's twin gives them, of a splat that ends at lines.
+    """(M,) weights and (M,) depths of a splat that ends at lines, computed by the method's twin.
 
     lines: (2, 3) of unit direction, in half-axes, as `Surfels.clip_lines` gives them.
     """
@@ -34,12 +34,12 @@ def clipped_samples(method: str, plane: Plane, points: np.ndarray, pixel: np.nda
 
 
 def there(lines: np.ndarray) -> np.ndarray:
-    """(..., 3) lines; those that are none without a direction: a filter reaches beyond the ellipse that they keep."""
+    """(..., 3) lines; lines that cut nothing get no direction, because a filter reaches beyond the ellipse."""
     return np.where(lines[..., 2:] < 1, lines, (0.0, 0.0, 1.0))
 
 
 def _in_picture(at, lines: np.ndarray, reflex: np.ndarray) -> np.ndarray:
-    """(M,) bool: which places are kept. In the picture lines go straight on beyond the plane's horizon."""
+    """(M,) bool: whether places are on the kept side. In the picture, lines continue beyond the plane's horizon."""
     side = np.where(at.k > 0, 1.0, -1.0)[:, None]
     homogeneous = np.concatenate([at.uv * side, side], axis=1)
     inside = np.einsum("nk,lk->nl", homogeneous, lines) >= 0

@@ -24,8 +24,9 @@ def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.nda
 
 
 def adjusted(plane: Plane, pixel: np.ndarray, as_printed: bool = False) -> Plane:
-    """The plane of the ellipse, as printed of the disc, whose half-axes are no shorter than the filter: that is 0 / 0
-    where the disc faces the ray.
+    """The splat's plane with half-axes at least as long as the filter.
+
+    In the paper's version, which is for discs, the result is 0 / 0 for a disc that faces the ray.
     """
     is_orthographic = is_parallel(plane)
     depth = 1.0 if is_orthographic else plane.depth

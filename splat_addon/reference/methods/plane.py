@@ -99,7 +99,7 @@ def gradients(plane: Plane, at: Places, pixel: np.ndarray) -> np.ndarray:
 
 
 def plane_depth(plane: Plane, at: Places, pixel: np.ndarray, filter_pixels: float) -> np.ndarray:
-    """(M,) depth of the plane, held near the splat."""
+    """(M,) depth of the plane, clamped near the splat."""
     steepest = np.linalg.norm(plane.gradient * pixel)
     reach = np.linalg.norm(plane.slope) + min(2 * filter_pixels * steepest, 16 * plane.radius)
     depth = np.clip(plane.depth + at.uv @ plane.slope, plane.depth - reach, plane.depth + reach)

@@ -27,9 +27,9 @@ def samples(
 
 
 def window_depth(depth: np.ndarray, near: float, far: float, as_printed: bool = False) -> np.ndarray:
-    """Depth in the window of a distance from the eye, 0 at `near` and 1 at `far` (Botsch and Kobbelt 2003, equation 4).
+    """The window depth of a distance from the eye, 0 at `near` and 1 at `far` (Botsch and Kobbelt 2003, equation 4).
 
-    as_printed: with b twice as large, which puts all that is nearer than about 2 near before the window.
+    as_printed: with b twice as large, so that everything nearer than about 2 near gets a negative depth.
     """
     a, b = far / (far - near), -(2 if as_printed else 1) * far * near / (far - near)
     return (a * depth + b) / depth

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The numpy twin of shaders/methods/sprites_unfiltered.glsl: discs in sprites, of which the nearest is seen."""
+"""The numpy twin of shaders/methods/sprites_unfiltered.glsl: discs in sprites; only the nearest one is visible."""
 
 from __future__ import annotations
 

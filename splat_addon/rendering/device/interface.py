@@ -31,7 +31,7 @@ _CHANNEL_BYTES = {"RGBA16F": 2, "RGBA16": 2}
 
 
 def texture_bytes(textures: Iterable[Texture]) -> int:
-    """What these textures hold, without what a driver adds."""
+    """The bytes of these textures, without the driver's overhead."""
     return sum(_bytes_of(t.size, t.format, t.samples) for t in textures)
 
 
@@ -49,7 +49,7 @@ def check_texture_size(size: tuple[int, int], largest: int) -> None:
 
 
 def check_memory(device: Device, size: tuple[int, int], format: str, samples: int = 0) -> None:
-    """Raises ValueError where one more such texture is more than the device may take."""
+    """Raise ValueError if another such texture would exceed the device's memory limit."""
     if device.most_bytes is None:
         return
     needed = texture_bytes(device.textures) + _bytes_of(size, format, samples)

@@ -46,6 +46,6 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    """Not where transparent instances are drawn, which have no levels."""
+    """The part that draws a cut; passes of transparent instances, which have no levels, lack it."""
     if p.host in (*SPLAT_HOSTS, "visibility.frag") and p.kind not in ("layer", "rest"):
         yield Part("levels", inputs=("drawn_splats",), only="cut")

@@ -22,7 +22,11 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    """Not where transparent instances are drawn, which are surfels at every distance, nor where both cast shadows."""
+    """The parts that end splats or polygons at the split distance.
+
+    Transparent instances are surfels at every distance, and in shadow maps both forms cast shadows, so their passes
+    have no such part.
+    """
     if p.kind in ("layer", "rest", "shadow"):
         return
     varyings = (("smooth", "vec3", "split_place"),)

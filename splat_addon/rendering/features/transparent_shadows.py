@@ -16,7 +16,7 @@ def _casting(planning) -> int:
 
 
 def passes(planning):
-    """None; it says whether anything casts such."""
+    """No passes; records whether any transparent object casts shadows."""
     why = "shadows of {count} instances are as transparent as those"
     casting = planning.find(_casting) if planning.shown else 0
     return planning.counts("SCREEN_DOOR", casting, why, "transparent shadows", "nothing transparent casts any")

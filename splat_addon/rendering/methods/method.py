@@ -44,5 +44,5 @@ class Method:
 
     @property
     def spreads(self) -> bool:
-        """Splats reach past the exact ellipses that visibility is of."""
+        """Whether splats extend past the exact ellipses that the visibility pass draws."""
         return self.widens or self.rasterizer == "screen_space"

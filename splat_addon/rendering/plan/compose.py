@@ -70,7 +70,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _setting(text: str) -> tuple[str, object]:
-    """A name and what it is set to: a literal, a bare word, or `Lines()`."""
+    """A name and its value: a literal, a bare word, or `Lines()`."""
     name, _, value = text.partition("=")
     if value.endswith("()"):
         return name, getattr(rendering, value[:-2])()

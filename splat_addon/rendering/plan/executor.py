@@ -165,7 +165,7 @@ class TileContext:
 
 
 def _stored(entries: np.ndarray | None, places: np.ndarray) -> np.ndarray | None:
-    """Where entries of a hierarchy are stored; None for all surfels, which are the first."""
+    """The storage indices of a hierarchy's entries; None for all surfels, which are stored first."""
     return None if entries is None else places[entries]
 
 

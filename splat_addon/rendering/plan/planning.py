@@ -44,9 +44,8 @@ class Planning:
         self.features.append((feature, why))
 
     def counts(self, feature: str, count: int, why: str, *otherwise: str) -> tuple:
-        """Say of what has no passes of its own that it is present; for a count of 0, what is not needed and why.
-
-        why: has {count}.
+        """Record a feature without passes of its own as present, or for a count of 0 as not needed, and why.
+        why: contains {count}.
         """
         if self.shown and count:
             self.has(feature, why.format(count=count))

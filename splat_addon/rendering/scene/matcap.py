@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A picture of a lit ball that the matcap shading takes colours from (Sloan et al. 2001)."""
+"""A picture of a lit ball, from which matcap shading takes its colours (Sloan et al. 2001)."""
 
 from __future__ import annotations
 

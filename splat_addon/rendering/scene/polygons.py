@@ -82,7 +82,7 @@ class Polygons(Shape):
 
     @property
     def is_transparent(self) -> bool:
-        """Polygons are opaque."""
+        """Always False: polygons are opaque."""
         return False
 
     @cached_property

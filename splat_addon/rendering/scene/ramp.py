@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A transfer function from how much light falls on a surface to its colour (Botsch et al. 2005, section 6)."""
+"""A ramp of colours, looked up by the amount of light on a surface (Botsch et al. 2005, section 6)."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ class Ramp:
 
     @classmethod
     def of_steps(cls, count: int, places: int = 256) -> Ramp:
-        """As many even greys from black to white, as the toon model has them."""
+        """A ramp of that many even greys from black to white, as in the toon model."""
         at = np.minimum(np.arange(places) * count // places, count - 1) / (count - 1)
         return cls(np.repeat(at[:, None], 3, axis=1))
 
     def texels(self) -> np.ndarray:
-        """(1, n, 4) as they lie on the device."""
+        """The ramp as (1, n, 4) texels for the device."""
         return np.concatenate([self.colors, np.ones((len(self.colors), 1), np.float32)], axis=1)[None]

@@ -39,6 +39,6 @@ def edge_texels() -> np.ndarray:
 
 
 def brdf_texels() -> np.ndarray:
-    """(48, 64, 4) float32: the first four entries, and beside them the others."""
+    """(48, 64, 4) float32: the first four entries, and to their right the other four."""
     table = brdf_table()
     return np.ascontiguousarray(np.concatenate([table[..., :4], table[..., 4:]], axis=1))

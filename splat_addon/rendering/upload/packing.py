@@ -77,7 +77,7 @@ def pack_clip_lines(surfels: Surfels, order: np.ndarray) -> np.ndarray:
 
 
 def row_count(count: int) -> int:
-    """Rows of 512 splats, one at least. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
+    """The number of rows of 512 splats, at least one. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
     if count > MAX_SPLATS:
         raise ValueError(
             f"One object can hold {MAX_SPLATS:,} surfels, not {count:,}; make several, or raise its surfel spacing."

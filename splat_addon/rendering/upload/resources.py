@@ -113,13 +113,16 @@ class Resources:
         return self._once(surfels, "clip_lines", None, uploaded)
 
     def _order(self, surfels: Surfels, levels: Hierarchy | None = None) -> np.ndarray:
-        """That in which they are stored, found once."""
+        """The order in which the surfels are stored, computed once."""
         return self._with_levels(surfels, "order", (), levels, lambda: stored_order(surfels, levels))
 
     def _with_levels(
         self, owner: object, kind: str, made_from: tuple, levels: Hierarchy | None, make: Callable[[], Uploaded]
     ) -> Uploaded:
-        """As `_once`; what is there with levels serves those too who draw none: the surfels lie before them."""
+        """Device data as in `_once`.
+
+        Data stored with levels also serves draws without levels, because the surfels come first.
+        """
         (*from_before, levels_before), _ = self._held.get(owner, {}).get(kind, ((None,), None))
         is_kept = levels is None and tuple(from_before) == made_from
         return self._once(owner, kind, (*made_from, levels_before if is_kept else levels), make)
@@ -170,7 +173,7 @@ class Resources:
         self.textures = {key: texture for key, texture in self.textures.items() if key in wanted}
 
     def pipeline(self, description: PipelineDescription) -> Pipeline:
-        """The device's own, which every renderer shares."""
+        """The device's pipeline, which all renderers share."""
         return self.device.pipeline(description)
 
     def release(self) -> None:

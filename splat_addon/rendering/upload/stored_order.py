@@ -18,9 +18,9 @@ SPLATS_PER_ROW = 512
 
 
 def stored_order(surfels: Surfels, levels: Hierarchy | None = None) -> np.ndarray:
-    """(stored,) int32 numbers of surfels and, from N on, of the merged nodes of `levels`.
+    """(stored,) int32 indices of surfels and, from N on, of the merged nodes of `levels`.
 
-    A row that nodes follow is filled up with its last surfel.
+    The last surfel is repeated to fill its row, if nodes follow.
     """
     order = spatial_order(surfels.positions).astype(np.int32)
     if surfels.clipped_count:

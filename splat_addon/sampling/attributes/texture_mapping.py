@@ -86,7 +86,9 @@ def from_uv_planes(planes: np.ndarray, arrays: dict[str, np.ndarray], axes: np.n
 
 
 def slips(difference: np.ndarray, planes: np.ndarray) -> np.ndarray:
-    """(n,) how many cells a texture with these (n, 2, 3) planes must slip to change its coordinates by (n, 2)."""
+    """(n,) number of cells by which a texture with these (n, 2, 3) planes must slip to change its coordinates
+    by (n, 2).
+    """
     if not planes.shape[1]:
         return np.zeros(len(planes))
     change = np.hypot(planes[:, :, 1], planes[:, :, 2])
@@ -101,7 +103,7 @@ def is_mapped(planes: np.ndarray) -> np.ndarray:
 
 
 def moved(arrays: dict[str, np.ndarray], half_axes: tuple[np.ndarray, np.ndarray], offset: np.ndarray) -> dict:
-    """What changes of surfels whose centres move by (n, 3) `offset`, in their planes."""
+    """Changes to the fields of surfels whose centres move by (n, 3) `offset` within their planes."""
     x, y = (np.einsum("ij,ij->i", offset, a) / np.einsum("ij,ij->i", a, a) for a in half_axes)
     line = arrays[BORDER]
     left = np.maximum(1 - line[:, 0] * x - line[:, 1] * y, 1e-3)[:, None]

@@ -79,10 +79,10 @@ class EdgeSurvey:
 def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE, reach: float = math.inf) -> EdgeSurvey:
     """The edges of a usable mesh.
 
-    angle: radians; an edge is a crease where its faces' planes, or the shading normals at one of its ends, differ by
-    more; beside a triangle that is larger than the splats, a share of it. reach: of the splats, object units.
-    Vertices at one place are one. An edge of one face, or of more than two, is a border of each. Faces that wind
-    differently are compared as if they did not.
+    angle: radians; an edge is a crease if the planes of its faces, or the shading normals at one of its ends, differ by
+    more than this, or by a share of it beside a triangle that is larger than the splats. reach: of the splats, object
+    units. Vertices at the same position count as one. An edge with one face, or with more than two, is a border of each
+    of them. Faces with opposite winding are compared as if it were the same.
     """
     normals, sizes, heights = _unit_normals(mesh)
     angles, large = np.full(len(mesh), float(angle)), np.flatnonzero(heights > reach)
@@ -113,8 +113,11 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE, reach:
 
 
 def _have_planes(corners: np.ndarray, doubled: np.ndarray) -> np.ndarray:
-    """(B,) bool: false of triangles whose corners lie on a line but for rounding, so that their normals are noise and
-    there is no surface that a splat could end or be missing on. corners: (3, 3, B). doubled: (B, 3)."""
+    """(B,) bool: False for triangles whose corners are on one line within rounding.
+
+    Their normals are meaningless, and there is no surface that a splat could end on or leave bare. corners: (3, 3, B).
+    doubled: (B, 3).
+    """
     longest = np.maximum.reduce([((corners[:, k] - corners[:, k - 1]) ** 2).sum(axis=0) for k in range(3)])
     return np.sqrt(_dots(doubled, doubled)) > _LEAST_HEIGHT * longest
 
@@ -152,7 +155,9 @@ def _breaking(mesh: TriangleMesh, normals: np.ndarray, angles: np.ndarray):
 
 
 def _restless_edges(places: np.ndarray, is_restless: np.ndarray):
-    """(e,) triangles, (e,) corners at which their edge starts, and (2, e) places of its ends, both of which are."""
+    """(e,) triangles, (e,) corners at which their edges start, and (2, e) positions of the ends, for edges that
+    may be borders.
+    """
     among = is_restless.take(places)
     rows = [np.flatnonzero(among[k] & among[(k + 1) % 3]) for k in range(3)]
     ends = [np.concatenate([places[(k + step) % 3].take(rows[k]) for k in range(3)]) for step in (0, 1)]
@@ -161,10 +166,10 @@ def _restless_edges(places: np.ndarray, is_restless: np.ndarray):
 
 
 def _grouped(keys: np.ndarray):
-    """(e,) order that brings equal keys together, and the start and count of each group of them.
+    """(e,) order that brings equal keys together, and the start and count of each group. keys: (e,) uint64.
 
-    keys: (e,) uint64. They are sorted with their numbers in their lowest bits, several times as fast as an order is
-    found; groups that are no pairs are looked at with all bits.
+    Keys are sorted with their indices in the lowest bits, which is several times as fast as computing an order; groups
+    other than pairs are then compared with all bits.
     """
     bits = np.uint64(max(len(keys) - 1, 1).bit_length())
     number = np.arange(len(keys), dtype=np.uint64)
@@ -191,7 +196,7 @@ def _runs(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 @dataclass(frozen=True, eq=False)
 class _Corners:
-    """p corners at which an edge starts: their triangle, their number in it, and their place."""
+    """p corners at which an edge starts: their triangle, their number in it, and their position."""
 
     triangle: np.ndarray
     number: np.ndarray
@@ -199,7 +204,9 @@ class _Corners:
 
 
 def _breaks(mesh: TriangleMesh, normals: np.ndarray, looks, one: _Corners, other: _Corners, least: np.ndarray):
-    """(p,) bool of edges with two sides; and (p,) cosines of their planes. least: (p,) of those that go on."""
+    """(p,) bool: whether edges with two sides are borders; and (p,) cosines between their planes. least: (p,)
+    cosine above which the surface continues.
+    """
     s, t = one.triangle, other.triangle
     ahead = one.place == other.place
     cosine = sum(component.take(s) * component.take(t) for component in normals)
@@ -237,8 +244,9 @@ def _looks(mesh: TriangleMesh) -> np.ndarray | None:
 
 
 def _unit_normals(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(3, T) float32: of the triangles' planes; (T,) float32, the root of twice their areas; and (T,) float32, heights
-    over their longest edges."""
+    """(3, T) float32 unit normals of the triangles; (T,) float32 root of twice their areas; (T,) float32
+    heights over their longest edges.
+    """
     normals, sizes = np.empty((3, len(mesh)), np.float32), np.empty(len(mesh), np.float32)
     heights = np.empty(len(mesh), np.float32)
     for chunk in triangle_chunks(len(mesh)):

@@ -69,7 +69,7 @@ def calm_vertices(
 
 
 def _least_cosines(mesh: TriangleMesh, places: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """(V,) float32, of half the smallest angle around each vertex."""
+    """(V,) float32: the cosine of half the smallest angle around each vertex."""
     largest = angles.max()
     smallest = np.full(len(mesh.positions), largest)
     # The last of several values at one vertex stays, and that is the smallest.
@@ -103,7 +103,7 @@ def _dot(a, b) -> np.ndarray:
 
 
 def _labels(mesh: TriangleMesh, looks: np.ndarray | None) -> np.ndarray | None:
-    """(3 T,) uint64 of corners that are equal for equal colours and looks; None where all are equal."""
+    """(3 T,) uint64 labels of corners, equal if their colours and surfaces are equal; None if all are."""
     labels = None if looks is None else np.repeat(looks.astype(np.uint64), 3)
     if mesh.corner_colors is not None and any(surface.color.factors for surface in mesh.surfaces):
         rows = np.ascontiguousarray(mesh.corner_colors, np.float32).view(np.uint32)

@@ -74,7 +74,7 @@ def clip(
 
 
 def _one_side_of_each(met: Meetings, arrays: dict[str, np.ndarray], borders: Borders) -> np.ndarray:
-    """The meetings without those for which another side of the same edge matches the surfel better."""
+    """The meetings, without those for which another side of the same edge fits the surfel better."""
     keys = met.surfel * (int(borders.edges.max()) + 1) + borders.edges.take(met.side)
     order = order_of(keys)
     keys = keys.take(order)
@@ -92,7 +92,7 @@ def _one_side_of_each(met: Meetings, arrays: dict[str, np.ndarray], borders: Bor
 
 
 def _unlikeness(met: Meetings, rows: np.ndarray, arrays: dict[str, np.ndarray], borders: Borders) -> np.ndarray:
-    """(r,) difference between a surfel and the face of a side, of r of the meetings."""
+    """(r,) difference between the surfel and the face of the side, for these r rows of the meetings."""
     surfel, side = met.surfel.take(rows), met.side.take(rows)
     result = 2 - 2 * met.facing.take(rows) + 0.01 * (met.line[2].take(rows) < 0)
     for values, of_side in ((arrays["normals"], borders.shading), (arrays["colors"], borders.colors)):
@@ -106,7 +106,8 @@ def _unlikeness(met: Meetings, rows: np.ndarray, arrays: dict[str, np.ndarray], 
 def _nearest_first(met: Meetings, rows: np.ndarray) -> np.ndarray:
     """The (m,) rows of meetings, ordered by surfel, and for each surfel by how near the edge is.
 
-    At an end that two edges share, the one whose line is farther off says on which side the centre is.
+    At an end that two edges share, the one whose line is farther off decides on which side the centre is, and comes
+    first.
     """
     surfel, off, distance = met.surfel.take(rows), met.line[2].take(rows), met.distance.take(rows)
     distance += ((off < 0) & (off >= BEYOND)) * _BEYOND_IS_FARTHER
@@ -169,7 +170,9 @@ def _lines(met: Meetings, starts: np.ndarray, owner: np.ndarray) -> np.ndarray:
 
 
 def _off_line(met: Meetings, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(m,) how far what lies of an edge in the circle is off a line at most, and (m,) on which side of it, signed."""
+    """(m,) largest distance of the part of an edge in the circle from a line, and (m,) the same with the sign
+    of its side.
+    """
     (x, y), (u, v) = met.start, met.end - met.start
     a, b, c = u * u + v * v, x * u + y * v, x * x + y * y - 1
     root = np.sqrt(np.maximum(b * b - a * c, 0))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels along the edges where one part of a mesh is drawn as polygons and the other as splats.
+"""Adds surfels along the edges between the parts of a mesh that are drawn as polygons and as splats.
 
-Source: Guennebaud, Barthe, Paulin 2006, section 5.1: the sum of weights must be 1 where polygons end, which is so where
-the edges of the transition are sampled evenly by splats that have their centres on them.
+Source: Guennebaud, Barthe, Paulin 2006, section 5.1: where polygons end, the sum of weights must be 1. It is if splats
+with their centres on these edges sample them evenly.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def _mean(corners: np.ndarray, shares: np.ndarray) -> np.ndarray:
 
 
 def _plane_normals(mesh: TriangleMesh) -> np.ndarray:
-    """(T, 3) unit normals of the triangles' planes, 0 of those without area."""
+    """(T, 3) unit normals of the triangles' planes; 0 for triangles without area."""
     return _unit(doubled_areas(gather_corners(np.ascontiguousarray(mesh.positions.T), mesh.triangles)).T)
 
 

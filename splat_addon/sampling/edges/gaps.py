@@ -48,10 +48,10 @@ def gap_surfels(
     sampler: MaterialSampler,
     tangents: np.ndarray | None,
 ) -> tuple[dict[str, np.ndarray], np.ndarray]:
-    """The arrays of `Surfels` on what is bare beside the borders, clipped like the others, {} where nothing is; and
+    """The arrays of `Surfels` for bare places beside the borders, clipped like the others ({} if there are none), and
     their (k,) triangles.
 
-    clipping: of all other surfels. sampler, tangents: as a `SampleFiller` has them.
+    clipping: of all other surfels. sampler, tangents: as in `SampleFiller`.
     """
     if not len(borders):
         return {}, np.empty(0, np.intp)
@@ -128,7 +128,7 @@ def _covered(clipping: Clipping, grid: Grid, first, last, counts: np.ndarray, of
 
 
 def _in_circles(met, first: np.ndarray, last: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-    """(2, m) where each surfel sees the first place of the side that it meets, and (2, m) the way to the last."""
+    """(2, m) first place of the met side in each surfel's circle, and (2, m) the way from it to the last."""
     ends = [((place - grid.surfel_origin) / grid.spacing).astype(np.float32).T for place in (first, last)]
     seen = []
     axis = met.axis.astype(np.intp)  # numpy 1.26 would count places in the axes' 8 bits
@@ -141,7 +141,7 @@ def _in_circles(met, first: np.ndarray, last: np.ndarray, grid: Grid) -> tuple[n
 
 
 def _kept_stretch(line: np.ndarray, start: np.ndarray, way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(m,) lowest and (m,) highest share of the way at which a place is on the side of its line that is kept."""
+    """(m,) lowest and (m,) highest fraction of the way at which a place is on the kept side of its line."""
     value = line[0] * start[0] + line[1] * start[1] + line[2]
     rise = line[0] * way[0] + line[1] * way[1]
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -92,8 +92,11 @@ def _near_planes(place, firsts: np.ndarray, counts: np.ndarray, edge: np.ndarray
 
 
 def _runs(x: np.ndarray, y: np.ndarray, reach: float, width: int, height: int):
-    """Runs of cells that lie within `reach` of edges, and some more around their ends: (r,) the edge, and (r,) the
-    first cell of each run and the one behind its last. x, y: (2, e), of their ends."""
+    """Runs of cells within `reach` of edges, and slightly more around the ends.
+
+    Returns for each of r runs the edge, the first cell, and the cell after the last. x, y: (2, e) coordinates of the
+    edges' ends.
+    """
     low, high = y.min(axis=0) - reach, y.max(axis=0) + reach
     first = np.clip(np.ceil(low), 0, height).astype(np.intp)
     last = np.clip(np.floor(high), -1, height - 1).astype(np.intp)

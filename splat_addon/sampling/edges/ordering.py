@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The order of whole numbers, in less time than numpy's argsort takes."""
+"""Sorts integers in less time than numpy's argsort takes."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import numpy as np
 
 
 def order_of(keys: np.ndarray) -> np.ndarray:
-    """(n,) intp: the stable order of (n,) whole numbers that are not below 0.
+    """(n,) intp: the stable order of (n,) non-negative integers.
 
-    They are sorted with their places in their lowest bits, several times as fast as an argsort, where 63 bits hold
-    both.
+    If 63 bits hold both, the integers are sorted with their indices in the lowest bits, several times as fast as an
+    argsort.
     """
     bits = len(keys).bit_length()
     if int(keys.max(initial=0)).bit_length() + bits > 63:

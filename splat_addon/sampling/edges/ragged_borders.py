@@ -15,28 +15,28 @@ _RINGS = ((0.35, 4), (0.7, 7), (0.95, 11))
 #: Edges per batch: their points stay in the processor's cache.
 _CHUNK = 2048
 
-#: What a weight is a whole number of, so that sums of them are exact, and equal in whichever order they are taken.
+#: Weights are multiples of this, so that their sums are exact in any order.
 _UNIT = 2.0**-18
 
-#: A second line that gains no more than this share of the splat is spared.
+#: A second line must gain more than this share of the splat.
 _LEAST_GAIN = round(1e-4 / _UNIT)
 
-#: What two lines keep: the first one's side, that of both, that of either, or all.
+#: What two lines keep: the first one's side, the intersection of both sides, their union, or everything.
 FIRST, BOTH, EITHER, ALL = range(4)
 
 
 def two_lines(start: np.ndarray, end: np.ndarray, line: np.ndarray, owner: np.ndarray):
-    """For each of n surfels which of its edges gives the second line, (n,) by number among the m given ones; and (n,)
-    what the lines keep.
+    """The best second line for each of n surfels: (n,) index of its edge among the m given ones, and (n,) what the
+    lines keep.
 
-    start, end: (2, m) float32 in the circle. line: (3, m). owner: (m,) ascending, 0 to n - 1, at least two of each; a
-    surfel's first edge is its nearest.
+    The latter is one of `FIRST`, `BOTH`, `EITHER` and `ALL`. start, end: (2, m) float32 in the circle. line: (3, m).
+    owner: (m,) ascending, 0 to n - 1; a surfel's first edge is its nearest.
     """
     starts = np.flatnonzero(np.append(True, owner[1:] != owner[:-1]))
     counts = np.diff(np.append(starts, len(owner)))
     edges = np.concatenate([start, end - start, line])
     best, kind = np.empty(len(starts), np.intp), np.empty(len(starts), np.intp)
-    # Those that have equally many edges together, so that these are axes of arrays.
+    # Surfels with equally many edges are judged together, because their edges then fill an array.
     for count in np.unique(counts):
         alike = np.flatnonzero(counts == count)
         step = max(_CHUNK // int(count), 1)
@@ -48,7 +48,9 @@ def two_lines(start: np.ndarray, end: np.ndarray, line: np.ndarray, owner: np.nd
 
 
 def _judged(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) the edge, and (n,) what is kept. edges: (7, k, n) of n surfels; k edges of each."""
+    """For each of n surfels, (n,) the best second edge among its k edges, and (n,) what the lines keep. edges:
+    (7, k, n).
+    """
     at, weights = places()
     count = edges.shape[1]
     inside, distance = _inside_of_each(edges, at)
@@ -77,11 +79,10 @@ def places() -> tuple[np.ndarray, np.ndarray]:
 
 
 def _inside_of_each(edges: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(p, k, n) bool, whether each place is inside of each edge's line, and (p, k, n) how far the edge is from it,
-    squared.
+    """(p, m) bool: whether each place is inside each edge's line, and (p, m) its squared distance from the edge.
 
-    At an end that two edges share, both are as far, and the one whose line is farther off is right: it counts as a
-    little nearer.
+    At an end that two edges share, both distances are equal, but the edge whose line is farther off is right, so it
+    counts as slightly nearer.
     """
     x, y, u, v, *line = edges
     inverse = 1 / np.maximum(u * u + v * v, np.float32(1e-30))

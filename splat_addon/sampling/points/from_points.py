@@ -192,7 +192,7 @@ def _usable_radii(given) -> np.ndarray:
 
 
 def _are_sizes(values: np.ndarray) -> np.ndarray:
-    """Which values are valid half-axes in float32."""
+    """(N,) bool: whether values are valid half-axes in float32."""
     with np.errstate(over="ignore"):
         values = values.astype(np.float32)
     return np.isfinite(values) & (values > 0)

@@ -24,7 +24,7 @@ def scene(empty_file, tmp_path):
     made.surfel_splatting.shading = "flat"
     made.surfel_splatting.method, made.surfel_splatting.supersampling = "quad", 1
     made.surfel_splatting.samples = made.surfel_splatting.blur_samples = 1
-    # By default a render in background stops at an object that it cannot draw.
+    # Unless told otherwise, a render in background stops at an object that it cannot draw.
     made.surfel_splatting.broken_objects = "WARN"
     made.render.filepath = str(tmp_path / "picture.exr")
     set_format(made.render, "OPEN_EXR")

@@ -101,7 +101,7 @@ def test_linked_duplicates_are_drawn_in_their_own_places(scene, motif, picture, 
 
 
 def test_duplicates_of_one_mesh_keep_their_own_modifiers(scene, motif, add_nodes, picture, assert_same_picture):
-    """The difficulty: Blender gives their evaluated meshes the same name."""
+    """This is difficult because Blender gives their evaluated meshes the same name."""
     motif.location.x = -2.5
     alone = picture()
     moved = motif.copy()

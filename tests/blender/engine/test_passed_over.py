@@ -260,13 +260,13 @@ ELSEWHERE = {
                        "simplify_gpencil", "compositor_", "bake_", "use_bake"),
 }  # fmt: skip
 
-#: Switches of objects and lights; what else they have is a value that panels show or its own type's affair.
+#: Switches of objects and lights; their other properties are values that panels show.
 SWITCHES_OF = {
     "Object": ("visible_", "is_", "hide_render"),
     "PointLight": ("use_", "normalize", "diffuse_", "specular_", "volume_", "transmission_"),
 }
 
-#: Of every data-block: how a file keeps it.
+#: Properties of every data-block about how a file keeps it.
 OF_ALL = {"use_fake_user", "use_extra_user", "is_runtime_data", "rna_type"}
 
 
