@@ -47,6 +47,9 @@ SIZE = (256, 256)
 #: Layers behind one another in the transparent spheres, peeled or in the last one.
 SURFACES = 8
 
+#: Splats at a pixel, each of which may tie with the depth that the nearest sprite hides beyond.
+SPRITES = 4
+
 
 def solid(scene, camera):
     """The scene with its instances marked as solid."""
@@ -255,8 +258,9 @@ def test_picture_is_the_same_on_every_device(name, method, options, render, on_b
     def hold(here, standalone):
         is_rough, has_layers = options.get("sum_format") == "float16", here["layers"] > 0
         tolerance = FLOAT16_TOLERANCE if is_rough else TOLERANCE
-        samples = SURFACES if has_layers else 1  # each of them may tie
-        filters = get_method(method).filters_silhouettes
+        described = get_method(method)
+        filters = described.filters_silhouettes
+        samples = SURFACES if has_layers else SPRITES if described.sprites_hide else 1  # each of them may tie
         hit = (here["depth"] < EMPTY_DEPTH) & (standalone["depth"] < EMPTY_DEPTH)
         brightness = np.maximum(standalone["color"], 1) if is_rough else 1
         apart = ties(here["color"] / brightness, standalone["color"] / brightness, tolerance)
