@@ -20,6 +20,16 @@ void finish_prepare(Splat splat, int index) {
   finish_shares = texelFetch(materials, material_place(index, splat.material) + ivec2(FINISH_TEXEL, 0), 0);
 }
 
+#part lit_splats.frag, covered
+void finish_emit(inout vec3 emission) {
+  emission *= passed_on;
+}
+
+#part shaded_sample, covered
+void finish_outputs(inout Shaded s) {
+  s.outputs.emission *= passed_on;
+}
+
 #part gbuffer
 void finish_add(inout Fragment f) {
   gbuffer_finish = finish * f.weight;

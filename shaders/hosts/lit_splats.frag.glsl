@@ -1,6 +1,6 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6 (lighting for each splat in the last layer).
-// Summary: lights each splat of an instance at its own position, and writes it to the texel of its number. Hook:
-//          `prepare` runs before lighting.
+// Summary: lights each splat of an instance at its own position, and writes it to the texel of its number. Hooks:
+//          `prepare` runs before lighting, `emit` after it.
 
 vec3 material;
 vec3 emission;
@@ -15,5 +15,7 @@ void main() {
   material = frame.material.xyz;
   emission = vec3(0.0);
   #hook prepare(splat, index)
-  lit_splats = vec4(shade(splat.position, splat.normal, splat.color, material) + emission, 1.0);
+  vec3 radiance = shade(splat.position, splat.normal, splat.color, material);
+  #hook emit(emission)
+  lit_splats = vec4(radiance + emission, 1.0);
 }

@@ -1,7 +1,8 @@
 // References: Walter, Marschner, Li, Torrance, "Microfacet Models for Refraction", 2007 (GGX);
 //             Heitz, "Understanding the Masking-Shadowing Function", 2014, equation 99 (height-correlated Smith);
 //             Schlick 1994 (Fresnel); Heitz et al. 2016 (lights with a size); Kutz, Hasan, Edmondson, "Novel aspects of
-//             the Adobe Standard Material", 2021 (a metal's tint, F82).
+//             the Adobe Standard Material", 2021 (a metal's tint, F82); Cycles' Principled BSDF (what a coat lets
+//             through: what it does not reflect, tinted by Beer's law along the refracted way to the viewer).
 // Summary: a surface like Principled: metal, or a dielectric over a Lambertian base that loses what the dielectric
 //          reflects, under lights and the world. The twin of reference/shading.py.
 
@@ -50,9 +51,11 @@ vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
   lobe.diffuse_albedo = base * (1.0 - metallic) * (1.0 - lost);
   lobe.specular_albedo = specular_albedo(terms, lobe.f0, lobe.f90, lobe.scattered);
   #hook dim(lobe, base, metallic)
+  #hook cover(lobe)
   vec3 reflected = mean_direction(terms_mean.zw, lobe.to_viewer, normal);
   vec3 radiance = lobe.diffuse_albedo * world_irradiance(normal)
       + lobe.specular_albedo * world_reflection(reflected, lobe.roughness);
+  #hook mirror(radiance)
   #hook lit(radiance, lobe, position, normal)
   return radiance;
 }
@@ -78,6 +81,45 @@ void specular_tint_dim(inout Lobe lobe, vec3 base, float metallic) {
   vec3 taken = 1.0 - min(finish_texel(0).rgb, vec3(1.0));
   lobe.edge = metallic * EDGE_GAIN * mix(base, vec3(1.0), EDGE_SCHLICK) * taken;
   lobe.specular_albedo -= lobe.edge * edge_at(lobe.roughness, lobe.nv) * lobe.scattered;
+}
+
+#part covered
+vec3 passed_on;  // share of the light from below what covers the surface
+
+void covered_cover(inout Lobe lobe) {
+  passed_on = vec3(1.0);
+}
+
+void cover(inout Lobe lobe, vec3 share) {
+  passed_on *= share;
+  lobe.diffuse_albedo *= share;
+  lobe.specular_albedo *= share;
+  lobe.scattered *= share;
+}
+
+#part coat
+Lobe coat;  // a dielectric without a base
+
+void coat_cover(inout Lobe lobe) {
+  vec4 tint_roughness = finish_texel(1);
+  float weight = min(finish_texel(0).a, 1.0), ior = max(finish_texel(2).x, 1.0);
+  float root = (ior - 1.0) / (ior + 1.0), f0 = root * root;
+  coat = lobe;
+  coat.roughness = clamp(tint_roughness.a, LEAST_ROUGHNESS, 1.0);
+  coat.f0 = vec3(f0);
+  coat.f90 = min(GRAZING_GAIN * f0, 1.0);
+  coat.diffuse_albedo = coat.edge = vec3(0.0);
+  coat.specular_albedo = specular_albedo(table_at(coat.roughness, coat.nv, 1).xy, coat.f0, coat.f90, coat.scattered);
+  vec3 passed = 1.0 - weight * coat.specular_albedo;
+  coat.specular_albedo *= weight * passed_on;
+  coat.scattered *= weight * passed_on;
+  float refracted = sqrt(1.0 - (1.0 - coat.nv * coat.nv) / (ior * ior));  // cosine, of which the way is the inverse
+  cover(lobe, passed * mix(vec3(1.0), pow(tint_roughness.rgb, vec3(1.0 / refracted)), weight));
+}
+
+void coat_mirror(inout vec3 radiance) {
+  vec3 reflected = mean_direction(table_at(coat.roughness, coat.nv, 1).zw, coat.to_viewer, coat.normal);
+  radiance += coat.specular_albedo * world_reflection(reflected, coat.roughness);
 }
 
 #part specular_tint, lights
@@ -123,12 +165,23 @@ void sized_lights_sent(inout vec3 radiance, inout bool is_done, Lobe lobe, Incid
 }
 
 #part lights
+void add_light(inout vec3 radiance, Lobe lobe, Incident light) {
+  bool is_done = false;
+  #hook sent(radiance, is_done, lobe, light)
+  if (!is_done) radiance += from_point(lobe, light.to_light, light.irradiance);
+}
+
+#part coat, lights
+void coat_over(inout vec3 radiance, Incident light) {
+  add_light(radiance, coat, light);
+}
+
+#part lights
 void lights_lit(inout vec3 radiance, Lobe lobe, vec3 position, vec3 normal) {
   int count = int(frame.light_count);
   for (int i = 0; i < count; i++) {
     Incident light = incident(i, position, normal);
-    bool is_done = false;
-    #hook sent(radiance, is_done, lobe, light)
-    if (!is_done) radiance += from_point(lobe, light.to_light, light.irradiance);
+    add_light(radiance, lobe, light);
+    #hook over(radiance, light)
   }
 }

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The principled shading of a visible surface point, in plain numpy: the definition that the GLSL follows.
 
-A dielectric or metal with a Lambert diffuse and a GGX specular term, under lights and a world.
+A dielectric or metal with a Lambert diffuse and a GGX specular term, and what covers it, under lights and a world.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,41 +26,90 @@ MIN_VIEW_COSINE = 1e-4
 GRAZING_GAIN = 50.0
 
 
+@dataclass(frozen=True, eq=False)
+class _Lobe:
+    """What n surface points reflect under one microfacet surface. roughness, (n,). diffuse, f0, specular, scattered,
+    edge: (n, 3) as in `brdf`; specular is an albedo. f90: (n, 1)."""
+
+    roughness: np.ndarray
+    diffuse: np.ndarray
+    f0: np.ndarray
+    f90: np.ndarray
+    specular: np.ndarray
+    scattered: np.ndarray
+    edge: np.ndarray
+
+    def times(self, share) -> _Lobe:
+        """All that it reflects, scaled."""
+        scaled = {name: getattr(self, name) * share for name in ("diffuse", "specular", "scattered")}
+        return replace(self, **scaled)
+
+
 def principled_radiance(surface: Surface, direction, lights: list[Incident], world: WorldLight) -> np.ndarray:
-    """(n, 3) radiance that leaves towards the viewer.
+    """(n, 3) radiance that leaves towards the viewer, with what the surface sends out itself.
 
     direction: (n, 3) of the rays that see the points, eye space. lights: what each sends to them.
     """
-    view = -unit(direction)
-    normal = surface.normal
+    view, normal = -unit(direction), surface.normal
     nv = np.maximum(dot(normal, view), MIN_VIEW_COSINE)
+    finish = surface.finish if surface.finish.shape[1] else None
+    lobes, let_through = [_base(surface, nv, finish)], np.ones((1, 3))
+    if finish is not None:
+        coat, let_through = _coat(finish, nv)
+        lobes = [lobes[0].times(let_through), coat]
+    radiance = surface.emission * let_through
+    for lobe in lobes:
+        reflected = mean_direction(lobe.roughness, nv, view, normal)
+        radiance = radiance + lobe.diffuse * world.irradiance(normal)
+        radiance = radiance + lobe.specular * world.reflection(reflected, lobe.roughness)
+        for light in lights:
+            radiance = radiance + _reflected(lobe, light, normal, view, nv)
+    return radiance
+
+
+def _base(surface: Surface, nv, finish) -> _Lobe:
+    """Metal and dielectric, over what the dielectric leaves to a Lambertian base. finish: (n, F), or None."""
     roughness = np.clip(surface.roughness, MIN_ROUGHNESS, 1)
     metallic, dielectric = np.clip(surface.metallic, 0, 1)[:, None], surface.f0[:, None] * np.ones(3)
-    has_finish, edge = surface.finish.shape[1] > 0, np.zeros((1, 3))
-    if has_finish:
-        tint = surface.finish[:, :3]
-        dielectric = np.minimum(dielectric * tint, 1)
-        edge = metallic * metal_edge(surface.color, tint)
+    edge = np.zeros((len(roughness), 3))
+    if finish is not None:
+        dielectric = np.minimum(dielectric * finish[:, :3], 1)
+        edge = metallic * metal_edge(surface.color, finish[:, :3])
     f0 = dielectric + (surface.color - dielectric) * metallic
     dielectric_f90 = np.minimum(GRAZING_GAIN * surface.f0[:, None], 1)
     f90 = dielectric_f90 + (1 - dielectric_f90) * metallic
     lost, _ = specular_albedo(roughness, nv, dielectric, dielectric_f90)
-    if has_finish:  # as much of each colour as of the one that is reflected most
+    if finish is not None:  # as much of each colour as of the one that is reflected most
         lost = lost.max(axis=1, keepdims=True)
     diffuse = surface.color * (1 - metallic) * (1 - lost)
     specular, scattered = specular_albedo(roughness, nv, f0, f90)
     specular = specular - edge * edge_at(roughness, nv) * scattered
-    reflected = mean_direction(roughness, nv, view, normal)
-    radiance = diffuse * world.irradiance(normal) + specular * world.reflection(reflected, roughness)
-    for light in lights:
-        nl = np.maximum(dot(normal, light.to_light), 0)
-        lobe = specular_term(normal, view, light.to_light, nl, nv, roughness, f0, f90, edge) * scattered
-        from_light = (diffuse / np.pi + lobe) * light.irradiance * nl[:, None]
-        sized = np.flatnonzero(light.is_sized)
-        of_cosine, of_lobe = quad_form_factors(
-            light.corners[sized], normal[sized], view[sized], roughness[sized], nv[sized]
-        )
-        through_quad = diffuse[sized] * of_cosine[:, None] + specular[sized] * of_lobe[:, None]
-        from_light[sized] = light.radiance[sized] * through_quad
-        radiance = radiance + from_light
-    return radiance
+    return _Lobe(roughness, diffuse, f0, f90, specular, scattered, edge)
+
+
+def _coat(finish: np.ndarray, nv) -> tuple[_Lobe, np.ndarray]:
+    """A dielectric without a base, and (n, 3) the share of light from below that it lets through: what it does not
+    reflect, tinted by Beer's law along the refracted way to the viewer, as in Cycles."""
+    weight, tint, ior = np.minimum(finish[:, 3:4], 1), finish[:, 4:7], np.maximum(finish[:, 8:9], 1)
+    roughness = np.clip(finish[:, 7], MIN_ROUGHNESS, 1)
+    f0 = ((ior - 1) / (ior + 1)) ** 2 * np.ones(3)
+    f90, none = np.minimum(GRAZING_GAIN * f0[:, :1], 1), np.zeros_like(f0)
+    specular, scattered = specular_albedo(roughness, nv, f0, f90)
+    way = 1 / np.sqrt(1 - (1 - nv[:, None] ** 2) / ior**2)
+    let_through = (1 - weight * specular) * (1 + weight * (tint**way - 1))
+    return _Lobe(roughness, none, f0, f90, specular * weight, scattered * weight, none), let_through
+
+
+def _reflected(lobe: _Lobe, light: Incident, normal, view, nv) -> np.ndarray:
+    """(n, 3) radiance that a light makes."""
+    nl = np.maximum(dot(normal, light.to_light), 0)
+    surface = normal, view, light.to_light, nl, nv, lobe.roughness
+    value = specular_term(*surface, lobe.f0, lobe.f90, lobe.edge) * lobe.scattered
+    from_light = (lobe.diffuse / np.pi + value) * light.irradiance * nl[:, None]
+    sized = np.flatnonzero(light.is_sized)
+    of_cosine, of_lobe = quad_form_factors(
+        light.corners[sized], normal[sized], view[sized], lobe.roughness[sized], nv[sized]
+    )
+    through_quad = lobe.diffuse[sized] * of_cosine[:, None] + lobe.specular[sized] * of_lobe[:, None]
+    from_light[sized] = light.radiance[sized] * through_quad
+    return from_light

@@ -36,7 +36,7 @@ def _depth(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settin
 
 def _principled(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
     direction, incident = _lighting(surface, grid, scene, camera, settings)
-    return surface.emission + principled_radiance(surface, direction, incident, WorldLight(scene, camera))
+    return principled_radiance(surface, direction, incident, WorldLight(scene, camera))
 
 
 def _phong(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:

@@ -2,6 +2,7 @@
 """The principled shading agrees with closed forms and obeys the laws of a BRDF."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,8 +11,8 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from splat_addon.reference import render_exact
-from splat_addon.reference.brdf import specular_term, table_at
-from splat_addon.rendering.scene import Instance, Material, Scene
+from splat_addon.reference.brdf import metal_edge, specular_term, table_at
+from splat_addon.rendering.scene import Finish, Instance, Material, Scene
 from splat_addon.rendering.scene.light import Light
 from splat_addon.rendering.settings import Settings
 
@@ -100,6 +101,43 @@ def test_the_tabulated_albedo_is_the_integral_of_the_specular_term(f0, roughness
     values = specular_term(normal, view, light, z, np.full(len(z), nv), np.full(len(z), roughness), np.full((1, 3), f0))
     scale, bias = table_at(np.array([roughness]), np.array([nv]))[0, 4:6]
     assert (values[:, 0] * z).mean() * 2 * np.pi == pytest.approx(f0 * scale + bias, abs=0.004)
+
+
+COATS = {"clear": Finish(coat=1.0), "rough": Finish(coat=1.0, coat_roughness=0.8), "half": Finish(coat=0.5)}
+
+
+@pytest.mark.parametrize("tilt", [0, 40, 75])
+@pytest.mark.parametrize("metallic", [0.0, 1.0])
+@pytest.mark.parametrize("name", COATS)
+def test_a_covered_white_surface_gives_back_no_more_than_it_gets(ellipses, orthographic, name, metallic, tilt):
+    normal = (math.sin(math.radians(tilt)), 0, math.cos(math.radians(tilt)))
+    material = Material(metallic=metallic, finish=COATS[name])
+    glow = radiance(ellipses, orthographic, world=(1, 1, 1), material=material, normal=normal)
+    assert 0.75 < glow[0] < 1.01
+
+
+@pytest.mark.parametrize("tilt", [0, 40, 75])
+def test_a_coat_s_tint_is_that_of_the_refracted_way_through_it(ellipses, orthographic, tilt):
+    """A coat over what reflects nothing, and one that does not refract: the way is the inverse of the cosine."""
+    cosine = math.cos(math.radians(tilt))
+    material = replace(CHALK, finish=Finish(coat=1.0, coat_ior=1.0, coat_tint=(0.9, 0.5, 0.1)))
+    seen = radiance(
+        ellipses,
+        orthographic,
+        world=(1, 1, 1),
+        material=material,
+        normal=(math.sin(math.radians(tilt)), 0, cosine),
+    )
+    np.testing.assert_allclose(seen, np.power((0.9, 0.5, 0.1), 1 / cosine), rtol=1e-5)
+
+
+@pytest.mark.parametrize("tint", [(1.0, 0.5, 0.25), (0.0, 0.2, 0.0)])
+def test_a_metal_s_tint_is_its_share_of_what_schlick_s_formula_has_at_82_degrees(tint):
+    f0, c = np.array([[0.9, 0.5, 0.3]]), 1 / 7
+    schlick = f0 + (1 - f0) * (1 - c) ** 5
+    np.testing.assert_allclose(
+        schlick - metal_edge(f0, np.array([tint])) * c * (1 - c) ** 6, schlick * tint, atol=1e-12
+    )
 
 
 angles = st.tuples(st.floats(0.05, 1.5), st.floats(0, 6.28))

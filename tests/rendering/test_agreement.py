@@ -142,10 +142,14 @@ def own_materials(scene, camera):
 
 def finished(scene, camera):
     """The scene under lights with and without a size, with a finish on a dielectric instance and another on a metal."""
-    (scene, camera), tints = lit(scene, camera), ((1.0, 0.3, 0.1), (0.2, 1.0, 0.4))
+    scene, camera = lit(scene, camera)
+    finishes = (
+        Finish(specular_tint=(1.0, 0.3, 0.1), coat=0.8, coat_roughness=0.3, coat_ior=1.8, coat_tint=(1.0, 0.6, 0.2)),
+        Finish(specular_tint=(0.2, 1.0, 0.4)),
+    )
     first, second = (
-        replace(i, materials=tuple(replace(m, finish=Finish(specular_tint=tint)) for m in i.materials))
-        for i, tint in zip(scene.surfels, tints, strict=True)
+        replace(i, materials=tuple(replace(m, finish=finish, emission=(0.1, 0.1, 0.2)) for m in i.materials))
+        for i, finish in zip(scene.surfels, finishes, strict=True)
     )
     return replace(scene, surfels=(first, second), world=(1, 0.9, 0.8), environment=environment()), camera
 

@@ -123,7 +123,10 @@ def test_an_instance_that_has_no_own_values_stands_beside_one_that_has(render):
 
 
 #: Finishes with one of their parts each.
-FINISHES = {"specular_tint": Finish(specular_tint=(1.0, 0.2, 0.1))}
+FINISHES = {
+    "specular_tint": Finish(specular_tint=(1.0, 0.2, 0.1)),
+    "coat": Finish(coat=0.8, coat_roughness=0.3, coat_tint=(1.0, 0.4, 0.1)),
+}
 
 
 def halves(first, second):
@@ -178,17 +181,29 @@ def test_more_finishes_than_a_picture_shows_are_the_most_similar_ones_and_the_pl
     many = replace(scene, surfels=(replace(scene.surfels[0], materials=(*materials, *materials[:MAX_FINISHES])),))
     made = plan(many, camera, SETTINGS)
     assert made.facts["finishes"] == tuple(m.finish for m in materials[:MAX_FINISHES])
-    assert "7 different Specular Tints" in dict(made.skipped)["finishes"]
+    assert "7 different combinations" in dict(made.skipped)["finishes"]
     for material in materials[MAX_FINISHES:]:
         assert list(finish_shares(material.finish, made.facts["finishes"])) == [0, 0, 0, 1]
     few = replace(scene, surfels=(replace(scene.surfels[0], materials=tuple(materials[:MAX_FINISHES])),))
     assert "finishes" not in dict(plan(few, camera, SETTINGS).skipped)
 
 
-@pytest.mark.parametrize("tint", [(np.nan, 1, 1), (-0.1, 1, 1), (1, 1)])
-def test_a_finish_of_unusable_numbers_is_refused(tint):
+@pytest.mark.parametrize("lights_splats", [False, True])
+def test_a_tinted_coat_dims_what_the_surface_below_sends_out(lights_splats, render):
+    """Straight on, its tint is left, less what the coat reflects."""
+    scene, camera = sphere(lights=(), world=(0, 0, 0))
+    glowing = with_material(scene, emission=(1, 1, 1), finish=Finish(coat=1.0, coat_tint=(0.9, 0.5, 0.1)))
+    frame = render(glowing, camera, replace(SETTINGS, lights_splats=lights_splats))
+    assert frame.color[32, 32, :3] == pytest.approx(np.multiply(0.96, (0.9, 0.5, 0.1)), rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "numbers",
+    [*({"specular_tint": tint} for tint in ((np.nan, 1, 1), (-0.1, 1, 1), (1, 1))), {"coat": -1}, {"coat_ior": np.inf}],
+)
+def test_a_finish_of_unusable_numbers_is_refused(numbers):
     with pytest.raises(ValueError, match="finite numbers of 0 and more"):
-        Finish(specular_tint=tint)
+        Finish(**numbers)
 
 
 def test_an_emission_that_is_not_finite_is_refused():

@@ -41,6 +41,7 @@ def surfels(**fields) -> Surfels:
 PLAIN = Scene([Instance(surfels())])
 TURNED_OVER = Scene([Instance(surfels(), np.diag((1.0, -1, -1, 1)))])
 IN_PICTURE = replace(PLAIN, environment=PICTURE)
+COATED = Material(finish=Finish(coat=0.5))
 TINTED = Material(finish=Finish(specular_tint=(1, 0.5, 0)))
 ROUGH, SHINY, GLOWING = Material(roughness=0.9), Material(roughness=0.1), Material(emission=(1, 2, 3))
 
@@ -101,6 +102,8 @@ TABLE = {
     "two emissions": (of(GLOWING, Material()), {}, PASSES, "gbuffer_emission", "", ()),
     "one finish": (of(TINTED), {}, PASSES, "", "finishes edge_table", ("FINISH",)),
     "two finishes": (of(TINTED, Material()), {}, PASSES, "gbuffer_finish", "finishes edge_table", ("FINISH",)),
+    "one coat": (of(COATED), {}, PASSES, "", "finishes", ("FINISH",)),
+    "a coat beside a tint": (of(COATED, TINTED), {}, PASSES, "gbuffer_finish", "finishes edge_table", ("FINISH",)),
     "two finishes, flat": (of(TINTED, Material()), {"shading": "flat"}, PASSES, "", "-brdf_table", ()),
     "own roughness": (Scene([Instance(surfels(roughness=[0.1, 0.9]))]), {}, PASSES, "gbuffer_material", "", ()),
     "float16 sums": (PLAIN, {"sum_format": "float16"}, PASSES, "gbuffer_depth", "", ()),

@@ -21,7 +21,7 @@ SOCKETS = {
         "Subsurface Weight": 0.0,
         "Anisotropic": 0.0,
         "Transmission Weight": 0.0,
-        "Coat Weight": 0.0,
+        "Coat Normal": (0.0, 0.0, 0.0),
         "Sheen Weight": 0.0,
         "Thin Film Thickness": 0.0,
     },

@@ -137,8 +137,20 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
 def _principled(plain: dict) -> Material:
     ior = _levelled(plain["IOR"], plain["Specular IOR Level"])
     sent = _sent(plain, "Emission Color", "Emission Strength")
-    finish = Finish(specular_tint=_positive(plain["Specular Tint"]))
+    finish = Finish(specular_tint=_positive(plain["Specular Tint"]), **_coat(plain))
     return Material(plain["Roughness"], plain["Metallic"], ior, sent, finish=finish)
+
+
+def _coat(plain: dict) -> dict:
+    """The fields of a `Finish` for a coat, if there is one."""
+    if not plain["Coat Weight"] > 0:
+        return {}
+    return {
+        "coat": min(plain["Coat Weight"], 1.0),
+        "coat_roughness": max(plain["Coat Roughness"], 0.0),
+        "coat_ior": max(plain["Coat IOR"], 1.0),
+        "coat_tint": _positive(plain["Coat Tint"]),
+    }
 
 
 def _positive(color) -> tuple[float, float, float]:
@@ -160,6 +172,10 @@ _SHADERS = {
             "IOR": "",
             "Specular IOR Level": "",
             "Specular Tint": "",
+            "Coat Weight": "",
+            "Coat Roughness": "",
+            "Coat IOR": "",
+            "Coat Tint": "",
             "Emission Color": "emission",
             "Emission Strength": "emission",
         },

@@ -59,11 +59,17 @@ def passes(planning):
 
 
 _TOO_MANY = (
-    "materials have {} different Specular Tints, and a picture shows {}; the others look like the most similar of these"
+    "materials have {} different combinations of Coat and Specular Tint, and a picture shows {}; the others look like "
+    "the most similar of these"
 )
 
 
+#: Parts that lie over the rest.
+_COVERS = frozenset({"coat"})
+
+
 def _layers(finishes: tuple[Finish, ...]) -> tuple[str, ...]:
+    """The parts that any of them has."""
     return tuple(dict.fromkeys(layer for finish in finishes for layer in finish.layers))
 
 
@@ -76,7 +82,8 @@ def parts(planning, p):
         yield Part("finish", writes=(SHARES,), varyings=(("flat", "vec4", "finish"),), **drawn)
     if p.host in LIGHTING_HOSTS:
         tables = (_TABLES[layer] for layer in layers if layer in _TABLES)
-        yield Part("finish", layers, inputs=("finishes", *tables))
+        covered = () if _COVERS.isdisjoint(layers) else ("covered",)
+        yield Part("finish", (*layers, *covered), inputs=("finishes", *tables))
     if p.host in LIT_HOSTS and differ:
         yield Part("finish", ("finishes_differ",), reads=(SHARES,))
     if p.host == "lit_splats.frag" and differ:

@@ -14,24 +14,35 @@ class Finish:
 
     specular_tint: (3,) multiplies the reflectance of a dielectric at normal incidence, and that of a metal at 82
         degrees.
+    coat: how much of the surface a clear varnish covers, 0 to 1. coat_roughness, coat_ior: its own.
+    coat_tint: (3,) what it lets through of light that crosses it straight.
     """
 
     specular_tint: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    coat: float = 0.0
+    coat_roughness: float = 0.03
+    coat_ior: float = 1.5
+    coat_tint: tuple[float, float, float] = (1.0, 1.0, 1.0)
 
     def __post_init__(self):
         numbers = [number for value in astuple(self) for number in np.atleast_1d(value)]
-        if not (np.isfinite(numbers).all() and min(numbers) >= 0 and len(self.specular_tint) == 3):
+        are_colors = len(self.specular_tint) == len(self.coat_tint) == 3
+        if not (np.isfinite(numbers).all() and min(numbers) >= 0 and are_colors):
             raise ValueError(f"A finish needs finite numbers of 0 and more, and colours of 3, not {self}.")
 
     @property
     def layers(self) -> tuple[str, ...]:
         """The parts that it has."""
-        return ("specular_tint",) if tuple(self.specular_tint) != PLAIN.specular_tint else ()
+        tint = ("specular_tint",) if tuple(self.specular_tint) != PLAIN.specular_tint else ()
+        return (*tint, *(("coat",) if self.coat > 0 else ()))
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """4 numbers a texel, in which finishes are mixed: r, g, b of the specular tint, 0."""
-        return (*self.specular_tint, 0.0)
+        """4 numbers a texel, in which finishes are mixed.
+
+        Specular tint, coat  |  coat's tint, its roughness  |  its index of refraction, 0, 0, 0.
+        """
+        return *self.specular_tint, self.coat, *self.coat_tint, self.coat_roughness, self.coat_ior, 0.0, 0.0, 0.0
 
 
 #: Without any of them.

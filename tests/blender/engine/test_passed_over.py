@@ -18,12 +18,21 @@ LEADERS = {
     "Subsurface": "Subsurface Weight",
     "Anisotropic": "Anisotropic",
     "Tangent": "Anisotropic",
-    "Coat": "Coat Weight",
     "Sheen": "Sheen Weight",
     "Thin Film": "Thin Film Thickness",
 }
+#: type of socket -> what sets it, where one number does not
+SET_TO = {"RGBA": (0.5, 0.5, 0.5, 1), "VECTOR": (0.5, 0.5, 0.5)}
 #: What surfels have no attribute for.
-ONCE_FOR_A_MATERIAL = ("IOR", "Specular IOR Level", "Specular Tint")
+ONCE_FOR_A_MATERIAL = (
+    "IOR",
+    "Specular IOR Level",
+    "Specular Tint",
+    "Coat Weight",
+    "Coat Roughness",
+    "Coat IOR",
+    "Coat Tint",
+)
 #: What the export reads besides the channels of surfaces; a Weight is of a Mix Shader's making, and disabled.
 READ_BESIDES = {*ONCE_FOR_A_MATERIAL, "Weight"}
 
@@ -60,8 +69,8 @@ def test_a_socket_that_is_passed_over_is_named_when_it_is_set_or_linked(principl
         pytest.skip("this Blender's Principled BSDF does not have it")
     socket, tree = principled.inputs[name], bpy.data.materials["paint"].node_tree
     plain = socket.default_value
-    neutral = tuple(plain) if socket.type == "RGBA" else plain
-    socket.default_value = (0.5, 0.5, 0.5, 1) if socket.type == "RGBA" else 1
+    neutral = tuple(plain) if socket.type in SET_TO else plain
+    socket.default_value = SET_TO.get(socket.type, 1)
     expected = f"The material 'paint' has {name}, which this engine passes over"
     assert said_of(principled) == [expected]
     socket.default_value = neutral
