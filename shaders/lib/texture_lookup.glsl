@@ -16,19 +16,22 @@ const float PROBES_PER_DEVIATION = 3.0;
 const float AXIS_BIAS = 1e-3;
 
 const int REPEAT = 0, EXTEND = 1, CLIP = 2, MIRROR = 3;
+const int CUT_OUT = 4;           // added to them
 
 struct SurfaceTexture {
   int slot;
   int levels;     // 0 where the surfels' own colours are meant
   vec3 factor;
   int extension;
+  bool is_cut_out;
   bool is_closest;
   vec2 size;
 };
 
 SurfaceTexture surface_texture(int slot) {
   vec4 first = texelFetch(texture_table, ivec2(0, slot), 0), second = texelFetch(texture_table, ivec2(1, slot), 0);
-  return SurfaceTexture(slot, int(first.w), first.rgb, int(second.x), second.y > 0.5, second.zw);
+  int kind = int(second.x);
+  return SurfaceTexture(slot, int(first.w), first.rgb, kind % CUT_OUT, kind >= CUT_OUT, second.y > 0.5, second.zw);
 }
 
 // Index of a texel inside the image for a texel's integer coordinate; -1: transparent black.
@@ -113,8 +116,9 @@ vec4 ellipse_sum(SurfaceTexture t, vec4 place, vec2 uv, vec3 variances, out floa
   return total;
 }
 
-// Colour, not premultiplied, under the Gaussian at uv whose variances and covariance xx, yy, xy are given.
-vec3 texture_color(SurfaceTexture t, vec2 uv, vec3 variances) {
+// Premultiplied sum under the Gaussian at uv whose variances and covariance xx, yy, xy are given, with the sum of the
+// weights.
+vec4 texture_sum(SurfaceTexture t, vec2 uv, vec3 variances, out float weights) {
   float xx = variances.x * t.size.x * t.size.x, yy = variances.y * t.size.y * t.size.y;
   float xy = variances.z * t.size.x * t.size.y;
   float tilt = 0.5 * (xx - yy), root = sqrt(tilt * tilt + xy * xy);
@@ -130,20 +134,27 @@ vec3 texture_color(SurfaceTexture t, vec2 uv, vec3 variances) {
   axis *= inversesqrt(max(dot(axis, axis), 1e-30));
   float across = max((xx * yy - xy * xy) / max(along, 1e-30), 0.0), blur = max(along / LONGEST - across, 0.0);
 
-  vec4 total;
-  float weights;
   if (across + blur < MAGNIFIED) {
     vec4 place = texelFetch(texture_table, ivec2(2, t.slot), 0);
-    total = probe_sum(t, place, uv, sqrt(vec2(along, across)), axis, weights);
+    return probe_sum(t, place, uv, sqrt(vec2(along, across)), axis, weights);
   }
-  else {
-    // Texels of level l are averages with a variance of (4^l - 1) / 12; interpolation between texels of the image adds
-    // 1 / 6.
-    int level = min(int(0.5 * log2(max((across + blur + 0.25) / (NARROWEST + 1.0 / 12.0), 1.0))), t.levels - 1);
-    float texel2 = exp2(2.0 * float(level)), own = 0.25 - texel2 / 12.0;
-    vec2 blurred = axis.yx * axis.yx * blur + own;
-    vec3 weighed = vec3(xx + blurred.x, yy + blurred.y, xy - axis.x * axis.y * blur) / texel2;
-    total = ellipse_sum(t, texelFetch(texture_table, ivec2(2 + level, t.slot), 0), uv, weighed, weights);
-  }
+  // Texels of level l are averages with a variance of (4^l - 1) / 12; interpolation between texels of the image adds
+  // 1 / 6.
+  int level = min(int(0.5 * log2(max((across + blur + 0.25) / (NARROWEST + 1.0 / 12.0), 1.0))), t.levels - 1);
+  float texel2 = exp2(2.0 * float(level)), own = 0.25 - texel2 / 12.0;
+  vec2 blurred = axis.yx * axis.yx * blur + own;
+  vec3 weighed = vec3(xx + blurred.x, yy + blurred.y, xy - axis.x * axis.y * blur) / texel2;
+  return ellipse_sum(t, texelFetch(texture_table, ivec2(2 + level, t.slot), 0), uv, weighed, weights);
+}
+
+// Colour, not premultiplied.
+vec3 texture_color(SurfaceTexture t, vec2 uv, vec3 variances) {
+  float weights;
+  vec4 total = texture_sum(t, uv, variances, weights);
   return t.factor * total.rgb / (total.a > 0.0 ? total.a : weights);
+}
+
+float texture_alpha(SurfaceTexture t, vec2 uv, vec3 variances) {
+  float weights;
+  return texture_sum(t, uv, variances, weights).a / weights;
 }

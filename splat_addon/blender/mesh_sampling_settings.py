@@ -51,8 +51,8 @@ _MESH_ITEMS = (
     (
         "POLYGONS",
         "Polygons",
-        "Draw the triangles among the splats, with the same depth, light and shadows. Transparent meshes become"
-        " surfels unless their object says otherwise",
+        "Draw the triangles among the splats, with the same depth, light and shadows. The alpha of the base colour's"
+        " image makes holes. Otherwise transparent meshes become surfels unless their object says otherwise",
         0,
     ),
     (
@@ -192,7 +192,7 @@ class Form(NamedTuple):
 
     @property
     def of_transparent(self) -> Form:
-        """The form of a partly transparent mesh: polygons are opaque, so it is only drawn as polygons if the object
+        """The form of a mesh that is transparent as polygons cannot be: it is only drawn as polygons if the object
         demands it."""
         return self._replace(kind="SURFELS") if self.is_default and self.kind == "POLYGONS" else self
 

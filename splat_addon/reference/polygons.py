@@ -45,7 +45,7 @@ def polygon_hits(scene: Scene, camera: Camera, grid: RayGrid, epsilon: float) ->
     radii = overlapping_radii(scene)
     for instance in scene.polygons:
         corners = eye_corners(instance, camera)
-        depth, triangle, shares = nearest_hits(corners, origin, direction, camera.near, camera.far)
+        depth, triangle, shares = whole_hits(instance, corners, origin, direction, camera.near, camera.far)
         rays = np.flatnonzero(depth < found.depth)
         if len(rays):
             found.depth[rays] = depth[rays]
@@ -61,13 +61,54 @@ def eye_corners(instance: PolygonInstance, camera: Camera) -> np.ndarray:
     return (positions @ model_view[:3, :3].T + model_view[:3, 3]).reshape(-1, 3, 3)
 
 
-def nearest_hits(corners: np.ndarray, origin: np.ndarray, direction: np.ndarray, near: float, far: float):
+def whole_hits(instance: PolygonInstance, corners, origin, direction, near: float, far: float):
+    """As `nearest_hits`, without what lies in holes: a ray passes where its own threshold exceeds the texture's alpha.
+
+    Thresholds are even over neighbouring rays: multiples of the golden ratio.
+    """
+    depth, triangle, shares = nearest_hits(corners, origin, direction, near, far)
+    threshold, rays = (np.arange(len(depth)) * 0.6180339887498949) % 1, np.flatnonzero(np.isfinite(depth))
+    while instance.is_cut_out and len(rays):
+        rays = rays[_alphas(instance, triangle[rays], shares[rays]) <= threshold[rays]]
+        beyond = depth[rays] * (1 + 1e-9)
+        found = nearest_hits(corners, origin[rays], direction[rays], beyond, far)
+        depth[rays], triangle[rays], shares[rays] = found
+        rays = rays[np.isfinite(found[0])]
+    return depth, triangle, shares
+
+
+def _alphas(instance: PolygonInstance, triangle: np.ndarray, shares: np.ndarray) -> np.ndarray:
+    """(n,) alpha of the texture at hits, 1 where it cuts no holes."""
+    alphas = np.ones(len(triangle))
+    for texture, at, uvs in _texture_places(instance, triangle, shares):
+        if texture.is_cut_out:
+            alphas[at] = point_colors(texture, uvs)[:, 3]
+    return alphas
+
+
+def _texture_places(instance: PolygonInstance, triangle: np.ndarray, shares: np.ndarray):
+    """For each texture: itself, a mask of the hits that show it, and their (m, 2) coordinates."""
+    if not instance.is_textured:
+        return
+    rows = 3 * triangle[:, None] + np.arange(3)
+    uvs = np.einsum("rk,rkc->rc", shares, instance.polygons.uvs.astype(np.float64)[rows])
+    slots = np.minimum(instance.polygons.materials[rows[:, 0]], len(instance.textures) - 1)
+    of_slot = np.array([*instance.textures, None], object)[slots]
+    for texture in set(of_slot) - {None}:
+        at = of_slot == texture
+        yield texture, at, uvs[at]
+
+
+def nearest_hits(corners: np.ndarray, origin: np.ndarray, direction: np.ndarray, near, far: float):
     """(n,) parameters along the rays, infinite for a miss, (n,) triangles, (n, 3) shares of their corners.
+
+    near: least parameter, (n,) or one number.
 
     Moeller, Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997, for the pairs that may meet.
     """
     n = len(direction)
     depth, triangle, shares = np.full(n, np.inf), np.zeros(n, int), np.zeros((n, 3))
+    near = np.broadcast_to(near, n)
     a, along, beside = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     for part in np.array_split(np.arange(n), max(n * len(corners) // CHUNK_PAIRS, 1)):
         rows, met = _may_meet(a, along, beside, origin[part], direction[part])
@@ -78,7 +119,7 @@ def nearest_hits(corners: np.ndarray, origin: np.ndarray, direction: np.ndarray,
             scale = 1 / np.einsum("mk,mk->m", p, along[met])
             u, v = np.einsum("mk,mk->m", start, p) * scale, np.einsum("mk,mk->m", ray, q) * scale
             t = np.einsum("mk,mk->m", q, beside[met]) * scale
-            hit = np.flatnonzero((u >= 0) & (v >= 0) & (u + v <= 1) & (t >= near) & (t <= far))
+            hit = np.flatnonzero((u >= 0) & (v >= 0) & (u + v <= 1) & (t >= near[rays]) & (t <= far))
         np.minimum.at(depth, rays[hit], t[hit])
         # If triangles have equal depth, the first is used: it is written last.
         nearest = hit[t[hit] == depth[rays[hit]]][::-1]
@@ -121,11 +162,8 @@ def _take(instance, camera, corners, rays, triangle, shares, direction, found: H
     found.normal[rays] = normal / np.linalg.norm(normal, axis=1, keepdims=True) * side[:, None]
     found.color[rays] = mean(shape.colors)[:, :3]
     slots = np.minimum(shape.materials[rows[:, 0]], len(instance.materials) - 1)
-    if instance.is_textured:
-        of_slot = np.array([*instance.textures, None], object)[np.minimum(slots, len(instance.textures) - 1)]
-        for texture in set(of_slot) - {None}:
-            at = of_slot == texture
-            found.color[rays[at]] = point_colors(texture, mean(shape.uvs)[at])
+    for texture, at, uvs in _texture_places(instance, triangle, shares):
+        found.color[rays[at]] = point_colors(texture, uvs)[:, :3]
     surface = material_table(instance, found.surface.shape[1] > 10)[slots]
     for columns, own in ((0, shape.roughness), (1, shape.metallic), (slice(3, 6), shape.emission)):
         if own is not None:
@@ -182,5 +220,5 @@ def are_lit(scene: Scene, camera: Camera, lamp: np.ndarray, position: np.ndarray
     for instance in scene.polygons:
         corners = eye_corners(instance, camera)
         start = np.broadcast_to(lamp, position.shape)
-        lit &= ~np.isfinite(nearest_hits(corners, start, position - start, 0.0, 1 - room)[0])
+        lit &= ~np.isfinite(whole_hits(instance, corners, start, position - start, 0.0, 1 - room)[0])
     return lit

@@ -193,7 +193,7 @@ def _look_textures_up(splats: Splats, splat: np.ndarray, place: np.ndarray, colo
         q, border = place[at], splats.uv_border[splat[at]]
         beyond = np.maximum(np.einsum("nk,nk->n", q, border) - 1, 0) / np.maximum((border**2).sum(axis=1), 1e-300)
         uvs = splats.uv[splat[at]] + np.einsum("nk,nkc->nc", q - border * beyond[:, None], splats.uv_along[splat[at]])
-        colors[:, at] = point_colors(texture, uvs).T
+        colors[:, at] = point_colors(texture, uvs)[:, :3].T
 
 
 def _averages(sums: np.ndarray, count: np.ndarray) -> Surface:

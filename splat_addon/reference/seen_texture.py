@@ -40,7 +40,7 @@ def seen_texture(
         rays /= np.linalg.norm(rays, axis=1, keepdims=True)
         uvs, seen = hits(camera.matrix_world[:3, 3], rays)
         values = np.zeros((len(rays), 4))
-        values[seen, :3], values[seen, 3] = point_colors(texture, uvs[seen]), 1
+        values[seen, :3], values[seen, 3] = point_colors(texture, uvs[seen])[:, :3], 1
         rows.append(resample(values.reshape(*x.shape, 4), weights, RAYS))
     pixels = np.concatenate(rows)
     return pixels[..., :3], pixels[..., 3] > 1 - 1e-9

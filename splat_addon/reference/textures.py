@@ -21,7 +21,7 @@ def surfel_textures(instance: Instance) -> np.ndarray:
 
 
 def point_colors(texture: SurfaceTexture, uvs: np.ndarray) -> np.ndarray:
-    """(n, 3) scene-linear colours, not premultiplied, at (n, 2) texture coordinates: bilinear or closest, unfiltered.
+    """(n, 4) linear colours, not premultiplied, and alphas at (n, 2) coordinates: bilinear or closest, unfiltered.
 
     Colours are mixed premultiplied by alpha, so that what an alpha of 0 hides does not bleed.
     """
@@ -38,7 +38,7 @@ def point_colors(texture: SurfaceTexture, uvs: np.ndarray) -> np.ndarray:
             total[:, :3] += texel[:, :3] * (texel[:, 3] * weight)[:, None]
             total[:, 3] += texel[:, 3] * weight
     alpha = total[:, 3:]
-    return texture.factor * total[:, :3] / np.where(alpha > 0, alpha, 1)
+    return np.concatenate([texture.factor * total[:, :3] / np.where(alpha > 0, alpha, 1), alpha], axis=1)
 
 
 def _taps(position: np.ndarray, interpolation: str):

@@ -200,8 +200,19 @@ def split(scene, camera):
     return replace(scene, surfels=(replace(ball, split_distance=2.6),), polygons=(floor, other, near)), camera
 
 
+def cut_out(scene, camera):
+    """The floor has holes, also in its shadow, and hides a part of the ball of splats."""
+    (floor, other) = scene.polygons
+    pixels = scenes.checks(64, 8)
+    pixels[..., 3] = np.linspace(0, 1, 64)[:, None]
+    paper = SurfaceTexture(Image(pixels), is_cut_out=True)
+    floor = replace(floor, shape=replace(floor.polygons, uvs=floor.polygons.positions[:, :2] * 0.7), textures=(paper,))
+    return replace(shadowed(scene, camera)[0], polygons=(floor, other)), camera
+
+
 #: tests/rendering/test_polygons.py compares them with the truth.
 HYBRID = {
+    "cut_outs": lambda: cut_out(*scenes.polygons(size=SIZE)),
     "polygon_shadows": lambda: shadowed(*scenes.polygons(size=SIZE)),
     "large_lamp_shadows": lambda: under_large_lamps(*scenes.polygons(size=SIZE)),
     "split": lambda: split(*scenes.polygons(size=SIZE)),

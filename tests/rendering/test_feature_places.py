@@ -80,6 +80,7 @@ MEETINGS = {
         ("the picture is added up", "features/sample_sum.py hosts/accumulate.frag.glsl"),
         ("pixels become the arrays of a frame", "renderer.py"),
     ),
+    "textures": (("polygons with holes are looked up in textures by their planes too", "features/cut_outs.py"),),
     "polygons": (
         ("of a sample that is a polygon's too, an attribute is mixed with the polygon's",
          "features/emission.glsl features/finish.glsl features/light_links.glsl features/materials.glsl "
@@ -99,6 +100,7 @@ MEETINGS = {
     "silhouettes": (
         ("what is seen between rows of samples tells where a silhouette lies",
          "features/visibility.py features/depth_bounds.py features/holdout.py features/object_id.py"),
+        ("all rows of a sample have holes by one threshold", "features/cut_outs.py"),
         ("pixels are filtered over silhouettes, and so are mattes",
          "features/lighting.py hosts/resolve.frag.glsl identity.py"),
     ),

@@ -13,6 +13,7 @@ from ...rendering import Polygons
 from ...rendering.scene.polygons import MAX_TRIANGLES
 from ...sampling import Surface, Texture, TriangleMesh, corner_values
 from ...surfels import OPAQUE
+from ..materials.surface_textures import has_holes
 
 
 def mesh_polygons(mesh: TriangleMesh) -> tuple[Polygons, ...]:
@@ -47,17 +48,16 @@ def left_out_of_polygons(owner: str, mesh: TriangleMesh) -> Iterator[str]:
     if any(surface.normal_map is not None for surface in _used(mesh)):
         yield f"{owner} has a normal map, which polygons do not show; render it as surfels to see it"
     if is_transparent(mesh):
-        yield f"{owner} is transparent in places, which polygons are not; render it as surfels to see through it"
+        yield f"{owner} is transparent, which polygons are only by their colour's image; render it as surfels"
 
 
 def is_transparent(mesh: TriangleMesh) -> bool:
-    """Whether some triangles may be transparent."""
-    return any(_shows_through(surface) for surface in _used(mesh))
+    """Whether some triangles may be transparent as polygons cannot be: other than by holes."""
+    return any(_shows_through(surface) and not has_holes(surface) for surface in _used(mesh))
 
 
 def _shows_through(surface: Surface) -> bool:
-    """Whether its opacity or its colour's alpha is below 1, whether constant or from an image, as for cards of
-    leaves."""
+    """Whether its opacity or its colour's alpha is below 1, whether constant or from an image."""
     images = [factor.image for factor in surface.color.factors if isinstance(factor, Texture) and factor.uses_alpha]
     is_clear = surface.opacity is not None or surface.color.value[3] < OPAQUE
     return is_clear or not all(image.is_opaque for image in images)

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...rendering import SurfaceTexture
 from ...sampling import Image, Surface
+from ...surfels import OPAQUE
 from .material_surfaces import SHADERS, MeshLayers, surface_shader
 from .node_products import ImageSource, linked, product
 from .node_trees import uses_nodes
@@ -21,7 +22,14 @@ from .texture_images import UnreadableError
 def texture_of(surface: Surface) -> SurfaceTexture | None:
     """The texture of a surface; None if its colour is not a single image times a constant."""
     texture = surface.color_texture
-    return None if texture is None else SurfaceTexture(texture.image, surface.color.value[:3])
+    return None if texture is None else SurfaceTexture(texture.image, surface.color.value[:3], has_holes(surface))
+
+
+def has_holes(surface: Surface) -> bool:
+    """Whether it is transparent only where the single image of its colour is, as for cards of leaves."""
+    texture = surface.color_texture
+    is_whole = surface.opacity is None and surface.color.value[3] >= OPAQUE
+    return is_whole and texture is not None and texture.uses_alpha and not texture.image.is_opaque
 
 
 def kept_textures(
@@ -101,7 +109,9 @@ def _are_same(a: SurfaceTexture | None, b: SurfaceTexture | None) -> bool:
 
 
 def _same(a: SurfaceTexture, b: SurfaceTexture) -> bool:
-    return a.factor == b.factor and (a.image is b.image or _same_image(a.image, b.image))
+    return (a.factor, a.is_cut_out) == (b.factor, b.is_cut_out) and (
+        a.image is b.image or _same_image(a.image, b.image)
+    )
 
 
 def _same_image(a: Image, b: Image) -> bool:

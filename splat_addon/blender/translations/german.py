@@ -219,11 +219,12 @@ GERMAN = {
         "Polygone zeichnen, wo die Gewichte einer Vertexgruppe 0,5 oder mehr sind, und anderswo Surfels"
     ),
     (
-        "Draw the triangles among the splats, with the same depth, light and shadows. Transparent meshes "
-        "become surfels unless their object says otherwise"
+        "Draw the triangles among the splats, with the same depth, light and shadows. The alpha of the base "
+        "colour's image makes holes. Otherwise transparent meshes become surfels unless their object says otherwise"
     ): (
         "Die Dreiecke zwischen den Splats zeichnen, mit derselben Tiefe, demselben Licht und denselben "
-        "Schatten. Transparente Meshes werden zu Surfels, wenn ihr Objekt nichts anderes sagt"
+        "Schatten. Das Alpha des Bildes der Grundfarbe macht Löcher. Sonst transparente Meshes werden zu Surfels, "
+        "wenn ihr Objekt nichts anderes sagt"
     ),
     "Drawn by Cycles only; choose another": "Nur von Cycles gezeichnet; anderes wählen",
     "Drop": "Entfernen",

@@ -57,10 +57,11 @@ def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawIt
 def draw_polygons(
     tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None
 ):
-    """Draw polygons; epsilon: how far behind polygons splats may lie."""
-    program = None
+    """Draw polygons; epsilon: how far behind polygons splats may lie. Those with holes have a program of their own."""
+    programs = {}
     for placed in placed_ones:
-        program = program or tile.program(p, vertex, *variants)
+        more = ("cut_out",) if placed.instance.is_cut_out else ()
+        program = programs[more] = programs.get(more) or tile.program(p, vertex, *variants, *more)
         _draw(tile, p, target, placed, placed.overlap, program, (0, placed.instance.polygons.triangles), viewport)
 
 

@@ -8,13 +8,11 @@ from ..plan.graph import Part
 #: uv and slot, change of uv along the half-axes, border of the map; and the half-axes.
 _VARYINGS = (("flat", "vec3", "texture_place"), ("flat", "vec4", "texture_along"), ("flat", "vec2", "texture_border"))
 _AXES = (("flat", "vec3", "texture_axis_u"), ("flat", "vec3", "texture_axis_v"))
-_OF_POLYGONS = (
-    ("smooth", "vec2", "texture_uv"),
-    ("flat", "float", "texture_slot"),
-    ("flat", "vec3", "gradient_u"),
-    ("flat", "vec3", "gradient_v"),
-)
-_ATLAS = ("texture_atlas", "texture_table")
+#: slot, change of uv, and plane of triangles
+_OF_PLANES = (("flat", "float", "texture_slot"), ("flat", "vec3", "gradient_u"), ("flat", "vec3", "gradient_v"))
+_PLANE = (("flat", "vec3", "triangle_plane"),)
+OF_TRIANGLES = (*_OF_PLANES, *_PLANE)
+ATLAS = ("texture_atlas", "texture_table")
 
 
 def _surfel_uvs(tile, placed):
@@ -48,8 +46,8 @@ def parts(planning, p):
     hosts = "object_space.frag", "screen_space.frag"
     if p.host in hosts and p.kind in ("opaque", "layer") and planning.find(_are_textured)[0]:
         varyings = (*_VARYINGS, *_AXES) if p.host == "object_space.frag" else _VARYINGS
-        yield Part("textures", inputs=("surfel_uvs", *_ATLAS), varyings=varyings, **shared)
+        yield Part("textures", inputs=("surfel_uvs", *ATLAS), varyings=varyings, **shared)
     if p.host == "polygons.frag" and planning.find(_are_textured)[1]:
-        plane = (("flat", "vec3", "triangle_plane"),)
-        yield Part("polygon_plane", varyings=plane, only="textured")
-        yield Part("textures", inputs=("polygon_uvs", *_ATLAS), varyings=_OF_POLYGONS, **shared)
+        yield Part("polygon_plane", varyings=_PLANE, only="textured")
+        varyings = (("smooth", "vec2", "texture_uv"), *_OF_PLANES)
+        yield Part("textures", inputs=("polygon_uvs", *ATLAS), varyings=varyings, **shared)

@@ -37,13 +37,15 @@ class Material:
 
 @dataclass(frozen=True, eq=False)
 class SurfaceTexture:
-    """A base colour that is looked up for every pixel, for surfels with texture coordinates.
+    """A base colour that is looked up for every pixel, for surfels or polygons with texture coordinates.
 
-    factor: (3,) scene-linear, multiplies the image.
+    factor: (3,) scene-linear, multiplies the image. is_cut_out: polygons are transparent where the image is. Surfels
+        have opacities of their own.
     """
 
     image: Image
     factor: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    is_cut_out: bool = False
 
     def __post_init__(self):
         if len(self.factor) != 3 or not np.isfinite(self.factor).all():

@@ -82,7 +82,7 @@ class Polygons(Shape):
 
     @property
     def is_transparent(self) -> bool:
-        """Always False: polygons are opaque."""
+        """Always False: polygons are opaque, but for the holes that textures cut into them."""
         return False
 
     @cached_property

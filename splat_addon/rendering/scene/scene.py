@@ -195,6 +195,15 @@ class PolygonInstance(Placed):
         """Nothing extends beyond polygons."""
         return 0.0
 
+    @property
+    def is_cut_out(self) -> bool:
+        """Whether a texture's alpha makes holes in it."""
+        return self.is_textured and any(texture is not None and texture.is_cut_out for texture in self.textures)
+
+    def hides_backs(self, camera: Camera) -> bool:
+        """As `Placed.hides_backs`; backs may be visible through holes."""
+        return not self.is_cut_out and super().hides_backs(camera)
+
 
 @dataclass(frozen=True, eq=False)
 class Scene:

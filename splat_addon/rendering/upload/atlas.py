@@ -5,6 +5,7 @@ states.
 The `gpu` module of Blender 4.5 and 5.0 can set neither a texture's filter nor its levels, so
 shaders/lib/texture_lookup.glsl does both by hand. The table has a row for each material slot:
     factor.rgb, levels (0: none)   |   extension, closest, width, height   |   x, y, width, height of each level
+`CUT_OUT` is added to the extension of textures whose alpha makes holes.
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ LARGEST = 65504.0
 #: The index is the number by which the shader knows an extension.
 EXTENSION_NUMBERS = {name: number for number, name in enumerate(("REPEAT", "EXTEND", "CLIP", "MIRROR"))}
 assert EXTENSION_NUMBERS.keys() == EXTENSIONS.keys()
+#: Added to the extension's number if the alpha makes holes.
+CUT_OUT = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +74,8 @@ def make_atlas(textures: tuple[SurfaceTexture | None, ...], max_texels: int = MA
 def _write_row(row: np.ndarray, texture: SurfaceTexture, rectangles: list[tuple[int, int, int, int]]):
     image: Image = texture.image
     row[0] = *texture.factor, len(rectangles)
-    row[1] = EXTENSION_NUMBERS[image.extension], image.interpolation == "Closest", *rectangles[0][2:]
+    extension = EXTENSION_NUMBERS[image.extension] + CUT_OUT * texture.is_cut_out
+    row[1] = extension, image.interpolation == "Closest", *rectangles[0][2:]
     row[2 : 2 + len(rectangles)] = rectangles
 
 

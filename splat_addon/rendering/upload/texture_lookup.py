@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .atlas import Atlas
+from .atlas import CUT_OUT, Atlas
 
 MAGNIFIED = 0.2
 NARROWEST = 0.6
@@ -26,12 +26,20 @@ def texture_colors(atlas: Atlas, slot: int, uvs: np.ndarray, variances: np.ndarr
 
     uvs: (n, 2) middles of the Gaussian footprints. variances: (n, 2, 2) their covariance matrices.
     """
-    return np.array([_color(atlas, slot, uv, v) for uv, v in zip(uvs, variances, strict=True)])
+    factor = atlas.table[slot, 0, :3].astype(np.float64)
+    sums = [_sum(atlas, slot, uv, variance) for uv, variance in zip(uvs, variances, strict=True)]
+    return np.array([factor * total[:3] / (total[3] if total[3] > 0 else weights) for total, weights in sums])
 
 
-def _color(atlas: Atlas, slot: int, uv: np.ndarray, variance: np.ndarray) -> np.ndarray:
+def texture_alphas(atlas: Atlas, slot: int, uvs: np.ndarray, variances: np.ndarray) -> np.ndarray:
+    """(n,) mean alpha under the same footprints."""
+    sums = [_sum(atlas, slot, uv, variance) for uv, variance in zip(uvs, variances, strict=True)]
+    return np.array([total[3] / weights for total, weights in sums])
+
+
+def _sum(atlas: Atlas, slot: int, uv: np.ndarray, variance: np.ndarray) -> tuple[np.ndarray, float]:
     row = atlas.table[slot].astype(np.float64)
-    factor, count, size = row[0, :3], int(row[0, 3]), row[1, 2:]
+    count, size = int(row[0, 3]), row[1, 2:]
     variance = variance * np.outer(size, size)
     largest = LARGEST * 4.0 ** (count - 1)
     if not np.linalg.eigvalsh(np.nan_to_num(variance, nan=1e300, posinf=1e300)).max() < largest:
@@ -40,15 +48,13 @@ def _color(atlas: Atlas, slot: int, uv: np.ndarray, variance: np.ndarray) -> np.
     axis = np.linalg.eigh(variance + np.diag([2 * AXIS_BIAS * np.trace(variance), 0]))[1][:, 1]
     blur = max(along / LONGEST - across, 0)
     if across + blur < MAGNIFIED:
-        total, weights = _probe_sum(atlas, slot, uv, np.sqrt([along, across]), axis)
-    else:
-        level = int(0.5 * np.log2(max((across + blur + 0.25) / (NARROWEST + 1 / 12), 1)))
-        level = min(level, count - 1)
-        sideways = np.array([-axis[1], axis[0]])
-        own = 0.25 - 4.0**level / 12
-        weighed = (variance + blur * np.outer(sideways, sideways) + own * np.eye(2)) / 4.0**level
-        total, weights = _ellipse_sum(atlas, slot, level, uv, weighed)
-    return factor * total[:3] / (total[3] if total[3] > 0 else weights)
+        return _probe_sum(atlas, slot, uv, np.sqrt([along, across]), axis)
+    level = int(0.5 * np.log2(max((across + blur + 0.25) / (NARROWEST + 1 / 12), 1)))
+    level = min(level, count - 1)
+    sideways = np.array([-axis[1], axis[0]])
+    own = 0.25 - 4.0**level / 12
+    weighed = (variance + blur * np.outer(sideways, sideways) + own * np.eye(2)) / 4.0**level
+    return _ellipse_sum(atlas, slot, level, uv, weighed)
 
 
 def _probe_sum(atlas: Atlas, slot: int, uv: np.ndarray, spreads: np.ndarray, axis: np.ndarray):
@@ -95,7 +101,7 @@ def _point_color(atlas: Atlas, slot: int, uv: np.ndarray) -> np.ndarray:
 
 def _texel(atlas: Atlas, slot: int, level: int, x: int, y: int) -> np.ndarray:
     left, bottom, width, height = atlas.table[slot, 2 + level].astype(int)
-    extension = EXTENSION_RULES[int(atlas.table[slot, 1, 0])]
+    extension = EXTENSION_RULES[int(atlas.table[slot, 1, 0]) % CUT_OUT]
     column, row = extension(x, width), extension(y, height)
     return (
         np.zeros(4) if column is None or row is None else atlas.texels[bottom + row, left + column].astype(np.float64)

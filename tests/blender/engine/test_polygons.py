@@ -161,7 +161,7 @@ def test_what_polygons_do_not_show_is_said(look, picture, said):
     bpy.context.object.data.materials.append(principled(Alpha=0.5))
     bpy.context.object.surfel_splatting.render_as = "POLYGONS"
     picture()
-    assert "Cube is transparent in places, which polygons are not" in said()
+    assert "Cube is transparent, which polygons are only by" in said()
 
 
 def test_what_is_transparent_becomes_surfels_unless_its_object_says_otherwise(look, picture, said):
@@ -173,7 +173,7 @@ def test_what_is_transparent_becomes_surfels_unless_its_object_says_otherwise(lo
     assert picture()[..., 3].max() == 1 and set(counts()) == {"polygon_meshes", "triangles"}
     mesh.polygons[0].material_index = 1
     assert picture()[..., 3].max() == pytest.approx(0.5, abs=0.01) and "triangles" not in counts()
-    assert "which polygons are not" not in said()
+    assert "which polygons are" not in said()
 
 
 def test_broken_vertices_take_their_triangles_with_them(look, picture):
@@ -287,12 +287,15 @@ def leaf(size=32) -> np.ndarray:
     return inside[..., None] * np.array((0.1, 0.6, 0.2, 1.0))
 
 
-def test_a_leaf_card_is_seen_through_as_in_cycles(look, picture, switch_to_cycles):
-    """Its mesh is drawn as surfels, because polygons are always opaque."""
-    leaf_card(leaf())
+@pytest.mark.parametrize("form", ["SCENE", "POLYGONS"])
+def test_a_leaf_card_is_seen_through_as_in_cycles(form, look, picture, said, switch_to_cycles):
+    """It is polygons, by default and on demand, and none of the black around the leaf is visible."""
+    look.surfel_splatting.samples = 16
+    card = leaf_card(leaf())
+    card.surfel_splatting.render_as = form
     add_sun(look)
     ours = picture()
-    assert set(counts()) == {"meshes", "surfels", "sampled"}
+    assert set(counts()) == {"polygon_meshes", "triangles"} and "transparent" not in said()
     switch_to_cycles(samples=64)
     look.cycles.max_bounces, look.cycles.transparent_max_bounces = 0, 8
     truth = picture()
@@ -300,6 +303,22 @@ def test_a_leaf_card_is_seen_through_as_in_cycles(look, picture, switch_to_cycle
     assert abs(ours[..., 3].sum() / truth[..., 3].sum() - 1) < 0.03
     whole = (truth[..., 3] > 0.999) & (ours[..., 3] > 0.999)
     assert whole.sum() > 300 and np.abs(ours - truth)[whole].max() < 0.1 * truth[whole].max()
+    rim = (ours[..., 3] > 0.05) & (ours[..., 3] < 0.95)
+    assert rim.sum() > 20
+    straight = ours[rim][:, :3] / ours[rim][:, 3:]
+    assert np.abs(straight - np.median(ours[whole][:, :3], axis=0)).max() < 0.1 * truth[whole].max()
+
+
+def test_an_alpha_from_elsewhere_makes_surfels(look, picture):
+    """The image's own alpha times a constant cuts no hole: everything is transparent."""
+    card = leaf_card(leaf())
+    tree = card.material_slots[0].material.node_tree
+    halved = tree.nodes.new("ShaderNodeMath")
+    halved.operation, halved.inputs[1].default_value = "MULTIPLY", 0.5
+    alpha = tree.nodes["Principled BSDF"].inputs["Alpha"]
+    tree.links.new(alpha.links[0].from_socket, halved.inputs[0])
+    tree.links.new(halved.outputs[0], alpha)
+    assert picture()[..., 3].max() == pytest.approx(0.5, abs=0.01) and "triangles" not in counts()
 
 
 def test_a_card_of_an_opaque_image_stays_polygons(look, picture):

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Polygons with holes where their texture is transparent, such as cards of leaves (Wyman & McGuire 2017).
+
+Passes keep each sample with the probability that its alpha is, so the mean of samples is what blending gives, without
+layers.
+"""
+
+from __future__ import annotations
+
+from ..plan.graph import Part
+from . import silhouettes
+from .textures import ATLAS, OF_TRIANGLES
+
+_VARYINGS = (("smooth", "vec3", "cut_place"), ("smooth", "vec3", "cut_eye"), *OF_TRIANGLES)
+
+
+def _count(planning) -> int:
+    return sum(instance.is_cut_out for instance in planning.scene.polygons)
+
+
+def passes(planning):
+    """No passes; it says whether any polygons have holes."""
+    why = "textures cut holes into {count} instances of polygons"
+    return planning.counts("CUT_OUTS", planning.find(_count), why, "cut-outs", "no texture cuts holes into polygons")
+
+
+def is_present(planning) -> bool:
+    return bool(planning.find(_count))
+
+
+def parts(planning, p):
+    if p.host == "visibility.frag" and p.kind != "layer":
+        words = () if p.kind == "shadow" else ("in_view",)
+        rows = (("ROWS", silhouettes.rows_of(p.depth)),)
+        inputs = "polygon_uvs", *ATLAS
+        yield Part("cut_outs", words, inputs=inputs, varyings=_VARYINGS, constants=rows, only="cut_out")
+    if p.host == "polygons.frag":
+        yield Part("cut_outs", only="cut_out")
