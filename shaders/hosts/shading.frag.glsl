@@ -1,4 +1,4 @@
-// References: Botsch et al. 2005, section 4 (one shading pass a frame, whatever the overdraw).
+// References: Botsch et al. 2005, section 4 (one lighting pass a frame, whatever the overdraw).
 // Summary: normalises the sums of every sample in the pixel, lights it and averages (a box filter); the depth is the
 //          nearest sample's, the normal the mean of the samples'. Hooks: `count` weights by what is in front, `cut`
 //          removes samples.

@@ -78,7 +78,7 @@ class MeshSamplingProperties:
 
     render_meshes: EnumProperty(
         name="Render Meshes as",
-        description="How meshes, curves, texts and metaballs are drawn that have not been converted",
+        description="How meshes, curves, texts and metaballs are drawn if they have not been converted",
         items=_MESH_ITEMS,
         default="POLYGONS",
         update=_read_again,
@@ -120,7 +120,7 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
             "replace the object"
         ),
         items=[
-            ("SCENE", "From Scene", "Use the render properties' setting Render Meshes as"),
+            ("SCENE", "From Scene", "Follow the setting Render Meshes as in the render properties"),
             *(item[:3] for item in _MESH_ITEMS),
             (
                 "DISTANCE",

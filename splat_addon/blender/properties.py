@@ -79,8 +79,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     ramp: PointerProperty(
         name="Ramp",
         description=(
-            "A texture whose color ramp gives the color at each amount of light, black to white from left to right; "
-            "without one, three even greys. It takes as long as Toon"
+            "Texture whose color ramp is looked up by the amount of light, from none at the left to full light at "
+            "the right. Without a texture, three even greys are used. It takes as long as Toon"
         ),
         type=bpy.types.Texture,
     )
@@ -115,7 +115,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     line_shallow_angle: FloatProperty(
         name="Shallow Angle",
         description=(
-            "Cover by a line what is seen at less than this angle to the surface; 0 covers none. It takes no more time"
+            "Also draw a line where a surface is seen at less than this angle; 0 draws none. It takes no extra time"
         ),
         subtype="ANGLE",
         min=0.0,
@@ -203,8 +203,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     edge_threshold: FloatProperty(
         name="Edge Fade",
         description=(
-            "A pixel fades to the background where the splats' weights sum to less than this; Mip Filter has its own "
-            "silhouettes. Frames take slightly longer"
+            "Fade pixels to the background where their splats' weights sum to less than this. It has no effect on "
+            "Mip Filter, which filters silhouettes itself. Frames take slightly longer"
         ),
         min=0.0,
         soft_max=1.0,
@@ -213,8 +213,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     detail_tolerance: FloatProperty(
         name="Detail Tolerance",
         description=(
-            "Draw larger surfels in place of those that are too small to be seen, off by at most this many pixels. 0 "
-            "draws every surfel; 1.25 makes large sets many times faster"
+            "Draw larger surfels in place of those too small to be seen, with an error of at most this many pixels. "
+            "0 draws every surfel; 1.25 makes large sets many times faster"
         ),
         min=0.0,
         soft_max=8.0,
@@ -233,7 +233,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     )
     use_ambient_occlusion: BoolProperty(
         name="Ambient Occlusion",
-        description=("Let visible surfaces block the world's light from one another. Frames take noticeably longer"),
+        description=("Let visible surfaces block the world's light from one another. Frames take slightly longer"),
         default=False,
     )
     ambient_occlusion_distance: FloatProperty(
@@ -265,24 +265,24 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     lights_splats: BoolProperty(
         name="Light Each Splat",
         description=(
-            "Light every splat where it stands and blend the colours, as the papers before deferred shading do. The "
-            "time grows with the number of surfels instead of samples"
+            "Light every splat by itself and blend the lit colours, as in papers before deferred shading. The time "
+            "grows with the number of surfels instead of samples"
         ),
         default=Settings.lights_splats,
     )
     culls_backs: BoolProperty(
         name="Leave Out Backs",
         description=(
-            "Draw no splat whose back is seen, of open surfaces too, which then have holes. It saves up to half of the "
-            "time"
+            "Leave out splats that face away, even on open surfaces, which then have holes. It saves up to half of "
+            "the time"
         ),
         default=Settings.culls_backs,
     )
     as_printed: BoolProperty(
         name="As Printed",
         description=(
-            "Draw backs as fronts, and let the last transparent layer hide as one surface, as the papers have it. It "
-            "takes no more time, and rims of open surfaces show their far sides"
+            "Treat back faces like front faces, and the last transparent layer like a single surface, as in the "
+            "papers. It takes no extra time, but far sides show at the rims of open surfaces"
         ),
         default=Settings.as_printed,
     )

@@ -48,7 +48,7 @@ def held_arrays(outputs: tuple[str, ...]) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Settings:
-    """method: how a splat is rasterised and filtered, a name in `rendering.methods`.
+    """method: how a splat is rasterized and filtered, a name in `rendering.methods`.
     shading: a name in `rendering.shading_models`.
     toon_steps: levels of each light in the toon model, at least 2. toon_softness: width of their edges, as a share of a
         level's.

@@ -15,7 +15,7 @@ from .depth_range import ClipRange, beyond, clipped, seen_by
 from .scene import Instance, Placed, PolygonInstance, Scene
 from .scene.camera import Camera
 
-#: Visibility moves every splat back by at least this many steps of the depth buffer: rounding in the rasteriser's
+#: Visibility moves every splat back by at least this many steps of the depth buffer: rounding in the rasterizer's
 #: interpolation is one or two steps.
 _LEAST_STEPS = 16
 

@@ -7,6 +7,7 @@ import bpy
 import pytest
 
 from splat_addon.blender.translations.messages import messages
+from tests.test_glossary import SYNONYMS
 from tests.test_prose import RIDDLES
 
 LONGEST_LABEL = 34
@@ -29,6 +30,11 @@ def labels() -> list[str]:
 @pytest.mark.parametrize("pattern", RIDDLES)
 def test_tooltips_are_no_riddles(pattern):
     assert [text for text in tooltips() if re.search(pattern, text)] == []
+
+
+@pytest.mark.parametrize("synonym", SYNONYMS)
+def test_the_interface_uses_the_terms_of_the_glossary(synonym):
+    assert [text for _, text in messages() if re.search(synonym, text, re.IGNORECASE)] == []
 
 
 def test_tooltips_have_no_measured_figures():

@@ -21,7 +21,7 @@ def test_what_is_shown_is_found():
     assert {
         (OPERATOR, "Convert to Surfels"),
         (DEFAULT, "Surfels"),  # the sidebar's tab
-        (DEFAULT, "Three even greys, as Toon has them"),  # a label in a panel's source
+        (DEFAULT, "Three even greys, as with Toon"),  # a label in a panel's source
         (DEFAULT, "Tint"),  # one of two
         (DEFAULT, "How a splat is drawn and filtered"),
         (DEFAULT, "Leave them out, since most are errors of the scanner"),  # of an operator's choice

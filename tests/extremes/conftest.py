@@ -2,7 +2,7 @@
 """Every fact in this folder holds for every registered method, compared with the float64 truth for the same samples.
 
 All methods must keep hard bounds: no non-finite number, and no empty pixel that the truth covers fully. Methods without
-a prefilter must also equal the truth's picture within `LEAST_PSNR`. Cases in which a paper's own formula fails are in
+a low-pass must also equal the truth's picture within `LEAST_PSNR`. Cases in which a paper's own formula fails are in
 `KNOWN_FAILURES`; the default methods have none.
 """
 

@@ -26,7 +26,7 @@ def test_splats_down_to_a_hundredth_of_a_pixel_are_found(radius, count, hold, ca
     hold({f"{radius} pixels": (Scene((crowd(camera, count, radius),)), camera, FLAT)})
 
 
-def test_splats_below_the_rasterisers_grid_break_nothing(render_all, camera):
+def test_splats_below_the_rasterizers_grid_break_nothing(render_all, camera):
     camera = camera(size=(4, 4))
     (frame,) = render_all([(Scene((crowd(camera, 10_000, 1e-6),)), camera, FLAT)])
     assert np.isfinite(frame.color).all()

@@ -92,7 +92,7 @@ class ConversionProperties:
     tolerance: FloatProperty(
         name="Tolerance",
         description=(
-            "How far the surface may be from flat where surfels become larger, in the units of the chosen space"
+            "How far a larger surfel may be from the surface that it covers, in the units of the chosen space"
         ),
         default=0.001,
         min=0.0,

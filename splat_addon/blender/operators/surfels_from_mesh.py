@@ -19,7 +19,7 @@ def selected_sources(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 class OBJECT_OT_surfels_from_mesh(ConversionProperties, ModalConversion, bpy.types.Operator):
-    """Sample what is selected, as its modifiers make it, into new objects of surfels that lie exactly over it: \
+    """Convert the selected objects, with their modifiers, to surfel objects in exactly the same place. It converts \
 meshes, curves, texts, metaballs, and the instances of Geometry Nodes and collections"""
 
     bl_idname = SURFELS_FROM_MESH

@@ -26,8 +26,8 @@ def selected_points(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 class OBJECT_OT_surfels_from_points(PointsProperties, ModalConversion, bpy.types.Operator):
-    """Make a surfel of every point of the selected point clouds and meshes; what they lack, normals, sizes and \
-directions, is estimated from neighbouring points"""
+    """Make a surfel from every point of the selected point clouds and meshes. Missing normals, sizes and \
+directions are estimated from neighbouring points"""
 
     bl_idname = SURFELS_FROM_POINTS
     bl_label = "Convert Points to Surfels"

@@ -6,57 +6,54 @@ from __future__ import annotations
 GERMAN = {
     "16 Bit": "16 Bit",
     (
-        "A pixel fades to the background where the splats' weights sum to less than this; Mip Filter has its "
-        "own silhouettes. Frames take slightly longer"
+        "Fade pixels to the background where their splats' weights sum to less than this. It has no effect on Mip "
+        "Filter, which filters silhouettes itself. Frames take slightly longer"
     ): (
-        "Ein Pixel verläuft zum Hintergrund, wo die Summe der Gewichte der Splats kleiner ist; Mip Filter hat"
-        " eigene Silhouetten. Einzelbilder dauern etwas länger"
+        "Pixel zum Hintergrund verlaufen lassen, wo die Summe der Gewichte ihrer Splats kleiner ist. Ohne Wirkung "
+        "auf Mip Filter, der Silhouetten selbst filtert. Einzelbilder dauern etwas länger"
     ),
     (
-        "A texture whose color ramp gives the color at each amount of light, black to white from left to "
-        "right; without one, three even greys. It takes as long as Toon"
+        "Texture whose color ramp is looked up by the amount of light, from none at the left to full light at the "
+        "right. Without a texture, three even greys are used. It takes as long as Toon"
     ): (
-        "Eine Textur, deren Farbverlauf die Farbe zu jeder Menge Licht angibt, von links ohne Licht bis "
-        "rechts in vollem; ohne sie drei gleichmäßige Graustufen. Braucht so lange wie Toon"
+        "Textur, in deren Farbverlauf nach der Menge des Lichts nachgeschlagen wird, von keinem links bis zu vollem "
+        "Licht rechts. Ohne Textur werden drei gleichmäßige Graustufen verwendet. Dauert so lange wie Toon"
     ),
     "As Printed": "Wie gedruckt",
     "As the Papers": "Wie die Veröffentlichungen",
     "Color Ramp": "Farbverlauf",
-    ("Cover by a line what is seen at less than this angle to the surface; 0 covers none. It takes no more time"): (
-        "Mit einer Linie bedecken, was flacher als unter diesem Winkel zur Fläche gesehen wird; 0 bedeckt "
-        "nichts. Braucht nicht mehr Zeit"
+    ("Also draw a line where a surface is seen at less than this angle; 0 draws none. It takes no extra time"): (
+        "Auch dort eine Linie zeichnen, wo eine Fläche flacher als unter diesem Winkel gesehen wird; 0 zeichnet "
+        "keine. Braucht keine zusätzliche Zeit"
     ),
     (
-        "Draw backs as fronts, and let the last transparent layer hide as one surface, as the papers have it."
-        " It takes no more time, and rims of open surfaces show their far sides"
+        "Treat back faces like front faces, and the last transparent layer like a single surface, as in the papers. "
+        "It takes no extra time, but far sides show at the rims of open surfaces"
     ): (
-        "Rückseiten wie Vorderseiten zeichnen und die letzte durchsichtige Schicht wie eine Fläche verdecken "
-        "lassen, wie in den Veröffentlichungen. Braucht nicht mehr Zeit, und Ränder offener Flächen zeigen "
-        "ihre fernen Seiten"
+        "Rückseiten wie Vorderseiten behandeln und die letzte durchsichtige Schicht wie eine einzige Fläche, wie in "
+        "den Veröffentlichungen. Braucht keine zusätzliche Zeit, aber an den Rändern offener Flächen scheinen die "
+        "fernen Seiten durch"
     ),
     (
-        "Draw no splat whose back is seen, of open surfaces too, which then have holes. It saves up to half of the time"
-    ): (
-        "Keinen Splat zeichnen, dessen Rückseite zu sehen ist, auch von offenen Flächen, die dann Löcher "
-        "haben. Spart bis zur Hälfte der Zeit"
-    ),
+        "Leave out splats that face away, even on open surfaces, which then have holes. It saves up to half of the time"
+    ): ("Abgewandte Splats weglassen, auch auf offenen Flächen, die dann Löcher haben. Spart bis zur Hälfte der Zeit"),
     "Leave Out Backs": "Rückseiten weglassen",
     "Light Each Splat": "Jeden Splat beleuchten",
     (
-        "Light every splat where it stands and blend the colours, as the papers before deferred shading do. "
-        "The time grows with the number of surfels instead of samples"
+        "Light every splat by itself and blend the lit colours, as in papers before deferred shading. The time "
+        "grows with the number of surfels instead of samples"
     ): (
-        "Jeden Splat beleuchten, wo er steht, und die Farben mischen, wie die Veröffentlichungen vor dem "
-        "Deferred Shading. Die Zeit wächst mit der Anzahl der Surfels statt der Samples"
+        "Jeden Splat für sich beleuchten und die beleuchteten Farben mischen, wie in Veröffentlichungen vor dem "
+        "Deferred Shading. Die Zeit wächst mit der Zahl der Surfels statt der Samples"
     ),
     "Ramp": "Verlauf",
     (
-        "Sample along all three axes and keep a surfel where its own smoothed normal faces that axis most. It"
-        " leaves small holes where normals turn, and all three images are sampled"
+        "Sample along all three axes and keep the surfels whose smoothed normals face their axis most. It leaves "
+        "small holes where normals turn, and takes longer, because every face is sampled three times"
     ): (
-        "Entlang aller drei Achsen abtasten und ein Surfel behalten, wo seine eigene geglättete Normale am "
-        "meisten zu dieser Achse zeigt. Lässt kleine Löcher, wo sich Normalen drehen, und alle drei Bilder "
-        "werden abgetastet"
+        "Entlang aller drei Achsen abtasten und die Surfels behalten, deren geglättete Normalen ihrer Achse am "
+        "meisten zugewandt sind. Lässt kleine Löcher, wo Normalen sich drehen, und dauert länger, weil jede Fläche "
+        "dreimal abgetastet wird"
     ),
     "Shallow Angle": "Flacher Winkel",
     "Surfel's Normal": "Normale des Surfels",
@@ -100,15 +97,15 @@ GERMAN = {
     ),
     "Angle": "Winkel",
     (
-        "The surfels' own colour, times that of a ramp at the diffuse light that falls on them (Botsch et al."
-        " 2005, section 6)"
+        "The surfels' own colour, multiplied by a ramp's colour for the amount of diffuse light (Botsch et al. "
+        "2005, section 6)"
     ): (
-        "Die eigene Farbe der Surfels, mal der eines Verlaufs beim diffusen Licht, das auf sie fällt (Botsch "
-        "et al. 2005, section 6)"
+        "Die eigene Farbe der Surfels, multipliziert mit der Farbe eines Verlaufs für die Menge des diffusen Lichts "
+        "(Botsch et al. 2005, section 6)"
     ),
-    "Three even greys, as Toon has them": "Drei gleichmäßige Graustufen wie bei Toon",
-    "Use the render properties' setting Render Meshes as": (
-        "Die Einstellung Meshes als der Rendereigenschaften verwenden"
+    "Three even greys, as with Toon": "Drei gleichmäßige Graustufen wie bei Toon",
+    "Follow the setting Render Meshes as in the render properties": (
+        "Der Einstellung Meshes als in den Rendereigenschaften folgen"
     ),
     "As fine as the scene's camera and resolution need on the current frame": (
         "So fein, wie Kamera und Auflösung der Szene es im aktuellen Einzelbild brauchen"
@@ -162,11 +159,11 @@ GERMAN = {
         "1977, normiert)"
     ),
     (
-        "Discs in point sprites, of which only the nearest is drawn without blending; faster than Quads "
-        "(Botsch and Kobbelt 2003, sections 3.1 and 3.2)"
+        "Discs in point sprites that are not blended: each pixel shows the nearest; faster than Quads (Botsch and "
+        "Kobbelt 2003, sections 3.1 and 3.2)"
     ): (
-        "Scheiben in Punktsprites, von denen nur die nächste ohne Mischen gezeichnet wird; schneller als "
-        "Quads (Botsch und Kobbelt 2003, Abschnitte 3.1 und 3.2)"
+        "Scheiben in Punktsprites, die nicht gemischt werden: Jedes Pixel zeigt die nächste; schneller als Quads "
+        "(Botsch und Kobbelt 2003, Abschnitte 3.1 und 3.2)"
     ),
     "Discs in point sprites, with holes at grazing angles (Botsch and Kobbelt 2003, sections 3.1 to 3.4)": (
         "Scheiben in Punktsprites, mit Löchern bei flachen Winkeln (Botsch und Kobbelt 2003, Abschnitte 3.1 bis 3.4)"
@@ -201,12 +198,12 @@ GERMAN = {
         "Entfernung von der Kamera, bis zu der das Objekt als Polygone gezeichnet wird"
     ),
     (
-        "Draw larger surfels in place of those that are too small to be seen, off by at most this many "
-        "pixels. 0 draws every surfel; 1.25 makes large sets many times faster"
+        "Draw larger surfels in place of those too small to be seen, with an error of at most this many pixels. 0 "
+        "draws every surfel; 1.25 makes large sets many times faster"
     ): (
-        "Größere Surfels anstelle von solchen zeichnen, die zu klein sind, um gesehen zu werden, mit "
-        "höchstens so vielen Pixeln Abweichung. 0 zeichnet jedes Surfel; 1,25 macht große Mengen "
-        "um ein Vielfaches schneller"
+        "Größere Surfels anstelle von solchen zeichnen, die zu klein sind, um gesehen zu werden, mit einem Fehler "
+        "von höchstens so vielen Pixeln. 0 zeichnet jedes Surfel; 1.25 macht große Mengen um ein Vielfaches "
+        "schneller"
     ),
     ("Draw lines along silhouettes and creases, with any shading. Frames take noticeably longer"): (
         "Linien entlang von Umrissen und Falten zeichnen, bei jeder Schattierung. Einzelbilder dauern merklich länger"
@@ -320,8 +317,8 @@ GERMAN = {
         "Wie weit hinter dem nächsten Splat andere sich noch mit ihm mischen, in Splatradien. Kleinere Werte "
         "trennen dünne Schichten; unter 0,2 bricht die Fläche auf"
     ),
-    "How far the surface may be from flat where surfels become larger, in the units of the chosen space": (
-        "Wie weit die Fläche von einer Ebene abweichen darf, wo Surfels größer werden, in den Einheiten des "
+    "How far a larger surfel may be from the surface that it covers, in the units of the chosen space": (
+        "Wie weit ein größeres Surfel von der Fläche entfernt sein darf, die es bedeckt, in den Einheiten des "
         "gewählten Raums"
     ),
     ("How many splats each sample averages: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red"): (
@@ -335,8 +332,8 @@ GERMAN = {
         "How many times closer together this object's surfels are than the density says. 2 makes four times "
         "as many surfels"
     ): ("Wievielmal dichter die Surfels dieses Objekts liegen, als die Dichte sagt. 2 ergibt viermal so viele Surfels"),
-    "How meshes, curves, texts and metaballs are drawn that have not been converted": (
-        "Wie nicht umgewandelte Meshes, Kurven, Texte und Metabälle gezeichnet werden"
+    "How meshes, curves, texts and metaballs are drawn if they have not been converted": (
+        "Wie Meshes, Kurven, Texte und Metabälle gezeichnet werden, die nicht umgewandelt wurden"
     ),
     "How much deeper the next surface must lie for a silhouette, in pixels at that distance": (
         "Wie viel tiefer die nächste Fläche für einen Umriss liegen muss, in Pixeln bei dieser Entfernung"
@@ -398,8 +395,8 @@ GERMAN = {
         "Cycles die Materialeingänge backen lassen, die nicht direkt gelesen werden können. Das ist langsam: "
         "Jeder Eingang kann länger dauern als die übrige Umwandlung"
     ),
-    ("Let visible surfaces block the world's light from one another. Frames take noticeably longer"): (
-        "Sichtbare Flächen das Licht der Welt voneinander abhalten lassen. Einzelbilder dauern merklich länger"
+    ("Let visible surfaces block the world's light from one another. Frames take slightly longer"): (
+        "Sichtbare Flächen das Licht der Welt voneinander abhalten lassen. Einzelbilder dauern etwas länger"
     ),
     "Levels": "Stufen",
     "Levels of brightness that each light is shown in": "Helligkeitsstufen, in denen jede Lampe gezeigt wird",
@@ -413,11 +410,11 @@ GERMAN = {
         "schärfer, aber Einzelbilder dauern ohne Grafikkarte um ein Mehrfaches länger"
     ),
     (
-        "Make a surfel of every point of the selected point clouds and meshes; what they lack, normals, "
-        "sizes and directions, is estimated from neighbouring points"
+        "Make a surfel from every point of the selected point clouds and meshes. Missing normals, sizes and "
+        "directions are estimated from neighbouring points"
     ): (
-        "Aus jedem Punkt der ausgewählten Punktwolken und Meshes ein Surfel machen; was fehlt, Normalen, "
-        "Größen und Richtungen, wird aus benachbarten Punkten geschätzt"
+        "Aus jedem Punkt der ausgewählten Punktwolken und Meshes ein Surfel machen. Fehlende Normalen, Größen und "
+        "Richtungen werden aus benachbarten Punkten geschätzt"
     ),
     (
         "Make one surfel object of the whole selection, in the place of the active object. The density then "
@@ -553,11 +550,11 @@ GERMAN = {
         "verformt. Einzelbilder, in denen es sich verformt, dauern länger"
     ),
     (
-        "Sample what is selected, as its modifiers make it, into new objects of surfels that lie exactly "
-        "over it: meshes, curves, texts, metaballs, and the instances of Geometry Nodes and collections"
+        "Convert the selected objects, with their modifiers, to surfel objects in exactly the same place. It "
+        "converts meshes, curves, texts, metaballs, and the instances of Geometry Nodes and collections"
     ): (
-        "Die Auswahl, wie ihre Modifikatoren sie formen, in neue Surfelobjekte abtasten, die genau "
-        "darüberliegen: Meshes, Kurven, Texte, Metabälle und die Instanzen von Geometry Nodes und Sammlungen"
+        "Die ausgewählten Objekte mit ihren Modifikatoren in Surfelobjekte an genau derselben Stelle umwandeln: "
+        "Meshes, Kurven, Texte, Metabälle und die Instanzen von Geometry Nodes und Sammlungen"
     ),
     "Samples": "Samples",
     (
@@ -702,11 +699,11 @@ GERMAN = {
         "Der Raum, in dem Surfels gleichmäßig verteilt und Längen gemessen werden"
     ),
     (
-        "Draws each splat in a square that cuts off its filter, and large splats away from the axis (Botsch "
-        "et al. 2005, sections 3 and 5, within the paper's square)"
+        "Draws each splat in the paper's square, which cuts off its filter, and cuts large splats away from the "
+        "axis (Botsch et al. 2005, sections 3 and 5, within the paper's square)"
     ): (
-        "Zeichnet jeden Splat in einem Quadrat, das seinen Filter beschneidet, und große Splats abseits der "
-        "Achse (Botsch et al. 2005, Abschnitte 3 und 5, im Quadrat des Artikels)"
+        "Zeichnet jeden Splat im Quadrat der Veröffentlichung, das seinen Filter abschneidet, und große Splats "
+        "abseits der Achse beschneidet (Botsch et al. 2005, Abschnitte 3 und 5, im Quadrat des Artikels)"
     ),
     "The surface has an edge where it, or its shading, turns by more than this angle. Beside faces that are "
     "larger than a surfel, the angle is smaller, down to a sixth": (

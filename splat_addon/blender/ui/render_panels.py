@@ -103,7 +103,7 @@ class RENDER_PT_surfel_ramp(_ShadingPanel, bpy.types.Panel):
         properties = getattr(context.scene, RENDER_SETTINGS)
         self.layout.template_ID(properties, "ramp", new="texture.new")
         if properties.ramp is None:
-            self.layout.label(text="Three even greys, as Toon has them", icon="INFO")
+            self.layout.label(text="Three even greys, as with Toon", icon="INFO")
             return
         self.layout.prop(properties.ramp, "use_color_ramp", text="Ramp")
         if properties.ramp.use_color_ramp:

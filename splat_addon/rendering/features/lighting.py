@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lighting, from sums to pixels: each sample is lit once, either in one pass with the average over the pixel, or stored
-for a later filter."""
+"""The lighting pass turns sums into pixels: each sample is lit once. The result is averaged over the pixel at once, or
+stored for a later filter."""
 
 from __future__ import annotations
 

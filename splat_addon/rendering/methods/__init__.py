@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ways to rasterise and filter a splat: one registry entry, one GLSL file and one numpy twin
+"""The ways to rasterize and filter a splat: one registry entry, one GLSL file and one numpy twin
 (reference/methods) each."""
 
 from . import (

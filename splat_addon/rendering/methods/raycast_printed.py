@@ -7,5 +7,7 @@ METHOD = Method(
     "raycast_printed",
     label="Ray Cast, as Printed",
     paper="Botsch et al. 2005, sections 3 and 5, within the paper's square",
-    summary="Draws each splat in a square that cuts off its filter, and large splats away from the axis",
+    summary=(
+        "Draws each splat in the paper's square, which cuts off its filter, and cuts large splats away from the axis"
+    ),
 )

@@ -7,7 +7,7 @@ MODEL = ShadingModel(
     "ramp",
     label="Color Ramp",
     source="Botsch et al. 2005, section 6",
-    summary="The surfels' own colour, times that of a ramp at the diffuse light that falls on them",
+    summary="The surfels' own colour, multiplied by a ramp's colour for the amount of diffuse light",
     is_lit=True,
     has_material=True,
     has_world=True,

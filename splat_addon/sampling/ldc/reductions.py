@@ -90,8 +90,8 @@ REDUCTIONS: dict[str, Reduction] = {
     ),
     "surfel_normal": Reduction(
         "Surfel's Normal",
-        "Sample along all three axes and keep a surfel where its own smoothed normal faces that axis most. It leaves "
-        "small holes where normals turn, and all three images are sampled",
+        "Sample along all three axes and keep the surfels whose smoothed normals face their axis most. It leaves "
+        "small holes where normals turn, and takes longer, because every face is sampled three times",
         keeps=keep_all,
         counts=keep_dominant,
         merge=facing_by_own_normal,

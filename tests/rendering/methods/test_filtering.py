@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The promised accuracy of one filtered sample per pixel, compared with the exact picture under the pixel's
-Gaussian.
-"""
+"""The splatting error of one filtered sample per pixel, under the pixel's Gaussian, is within the promised bounds."""
 
 from dataclasses import replace
 from functools import cache
