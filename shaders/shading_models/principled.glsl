@@ -29,6 +29,12 @@ struct Lobe {
   vec3 edge;  // what a metal's tint takes off its reflectance, times c (1 - c)^6
 };
 
+// Rows: the view's direction along the surface, across it, the normal.
+mat3 tangent_frame(Lobe lobe) {
+  vec3 across = normalize(lobe.to_viewer - lobe.normal * dot(lobe.to_viewer, lobe.normal) + vec3(1e-7, 2e-7, 0.0));
+  return transpose(mat3(across, cross(lobe.normal, across), lobe.normal));
+}
+
 #parts
 // material: roughness, metallic, reflectance at normal incidence
 vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
@@ -97,6 +103,30 @@ void cover(inout Lobe lobe, vec3 share) {
   lobe.scattered *= share;
 }
 
+#part sheen
+#include "lib/sheen.glsl"
+
+vec3 sheen_reflected;  // albedo
+vec3 sheen_direction;  // mean of what it reflects
+mat3 sheen_to_cosine;  // from eye space
+float sheen_scale;
+
+void sheen_cover(inout Lobe lobe) {
+  vec4 color_roughness = finish_texel(3);
+  float roughness = clamp(color_roughness.a, 0.01, 1.0);
+  mat3 to_tangent = tangent_frame(lobe);
+  vec2 bend = sheen_transform(lobe.nv, roughness);
+  sheen_scale = bend.x;
+  sheen_to_cosine = mat3(bend.x, 0.0, 0.0, 0.0, bend.x, 0.0, bend.y, 0.0, 1.0) * to_tangent;
+  sheen_direction = normalize(vec3(-bend.y / bend.x, 0.0, 1.0) * to_tangent);
+  sheen_reflected = color_roughness.rgb * sheen_albedo(lobe.nv, roughness);
+  cover(lobe, vec3(max(1.0 - max(max(sheen_reflected.r, sheen_reflected.g), sheen_reflected.b), 0.0)));
+}
+
+void sheen_mirror(inout vec3 radiance) {
+  radiance += sheen_reflected * world_irradiance(sheen_direction);
+}
+
 #part coat
 Lobe coat;  // a dielectric without a base
 
@@ -149,8 +179,7 @@ vec3 from_point(Lobe lobe, vec3 to_light, vec3 irradiance) {
 
 #part lights, sized_lights
 vec3 from_quad(Lobe lobe, Incident light) {
-  vec3 across = normalize(lobe.to_viewer - lobe.normal * dot(lobe.to_viewer, lobe.normal) + vec3(1e-7, 2e-7, 0.0));
-  mat3 to_tangent = transpose(mat3(across, cross(lobe.normal, across), lobe.normal));
+  mat3 to_tangent = tangent_frame(lobe);
   vec3 middle = to_tangent * light.middle, u = to_tangent * light.half_u, v = to_tangent * light.half_v;
   vec4 m = table_at(lobe.roughness, lobe.nv, 0);
   mat3 to_cosine = mat3(m.x, 0.0, m.z, 0.0, 1.0, 0.0, m.y, 0.0, m.w);
@@ -169,6 +198,24 @@ void add_light(inout vec3 radiance, Lobe lobe, Incident light) {
   bool is_done = false;
   #hook sent(radiance, is_done, lobe, light)
   if (!is_done) radiance += from_point(lobe, light.to_light, light.irradiance);
+}
+
+#part sheen, lights, sized_lights
+void sheen_brushed(inout vec3 radiance, inout bool is_done, Incident light) {
+  if (!light.is_sized) return;
+  float share = form_factor(sheen_to_cosine * light.middle, sheen_to_cosine * light.half_u, sheen_to_cosine * light.half_v);
+  radiance += light.radiance * sheen_reflected * share;
+  is_done = true;
+}
+
+#part sheen, lights
+void sheen_over(inout vec3 radiance, Incident light) {
+  bool is_done = false;
+  #hook brushed(radiance, is_done, light)
+  vec3 bent = sheen_to_cosine * light.to_light;
+  if (is_done || !(bent.z > 0.0)) return;
+  float ratio = sheen_scale / max(dot(bent, bent), 1e-30);
+  radiance += sheen_reflected * light.irradiance * (bent.z / PI * ratio * ratio);
 }
 
 #part coat, lights

@@ -94,10 +94,10 @@ def quad_form_factors(corners, normal, view, roughness, nv) -> tuple[np.ndarray,
     xx, xz, zx, zz = table_at(roughness, nv)[:, :4].T
     x, y, z = np.moveaxis(local, 2, 0)
     bent = np.stack([xx[:, None] * x + xz[:, None] * z, y, zx[:, None] * x + zz[:, None] * z], axis=2)
-    return _form_factor(local), _form_factor(bent)
+    return form_factor(local), form_factor(bent)
 
 
-def _form_factor(corners: np.ndarray) -> np.ndarray:
+def form_factor(corners: np.ndarray) -> np.ndarray:
     """(n,) cosine-weighted share of the half-space above z = 0 that convex quads (n, 4, 3) take (Baum et al. 1989).
 
     Each edge counts by its part above the horizon, and so does the horizon from where the quad leaves it to where it

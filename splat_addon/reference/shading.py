@@ -10,9 +10,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .brdf import dot, edge_at, mean_direction, metal_edge, quad_form_factors, specular_albedo, specular_term, unit
+from .brdf import (
+    dot,
+    edge_at,
+    form_factor,
+    mean_direction,
+    metal_edge,
+    quad_form_factors,
+    specular_albedo,
+    specular_term,
+    unit,
+)
 from .lights import Incident
 from .rays import Surface
+from .sheen import LEAST_SHEEN_ROUGHNESS, sheen_albedo, sheen_bent, sheen_term, sheen_transform
 from .world import WorldLight
 
 #: Below this roughness a highlight from a light without size is a single bright sub-sample.
@@ -55,9 +66,13 @@ def principled_radiance(surface: Surface, direction, lights: list[Incident], wor
     finish = surface.finish if surface.finish.shape[1] else None
     lobes, let_through = [_base(surface, nv, finish)], np.ones((1, 3))
     if finish is not None:
-        coat, let_through = _coat(finish, nv)
-        lobes = [lobes[0].times(let_through), coat]
+        sheen = _Sheen.over(finish, nv)
+        coat, below_coat = _coat(finish, nv)
+        let_through = sheen.let_through * below_coat
+        lobes = [lobes[0].times(let_through), coat.times(sheen.let_through)]
     radiance = surface.emission * let_through
+    if finish is not None:
+        radiance = radiance + sheen.radiance(normal, view, lights, world)
     for lobe in lobes:
         reflected = mean_direction(lobe.roughness, nv, view, normal)
         radiance = radiance + lobe.diffuse * world.irradiance(normal)
@@ -98,6 +113,40 @@ def _coat(finish: np.ndarray, nv) -> tuple[_Lobe, np.ndarray]:
     way = 1 / np.sqrt(1 - (1 - nv[:, None] ** 2) / ior**2)
     let_through = (1 - weight * specular) * (1 + weight * (tint**way - 1))
     return _Lobe(roughness, none, f0, f90, specular * weight, scattered * weight, none), let_through
+
+
+@dataclass(frozen=True, eq=False)
+class _Sheen:
+    """Fibres over everything. albedo: (n, 3). a, b: (n,) of `sheen_transform`. let_through: (n, 1)."""
+
+    albedo: np.ndarray
+    a: np.ndarray
+    b: np.ndarray
+    let_through: np.ndarray
+
+    @classmethod
+    def over(cls, finish: np.ndarray, nv) -> _Sheen:
+        """The sheen of finishes (n, F)."""
+        roughness = np.clip(finish[:, 15], LEAST_SHEEN_ROUGHNESS, 1)
+        albedo = finish[:, 12:15] * sheen_albedo(nv, roughness)[:, None]
+        let_through = np.maximum(1 - albedo.max(axis=1, keepdims=True), 0)
+        return cls(albedo, *sheen_transform(nv, roughness), let_through)
+
+    def radiance(self, normal, view, lights: list[Incident], world: WorldLight) -> np.ndarray:
+        """(n, 3) what it reflects. For the world, of its light around the lobe's mean direction."""
+        across = unit(view - normal * dot(view, normal)[:, None] + np.array((1e-7, 2e-7, 0)))
+        frame = np.stack([across, np.cross(normal, across), normal], axis=1)
+        mean = unit(normal - across * (self.b / self.a)[:, None])
+        radiance = self.albedo * world.irradiance(mean)
+        for light in lights:
+            local = np.einsum("nij,nj->ni", frame, light.to_light)
+            sent = light.irradiance * sheen_term(local, self.a, self.b)[:, None]
+            sized = np.flatnonzero(light.is_sized)
+            corners = np.einsum("nij,nkj->nki", frame[sized], light.corners[sized])
+            share = form_factor(sheen_bent(corners, self.a[sized], self.b[sized]))
+            sent[sized] = light.radiance[sized] * share[:, None]
+            radiance = radiance + self.albedo * sent
+        return radiance
 
 
 def _reflected(lobe: _Lobe, light: Incident, normal, view, nv) -> np.ndarray:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from splat_addon.reference import render_exact
 from splat_addon.reference.brdf import metal_edge, specular_term, table_at
+from splat_addon.reference.sheen import sheen_albedo, sheen_term, sheen_transform
 from splat_addon.rendering.scene import Finish, Instance, Material, Scene
 from splat_addon.rendering.scene.light import Light
 from splat_addon.rendering.settings import Settings
@@ -103,15 +104,21 @@ def test_the_tabulated_albedo_is_the_integral_of_the_specular_term(f0, roughness
     assert (values[:, 0] * z).mean() * 2 * np.pi == pytest.approx(f0 * scale + bias, abs=0.004)
 
 
-COATS = {"clear": Finish(coat=1.0), "rough": Finish(coat=1.0, coat_roughness=0.8), "half": Finish(coat=0.5)}
+COVERS = {
+    "clear": Finish(coat=1.0),
+    "rough": Finish(coat=1.0, coat_roughness=0.8),
+    "half": Finish(coat=0.5),
+    "cloth": Finish(sheen=1.0),
+    "coated cloth": Finish(sheen=0.6, sheen_roughness=0.2, coat=1.0, coat_roughness=0.4),
+}
 
 
 @pytest.mark.parametrize("tilt", [0, 40, 75])
 @pytest.mark.parametrize("metallic", [0.0, 1.0])
-@pytest.mark.parametrize("name", COATS)
+@pytest.mark.parametrize("name", COVERS)
 def test_a_covered_white_surface_gives_back_no_more_than_it_gets(ellipses, orthographic, name, metallic, tilt):
     normal = (math.sin(math.radians(tilt)), 0, math.cos(math.radians(tilt)))
-    material = Material(metallic=metallic, finish=COATS[name])
+    material = Material(metallic=metallic, finish=COVERS[name])
     glow = radiance(ellipses, orthographic, world=(1, 1, 1), material=material, normal=normal)
     assert 0.75 < glow[0] < 1.01
 
@@ -138,6 +145,24 @@ def test_a_metal_s_tint_is_its_share_of_what_schlick_s_formula_has_at_82_degrees
     np.testing.assert_allclose(
         schlick - metal_edge(f0, np.array([tint])) * c * (1 - c) ** 6, schlick * tint, atol=1e-12
     )
+
+
+@pytest.mark.parametrize("roughness", [0.1, 0.3, 0.6, 1.0])
+@pytest.mark.parametrize("cosine", [0.1, 0.5, 0.95])
+def test_the_sheen_s_lobe_has_the_whole_of_its_albedo_above_the_surface(cosine, roughness):
+    """What the transform sends below the horizon is little."""
+    z, phi = (a.ravel() for a in np.meshgrid((np.arange(600) + 0.5) / 600, (np.arange(600) + 0.5) / 600 * 2 * np.pi))
+    ring = np.sqrt(1 - z * z)
+    light, ones = np.stack([ring * np.cos(phi), ring * np.sin(phi), z], axis=1), np.ones(len(z))
+    values = sheen_term(light, *sheen_transform(cosine * ones, roughness * ones))
+    assert values.mean() * 2 * np.pi == pytest.approx(1, abs=0.01)
+
+
+def test_the_sheen_s_albedo_is_largest_where_it_is_seen_at_a_slant():
+    cosine = np.linspace(0.05, 1, 20)
+    for roughness in (0.3, 0.5):
+        albedo = sheen_albedo(cosine, np.full(20, roughness))
+        assert (np.diff(albedo) < 0).all() and 0 <= albedo[-1] < 0.2 < albedo[0] <= 1
 
 
 angles = st.tuples(st.floats(0.05, 1.5), st.floats(0, 6.28))

@@ -145,7 +145,7 @@ def finished(scene, camera):
     scene, camera = lit(scene, camera)
     finishes = (
         Finish(specular_tint=(1.0, 0.3, 0.1), coat=0.8, coat_roughness=0.3, coat_ior=1.8, coat_tint=(1.0, 0.6, 0.2)),
-        Finish(specular_tint=(0.2, 1.0, 0.4)),
+        Finish(specular_tint=(0.2, 1.0, 0.4), sheen=0.7, sheen_roughness=0.4, sheen_tint=(0.2, 0.5, 1.0)),
     )
     first, second = (
         replace(i, materials=tuple(replace(m, finish=finish, emission=(0.1, 0.1, 0.2)) for m in i.materials))

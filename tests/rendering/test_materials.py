@@ -125,6 +125,7 @@ def test_an_instance_that_has_no_own_values_stands_beside_one_that_has(render):
 #: Finishes with one of their parts each.
 FINISHES = {
     "specular_tint": Finish(specular_tint=(1.0, 0.2, 0.1)),
+    "sheen": Finish(sheen=0.8, sheen_roughness=0.4, sheen_tint=(0.2, 0.5, 1.0)),
     "coat": Finish(coat=0.8, coat_roughness=0.3, coat_tint=(1.0, 0.4, 0.1)),
 }
 
@@ -199,7 +200,12 @@ def test_a_tinted_coat_dims_what_the_surface_below_sends_out(lights_splats, rend
 
 @pytest.mark.parametrize(
     "numbers",
-    [*({"specular_tint": tint} for tint in ((np.nan, 1, 1), (-0.1, 1, 1), (1, 1))), {"coat": -1}, {"coat_ior": np.inf}],
+    [
+        *({"specular_tint": tint} for tint in ((np.nan, 1, 1), (-0.1, 1, 1), (1, 1))),
+        {"coat": -1},
+        {"coat_ior": np.inf},
+        {"sheen_tint": (1, 1)},
+    ],
 )
 def test_a_finish_of_unusable_numbers_is_refused(numbers):
     with pytest.raises(ValueError, match="finite numbers of 0 and more"):

@@ -102,6 +102,7 @@ TABLE = {
     "two emissions": (of(GLOWING, Material()), {}, PASSES, "gbuffer_emission", "", ()),
     "one finish": (of(TINTED), {}, PASSES, "", "finishes edge_table", ("FINISH",)),
     "two finishes": (of(TINTED, Material()), {}, PASSES, "gbuffer_finish", "finishes edge_table", ("FINISH",)),
+    "one sheen": (of(Material(finish=Finish(sheen=0.5))), {}, PASSES, "", "finishes", ("FINISH",)),
     "one coat": (of(COATED), {}, PASSES, "", "finishes", ("FINISH",)),
     "a coat beside a tint": (of(COATED, TINTED), {}, PASSES, "gbuffer_finish", "finishes edge_table", ("FINISH",)),
     "two finishes, flat": (of(TINTED, Material()), {"shading": "flat"}, PASSES, "", "-brdf_table", ()),

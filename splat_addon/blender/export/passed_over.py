@@ -22,7 +22,6 @@ SOCKETS = {
         "Anisotropic": 0.0,
         "Transmission Weight": 0.0,
         "Coat Normal": (0.0, 0.0, 0.0),
-        "Sheen Weight": 0.0,
         "Thin Film Thickness": 0.0,
     },
     "BSDF_DIFFUSE": {"Roughness": 0.0},

@@ -137,7 +137,7 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
 def _principled(plain: dict) -> Material:
     ior = _levelled(plain["IOR"], plain["Specular IOR Level"])
     sent = _sent(plain, "Emission Color", "Emission Strength")
-    finish = Finish(specular_tint=_positive(plain["Specular Tint"]), **_coat(plain))
+    finish = Finish(specular_tint=_positive(plain["Specular Tint"]), **_coat(plain), **_sheen(plain))
     return Material(plain["Roughness"], plain["Metallic"], ior, sent, finish=finish)
 
 
@@ -150,6 +150,17 @@ def _coat(plain: dict) -> dict:
         "coat_roughness": max(plain["Coat Roughness"], 0.0),
         "coat_ior": max(plain["Coat IOR"], 1.0),
         "coat_tint": _positive(plain["Coat Tint"]),
+    }
+
+
+def _sheen(plain: dict) -> dict:
+    """The fields of a `Finish` for sheen, if there is any."""
+    if not plain["Sheen Weight"] > 0:
+        return {}
+    return {
+        "sheen": min(plain["Sheen Weight"], 1.0),
+        "sheen_roughness": max(plain["Sheen Roughness"], 0.0),
+        "sheen_tint": _positive(plain["Sheen Tint"]),
     }
 
 
@@ -176,6 +187,9 @@ _SHADERS = {
             "Coat Roughness": "",
             "Coat IOR": "",
             "Coat Tint": "",
+            "Sheen Weight": "",
+            "Sheen Roughness": "",
+            "Sheen Tint": "",
             "Emission Color": "emission",
             "Emission Strength": "emission",
         },

@@ -59,13 +59,13 @@ def passes(planning):
 
 
 _TOO_MANY = (
-    "materials have {} different combinations of Coat and Specular Tint, and a picture shows {}; the others look like "
-    "the most similar of these"
+    "materials have {} different combinations of Coat, Sheen and Specular Tint, and a picture shows {}; the others "
+    "look like the most similar of these"
 )
 
 
 #: Parts that lie over the rest.
-_COVERS = frozenset({"coat"})
+_COVERS = frozenset({"coat", "sheen"})
 
 
 def _layers(finishes: tuple[Finish, ...]) -> tuple[str, ...]:

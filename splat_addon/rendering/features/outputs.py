@@ -151,7 +151,7 @@ def check(plan: FramePlan) -> None:
             raise ValueError(
                 f"The {p.name} pass would write {len(names)} textures at once ({', '.join(names)}), and "
                 f"devices have room for {MAX_COLORS}. Leave Overdraw, indices and mattes out, choose float32 sums, or "
-                "give all materials one Coat and Specular Tint."
+                "give all materials one Coat, Sheen and Specular Tint."
             )
 
 

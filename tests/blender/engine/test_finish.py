@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A ball whose Principled BSDF has a coat, or a tint of its reflections, beside Cycles' ball."""
+"""A ball whose Principled BSDF has a coat, sheen, or a tint of its reflections, beside Cycles' ball."""
 
 import bpy
 import numpy as np
@@ -23,6 +23,16 @@ BALLS = {
         "Coat Tint": (1.0, 0.2, 0.1, 1.0),
         "Emission Strength": 0.5,
         "Coat Roughness": 0.5,
+    },
+    "cloth": {"Sheen Weight": 1.0, "Base Color": (0.1, 0.1, 0.1, 1), "Specular IOR Level": 0.0},
+    "tinted_cloth": {"Sheen Weight": 0.7, "Sheen Tint": (1.0, 0.3, 0.1, 1.0), "Sheen Roughness": 0.3},
+    "coated_cloth": {
+        "Sheen Weight": 1.0,
+        "Sheen Roughness": 0.8,
+        "Base Color": (0.2, 0.1, 0.1, 1),
+        "Coat Weight": 0.7,
+        "Coat Roughness": 0.3,
+        "Coat Tint": (1.0, 0.5, 0.2, 1.0),
     },
     "half_metal": {"Specular Tint": (0.1, 0.2, 1.0, 1.0), "Metallic": 0.5, "Roughness": 0.3},
 }

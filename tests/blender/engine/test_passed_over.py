@@ -18,7 +18,6 @@ LEADERS = {
     "Subsurface": "Subsurface Weight",
     "Anisotropic": "Anisotropic",
     "Tangent": "Anisotropic",
-    "Sheen": "Sheen Weight",
     "Thin Film": "Thin Film Thickness",
 }
 #: type of socket -> what sets it, where one number does not
@@ -32,6 +31,9 @@ ONCE_FOR_A_MATERIAL = (
     "Coat Roughness",
     "Coat IOR",
     "Coat Tint",
+    "Sheen Weight",
+    "Sheen Roughness",
+    "Sheen Tint",
 )
 #: What the export reads besides the channels of surfaces; a Weight is of a Mix Shader's making, and disabled.
 READ_BESIDES = {*ONCE_FOR_A_MATERIAL, "Weight"}
