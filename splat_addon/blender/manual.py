@@ -51,7 +51,7 @@ PAGES = (
 
 
 def manual_map() -> tuple[str, tuple[tuple[str, str], ...]]:
-    """As Blender asks for it: the beginning of every address, and `PAGES`."""
+    """The beginning of every address, and `PAGES`, in the form that Blender expects."""
     manifest = tomllib.loads((_ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
     return f"{manifest.get('website', _ROOT.as_uri()).rstrip('/')}/docs/", PAGES
 

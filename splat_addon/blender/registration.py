@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Settings that belong to a scene, an object or a view layer: classes, and the property that holds the settings."""
+"""Registers settings of a scene, an object or a view layer: their classes, and the property that holds them."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from bpy.props import PointerProperty
 
 
 def with_property(owner: type, name: str, settings: type, *classes: type) -> tuple[Callable, Callable]:
-    """register() and unregister() of the property `name` of an owner (`bpy.types.Scene` ...), a group of `settings`.
+    """The functions register() and unregister() for the property `name` of an owner (`bpy.types.Scene` ...), a group of
+    `settings`.
 
-    classes: that are registered with it; those of groups within it come first.
+    classes: registered with it; a group inside another must come first.
     """
     register_classes, unregister_classes = bpy.utils.register_classes_factory((*classes, settings))
 

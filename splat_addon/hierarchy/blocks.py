@@ -20,10 +20,10 @@ BLOCK = 32
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """One level above the surfels, of m entries: parents, then what waits for larger cells.
+    """One level above the surfels, with m entries: first the parents, then entries that wait for larger cells.
 
-    numbers: (m,) of surfel or node, nodes after the surfels. children: (n,) entries of the level below, one parent's
-    after the other's. counts: (m,) how many each has, 1 for what waits.
+    numbers: (m,) index of the surfel or node; nodes come after the surfels. children: (n,) entries of the level below,
+    ordered by parent. counts: (m,) number of children of each entry, 1 for those that wait.
     """
 
     numbers: np.ndarray
@@ -32,7 +32,7 @@ class Level:
 
 
 class Geometry(NamedTuple):
-    """positions, normals: (3, N + M) float32 of surfels and nodes. radii: (N + M,)."""
+    """The geometry of all surfels and nodes. positions, normals: (3, N + M) float32. radii: (N + M,)."""
 
     positions: np.ndarray
     normals: np.ndarray
@@ -41,13 +41,13 @@ class Geometry(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Blocks:
-    """B blocks, the coarsest level's first.
+    """B blocks, those of the coarsest level first.
 
-    first, last: (B,) runs of `Hierarchy.entries`. first_child, last_child: (B,) runs of blocks, empty at the surfels.
-    low, high: (B, 3) float32, boxes of all ellipses from there on down, relative to the surfels' origin.
-    axes, angles: (B, 3), (B,) float32, cones of their planes' normals, radians.
-    errors: (B, 3) float32, the largest of each; 0 at the surfels.
-    roots: how many have no parent.
+    first, last: (B,) each block's run in `Hierarchy.entries`. first_child, last_child: (B,) its run of child blocks,
+    empty for blocks of surfels. low, high: (B, 3) float32, a box around the ellipses of the block and of all blocks
+    below it, relative to the surfels' origin. axes, angles: (B, 3), (B,) float32, a cone around the normals of their
+    planes, radians. errors: (B, 3) float32, their largest errors; 0 for surfels. roots: number of blocks without a
+    parent.
     """
 
     first: np.ndarray

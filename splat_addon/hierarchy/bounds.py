@@ -26,7 +26,7 @@ _ROUNDING = np.float32(1e-5)
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """Ellipses of m parents: (3, m) unit normal, first and second axis, (m,) the half-axes."""
+    """The ellipses of m parents: (3, m) unit normal, first and second axis, and (m,) half-axes."""
 
     normal: np.ndarray
     first: np.ndarray
@@ -48,9 +48,8 @@ class Frame:
 
 
 def bounds(children: Nodes, runs: Runs, offsets: np.ndarray, frame: Frame, shading, colors) -> dict[str, np.ndarray]:
-    """(m,) off, uncovered, overhang and spread of parents.
-
-    offsets: (3, n) of the children from their parent. shading, colors: (3, m), (4, m) of the parents.
+    """(m,) off, uncovered, overhang and spread of the parents. offsets: (3, n) positions of the children
+    relative to their parents. shading, colors: (3, m), (4, m) of the parents.
     """
     normal = runs.spread(frame.normal)
     tilt = np.sqrt(np.maximum(1 - _dot(normal, children["normals"]) ** 2, 0))

@@ -33,13 +33,12 @@ _MOST_LEVELS = 48
 
 @dataclass(frozen=True, eq=False)
 class Hierarchy:
-    """Over N surfels, M merged nodes.
+    """A hierarchy over N surfels, with M merged nodes.
 
-    nodes: the merged surfels, in the order in which they were made.
-    errors: (M, 3) float32 bounds of each, object units, none below a child's: off the plane; uncovered or sticking out;
-        what it shows (its size times the change of colour or normal).
-    entries: (E,) int32, of each level in turn, the surfels' first, numbers of surfels and, from N on, of nodes; blocks
-        are runs of it.
+    nodes: the merged surfels, in the order of their creation. errors: (M, 3) float32 bounds, object units, never below
+    a child's: distance off the plane; uncovered or protruding width; error of what it shows (its size times the change
+    of colour or normal). entries: (E,) int32 indices of surfels and, from N on, of nodes, level by level, starting with
+    the surfels; blocks are runs of it.
     """
 
     surfels: int
@@ -126,7 +125,7 @@ def _merge(current: Table, cell: float) -> tuple[Table, np.ndarray, Runs, np.nda
 
 
 def _errors(nodes: Table) -> np.ndarray:
-    """(m, 3) float32: see `Hierarchy`."""
+    """(m, 3) float32 errors, in the form of `Hierarchy.errors`."""
     extent = np.maximum(nodes.column("uncovered"), nodes.column("overhang"))
     shown = nodes.column("radii") * np.minimum(nodes.column("spread"), 1)
     return np.stack([nodes.column("off"), extent, shown], axis=1)

@@ -20,10 +20,11 @@ from .building import Hierarchy
 class Sight:
     """A view of one object, in the object's space, relative to the surfels' origin.
 
-    planes: (k, 4): n . p + d >= 0 inside of the picture. depth: (4,), n . p + d is the distance along the view, in the
-    world. pixels: how many an object unit is at most, at distance 1 of a perspective or anywhere of a parallel view.
-    near: the least distance that counts, world units. eye: (4,) homogeneous, w = 0 for the direction towards a parallel
-    view's. hides_backs: nobody sees a back. tolerance: in pixels; at 0 the surfels themselves.
+    planes: (k, 4): n . p + d >= 0 inside the picture. depth: (4,): n . p + d is the distance along the view, in world
+    units. pixels: the most pixels that an object unit covers, at distance 1 of a perspective view or anywhere in a
+    parallel one. near: the smallest distance that counts, world units. eye: (4,) homogeneous; w = 0 for the direction
+    towards the eye of a parallel view. hides_backs: whether backs are invisible. tolerance: in pixels; 0 draws the
+    surfels themselves.
     """
 
     planes: np.ndarray

@@ -47,9 +47,9 @@ class Nodes:
 
 
 class Table:
-    """Nodes row by row, so that those of a cluster, which lie apart, are found with few reaches into memory.
+    """Nodes stored row by row, so that the scattered members of a cluster are gathered with few memory accesses.
 
-    widths: column -> how many. rows: (n, their sum) float32.
+    widths: column -> its number of values. rows: (n, sum of the widths) float32.
     """
 
     def __init__(self, widths: dict[str, int], rows: np.ndarray):

@@ -24,9 +24,10 @@ def gradients(surfels: Surfels, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def merged_places(children, shares: np.ndarray, offsets: np.ndarray, runs: Runs, cell: float) -> np.ndarray:
-    """(8, m) of m merged surfels from (8, n) of their children.
+    """(8, m) texture coordinates and gradients of m merged surfels from (8, n) of their children.
 
-    shares: (n,) of the parent's area. offsets: (3, n) of the children from their parent's position.
+    shares: (n,) each child's share of its parent's area. offsets: (3, n) positions of the children relative to their
+    parent.
     """
     mean = runs.sum(children * shares)
     of_child = runs.spread(mean)

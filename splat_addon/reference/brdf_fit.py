@@ -74,7 +74,7 @@ def albedo_and_mean(lobe: Lobe) -> tuple[float, float, np.ndarray]:
 
 
 def edge_table() -> np.ndarray:
-    """(48, 32) float32 of `edge_term`."""
+    """(48, 32) float32 values of `edge_term`."""
     table = np.zeros((ROUGHNESS, ANGLES), np.float32)
     for i, j in np.ndindex(table.shape):
         table[i, j] = edge_term(Lobe(roughness_of(i), cosine_of(j)))
@@ -82,7 +82,7 @@ def edge_table() -> np.ndarray:
 
 
 def edge_term(lobe: Lobe) -> float:
-    """What the lobe has of c (1 - c)^6, with c the cosine to the half vector."""
+    """The integral of c (1 - c)^6 over the lobe, where c is the cosine to the half vector."""
     value, density, vh = lobe.masked(lobe.directions(200))
     return (np.where(value > 0, value / density, 0.0) * vh * (1 - vh) ** 6).mean()
 
@@ -92,7 +92,7 @@ def roughness_of(row: int) -> float:
 
 
 def cosine_of(column: int) -> float:
-    """The cosine to the viewer."""
+    """The cosine between normal and viewer for a column of the table."""
     return max(1 - (column / (ANGLES - 1)) ** 2, 1e-3)
 
 

@@ -171,7 +171,9 @@ def _seen(splats: Splats, boxes, grid: RayGrid, visibility: np.ndarray, after=-n
 
 
 def average(splats: Splats, grid: RayGrid, contributions) -> Surface:
-    """Weighted means. contributions: chunks of rays, splats, weights and depths, each (m,), and places (m, 2)."""
+    """Means weighted by the splats' weights. contributions: chunks of rays, splats, weights and depths, each
+    (m,), and places (m, 2).
+    """
     attributes = np.concatenate([splats.color, splats.normal, splats.surface], axis=1).T
     sums, count = np.zeros((3 + len(attributes), grid.count)), np.zeros(grid.count)
     for ray, splat, weight, depth, place in contributions:

@@ -51,7 +51,7 @@ class _Lobe:
     edge: np.ndarray
 
     def times(self, share) -> _Lobe:
-        """All that it reflects, scaled."""
+        """The same lobe with all its reflectances scaled."""
         scaled = {name: getattr(self, name) * share for name in ("diffuse", "specular", "scattered")}
         return replace(self, **scaled)
 

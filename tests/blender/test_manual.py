@@ -57,7 +57,7 @@ def test_everything_has_a_page_and_a_heading_that_are_there():
 
 
 def test_each_line_of_the_table_is_used():
-    """The first that fits counts, so a line that nobody reaches is an error."""
+    """Blender uses the first line that fits, so a line that is never reached is an error."""
     used = {manual_line(name) for name in names()}
     assert used == {pattern for pattern, _ in manual.PAGES}
 

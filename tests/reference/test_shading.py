@@ -125,7 +125,9 @@ def test_a_covered_white_surface_gives_back_no_more_than_it_gets(ellipses, ortho
 
 @pytest.mark.parametrize("tilt", [0, 40, 75])
 def test_a_coat_s_tint_is_that_of_the_refracted_way_through_it(ellipses, orthographic, tilt):
-    """A coat over what reflects nothing, and one that does not refract: the way is the inverse of the cosine."""
+    """The base has no highlight and the coat does not refract, so the way through the coat is the inverse of
+    the cosine.
+    """
     cosine = math.cos(math.radians(tilt))
     material = replace(CHALK, finish=Finish(coat=1.0, coat_ior=1.0, coat_tint=(0.9, 0.5, 0.1)))
     seen = radiance(

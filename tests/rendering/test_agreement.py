@@ -141,7 +141,7 @@ def own_materials(scene, camera):
 
 
 def finished(scene, camera):
-    """The scene under lights with and without a size, with a finish on a dielectric instance and another on a metal."""
+    """The scene under lights with and without a size; a dielectric and a metallic instance have different finishes."""
     scene, camera = lit(scene, camera)
     finishes = (
         Finish(specular_tint=(1.0, 0.3, 0.1), coat=0.8, coat_roughness=0.3, coat_ior=1.8, coat_tint=(1.0, 0.6, 0.2)),
@@ -201,7 +201,7 @@ def split(scene, camera):
 
 
 def cut_out(scene, camera):
-    """The floor has holes, also in its shadow, and hides a part of the ball of splats."""
+    """The scene with holes in the floor, which its shadow shows too; the floor hides a part of the ball."""
     (floor, other) = scene.polygons
     pixels = scenes.checks(64, 8)
     pixels[..., 3] = np.linspace(0, 1, 64)[:, None]

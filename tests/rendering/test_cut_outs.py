@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Textures cut holes into polygons, and the mean of samples is what blending gives."""
+"""Textures cut holes into polygons, and the mean over samples equals blending."""
 
 from dataclasses import replace
 
@@ -33,7 +33,7 @@ GREEN, RED = (0.1, 0.8, 0.2), (0.9, 0.1, 0.1)
 
 
 def soft(size=32) -> np.ndarray:
-    """(size, size) alpha: 1 inside of a disc, 0 outside, and a wide ramp between them."""
+    """(size, size) alpha: 1 inside a disc, 0 outside, with a wide ramp between."""
     x, y = np.meshgrid(*2 * [(np.arange(size) + 0.5) / size - 0.5])
     return np.clip((0.45 - np.hypot(x, y)) / 0.3, 0, 1)
 
@@ -43,7 +43,7 @@ def hard(size=32) -> np.ndarray:
 
 
 def card(alpha, under=(0.0, 0.0, 0.0), standing=0.6, tilt=0.9, **fields) -> PolygonInstance:
-    """A green square above the floor, transparent as `alpha` says. under: colour of what is wholly transparent."""
+    """A green square above the floor with the transparency `alpha`. under: colour of fully transparent pixels."""
     pixels = np.where(alpha[..., None] > 0, GREEN, under)
     texture = SurfaceTexture(Image(np.concatenate([pixels, alpha[..., None]], axis=2), "EXTEND"), is_cut_out=True)
     uvs = (CORNERS[:, :2] / 2 + 0.5)[HALVES.ravel()]
@@ -82,7 +82,7 @@ def test_the_mean_of_samples_is_what_blending_gives(method, camera, render):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_sample_shows_the_card_or_what_is_behind(method, render):
-    """Visibility moves polygons back beside splats, which must not move their holes."""
+    """The visibility pass moves polygons back if splats are near, which must not move their holes."""
     place = np.diag((0.4, 0.4, 0.4, 1.0))
     place[2, 3] = 0.3
     ball = Instance(scenes.sphere(count=300)[0].surfels[0].surfels, place)
@@ -136,7 +136,7 @@ def test_indices_are_of_what_is_seen(render):
 
 
 def test_leaves_keep_their_area_far_away(render):
-    """A tenth of the image is leaves: where it is a few pixels large, a fixed threshold would leave nothing."""
+    """Leaves cover a tenth of the image. At a few pixels' size a fixed threshold would leave nothing of them."""
     alpha = np.zeros((64, 64))
     alpha[::10] = 1
     camera = Camera.perspective(look_at((0, 0, 60), (0, 0, 0)), 0.75, SIZE)
@@ -147,8 +147,7 @@ def test_leaves_keep_their_area_far_away(render):
 
 
 def test_a_texture_without_holes_costs_nothing():
-    """Its alpha counts only if it is said to cut; the other polygons of a frame are drawn by the programs that they
-    have without it."""
+    """Alpha is used only for textures marked as cut-outs; all other polygons use the same programs as without any."""
     cut = Scene(polygons=(card(soft()), floor()))
     texture = replace(cut.polygons[0].textures[0], is_cut_out=False)
     whole = replace(cut, polygons=(replace(cut.polygons[0], textures=(texture,)), floor()))

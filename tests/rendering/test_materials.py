@@ -131,7 +131,7 @@ FINISHES = {
 
 
 def halves(first, second):
-    """A sphere's left and right half with one of these finishes each."""
+    """A sphere whose left and right halves have these finishes."""
     scene, camera = sphere()
     surfels = replace(scene.surfels[0].surfels, materials=scene.surfels[0].surfels.positions[:, 0] > 0)
     materials = tuple(Material(roughness=0.4, finish=finish) for finish in (first, second))
@@ -140,7 +140,7 @@ def halves(first, second):
 
 @pytest.mark.parametrize("layer", FINISHES)
 def test_every_part_of_a_finish_is_seen_where_it_is(layer, render):
-    """Alone and as the finish of one half, whatever the other half has."""
+    """The finish is alone in the scene, or on one half while the other half has another one."""
     finish, whole = FINISHES[layer], {}
     assert finish.layers == (layer,)
     for one in (Finish(), finish):
@@ -191,7 +191,7 @@ def test_more_finishes_than_a_picture_shows_are_the_most_similar_ones_and_the_pl
 
 @pytest.mark.parametrize("lights_splats", [False, True])
 def test_a_tinted_coat_dims_what_the_surface_below_sends_out(lights_splats, render):
-    """Straight on, its tint is left, less what the coat reflects."""
+    """Seen along the normal, the emission is multiplied by the tint and by what the coat does not reflect."""
     scene, camera = sphere(lights=(), world=(0, 0, 0))
     glowing = with_material(scene, emission=(1, 1, 1), finish=Finish(coat=1.0, coat_tint=(0.9, 0.5, 0.1)))
     frame = render(glowing, camera, replace(SETTINGS, lights_splats=lights_splats))

@@ -79,7 +79,7 @@ class PointsConversion:
 
 @dataclass(eq=False)
 class GaussiansConversion:
-    """One point cloud of Gaussian splats; its surfels are known as soon as it is read."""
+    """One point cloud of Gaussian splats; reading it already gives the surfels."""
 
     source: bpy.types.Object
     gaussians: Gaussians

@@ -82,7 +82,7 @@ def viewpoint(properties: PointsProperties, context: bpy.types.Context) -> Vecto
 
 
 def draw_points_properties(layout: bpy.types.UILayout, properties: PointsProperties) -> None:
-    """The settings of bare points in Blender's own style."""
+    """Draw the settings of bare points in Blender's own style."""
     layout.use_property_split = True
     layout.use_property_decorate = False
     for name in PointsProperties.__annotations__:
@@ -91,6 +91,6 @@ def draw_points_properties(layout: bpy.types.UILayout, properties: PointsPropert
 
 
 def draw_gaussian_properties(layout: bpy.types.UILayout, properties: PointsProperties) -> None:
-    """The settings of Gaussian splats."""
+    """Draw the settings of Gaussian splats."""
     for name in GAUSSIAN_NAMES:
         layout.prop(properties, name)

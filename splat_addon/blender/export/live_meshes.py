@@ -64,7 +64,7 @@ class Place(NamedTuple):
     detail: float
 
     def of_instance(self, materials: tuple[Material, ...]) -> dict:
-        """Fields of an instance that stands there."""
+        """The fields of an instance at this place."""
         placed = {"matrix_world": self.matrix, "materials": materials, "split_distance": self.form.split_distance}
         return placed | self.fields
 

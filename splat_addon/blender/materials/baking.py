@@ -114,11 +114,11 @@ def _target(arrays: dict[str, np.ndarray], channel: str, slots: np.ndarray, surf
 
 
 def _corners(centre: np.ndarray, half_axes: np.ndarray, matrix: np.ndarray) -> np.ndarray:
-    """(n, 4, 3) float64 corners in the world of squares around cells of these centres and half-axes, counter-clockwise
+    """(n, 4, 3) float64 world-space corners of squares around cells with these centres and half-axes, counter-clockwise
     from outside.
 
-    Turned and grown by (1, 1/2), so that their four pixels lie in four rows and columns of the cell: a rotated grid,
-    which what repeats along the cell's axes does not fool.
+    They are turned, and enlarged by (1, 1/2), so that their four pixels lie in four different rows and columns of the
+    cell. Such a rotated grid is not fooled by patterns that repeat along the cell's axes.
     """
     u, v = half_axes[0] + half_axes[1] / 2, half_axes[1] - half_axes[0] / 2
     if np.linalg.det(matrix[:3, :3]) < 0:

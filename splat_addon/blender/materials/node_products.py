@@ -93,11 +93,11 @@ MAX_CHAIN = 100
 
 
 class _Reading:
-    """One walk up a node tree. Each node's output is read once, however many sockets it feeds: in a chain of nodes that
-    take their predecessor twice, the number of paths doubles with each.
+    """One walk up a node tree.
 
-    groups: the group nodes that the walk is inside of, the innermost last; what stands in a group is read once for each
-    of its users.
+    The output of each node is read once, however many sockets it feeds: in a chain of nodes that use their predecessor
+    twice, the number of paths doubles with each node. groups: the group nodes around the current node, the innermost
+    last; the contents of a group are read once for each of its users.
     """
 
     def __init__(self):

@@ -223,7 +223,7 @@ GERMAN = {
         "Schatten. Das Alpha des Bildes der Grundfarbe macht Löcher. Sonst transparente Meshes werden zu Surfels, "
         "wenn ihr Objekt nichts anderes sagt"
     ),
-    "Drawn by Cycles only; choose another": "Nur von Cycles gezeichnet; anderes wählen",
+    "Only for Cycles; choose another type": "Nur für Cycles; einen anderen Typ wählen",
     "Drop": "Entfernen",
     "EWA": "EWA",
     "EWA in Space": "EWA im Raum",

@@ -24,7 +24,7 @@ class DATA_PT_surfel_panorama(EnginePanel, bpy.types.Panel):
         self.layout.prop(camera, "panorama_type")
         names = PANORAMA_PROPERTIES.get(camera.panorama_type)
         if names is None:
-            self.layout.label(text="Drawn by Cycles only; choose another", icon="ERROR")
+            self.layout.label(text="Only for Cycles; choose another type", icon="ERROR")
         column = self.layout.column(align=True)
         for name in names or ():
             column.prop(camera, name)

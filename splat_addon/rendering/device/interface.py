@@ -115,9 +115,11 @@ class Pipeline(Protocol):
 
 
 class Device(Protocol):
-    """kind: its name in `DEVICES`. backend: "OpenGL", "Vulkan" ... renderer, version: what the driver calls itself.
-    multisample_counts: the samples a texel that its textures can have beside one. max_samplers: textures that a shader
-        may read. textures: those that are there. most_bytes: what they may take together; None for no limit.
+    """A graphics device.
+
+    kind: its name in `DEVICES`. backend: "OpenGL", "Vulkan" ... renderer, version: the driver's own description.
+    multisample_counts: supported numbers of samples per texel, besides one. max_samplers: number of textures that a
+    shader can read. textures: those that exist. most_bytes: their maximum total size; None for no limit.
     """
 
     kind: str
@@ -130,9 +132,11 @@ class Device(Protocol):
     most_bytes: int | None
 
     def texture(self, size: tuple[int, int], format: str, data: np.ndarray | None = None, samples: int = 0) -> Texture:
-        """data: (h, w, channels) float32, row 0 first; without it the contents are undefined.
-        samples: one of `multisample_counts`, of a texture without data that only targets and shaders use.
-        Raises ValueError where it is too large, or more than `most_bytes` allow.
+        """Create a texture.
+
+        data: (h, w, channels) float32, row 0 first; if it is missing, the contents are undefined. samples: one of
+        `multisample_counts`, for a texture without data that only targets and shaders use. Raises ValueError if it is
+        too large, or exceeds `most_bytes`.
         """
 
     def target(self, colors: list[Texture], depth: Texture | None = None) -> Target:

@@ -19,7 +19,7 @@ def _count(planning) -> int:
 
 
 def passes(planning):
-    """No passes; it says whether any polygons have holes."""
+    """No passes; records whether any polygons have holes."""
     why = "textures cut holes into {count} instances of polygons"
     return planning.counts("CUT_OUTS", planning.find(_count), why, "cut-outs", "no texture cuts holes into polygons")
 

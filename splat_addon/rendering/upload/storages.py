@@ -15,10 +15,11 @@ from .packing_16_bit import pack_16_bit
 
 @dataclass(frozen=True)
 class Storage:
-    """name: also of its GLSL file. label, summary: for users.
-    textures: (sampler, format) of each texture.
-    pack: surfels, in the order that `stored_order` gives, to their (h, w, 4) float32 texels, and the number of surfels
-        whose place it loses visibly.
+    """A storage format.
+
+    name: also of its GLSL file. label, summary: for users. textures: (sampler, format) of each texture. pack: function
+    from surfels and their `stored_order` to their (h, w, 4) float32 texels, and the number of surfels whose position
+    becomes visibly less precise.
     """
 
     name: str

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The order in which surfels lie on the device, whatever they are stored as.
+"""The order in which surfels lie on the device, for every storage format.
 
-Neighbours lie together, so that what is drawn one after the other is near in memory and in the picture. Clipped surfels
-lie before the others, so that either are a draw of their own; merged ones lie after all, from the next whole row on, so
-that the surfels are stored as they are without them.
+Neighbours in space are close together, so that splats drawn in succession are near in memory and in the picture.
+Clipped surfels come first, so that they can be drawn by a separate call. Merged surfels come last and start in a new
+row, so that the surfels are stored as they would be without them.
 """
 
 from __future__ import annotations

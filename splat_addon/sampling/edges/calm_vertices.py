@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds the vertices of a mesh that cannot be on a border edge. One pass over the corners saves `borders` a search of
-all edges.
+"""Finds vertices of a mesh that cannot lie on a border edge: one pass over the corners spares `borders` most edges.
 
-One direction represents a vertex: its shading normal in some triangle. Directions within half an angle of it are within
-that angle of each other. Colours and materials are the same as in that triangle, and the triangles around close a fan.
+A vertex is represented by its shading normal in one of its triangles. If all directions around it are within half an
+angle of that normal, they are within that angle of each other. It also requires that colours and materials are those of
+that triangle, and that the triangles around the vertex close a fan.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ _FAN_BITS = 24
 
 @dataclass(frozen=True, eq=False)
 class CalmVertices:
-    """is_calm: (V,) bool, of places. cosines: (T,) float32, of the largest angle between a triangle's plane and the
-    directions of its calm vertices; 1 where it has none."""
+    """is_calm: (V,) bool, by position. cosines: (T,) float32: cosine of the largest angle between a triangle's
+    plane and the directions of its calm vertices; 1 if it has none.
+    """
 
     is_calm: np.ndarray
     cosines: np.ndarray
@@ -30,9 +31,12 @@ class CalmVertices:
 def calm_vertices(
     mesh: TriangleMesh, places: np.ndarray, normals: np.ndarray, angles: np.ndarray, looks
 ) -> CalmVertices:
-    """places: (3, T) the vertex that stands for each corner's place. normals: (3, T) float32, unit. angles: (T,)
-    radians, of a crease; around a vertex the smallest counts. looks: (T,) of what each triangle is made of, or None
-    where all are of the same."""
+    """Find the calm vertices.
+
+    places: (3, T) the vertex that represents each corner's position. normals: (3, T) float32, unit. angles: (T,)
+    radians, the angle that makes a crease; at a vertex the smallest one counts. looks: (T,) label of each triangle's
+    surface, or None if all are the same.
+    """
     count, least_at = len(mesh), _least_cosines(mesh, places, angles)
     some = np.zeros(len(mesh.positions), np.intp)
     for k in range(3):
@@ -81,7 +85,7 @@ def _least_cosines(mesh: TriangleMesh, places: np.ndarray, angles: np.ndarray) -
 
 
 def _directions(mesh: TriangleMesh, some: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """(3, V) float32 unit: the shading normal of each vertex at (V,) one of its corners, 3 t + k."""
+    """(3, V) float32 unit shading normals of vertices, each taken from one of its corners, (V,) indices 3 t + k."""
     if mesh.corner_normals is None:
         return normals.take(some // 3, axis=1)
     rows = mesh.corner_normals.reshape(-1, 3).take(some, axis=0)
@@ -115,8 +119,11 @@ def _labels(mesh: TriangleMesh, looks: np.ndarray | None) -> np.ndarray | None:
 
 
 def _at_borders(mesh: TriangleMesh, places: np.ndarray) -> np.ndarray:
-    """(V,) bool, where the triangles around a vertex do not close a fan: over a closed one what is added for one
-    triangle's second neighbour is taken away for the next one's first."""
+    """(V,) bool: whether the triangles around a vertex do not close a fan.
+
+    Each triangle adds a number for one neighbour of the vertex and subtracts one for the other; in a closed fan these
+    cancel out.
+    """
     shift = np.uint64(64 - _FAN_BITS)
     ends = (mesh.places >> shift).astype(np.float64).take(places)
     rest = np.zeros(len(mesh.positions))

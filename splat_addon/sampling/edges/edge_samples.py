@@ -15,9 +15,9 @@ from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
 
 
 def transition_edges(near: TriangleMesh, far: TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
-    """(E,) triangles of `far` and (E,) numbers k of their edges, from corner k to the next, that `near` has too.
+    """The edges of `far` that `near` has too: (E,) triangles and (E,) numbers k of the edge from corner k to the next.
 
-    Both index the same vertices.
+    Both parts index the same vertices.
     """
     of_far = far.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     of_near = near.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
@@ -31,10 +31,10 @@ def transition_edges(near: TriangleMesh, far: TriangleMesh) -> tuple[np.ndarray,
 def edge_samples(
     near: TriangleMesh, far: TriangleMesh, spacing: float, half_size: float, origin=(0.0, 0.0, 0.0)
 ) -> Surfels:
-    """Discs along the edges that both parts have, no further apart than `spacing`, with a half-axis of `half_size`.
+    """Discs along the edges that both parts share, at most `spacing` apart, with a half-axis of `half_size`.
 
-    They lie between the two parts' planes and have the attributes of `far`, from whose corners they are interpolated.
-    Raises ValueError where the parts have no edge in common.
+    They lie between the two parts' planes and have attributes interpolated from the corners of `far`. Raises ValueError
+    if the parts share no edge.
     """
     triangles, number = transition_edges(near, far)
     if not len(triangles):

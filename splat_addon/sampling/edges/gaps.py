@@ -96,10 +96,10 @@ def _bare(mesh: TriangleMesh, borders: Borders, clipping: Clipping, grid: Grid):
 
 
 def _covered(clipping: Clipping, grid: Grid, first, last, counts: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """(p,) bool: whether surfels that meet a side cover its places, `counts` from (B, 3) `first` to `last` of each.
+    """(p,) bool: whether surfels that meet a side cover its `counts` places from (B, 3) `first` to `last`.
 
-    Each surfel covers a stretch of the row, where this lies in its ellipse and on the kept side of its lines; at a
-    reflex corner one of each line.
+    Each surfel covers the stretch of the row that lies in its ellipse and on the kept side of its lines; at a reflex
+    corner, one stretch for each line.
     """
     met, total = clipping.met, int(counts.sum())
     start, way = _in_circles(met, first, last, grid)

@@ -76,8 +76,11 @@ def image_neighbours(
 
 
 def _near_planes(place, firsts: np.ndarray, counts: np.ndarray, edge: np.ndarray, planes: np.ndarray, depth):
-    """The pairs of edges and surfels that are near the face's plane, in the form of `image_neighbours`; the pairs are
-    runs of surfels, `counts` long from `firsts` on. place: (s,) each, across, up and along the image's axis."""
+    """The pairs of edges and surfels near the plane of the edge's face, in the form of `image_neighbours`.
+
+    The candidates are runs of surfels, `counts` long, from `firsts` on. place: (s,) each: across, up and along the
+    image's axis.
+    """
     # The surfels of a run are consecutive, so the values of each pair are read in order.
     surfel = np.repeat(firsts - (np.cumsum(counts) - counts), counts)
     surfel += np.arange(len(surfel))

@@ -40,7 +40,9 @@ BALLS = {
 
 @pytest.fixture
 def inputs(scene, add_camera, add_object):
-    """Inputs of the Principled BSDF of a smooth ball that a parallel camera looks down on, under a lamp and a world."""
+    """The inputs of the Principled BSDF of a smooth ball, seen by a parallel camera from above, under a lamp
+    and a world.
+    """
     scene.surfel_splatting.shading = "principled"
     scene.surfel_splatting.supersampling = 2
     scene.render.resolution_x = scene.render.resolution_y = 48
@@ -63,7 +65,7 @@ def inputs(scene, add_camera, add_object):
 
 
 def seen(pixels):
-    """(n, 3) within 0.95 of the ball's radius: to 72 degrees."""
+    """(n, 3) colours within 0.95 of the ball's radius, where normals are up to 72 degrees from the viewer."""
     y, x = (np.mgrid[:48, :48] - 23.5) / 24 * 1.1
     return pixels[np.hypot(x, y) < 0.95][:, :3]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Point clouds of Gaussian splats, as Blender 5.3 imports them: named by the engine, and converted."""
+"""Point clouds of Gaussian splats, as Blender 5.3 imports them, are named by the engine and can be converted."""
 
 import bpy
 import numpy as np
@@ -21,7 +21,7 @@ needs_float4 = pytest.mark.skipif(
 
 @pytest.fixture
 def splats():
-    """Two Gaussians, flat along z and along x, and a ball; white, half opaque, 3 above the origin."""
+    """Two flat Gaussians, along z and along x, and a round one; white, half opaque, 3 units above the origin."""
     cloud = bpy.data.pointclouds.new("capture")
     cloud.resize(3)
     values = {
