@@ -51,8 +51,9 @@ _MESH_ITEMS = (
     (
         "POLYGONS",
         "Polygons",
-        "Draw the triangles among the splats, with the same depth, light and shadows. The alpha of the base colour's"
-        " image makes holes. Otherwise transparent meshes become surfels unless their object says otherwise",
+        "Draw the triangles among the splats, with the same depth, light and shadows. The alpha of the base "
+        "colour's image makes holes; meshes that are transparent in another way become surfels, unless their object "
+        "is set to Polygons",
         0,
     ),
     (

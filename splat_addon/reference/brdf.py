@@ -49,9 +49,9 @@ def edge_at(roughness, nv) -> np.ndarray:
 
 
 def metal_edge(f0, tint) -> np.ndarray:
-    """(n, 3) what a metal's tint (n, 3) takes off its reflectance by Schlick's formula, times c (1 - c)^6.
+    """(n, 3) factor of c (1 - c)^6 by which a metal's tint (n, 3) reduces its reflectance by Schlick's formula.
 
-    At c = 1 / 7, 82 degrees, the tint is what is left of it. f0: (n, 3).
+    At c = 1 / 7, 82 degrees, the reduced reflectance is the tint times the original one. f0: (n, 3).
     """
     return (f0 + (1 - f0) * (6 / 7) ** 5) * 7 / (6 / 7) ** 6 * (1 - np.minimum(tint, 1))
 

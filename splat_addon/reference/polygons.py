@@ -62,9 +62,10 @@ def eye_corners(instance: PolygonInstance, camera: Camera) -> np.ndarray:
 
 
 def whole_hits(instance: PolygonInstance, corners, origin, direction, near: float, far: float):
-    """As `nearest_hits`, without what lies in holes: a ray passes where its own threshold exceeds the texture's alpha.
+    """The hits of `nearest_hits` without those in holes: a ray passes a texture if its own threshold exceeds the alpha
+    there.
 
-    Thresholds are even over neighbouring rays: multiples of the golden ratio.
+    Thresholds are multiples of the golden ratio, and so spread evenly over neighbouring rays.
     """
     depth, triangle, shares = nearest_hits(corners, origin, direction, near, far)
     threshold, rays = (np.arange(len(depth)) * 0.6180339887498949) % 1, np.flatnonzero(np.isfinite(depth))
@@ -78,7 +79,7 @@ def whole_hits(instance: PolygonInstance, corners, origin, direction, near: floa
 
 
 def _alphas(instance: PolygonInstance, triangle: np.ndarray, shares: np.ndarray) -> np.ndarray:
-    """(n,) alpha of the texture at hits, 1 where it cuts no holes."""
+    """(n,) alpha of the texture at hits, 1 for textures that cut no holes."""
     alphas = np.ones(len(triangle))
     for texture, at, uvs in _texture_places(instance, triangle, shares):
         if texture.is_cut_out:

@@ -83,7 +83,10 @@ def principled_radiance(surface: Surface, direction, lights: list[Incident], wor
 
 
 def _base(surface: Surface, nv, finish) -> _Lobe:
-    """Metal and dielectric, over what the dielectric leaves to a Lambertian base. finish: (n, F), or None."""
+    """The lobe of metal and dielectric, over a Lambertian base that receives what the dielectric lets through.
+
+    finish: (n, F), or None.
+    """
     roughness = np.clip(surface.roughness, MIN_ROUGHNESS, 1)
     metallic, dielectric = np.clip(surface.metallic, 0, 1)[:, None], surface.f0[:, None] * np.ones(3)
     edge = np.zeros((len(roughness), 3))
@@ -150,7 +153,7 @@ class _Sheen:
 
 
 def _reflected(lobe: _Lobe, light: Incident, normal, view, nv) -> np.ndarray:
-    """(n, 3) radiance that a light makes."""
+    """(n, 3) radiance of a light that the lobe reflects."""
     nl = np.maximum(dot(normal, light.to_light), 0)
     surface = normal, view, light.to_light, nl, nv, lobe.roughness
     value = specular_term(*surface, lobe.f0, lobe.f90, lobe.edge) * lobe.scattered

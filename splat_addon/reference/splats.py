@@ -174,7 +174,7 @@ def _turned(normal: np.ndarray, side: np.ndarray) -> np.ndarray:
 
 
 def has_finish(scene: Scene) -> bool:
-    """Whether any surface has one."""
+    """Whether any surface has a finish."""
     return any(material.finish.layers for placed in scene.shown for material in placed.materials)
 
 

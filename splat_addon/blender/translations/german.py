@@ -217,11 +217,12 @@ GERMAN = {
     ),
     (
         "Draw the triangles among the splats, with the same depth, light and shadows. The alpha of the base "
-        "colour's image makes holes. Otherwise transparent meshes become surfels unless their object says otherwise"
+        "colour's image makes holes; meshes that are transparent in another way become surfels, unless their object "
+        "is set to Polygons"
     ): (
-        "Die Dreiecke zwischen den Splats zeichnen, mit derselben Tiefe, demselben Licht und denselben "
-        "Schatten. Das Alpha des Bildes der Grundfarbe macht Löcher. Sonst transparente Meshes werden zu Surfels, "
-        "wenn ihr Objekt nichts anderes sagt"
+        "Die Dreiecke zwischen den Splats zeichnen, mit derselben Tiefe, demselben Licht und denselben Schatten. "
+        "Das Alpha des Bildes der Grundfarbe macht Löcher; auf andere Art transparente Meshes werden zu Surfels, "
+        "außer wenn ihr Objekt auf Polygone eingestellt ist"
     ),
     "Only for Cycles; choose another type": "Nur für Cycles; einen anderen Typ wählen",
     "Drop": "Entfernen",
@@ -365,7 +366,7 @@ GERMAN = {
     "Its Emission node's colour and strength scale the light": (
         "Farbe und Stärke der Emission-Node skalieren das Licht"
     ),
-    "Its first layer, without Specular Highlights": "Die erste Schicht, ohne Glanzlichter",
+    "Shown by its first layer, without highlights": "Durch die erste Schicht gezeigt, ohne Glanzlichter",
     "Join": "Zusammenführen",
     "Keep": "Behalten",
     "Keep them, with the size of their nearest neighbours": "Behalten, mit der Größe ihrer nächsten Nachbarn",

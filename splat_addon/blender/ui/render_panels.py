@@ -92,7 +92,7 @@ class RENDER_PT_surfel_matcap(_ShadingPanel, bpy.types.Panel):
         properties = getattr(context.scene, RENDER_SETTINGS)
         self.layout.template_ID(properties, "matcap", open="image.open")
         if properties.matcap and properties.matcap.type == "MULTILAYER":
-            self.layout.label(text="Its first layer, without Specular Highlights", icon="INFO")
+            self.layout.label(text="Shown by its first layer, without highlights", icon="INFO")
 
 
 class RENDER_PT_surfel_ramp(_ShadingPanel, bpy.types.Panel):

@@ -36,7 +36,7 @@ def found(planning) -> tuple[Finish, ...]:
 
 
 def summed(planning) -> tuple[Finish, ...]:
-    """Those whose shares need sums."""
+    """The finishes if there are several, because each sample then sums their shares; otherwise none."""
     kept = planning.find(found) if planning.model.has_finish else ()
     return kept if len(kept) > 1 else ()
 
@@ -69,7 +69,7 @@ _COVERS = frozenset({"coat", "sheen"})
 
 
 def _layers(finishes: tuple[Finish, ...]) -> tuple[str, ...]:
-    """The parts that any of them has."""
+    """The optional parts, such as a coat, that any of the finishes has."""
     return tuple(dict.fromkeys(layer for finish in finishes for layer in finish.layers))
 
 

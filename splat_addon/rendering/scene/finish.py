@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a material's surface has beside roughness, metallic and reflectance."""
+"""The optional properties of a material's surface, besides roughness, metallic and reflectance."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ class Finish:
 
     @property
     def layers(self) -> tuple[str, ...]:
-        """The parts that it has."""
+        """The names of the optional parts that it has."""
         tint = ("specular_tint",) if tuple(self.specular_tint) != PLAIN.specular_tint else ()
         return (*tint, *(name for name in ("coat", "sheen") if getattr(self, name) > 0))
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """4 numbers a texel, in which finishes are mixed.
+        """The finish as texels of 4 numbers, which can be averaged.
 
         Specular tint, coat  |  coat's tint, its roughness  |  its index of refraction, 0, 0, 0  |  sheen times
         its tint, its roughness.

@@ -26,15 +26,18 @@ def brdf_table() -> np.ndarray:
 
 @cache
 def edge_table() -> np.ndarray:
-    """(48, 32) float32, by the same: what the lobe has of c (1 - c)^6, with c the cosine to the half vector, by which a
-    metal's tint takes off its reflectance (Kutz, Hasan, Edmondson 2021)."""
+    """(48, 32) float32 from the same fit: the integral of c (1 - c)^6 over the lobe, where c is the cosine to the half
+    vector.
+
+    A metal's tint reduces its reflectance in proportion to this term (Kutz, Hasan, Edmondson 2021).
+    """
     table = np.load(Path(__file__).with_name("edge_table.npy"))
     table.flags.writeable = False
     return table
 
 
 def edge_texels() -> np.ndarray:
-    """(48, 32, 4) float32: that, and nothing beside it."""
+    """(48, 32, 4) float32: `edge_table` in the first channel, 0 in the others."""
     return np.pad(edge_table()[..., None], ((0, 0), (0, 0), (0, 3)))
 
 

@@ -117,13 +117,13 @@ MAX_FINISHES = 5
 
 
 def finish_shares(finish: Finish, finishes: tuple[Finish, ...]) -> np.ndarray:
-    """(4,) 1 for the most similar of these at most `MAX_FINISHES`, without the first, for which all are 0."""
+    """(4,) shares of the second and later of the `finishes`: 1 for the most similar one; all 0 if that is the first."""
     distance = [np.sum(np.subtract(finish.numbers, other.numbers) ** 2) for other in finishes]
     return np.eye(MAX_FINISHES)[np.argmin(distance), 1:]
 
 
 def pack_finishes(finishes: tuple[Finish, ...]) -> np.ndarray:
-    """(F, T, 4) float32 texels of their numbers, one row each."""
+    """(F, T, 4) float32 texels with the numbers of each finish in one row."""
     return np.array([finish.numbers for finish in finishes], np.float32).reshape(len(finishes), -1, 4)
 
 
