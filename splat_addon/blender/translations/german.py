@@ -718,9 +718,12 @@ GERMAN = {
         "Die Surfels ihrer Quelle folgen lassen, mit deren Übergeordnetem, Animation und Einschränkungen. "
         "Sonst sind sie eine eingefrorene Kopie"
     ),
-    ("The surfels' own colour, multiplied by a ball in an image where it faces the same way (Sloan et al. 2001)"): (
-        "Die Farbe der Surfels selbst, multipliziert mit der einer Kugel in einem Bild, wo diese in dieselbe "
-        "Richtung zeigt (Sloan et al. 2001)"
+    (
+        "The surfels' own colour, multiplied by an image of a ball, looked up where the ball faces the same way "
+        "(Sloan et al. 2001)"
+    ): (
+        "Die eigene Farbe der Surfels, multipliziert mit dem Bild einer Kugel, nachgeschlagen, wo die Kugel in "
+        "dieselbe Richtung zeigt (Sloan et al. 2001)"
     ),
     "The surfels' own colour, unlit": ("Die Farbe der Surfels selbst, unbeleuchtet"),
     ("The sum of the splats' weights in each sample: 1/16 blue, 1/4 cyan, 1 green, 4 yellow, 16 and more red"): (

@@ -48,10 +48,10 @@ def _in_picture(at, lines: np.ndarray, reflex: np.ndarray) -> np.ndarray:
 
 
 def clipped_share(place: np.ndarray, change: np.ndarray, lines: np.ndarray, reflex: np.ndarray) -> np.ndarray:
-    """(M,) share of kernel times pixel that lies on the kept side of the lines.
+    """(M,) share of kernel times pixel on the kept side of the lines.
 
-    place: (M, 2) of the pixels, in half-axes, infinite beyond the plane's horizon. change: (M, 2, 2) what a pixel along
-    x and y moves it. lines: (1 or M, 2, 3). reflex: (M,) bool.
+    place: (M, 2) positions of the pixels in half-axes, infinite beyond the plane's horizon. change: (M, 2, 2) change of
+    the position per pixel along x and y. lines: (1 or M, 2, 3). reflex: (M,) bool.
     """
     middle, seen = _kernel_under_pixel(place, change)
     lines = np.broadcast_to(there(lines), (len(place), 2, 3))

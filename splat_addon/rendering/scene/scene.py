@@ -201,7 +201,7 @@ class PolygonInstance(Placed):
         return self.is_textured and any(texture is not None and texture.is_cut_out for texture in self.textures)
 
     def hides_backs(self, camera: Camera) -> bool:
-        """As `Placed.hides_backs`; backs may be visible through holes."""
+        """Like `Placed.hides_backs`, but never true with holes, through which backs may be visible."""
         return not self.is_cut_out and super().hides_backs(camera)
 
 

@@ -7,6 +7,6 @@ MODEL = ShadingModel(
     "matcap",
     label="Matcap",
     source="Sloan et al. 2001",
-    summary="The surfels' own colour, multiplied by a ball in an image where it faces the same way",
+    summary=("The surfels' own colour, multiplied by an image of a ball, looked up where the ball faces the same way"),
     tables={"matcap": lambda tile: tile.resources.kept(tile.settings.matcap, tile.settings.matcap.texels)},
 )
