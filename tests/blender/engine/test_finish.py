@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A ball whose Principled BSDF has a coat, sheen, or a tint of its reflections, beside Cycles' ball."""
+"""A ball whose Principled BSDF has a coat, sheen or tinted reflections looks like Cycles' ball."""
 
 import bpy
 import numpy as np
