@@ -27,14 +27,29 @@ def main(package: str, report: Path) -> dict:
     bpy.ops.object.surfels_from_mesh(resolution=32)
     facts["surfels"] = [len(o.data.vertices) for o in bpy.data.objects if o.type == "MESH" and o is not cube]
     facts["pixels"] = picture(report.with_name("picture.exr")).tolist()
+    facts["once"] = handlers()
+    bpy.ops.script.reload()
+    facts["reloaded"] = handlers()
     bpy.ops.preferences.addon_disable(module=MODULE)
     facts["left"] = [name for name in ("surfel_splatting", "surfel_conversion") if hasattr(bpy.types.Scene, name)]
+    facts["left"] += handlers()
+    bpy.ops.preferences.addon_enable(module=MODULE)
+    facts["again"] = handlers()
+    facts["pixels_again"] = picture(report.with_name("again.exr")).tolist()
     return facts
+
+
+def handlers() -> list[str]:
+    """The extension's functions among Blender's handlers."""
+    lists = [value for name in dir(bpy.app.handlers) if isinstance(value := getattr(bpy.app.handlers, name), list)]
+    return sorted(f.__qualname__ for functions in lists for f in functions if f.__module__.startswith(MODULE))
 
 
 def picture(file: Path) -> np.ndarray:
     """The (4, 4) rgba of one pixel in the middle and three in corners, rendered from straight above the cube."""
     scene = bpy.context.scene
+    for old in [each for each in scene.objects if each.type in {"CAMERA", "LIGHT"}]:
+        bpy.data.objects.remove(old)
     camera = bpy.data.cameras.new("above")
     camera.type, camera.ortho_scale = "ORTHO", 4.0
     scene.camera = bpy.data.objects.new("above", camera)

@@ -43,3 +43,10 @@ def test_the_corners_of_the_picture_are_empty(installed):
 def test_nothing_is_left_when_it_is_disabled(installed):
     facts, _ = installed
     assert facts["left"] == []
+
+
+def test_reloading_scripts_and_enabling_again_leave_it_there_once(installed):
+    facts, _ = installed
+    assert len(facts["once"]) == 7
+    assert facts["reloaded"] == facts["again"] == facts["once"]
+    assert facts["pixels_again"] == facts["pixels"]
