@@ -6,7 +6,7 @@ import re
 import bpy
 import pytest
 
-from splat_addon.blender.translations.messages import messages
+from splat_addon.blender.translations.messages import messages, spoken
 from tests.test_glossary import SYNONYMS
 from tests.test_prose import RIDDLES
 
@@ -20,11 +20,20 @@ MEASURED = re.compile(
 
 def tooltips() -> list[str]:
     """The texts of more than five words, which explain something."""
-    return sorted({text for _, text in messages() if len(text.split()) > 5})
+    return sorted({text for _, text in messages() if len(text.split()) > 5} - spoken())
 
 
 def labels() -> list[str]:
-    return sorted({text for _, text in messages() if len(text.split()) <= 5})
+    return sorted({text for _, text in messages() if len(text.split()) <= 5} - spoken())
+
+
+def test_sentences_that_are_put_together_are_short_and_no_riddles():
+    """Reports and messages end without a full stop, as Blender's own, and may begin with a value."""
+    assert len(spoken()) > 25
+    for text in spoken():
+        assert re.match(r"[A-Z{≈]", text) and not text.endswith("."), text
+        assert len(text.split()) <= LONGEST_TOOLTIP_SENTENCE and not MEASURED.search(text), text
+        assert not [riddle for riddle in RIDDLES if re.search(riddle, text)], text
 
 
 @pytest.mark.parametrize("pattern", RIDDLES)

@@ -7,6 +7,7 @@ import bpy
 import pytest
 
 from splat_addon.blender import commands, translations
+from splat_addon.blender.spoken import said
 from splat_addon.blender.translations.german import GERMAN
 from splat_addon.blender.translations.messages import DEFAULT, OPERATOR, messages
 
@@ -39,6 +40,13 @@ def test_german_has_the_figures_of_the_english():
     assert {text: said for text, said in GERMAN.items() if figures(text) != figures(said)} == {}
 
 
+def test_german_has_the_values_of_the_english():
+    """In the same formats, so that nothing that is put together fails in another language."""
+    values = {text: sorted(re.findall(r"{[^}]*}", text)) for text in GERMAN}
+    assert {text: said for text, said in GERMAN.items() if sorted(re.findall(r"{[^}]*}", said)) != values[text]} == {}
+    assert sum(map(bool, values.values())) > 10
+
+
 def test_short_names_stay_short():
     """A translated label must fit in the panel where the English label fits."""
     long = {text: said for text, said in GERMAN.items() if len(text) <= 20 and len(said) > 32}
@@ -53,6 +61,7 @@ def test_blender_says_it_in_german():
     view.language = "de_DE" if "de_DE" in bpy.app.translations.locales else "de"
     try:
         assert bpy.app.translations.pgettext_iface("Convert to Surfels", OPERATOR) == "In Surfels umwandeln"
+        assert said("Update from {names}", names="Suzanne") == "Aus Suzanne aktualisieren"
         assert bpy.app.translations.pgettext_tip("Which samples of the three axes become surfels").startswith("Welche")
     finally:
         view.language = kept

@@ -146,7 +146,7 @@ def steps():
     yield 1.0
     bpy.ops.ed.undo_push(message="scene")
     show_tab("Surfels")
-    yield 1.0
+    yield 3.0  # the panel grows by the prediction
     shot("before")
     convert()
     yield from until(is_converted)

@@ -15,6 +15,7 @@ from ...surfels import Surfels
 from ..geometry.attributes import has_surfels, read_surfels
 from ..geometry.points_proxy import points_of
 from ..ids import EXPORT_PLY
+from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 
@@ -59,7 +60,7 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
     def poll(cls, context):
         if any(map(_may_hold_surfels, context.visible_objects)):
             return True
-        cls.poll_message_set("No visible object holds surfels; convert one first")
+        cls.poll_message_set(said("No visible object holds surfels; convert one first"))
         return False
 
     def draw(self, context):
@@ -76,19 +77,24 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
         try:
             parts, unusable = _world_surfels(candidates, context.evaluated_depsgraph_get())
             if not parts:
-                which = "selected" if self.use_selection else "visible"
-                raise ValueError(f"No {which} object is surfels; convert one first, or choose others.")
+                raise ValueError(
+                    said("No selected object is surfels; convert one first, or choose others")
+                    if self.use_selection
+                    else said("No visible object is surfels; convert one first, or choose others")
+                )
             surfels, path = joined(parts), absolute(self.filepath)
             _WRITERS[self.layout_kind](path, surfels, self.ascii)
         except OSError as error:
-            self.report({"ERROR"}, f"{self.filepath} cannot be written: {file_sentence(error)}")
+            why = file_sentence(error)
+            self.report({"ERROR"}, said("{path} cannot be written: {why}", path=self.filepath, why=why))
             return {"CANCELLED"}
         except (ValueError, MemoryError) as error:
             self.report({"ERROR"}, file_sentence(error))
             return {"CANCELLED"}
         if unusable:
-            self.report({"WARNING"}, f"Skipped {unusable:,} unusable surfels")
-        self.report({"INFO"}, f"{len(surfels):,} surfels of {len(parts)} objects -> {path}")
+            self.report({"WARNING"}, said("Skipped {count:,} unusable surfels", count=unusable))
+        values = {"count": len(surfels), "objects": len(parts), "path": path}
+        self.report({"INFO"}, said("{count:,} surfels of {objects} objects -> {path}", **values))
         return {"FINISHED"}
 
 

@@ -22,6 +22,7 @@ from ..conversion.points_settings import (
 )
 from ..conversion.surfel_objects import add_surfel_object, select_only
 from ..ids import IMPORT_PLY
+from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 
@@ -67,7 +68,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
             return {"CANCELLED"}
         made = add_surfel_object(Path(name).stem, surfels, Matrix(), [context.collection])
         select_only(context, [made])
-        self.report({"INFO"}, f"{name}: {len(surfels):,} surfels")
+        self.report({"INFO"}, said("{name}: {count:,} surfels", name=name, count=len(surfels)))
         for note in notes:
             self.report({"WARNING" if note.startswith("Skipped") else "INFO"}, note)
         return {"FINISHED"}

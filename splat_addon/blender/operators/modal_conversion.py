@@ -13,11 +13,9 @@ from ..conversion.batch import Batch
 from ..conversion.source_record import sources_of
 from ..conversion.ties import tie
 from ..ids import ENGINE, ENGINE_LABEL
+from ..spoken import said
 
 _TIMER_SECONDS = 0.05
-
-
-_ALREADY = "What is selected is surfels already; use Update from Source to convert its source again"
 
 
 def follow_property():
@@ -52,7 +50,7 @@ class ModalConversion:
     def execute(self, context):
         batch = self._new_batch(context)
         if not batch.has_sources:
-            self.report({"ERROR"}, _ALREADY)
+            self._report_already()
             return {"CANCELLED"}
         manager = context.window_manager
         manager.progress_begin(0.0, 1.0)
@@ -63,12 +61,18 @@ class ModalConversion:
             manager.progress_end()
         return self._finish(context, batch)
 
+    def _report_already(self):
+        self.report(
+            {"ERROR"},
+            said("What is selected is surfels already; use Update from Source to convert its source again"),
+        )
+
     def invoke(self, context, event):
         if bpy.app.background:
             return self.execute(context)
         self._batch = self._new_batch(context)
         if not self._batch.has_sources:
-            self.report({"ERROR"}, _ALREADY)
+            self._report_already()
             return {"CANCELLED"}
         self._prepared = self._batch.prepared(context)
         self._executor, self._sampling = ThreadPoolExecutor(max_workers=1), None
@@ -107,7 +111,8 @@ class ModalConversion:
 
     def _show_progress(self, context):
         context.window_manager.progress_update(self._batch.share)
-        context.workspace.status_text_set(f"Converting to surfels: {self._batch.share:.0%}   Esc cancels")
+        percent = 100 * self._batch.share
+        context.workspace.status_text_set(said("Converting to surfels: {percent:.0f}%   Esc cancels", percent=percent))
 
     def _end_modal(self, context):
         self._executor.shutdown()
@@ -117,7 +122,7 @@ class ModalConversion:
 
     def _finish(self, context, batch):
         if batch.is_cancelled:
-            self.report({"INFO"}, "The conversion to surfels was cancelled; nothing was changed")
+            self.report({"INFO"}, said("The conversion to surfels was cancelled; nothing was changed"))
             return {"CANCELLED"}
         made = batch.place_all(context) if batch.has_surfels else []
         for conversion, new in made:
@@ -127,7 +132,7 @@ class ModalConversion:
             for note in tie(conversion, new, self.kind, self, self.follow, self.source == "HIDE"):
                 self.report({"WARNING"}, note)
         if made and context.scene.render.engine != ENGINE:
-            self.report({"INFO"}, f"Choose the render engine {ENGINE_LABEL} to see the surfels")
+            self.report({"INFO"}, said("Choose the render engine {engine} to see the surfels", engine=ENGINE_LABEL))
         # An error makes a script's call fail, which would hide from it that other objects were converted.
         for name, sentence in batch.refused:
             self.report({"WARNING" if made else "ERROR"}, f"{name}: {sentence}")

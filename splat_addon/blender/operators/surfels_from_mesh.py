@@ -9,6 +9,7 @@ from ..conversion.batch import ConversionBatch
 from ..conversion.mesh_settings import ConversionProperties, choices, draw_properties
 from ..geometry.sources import has_surfaces
 from ..ids import SURFELS_FROM_MESH
+from ..spoken import said
 from .menu_entry import with_menu_entry
 from .modal_conversion import ModalConversion, was_converted
 
@@ -29,10 +30,10 @@ meshes, curves, texts, metaballs, and the instances of Geometry Nodes and collec
     @classmethod
     def poll(cls, context):
         if context.mode != "OBJECT":
-            cls.poll_message_set("Objects are converted in object mode; leave the current mode first")
+            cls.poll_message_set(said("Objects are converted in object mode; leave the current mode first"))
         elif not (selected_sources(context) or was_converted(context)):
             cls.poll_message_set(
-                "Select a mesh object, curve, text, metaball or collection instance, one that is not surfels already"
+                said("Select a mesh object, curve, text, metaball or collection instance, not surfels already")
             )
         else:
             return True

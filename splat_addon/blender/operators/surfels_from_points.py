@@ -16,6 +16,7 @@ from ..conversion.points_settings import (
 )
 from ..geometry.points_extraction import has_points
 from ..ids import SURFELS_FROM_POINTS
+from ..spoken import said
 from .menu_entry import with_menu_entry
 from .modal_conversion import ModalConversion, was_converted
 
@@ -47,9 +48,9 @@ directions are estimated from neighbouring points"""
     @classmethod
     def poll(cls, context):
         if context.mode != "OBJECT":
-            cls.poll_message_set("Points are converted in object mode; leave the current mode first")
+            cls.poll_message_set(said("Points are converted in object mode; leave the current mode first"))
         elif not (selected_points(context) or was_converted(context)):
-            cls.poll_message_set("Select a point cloud, or a mesh that is not surfels already")
+            cls.poll_message_set(said("Select a point cloud, or a mesh that is not surfels already"))
         else:
             return True
         return False

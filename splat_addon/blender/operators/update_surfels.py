@@ -14,6 +14,7 @@ from ..conversion.points_settings import keywords, viewpoint
 from ..conversion.source_record import record_of, sources_of
 from ..conversion.ties import keep_unread, tie_shape
 from ..ids import UPDATE_SURFELS
+from ..spoken import said
 from .menu_entry import with_menu_entry
 
 
@@ -41,9 +42,9 @@ class OBJECT_OT_surfels_update(bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         if context.mode != "OBJECT":
-            cls.poll_message_set("Surfels are updated in object mode; leave the current mode first")
+            cls.poll_message_set(said("Surfels are updated in object mode; leave the current mode first"))
         elif not updatable(context):
-            cls.poll_message_set("Select surfels that were converted from an object of this file")
+            cls.poll_message_set(said("Select surfels that were converted from an object of this file"))
         else:
             return True
         return False

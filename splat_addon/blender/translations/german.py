@@ -801,4 +801,63 @@ GERMAN = {
     "mesh": "Mesh",
     "points": "Punkte",
     "sources": "Quellen",
+    "Choose the render engine {engine} to see the surfels": (
+        "Die Render-Engine {engine} wählen, um die Surfels zu sehen"
+    ),
+    "Converting to surfels: {percent:.0f}%   Esc cancels": "Umwandlung in Surfels: {percent:.0f}%   Esc bricht ab",
+    "Counting …": "Wird gezählt …",
+    "Device: {device}, {backend}": "Gerät: {device}, {backend}",
+    "Drawn: {splats:,} splats and {polygons:,} polygons": "Gezeichnet: {splats:,} Splats und {polygons:,} Polygone",
+    "Left out as backs: {culled:,} splats, {percent:.0f}% of them": (
+        "Als Rückseiten weggelassen: {culled:,} Splats, {percent:.0f}% von ihnen"
+    ),
+    "No selected object is surfels; convert one first, or choose others": (
+        "Kein ausgewähltes Objekt besteht aus Surfels; zuerst eines umwandeln oder andere auswählen"
+    ),
+    "No visible object holds surfels; convert one first": (
+        "Kein sichtbares Objekt enthält Surfels; zuerst eines umwandeln"
+    ),
+    "No visible object is surfels; convert one first, or choose others": (
+        "Kein sichtbares Objekt besteht aus Surfels; zuerst eines umwandeln oder andere auswählen"
+    ),
+    "Nothing has been rendered yet": "Noch wurde nichts gerendert",
+    "Nothing to sample: no faces, or a density of 0": "Nichts abzutasten: keine Flächen oder eine Dichte von 0",
+    "Objects are converted in object mode; leave the current mode first": (
+        "Objekte werden im Objektmodus umgewandelt; zuerst den jetzigen Modus verlassen"
+    ),
+    "Points are converted in object mode; leave the current mode first": (
+        "Punkte werden im Objektmodus umgewandelt; zuerst den jetzigen Modus verlassen"
+    ),
+    "Samples: {samples}": "Samples: {samples}",
+    "Select a mesh object, curve, text, metaball or collection instance, not surfels already": (
+        "Ein Mesh-Objekt, eine Kurve, einen Text, einen Metaball oder eine Collection-Instanz auswählen, "
+        "die noch keine Surfels sind"
+    ),
+    "Select a point cloud, or a mesh that is not surfels already": (
+        "Eine Punktwolke auswählen oder ein Mesh, das noch nicht aus Surfels besteht"
+    ),
+    "Select surfaces, in Object Mode": "Im Objektmodus Oberflächen auswählen",
+    "Select surfels that were converted from an object of this file": (
+        "Surfels auswählen, die aus einem Objekt dieser Datei umgewandelt wurden"
+    ),
+    "Skipped {count:,} unusable surfels": "{count:,} unbrauchbare Surfels ausgelassen",
+    "Surfels are updated in object mode; leave the current mode first": (
+        "Surfels werden im Objektmodus aktualisiert; zuerst den jetzigen Modus verlassen"
+    ),
+    "Textures on the device: {megabytes:,.1f} MB": "Texturen auf dem Gerät: {megabytes:,.1f} MB",
+    "The conversion to surfels was cancelled; nothing was changed": (
+        "Die Umwandlung in Surfels wurde abgebrochen; nichts wurde geändert"
+    ),
+    "Time: {milliseconds:,.0f} ms": "Zeit: {milliseconds:,.0f} ms",
+    "Update from {names}": "Aus {names} aktualisieren",
+    "What is selected is surfels already; use Update from Source to convert its source again": (
+        "Die Auswahl besteht schon aus Surfels; „Surfels aus Quelle aktualisieren“ wandelt ihre Quelle erneut um"
+    ),
+    "{blur} needs more samples": "{blur} braucht mehr Samples",
+    "{count:,} surfels of {objects} objects -> {path}": "{count:,} Surfels von {objects} Objekten -> {path}",
+    "{count}, less where flat": "{count}, weniger wo eben",
+    "{name}: {count:,} surfels": "{name}: {count:,} Surfels",
+    "{path} cannot be written: {why}": "{path} kann nicht geschrieben werden: {why}",
+    "≈ {count:,} surfels, spacing {low} to {high}": "≈ {count:,} Surfels, Abstand {low} bis {high}",
+    "≈ {count:,} surfels, spacing {spacing}": "≈ {count:,} Surfels, Abstand {spacing}",
 }

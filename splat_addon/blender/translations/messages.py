@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Lists the interface texts that Blender translates: names and tooltips of registered classes, and labels in panels.
 
-Texts that are composed while a panel is drawn, with a number or a name, stay English, and so do reports.
+Sentences with numbers or names in them, in panels and in reports, are the constants that `said` is given: its module
+says which stay English.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ Message = tuple[str, str]
 
 def messages() -> set[Message]:
     """(context, text) for every text of the interface; the add-on must be registered."""
-    found = {*_of_classes(), *_of_operators(), *_of_sources()}
+    found = {*_of_classes(), *_of_operators(), *_of_labels(), *((DEFAULT, text) for text in spoken())}
     return {(context, text) for context, text in found if any(letter.isalpha() for letter in text)}
 
 
@@ -68,15 +69,26 @@ def _of_properties(properties) -> Iterator[Message]:
             yield DEFAULT, item.description
 
 
-def _of_sources() -> Iterator[Message]:
-    """The constant texts given to labels, headings and buttons in the panels' sources."""
+def spoken() -> set[str]:
+    """Sentences that are put together: the constants that `said` is given."""
+    calls = (call for call in _calls() if isinstance(call.func, ast.Name) and call.func.id == "said")
+    return {text for call in calls for text in _constants(call.args[0])}
+
+
+def _of_labels() -> Iterator[Message]:
+    """The constants that labels, headings and buttons are given."""
+    for call in _calls():
+        if isinstance(call.func, ast.Attribute):
+            context = OPERATOR if call.func.attr == "operator" else DEFAULT
+            for argument in call.keywords:
+                if argument.arg in _SHOWN:
+                    yield from ((context, text) for text in _constants(argument.value))
+
+
+def _calls() -> Iterator[ast.Call]:
+    """Every call in the sources of the Blender side."""
     for path in sorted(_SOURCES.rglob("*.py")):
-        for call in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute):
-                context = OPERATOR if call.func.attr == "operator" else DEFAULT
-                for argument in call.keywords:
-                    if argument.arg in _SHOWN:
-                        yield from ((context, text) for text in _constants(argument.value))
+        yield from (n for n in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(n, ast.Call))
 
 
 def _constants(shown: ast.expr) -> Iterator[str]:

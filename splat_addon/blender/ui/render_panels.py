@@ -11,6 +11,7 @@ from ...rendering.methods import get_method
 from ..ids import ENGINE, RENDER_SETTINGS, TEXTS
 from ..operators.render_preset import draw_presets
 from ..properties import blurs, is_coarser_than_viewport
+from ..spoken import said
 from .engine_panel import EnginePanel
 from .preset_panels import RENDER_PT_surfel_presets
 
@@ -42,7 +43,7 @@ class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
             if name == "samples":
                 column.prop(properties, "blur_samples")
         for blur in blurs_that_need_samples(context.scene, context.view_layer):
-            self.layout.label(text=f"{blur} needs more samples", icon="INFO")
+            self.layout.label(text=said("{blur} needs more samples", blur=said(blur)), icon="INFO")
         if is_coarser_than_viewport(context.scene, context.view_layer):
             self.layout.label(text="Fewer samples than the viewport", icon="INFO")
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import bpy
 
 from ..engine import final_render, viewport
+from ..spoken import said
 from .engine_panel import EnginePanel
 from .wrapped_text import write
 
@@ -63,16 +64,17 @@ class RENDER_PT_surfel_report_plan(_ReportPart, bpy.types.Panel):
 def measured(stats: dict) -> Iterator[str]:
     """Lines about a final render: what was drawn, time and memory. stats: of `final_render`."""
     if not stats:
-        yield "Nothing has been rendered yet"
+        yield said("Nothing has been rendered yet")
         return
-    drawn = [f"{stats[name]:,} {name}" for name in ("splats", "polygons") if stats[name]]
-    yield f"Drawn: {' and '.join(drawn) or 'nothing'}"
+    yield said("Drawn: {splats:,} splats and {polygons:,} polygons", **stats)
     if stats.get("culled"):
-        yield f"Left out as backs: {stats['culled']:,} splats, {stats['culled'] / stats['splats']:.0%} of them"
-    samples = stats.get("samples", 1)
-    yield f"Time: {stats['milliseconds']:,.0f} ms{f', {samples} samples' if samples > 1 else ''}"
-    yield f"Textures on the device: {stats['texture_bytes'] / 1e6:,.1f} MB"
-    yield f"Device: {stats['device']}, {stats['backend']}"
+        percent = 100 * stats["culled"] / stats["splats"]
+        yield said("Left out as backs: {culled:,} splats, {percent:.0f}% of them", percent=percent, **stats)
+    yield said("Time: {milliseconds:,.0f} ms", **stats)
+    if (samples := stats.get("samples", 1)) > 1:
+        yield said("Samples: {samples}", samples=samples)
+    yield said("Textures on the device: {megabytes:,.1f} MB", megabytes=stats["texture_bytes"] / 1e6)
+    yield said("Device: {device}, {backend}", **stats)
 
 
 register, unregister = bpy.utils.register_classes_factory(

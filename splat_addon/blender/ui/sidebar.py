@@ -26,6 +26,7 @@ from ..ids import (
 from ..operators.show_surfels import shows_surfels
 from ..operators.surfels_from_mesh import selected_sources
 from ..operators.update_surfels import updatable
+from ..spoken import said
 from .preset_panels import VIEW3D_PT_surfel_conversion_presets
 from .wrapped_text import write
 
@@ -49,7 +50,7 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         if sources and context.mode == "OBJECT":
             text = prediction(context, sources, choices(settings))
         else:
-            text = "Select surfaces, in Object Mode"
+            text = said("Select surfaces, in Object Mode")
         for k, line in enumerate(text.split("\n")):
             write(self.layout, line, context, "BLANK1" if k else "INFO")
         button = self.layout.operator(SURFELS_FROM_MESH, icon="OUTLINER_OB_POINTCLOUD")
@@ -70,7 +71,7 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         """Draw the actions for the active object if it is surfels."""
         if context.active_object in updatable(context):
             names = ", ".join(source.name for source in sources_of(context.active_object))
-            self.layout.operator(UPDATE_SURFELS, text=f"Update from {names}", icon="FILE_REFRESH")
+            self.layout.operator(UPDATE_SURFELS, text=said("Update from {names}", names=names), icon="FILE_REFRESH")
             self._draw_unread(record_of(context.active_object).unread.splitlines(), context)
         # Other engines show a surfel object as points.
         if context.active_object is not None and is_surfel_object(context.active_object) and not shows_surfels(context):
@@ -82,13 +83,13 @@ def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], aske
     parts = groups(sources, context.active_object, asked.join)
     extents = known_extents(parts, asked)
     if extents is None:
-        return "Counting …"
+        return said("Counting …")
     try:
         found = [_density_of(*pair, asked, context.view_layer.depsgraph) for pair in zip(parts, extents, strict=True)]
     except ValueError as error:
         return str(error)
     text = prediction_text([extent.predict(f) for extent, (f, _) in zip(extents, found, strict=True)])
-    text = text if asked.tolerance is None else f"{text}, less where flat"
+    text = text if asked.tolerance is None else said("{count}, less where flat", count=text)
     return "\n".join([text, *dict.fromkeys(reason for _, reason in found if reason)])
 
 
@@ -106,9 +107,11 @@ def prediction_text(predictions: list[tuple[int, float]]) -> str:
     """A text with the total number of surfels and their spacing."""
     counts, spacings = zip(*predictions, strict=True)
     if not sum(counts):
-        return "Nothing to sample: no faces, or a density of 0"
+        return said("Nothing to sample: no faces, or a density of 0")
     low, high = (f"{bound(spacings):.3g}" for bound in (min, max))
-    return f"≈ {sum(counts):,} surfels, spacing {low if low == high else f'{low} to {high}'}"
+    if low == high:
+        return said("≈ {count:,} surfels, spacing {spacing}", count=sum(counts), spacing=low)
+    return said("≈ {count:,} surfels, spacing {low} to {high}", count=sum(counts), low=low, high=high)
 
 
 register, unregister = bpy.utils.register_classes_factory((VIEW3D_PT_surfels_from_mesh,))

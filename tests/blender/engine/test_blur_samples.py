@@ -47,7 +47,7 @@ def test_the_panel_tells_what_was_drawn(scene, blurred, picture):
     blurred.data.dof.use_dof = False
     picture()
     lines = list(report_panel.measured(final_render.last_frame_stats))
-    assert lines[0] == "Drawn: 1 splats" and lines[1].startswith("Time: ")
+    assert lines[0] == "Drawn: 1 splats and 0 polygons" and lines[1].startswith("Time: ")
     megabytes = final_render.last_frame_stats["texture_bytes"] / 1e6
     assert 0.05 < megabytes < 20 and lines[2] == f"Textures on the device: {megabytes:,.1f} MB"
     assert list(report_panel.measured({})) == ["Nothing has been rendered yet"]
