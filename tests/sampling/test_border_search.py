@@ -87,13 +87,23 @@ def test_borders_are_those_that_a_look_at_every_edge_finds(height, changed, form
     assert found == expected and len(found) == len(borders)
 
 
-def test_planes_that_differ_by_just_the_angle_make_no_crease():
-    turns = np.arange(12) * np.pi / 6
+@pytest.mark.parametrize(("corners", "has_creases"), [(17, True), (19, False)])
+def test_by_default_planes_that_differ_by_20_degrees_make_a_crease(corners, has_creases):
+    borders = survey_edges(walls(corners)).borders
+    assert len(borders) == (4 if has_creases else 2) * corners
+
+
+def walls(corners):
+    """The sides of a prism, open at both ends."""
+    turns = np.arange(corners) * 2 * np.pi / corners
     ring = np.stack([np.cos(turns), np.sin(turns)], axis=1)
-    positions = np.concatenate([np.column_stack([ring, np.full(12, z)]) for z in (0.0, 1.0)])
-    i, j = np.arange(12), (np.arange(12) + 1) % 12
-    walls = np.concatenate([np.stack([i, j, j + 12], 1), np.stack([i, j + 12, i + 12], 1)])
-    borders = survey_edges(TriangleMesh(positions, walls), np.radians(30)).borders
+    i, j = np.arange(corners), (np.arange(corners) + 1) % corners
+    triangles = np.concatenate([np.stack([i, j, j + corners], 1), np.stack([i, j + corners, i + corners], 1)])
+    return TriangleMesh(np.concatenate([np.column_stack([ring, np.full(corners, z)]) for z in (0.0, 1.0)]), triangles)
+
+
+def test_planes_that_differ_by_just_the_angle_make_no_crease():
+    borders = survey_edges(walls(12), np.radians(30)).borders
     assert len(borders) == 24 and np.all(borders.start[:, 2] == borders.end[:, 2])
 
 

@@ -18,7 +18,7 @@ from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, doubl
 from .calm_vertices import calm_vertices
 
 #: Radians; planes that differ by more make a crease.
-DEFAULT_CREASE_ANGLE = math.radians(30)
+DEFAULT_CREASE_ANGLE = math.radians(20)
 
 #: Beside a triangle that is higher than splats reach, the crease's angle is smaller in proportion, down to this share
 #: of it. Such folds are few. Splats that reach over them stick out of silhouettes, and hide and shadow the face beyond.

@@ -32,7 +32,7 @@ _CELL_NUMBER = np.array((1, 1 << 20, 1 << 40))
 _TO_MIDDLE = 0.3
 
 #: A place is covered this far into an ellipse, squared.
-_COVERED = 0.95
+_COVERED = 0.8
 
 #: One surfel covers about so many places in a row, and is of this share of the others' size: where these fail, the
 #: surface is small.
