@@ -6,6 +6,7 @@ The devices cannot share a process, so scripts/test.py runs pytest once for each
 
 import io
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -37,17 +38,18 @@ def models():
     return folder
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture
 def on_both_devices(request):
-    """on_both_devices(name, draw, hold) calls hold(here, standalone) to compare the arrays of this device with the
+    """on_both_devices(draw, hold) calls hold(here, standalone) to compare the arrays of this device with the
     standalone one's.
 
-    draw() returns arrays by name. The standalone device draws them once and keeps them for the other devices.
+    draw() returns arrays by name. The standalone device draws them once and keeps them for the other devices, under the
+    name of the test with its parameters, so that no two pictures share a file.
     """
     kept = folder("pictures", "splat_addon/**/*.py", "shaders/**/*.glsl", "tests/**/*.py")
+    file = kept / (re.sub(r"[^\w.]+", "-", request.node.nodeid) + ".npz")
 
-    def compare(name, draw, hold):
-        file = kept / f"{name}.npz"
+    def compare(draw, hold):
         if request.config.getoption("--device") == "blender":
             assert file.exists(), f"{file} is missing: run these tests with --device standalone first"
             with np.load(file) as standalone:

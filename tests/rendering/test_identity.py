@@ -294,4 +294,4 @@ def test_they_are_the_same_on_every_device(method, render, on_both_devices):
             different = np.abs(values - standalone[name]).reshape(SIZE[0] * SIZE[1], -1).max(axis=1) > 1e-4
             assert np.count_nonzero(different) <= (9 if name == "ranks" else 1), name
 
-    on_both_devices(f"identity-{method}", draw, hold)
+    on_both_devices(draw, hold)

@@ -263,4 +263,4 @@ def test_they_are_the_same_on_every_device(method, render, on_both_devices):
             allowed = 4 if method == "mip" else 1
             assert np.count_nonzero(np.abs(values - others).max(axis=1) > 1e-4) <= allowed, name
 
-    on_both_devices(f"outputs-{method}", draw, hold)
+    on_both_devices(draw, hold)
