@@ -14,7 +14,7 @@ from .camera_density import NotSeenError, Outline, camera_spacing, outline
 from .deform.deforming import STRETCHED_SHARE, DeformingSurfels
 from .density import grid_spacing, predict_count
 from .edges.borders import DEFAULT_CREASE_ANGLE
-from .edges.edge_samples import edge_samples, transition_edges
+from .edges.edge_samples import edge_samples, joined_at_edges, transition_edges
 from .ldc.reductions import DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS, projected_area
 from .mesh.cleaning import drop_unusable
 from .mesh.corners import corner_values
@@ -58,6 +58,7 @@ __all__ = [
     "have_same_values",
     "is_solid",
     "joined",
+    "joined_at_edges",
     "joined_blocks",
     "outline",
     "predict_count",

@@ -29,6 +29,7 @@ from ...sampling import (
     TriangleMesh,
     grid_spacing,
     have_same_values,
+    joined_at_edges,
     outline,
     predict_count,
     projected_area,
@@ -40,7 +41,7 @@ from ..conversion.mesh_conversion import MAX_SURFELS
 from ..geometry.mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
 from ..geometry.mesh_polygons import is_transparent, left_out_of_polygons, mesh_polygons
 from ..geometry.sources import mesh_key, readable_mesh
-from ..geometry.split_meshes import MeshParts, parts_by_group, with_edge_samples
+from ..geometry.split_meshes import MeshParts, parts_by_group
 from ..materials.surface_textures import kept_textures
 from ..mesh_sampling_settings import Form
 from . import passed_over
@@ -206,7 +207,7 @@ class LiveMeshes:
     def _sampled_instances(self, live: _LiveMesh, depsgraph, density, texture_mapped: bool) -> list[Instance]:
         sampled = self._sampled(live, depsgraph, finer(density, live.detail), texture_mapped)
         if live.shown is None or live.shown[0] is not sampled:
-            whole = with_edge_samples(sampled, live.parts, live.spacing) if live.parts else sampled
+            whole = joined_at_edges(sampled, *live.parts, live.spacing) if live.parts else sampled
             live.shown = sampled, portions(whole, MAX_SPLATS)
         textures = live.kept_textures() if sampled.has_uvs else ()
         self.counts["meshes"] += 1

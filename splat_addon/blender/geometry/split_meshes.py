@@ -8,8 +8,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ...sampling import TriangleMesh, edge_samples, transition_edges
-from ...surfels import Surfels, concatenate
+from ...sampling import TriangleMesh
 from .mesh_polygons import taken
 
 
@@ -40,11 +39,3 @@ def _weights(mesh: bpy.types.Mesh, index: int) -> np.ndarray:
             if element.group == index:
                 weights[vertex.index] = element.weight
     return weights
-
-
-def with_edge_samples(surfels: Surfels, parts: MeshParts, spacing: float) -> Surfels:
-    """The far part's surfels, with more surfels along the edges to the near part."""
-    if not (len(parts.near) and len(transition_edges(*parts)[0])):
-        return surfels
-    edges = edge_samples(*parts, spacing, float(np.median(surfels.scales)), surfels.origin)
-    return concatenate([surfels, edges])

@@ -2,16 +2,61 @@
 """Adds surfels along the edges between the parts of a mesh that are drawn as polygons and as splats.
 
 Source: Guennebaud, Barthe, Paulin 2006, section 5.1: where polygons end, the sum of weights must be 1. It is if splats
-with their centres on these edges sample them evenly.
+with their centres on these edges sample them evenly. Section 5.2: splats too close to such an edge are removed.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import product
+
 import numpy as np
 
-from ...surfels import OPTIONAL_LAYOUT, Surfels, axes_quaternions
+from ...surfels import OPTIONAL_LAYOUT, Surfels, axes_quaternions, concatenate
 from ..attributes.material_sampler import MaterialSampler, Samples
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
+
+#: Surfels nearer than this share of their spacing to a sample of an edge are too close to it: the paper has no number.
+TOO_CLOSE = 0.5
+#: What faces another way, by the cosine, belongs to another side of the mesh and stays.
+SAME_SIDE = 0.5
+
+
+def joined_at_edges(surfels: Surfels, near: TriangleMesh, far: TriangleMesh, spacing: float) -> Surfels:
+    """The surfels of `far`, without those that are too close to its edges with `near`, and surfels along these edges.
+
+    spacing: of the surfels. Parts without a common edge leave the surfels as they are.
+    """
+    if not (len(surfels) and len(near) and len(transition_edges(near, far)[0])):
+        return surfels
+    edges = edge_samples(near, far, spacing, float(np.median(surfels.scales)), surfels.origin)
+    kept = ~too_close(surfels, edges, TOO_CLOSE * spacing)
+    return concatenate([replace(surfels, **{name: array[kept] for name, array in surfels.arrays().items()}), edges])
+
+
+def too_close(surfels: Surfels, edges: Surfels, distance: float) -> np.ndarray:
+    """(N,) bool: which surfels have a sample of an edge within the distance, and face the way that it does.
+
+    Both have the same origin. Looks in the cells around each sample, as wide as the distance.
+    """
+    places, samples = surfels.positions.astype(np.float64), edges.positions.astype(np.float64)
+    lowest = np.minimum(places.min(axis=0), samples.min(axis=0))
+    cells, around = (((at - lowest) / distance).astype(np.int64) + 1 for at in (places, samples))
+    count = np.maximum(cells.max(axis=0), around.max(axis=0)) + 2
+    strides = np.array((count[1] * count[2], count[2], 1))
+    order = np.argsort(cells @ strides, kind="stable")
+    keys, around = (cells @ strides)[order], around @ strides
+    normals, facing = surfels.geometric_normals(), edges.geometric_normals()
+    found = np.zeros(len(surfels), bool)
+    for column in product((-1, 0, 1), repeat=2):  # of three cells that follow one another
+        middle = around + column @ strides[:2]
+        first, last = np.searchsorted(keys, middle - 1, "left"), np.searchsorted(keys, middle + 1, "right")
+        sample = np.repeat(np.arange(len(edges)), last - first)
+        number = order[np.arange(len(sample)) + np.repeat(last - np.cumsum(last - first), last - first)]
+        is_near = np.linalg.norm(places[number] - samples[sample], axis=1) < distance
+        is_same = np.einsum("nk,nk->n", normals[number], facing[sample]) > SAME_SIDE
+        found[number[is_near & is_same]] = True
+    return found
 
 
 def transition_edges(near: TriangleMesh, far: TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
