@@ -1,5 +1,5 @@
 // References: Guennebaud et al. 2006, section 5.1 (the sum of the splats' weights, clamped to 1, blends them with polygons
-//             of the same surface; attributes, not colours).
+//             of the same surface).
 // Summary: polygons among splats. Where splats lie on a polygon and their weights sum to less than 1, at their border,
 //          they blend into it; elsewhere the nearer of the two is visible.
 
@@ -16,6 +16,7 @@ void polygons_keep() {
 
 #part mean_surface
 #include "lib/polygon_share/{polygon_share}.glsl"
+#include "lib/polygon_blend/{polygon_blend}.glsl"
 
 const float SAME_SURFACE = 0.7;  // minimum cosine between normals of the same surface
 
@@ -30,6 +31,7 @@ float polygon_share(MeanSurface mean, vec3 normal, float depth) {
 }
 
 void polygons_join(inout MeanSurface mean, ivec2 texel, int tap) {
+  keep_splats(mean);
   vec4 color = SUM_AT(polygon_color, texel, tap);
   if (!(color.a > 0.0)) return;
   vec4 normal = SUM_AT(polygon_normal, texel, tap);
@@ -43,7 +45,6 @@ void polygons_join(inout MeanSurface mean, ivec2 texel, int tap) {
     mean.coverage = 1.0;
   }
   mean.polygon = mean.weight > 0.0 ? polygon_share(mean, normal.xyz, normal.w) : 1.0;
-  mean.color = mix(mean.color, color.rgb, mean.polygon);
-  mean.normal = mix(mean.normal, normal.xyz, mean.polygon);
   mean.depth = mix(mean.depth, normal.w, mean.polygon);
+  blend_with_polygon(mean, color.rgb, normal.xyz);
 }

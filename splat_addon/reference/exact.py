@@ -15,7 +15,7 @@ from ..rendering.scene import Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.settings import Settings
 from .filters import filter_weights, resample
-from .lit_splats import lit_splats
+from .lit_splats import lit_polygons, lit_splats
 from .outputs import OUTPUTS
 from .polygons import contact, joined, polygon_hits
 from .rays import RayGrid, Surface, layer_surfaces, splats_in, visible_depth, visible_surface
@@ -49,7 +49,7 @@ def render_exact(
     """
     weights = filter_weights(pixel_filter, samples)
     margin = (len(weights) // samples - 1) // 2
-    splats = eye_splats(scene, camera).as_asked(settings)
+    splats, asked_for = eye_splats(scene, camera).as_asked(settings), settings
     if settings.lights_splats:
         splats, settings = lit_splats(splats, scene, camera, settings), replace(settings, shading="flat")
     bounds = projected_bounds(splats, camera)
@@ -58,7 +58,7 @@ def render_exact(
     columns = _columns(settings)
     for x, y, w, h in _tiles(width, height, samples, margin):
         grid = RayGrid.of_pixels(camera, samples, x - margin, y - margin, w + 2 * margin, h + 2 * margin)
-        rays, depths = _layered_rays(splats, bounds, grid, scene, camera, settings)
+        rays, depths = _layered_rays(splats, bounds, grid, scene, camera, settings, asked_for)
         shaded = resample(rays, weights, samples)
         here = np.s_[y : y + h, x : x + w]
         for name, column in columns.items():
@@ -112,13 +112,14 @@ def shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, s
     return rays.reshape(*grid.shape, -1)
 
 
-def _layered_rays(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings):
+def _layered_rays(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: Camera, settings, asked_for: Settings):
     """`shaded_rays` of what is opaque, with the transparent layers before it; and (count,) depths.
 
-    Depth and normal are those of the nearest surface that is opaque enough (`settings.alpha_threshold`).
+    Depth and normal are those of the nearest surface that is opaque enough (`settings.alpha_threshold`). asked_for:
+    differ from the settings where splats are lit already.
     """
     groups = _opaque_and_transparent(splats, bounds, settings)
-    opaque, (surface, limit) = groups[0], _opaque_surface(*groups[0], grid, scene, camera, settings.epsilon)
+    opaque, (surface, limit) = groups[0], _opaque_surface(*groups[0], grid, scene, camera, asked_for)
     rays, depths = shaded_rays(surface, grid, scene, camera, settings), np.full(grid.count, np.inf)
     depths[surface.rays] = surface.depth
     if not len(groups[1][0]) and not splats.is_holdout.any():
@@ -143,13 +144,16 @@ def _layered_rays(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: C
     return (total + behind).reshape(*grid.shape, -1), depths
 
 
-def _opaque_surface(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: Camera, epsilon: float):
+def _opaque_surface(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: Camera, asked_for: Settings):
     """What every ray sees of opaque splats and polygons, and the depth beyond which polygons hide everything."""
+    epsilon = asked_for.epsilon
     if not scene.polygons:
         return visible_surface(splats, bounds, grid, epsilon), np.inf
     hits = polygon_hits(scene, camera, grid, epsilon)
     limit = hits.depth + hits.overlap / np.linalg.norm(grid.rays(np.arange(grid.count))[1], axis=1)
     surface = visible_surface(splats, bounds, grid, epsilon, limit)
+    if asked_for.lights_splats:
+        hits = lit_polygons(hits, grid, scene, camera, asked_for)
     return joined(surface, hits, contact(scene, epsilon)), limit
 
 

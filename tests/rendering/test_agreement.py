@@ -247,6 +247,7 @@ CASES = [
     *(("polygons", method, {}) for method in METHODS if method != "quad"),
     *((name, method, {}) for name in HYBRID for method in ("quad", "mip")),
     *(("polygons", method, {"sum_format": "float16"}) for method in ("quad", "mip")),
+    *(("polygon_shadows", method, {"lights_splats": True}) for method in ("quad", "mip")),
     ("polygons", "mip", {"shading": "flat", "lines": Lines(width=2.0)}),
     *(("clip_lines", method, {"shading": "flat"}) for method in METHODS if method != "quad"),
     *(("clip_lines", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
@@ -286,8 +287,7 @@ def test_picture_is_the_same_on_every_device(name, method, options, render, on_b
         assert_few(np.abs(here["coverage"] - standalone["coverage"]) > apart, samples)
         assert_few(hit & (np.abs(here["depth"] - standalone["depth"]) > TOLERANCE), samples)
 
-    named = (value if isinstance(value, str) else key for key, value in options.items())
-    on_both_devices("-".join((name, method, *named)), draw, hold)
+    on_both_devices(draw, hold)
 
 
 @pytest.mark.parametrize("name", [name for name in SCENES if name != "shadows"])  # tests/rendering/test_shadows.py

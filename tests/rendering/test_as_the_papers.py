@@ -12,7 +12,7 @@ import pytest
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import Camera, Light, Scene, Settings, make_polygons, plan
+from splat_addon.rendering import Camera, Light, Material, PolygonInstance, Scene, Settings, plan
 from splat_addon.rendering.methods import METHODS
 
 SIZE = (96, 96)
@@ -40,6 +40,34 @@ def test_each_changes_the_picture(render):
     before = render(*torus(), QUADS).color
     for asked in ASKED.values():
         assert np.abs(render(*torus(), replace(QUADS, **asked)).color - before).max() > 1e-3, asked
+
+
+def hybrid():
+    """A ball of splats of two materials half of which lies on polygons of its surface, before polygons of two more:
+    some glow, and are in the light of one lamp alone."""
+    scene, camera = scenes.polygons(size=SIZE)
+    (ball,), (floor, other) = scene.surfels, scene.polygons
+    near = PolygonInstance(scenes.round_polygons(24), materials=(Material(roughness=0.6, emission=(0.1, 0, 0.2)),))
+    half = {name: array[ball.surfels.positions[:, 0] < 0.1] for name, array in ball.surfels.arrays().items()}
+    half["roughness"] = np.where(half["positions"][:, 2] > 0, 0.3, 0.9).astype(np.float32)
+    lights = Light("sun", energy=2.0, direction=(0.5, 1, -1)), Light("sun", energy=3.0, receivers=(1,))
+    surfels = (replace(ball, shape=replace(ball.surfels, **half), light_set=1),)
+    polygons = floor, replace(other, light_set=1), near
+    return replace(scene, surfels=surfels, polygons=polygons, lights=lights, world=(0.1, 0.2, 0.3)), camera
+
+
+@pytest.mark.parametrize("shading", ["phong", "principled", "toon", "ramp", "normals"])
+def test_lit_splats_are_blended_with_lit_polygons(shading, render):
+    """Guennebaud et al. 2006, section 5.1: shaded colours, where attributes are blended otherwise."""
+    settings = replace(QUADS, shading=shading, lights_splats=True)
+    frame, truth = render(*hybrid(), settings), render_exact(*hybrid(), settings, samples=1)
+    tied = np.abs(frame.color - truth.color).max(axis=2) > 1e-3
+    assert np.count_nonzero(tied) <= 8
+    assert psnr(frame.color[~tied][None], truth.color[~tied][None]) > 75
+    attributes = render(*hybrid(), replace(settings, lights_splats=False))
+    assert (np.abs(attributes.color - frame.color).max() > 0.01) == (shading != "normals")
+    assert np.abs(attributes.normal - frame.normal).max() < 1e-3
+    assert np.array_equal(attributes.depth, frame.depth)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -72,9 +100,5 @@ def test_nothing_of_it_is_there_where_nobody_asks():
 
 
 def test_what_lit_splats_cannot_give_is_refused():
-    scene, camera = torus()
     with pytest.raises(ValueError, match="provide no diffuse_color"):
         replace(QUADS, lights_splats=True, outputs=("color", "diffuse_color"))
-    polygons = make_polygons(np.eye(3), np.array([[0, 1, 2]]))
-    with pytest.raises(ValueError, match="only without polygons"):
-        plan(replace(scene, polygons=(polygons,)), camera, replace(QUADS, lights_splats=True))

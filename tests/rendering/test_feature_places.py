@@ -66,6 +66,7 @@ MEETINGS = {
         ("splats are lit before they are added up", "features/gbuffer.py features/oit.py features/oit.glsl"),
         ("of what is lit one by one nothing is merged", "features/levels.py"),
         ("samples show the colours that are lit, as flat shading does", "plan/build.py"),
+        ("planes are summed where samples are lit", "features/shadows.py"),
     ),
     "materials": (
         ("the one material of all is there where none differ", "hosts/lit_splats.frag.glsl hosts/shaded_sample.glsl"),
@@ -83,8 +84,8 @@ MEETINGS = {
     "textures": (("polygons with holes are looked up in textures by their planes too", "features/cut_outs.py"),),
     "polygons": (
         ("of a sample that is a polygon's too, an attribute is mixed with the polygon's",
-         "features/emission.glsl features/finish.glsl features/light_links.glsl features/materials.glsl "
-         "features/shadows.glsl"),
+         "features/emission.glsl features/finish.glsl features/light_links.glsl features/lit_splats.glsl "
+         "features/materials.glsl features/shadows.glsl"),
         ("they occlude", "features/ambient_occlusion.py"),
         ("they are looked up in textures by their planes", "features/textures.py"),
     ),

@@ -106,6 +106,20 @@ def test_what_cannot_be_multisampled_is_refused(on_device, request):
         )
 
 
+def test_blenders_gpu_module_has_no_multisampled_textures(request):
+    """Why its device has none: no texture is made with samples, and no type of sampler reads several."""
+    if request.config.getoption("--device") != "blender":
+        pytest.skip("the gpu module is Blender's")
+    import bpy  # noqa: F401  in a wheel, `gpu` is there after it
+    import gpu
+
+    assert not any("sample" in made.__doc__ for made in (gpu.types.GPUTexture, gpu.types.GPUOffScreen))
+    with pytest.raises(ValueError, match="FLOAT_2D") as refused:
+        gpu.types.GPUShaderCreateInfo().sampler(0, "several samples", "name")
+    types = str(refused.value).partition("got")[0]
+    assert "FLOAT_2D_ARRAY" in types and "MS" not in types and "SAMPLE" not in types
+
+
 def test_settings_refuse_other_counts():
     with pytest.raises(ValueError, match=r"multisampling must be one of \(0, 2, 4, 8\), not 3"):
         Settings(method="quad", supersampling=2, multisampling=3)

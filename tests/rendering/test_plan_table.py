@@ -134,6 +134,11 @@ TABLE = {
         replace(HYBRID, lights=(Light("sun", casts_shadow=True),)), {}, ("shadow_maps", *AMONG),
         f"{AMONG_TEXTURES} shadow_depth gbuffer_plane polygon_plane", "lights shadow_maps", (),
     ),
+    "polygons in the shadow, each splat lit": (
+        replace(HYBRID, lights=(Light("sun", casts_shadow=True),)), {"lights_splats": True},
+        ("shadow_maps", "visibility", "light_splats", *AMONG[1:]),
+        f"{AMONG_TEXTURES} shadow_depth gbuffer_plane polygon_plane lit_splats", "lights shadow_maps", ("LIT_SPLATS",),
+    ),
     "polygons alone": (replace(HYBRID, surfels=()), {}, AMONG, AMONG_TEXTURES, "", ()),
     "polygons of another material under a linked light": (
         OTHERS, {}, AMONG, f"{AMONG_TEXTURES} polygon_material polygon_emission gbuffer_emission gbuffer_light_set",

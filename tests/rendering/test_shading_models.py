@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import render_exact, scenes
+from splat_addon.reference.metrics import psnr
 from splat_addon.reference.shading_models import SHADERS, heat
 from splat_addon.rendering import (
     Camera,
@@ -23,6 +24,7 @@ from splat_addon.rendering import (
     look_at,
     plan,
 )
+from splat_addon.rendering.scene.environment import equirectangular_directions
 from splat_addon.rendering.shading_models import SHADING_MODELS
 from splat_addon.surfels import Surfels
 
@@ -203,3 +205,22 @@ def test_models_plan_no_more_than_they_look_at():
 def test_unusable_settings_are_refused(wrong, why):
     with pytest.raises(ValueError, match=why):
         Settings(**wrong)
+
+
+@pytest.mark.parametrize("shading", ["phong", "principled"])
+def test_the_picture_of_the_world_is_a_light_map(shading, render):
+    """Botsch and Kobbelt 2003, section 4; Botsch et al. 2005, section 6: light is computed before and looked up by the
+    normal. A small sun in the picture of a dark world lights as a sun does that is computed for every sample."""
+    scene, camera = scenes.sphere(size=(64, 64))
+    (ball,) = scene.surfels
+    matt = replace(ball, materials=(Material(roughness=1.0, ior=1.0),))
+    directions, share = equirectangular_directions((64, 128))
+    toward = np.array((-0.6, -0.64, 0.48))
+    disc = directions @ toward > math.cos(0.15)
+    pixels = np.where(disc, 3.0 / (share * disc).sum(), 0)[:, None].repeat(3, axis=1).reshape(64, 128, 3)
+    sky = replace(scene, surfels=(matt,), world=(1, 1, 1), environment=Environment(pixels), lights=())
+    sun = replace(scene, surfels=(matt,), world=(0, 0, 0), lights=(Light("sun", energy=3.0, direction=-toward),))
+    settings = Settings(method="quad", supersampling=1, shading=shading, shadow_resolution=0, transparent_film=True)
+    looked_up, computed = (render(one, camera, settings).color for one in (sky, sun))
+    assert computed[..., 0].max() > 0.4
+    assert psnr(looked_up, computed) > 35

@@ -28,8 +28,8 @@ def depths_are_apart(planning, kind: str) -> bool:
 
 
 def depth_sum(planning) -> Texture:
-    """The sum of separate depths."""
-    has_planes = planning.find(shadows.maps) and not planning.settings.lights_splats
+    """The sum of separate depths, of all passes alike."""
+    has_planes = planning.find(shadows.maps) and lit_splats.lights_samples(planning, "opaque")
     return DEPTH_PLANE_SUM if has_planes else DEPTH_SUM
 
 

@@ -2,7 +2,8 @@
 """Splats that are lit individually, so that lit colours are blended (Botsch and Kobbelt 2003, section 4).
 
 Without this feature, samples are lit once (Botsch et al. 2005, section 4). Each instance's splats are lit before they
-are summed, in one fragment per splat, with their own colours, even if they are texture-mapped.
+are summed, in one fragment per splat, with their own colours, even if they are texture-mapped. Polygons among them are
+lit at samples, and colours blend (Guennebaud et al. 2006, section 5.1).
 """
 
 from __future__ import annotations
@@ -21,12 +22,9 @@ LIT = Texture("lit_splats", per=_of_splats)
 
 
 def wanted(planning) -> bool:
-    """Whether splats are lit. Raises ValueError if there are polygons among them, because polygons are lit at
-    samples."""
+    """Whether splats are lit."""
     if not planning.settings.lights_splats or not planning.shown:
         return False
-    if planning.scene.polygons:
-        raise ValueError("Splats can be lit one by one only without polygons; set lights_splats to False.")
     if get_shading_model(planning.settings.shading).is_diagnostic:
         planning.skip("lighting of splats", f"{planning.settings.shading} shows how splats add up")
         return False
@@ -34,11 +32,16 @@ def wanted(planning) -> bool:
     return True
 
 
+def lights_samples(planning, kind: str) -> bool:
+    """Whether passes of this kind light samples: without this feature, and where polygons are among the splats."""
+    return not planning.find(wanted) or (kind == "opaque" and bool(planning.scene.polygons))
+
+
 def model_in(planning, p: Pass) -> ShadingModel:
     """The shading model of a pass: samples show blended colours unchanged."""
     asked_for = get_shading_model(planning.settings.shading)
     of_samples = p.kind in ("opaque", "layer") and p.host in (*LIT_HOSTS, *SPLAT_HOSTS)
-    return get_shading_model("flat") if of_samples and planning.find(wanted) else asked_for
+    return get_shading_model("flat") if of_samples and not lights_samples(planning, p.kind) else asked_for
 
 
 def each(planning) -> Pass | None:
@@ -59,7 +62,9 @@ def parts(planning, p):
         return
     if p.host in SPLAT_HOSTS:
         yield Part("lit_splats", reads=(LIT,))
-    if p.host in LIT_HOSTS:
+    if p.host in LIT_HOSTS and lights_samples(planning, p.kind):
+        yield Part("lit_splats", choices=(("polygon_blend", "colors"),))
+    elif p.host in LIT_HOSTS:
         yield Part("lit_splats", choices=(("shading", "flat"),))
 
 

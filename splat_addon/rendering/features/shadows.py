@@ -10,7 +10,7 @@ from ..scene.camera import Camera
 from ..scene.light import pack_lights
 from ..shadow import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps, same_maps, shadow_maps
 from ..view import View
-from . import visibility
+from . import lit_splats, visibility
 from .drawing import LIT_HOSTS, SPLAT_HOSTS
 
 #: Offset of polygons, in texels of a map: a filter reaches two texels, over which planes at 45 degrees differ by this.
@@ -66,7 +66,7 @@ def plane_sum(planning, kind: str) -> Texture | None:
     """The separate sum of planes; None if they are stored beside depths, or nothing needs them."""
     from . import gbuffer, outputs
 
-    is_lit = planning.find(maps) and not planning.settings.lights_splats
+    is_lit = planning.find(maps) and lit_splats.lights_samples(planning, kind)
     if not is_lit or gbuffer.depths_are_apart(planning, kind):
         return None
     return PLANE_COUNT if kind == "opaque" and outputs.counts_splats(planning) else PLANE

@@ -45,6 +45,7 @@ DEFAULTS = {
     "world_light": "even",
     "shadow_taps": "even",
     "polygon_share": "compared",
+    "polygon_blend": "attributes",
     "sides": "told_apart",
     "rest_opacity": "surfaces",
 }
