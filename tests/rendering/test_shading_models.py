@@ -209,8 +209,8 @@ def test_unusable_settings_are_refused(wrong, why):
 
 @pytest.mark.parametrize("shading", ["phong", "principled"])
 def test_the_picture_of_the_world_is_a_light_map(shading, render):
-    """Botsch and Kobbelt 2003, section 4; Botsch et al. 2005, section 6: light is computed before and looked up by the
-    normal. A small sun in the picture of a dark world lights as a sun does that is computed for every sample."""
+    """A small sun in the picture of a dark world, whose light is looked up by the normal (Botsch and Kobbelt 2003,
+    section 4; Botsch et al. 2005, section 6), lights as a sun does that is computed for every sample."""
     scene, camera = scenes.sphere(size=(64, 64))
     (ball,) = scene.surfels
     matt = replace(ball, materials=(Material(roughness=1.0, ior=1.0),))

@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
+import trimesh
 
 from measuring.models import in_view, load
 from splat_addon.reference import render_exact, scenes
@@ -19,13 +22,20 @@ from splat_addon.reference.extremes import sheet
 from splat_addon.reference.methods import TWINS
 from splat_addon.reference.methods.plane import splat_plane
 from splat_addon.rendering import Camera, Light, Lines, Ramp, Renderer, Scene, Settings, make_polygons
-from splat_addon.sampling import sample_mesh
+from splat_addon.rendering.device.interface import FORMATS
+from splat_addon.rendering.device.standalone import _STORED
+from splat_addon.rendering.features import gbuffer
+from splat_addon.rendering.plan.frame_plan import FramePlan
+from splat_addon.sampling import TriangleMesh, joined_at_edges, sample_mesh
+from splat_addon.surfels import axes_quaternions
 
 FLAT = Settings(supersampling=1, shading="flat", outputs=("color",))
 LIT = replace(FLAT, shading="phong", shadow_resolution=0)
 UNFILTERED, FILTERED = (replace(LIT, method=name, lights_splats=True) for name in ("sprites_unfiltered", "sprites"))
 #: Half-axes in pixels of a splat that is larger than the pixel's filter, smaller, and one way larger.
 CONFIGURATIONS = (3.0, 3.0), (0.4, 0.4), (3.0, 0.3)
+#: Spacing of the splats beside polygons, in radii of the ball.
+SPACING = 0.06
 WARM = Ramp(np.array([(0.1, 0.05, 0.15), (0.1, 0.05, 0.15), (0.7, 0.3, 0.2), (0.7, 0.3, 0.2), (1, 0.85, 0.6)]))
 
 Draw = Callable[..., np.ndarray]
@@ -62,6 +72,11 @@ def _of_2003(draw: Draw, model, size: int):
 
 
 def _of_2005(draw: Draw, model, size: int):
+    scene, camera = model("bunny.obj.gz", 96)
+    overlapping = replace(scene, lights=(replace(scene.lights[0], energy=1.0),), world=(0.05, 0.05, 0.05)), camera
+    with sums_of_8_bits():
+        bytes_ = draw(overlapping, FILTERED)
+    yield "2005-2", "Sums of 8 bits; float sums", [bytes_, draw(overlapping, FILTERED)], 1
     checker = scenes.checker_plane(40, 90_000, 6, (size, size // 2))
     ways = {"method": "quad"}, {"method": "quad", "supersampling": 3}, {"method": "raycast_printed"}
     shown = [draw(checker, FLAT, **how) for how in ways]
@@ -83,10 +98,11 @@ def _of_2006(draw: Draw, size: int):
     yield "2006-3", "No filter; EWA; the paper's; Botsch et al. 2005", shown, 1
     near = scenes.checker_plane(8, 2_500, 25, (size, size // 2))
     yield "2006-4", "Close: Botsch et al. 2005; the paper's", [draw(near, FLAT, method=m) for m in methods[:1:-1]], 1
-    half = half_polygons(size)
-    ways = {"epsilon": 0.02}, {}, {"shading": "weight"}
-    shown = [draw(half, replace(LIT, method="quad", supersampling=2, **how)) for how in ways]
-    yield "2006-5", "Splats beside polygons: naive; blended; the weights of the splats", shown, 1
+    even, bare, weight = half_polygons(size, True), half_polygons(size, False), {"shading": "weight"}
+    ways = (even, {"epsilon": 0.02}), (even, {}), (even, weight), (bare, weight)
+    shown = [draw(half, replace(LIT, method="quad", supersampling=2, **how)) for half, how in ways]
+    caption = "Splats beside polygons: naive; blended; the splats' weights; the weights without splats on edges"
+    yield "2006-5", caption, shown, 1
     spheres = scenes.transparent_spheres(2_000, size=(size, size))
     layers = (6, False), (3, False), (3, True)
     shown = [draw(spheres, LIT, method="quad", layers=n, blends_rest=rest, as_printed=True) for n, rest in layers]
@@ -127,11 +143,20 @@ def contour(method: str, wide: float, high: float, pixels: int = 5, places: int 
     return np.repeat(1 - levels, 3, axis=2) ** 2.2
 
 
+@contextmanager
+def sums_of_8_bits():
+    """Colours and weights are summed in a frame buffer of 8 bits a channel, which ends at 1 (2005, section 4.1)."""
+    summed = FramePlan.format
+    of_bytes = patch.object(FramePlan, "format", lambda plan, t: "RGBA8" if t is gbuffer.COLOR else summed(plan, t))
+    with patch.dict(FORMATS, RGBA8=4), patch.dict(_STORED, RGBA8=("f1", None)), of_bytes:
+        yield
+
+
 def facing_discs(scene: Scene, camera):
     """The same surfels with discs that face the viewer: the first of the paper's two steps."""
     (instance,) = scene.surfels
     surfels = instance.surfels
-    rotation = np.tile(_quaternion(camera.matrix_world[:3, :3]), (len(surfels), 1))
+    rotation = axes_quaternions(*(np.tile(camera.matrix_world[:3, k], (len(surfels), 1)) for k in range(3)))
     wide = np.repeat(surfels.scales.max(axis=1, keepdims=True), 2, axis=1)
     return replace(scene, surfels=(replace(instance, shape=replace(surfels, rotations=rotation, scales=wide)),)), camera
 
@@ -150,26 +175,17 @@ def facing_squares(scene: Scene, camera):
     return replace(scene, surfels=(), polygons=(polygons,)), camera
 
 
-def half_polygons(size: int):
-    """A ball of which one half is polygons and the other is splats, which overlap the polygons a little."""
-    scene, camera = scenes.sphere(4_000, (size, size))
-    (instance,) = scene.surfels
-    at = instance.surfels.origin + instance.surfels.positions.astype(np.float64)
-    arrays = {name: array[at[:, 0] < 0.03] for name, array in instance.surfels.arrays().items()}
-    splats = replace(instance.surfels, **arrays | {"colors": np.ones((len(arrays["colors"]), 4))})
-    ball = scenes.round_polygons(24)
-    kept = np.repeat(ball.positions.reshape(-1, 3, 3)[:, :, 0].min(axis=1) + ball.origin[0] > -0.01, 3)
-    arrays = {name: getattr(ball, name)[kept] for name in ("positions", "normals", "materials")}
-    polygons = replace(ball, **arrays, colors=np.ones((np.count_nonzero(kept), 4)))
+def half_polygons(size: int, has_edge_samples: bool):
+    """A ball of which one half is polygons and the other splats, which the mesh's edges between them may have too."""
+    ball = trimesh.creation.icosphere(3)
+    middle = ball.vertices[ball.faces][:, :, 0].mean(axis=1)
+    halves = (ball.faces[middle > 0], ball.faces[middle <= 0])
+    near, far = (TriangleMesh(ball.vertices, half, corner_normals=ball.vertices[half]) for half in halves)
+    splats = sample_mesh(far, spacing=SPACING)
+    if has_edge_samples:
+        splats = joined_at_edges(splats, near, far, SPACING)
+    polygons = make_polygons(near.positions, near.triangles, near.corner_normals, (1.0, 1.0, 1.0, 1.0))
+    white = replace(splats.as_solid(), colors=np.ones((len(splats), 4)))
     sun = Light("sun", energy=3.0, direction=(0.2, 0.6, -0.8))
-    return replace(scene, surfels=(splats,), polygons=(polygons,), lights=(sun,)), camera
-
-
-def _quaternion(matrix: np.ndarray) -> np.ndarray:
-    """The (4,) quaternion w, x, y, z of a rotation.
-
-    It requires w > 0, which holds for a camera that is not upside down.
-    """
-    w = math.sqrt(max(1 + np.trace(matrix), 1e-12)) / 2
-    x, y, z = (matrix[i, j] - matrix[j, i] for i, j in ((2, 1), (0, 2), (1, 0)))
-    return np.array((w, x / (4 * w), y / (4 * w), z / (4 * w)))
+    scene, camera = scenes.sphere(1, (size, size))
+    return replace(scene, surfels=(white,), polygons=(polygons,), lights=(sun,)), camera
