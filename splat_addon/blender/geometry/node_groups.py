@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Node groups for modifiers that the extension adds: a file has at most one of each make, marked by a custom
-property.
+"""Node groups for modifiers that the extension adds.
+
+A file has at most one of each kind, marked by a custom property.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ import bpy
 
 
 def known_group(make: str, version: int) -> bpy.types.NodeTree | None:
-    """The file's own group of a make. Groups linked from another file do not count, because the link may disappear."""
+    """The file's own group of a kind. Groups linked from another file do not count, because the link may disappear."""
     known = (group for group in bpy.data.node_groups if group.get(make) == version and group.library is None)
     return next(known, None)
 

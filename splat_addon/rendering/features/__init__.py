@@ -3,18 +3,18 @@
 
 Each module decides from a `Planning` whether the frame needs it, and records the reason if not. It may have
 
-    passes(planning)       its passes, where the frame needs them
-    is_present(planning)   whether it has parts, where that does not depend on the pass
+    passes(planning)       its passes, if the frame needs them
+    is_present(planning)   whether it has any parts, if that does not depend on the pass
     parts(planning, p)     its parts in the passes of others, and in its own
-    read_back(planning)    textures that are read when the frame is done
+    read_back(planning)    textures that are read back when the frame is complete
     check(plan)            raises ValueError for a plan that no device has room for
-    VALUES                 name -> (type, value for a tile) of what shaders are told in the frame's block
+    VALUES                 name -> (type, value for a tile) of its values in the uniform block `frame`
     INPUTS                 sampler -> the texture for a tile that no pass writes
     DRAWN                  sampler -> the texture for a tile and what is drawn (a `DrawItem`)
     draws(tile, p, i)      whether a pass draws the splats of an instance
-    CONSTANTS              what Python and shaders both know by a name
-    margin(planning)       pixels beside a tile's own that its functions look at
-    NAMES                  its files in shaders/features, where they are not one of its own name
+    CONSTANTS              constants that Python and shaders share, by name
+    margin(planning)       pixels beside a tile that its functions read
+    NAMES                  the names of its files in shaders/features, unless it has a single one of its own name
 """
 
 from ..scene.polygons import CORNERS_PER_ROW, TEXELS_PER_CORNER
