@@ -64,8 +64,9 @@ def shown_points(evaluated: bpy.types.Object) -> Iterator[bpy.types.PointCloud |
 
 
 def is_solid(owner: bpy.types.Object) -> bool:
-    """Whether the points of an object in the file are as solid as its mesh; true if no other modifier has changed
-    them."""
+    """Whether the points of an object in the file are solid if its mesh is; true if no other modifier has
+    changed them.
+    """
     return bool(owner.data.get(SOLID)) and all(map(is_points_modifier, owner.modifiers))
 
 

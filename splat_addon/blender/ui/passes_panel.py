@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The passes of a view layer: Blender's own switches for the passes that this engine has, and our own."""
+"""The passes of a view layer: Blender's own settings for those that this engine supports, and settings for our
+own passes.
+"""
 
 from __future__ import annotations
 

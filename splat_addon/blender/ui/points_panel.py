@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The second panel of the Surfels tab: surfels from bare points, and from and to files."""
+"""The second panel of the Surfels tab: converts bare points, and imports and exports files of surfels."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""EWA: Zwicker et al. 2001, Ren et al. 2002."""
+"""The method "EWA" (Zwicker et al. 2001, Ren et al. 2002)."""
 
 from .method import Method
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Homogeneous: Guennebaud et al. 2006, sections 3 and 4, repaired."""
+"""The method "Homogeneous" (Guennebaud et al. 2006, sections 3 and 4, repaired)."""
 
 from .method import Method
 

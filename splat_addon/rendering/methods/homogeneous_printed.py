@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Homogeneous, as Printed: Guennebaud et al. 2006, sections 3 and 4, equations 8 to 10."""
+"""The method "Homogeneous, as Printed" (Guennebaud et al. 2006, sections 3 and 4, equations 8 to 10)."""
 
 from .method import Method
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mip Filter: this project, after Zwicker et al. 2001."""
+"""The method "Mip Filter" (this project, after Zwicker et al. 2001)."""
 
 from .method import Method
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Quads: View-independent object-space surface splatting, sections 4.1 to 4.3."""
+"""The method "Quads" (View-independent object-space surface splatting, sections 4.1 to 4.3)."""
 
 from .method import Method
 

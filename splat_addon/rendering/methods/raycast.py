@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ray Cast: Botsch et al. 2005, sections 3 and 5."""
+"""The method "Ray Cast" (Botsch et al. 2005, sections 3 and 5)."""
 
 from .method import Method
 

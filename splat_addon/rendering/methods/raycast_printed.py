@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ray Cast, as Printed: Botsch et al. 2005, sections 3 and 5, within the paper's square."""
+"""The method "Ray Cast, as Printed" (Botsch et al. 2005, sections 3 and 5, within the paper's square)."""
 
 from .method import Method
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sprites: Botsch and Kobbelt 2003, sections 3.1 to 3.4."""
+"""The method "Sprites" (Botsch and Kobbelt 2003, sections 3.1 to 3.4)."""
 
 from .method import Method
 

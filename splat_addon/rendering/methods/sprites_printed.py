@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sprites, as Printed: Botsch and Kobbelt 2003, equation 4 as printed."""
+"""The method "Sprites, as Printed" (Botsch and Kobbelt 2003, equation 4 as printed)."""
 
 from .method import Method
 

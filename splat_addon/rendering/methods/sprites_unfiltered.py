@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sprites, Unfiltered: Botsch and Kobbelt 2003, sections 3.1 and 3.2."""
+"""The method "Sprites, Unfiltered" (Botsch and Kobbelt 2003, sections 3.1 and 3.2)."""
 
 from .method import Method
 

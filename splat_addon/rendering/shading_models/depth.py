@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Depth: none needed."""
+"""The shading model "Depth", which needs no source."""
 
 from .model import ShadingModel
 

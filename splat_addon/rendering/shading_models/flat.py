@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Flat: none needed."""
+"""The shading model "Flat", which needs no source."""
 
 from .model import ShadingModel
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Matcap: Sloan et al. 2001."""
+"""The shading model "Matcap" (Sloan et al. 2001)."""
 
 from .model import ShadingModel
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Normals: none needed."""
+"""The shading model "Normals", which needs no source."""
 
 from .model import ShadingModel
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Overdraw: none needed."""
+"""The shading model "Overdraw", which needs no source."""
 
 from .model import ShadingModel
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Phong: Blinn 1977, normalised."""
+"""The shading model "Phong" (Blinn 1977, normalised)."""
 
 from .model import ShadingModel
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Principled: Walter et al. 2007, Heitz et al. 2016."""
+"""The shading model "Principled" (Walter et al. 2007, Heitz et al. 2016)."""
 
 from ..upload.brdf_table import brdf_texels
 from .model import ShadingModel

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Color Ramp: Botsch et al. 2005, section 6."""
+"""The shading model "Color Ramp" (Botsch et al. 2005, section 6)."""
 
 from .model import ShadingModel
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Toon: Lake et al. 2000."""
+"""The shading model "Toon" (Lake et al. 2000)."""
 
 from .model import ShadingModel
 

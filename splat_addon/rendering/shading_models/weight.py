@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Weight: none needed."""
+"""The shading model "Weight", which needs no source."""
 
 from .model import ShadingModel
 
