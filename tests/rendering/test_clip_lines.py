@@ -86,8 +86,8 @@ def lined_roof():
 @pytest.mark.parametrize("method", ["mip", "ewa"])
 @pytest.mark.parametrize(("pixels", "most"), [(48, 15), (96, 25)])
 def test_past_its_line_a_splat_does_not_show_that_is_hidden_before_it(method, pixels, most, render):
-    """Past the fold, the lining's plane is in front of the other face: without clip lines it showed in 36 and 90
-    pixels.
+    """Past the fold, the lining's plane is in front of the other face; before this was handled, it showed in 36
+    and 90 pixels.
     """
     surfels = sample_mesh(lined_roof(), resolution=64, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
     camera = Camera.perspective(look_at((1.1, -3.0, 4.2), (0.1, 0, -0.2)), 0.5, (pixels, pixels), 0.1, 100)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The method "EWA in Space" (Ren et al. 2002; view-independent object-space surface splatting, section 3, equation 10)."""
+"""The method "EWA in Space" (Ren et al. 2002; view-independent surface splatting, section 3, equation 10)."""
 
 from .method import Method
 
