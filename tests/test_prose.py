@@ -120,6 +120,15 @@ def test_what_a_page_links_to_exists(page):
     assert not missing
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_commands_and_files_that_a_page_names_exist(page):
+    text = page.read_text(encoding="utf-8")
+    names = [f"scripts/*/{name}*" for name in re.findall(r"scripts/bench\.py ([a-z]+)", text)]
+    names += re.findall(r"python3 ([a-z]\w*/[\w./]+\.py)", text)
+    names += re.findall(r"`((?:tests|splat_addon|shaders|scripts|docs)/[\w./*-]+)", text)
+    assert [name for name in names if not any(ROOT.glob(name))] == []
+
+
 def test_the_glossary_has_at_most_thirty_terms():
     lines = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8").splitlines()
     assert len([line for line in lines if line.startswith("| ")]) - 1 <= 30
