@@ -1,6 +1,6 @@
 // References: Blender manual, "Principled BSDF".
-// Summary: a sample's share of each finish in the frame's table, like those of sets of objects (light_links); shading
-//          models mix the table's rows by them (lib/finish).
+// Summary: a sample's share of each of the frame's finishes, like those of sets of objects (light_links); shading
+//          models mix them by these (lib/finish).
 
 #part splat_varyings
 #include "lib/material_place.glsl"

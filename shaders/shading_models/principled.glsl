@@ -75,7 +75,7 @@ const float EDGE_SCHLICK = 0.462664366;  // (6 / 7)^5
 const float EDGE_GAIN = 17.6513846;  // 1 / (1 / 7 (6 / 7)^6)
 
 void specular_tint_reflect(inout vec3 dielectric) {
-  dielectric = min(dielectric * finish_texel(0).rgb, vec3(1.0));
+  dielectric = min(dielectric * finish_numbers(0).rgb, vec3(1.0));
 }
 
 // The base loses as much of each colour as of the one that is reflected most.
@@ -84,7 +84,7 @@ void specular_tint_lose(inout vec3 lost) {
 }
 
 void specular_tint_dim(inout Lobe lobe, vec3 base, float metallic) {
-  vec3 taken = 1.0 - min(finish_texel(0).rgb, vec3(1.0));
+  vec3 taken = 1.0 - min(finish_numbers(0).rgb, vec3(1.0));
   lobe.edge = metallic * EDGE_GAIN * mix(base, vec3(1.0), EDGE_SCHLICK) * taken;
   lobe.specular_albedo -= lobe.edge * edge_at(lobe.roughness, lobe.nv) * lobe.scattered;
 }
@@ -112,7 +112,7 @@ mat3 sheen_to_cosine;  // from eye space
 float sheen_scale;
 
 void sheen_cover(inout Lobe lobe) {
-  vec4 color_roughness = finish_texel(3);
+  vec4 color_roughness = finish_numbers(3);
   float roughness = clamp(color_roughness.a, 0.01, 1.0);
   mat3 to_tangent = tangent_frame(lobe);
   vec2 bend = sheen_transform(lobe.nv, roughness);
@@ -131,8 +131,8 @@ void sheen_mirror(inout vec3 radiance) {
 Lobe coat;  // a dielectric without a base
 
 void coat_cover(inout Lobe lobe) {
-  vec4 tint_roughness = finish_texel(1);
-  float weight = min(finish_texel(0).a, 1.0), ior = max(finish_texel(2).x, 1.0);
+  vec4 tint_roughness = finish_numbers(1);
+  float weight = min(finish_numbers(0).a, 1.0), ior = max(finish_numbers(2).x, 1.0);
   float root = (ior - 1.0) / (ior + 1.0), f0 = root * root;
   coat = lobe;
   coat.roughness = clamp(tint_roughness.a, LEAST_ROUGHNESS, 1.0);

@@ -10,6 +10,7 @@ from splat_addon.reference.extremes import discs, sheet
 from splat_addon.rendering import (
     Camera,
     Environment,
+    Finish,
     Instance,
     Light,
     Lines,
@@ -54,6 +55,30 @@ def everything() -> Scene:
         Environment(rng.random((8, 16, 3)).astype(np.float32)),
         [PolygonInstance(board, materials=(Material(roughness=0.2),), name="board", index=4)],
     )
+
+
+def coated(scene: Scene) -> Scene:
+    """The scene with another finish on each instance."""
+    finishes = (Finish(coat=0.5 + number / 10, specular_tint=(1, 0.5, 0.2), sheen=0.3) for number in range(9))
+
+    def each(placed):
+        return [replace(i, materials=tuple(replace(m, finish=next(finishes)) for m in i.materials)) for i in placed]
+
+    return replace(scene, surfels=each(scene.surfels), polygons=each(scene.polygons))
+
+
+@pytest.mark.parametrize("method", ["quad", "mip", "raycast"])
+def test_where_targets_are_full_finishes_are_left_out_and_the_plan_says_so(method, render):
+    """Without one of the others, the finishes are shown, and the shaders read no more textures than a driver allows."""
+    settings = Settings(method=method, lines=Lines(), shadow_resolution=256, outputs=OUTPUTS)
+    scene = coated(everything())
+    full = render(scene, CAMERA, settings)
+    assert "left out" in dict(full.stats["plan"].skipped)["finishes"]
+    np.testing.assert_array_equal(full.color, render(everything(), CAMERA, settings).color)
+    unlinked = replace(scene, lights=scene.lights[:2])
+    outputs = tuple(name for name in OUTPUTS if name != "overdraw")
+    frame = render(unlinked, CAMERA, replace(settings, outputs=outputs))
+    assert "gbuffer_finish" in frame.stats["plan"].textures and np.isfinite(frame.color).all()
 
 
 @pytest.mark.parametrize("method", ["quad", "mip", "raycast"])

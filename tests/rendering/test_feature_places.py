@@ -39,7 +39,7 @@ MEETINGS = {
     "finish": (
         ("its shares are stored beside a material", "features/materials.py"),
         ("polygons have a finish too", "features/polygons.py"),
-        ("principled shading looks at the finish and its table", "lib/finish.glsl lib/brdf.glsl"),
+        ("principled shading looks at the finishes and a table", "lib/finish.glsl lib/brdf.glsl"),
     ),
     "gbuffer": (
         ("the mean of a splat's attributes is what is lit, looked at for lines and occlusion",
@@ -48,6 +48,7 @@ MEETINGS = {
          "features/transparency.py features/transparency.glsl features/oit.py hosts/oit_shading.frag.glsl"),
         ("planes that shadows compare depths with lie beside its depths", "features/shadows.py features/shadows.glsl"),
         ("sums of float16 are scaled", "sum_formats/float16.glsl"),
+        ("its sums leave room for those of finishes, or do not", "features/finish.py"),
     ),
     "levels": (("each view draws its own cut", "plan/executor.py"),),
     "lighting": (
@@ -61,6 +62,7 @@ MEETINGS = {
          "shading_models/toon.glsl"),
         ("a light tells which maps are its own", "features/shadows.glsl"),
         ("polygons are of a set of objects too", "features/polygons.py"),
+        ("its sums leave room for those of finishes, or do not", "features/finish.py"),
     ),
     "lit_splats": (
         ("splats are lit before they are added up", "features/gbuffer.py features/oit.py features/oit.glsl"),
@@ -78,6 +80,7 @@ MEETINGS = {
     "outputs": (
         ("they write pixels", "features/lighting.py features/transparency.py features/world.py"),
         ("splats are counted beside planes", "features/shadows.py"),
+        ("its sums leave room for those of finishes, or do not", "features/finish.py"),
         ("the picture is added up", "features/sample_sum.py hosts/accumulate.frag.glsl"),
         ("pixels become the arrays of a frame", "renderer.py"),
     ),

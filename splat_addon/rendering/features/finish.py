@@ -1,29 +1,33 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What surfaces have beside roughness, metallic and reflectance (`scene.finish`): few finishes, many surfels.
 
-A table holds the frame's finishes. If there are several, each sample sums the shares of all but the first, and the rows
-of the table are mixed by them.
+The frame's block holds the finishes. If there are several, each sample sums the shares of all but the first, and they
+are mixed by these.
 """
 
 from __future__ import annotations
 
 from collections import Counter
+from functools import partial
 
 from ..plan.graph import Part, Texture
 from ..scene import Finish
 from ..upload.brdf_table import edge_texels
-from ..upload.packing import MAX_FINISHES, pack_finishes
-from . import materials
+from ..upload.packing import MAX_FINISHES, finish_matrix
+from . import gbuffer, lights, materials, outputs
 from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
 
 SHARES = Texture("gbuffer_finish", is_multisampled=True, is_sum=True)
 
 
-def _uploaded(tile):
-    return tile.resources.data(pack_finishes(tile.plan.facts["finishes"]))
+def _matrix(tile, number: int):
+    """A finish of the frame; the first in the place of those that it lacks, whose shares are 0."""
+    finishes = tile.plan.facts["finishes"]
+    return finish_matrix(finishes[number if number < len(finishes) else 0])
 
 
-INPUTS = {"finishes": _uploaded, "edge_table": lambda tile: tile.resources.constant(edge_texels)}
+VALUES = {f"finish_{number}": ("mat4", partial(_matrix, number=number)) for number in range(MAX_FINISHES)}
+INPUTS = {"edge_table": lambda tile: tile.resources.constant(edge_texels)}
 #: part of a finish -> the table that its shading looks up
 _TABLES = {"specular_tint": "edge_table"}
 
@@ -32,7 +36,16 @@ def found(planning) -> tuple[Finish, ...]:
     """The finishes that the frame tells apart, the most common first; none if all are plain."""
     counted = Counter(material.finish for placed in planning.shown for material in placed.materials)
     kept = tuple(finish for finish, _ in counted.most_common(MAX_FINISHES))
-    return kept if any(finish.layers for finish in kept) else ()
+    has_any = any(finish.layers for finish in kept)
+    return kept if has_any and (len(kept) == 1 or _has_room(planning)) else ()
+
+
+def _has_room(planning) -> bool:
+    """Whether the other sums of a frame leave room for one more."""
+    has_layers = any(instance.is_transparent for instance in planning.scene.surfels)
+    kinds = ("opaque", "layer") if has_layers else ("opaque",)
+    sums = 2 + any(gbuffer.depths_are_apart(planning, kind) for kind in kinds) + sum(materials.differ(planning))
+    return sums + lights.are_linked(planning) + outputs.counts_splats(planning) < outputs.MAX_COLORS
 
 
 def summed(planning) -> tuple[Finish, ...]:
@@ -45,6 +58,10 @@ def passes(planning):
     """No passes; records what the frame has."""
     planning.facts["finishes"] = kept = planning.find(found)
     planning.facts["summed_finishes"] = summed(planning)
+    every = {material.finish for placed in planning.shown for material in placed.materials}
+    if not kept and any(finish.layers for finish in every):
+        planning.skip("finishes", _NO_ROOM)
+        return ()
     if not kept:
         planning.skip("finish", "all materials are plain")
         return ()
@@ -52,7 +69,6 @@ def passes(planning):
         planning.skip("finish", f"{planning.model.name} shading does not look at it")
         return ()
     planning.has("FINISH", f"{len(kept)} of {', '.join(_layers(kept))}")
-    every = {material.finish for placed in planning.shown for material in placed.materials}
     if len(every) > len(kept):
         planning.skip("finishes", _TOO_MANY.format(len(every), len(kept)))
     return ()
@@ -62,7 +78,10 @@ _TOO_MANY = (
     "materials have {} different combinations of Coat, Sheen and Specular Tint, and a picture shows {}; the others "
     "look like the most similar of these"
 )
-
+_NO_ROOM = (
+    "Coat, Sheen and Specular Tint are left out, because materials differ in them and pictures with transparency or "
+    "float16 sums, light linking and different emissions have no room for that; do without one of these"
+)
 
 #: Parts that lie over the rest.
 _COVERS = frozenset({"coat", "sheen"})
@@ -83,7 +102,7 @@ def parts(planning, p):
     if p.host in LIGHTING_HOSTS:
         tables = (_TABLES[layer] for layer in layers if layer in _TABLES)
         covered = () if _COVERS.isdisjoint(layers) else ("covered",)
-        yield Part("finish", (*layers, *covered), inputs=("finishes", *tables))
+        yield Part("finish", (*layers, *covered), inputs=tuple(tables))
     if p.host in LIT_HOSTS and differ:
         yield Part("finish", ("finishes_differ",), reads=(SHARES,))
     if p.host == "lit_splats.frag" and differ:

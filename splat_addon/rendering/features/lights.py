@@ -14,7 +14,7 @@ INPUTS = {"lights": shadows.lights_texture}
 SETS = Texture("gbuffer_light_set", is_multisampled=True, is_sum=True)
 
 
-def _are_linked(planning) -> bool:
+def are_linked(planning) -> bool:
     return planning.model.is_lit and any(light.receivers is not None for light in planning.scene.lights)
 
 
@@ -26,7 +26,7 @@ def passes(planning):
         planning.skip("lights", f"{planning.model.name} shading does not look at lights")
     elif not planning.scene.lights:
         planning.skip("lights", "the scene has none")
-    if not _are_linked(planning):
+    if not are_linked(planning):
         planning.skip(SETS.name, "every light lights everything, or nothing is lit")
     sized = sum(light.is_sized for light in planning.scene.lights)
     if planning.model.is_lit and sized:
@@ -38,15 +38,15 @@ def passes(planning):
 
 def parts(planning, p):
     is_lit = planning.model.is_lit and planning.scene.lights
-    if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer") and _are_linked(planning):
+    if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer") and are_linked(planning):
         yield Part("light_links", writes=(SETS,))
     if p.host in LIT_HOSTS and is_lit:
         yield Part("lights", inputs=("lights",))
-        if _are_linked(planning):
+        if are_linked(planning):
             yield Part("light_links", reads=(SETS,))
     if p.host == "lit_splats.frag" and is_lit:
         yield Part("lights", inputs=("lights",))
-        if _are_linked(planning):
+        if are_linked(planning):
             yield Part("light_links")
     if p.host in LIGHTING_HOSTS and is_lit and any(one.is_sized for one in planning.scene.lights):
         yield Part("sized_lights")

@@ -150,8 +150,7 @@ def check(plan: FramePlan) -> None:
             names = [texture.name for texture in p.colors]
             raise ValueError(
                 f"The {p.name} pass would write {len(names)} textures at once ({', '.join(names)}), and "
-                f"devices have room for {MAX_COLORS}. Leave Overdraw, indices and mattes out, choose float32 sums, or "
-                "give all materials one Coat, Sheen and Specular Tint."
+                f"devices have room for {MAX_COLORS}. Leave Overdraw, indices and mattes out, or choose float32 sums."
             )
 
 

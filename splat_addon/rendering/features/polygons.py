@@ -53,7 +53,7 @@ def parts(planning, p):
         yield from joined(planning)
     if p.kind == "opaque" and p.host in LIT_HOSTS:
         differ, glow = materials.differ(planning)
-        if differ or lights._are_linked(planning):
+        if differ or lights.are_linked(planning):
             yield Part("polygon_material", reads=(MATERIAL,))
         if glow:
             yield Part("emission", reads=(EMISSION,))
@@ -76,7 +76,7 @@ def _drawn(planning):
     drawn = {"inputs": ("materials",), "constants": materials.texels(planning)}
     if differ:
         yield Part("materials", varyings=(("smooth", "vec3", "material"),), **drawn)
-    if differ or lights._are_linked(planning):
+    if differ or lights.are_linked(planning):
         yield Part("polygon_material", writes=(MATERIAL,))
     if glow:
         varyings = (("smooth", "vec3", "emission"),)

@@ -42,7 +42,7 @@ class Finish:
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """The finish as texels of 4 numbers, which can be averaged.
+        """The finish as 16 numbers, which can be averaged; shaders have them in fours.
 
         Specular tint, coat  |  coat's tint, its roughness  |  its index of refraction, 0, 0, 0  |  sheen times
         its tint, its roughness.

@@ -122,9 +122,9 @@ def finish_shares(finish: Finish, finishes: tuple[Finish, ...]) -> np.ndarray:
     return np.eye(MAX_FINISHES)[np.argmin(distance), 1:]
 
 
-def pack_finishes(finishes: tuple[Finish, ...]) -> np.ndarray:
-    """(F, T, 4) float32 texels with the numbers of each finish in one row."""
-    return np.array([finish.numbers for finish in finishes], np.float32).reshape(len(finishes), -1, 4)
+def finish_matrix(finish: Finish) -> np.ndarray:
+    """(4, 4) float64 matrix with four of the finish's numbers in each column."""
+    return np.reshape(finish.numbers, (4, 4)).T
 
 
 def pack_own_materials(
