@@ -169,6 +169,12 @@ def test_a_stock_panel_whose_settings_are_honoured_is_joined(name):
     assert getattr(bpy.types, name) in set(visible_panels())
 
 
+def test_a_material_has_its_settings_once():
+    """4.5 has the former EEVEE's panel besides, which shows blend modes that this engine does not read."""
+    shown = [panel.__name__ for panel in visible_panels({"material"})]
+    assert sum(name.endswith("MATERIAL_PT_settings") for name in shown) == 1
+
+
 def test_unregistering_leaves_the_stock_panels_as_they_were():
     import splat_addon
 

@@ -82,6 +82,10 @@ _LIGHTS: _Rules = (
         "has an influence on diffuse or glossy light other than 1, which this engine passes over",
     ),
     (
+        lambda o: o.data.type == "AREA" and getattr(getattr(o.data, "cycles", None), "is_portal", False),
+        "is a portal, which this engine draws as a light of its own",
+    ),
+    (
         lambda o: bool(o.light_linking and o.light_linking.blocker_collection),
         "has shadow linking, and this engine lets everything cast its shadow",
     ),

@@ -230,8 +230,14 @@ def stock_panels() -> Iterator[type]:
         is_ignored = name in _NOT_JOINED or "freestyle" in name
         if "BLENDER_RENDER" in engines and not is_ignored:
             yield panel
-        elif panel.__name__ in _JOINED_FROM_EEVEE:
+        elif panel.__name__ in _JOINED_FROM_EEVEE and not _has_successor(panel):
             yield panel
+
+
+def _has_successor(panel: type) -> bool:
+    """Whether it belongs to the former EEVEE, which 4.5 has beside the next one: it shows what neither engine reads."""
+    former, _, name = panel.__name__.partition("EEVEE_")
+    return not former and hasattr(bpy.types, f"EEVEE_NEXT_{name}")
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(

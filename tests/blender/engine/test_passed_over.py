@@ -122,6 +122,11 @@ def link_shadows(scene, owner, lamp):
     lamp.light_linking.blocker_collection = bpy.data.collections.new("blockers")
 
 
+def open_a_portal(scene, owner, lamp):
+    lamp.data.type = "AREA"
+    lamp.data.cycles.is_portal = True
+
+
 def hide_world(scene, owner, lamp):
     scene.world.cycles_visibility.camera = False
 
@@ -155,6 +160,7 @@ SWITCHES = {
     hide_light_from_gloss: "lamp is hidden from diffuse or glossy rays",
     weaken_gloss: "lamp has an influence on diffuse or glossy light",
     link_shadows: "lamp has shadow linking",
+    open_a_portal: "lamp is a portal",
     hide_world: "The world 'sky' is hidden from some rays",
     fill_world: "The world 'sky' has a volume",
     draw_freestyle: "Freestyle is switched on",
