@@ -40,7 +40,7 @@ float cut_threshold(vec2 texel) {
 #part visibility.frag
 float visible_alpha(SurfaceTexture t) {
   vec3 eye = cut_eye / cut_place.z;
-  return alpha_at(t, cut_place.xy / cut_place.z, uv_change(eye.xy / -eye.z, -eye.z));
+  return alpha_at(t, cut_place.xy / cut_place.z, uv_change(gradient_u, gradient_v, eye.xy / -eye.z, -eye.z));
 }
 
 #part visibility.frag, in_view

@@ -66,7 +66,7 @@ void textures_plane(int corner, float slot, vec3 first, vec3 outward, bool is_ba
 
 // Change of the texture coordinates per sample along x and y.
 mat2 sample_uv_change() {
-  return uv_change(view.window.xy + gl_FragCoord.xy * view.window.zw, depth_at);
+  return uv_change(gradient_u, gradient_v, view.window.xy + gl_FragCoord.xy * view.window.zw, depth_at);
 }
 
 void textures_color(inout vec3 color) {

@@ -1,6 +1,6 @@
 // References: Guennebaud et al. 2006, section 5.1.
-// Summary: the attributes of the nearest polygon. Hooks: `keep` discards, `color` changes the colour, `add` fills
-//          targets.
+// Summary: the attributes of the nearest polygon. Hooks: `keep` discards, `color` changes the colour, `bend` the
+//          normal, `add` fills targets.
 
 #include "depth_formats/{depth_format}.glsl"
 
@@ -12,6 +12,8 @@ void main() {
   vec3 color = corner_color;
   #hook color(color)
   polygon_color = vec4(color, 1.0);
-  polygon_normal = vec4(normalize(corner_normal), depth_at);
+  vec3 normal = normalize(corner_normal);
+  #hook bend(normal)
+  polygon_normal = vec4(normal, depth_at);
   #hook add()
 }

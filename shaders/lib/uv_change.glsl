@@ -3,8 +3,9 @@
 
 const float LEAST_PLANE_FACING = 1e-4;
 
-// Per sample along x and y. point: of the ray, on the plane at depth 1.
-mat2 uv_change(vec2 point, float depth) {
+// Per sample along x and y. along_u, along_v: change along the axes of view space. point: of the ray, on the plane at
+// depth 1.
+mat2 uv_change(vec3 along_u, vec3 along_v, vec2 point, float depth) {
   bool is_orthographic = view.is_parallel > 0.5;
   vec3 ray = is_orthographic ? vec3(0.0, 0.0, -1.0) : vec3(point, -1.0);
   float facing = dot(triangle_plane, ray);
@@ -12,7 +13,7 @@ mat2 uv_change(vec2 point, float depth) {
   float unit = is_orthographic ? 1.0 : depth;
   vec3 along_x = vec3(1.0, 0.0, 0.0) - ray * (triangle_plane.x / facing);
   vec3 along_y = vec3(0.0, 1.0, 0.0) - ray * (triangle_plane.y / facing);
-  return mat2(dot(gradient_u, along_x), dot(gradient_v, along_x), dot(gradient_u, along_y), dot(gradient_v, along_y))
+  return mat2(dot(along_u, along_x), dot(along_v, along_x), dot(along_u, along_y), dot(along_v, along_y))
       * unit * mat2(view.window.z, 0.0, 0.0, view.window.w);
 }
 

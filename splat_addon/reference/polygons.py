@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..rendering.scene import PolygonInstance, Scene
+from ..rendering.scene import PolygonInstance, Scene, SurfaceTexture
 from ..rendering.scene.camera import Camera
 from ..rendering.scene.finish import PLAIN
 from ..rendering.view import overlapping_radii
@@ -76,6 +76,24 @@ def whole_hits(instance: PolygonInstance, corners, origin, direction, near: floa
         depth[rays], triangle[rays], shares[rays] = found
         rays = rays[np.isfinite(found[0])]
     return depth, triangle, shares
+
+
+def _bent(instance: PolygonInstance, triangle, shares, normal_matrix, side) -> np.ndarray:
+    """(n, 3) unit normals with normal maps applied, in eye space, on the side (n,) that is seen."""
+    shape, rows = instance.polygons, 3 * triangle[:, None] + np.arange(3)
+    normals, bumps = (np.einsum("rk,rkc->rc", shares, a.astype(np.float64)[rows]) for a in (shape.normals, shape.bumps))
+    slots = np.minimum(shape.materials[rows[:, 0]], len(instance.normal_maps) - 1)
+    of_slot = np.array([*instance.normal_maps, None], object)[slots]
+    for bump in set(of_slot) - {None}:
+        at = of_slot == bump
+        detail = 2 * point_colors(SurfaceTexture(bump.image), bumps[at, :2])[:, :3] - 1
+        across = bumps[at, 5:] * np.cross(normals[at], bumps[at, 2:5])
+        frame = bump.strength * detail[:, :1] * bumps[at, 2:5] + bump.strength * detail[:, 1:2] * across
+        upright = 1 + (detail[:, 2:] - 1) * min(bump.strength, 1)
+        is_framed = (bumps[at, 2:5] != 0).any(axis=1, keepdims=True)
+        normals[at] = np.where(is_framed, frame + upright * normals[at], normals[at])
+    normals = normals @ normal_matrix * side[:, None]
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
 def _alphas(instance: PolygonInstance, triangle: np.ndarray, shares: np.ndarray) -> np.ndarray:
@@ -163,6 +181,8 @@ def _take(instance, camera, corners, rays, triangle, shares, direction, found: H
     found.normal[rays] = normal / np.linalg.norm(normal, axis=1, keepdims=True) * side[:, None]
     found.color[rays] = mean(shape.colors)[:, :3]
     slots = np.minimum(shape.materials[rows[:, 0]], len(instance.materials) - 1)
+    if instance.is_bumped:
+        found.normal[rays] = _bent(instance, triangle, shares, normal_matrix, side)
     for texture, at, uvs in _texture_places(instance, triangle, shares):
         found.color[rays[at]] = point_colors(texture, uvs)[:, :3]
     surface = material_table(instance, found.surface.shape[1] > 10)[slots]

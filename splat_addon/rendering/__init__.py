@@ -13,7 +13,7 @@ from .plan.frame_plan import FramePlan
 from .presets import PRESETS, Preset
 from .refinement import Refinement
 from .renderer import RenderCancelled, Renderer, Shown
-from .scene import Finish, Instance, Material, PolygonInstance, Scene, SurfaceTexture
+from .scene import Finish, Instance, Material, NormalTexture, PolygonInstance, Scene, SurfaceTexture
 from .scene.camera import Camera, look_at
 from .scene.environment import Environment
 from .scene.lens import Lens
@@ -43,6 +43,7 @@ __all__ = (
     "Lines",
     "Matcap",
     "Material",
+    "NormalTexture",
     "Pace",
     "Panorama",
     "PolygonInstance",

@@ -247,7 +247,7 @@ class Renderer:
             }
         )
         self.resources.cuts.begin_frame()
-        self.resources.forget_atlases_but({placed.textures for placed in scene.shown})
+        self.resources.forget_atlases_but({placed.looked_up for placed in scene.shown})
         casters = casting(scene)
         shadow_views = tuple(
             build_view(casters, made.camera, settings.epsilon) for made in frame_plan.facts["shadow_maps"]

@@ -17,7 +17,7 @@ from .edges.borders import DEFAULT_CREASE_ANGLE
 from .edges.edge_samples import edge_samples, joined_at_edges, transition_edges
 from .ldc.reductions import DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS, projected_area
 from .mesh.cleaning import drop_unusable
-from .mesh.corners import corner_values
+from .mesh.corners import corner_values, normal_map_texture
 from .mesh.joining import have_same_values, joined, transformed
 from .mesh.solid import is_solid
 from .mesh.triangle_mesh import TriangleMesh
@@ -60,6 +60,7 @@ __all__ = [
     "joined",
     "joined_at_edges",
     "joined_blocks",
+    "normal_map_texture",
     "outline",
     "predict_count",
     "projected_area",

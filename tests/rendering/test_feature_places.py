@@ -84,13 +84,17 @@ MEETINGS = {
         ("the picture is added up", "features/sample_sum.py hosts/accumulate.frag.glsl"),
         ("pixels become the arrays of a frame", "renderer.py"),
     ),
-    "textures": (("polygons with holes are looked up in textures by their planes too", "features/cut_outs.py"),),
+    "textures": (
+        ("polygons with holes are looked up in textures by their planes too", "features/cut_outs.py"),
+        ("normal maps lie in the atlas of textures and are filtered as they are",
+         "features/normal_maps.py features/normal_maps.glsl lib/uv_gradient.glsl"),
+    ),
     "polygons": (
         ("of a sample that is a polygon's too, an attribute is mixed with the polygon's",
          "features/emission.glsl features/finish.glsl features/light_links.glsl features/lit_splats.glsl "
          "features/materials.glsl features/shadows.glsl"),
         ("they occlude", "features/ambient_occlusion.py"),
-        ("they are looked up in textures by their planes", "features/textures.py"),
+        ("textures and normal maps are looked up by their planes", "features/textures.py features/normal_maps.py"),
     ),
     "sample_sum": (("a view that refines shows it", "renderer.py"),),
     "shadows": (

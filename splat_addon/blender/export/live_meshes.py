@@ -18,7 +18,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ...rendering import Instance, Material, PolygonInstance, Polygons, SurfaceTexture
+from ...rendering import Instance, Material, NormalTexture, PolygonInstance, Polygons, SurfaceTexture
 from ...rendering.upload.packing import MAX_SPLATS
 from ...sampling import (
     DEFAULT_CREASE_ANGLE,
@@ -42,7 +42,7 @@ from ..geometry.mesh_extraction import ExtractedMesh, Topology, read_mesh, read_
 from ..geometry.mesh_polygons import is_transparent, left_out_of_polygons, mesh_polygons
 from ..geometry.sources import mesh_key, readable_mesh
 from ..geometry.split_meshes import MeshParts, parts_by_group
-from ..materials.surface_textures import kept_textures
+from ..materials.surface_textures import kept_normal_maps, kept_textures
 from ..mesh_sampling_settings import Form
 from . import passed_over
 from .object_detail import finer
@@ -82,6 +82,7 @@ class _LiveMesh:
     content: ExtractedMesh | None = None
     materials: tuple[Material, ...] = ()
     textures: tuple[SurfaceTexture | None, ...] = ()
+    normal_maps: tuple[NormalTexture | None, ...] = ()
     texture_mapped: bool = False
     places: list[Place] = field(default_factory=list)
     owner: str = ""
@@ -123,6 +124,10 @@ class _LiveMesh:
     def kept_textures(self) -> tuple[SurfaceTexture | None, ...]:
         self.textures = kept_textures(self.textures, self.content.triangles.surfaces)
         return self.textures
+
+    def kept_normal_maps(self) -> tuple[NormalTexture | None, ...]:
+        self.normal_maps = kept_normal_maps(self.normal_maps, self.content.triangles.surfaces)
+        return self.normal_maps
 
     def spacing_for(self, density: dict[str, float], depsgraph: bpy.types.Depsgraph) -> float:
         """Spacing in the mesh's own units: as fine as its most demanding place requests, or unchanged if that is close
@@ -226,9 +231,9 @@ class LiveMeshes:
         self.counts["triangles"] += len(mesh)
         for sentence in left_out_of_polygons(live.owner, mesh):
             notes.add(sentence)
-        textures = live.kept_textures()
+        looked_up = {"textures": live.kept_textures(), "normal_maps": live.kept_normal_maps()}
         return [
-            PolygonInstance(part, textures=textures, **place.of_instance(live.materials))
+            PolygonInstance(part, **looked_up, **place.of_instance(live.materials))
             for part in live.drawn[1]
             for place in live.drawn_at
         ]

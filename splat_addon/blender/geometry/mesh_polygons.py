@@ -11,7 +11,7 @@ import numpy as np
 
 from ...rendering import Polygons
 from ...rendering.scene.polygons import MAX_TRIANGLES
-from ...sampling import Surface, Texture, TriangleMesh, corner_values
+from ...sampling import Surface, Texture, TriangleMesh, corner_values, normal_map_texture
 from ...surfels import OPAQUE
 from ..materials.surface_textures import has_holes
 
@@ -45,8 +45,8 @@ def _part(mesh: TriangleMesh) -> Polygons:
 
 def left_out_of_polygons(owner: str, mesh: TriangleMesh) -> Iterator[str]:
     """One sentence for each material property that polygons do not support."""
-    if any(surface.normal_map is not None for surface in _used(mesh)):
-        yield f"{owner} has a normal map, which polygons do not show; render it as surfels to see it"
+    if any(surface.normal_map is not None and normal_map_texture(surface) is None for surface in _used(mesh)):
+        yield f"{owner} has a normal map that is not one image in tangent space; render it as surfels to see it"
     if is_transparent(mesh):
         yield f"{owner} is transparent, which polygons are only by their colour's image; render it as surfels"
 

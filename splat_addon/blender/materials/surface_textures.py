@@ -10,8 +10,8 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ...rendering import SurfaceTexture
-from ...sampling import Image, Surface
+from ...rendering import NormalTexture, SurfaceTexture
+from ...sampling import Image, Surface, normal_map_texture
 from ...surfels import OPAQUE
 from .material_surfaces import SHADERS, MeshLayers, surface_shader
 from .node_products import ImageSource, linked, product
@@ -30,6 +30,21 @@ def has_holes(surface: Surface) -> bool:
     texture = surface.color_texture
     is_whole = surface.opacity is None and surface.color.value[3] >= OPAQUE
     return is_whole and texture is not None and texture.uses_alpha and not texture.image.is_opaque
+
+
+def normal_map_of(surface: Surface) -> NormalTexture | None:
+    """The normal map of a surface's polygons; None if it is not a single image in tangent space."""
+    texture = normal_map_texture(surface)
+    return None if texture is None else NormalTexture(texture.image, surface.normal_map.strength)
+
+
+def kept_normal_maps(
+    kept: tuple[NormalTexture | None, ...], surfaces: tuple[Surface, ...]
+) -> tuple[NormalTexture | None, ...]:
+    """The normal maps of a mesh's polygons; the same tuple as `kept` while nothing changed."""
+    found = tuple(normal_map_of(surface) for surface in surfaces)
+    is_same = len(kept) == len(found) and all(map(_are_same, kept, found))
+    return kept if is_same else found
 
 
 def kept_textures(
@@ -104,11 +119,11 @@ class TextureStore:
             self._is_read.add(image.session_uid)
 
 
-def _are_same(a: SurfaceTexture | None, b: SurfaceTexture | None) -> bool:
+def _are_same(a: SurfaceTexture | NormalTexture | None, b: SurfaceTexture | NormalTexture | None) -> bool:
     return a is b or (a is not None and b is not None and _same(a, b))
 
 
-def _same(a: SurfaceTexture, b: SurfaceTexture) -> bool:
+def _same(a: SurfaceTexture | NormalTexture, b: SurfaceTexture | NormalTexture) -> bool:
     return (a.factor, a.is_cut_out) == (b.factor, b.is_cut_out) and (
         a.image is b.image or _same_image(a.image, b.image)
     )

@@ -60,7 +60,8 @@ def draw_polygons(
     """Draw polygons; epsilon: how far behind polygons splats may lie. Those with holes have a program of their own."""
     programs = {}
     for placed in placed_ones:
-        more = ("cut_out",) if placed.instance.is_cut_out else ()
+        kinds = {"cut_out": placed.instance.is_cut_out, "bumped": placed.instance.is_bumped}
+        more = tuple(kind for kind, is_so in kinds.items() if is_so)
         program = programs[more] = programs.get(more) or tile.program(p, vertex, *variants, *more)
         _draw(tile, p, target, placed, placed.overlap, program, (0, placed.instance.polygons.triangles), viewport)
 

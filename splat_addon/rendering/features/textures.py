@@ -10,8 +10,8 @@ _VARYINGS = (("flat", "vec3", "texture_place"), ("flat", "vec4", "texture_along"
 _AXES = (("flat", "vec3", "texture_axis_u"), ("flat", "vec3", "texture_axis_v"))
 #: slot, change of uv, and plane of triangles
 _OF_PLANES = (("flat", "float", "texture_slot"), ("flat", "vec3", "gradient_u"), ("flat", "vec3", "gradient_v"))
-_PLANE = (("flat", "vec3", "triangle_plane"),)
-OF_TRIANGLES = (*_OF_PLANES, *_PLANE)
+PLANE = (("flat", "vec3", "triangle_plane"),)
+OF_TRIANGLES = (*_OF_PLANES, *PLANE)
 ATLAS = ("texture_atlas", "texture_table")
 
 
@@ -20,11 +20,13 @@ def _surfel_uvs(tile, placed):
     return tile.resources.surfel_uvs(instance.surfels, tile.levels(instance))
 
 
+#: Tables with normal maps have these in a second half.
+CONSTANTS = {"TABLE_PARTS": 1}
 DRAWN = {
     "surfel_uvs": _surfel_uvs,
     "polygon_uvs": lambda tile, placed: tile.resources.polygon_uvs(placed.instance.polygons),
-    "texture_atlas": lambda tile, placed: tile.resources.atlas(placed.instance.textures)[0],
-    "texture_table": lambda tile, placed: tile.resources.atlas(placed.instance.textures)[1],
+    "texture_atlas": lambda tile, placed: tile.resources.atlas(placed.instance.looked_up)[0],
+    "texture_table": lambda tile, placed: tile.resources.atlas(placed.instance.looked_up)[1],
 }
 
 
@@ -38,16 +40,20 @@ def is_present(planning) -> bool:
     return any(planning.find(_are_textured))
 
 
-def parts(planning, p):
+def pixel_variance(planning) -> float:
+    """Of the filter of whatever is evaluated once: a sample, or each of its hardware samples, a smaller part of the
+    pixel."""
     settings, each = planning.settings, planning.settings.multisampling and planning.settings.sample_shading
-    # pixel filter of whatever is evaluated once: a sample, or each of its hardware samples, a smaller part of the pixel
-    variance = planning.method.pixel_variance / (settings.multisampling if each else 1)
-    shared = {"constants": (("PIXEL_VARIANCE", repr(variance)),), "only": "textured"}
+    return planning.method.pixel_variance / (settings.multisampling if each else 1)
+
+
+def parts(planning, p):
+    shared = {"constants": (("PIXEL_VARIANCE", repr(pixel_variance(planning))),), "only": "textured"}
     hosts = "object_space.frag", "screen_space.frag"
     if p.host in hosts and p.kind in ("opaque", "layer") and planning.find(_are_textured)[0]:
         varyings = (*_VARYINGS, *_AXES) if p.host == "object_space.frag" else _VARYINGS
         yield Part("textures", inputs=("surfel_uvs", *ATLAS), varyings=varyings, **shared)
     if p.host == "polygons.frag" and planning.find(_are_textured)[1]:
-        yield Part("polygon_plane", varyings=_PLANE, only="textured")
+        yield Part("polygon_plane", varyings=PLANE, only="textured")
         varyings = (("smooth", "vec2", "texture_uv"), *_OF_PLANES)
         yield Part("textures", inputs=("polygon_uvs", *ATLAS), varyings=varyings, **shared)

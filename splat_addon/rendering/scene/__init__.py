@@ -2,7 +2,7 @@
 """The scene and the camera as plain values, independent of passes and devices."""
 
 from .finish import Finish
-from .material import Material, SurfaceTexture
+from .material import Material, NormalTexture, SurfaceTexture
 from .scene import Instance, Placed, PolygonInstance, Scene
 
-__all__ = ("Finish", "Instance", "Material", "Placed", "PolygonInstance", "Scene", "SurfaceTexture")
+__all__ = ("Finish", "Instance", "Material", "NormalTexture", "Placed", "PolygonInstance", "Scene", "SurfaceTexture")

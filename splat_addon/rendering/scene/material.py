@@ -55,3 +55,21 @@ class SurfaceTexture:
     def brightest(self) -> float:
         """The largest component of any texel times the factor."""
         return float(np.max(self.image.pixels[..., :3].max(axis=(0, 1)) * self.factor))
+
+
+@dataclass(frozen=True, eq=False)
+class NormalTexture:
+    """A normal map in tangent space: normals are 2 * colour - 1. strength: 0 leaves the normal as it is."""
+
+    image: Image
+    strength: float = 1.0
+    is_cut_out = False
+
+    def __post_init__(self):
+        if not (np.isfinite(self.strength) and self.strength >= 0):
+            raise ValueError(f"A normal map's strength must be a finite number, 0 or more, not {self.strength}.")
+
+    @property
+    def factor(self) -> tuple[float, float, float]:
+        """Its strength, where textures have a factor."""
+        return (self.strength,) * 3

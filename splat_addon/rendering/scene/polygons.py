@@ -19,7 +19,7 @@ MAX_ROWS = 16384
 MAX_TRIANGLES = CORNERS_PER_ROW * MAX_ROWS // 3
 TEXELS_PER_CORNER = 3
 
-#: field -> (columns, dtype) of one corner; one column is stored flat. The last four fields are optional.
+#: field -> (columns, dtype) of one corner; one column is stored flat. The last five fields are optional.
 _LAYOUT = {
     "positions": (3, np.float32),
     "normals": (3, np.float32),
@@ -29,8 +29,9 @@ _LAYOUT = {
     "metallic": (1, np.float32),
     "emission": (3, np.float32),
     "uvs": (2, np.float32),
+    "bumps": (6, np.float32),
 }
-_OPTIONAL = ("roughness", "metallic", "emission", "uvs")
+_OPTIONAL = ("roughness", "metallic", "emission", "uvs", "bumps")
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +41,8 @@ class Polygons(Shape):
     positions: (3 T, 3) float32, object units, relative to `origin`. normals: (3 T, 3), for shading, of any length; zero
         means the triangle's own normal. colors: (3 T, 4) scene-linear; alpha is ignored.
     materials: (3 T,) index of the instance's slot, the same at the three corners.
+    bumps: (3 T, 6) u and v in the instance's normal maps, the unit tangent, and the sign of the bitangent
+        cross(normal, tangent); a tangent of zero leaves the normal as it is. None: no normal maps.
 
     Raises ValueError with one sentence for a wrong shape, a number that is not finite, or too many triangles.
     """
@@ -48,6 +51,7 @@ class Polygons(Shape):
     normals: np.ndarray
     colors: np.ndarray
     materials: np.ndarray
+    bumps: np.ndarray | None = None
 
     def __post_init__(self):
         count = len(self.positions)
@@ -121,6 +125,13 @@ def pack_polygon_uvs(shape: Polygons) -> np.ndarray:
     texels = np.zeros((_rows(shape) * CORNERS_PER_ROW, 4), np.float32)
     texels[: len(shape), :2] = shape.uvs
     return texels.reshape(-1, CORNERS_PER_ROW, 4)
+
+
+def pack_polygon_bumps(shape: Polygons) -> np.ndarray:
+    """(rows, 1024, 4) float32, two texels a corner: uv, sign, 0  |  tangent, 0."""
+    texels = np.zeros((_rows(shape) * CORNERS_PER_ROW, 2, 4), np.float32)
+    texels[: len(shape), 0, :3], texels[: len(shape), 1, :3] = shape.bumps[:, [0, 1, 5]], shape.bumps[:, 2:5]
+    return texels.reshape(-1, 2 * CORNERS_PER_ROW, 4)
 
 
 def _rows(shape: Polygons) -> int:

@@ -16,7 +16,7 @@ from ...surfels import Surfels, quaternion_axes
 from .camera import Camera
 from .environment import Environment
 from .light import MAX_LIGHT_SETS, Light
-from .material import Material, SurfaceTexture
+from .material import Material, NormalTexture, SurfaceTexture
 from .polygons import Polygons
 
 #: Sample size for heuristics that affect speed, never correctness.
@@ -91,6 +91,11 @@ class Placed:
     def is_textured(self) -> bool:
         """Whether any of its colours come from textures."""
         return self.shape.has_uvs and any(texture is not None for texture in self.textures)
+
+    @property
+    def looked_up(self) -> tuple[SurfaceTexture | None, ...]:
+        """Everything in its atlas."""
+        return self.textures
 
     @property
     def is_transparent(self) -> bool:
@@ -184,7 +189,21 @@ class Instance(Placed):
 
 @dataclass(frozen=True, eq=False)
 class PolygonInstance(Placed):
-    """Polygons placed in the world."""
+    """Polygons placed in the world.
+
+    normal_maps: one for each of `textures`, or None, or nothing at all.
+    """
+
+    normal_maps: tuple[NormalTexture | None, ...] = ()
+
+    def __post_init__(self):
+        super().__post_init__()
+        object.__setattr__(self, "normal_maps", tuple(self.normal_maps))
+        if self.normal_maps and len(self.normal_maps) != len(self.textures):
+            raise ValueError(
+                f"Polygons need as many normal maps as textures, which may be None: {len(self.textures)}, not "
+                f"{len(self.normal_maps)}."
+            )
 
     @property
     def polygons(self) -> Polygons:
@@ -194,6 +213,16 @@ class PolygonInstance(Placed):
     def radius(self) -> float:
         """Nothing extends beyond polygons."""
         return 0.0
+
+    @property
+    def is_bumped(self) -> bool:
+        """Whether normal maps bend any of its normals."""
+        return self.shape.bumps is not None and any(bump is not None for bump in self.normal_maps)
+
+    @property
+    def looked_up(self) -> tuple[SurfaceTexture | NormalTexture | None, ...]:
+        """Everything in its atlas."""
+        return (*self.textures, *self.normal_maps) if self.is_bumped else self.textures
 
     @property
     def is_cut_out(self) -> bool:

@@ -14,7 +14,7 @@ from ...surfels import Surfels, concatenate
 from ..device import Device
 from ..device.interface import Pipeline, PipelineDescription, Texture
 from ..scene import Finish, Placed, SurfaceTexture
-from ..scene.polygons import Polygons, pack_polygon_uvs, pack_polygons
+from ..scene.polygons import Polygons, pack_polygon_bumps, pack_polygon_uvs, pack_polygons
 from .atlas import FORMAT, make_atlas
 from .cuts import Cuts
 from .packing import pack_clip_lines, pack_materials, pack_own_materials, pack_uvs
@@ -72,6 +72,10 @@ class Resources:
     def polygon_uvs(self, polygons: Polygons) -> Texture:
         """The texture coordinates of polygons, uploaded once."""
         return self._once(polygons, "uvs", None, lambda: self.data(pack_polygon_uvs(polygons)))
+
+    def polygon_bumps(self, polygons: Polygons) -> Texture:
+        """The coordinates and tangents of normal maps, uploaded once."""
+        return self._once(polygons, "bumps", None, lambda: self.data(pack_polygon_bumps(polygons)))
 
     def materials(
         self,

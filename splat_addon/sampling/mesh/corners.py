@@ -10,6 +10,7 @@ import numpy as np
 from ...surfels import OPTIONAL_LAYOUT
 from ..attributes.material_sampler import MaterialSampler, Samples, placed
 from ..attributes.surfaces import Channel, Surface, Texture
+from ..attributes.tangents import layered_tangents
 from .triangle_mesh import TriangleMesh
 
 
@@ -17,8 +18,8 @@ def corner_values(mesh: TriangleMesh) -> dict[str, np.ndarray]:
     """field -> (3 T, columns) or (3 T,) float32: colors, and roughness, metallic and emission where they vary.
 
     Textures are averaged over about the area of the triangle. If a surface's color is a single image, colors hold only
-    its constant, and "uvs", (3 T, 2), are the coordinates at which to look up the image. Normal maps are left out,
-    because values at corners cannot represent them.
+    its constant, and "uvs", (3 T, 2), are the coordinates at which to look up the image; likewise "bumps",
+    (3 T, 6), for a normal map that is a single image (`Polygons`).
     """
     count = 3 * len(mesh)
     materials = np.zeros(count, int) if mesh.materials is None else np.repeat(mesh.materials, 3)
@@ -31,8 +32,32 @@ def corner_values(mesh: TriangleMesh) -> dict[str, np.ndarray]:
         values[name] = np.empty((count, columns) if columns > 1 else count, np.float32)
     sampler.fill(values, samples)
     if any(surface.color_texture is not None for surface in mesh.surfaces):
-        values["uvs"] = _texture_coordinates(mesh.surfaces, samples)
+        values["uvs"] = _texture_coordinates([surface.color_texture for surface in mesh.surfaces], samples)
+    maps = [normal_map_texture(surface) for surface in mesh.surfaces]
+    if uvs is not None and any(maps):
+        values["bumps"] = _bumps(mesh, maps, samples)
     return values
+
+
+def normal_map_texture(surface: Surface) -> Texture | None:
+    """The single image of a surface's normal map, if it is one that corners can say where to look up."""
+    bump = surface.normal_map
+    is_one = bump is not None and bump.space == "TANGENT" and len(bump.color.factors) == 1
+    factor = bump.color.factors[0] if is_one and set(bump.color.value) == {1.0} else None
+    return factor if isinstance(factor, Texture) and factor.weights is None else None
+
+
+def _bumps(mesh: TriangleMesh, maps: list[Texture | None], samples: Samples) -> np.ndarray:
+    """(3 T, 6) float32: coordinates in the normal map, tangent and sign of the bitangent; 0 without a normal map."""
+    found = np.zeros((len(samples.materials), 6), np.float32)
+    found[:, :2] = _texture_coordinates(maps, samples)
+    indices, tangents = np.minimum(samples.materials, len(maps) - 1), layered_tangents(mesh)
+    for index in np.unique(indices):
+        layer = maps[index] and mesh.surfaces[index].normal_map.layer
+        if layer is not None and tangents.shape[2] >= 4 * (layer + 1):
+            at = indices == index
+            found[at, 2:] = tangents.reshape(len(found), -1)[at, 4 * layer : 4 * layer + 4]
+    return found
 
 
 def _rows(layers: np.ndarray | None) -> np.ndarray | None:
@@ -52,12 +77,12 @@ def _looked_up_later(surface: Surface) -> Surface:
     return replace(surface, color=color, normal_map=None)
 
 
-def _texture_coordinates(surfaces: tuple[Surface, ...], samples: Samples) -> np.ndarray:
-    """(3 T, 2) float32; 0 where there is no image or the coordinates are not finite."""
+def _texture_coordinates(textures: list[Texture | None], samples: Samples) -> np.ndarray:
+    """(3 T, 2) float32 coordinates in the texture of each corner's material; 0 without one, or if not finite."""
     found = np.zeros((len(samples.materials), 2), np.float32)
-    indices = np.minimum(samples.materials, len(surfaces) - 1)
+    indices = np.minimum(samples.materials, len(textures) - 1)
     for index in np.unique(indices):
-        texture = surfaces[index].color_texture
+        texture = textures[index]
         if texture is None:
             continue
         at = np.flatnonzero(indices == index)

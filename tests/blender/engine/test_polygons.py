@@ -326,3 +326,49 @@ def test_a_card_of_an_opaque_image_stays_polygons(look, picture):
     pixels[..., 3] = 1
     leaf_card(pixels)
     assert picture()[..., 3].max() == 1 and set(counts()) == {"polygon_meshes", "triangles"}
+
+
+def add_normal_map(material, strength=1.0, space="TANGENT") -> None:
+    """Waves along u and v, from an image."""
+    u, v = np.meshgrid(*2 * [(np.arange(64) + 0.5) / 64 * 2 * np.pi])
+    normals = np.stack([0.5 * np.sin(3 * u), 0.3 * np.sin(2 * v + u), np.ones_like(u)], axis=2)
+    pixels = np.ones((64, 64, 4), np.float32)
+    pixels[..., :3] = normals / np.linalg.norm(normals, axis=2, keepdims=True) / 2 + 0.5
+    image = bpy.data.images.new("waves", 64, 64, float_buffer=True)
+    image.colorspace_settings.name = "Non-Color"
+    image.pixels.foreach_set(pixels.ravel())
+    tree = material.node_tree
+    texture, bump = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeNormalMap")
+    texture.image, bump.space, bump.inputs["Strength"].default_value = image, space, strength
+    tree.links.new(texture.outputs["Color"], bump.inputs["Color"])
+    tree.links.new(bump.outputs["Normal"], tree.nodes["Principled BSDF"].inputs["Normal"])
+
+
+@pytest.mark.parametrize(("form", "strength"), [("plane", 0.8), ("sphere", 0.4)])
+def test_a_normal_map_is_as_in_cycles(form, strength, look, picture, said, switch_to_cycles):
+    """Cycles dims light that grazes the surface behind a steep map, which this engine does not."""
+    if form == "plane":
+        bpy.ops.mesh.primitive_plane_add(size=3, rotation=(0.2, -0.3, 0.7))
+    else:
+        bpy.ops.mesh.primitive_uv_sphere_add(radius=1.5, segments=48, ring_count=24)
+        bpy.ops.object.shade_smooth()
+    mesh = bpy.context.object.data
+    mesh.materials.append(principled(Roughness=0.8, Specular_IOR_Level=0.0))
+    add_sun(look, rotation=(0.3, 0.2, 0))
+    smooth = picture()
+    add_normal_map(mesh.materials[0], strength=strength)
+    ours = picture()
+    assert set(counts()) == {"polygon_meshes", "triangles"} and "normal map" not in said()
+    switch_to_cycles(samples=64)
+    look.cycles.max_bounces = 0
+    truth = picture()
+    assert as_cycles_has_it(ours, truth, share=0.05)
+    assert not as_cycles_has_it(smooth, ours, share=0.05)
+
+
+def test_a_normal_map_that_polygons_do_not_show_is_named(look, picture, said):
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.context.object.data.materials.append(principled())
+    add_normal_map(bpy.context.object.data.materials[0], space="OBJECT")
+    picture()
+    assert "Cube has a normal map that is not one image in tangent space" in said()

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Normal maps of polygons; surfels have them in their shading normals."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part
+from .textures import ATLAS, PLANE, pixel_variance
+
+DRAWN = {"polygon_bumps": lambda tile, placed: tile.resources.polygon_bumps(placed.instance.polygons)}
+
+_VARYINGS = (
+    ("flat", "float", "bump_slot"),
+    ("smooth", "vec2", "bump_uv"),
+    ("flat", "vec2", "bump_signs"),
+    ("smooth", "vec3", "bump_tangent"),
+    ("smooth", "vec3", "bump_normal"),
+    ("flat", "vec3", "bump_u"),
+    ("flat", "vec3", "bump_v"),
+)
+
+
+def _count(planning) -> int:
+    return sum(instance.is_bumped for instance in planning.scene.polygons)
+
+
+def passes(planning):
+    """No passes; it says whether any polygons have normal maps."""
+    why = "{count} instances of polygons have normal maps"
+    return planning.counts("NORMAL_MAPS", planning.find(_count), why, "normal maps", "no polygons have any")
+
+
+def is_present(planning) -> bool:
+    return bool(planning.find(_count))
+
+
+def parts(planning, p):
+    table = ("TABLE_PARTS", 2)
+    if p.host == "visibility.frag" and p.kind != "layer":
+        yield Part("normal_maps", constants=(table,), only="bumped")
+    if p.host == "polygons.frag":
+        yield Part("polygon_plane", varyings=PLANE, only="bumped")
+        constants = (table, ("BUMP_VARIANCE", repr(pixel_variance(planning))))
+        inputs = "polygon_bumps", *ATLAS
+        yield Part("normal_maps", inputs=inputs, varyings=_VARYINGS, constants=constants, only="bumped")
