@@ -72,7 +72,7 @@ def test_a_smaller_crease_angle_finds_a_shallow_fold(ends_at_ridge):
 
 @pytest.mark.parametrize(("degrees", "is_edge"), [(40, True), (2, False)])
 def test_custom_normals_that_break_make_an_edge(degrees, is_edge, roof, ends_at_ridge):
-    """The custom normals of the two faces differ by this angle; the default crease angle is 30 degrees."""
+    """The custom normals of the two faces differ by this angle, whatever the angle between their planes is."""
     half = np.radians(degrees / 2)
     lean = (0, -np.sin(half), np.cos(half)), (0, np.sin(half), np.cos(half))
     roof.data.normals_split_custom_set([lean[face] for face in (0, 1) for _ in range(4)])
