@@ -23,6 +23,7 @@ from splat_addon.rendering import (
     Lines,
     Matcap,
     Material,
+    NormalTexture,
     Panorama,
     PolygonInstance,
     Settings,
@@ -210,8 +211,23 @@ def cut_out(scene, camera):
     return replace(shadowed(scene, camera)[0], polygons=(floor, other)), camera
 
 
+def bumpy(scene, camera):
+    """The scene with a normal map on the floor, under a light."""
+    (floor, other) = scene.polygons
+    place, tangent = floor.polygons.positions[:, :2] * 0.7, (1.0, 0, 0)
+    bumps = np.concatenate([place, np.tile((*tangent, 1.0), (len(place), 1))], axis=1)
+    slopes = 0.3 * (scenes.checks(64, 8)[..., :2] - 0.5)
+    normals = np.concatenate([slopes, np.full((64, 64, 1), 0.5)], axis=2)
+    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
+    image = Image(np.concatenate([normals / 2 + 0.5, np.ones((64, 64, 1))], axis=2))
+    maps = (NormalTexture(image, 0.8),)
+    floor = replace(floor, shape=replace(floor.polygons, bumps=bumps), textures=(None,), normal_maps=maps)
+    return replace(lit(scene, camera)[0], polygons=(floor, other)), camera
+
+
 #: tests/rendering/test_polygons.py compares them with the truth.
 HYBRID = {
+    "normal_maps": lambda: bumpy(*scenes.polygons(size=SIZE)),
     "cut_outs": lambda: cut_out(*scenes.polygons(size=SIZE)),
     "polygon_shadows": lambda: shadowed(*scenes.polygons(size=SIZE)),
     "large_lamp_shadows": lambda: under_large_lamps(*scenes.polygons(size=SIZE)),
