@@ -79,10 +79,10 @@ class Pyramid:
         return self._levels[level]
 
     def level_for(self, texels: np.ndarray) -> np.ndarray:
-        """(n,) intp level whose pixels are at least as far apart as the samples.
+        """(n,) intp, the first level whose pixels are at least as far apart as the samples, or the last level.
 
-        texels: (n,) full-size pixels between neighbouring samples. The tolerance keeps exact powers of two at their
-            level despite rounding.
+        texels: (n,) distance between neighbouring samples, in pixels of the full-size image. Rounding
+            errors do not raise an exact power of two to the next level.
         """
         with np.errstate(divide="ignore"):
             wanted = np.ceil(np.log2(np.nan_to_num(texels, nan=1.0)) - 1e-3)

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a frame costs with levels of detail: time and memory against surfels, pixels and overdraw.
 
-One model, lit by a sun, with more and more surfels in the same views: *filling* the picture, and so far away (*tiny*)
-that it covers some 60 pixels. *All* draws every surfel, *cut* what the tolerance lets through; times are medians of
-whole frames in turn. FLIP and PSNR compare the cut with all. *Decided* is the share of the cut frame that planning and
-cutting take while the camera moves. *Bare* is the pass that draws the same splats into a depth buffer alone: no frame
-takes less. Uploads are those of a second frame of the same view. A dolly moves away to four times the distance in 300
-pictures, of which some in the middle are drawn; its *pop* is FLIP between neighbours, less that with all surfels.
+One model, lit by a sun, is drawn with more and more surfels in two views: *filling* the picture, and *tiny*, so far
+away that it covers some 60 pixels. Each row compares two kinds of frames. *All* draws every surfel; *cut* draws merged
+surfels where the tolerance allows it. Times are medians of whole frames that are drawn alternately.
+
+drawn: surfels in the cut. cut/all: the time of the cut frame, divided by that of all. bare/cut: the time to draw the
+    same splats into nothing but a depth buffer, divided by the cut frame; no frame can be faster.
+decided: the share of the cut frame's time that goes into planning and choosing surfels while the camera moves.
+PSNR, FLIP: the cut compared with all. uploads: of a second frame of the same view.
+
+A dolly moves the camera away to four times the distance in 300 pictures, of which some in the middle are drawn. Its
+*pop* is the FLIP difference between successive pictures, less the same difference with all surfels.
 """
 
 from __future__ import annotations
@@ -70,7 +75,7 @@ def run(options, report) -> None:
 
 
 def dolly(renderer: Renderer, surfels, options) -> list[float]:
-    """The pop of each picture after the first while the camera approaches."""
+    """The pop of each picture after the first while the camera moves away."""
     before, pops = None, []
     for step in np.linspace(0, 2, 300)[150 - options.dolly // 2 :][: options.dolly]:
         scene, camera = in_view(surfels, options.size, tuple(2**step * x for x in VIEWS["filling"]))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by all of scripts/bench and scripts/figures.
+"""Modules that scripts/bench and scripts/figures share.
 
-`registry` lists the modules, and `__main__` runs one. `timing` and `drawing` run jobs and pictures in turn. `report`
-writes what is printed and left in a folder. `devices` finds out where a device can be opened. `models` and
-`blender_scene` provide scenes.
+`registry` lists what can be run, and `__main__` runs one of them. `timing` runs competing jobs alternately, and
+`drawing` does so for pictures. `report` prints the results and writes them to a folder. `devices` runs a job where a
+device can be opened. `models` and `blender_scene` provide scenes.
 """

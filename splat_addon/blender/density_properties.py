@@ -28,7 +28,9 @@ DENSITIES = {
         "pixels",
         4,
     ),
-    "RESOLUTION": DensityKind("Resolution", "A number of cells along each object's longest edge", "resolution", 0),
+    "RESOLUTION": DensityKind(
+        "Resolution", "A number of grid cells along the longest edge of each object's bounding box", "resolution", 0
+    ),
     "SPACING": DensityKind("Spacing", "The same distance between surfels in every object", "spacing", 1),
     "COUNT": DensityKind("Count", "A number of surfels for each object", "count", 2),
     "CAMERA": DensityKind(

@@ -91,7 +91,9 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     )
     line_width: FloatProperty(
         name="Width",
-        description="Width of a line, which lies on the nearer surface of a silhouette and on both sides of a crease",
+        description=(
+            "Width of the lines. At a silhouette a line lies on the nearer surface; at a crease it covers both sides"
+        ),
         subtype="PIXEL",
         min=0.1,
         max=MAX_WIDTH,
@@ -163,8 +165,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     blur_samples: IntProperty(
         name="Blur Samples",
         description=(
-            "Minimum number of samples of a final render with depth of field or motion blur, which one sample "
-            "does not show. Set it to 1 to use Samples alone"
+            "Minimum number of samples of a final render with depth of field or motion blur, because a single sample "
+            "shows no blur. Set it to 1 so that only Samples counts"
         ),
         min=1,
         max=MAX_SAMPLES,
@@ -203,7 +205,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     edge_threshold: FloatProperty(
         name="Edge Fade",
         description=(
-            "Fade pixels to the background where their splats' weights sum to less than this. It has no effect on "
+            "Fade pixels to the background where their splats' weights sum to less than this. It has no effect with "
             "Mip Filter, which filters silhouettes itself. Frames take slightly longer"
         ),
         min=0.0,
@@ -281,8 +283,8 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     as_printed: BoolProperty(
         name="As Printed",
         description=(
-            "Treat back faces like front faces, and the last transparent layer like a single surface, as in the "
-            "papers. It takes no extra time, but far sides show at the rims of open surfaces"
+            "Follow the papers: back faces count as much as front faces, and all surfaces that are left for the last "
+            "transparent layer count as one. It takes no extra time, but far sides show at the rims of open surfaces"
         ),
         default=Settings.as_printed,
     )

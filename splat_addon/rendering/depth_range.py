@@ -92,8 +92,10 @@ def depth_extent(scene: Scene, camera: Camera, epsilon: float) -> DepthExtent:
 
 
 def seen_by(scene: Scene, camera: Camera) -> tuple[list, int, int]:
-    """(instance, depths of its box's corners, radius of its largest splat) for objects that may be in the picture; and
-    the numbers of instances that are not, and of those that flatten space."""
+    """The instances that may be in the picture, the number of those outside it, and of those that are flattened.
+
+    Each of the first is (instance, depths of its box's corners, radius of its largest splat).
+    """
     shown = scene.shown
     firm = [instance for instance in shown if not instance.is_flattened]
     if not firm:

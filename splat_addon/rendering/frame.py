@@ -34,7 +34,7 @@ class Frame:
     emission: (h, w, 3) the part of `color` that surfaces emit; 0 for models that do not use materials.
     shadow: (h, w, 3) share of the lights' irradiance that is not shadowed, per colour channel; 0 where no light comes
         from the front, and for models that do not use lights; 1 beside all surfaces.
-    overdraw: (h, w) number of splats that a sample averages. These four are means over the pixel's samples, as `color`,
+    overdraw: (h, w) number of splats blended in a sample. These four are means over the pixel's samples, as `color`,
         empty ones counting as 0.
     object_index, material_index: (h, w) of the nearest sample in the pixel, never mixed; 0 where nothing was hit.
     cryptomatte: the share of each pixel that belongs to each name; for opaque surfaces the shares add up to the

@@ -44,10 +44,7 @@ def test_a_splat_before_the_near_plane_hides_nothing_when_moved_back(depth, hold
 
 @pytest.mark.parametrize("spin", [0, 20, 40, 60, 80, 100])
 def test_a_splat_across_the_near_plane_keeps_its_rim(spin, hold, lit, camera):
-    """The rim is right wherever the plane does not cut it, for any direction of the axes in the splat's plane.
-
-    Nothing is filtered.
-    """
+    """The near plane cuts a disc. The rest of its rim is right, however its half-axes are turned in its own plane."""
     angle, tilt = np.radians(spin), np.radians(60)
     across, along = np.array((1, 0, 0)), np.array((0, np.cos(tilt), np.sin(tilt)))
     u, v = (

@@ -82,7 +82,7 @@ def test_the_mean_of_samples_is_what_blending_gives(method, camera, render):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_sample_shows_the_card_or_what_is_behind(method, render):
-    """The visibility pass moves polygons back if splats are near, which must not move their holes."""
+    """Where splats are near, the visibility pass moves polygons back. Their holes must stay where they are."""
     place = np.diag((0.4, 0.4, 0.4, 1.0))
     place[2, 3] = 0.3
     ball = Instance(scenes.sphere(count=300)[0].surfels[0].surfels, place)

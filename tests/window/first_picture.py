@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs inside a Blender window: goes from the default scene to a rendered picture, and measures labels.
+"""Runs inside a Blender window: clicks from the default scene to a rendered picture, and measures how wide labels are.
 
-test_first_picture.py reads the number of clicks, their results, and the widths of labels.
+test_first_picture.py reads the report: the clicks, what they made, and the widths.
 """
 
 import sys

@@ -66,15 +66,15 @@ class ConversionProperties:
     )
     reduction: EnumProperty(
         name="Reduction",
-        description="Which samples of the three axes become surfels",
+        description="The surface is sampled along three axes; this chooses which of these samples become surfels",
         items=[(name.upper(), reduction.label, reduction.description) for name, reduction in REDUCTIONS.items()],
         default="NORMAL",
     )
     grazing_angle: FloatProperty(
         name="Grazing Angle",
         description=(
-            "Samples are dropped where the surface is turned away from their axis by more than this angle. 90 "
-            "degrees keeps all of them"
+            "Drop samples where the normal of the surface is more than this angle away from the axis of sampling. "
+            "90 degrees keeps all samples"
         ),
         subtype="ANGLE",
         default=DEFAULT_GRAZING_ANGLE,
@@ -112,16 +112,17 @@ class ConversionProperties:
     clips_edges: BoolProperty(
         name="End at Edges",
         description=(
-            "End surfels at creases, borders of colours and open borders, and limit their blend depth to that of "
-            "their surface. Edges stay sharp, but conversion takes longer and frames slightly longer"
+            "End surfels at creases, at borders between colours and at open borders, and make their blend depth no "
+            "larger than their surface needs. Edges stay sharp, but conversion takes longer, and frames take slightly "
+            "longer"
         ),
         default=True,
     )
     crease_angle: FloatProperty(
         name="Crease Angle",
         description=(
-            "The surface has an edge where it, or its shading, turns by more than this angle. Beside faces that are "
-            "larger than a surfel, the angle is smaller, down to a sixth"
+            "A crease is where the surface or its shading turns by more than this angle. Beside faces that are "
+            "larger than a surfel a smaller angle is enough, down to a sixth of this one"
         ),
         subtype="ANGLE",
         default=DEFAULT_CREASE_ANGLE,

@@ -50,7 +50,8 @@ class PointsProperties:
     flatness: FloatProperty(
         name="Flatness",
         description=(
-            "Maximum thickness of a Gaussian relative to its middle radius; thicker ones are left out. 1 accepts all"
+            "Leave out Gaussians whose smallest radius is more than this share of their middle radius, because they "
+            "are too thick for a disc. 1 leaves none out"
         ),
         default=DEFAULT_FLATNESS,
         min=0.0,

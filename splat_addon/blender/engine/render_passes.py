@@ -68,7 +68,7 @@ class ViewLayerPasses(bpy.types.PropertyGroup):
     )
     use_pass_overdraw: BoolProperty(
         name="Overdraw",
-        description="How many splats each pixel's samples average. Frames take slightly longer",
+        description="Number of splats blended in a sample, averaged over the pixel. Frames take slightly longer",
         default=False,
     )
 

@@ -205,7 +205,10 @@ def _layered(read, names: list[str]) -> np.ndarray | None:
 
 
 def _color_reader(mesh: bpy.types.Mesh, topology: Topology):
-    """A function of an attribute's name that returns (T, 3, 4), the attribute as a colour as in shaders."""
+    """The function that reads an attribute by name, as (T, 3, 4) colours at the corners.
+
+    As in Blender's shaders, a single value becomes a grey.
+    """
 
     def read(name: str) -> np.ndarray:
         attribute = mesh.attributes[name]

@@ -6,7 +6,7 @@ from __future__ import annotations
 GERMAN = {
     "16 Bit": "16 Bit",
     (
-        "Fade pixels to the background where their splats' weights sum to less than this. It has no effect on Mip "
+        "Fade pixels to the background where their splats' weights sum to less than this. It has no effect with Mip "
         "Filter, which filters silhouettes itself. Frames take slightly longer"
     ): (
         "Pixel zum Hintergrund verlaufen lassen, wo die Summe der Gewichte ihrer Splats kleiner ist. Ohne Wirkung "
@@ -27,12 +27,12 @@ GERMAN = {
         "keine. Braucht keine zusätzliche Zeit"
     ),
     (
-        "Treat back faces like front faces, and the last transparent layer like a single surface, as in the papers. "
-        "It takes no extra time, but far sides show at the rims of open surfaces"
+        "Follow the papers: back faces count as much as front faces, and all surfaces that are left for the last "
+        "transparent layer count as one. It takes no extra time, but far sides show at the rims of open surfaces"
     ): (
-        "Rückseiten wie Vorderseiten behandeln und die letzte durchsichtige Schicht wie eine einzige Fläche, wie in "
-        "den Veröffentlichungen. Braucht keine zusätzliche Zeit, aber an den Rändern offener Flächen scheinen die "
-        "fernen Seiten durch"
+        "Den Veröffentlichungen folgen: Rückseiten zählen so viel wie Vorderseiten, und alle Flächen, die für die "
+        "letzte durchsichtige Schicht übrig sind, zählen als eine. Braucht keine zusätzliche Zeit, aber an "
+        "den Rändern offener Flächen scheinen die fernen Seiten durch"
     ),
     (
         "Leave out splats that face away, even on open surfaces, which then have holes. It saves up to half of the time"
@@ -74,8 +74,8 @@ GERMAN = {
         "Eine Falte wird gezeichnet, wo sich die Fläche innerhalb von etwa 3 Pixeln um mehr als diesen Winkel "
         "dreht; 180 Grad zeichnet keine"
     ),
-    "A number of cells along each object's longest edge": (
-        "Eine Anzahl von Zellen entlang der längsten Kante jedes Objekts"
+    "A number of grid cells along the longest edge of each object's bounding box": (
+        "Eine Anzahl von Gitterzellen entlang der längsten Kante des Begrenzungsrahmens jedes Objekts"
     ),
     "A number of surfels for each object": "Eine Anzahl von Surfels für jedes Objekt",
     "Adaptive": "Adaptiv",
@@ -322,11 +322,12 @@ GERMAN = {
         "Wie weit ein größeres Surfel von der Fläche entfernt sein darf, die es bedeckt, in den Einheiten des "
         "gewählten Raums"
     ),
-    ("How many splats each sample averages: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red"): (
-        "Aus wie vielen Splats jedes Sample gemittelt ist: 1 blau, 4 türkis, 16 grün, 64 gelb, 256 und mehr rot"
+    ("Number of splats blended in each sample: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red"): (
+        "Anzahl der Splats, die in jedem Sample gemischt werden: 1 blau, 4 türkis, 16 grün, 64 gelb, 256 und mehr rot"
     ),
-    "How many splats each pixel's samples average. Frames take slightly longer": (
-        "Wie viele Splats die Samples jedes Pixels mitteln. Einzelbilder dauern etwas länger"
+    "Number of splats blended in a sample, averaged over the pixel. Frames take slightly longer": (
+        "Anzahl der Splats, die in einem Sample gemischt werden, gemittelt über den Pixel. Einzelbilder dauern etwas "
+        "länger"
     ),
     "Approximate number of surfels for each object": ("Ungefähre Anzahl von Surfels für jedes Objekt"),
     (
@@ -349,9 +350,12 @@ GERMAN = {
     ),
     "How the sums of overlapping splats are stored": "Wie die Summen überlappender Splats gespeichert werden",
     "How the surface reflects light": "Wie die Oberfläche Licht zurückwirft",
-    ("Maximum thickness of a Gaussian relative to its middle radius; thicker ones are left out. 1 accepts all"): (
-        "Höchste Dicke einer Gaußverteilung im Verhältnis zu ihrem mittleren Radius; dickere werden "
-        "weggelassen. 1 nimmt alle"
+    (
+        "Leave out Gaussians whose smallest radius is more than this share of their middle radius, because they "
+        "are too thick for a disc. 1 leaves none out"
+    ): (
+        "Gaußverteilungen weglassen, deren kleinster Radius mehr als dieser Anteil ihres mittleren ist, weil sie für "
+        "eine Scheibe zu dick sind. 1 lässt keine weg"
     ),
     (
         "How this object and its instances are drawn. Conversion sets it to Nothing, because the surfels "
@@ -569,10 +573,11 @@ GERMAN = {
         "Samples entlang jeder Seite eines Pixels im Ansichtsfenster"
     ),
     (
-        "Samples are dropped where the surface is turned away from their axis by more than this angle. 90 "
-        "degrees keeps all of them"
+        "Drop samples where the normal of the surface is more than this angle away from the axis of sampling. "
+        "90 degrees keeps all samples"
     ): (
-        "Proben fallen weg, wo die Fläche um mehr als diesen Winkel von ihrer Achse abgewandt ist. 90 Grad behält alle"
+        "Proben weglassen, wo die Normale der Fläche um mehr als diesen Winkel von der Achse der Abtastung abweicht. "
+        "90 Grad behält alle Proben"
     ),
     "Sampling": "Sampling",
     "Scene's Resolution": "Auflösung der Szene",
@@ -618,12 +623,13 @@ GERMAN = {
     "Surfels": "Surfels",
     "Surfels (.ply)": "Surfels (.ply)",
     (
-        "End surfels at creases, borders of colours and open borders, and limit their blend depth to that of "
-        "their surface. Edges stay sharp, but conversion takes longer and frames slightly longer"
+        "End surfels at creases, at borders between colours and at open borders, and make their blend depth no "
+        "larger than their surface needs. Edges stay sharp, but conversion takes longer, and frames take slightly "
+        "longer"
     ): (
-        "Surfels an Falten, Farbgrenzen und offenen Rändern enden lassen und ihre Mischtiefe auf die ihrer "
-        "Fläche begrenzen. Kanten bleiben scharf, aber die Umwandlung dauert länger und Einzelbilder etwas "
-        "länger"
+        "Surfels an Falten, Farbgrenzen und offenen Rändern enden lassen und ihre Mischtiefe nicht größer "
+        "machen, als ihre Fläche braucht. Kanten bleiben scharf, aber die Umwandlung dauert länger und Einzelbilder "
+        "etwas länger"
     ),
     "Temperature": "Temperatur",
     ("Texels along each side of a shadow map; 0 turns shadows off. Each light with shadows adds one or several maps"): (
@@ -649,11 +655,11 @@ GERMAN = {
         "Das schnellste Bild ohne Löcher: ungefiltert, daher mit gezackten Kanten und Texturen"
     ),
     (
-        "Minimum number of samples of a final render with depth of field or motion blur, which one sample "
-        "does not show. Set it to 1 to use Samples alone"
+        "Minimum number of samples of a final render with depth of field or motion blur, because a single sample "
+        "shows no blur. Set it to 1 so that only Samples counts"
     ): (
-        "Mindestzahl der Samples eines endgültigen Renderns mit Tiefen- oder Bewegungsunschärfe, die ein "
-        "einzelnes Sample nicht zeigt. Auf 1 setzen, um allein Samples zu verwenden"
+        "Mindestzahl der Samples eines endgültigen Renderns mit Tiefen- oder Bewegungsunschärfe, weil ein "
+        "einzelnes Sample keine Unschärfe zeigt. Auf 1 setzen, damit allein Samples zählt"
     ),
     "The object is drawn as polygons where its weights are 0.5 or more": (
         "Das Objekt wird als Polygone gezeichnet, wo ihre Gewichte 0,5 oder mehr sind"
@@ -706,10 +712,10 @@ GERMAN = {
         "Zeichnet jeden Splat im Quadrat der Veröffentlichung, das seinen Filter abschneidet, und große Splats "
         "abseits der Achse beschneidet (Botsch et al. 2005, Abschnitte 3 und 5, im Quadrat des Artikels)"
     ),
-    "The surface has an edge where it, or its shading, turns by more than this angle. Beside faces that are "
-    "larger than a surfel, the angle is smaller, down to a sixth": (
-        "Die Fläche hat eine Kante, wo sie oder ihre Schattierung sich um mehr als diesen Winkel dreht. Neben "
-        "Flächen, die größer als ein Surfel sind, ist der Winkel kleiner, bis zu einem Sechstel"
+    "A crease is where the surface or its shading turns by more than this angle. Beside faces that are "
+    "larger than a surfel a smaller angle is enough, down to a sixth of this one": (
+        "Eine Falte ist, wo sich die Fläche oder ihre Schattierung um mehr als diesen Winkel dreht. Neben Flächen, "
+        "die größer als ein Surfel sind, genügt ein kleinerer Winkel, bis zu einem Sechstel von diesem"
     ),
     (
         "Let the surfels follow their source, with its parent, animation and constraints. If off, they are a "
@@ -778,11 +784,14 @@ GERMAN = {
         "Materialeingänge, die nicht gelesen werden konnten, einer pro Zeile"
     ),
     "Whether surfaces or points of the sources were converted": "Ob Flächen oder Punkte der Quellen umgewandelt wurden",
-    "Which samples of the three axes become surfels": "Welche Proben der drei Achsen zu Surfels werden",
+    "The surface is sampled along three axes; this chooses which of these samples become surfels": (
+        "Die Fläche wird entlang von drei Achsen abgetastet; dies wählt, welche dieser Proben zu Surfels werden"
+    ),
     "The balance between speed and accuracy": "Das Verhältnis von Geschwindigkeit und Genauigkeit",
     "Width": "Breite",
-    "Width of a line, which lies on the nearer surface of a silhouette and on both sides of a crease": (
-        "Breite einer Linie, die auf der näheren Fläche eines Umrisses und auf beiden Seiten einer Falte liegt"
+    "Width of the lines. At a silhouette a line lies on the nearer surface; at a crease it covers both sides": (
+        "Breite der Linien. An einem Umriss liegt eine Linie auf der näheren Fläche; an einer Falte bedeckt sie beide "
+        "Seiten"
     ),
     "World": "Welt",
     "World space, so that scaled objects are as dense as others; the surfel object has a scale of 1": (

@@ -147,7 +147,7 @@ class Pass(NamedTuple):
 
     @property
     def writes(self) -> tuple[str, ...]:
-        """Names of the attachments that it fills; for updated textures also the second one."""
+        """Names of the attachments that it fills; a texture that it updates counts as `<name>_next`."""
         return (*(t.name for t in self.all("writes")), *(f"{t.name}_next" for t in self.all("updates")))
 
 

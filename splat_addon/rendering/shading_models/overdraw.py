@@ -7,6 +7,6 @@ MODEL = ShadingModel(
     "overdraw",
     label="Overdraw",
     source="none needed",
-    summary="How many splats each sample averages: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red",
+    summary="Number of splats blended in each sample: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red",
     sums=("gbuffer_overdraw",),
 )

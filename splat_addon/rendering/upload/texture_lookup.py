@@ -32,7 +32,7 @@ def texture_colors(atlas: Atlas, slot: int, uvs: np.ndarray, variances: np.ndarr
 
 
 def texture_alphas(atlas: Atlas, slot: int, uvs: np.ndarray, variances: np.ndarray) -> np.ndarray:
-    """(n,) mean alpha under the same footprints."""
+    """(n,) mean alpha of a slot's texture under footprints, which are given as for `texture_colors`."""
     sums = [_sum(atlas, slot, uv, variance) for uv, variance in zip(uvs, variances, strict=True)]
     return np.array([total[3] / weights for total, weights in sums])
 

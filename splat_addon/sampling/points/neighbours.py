@@ -111,9 +111,12 @@ def _nearest_in_block(cells: Cells, queries: np.ndarray, count: int) -> tuple[np
 
 
 def _smallest(squared: np.ndarray, places: np.ndarray, own: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """The `count` places with the smallest squared distance in each row, ascending, without `own`; squared is (q, m).
+    """The `count` nearest places of each of q queries, nearest first, and their squared distances.
 
-    Non-negative float32 values sort like their bits, so square and place sort as one 64-bit integer.
+    squared: (q, m) squared distances to the candidates. places: (q, m) which candidates these are. own: (q,) the place
+        of the query itself, which is left out.
+    The bits of non-negative float32 values sort like the values. A squared distance and its place are therefore packed
+    into one 64-bit integer, and these integers are sorted.
     """
     with np.errstate(over="ignore"):
         squared = squared.astype(np.float32)
