@@ -19,7 +19,7 @@ import bpy
 import numpy as np
 
 from ...rendering import Instance, Material, NormalTexture, PolygonInstance, Polygons, SurfaceTexture
-from ...rendering.upload.packing import MAX_SPLATS
+from ...rendering.upload.packing import LARGEST_SET
 from ...sampling import (
     DEFAULT_CREASE_ANGLE,
     STRETCHED_SHARE,
@@ -213,7 +213,7 @@ class LiveMeshes:
         sampled = self._sampled(live, depsgraph, finer(density, live.detail), texture_mapped)
         if live.shown is None or live.shown[0] is not sampled:
             whole = joined_at_edges(sampled, *live.parts, live.spacing) if live.parts else sampled
-            live.shown = sampled, portions(whole, MAX_SPLATS)
+            live.shown = sampled, portions(whole, LARGEST_SET)
         textures = live.kept_textures() if sampled.has_uvs else ()
         self.counts["meshes"] += 1
         self.counts["surfels"] += sum(map(len, live.shown[1]))

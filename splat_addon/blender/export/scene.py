@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 
 from ...rendering import Instance, Light, Scene
-from ...rendering.upload.packing import MAX_SPLATS
+from ...rendering.upload.packing import LARGEST_SET
 from ...surfels import Surfels, portions
 from ..conversion.source_record import is_stood_in, sources_in
 from ..geometry.attributes import Points, has_surfels, has_surfels_beside_faces, have_same_values, read_stored
@@ -89,7 +89,7 @@ class SurfelStore:
         if key not in self._current:
             surfels, skipped, strayed = read_stored(points, self._followed, name, is_solid)
             known = (k for k in self._kept.values() if k.name == name and have_same_values(k.surfels, surfels))
-            kept = next(known, None) or _Kept(name, surfels, portions(surfels, MAX_SPLATS), 0, 0)
+            kept = next(known, None) or _Kept(name, surfels, portions(surfels, LARGEST_SET), 0, 0)
             self._kept[key] = kept._replace(skipped=skipped, strayed=strayed)
             self._current.add(key)
         kept = self._kept[key]

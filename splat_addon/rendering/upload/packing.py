@@ -22,6 +22,8 @@ BLEND_STEPS = 256
 #: Rows that all tested backends' textures support.
 MAX_ROWS = 16384
 MAX_SPLATS = SPLATS_PER_ROW * MAX_ROWS
+#: Surfels of one set that leave room for merged ones, of which each replaces two or more.
+LARGEST_SET = MAX_SPLATS // 2
 
 
 def pack_surfels(surfels: Surfels, order: np.ndarray) -> np.ndarray:

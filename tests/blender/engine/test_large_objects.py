@@ -7,6 +7,7 @@ import pytest
 
 from splat_addon.blender.export import scene
 from splat_addon.blender.export.live_meshes import LiveMeshes
+from splat_addon.rendering.upload import packing
 from splat_addon.surfels import portions
 
 
@@ -22,13 +23,27 @@ def sheet(add_camera, add_surfels):
 
 def test_the_picture_of_several_sets_is_that_of_one(sheet, picture, monkeypatch):
     whole = picture()
-    monkeypatch.setattr(scene, "MAX_SPLATS", 150)
+    monkeypatch.setattr(scene, "LARGEST_SET", 150)
     assert whole[..., 3].max() == 1 and np.abs(picture() - whole).max() < 1e-5
+
+
+def test_merged_surfels_fit_beside_those_of_the_largest_set(add_camera, add_surfels, picture, monkeypatch):
+    """The limits are lowered: 8,281 surfels and their merged ones exceed one texture, so two sets hold them."""
+    add_camera(location=(0, 0, 60))
+    x, y = np.meshgrid(np.linspace(-2, 2, 91), np.linspace(-2, 2, 91))
+    add_surfels(np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1), size=0.06)
+    bpy.context.scene.surfel_splatting.detail_tolerance = 1.25
+    monkeypatch.setattr(packing, "MAX_SPLATS", 8704)
+    monkeypatch.setattr(scene, "LARGEST_SET", 8704)
+    with pytest.raises(RuntimeError, match="can hold 8,704 surfels"):
+        picture()
+    monkeypatch.setattr(scene, "LARGEST_SET", 8704 // 2)
+    assert picture()[..., 3].max() > 0
 
 
 def test_the_sets_stay_the_same_from_frame_to_frame(sheet, monkeypatch):
     """The renderer recognises uploaded sets by their identity, so other objects would be uploaded again."""
-    monkeypatch.setattr(scene, "MAX_SPLATS", 150)
+    monkeypatch.setattr(scene, "LARGEST_SET", 150)
     store, live = scene.SurfelStore(), LiveMeshes()
     frames = []
     for _ in range(2):

@@ -370,7 +370,7 @@ def test_by_itself_the_density_is_a_resolution_where_the_camera_sees_nothing(liv
 def test_more_surfels_than_the_renderer_holds_in_one_set_look_the_same(live, picture, sampled, monkeypatch):
     bpy.ops.mesh.primitive_cube_add(size=1, rotation=(0.4, 0.3, 0.2))
     whole = picture()
-    monkeypatch.setattr(live_meshes, "MAX_SPLATS", 2000)
+    monkeypatch.setattr(live_meshes, "LARGEST_SET", 2000)
     sampled.clear()
     parts = picture()
     count = counts()["surfels"]
