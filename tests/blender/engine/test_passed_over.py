@@ -231,6 +231,18 @@ WALKED = {
         {"use_strand", "use_volumes", "use_freestyle", "use_grease_pencil", "use_ao", "active_aov_index",
          "active_lightgroup_index", "active_layer_collection", "name"},
     ),
+    "Material": (
+        {"pass_index", "use_nodes", "diffuse_color"},
+        set(),
+        # of EEVEE and the viewport alone, as in Cycles: both sides of a face are drawn, and alpha blends
+        {"surface_render_method", "blend_method", "alpha_threshold", "use_transparency_overlap",
+         "show_transparent_back", "use_backface_culling", "use_backface_culling_shadow",
+         "use_backface_culling_lightprobe_volume", "use_transparent_shadow", "use_raytrace_refraction",
+         "use_screen_refraction", "use_sss_translucency", "refraction_depth", "thickness_mode",
+         "use_thickness_from_shadow", "specular_color", "roughness", "specular_intensity", "metallic", "shadow_method",
+         # of displacement and volumes, which are named where they are linked
+         "displacement_method", "max_vertex_displacement", "volume_intersection_method"},
+    ),
     "World": (
         {"color", "use_nodes"},
         set(),  # the table names a world's volume and its ray visibility, which are not its own properties
@@ -266,6 +278,7 @@ WALKED = {
 #: simulation, sound, the compositor, the sequencer, files and what is written into pictures; or those of its interface.
 ELSEWHERE = {
     "World": ("tag", "asset_data"),
+    "Material": ("tag", "asset_data", "name", "preview_", "use_preview_", "paint_", "line_", "is_grease_pencil"),
     "ViewLayer": (),
     "Scene": ("name", "tag", "asset_data", "time_jump", "lock_frame", "allow_preroll", "use_preview", "frame_preview",
               "show_", "use_stamp", "use_custom_sim", "simulation_", "sync_mode", "playback_", "compositing_",
