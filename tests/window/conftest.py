@@ -29,7 +29,8 @@ def in_a_window(request):
     FOLDER.mkdir(parents=True, exist_ok=True)
 
     def in_a_window(script: str, seconds: int, *arguments: str, **environment: str) -> tuple[dict, Path]:
-        stem = f"{Path(script).stem}_{request.param}"
+        # two of pytest's processes may run the same script at the same time
+        stem = "_".join((Path(script).stem, request.param, *filter(None, [os.environ.get("PYTEST_XDIST_WORKER")])))
         shot, report = (FOLDER / f"{stem}{suffix}" for suffix in (".png", ".json"))
         for old in (shot, report):
             old.unlink(missing_ok=True)

@@ -52,6 +52,7 @@ def smooth_and_red(color: tuple[float, ...]) -> None:
 
 def play(steps, and_quit: bool = False) -> None:
     """Run a generator from a timer; it yields the seconds to wait before the next step, and returns the report."""
+    bpy.context.preferences.view.show_tooltips = False  # wherever the pointer rests, pictures are the same
 
     def run():
         try:
