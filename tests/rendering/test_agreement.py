@@ -201,18 +201,23 @@ def split(scene, camera):
     return replace(scene, surfels=(replace(ball, split_distance=2.6),), polygons=(floor, other, near)), camera
 
 
+def holed_paper():
+    """(64, 64, 4) a checkerboard of growing alpha."""
+    pixels = scenes.checks(64, 8)
+    pixels[..., 3] = np.linspace(0, 1, 64)[:, None]
+    return pixels
+
+
 def cut_out(scene, camera):
     """The scene with holes in the floor, which its shadow shows too; the floor hides a part of the ball."""
     (floor, other) = scene.polygons
-    pixels = scenes.checks(64, 8)
-    pixels[..., 3] = np.linspace(0, 1, 64)[:, None]
-    paper = SurfaceTexture(Image(pixels), is_cut_out=True)
+    paper = SurfaceTexture(Image(holed_paper()), is_cut_out=True)
     floor = replace(floor, shape=replace(floor.polygons, uvs=floor.polygons.positions[:, :2] * 0.7), textures=(paper,))
     return replace(shadowed(scene, camera)[0], polygons=(floor, other)), camera
 
 
 def bumpy(scene, camera):
-    """The scene with a normal map on the floor, under a light."""
+    """The scene with a normal map and holes on the floor, whose slot is past the last material and means that one."""
     (floor, other) = scene.polygons
     place, tangent = floor.polygons.positions[:, :2] * 0.7, (1.0, 0, 0)
     bumps = np.concatenate([place, np.tile((*tangent, 1.0), (len(place), 1))], axis=1)
@@ -220,8 +225,10 @@ def bumpy(scene, camera):
     normals = np.concatenate([slopes, np.full((64, 64, 1), 0.5)], axis=2)
     normals /= np.linalg.norm(normals, axis=2, keepdims=True)
     image = Image(np.concatenate([normals / 2 + 0.5, np.ones((64, 64, 1))], axis=2))
-    maps = (NormalTexture(image, 0.8),)
-    floor = replace(floor, shape=replace(floor.polygons, bumps=bumps), textures=(None,), normal_maps=maps)
+    paper, bump = SurfaceTexture(Image(holed_paper()), is_cut_out=True), NormalTexture(image, 0.8)
+    slots = np.ones(len(place), np.int32)
+    shape = replace(floor.polygons, uvs=place, bumps=bumps, materials=slots)
+    floor = replace(floor, shape=shape, textures=(paper,), normal_maps=(bump,))
     return replace(lit(scene, camera)[0], polygons=(floor, other)), camera
 
 
