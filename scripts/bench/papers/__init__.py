@@ -108,7 +108,9 @@ def _tables(renderer: Renderer, options, report) -> None:
 
 @lru_cache(maxsize=None)
 def _scene(path, resolution: int, size: int):
-    return in_view(sample_mesh(load(path), resolution=resolution), size)
+    """The model before the camera; its lights cast shadows in the settings that have any."""
+    scene, camera = in_view(sample_mesh(load(path), resolution=resolution), size)
+    return replace(scene, lights=tuple(replace(light, casts_shadow=True) for light in scene.lights)), camera
 
 
 def _rows(renderer: Renderer, case, unit: str, choices: dict, options, report):
