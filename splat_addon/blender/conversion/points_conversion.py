@@ -23,8 +23,22 @@ from .placement import without_shear
 from .surfel_objects import add_surfel_object, collections_of
 
 
+class _OfOneObject:
+    """A conversion whose only source is one object."""
+
+    source: bpy.types.Object
+
+    @property
+    def name(self) -> str:
+        return self.source.name
+
+    @property
+    def sources(self) -> list[bpy.types.Object]:
+        return [self.source]
+
+
 @dataclass(eq=False)
-class PointsConversion:
+class PointsConversion(_OfOneObject):
     """One source, the points read from it, and what will be reported.
 
     viewpoint: (3,) point that normals face, in the space of the points, or None.
@@ -37,14 +51,6 @@ class PointsConversion:
     seconds: float
     surfels: Surfels | None = None
     report: PointsReport | None = None
-
-    @property
-    def name(self) -> str:
-        return self.source.name
-
-    @property
-    def sources(self) -> list[bpy.types.Object]:
-        return [self.source]
 
     @property
     def materials(self) -> tuple[bpy.types.Material | None, ...]:
@@ -78,7 +84,7 @@ class PointsConversion:
 
 
 @dataclass(eq=False)
-class GaussiansConversion:
+class GaussiansConversion(_OfOneObject):
     """One point cloud of Gaussian splats; reading it already gives the surfels."""
 
     source: bpy.types.Object
@@ -87,14 +93,6 @@ class GaussiansConversion:
     matrix_world: Matrix
     materials: tuple[bpy.types.Material | None, ...]
     seconds: float
-
-    @property
-    def name(self) -> str:
-        return self.source.name
-
-    @property
-    def sources(self) -> list[bpy.types.Object]:
-        return [self.source]
 
     @property
     def notes(self) -> list[str]:

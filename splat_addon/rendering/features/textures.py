@@ -41,8 +41,9 @@ def is_present(planning) -> bool:
 
 
 def pixel_variance(planning) -> float:
-    """Of the filter of whatever is evaluated once: a sample, or each of its hardware samples, a smaller part of the
-    pixel."""
+    """The variance, in samples squared, of the pixel filter for what is evaluated once: a sample, or each of its
+    hardware samples, which are smaller parts of the pixel.
+    """
     settings, each = planning.settings, planning.settings.multisampling and planning.settings.sample_shading
     return planning.method.pixel_variance / (settings.multisampling if each else 1)
 
