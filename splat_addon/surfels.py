@@ -175,7 +175,7 @@ class Surfels(Shape):
     def clip_lines(self) -> tuple[np.ndarray, np.ndarray]:
         """(N, 2, 3) float64 lines a u + b v + c >= 0 of unit direction in half-axes, and (N,) bool, which surfels'
         lines make a reflex corner (`clip_lines.kept`)."""
-        first, second = (_or_default(self, name) for name in CLIP_FIELDS)
+        first, second = (field_values(self, name) for name in CLIP_FIELDS)
         return np.stack([unpack_lines(first), unpack_lines(second)], axis=1), are_reflex(first, second)
 
     def as_solid(self) -> Surfels:
@@ -235,7 +235,7 @@ def concatenate(parts: list[Surfels]) -> Surfels:
     if any((p.origin != parts[0].origin).any() for p in parts):
         raise ValueError("Only surfels with the same origin can be joined; move them to one origin first.")
     there = [n for n in OPTIONAL_LAYOUT if any(getattr(p, n) is not None for p in parts)]
-    joined = {n: np.concatenate([_or_default(p, n) for p in parts]) for n in (*LAYOUT, *there)}
+    joined = {n: np.concatenate([field_values(p, n) for p in parts]) for n in (*LAYOUT, *there)}
     return Surfels(origin=parts[0].origin, is_solid=all(p.is_solid for p in parts), **joined)
 
 
@@ -306,7 +306,7 @@ _DEMANDS = {
 }
 
 
-def _or_default(surfels: Surfels, name: str) -> np.ndarray:
+def field_values(surfels: Surfels, name: str) -> np.ndarray:
     """A field, or its default if it is an optional field that these surfels lack."""
     if getattr(surfels, name) is not None:
         return getattr(surfels, name)

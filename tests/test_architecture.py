@@ -17,10 +17,11 @@ MAY_IMPORT = {
     "images": set(),
     "sampling": {"clip_lines", "surfels", "images"},
     "hierarchy": {"clip_lines", "surfels"},
-    "rendering": {"clip_lines", "surfels", "images", "hierarchy"},
+    "rendering": {"clip_lines", "surfels", "images", "hierarchy", "streaming"},
     "interchange": {"clip_lines", "surfels"},
+    "streaming": {"clip_lines", "surfels", "hierarchy", "interchange"},
     "reference": {"clip_lines", "surfels", "images", "rendering"},
-    "blender": {"surfels", "sampling", "rendering", "interchange"},
+    "blender": {"surfels", "sampling", "rendering", "interchange", "streaming"},
 }
 #: `reference` reads rendering's data, never its passes.
 RENDERING_DATA = {"scene", "shadow", "settings", "frame", "view", "depth_range", "methods", "shading_models"}

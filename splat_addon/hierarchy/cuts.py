@@ -49,19 +49,19 @@ class Sight:
 def cut_entries(hierarchy: Hierarchy, sight: Sight) -> np.ndarray | None:
     """(n,) int32 indices of the surfels and nodes to draw, neighbours together; None: all surfels, in any order."""
     blocks = hierarchy.blocks
-    drawn = _cut(blocks, sight)
+    drawn = cut_blocks(blocks, sight)
     first, last = blocks.first[drawn], blocks.last[drawn]
     if (last <= hierarchy.surfels).all() and int((last - first).sum()) == hierarchy.surfels:
         return None
     return hierarchy.entries[ranges(first, last - first)]
 
 
-def _cut(blocks: Blocks, sight: Sight) -> np.ndarray:
+def cut_blocks(blocks: Blocks, sight: Sight) -> np.ndarray:
     """The indices of the blocks that are drawn."""
     front, drawn = np.arange(int(blocks.roots)), []
     while len(front):
-        front = front[_may_be_seen(blocks, front, sight)]
-        is_fine = _pixels(blocks, front, sight) <= sight.tolerance
+        front = front[may_be_seen(blocks, front, sight)]
+        is_fine = pixels_of_errors(blocks, front, sight) <= sight.tolerance
         is_fine |= blocks.first_child[front] == blocks.last_child[front]
         drawn.append(front[is_fine])
         coarse = front[~is_fine]
@@ -74,7 +74,7 @@ def _middle_half(blocks: Blocks, rows: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return (low + high) / 2, (high - low) / 2
 
 
-def _pixels(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
+def pixels_of_errors(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
     """(n,) largest error of each block in pixels, at its nearest point."""
     error = blocks.errors[rows].max(axis=1, initial=0.0) * sight.pixels
     if sight.is_parallel:
@@ -86,7 +86,7 @@ def _pixels(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
     return error / np.maximum(nearest, sight.near)
 
 
-def _may_be_seen(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
+def may_be_seen(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
     """(n,) bool: whether the box intersects the view volume, and the cone of normals contains a direction towards the
     eye."""
     middle, half = _middle_half(blocks, rows)

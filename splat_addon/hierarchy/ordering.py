@@ -8,7 +8,7 @@ import numpy as np
 #: Bits of a number that is sorted.
 BITS = 63
 #: Bits of each coordinate in the order along which neighbours are gathered.
-_ORDER_BITS = 16
+ORDER_BITS = 16
 #: Places that are worked on at a time, so that they stay in the processor's cache.
 _PORTION = 1 << 15
 
@@ -37,9 +37,17 @@ def spatial_order(positions: np.ndarray) -> np.ndarray:
     if not len(positions):
         return np.zeros(0, int)
     low, high = positions.min(axis=0).astype(np.float64), positions.max(axis=0).astype(np.float64)
-    size = max((high - low).max(), 1e-300)
     # so many that cells are a fraction of the distance between neighbours, and keys are sorted fast
-    bits = min(_ORDER_BITS, (BITS - max(len(positions) - 1, 1).bit_length()) // 3)
+    bits = min(ORDER_BITS, (BITS - max(len(positions) - 1, 1).bit_length()) // 3)
+    return sorted_with_order(morton_codes(positions, low, high, bits), 3 * bits)[1]
+
+
+def morton_codes(positions: np.ndarray, low: np.ndarray, high: np.ndarray, bits: int = ORDER_BITS) -> np.ndarray:
+    """(N,) int64 places of (N, 3) positions along a Morton curve through the box from `low` to `high`.
+
+    bits: of each coordinate, at most `ORDER_BITS`.
+    """
+    size = max((high - low).max(), 1e-300)
     codes = np.empty(len(positions), np.int64)
     for start in range(0, len(positions), _PORTION):
         some = slice(start, start + _PORTION)
@@ -47,7 +55,7 @@ def spatial_order(positions: np.ndarray) -> np.ndarray:
         cells = np.minimum(shares * 2**bits, 2**bits - 1).astype(np.int64)
         x, y, z = (_spread(np.ascontiguousarray(cells[:, axis])) for axis in range(3))
         codes[some] = x | y << 1 | z << 2
-    return sorted_with_order(codes, 3 * bits)[1]
+    return codes
 
 
 def _spread(bits: np.ndarray) -> np.ndarray:

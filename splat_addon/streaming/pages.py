@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rows of a file that are in memory: pages of equal size, of which those used least recently make room for new
+ones."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..hierarchy.blocks import BLOCK, ranges
+from .block_file import BlockFile
+
+#: Rows of a page: some 70 kB. A block spans at most two pages.
+PAGE = 1024
+assert BLOCK <= PAGE
+
+#: Pages besides the roots' that any budget has, so that something can be read.
+_FEWEST = 16
+_FOR_EVER = np.iinfo(np.int64).max
+
+
+class Pages:
+    """most_bytes: the memory that rows may take. The roots' pages are read at once and stay."""
+
+    def __init__(self, file: BlockFile, most_bytes: int):
+        self._file = file
+        count, roots = -(-file.rows // PAGE), int(file.blocks.roots)
+        pinned = np.unique(self._of_rows(file.blocks.first[:roots], file.blocks.last[:roots]))
+        slots = min(max(most_bytes // (PAGE * file.kind.itemsize), len(pinned) + _FEWEST), count)
+        # memory is taken from the system only as pages are filled
+        self._rows = np.empty((slots, PAGE), file.kind)
+        self._slots, self._pages = np.full(count, -1, np.int32), np.full(slots, -1)
+        self._used, self._now = np.zeros(slots, np.int64), 1
+        self.install(pinned, self.read(pinned))
+        self._used[self._slots[pinned]] = _FOR_EVER
+
+    @property
+    def nbytes(self) -> int:
+        """The memory of the pages that are filled."""
+        return int(np.count_nonzero(self._pages >= 0)) * self._rows[:1].nbytes
+
+    def have(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        """(n,) bool: whether all rows of each run from first to last, at most a page long, are here."""
+        return (self._slots[first // PAGE] >= 0) & (self._slots[(last - 1) // PAGE] >= 0)
+
+    def begin(self) -> None:
+        """Begin a view: pages used from now on stay until the next begins."""
+        self._now += 1
+
+    def use(self, first: np.ndarray, last: np.ndarray) -> None:
+        """Note that these runs, which are here, are used."""
+        for ends in (first, last - 1):
+            slots = self._slots[ends // PAGE]
+            self._used[slots] = np.maximum(self._used[slots], self._now)
+
+    def missing(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        """The pages that these runs lack, each once, in the order of the runs."""
+        pages = np.stack([first // PAGE, (last - 1) // PAGE], axis=1).ravel()
+        pages = pages[self._slots[pages] < 0]
+        return pages[np.sort(np.unique(pages, return_index=True)[1])]
+
+    def room(self) -> int:
+        """The number of pages that can be read without dropping one that this view uses."""
+        return int(np.count_nonzero(self._used < self._now))
+
+    def read(self, pages: np.ndarray) -> np.ndarray:
+        """(n, PAGE) rows of these pages, from the file; another thread may call this. Raises OSError."""
+        rows = np.zeros((len(pages), PAGE), self._file.kind)
+        order = np.argsort(pages)
+        for run in np.split(order, np.flatnonzero(np.diff(pages[order]) != 1) + 1) if len(pages) else ():
+            first = int(pages[run[0]]) * PAGE
+            together = np.empty(min(len(run) * PAGE, self._file.rows - first), self._file.kind)
+            self._file.read_into(together, first)
+            for number, place in enumerate(run):
+                some = together[number * PAGE : (number + 1) * PAGE]
+                rows[place, : len(some)] = some
+        return rows
+
+    def install(self, pages: np.ndarray, rows: np.ndarray) -> None:
+        """Take pages that were read, as many as there is room for; the least recently used ones are dropped."""
+        is_new = self._slots[pages] < 0
+        pages, rows = pages[is_new], rows[is_new]
+        free = np.flatnonzero(self._used < self._now)
+        free = free[np.argsort(self._used[free], kind="stable")][: len(pages)]
+        pages, rows = pages[: len(free)], rows[: len(free)]
+        dropped = self._pages[free]
+        self._slots[dropped[dropped >= 0]] = -1
+        self._rows[free], self._pages[free], self._slots[pages] = rows, pages, free
+        self._used[free] = self._now
+
+    def gathered(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        """(n,) the rows of these runs, which are here."""
+        numbers = ranges(first, last - first)
+        places = self._slots[numbers // PAGE].astype(np.int64) * PAGE + numbers % PAGE
+        return np.take(self._rows.reshape(-1), places)
+
+    @staticmethod
+    def _of_rows(first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        return np.concatenate([first // PAGE, (last - 1) // PAGE])

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A file of blocks as views see it: for each view, ordinary surfels."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import wait as wait_for
+from functools import cached_property
+from hashlib import blake2b
+from time import perf_counter
+from typing import NamedTuple
+from weakref import WeakValueDictionary
+
+import numpy as np
+
+from ..hierarchy import Sight
+from ..hierarchy.cuts import cut_blocks
+from ..surfels import Surfels
+from .block_file import BlockFile
+from .descent import descend
+from .layout import as_surfels
+from .pages import Pages
+
+#: Pages read between two looks at the clock, and read in the background at once: some 4 and 18 MB.
+_AT_ONCE, _IN_BACKGROUND = 64, 256
+
+
+class Seen(NamedTuple):
+    """surfels: what a view draws. is_whole: nothing that it needs is still to be read. is_short: the memory did not
+    suffice, so that some blocks are coarser than the view needs."""
+
+    surfels: Surfels
+    is_whole: bool
+    is_short: bool
+
+
+class Stream:
+    """One reader of a file. most_bytes: the memory that rows of the file may take, besides those that views hold.
+
+    Raises OSError or ValueError as `layout.read_directory`.
+    """
+
+    def __init__(self, path: str | os.PathLike, most_bytes: int):
+        self.file = BlockFile(path)
+        self.pages = Pages(self.file, most_bytes)
+        self.rows_read = 0
+        self._kept: dict[tuple, tuple[int, Seen]] = {}
+        self._same: WeakValueDictionary[bytes, Surfels] = WeakValueDictionary()
+        self._frame = 0
+        self._reader = ThreadPoolExecutor(1, "surfel blocks")
+        self._reading: tuple[np.ndarray, Future] | None = None
+
+    def __len__(self) -> int:
+        """The number of surfels, without merged ones."""
+        return self.file.count
+
+    @cached_property
+    def coarsest(self) -> Surfels:
+        """The surfels of the roots."""
+        return self._gathered(np.arange(int(self.file.blocks.roots)))
+
+    def at_most(self, count: int) -> Surfels:
+        """The finest cut with the same error everywhere that has at most this many surfels; if even the roots have
+        more, these. It is read from the file, whatever the memory."""
+        blocks, drawn = self.file.blocks, np.arange(int(self.file.blocks.roots))
+        error = float(blocks.errors[drawn].max(initial=0.0))
+        everything = np.array([[0, 0, 0, 1.0]])
+        while error > 0:
+            sight = Sight(everything, np.zeros(4), 1.0, 0.0, np.array([0, 0, 1.0, 0]), False, error)
+            finer = cut_blocks(blocks, sight)
+            if int((blocks.last[finer] - blocks.first[finer]).sum()) > count:
+                break
+            drawn, error = finer, error / 2
+            if (blocks.first_child[drawn] == blocks.last_child[drawn]).all():
+                break
+        rows = np.concatenate([self._read_run(blocks.first[k], blocks.last[k]) for k in drawn])
+        return as_surfels(rows, self.file.origin, self.file.is_solid)
+
+    def _read_run(self, first: int, last: int) -> np.ndarray:
+        rows = np.empty(int(last - first), self.file.kind)
+        self.file.read_into(rows, int(first))
+        return rows
+
+    def begin_frame(self) -> None:
+        """Forget the views that the previous frame did not draw."""
+        self._kept = {key: kept for key, kept in self._kept.items() if kept[0] == self._frame}
+        self._frame += 1
+
+    def seen(
+        self,
+        sight: Sight,
+        beside: float | None = None,
+        seconds: float | None = None,
+        told: Callable[[], None] | None = None,
+    ) -> Seen:
+        """What a view draws; the same object as long as nothing changes.
+
+        beside: as in `descend`. seconds: time to read; what is missing then is read in the background, and drawn from
+        its parents meanwhile; None reads everything. told: called between reads; it may raise.
+        Raises OSError if the file cannot be read.
+        """
+        key = sight.key, beside
+        if key in self._kept:
+            self._kept[key] = self._frame, self._kept[key][1]
+            return self._kept[key][1]
+        found = self._seen(sight, beside, None if seconds is None else perf_counter() + seconds, told)
+        if found.is_whole:
+            self._kept[key] = self._frame, found
+        return found
+
+    def _seen(self, sight: Sight, beside: float | None, until: float | None, told) -> Seen:
+        self.pages.begin()
+        while True:
+            is_late = not self._take_background(until)
+            cut = descend(self.file.blocks, self.pages, sight, beside)
+            wanted = cut.wanted[: self.pages.room()]
+            if not len(wanted):
+                return Seen(self._gathered(cut.drawn), True, bool(len(cut.wanted)))
+            for start in range(0, len(wanted), _AT_ONCE):
+                if is_late or (until is not None and perf_counter() >= until):
+                    self._read_in_background(wanted[start : start + _IN_BACKGROUND])
+                    return Seen(self._gathered(cut.drawn), False, False)
+                some = wanted[start : start + _AT_ONCE]
+                self._install(some, self.pages.read(some))
+                if told:
+                    told()
+
+    def _take_background(self, until: float | None) -> bool:
+        """Take what the background read; False if that takes longer than until then."""
+        if self._reading is None:
+            return True
+        pages, future = self._reading
+        if not wait_for([future], None if until is None else max(until - perf_counter(), 0)).done:
+            return False
+        self._reading = None
+        self._install(pages, future.result())
+        return True
+
+    def _read_in_background(self, pages: np.ndarray) -> None:
+        if self._reading is None:
+            self._reading = pages, self._reader.submit(self.pages.read, pages)
+
+    def _install(self, pages: np.ndarray, rows: np.ndarray) -> None:
+        self.pages.install(pages, rows)
+        self.rows_read += rows.size
+
+    def _gathered(self, drawn: np.ndarray) -> Surfels:
+        """The surfels of these blocks, which are here; the same object for the same blocks."""
+        key = blake2b(np.ascontiguousarray(drawn, np.int64).data, digest_size=16).digest()
+        surfels = self._same.get(key)
+        if surfels is None:
+            blocks = self.file.blocks
+            rows = self.pages.gathered(blocks.first[drawn], blocks.last[drawn])
+            surfels = self._same[key] = as_surfels(rows, self.file.origin, self.file.is_solid)
+        return surfels
+
+    def close(self) -> None:
+        """Stop reading; what was given stays valid."""
+        self._reader.shutdown(cancel_futures=True)
+        self.file.close()

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes a file of blocks out of core: memory holds a few portions of surfels, however many there are."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Iterable
+from dataclasses import fields
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import BinaryIO
+
+import numpy as np
+
+from ..hierarchy import build_hierarchy
+from ..hierarchy.blocks import Blocks, ranges
+from ..interchange.whole_file import whole_file
+from ..surfels import Surfels
+from .buckets import Survey, filled, portions_of, surveyed
+from .layout import align, as_surfels, begin, finish, joined_rows
+
+#: Surfels of one hierarchy.
+PORTION = 1 << 20
+
+#: Columns of `Blocks` -> their type in the file.
+COLUMNS = {f.name: "<i8" if "first" in f.name or "last" in f.name else "<f4" for f in fields(Blocks)}
+del COLUMNS["roots"]
+
+#: Called with the finished share (0 to 1) and the step; returning False cancels.
+Progress = Callable[[float, str], bool]
+
+
+class WritingCancelled(Exception):
+    """The progress callback returned False."""
+
+
+def write_blocks(
+    path: str | os.PathLike, parts: Iterable[Surfels], progress: Progress | None = None, portion: int = PORTION
+) -> int:
+    """Write a file in the format of `layout`; returns the number of surfels.
+
+    parts: sets of surfels, iterated twice; those with another origin than the first are moved to it.
+    The file appears under its name once it is complete. Until then it is written beside it, with temporary files of
+    the size of the surfels, and all that vanishes if anything fails. Raises ValueError as `surveyed` does, OSError,
+    WritingCancelled.
+    """
+    total = 0
+
+    def told(first: float, last: float, step: str) -> Callable[[int], None]:
+        def report(done: int) -> None:
+            share = first + (last - first) * done / total if total else first
+            if progress and progress(share, step) is False:
+                raise WritingCancelled
+
+        return report
+
+    survey = surveyed(parts, portion, told(0.0, 0.0, "Counting"))
+    total = survey.count
+    target = Path(os.path.realpath(path))
+    with TemporaryDirectory(dir=target.parent, prefix=f".{target.name[:40]}-") as name:
+        folder = Path(name)
+        files = filled(parts, survey, folder, told(0.0, 0.3, "Sorting"))
+        with whole_file(target) as stream:
+            _write(stream, survey, portions_of(files, survey, portion), folder, told(0.3, 1.0, "Merging"))
+    return survey.count
+
+
+def _write(stream: BinaryIO, survey: Survey, portions: Iterable[np.ndarray], folder: Path, told) -> None:
+    begin(stream)
+    tables, done, written = _Tables(folder), 0, 0
+    start = align(stream)
+    for rows in portions:
+        surfels = as_surfels(rows, survey.origin, survey.is_solid)
+        hierarchy = build_hierarchy(surfels)
+        rows = joined_rows(surfels, hierarchy.nodes, survey.kind)[hierarchy.entries]
+        stream.write(rows.view(np.uint8).data)
+        tables.add(hierarchy.blocks, rows, written)
+        written += len(rows)
+        done += len(surfels)
+        told(done)
+    # the roots' rows once more, side by side, so that whoever opens the file reads them at once
+    roots = np.concatenate(tables.root_rows)
+    stream.write(roots.view(np.uint8).data)
+    arrays = {"rows": {"offset": start, "count": written + len(roots)}, **tables.write(stream, written)}
+    finish(
+        stream,
+        {
+            "surfels": survey.count,
+            "origin": survey.origin.tolist(),
+            "is_solid": survey.is_solid,
+            "roots": tables.roots,
+            "fields": {name: int(np.prod(survey.kind[name].shape, initial=1)) for name in survey.kind.names},
+            "arrays": arrays,
+        },
+    )
+
+
+class _Tables:
+    """Collects the blocks of all portions: roots in memory, the others in files. Joined, all roots come first.
+
+    roots: their number. root_rows: rows of each portion's roots.
+    """
+
+    def __init__(self, folder: Path):
+        self._folder = folder
+        self._roots: dict[str, list[np.ndarray]] = {name: [] for name in COLUMNS}
+        self.root_rows: list[np.ndarray] = []
+        self.roots = self._others = 0
+
+    def add(self, blocks: Blocks, rows: np.ndarray, before: int) -> None:
+        """Add a portion's blocks. rows: the portion's. before: number of rows before it."""
+        own = int(blocks.roots)
+        self.root_rows.append(rows[ranges(blocks.first[:own], blocks.last[:own] - blocks.first[:own])])
+        for name, kind in COLUMNS.items():
+            column = getattr(blocks, name).astype(kind)
+            if name in ("first", "last"):
+                column += before
+            elif name in ("first_child", "last_child"):
+                column += self._others - own  # roots of all portions are counted in `write`
+            self._roots[name].append(column[:own])
+            with open(self._folder / name, "ab") as stream:
+                stream.write(column[own:].data)
+        self.roots += own
+        self._others += len(blocks) - own
+
+    def write(self, stream: BinaryIO, written: int) -> dict[str, dict]:
+        """Write the columns; returns their entries in the directory. written: rows before those of the roots."""
+        roots = {name: np.concatenate(parts) for name, parts in self._roots.items()}
+        sizes = roots["last"] - roots["first"]
+        roots["last"] = written + np.cumsum(sizes)
+        roots["first"] = roots["last"] - sizes
+        entries = {}
+        for name, kind in COLUMNS.items():
+            offset, column = align(stream), roots[name]
+            more = self.roots if name in ("first_child", "last_child") else 0
+            stream.write((column + more).astype(kind).data)
+            with open(self._folder / name, "rb") as others:
+                if more:
+                    while len(some := np.fromfile(others, kind, 1 << 20)):
+                        stream.write((some + more).data)
+                else:
+                    shutil.copyfileobj(others, stream, 1 << 20)
+            entries[name] = {"offset": offset, "type": kind, "shape": [self.roots + self._others, *column.shape[1:]]}
+        return entries

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A file of blocks holds every surfel bit by bit; a damaged or foreign one is refused with a sentence; what fails
+leaves nothing behind.
+"""
+
+import struct
+
+import numpy as np
+import pytest
+
+from splat_addon.streaming import BlockFile, WritingCancelled, write_blocks
+from splat_addon.surfels import Surfels, empty_surfels
+
+from .conftest import ball, sorted_rows
+
+
+def stored(path):
+    """The surfels of a file, without merged ones."""
+    file = BlockFile(path)
+    blocks, parts = file.blocks, []
+    for first, last in zip(
+        *(a[blocks.first_child == blocks.last_child] for a in (blocks.first, blocks.last)), strict=True
+    ):
+        rows = np.empty(last - first, file.kind)
+        file.read_into(rows, int(first))
+        parts.append(rows)
+    rows = np.concatenate(parts)
+    return Surfels(origin=file.origin, **{name: rows[name] for name in file.kind.names})
+
+
+@pytest.mark.parametrize("name", ["one_portion", "many_portions"])
+def test_it_holds_every_surfel_once_bit_by_bit(name, whole, request):
+    found = stored(request.getfixturevalue(name))
+    assert len(found) == len(whole)
+    assert np.array_equal(sorted_rows(found), sorted_rows(whole))
+
+
+def test_portions_are_runs_of_neighbours(many_portions):
+    file = BlockFile(many_portions)
+    high, low = file.blocks.high, file.blocks.low
+    assert file.blocks.roots >= 8
+    leaves = file.blocks.first_child == file.blocks.last_child
+    assert np.median((high - low).max(axis=1)[leaves]) < 0.4
+
+
+def test_optional_fields_and_an_origin_come_back(tmp_path):
+    fields = {"roughness": np.linspace(0, 1, 5000), "clip_line": np.ones((5000, 2), np.int16)}
+    surfels = ball(5000, origin=(1e6, 2.0, 3.0), is_solid=True, **fields)
+    write_blocks(tmp_path / "a.surfelblocks", [surfels])
+    file, found = BlockFile(tmp_path / "a.surfelblocks"), stored(tmp_path / "a.surfelblocks")
+    assert file.is_solid and (file.origin == surfels.origin).all()
+    assert np.array_equal(sorted_rows(found), sorted_rows(surfels))
+
+
+def test_parts_with_other_origins_are_moved_to_the_first(tmp_path):
+    here, there = ball(3000, origin=(1e5, 0, 0)), ball(3000, origin=(1e5, 4, 0))
+    write_blocks(tmp_path / "a.surfelblocks", [here, there])
+    found = stored(tmp_path / "a.surfelblocks")
+    expected = np.concatenate([here.positions, there.positions + np.float32([0, 4, 0])])
+    assert np.array_equal(np.sort(found.positions, axis=0), np.sort(expected, axis=0))
+
+
+def test_many_surfels_at_one_place_are_no_obstacle(tmp_path):
+    surfels = ball(6000)
+    heap = Surfels(**{**surfels.arrays(), "positions": np.zeros((6000, 3))})
+    assert write_blocks(tmp_path / "a.surfelblocks", [heap], portion=1000) == len(stored(tmp_path / "a.surfelblocks"))
+
+
+def test_what_cannot_be_stored_is_refused(tmp_path):
+    pale = ball(100)
+    pale = Surfels(**{**pale.arrays(), "colors": np.full((100, 4), 0.5)})
+    with pytest.raises(ValueError, match="Transparent surfels"):
+        write_blocks(tmp_path / "a.surfelblocks", [pale])
+    with pytest.raises(ValueError, match="no surfels"):
+        write_blocks(tmp_path / "a.surfelblocks", [empty_surfels()])
+    with pytest.raises(ValueError, match="read twice"):
+        write_blocks(tmp_path / "a.surfelblocks", iter([ball(100)]))
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("step", ["Counting", "Sorting", "Merging"])
+def test_cancelling_leaves_nothing_and_keeps_an_older_file(step, tmp_path):
+    path = tmp_path / "a.surfelblocks"
+    path.write_bytes(b"older")
+    with pytest.raises(WritingCancelled):
+        write_blocks(path, [ball(3000), ball(3000)], lambda share, name: name != step, portion=1000)
+    assert [p.name for p in tmp_path.iterdir()] == ["a.surfelblocks"] and path.read_bytes() == b"older"
+
+
+def test_progress_rises_to_the_end(tmp_path):
+    shares = []
+    write_blocks(tmp_path / "a.surfelblocks", [ball(3000)] * 3, lambda share, _: shares.append(share), portion=1000)
+    assert shares == sorted(shares) and shares[-1] == 1
+
+
+@pytest.mark.parametrize(
+    ("damage", "sentence"),
+    [
+        (lambda b: b[:-1], "cut off or damaged"),
+        (lambda b: b[: len(b) // 2], "cut off or damaged"),
+        (lambda b: b[:20], "not a file of surfels"),
+        (lambda b: b"", "not a file of surfels"),
+        (lambda b: b"ply\n" + b, "not a file of surfels"),
+        (lambda b: b[:8] + struct.pack("<I", 9) + b[12:], "version 9"),
+        (lambda b: b[:-9] + b"x" + b[-8:], "checksum"),
+        (lambda b: b + b"more", "cut off or damaged"),
+    ],
+)
+def test_a_damaged_or_foreign_file_is_refused_with_a_sentence(damage, sentence, one_portion, tmp_path):
+    path = tmp_path / "bad.surfelblocks"
+    path.write_bytes(damage(one_portion.read_bytes()))
+    with pytest.raises(ValueError, match=sentence):
+        BlockFile(path)
+
+
+def test_a_file_that_shrinks_while_it_is_open_is_an_error(one_portion, tmp_path):
+    path = tmp_path / "a.surfelblocks"
+    path.write_bytes(one_portion.read_bytes())
+    file = BlockFile(path)
+    with open(path, "r+b") as stream:
+        stream.truncate(4096)
+    with pytest.raises(OSError, match="ended while it was read"):
+        file.read_into(np.empty(1000, file.kind), 0)
