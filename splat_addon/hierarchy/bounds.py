@@ -2,8 +2,8 @@
 """Bounds on the difference between a merged surfel and the surfels it replaces, computed from its children's bounds.
 
 For a node and all surfels under it, in object units: off: no point of their ellipses is farther off its plane;
-uncovered: none, seen along its normal, is farther beside its ellipse; overhang: no point of its ellipse is farther from
-what all of them cover, seen along its normal.
+uncovered: none, seen along its normal, is farther beside its ellipse; overhang: none of `PLACES` on its ellipse is
+farther from what all of them cover, seen along its normal.
 And of what they show: spread, the largest difference of a colour's component, or half the length between normals.
 
 A child's bounds refer to its own normal. Seen along the parent's normal, which differs by an angle t, an offset from
@@ -23,6 +23,12 @@ from .runs import Runs
 #: Rounding error of float32 sums of a few terms, as a fraction of the node's size.
 _ROUNDING = np.float32(1e-5)
 
+#: Places on an ellipse, 12 on its rim and 6 halfway: 1, and two coordinates in half-axes. 12 are so close together that
+#: no point of the rim is more than a quarter of a half-axis from the nearest.
+_TURNS = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+_RIM = np.stack([np.cos(_TURNS), np.sin(_TURNS)])
+PLACES = np.vstack([np.ones(18), np.hstack([_RIM, _RIM[:, ::2] / 2])]).astype(np.float32)
+
 
 @dataclass(frozen=True, eq=False)
 class Frame:
@@ -38,13 +44,38 @@ class Frame:
         """(n,) a lower bound: how many half-axes of the parent's ellipse a given share of each child's ellipse
         reaches.
         """
-        first, second = (runs.spread(a / h) for a, h in ((self.first, self.longest), (self.second, self.shortest)))
-        beside = _dot(first, offsets) ** 2 + _dot(second, offsets) ** 2
-        (a, b), (c, d) = ([_dot(axis, half) for half in children.axes] for axis in (first, second))
+        (x, y), (a, b), (c, d) = self.flattened(children, runs, offsets)
         # the longer half-axis of what the child's circle is mapped to, its matrix's largest singular value
         squares, area = a * a + b * b + c * c + d * d, a * d - b * c
         longest = (squares + np.sqrt(np.maximum(squares * squares - 4 * area * area, 0))) / 2
-        return np.sqrt(beside) + share * np.sqrt(longest)
+        return np.sqrt(x * x + y * y) + share * np.sqrt(longest)
+
+    def flattened(self, children: Nodes, runs: Runs, offsets: np.ndarray) -> tuple:
+        """Three pairs of (n,) coordinates in the parent's half-axes, seen along its normal: those of each child's
+        centre along both, and of its two half-axis vectors along the first and along the second.
+        """
+        first, second = (runs.spread(a / h) for a, h in ((self.first, self.longest), (self.second, self.shortest)))
+        along = [[_dot(axis, half) for half in children.axes] for axis in (first, second)]
+        return (_dot(first, offsets), _dot(second, offsets)), *along
+
+    def bare(self, children: Nodes, runs: Runs, offsets: np.ndarray) -> np.ndarray:
+        """(m,) a bound on the distance of each of `PLACES` on the parent's ellipse from the nearest of its children's.
+
+        Outside a child's ellipse, at e times the way to its rim, the distance is at most e - 1 of its longer half-axes.
+        """
+        (x, y), (a, b), (c, d) = self.flattened(children, runs, offsets)
+        area = a * d - b * c
+        scale = np.where(area < 0, np.float32(-1), np.float32(1)) / np.maximum(np.abs(area), np.float32(1e-12))
+        # places in the child's half-axes: the inverse of its matrix, applied to their difference from its centre
+        across = np.stack([b * y - d * x, d, -b], axis=1) * scale[:, None] @ PLACES
+        along = np.stack([c * x - a * y, -c, a], axis=1) * scale[:, None] @ PLACES
+        across *= across
+        along *= along
+        across += along
+        beside = np.sqrt(across, out=across)
+        beside -= 1
+        beside *= children["radii"][:, None]
+        return np.maximum(np.minimum.reduceat(beside, runs.starts, axis=0).max(axis=1), 0)
 
 
 def bounds(children: Nodes, runs: Runs, offsets: np.ndarray, frame: Frame, shading, colors) -> dict[str, np.ndarray]:
@@ -62,13 +93,7 @@ def bounds(children: Nodes, runs: Runs, offsets: np.ndarray, frame: Frame, shadi
     outside = np.maximum(frame.reach(children, runs, offsets, np.float32(1)) - 1, 0) * runs.spread(frame.longest)
     uncovered = runs.largest(outside + children["uncovered"] + moved) + slack
 
-    # The offsets' mean is 0, so that for every direction there is a child that is not behind: of it at most a right
-    # angle from the point, and its ellipse that much nearer.
-    farthest = runs.largest(_dot(offsets, offsets) - height**2)
-    shorter = np.sqrt(np.minimum(*(_dot(axis, axis) for axis in children.axes)))
-    nearest = runs.least(shorter * np.sqrt(np.maximum(1 - tilt**2, 0)))
-    stick_out = np.maximum(np.sqrt(frame.longest**2 + np.maximum(farthest, 0)) - nearest, 0)
-    overhang = stick_out + runs.largest(children["overhang"] + moved) + slack
+    overhang = frame.bare(children, runs, offsets) + runs.largest(children["overhang"] + moved) + slack
 
     turned = np.sqrt(np.maximum(2 - 2 * _dot(runs.spread(shading), children["shading"]), 0)) / 2
     tinted = np.abs(runs.spread(colors) - children["colors"]).max(axis=0)

@@ -130,5 +130,5 @@ def test_a_smooth_surface_is_known_to_a_share_of_its_cells():
     surfels = make_surfels(*ball(count), half=1.25 * (4 * np.pi / count) ** 0.5)
     _, nodes, errors, levels = leaves_of(surfels)
     first = slice(0, int((levels[0].counts > 1).sum()))
-    assert np.median(errors[first, 1] / nodes.radius[first]) < 1.2
+    assert np.median(errors[first, 1] / nodes.radius[first]) < 0.4
     assert np.median(errors[first, 0] / nodes.radius[first]) < 0.2

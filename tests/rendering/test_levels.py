@@ -17,7 +17,7 @@ from splat_addon.rendering.methods import METHODS
 
 SIZE = (48, 40)
 EVERY = Settings(detail_tolerance=0.0, outputs=("color", "depth", "normal", "coverage"))
-SOME = replace(EVERY, detail_tolerance=1.5)
+SOME = replace(EVERY, detail_tolerance=0.8)
 
 
 def far_torus(count=80_000, size=SIZE):
