@@ -57,7 +57,8 @@ class SamplingOptions(Density):
     crease_angle: radians; splats end at clip lines (`edges.clipping`) where the surface turns by more than this (less
         beside large triangles, see `edges.borders`), and at borders of materials, colours and the surface itself;
         None: no clip lines. fits_blending: each surfel gets its own blend depth from the surface
-        (`attributes.blend_depths`).
+        (`attributes.blend_depths`). fits_planes: surfels lie in planes that fit the samples around them instead of
+        their triangles' (`refine.fitted_planes`); requires fits_blending; reductions that merge samples leave it out.
 
     Raises ValueError with one sentence for an unusable option.
     """
@@ -67,11 +68,14 @@ class SamplingOptions(Density):
     texture_mapped: bool = False
     crease_angle: float | None = None
     fits_blending: bool = False
+    fits_planes: bool = False
 
     def __post_init__(self):
         super().__post_init__()
         if self.crease_angle is not None and not 0 < self.crease_angle <= math.pi:
             raise ValueError(f"A crease's angle must be above 0 and up to pi radians, not {self.crease_angle}.")
+        if self.fits_planes and not self.fits_blending:
+            raise ValueError("Planes are fitted where blend depths tell that the surface bends; fit blending too.")
         if not (math.isfinite(self.splat_size) and self.splat_size > 0):
             raise ValueError(f"The splat size must be a finite number above 0, not {self.splat_size}.")
         if self.tolerance is not None and find_reduction(self.reduction).merge is not None:

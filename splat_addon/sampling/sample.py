@@ -36,6 +36,7 @@ from .options import SamplingOptions
 from .progress import Progress, stage
 from .refine.adaptive import merge_flat
 from .refine.component_surfels import component_surfels
+from .refine.fitted_planes import fit_planes
 from .refine.missed_components import SampledSurface, missed_components
 
 
@@ -145,6 +146,8 @@ class SamplingRun:
         gaps, gap_triangles = {}, np.empty(0, np.intp)
         if self.options.crease_angle is not None:
             arrays, gaps, gap_triangles = self._clipped(arrays, images, report)
+        if self.options.fits_planes and self._chosen.merge is None:
+            arrays = arrays | fit_planes(arrays, _rows_of(images), self.grid)
         saved, error = 0, 0.0
         if self.options.tolerance is not None:
             arrays, error = merge_flat(arrays, _axes_of(images), self.grid.spacing, self.options.tolerance)

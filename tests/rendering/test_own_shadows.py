@@ -141,7 +141,7 @@ def test_nor_does_one_with_folds_that_ends_at_them(is_smooth, light, with_and_wi
 
     If splats reached over folds of less than 30 degrees, it would be 3.3 %.
     """
-    mesh, edges = jug(), {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True}
+    mesh, edges = jug(), {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True, "fits_planes": True}
     truth = arriving(mesh, LIGHTS[light], CAMERA)
     for resolution in (64, 256):
         made = instance(mesh, resolution, is_smooth, **edges)

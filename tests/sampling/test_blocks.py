@@ -32,7 +32,7 @@ OPTIONS = {
     "merged": {"resolution": 60, "reduction": "three_to_one"},
     "by own normals": {"resolution": 60, "reduction": "surfel_normal"},
     "adaptive": {"resolution": 60, "tolerance": Tolerance(0.01)},
-    "clipped": {"resolution": 40, "crease_angle": math.radians(30), "fits_blending": True},
+    "clipped": {"resolution": 40, "crease_angle": math.radians(30), "fits_blending": True, "fits_planes": True},
 }
 
 

@@ -57,7 +57,7 @@ class Choices:
     splat_size: half-axis of a splat, in spacings.
     tolerance: how far from flat, in object units, the surface may be where surfels become larger, or None.
     texture_mapped: whether colours that are a single image are looked up at render time.
-    crease_angle: radians, beyond which splats end at edges and get their own blend depth, or None.
+    crease_angle: radians, beyond which splats end at edges, get their own blend depth and fit the surface, or None.
     space: "object" or "world": the space whose units lengths are in and in which surfels are evenly spaced.
     join: whether all sources become one, in world units.
     bake: whether inputs of materials that cannot be read come from Blender's own bake.
@@ -217,6 +217,7 @@ def sampling_options(conversion: Conversion) -> dict:
         "texture_mapped": choices.texture_mapped,
         "crease_angle": choices.crease_angle,
         "fits_blending": choices.crease_angle is not None,
+        "fits_planes": choices.crease_angle is not None,
     }
 
 

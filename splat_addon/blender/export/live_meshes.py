@@ -288,8 +288,8 @@ class LiveMeshes:
 
 
 def _deforming(mesh: TriangleMesh, spacing: float, texture_mapped: bool, ends_at_edges: bool) -> DeformingSurfels:
-    """A mesh sampled as the operator does. ends_at_edges: False for a part of a mesh whose border continues as
-    polygons.
+    """A mesh sampled as the operator does, but in the planes of its triangles: a plane that fits the surface would not
+    when this bends. ends_at_edges: False for a part of a mesh whose border continues as polygons.
     """
     edges = {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True} if ends_at_edges else {}
     return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped, **edges)

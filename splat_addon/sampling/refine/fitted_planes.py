@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Moves and tilts splats so that they fit the samples around them.
+
+A splat in the plane of its triangle sticks out of silhouettes: by k r^2 / 2 at its rim where the surface has curvature
+k, and by more where triangles are smaller than splats, as on scans. Here its plane becomes that of least squares
+through the sample and its neighbours (`image_samples`). What lies beyond a clip line is another piece of surface. A
+line keeps slightly more of a splat that has moved, because it no longer ends exactly where its neighbour does.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...clip_lines import CLIP_FIELDS, CUT, are_reflex, unpack_lines
+from ...surfels import quaternion_axes
+from ..attributes.blend_depths import LEAST_BLENDING
+from ..ldc.grid import Grid
+from .image_samples import ImageSamples
+
+#: The least cosine between the planes of neighbours, and how far off a sample's plane they may be, in cells.
+_SAME_SIDE, _FARTHEST = np.float32(0.5), np.float32(0.9)
+
+#: How much the triangle's own plane counts: for the offset as much as so many neighbours, and for the tilt as much as
+#: so many at a distance of one cell.
+_OWN_PLACE, _OWN_TILT = np.float32(1), np.float32(1)
+
+#: Weight of a neighbour in the next column or row, and of a diagonal one.
+_WEIGHT, _DIAGONAL = np.float32(1), np.float32(0.7)
+
+#: The steepest tilt, as a slope.
+_STEEPEST = np.float32(0.5)
+
+#: A line cuts less by this share of the offset and the slope of its splat.
+_KEPT = 0.5
+
+
+def fit_planes(arrays: dict[str, np.ndarray], images: list[tuple[int, slice]], grid: Grid) -> dict[str, np.ndarray]:
+    """The fields of `Surfels` that change: positions, rotations and clip lines.
+
+    arrays: samples with blend depths, which tell where the surface bends; positions relative to the grid's middle.
+    images: the samples of each image.
+    """
+    if not (arrays["blend_depth"] > LEAST_BLENDING).any():
+        return {}
+    places = np.ascontiguousarray(arrays["positions"].T) * np.float32(1 / grid.spacing)
+    axes = quaternion_axes(arrays["rotations"])
+    normals = np.ascontiguousarray(axes[2].T)
+    seen = [ImageSamples(places, normals, axis, rows) for axis, rows in images if rows.stop > rows.start]
+    lines = _Lines(arrays, axes, grid.spacing)
+    fits = [_Fit(image, lines) for image in seen]
+    for fit, image in zip(fits, seen, strict=True):
+        for another in seen:
+            if another is not image:
+                fit.add_from(another)
+    changed = {name: arrays[name].copy() for name in ("positions", "rotations", *CLIP_FIELDS) if name in arrays}
+    for fit, image in zip(fits, seen, strict=True):
+        _move(changed, image, *fit.solve(), arrays["scales"], grid.spacing)
+    return changed
+
+
+class _Lines:
+    """Which offsets from a surfel its lines keep. clipped: (N,) index among the c surfels with lines, or -1. covectors:
+    (2, 4, c), above 0 at offsets in cells, and 1, on the kept side. reflex: (c,) whether one line's side is enough."""
+
+    def __init__(self, arrays: dict[str, np.ndarray], axes: tuple[np.ndarray, ...], spacing: float):
+        count = len(arrays["positions"])
+        packed = [arrays.get(name, np.zeros((count, 2), np.int16)) for name in CLIP_FIELDS]
+        rows = np.flatnonzero((packed[0][:, 1] > 0) | (packed[1][:, 1] > 0))
+        self.clipped = np.full(count, -1, np.intp)
+        self.clipped[rows] = np.arange(len(rows))
+        packed = [values.take(rows, axis=0) for values in packed]
+        self.reflex = are_reflex(*packed)
+        half_axes = [
+            axis.take(rows, axis=0).T / (size.take(rows) / np.float32(spacing))
+            for axis, size in zip(axes, arrays["scales"].T, strict=False)
+        ]
+        self.covectors = np.empty((2, 4, len(rows)), np.float32)
+        for covector, line in zip(self.covectors, packed, strict=True):
+            a, b, c = unpack_lines(line).T
+            covector[:3], covector[3] = a * half_axes[0] + b * half_axes[1], c
+
+
+def _are_kept(covectors: np.ndarray, reflex: np.ndarray, offsets) -> np.ndarray:
+    """(m,) bool, by `_Lines` of m surfels. offsets: three of (m,), in cells along x, y and z."""
+    x, y, z = offsets
+    one, other = (a * x + b * y + c * z + d >= 0 for a, b, c, d in covectors)
+    return np.where(reflex, one | other, one & other)
+
+
+class _Fit:
+    """Sums over the neighbours of the samples of one image."""
+
+    def __init__(self, image: ImageSamples, lines: _Lines):
+        self._image, self._lines = image, lines
+        clipped = lines.clipped.take(image.rows)
+        self._clipped_at = np.flatnonzero(clipped >= 0)
+        clipped = clipped.take(self._clipped_at)
+        self._own_lines = lines.covectors.take(clipped, axis=2), lines.reflex.take(clipped)
+        count = len(image.rows)
+        self._weight, self._height = np.zeros(count, np.float32), np.zeros(count, np.float32)
+        self._squares, self._rises = np.zeros((2, count), np.float32), np.zeros((2, count), np.float32)
+        for step, neighbour in image.neighbours.items():
+            self._add(step, neighbour)
+
+    def _add(self, step: tuple[int, int], neighbour: np.ndarray):
+        """Add what the image has at this step from its samples. neighbour: (n,) by number in the image, or -1."""
+        image = self._image
+        rise = image.depth.take(neighbour)
+        rise -= image.depth
+        u, v, a = image.normals
+        height = a * rise
+        for along, component in zip(step, (u, v), strict=True):
+            if along:
+                (np.add if along > 0 else np.subtract)(height, component, out=height)
+        is_there = neighbour >= 0
+        is_there &= np.abs(height) <= _FARTHEST
+        at = self._clipped_at
+        offset = image.along_axes(np.float32(step[0]), np.float32(step[1]), rise.take(at))
+        is_there[at] &= _are_kept(*self._own_lines, offset)
+        weight = is_there * (_DIAGONAL if all(step) else _WEIGHT)
+        height *= weight
+        self._weight += weight
+        self._height += height
+        for along, square, rise in zip(step, self._squares, self._rises, strict=True):
+            if along:
+                square += weight
+                (np.add if along > 0 else np.subtract)(rise, height, out=rise)
+
+    def add_from(self, other: ImageSamples):
+        """Add neighbours that another image has at the steps where this one has none."""
+        image, lines = self._image, self._lines
+        is_next = image.next_axis == other.axis
+        missing = [np.flatnonzero(is_next & (image.neighbours[step] < 0)) for step in image.STEPS]
+        at = np.concatenate(missing)
+        u, v = np.repeat(np.array(image.STEPS, np.float32), [len(m) for m in missing], axis=0).T
+        own, normals = [place.take(at) for place in image.places], [n.take(at) for n in image.normals]
+        steps = image.along_axes(u, v, image.rise((u, v), normals))
+        found = other.nearest(*(place + step for place, step in zip(own, steps, strict=True)))
+        alike = image.in_order(*(n.take(found) for n in other.along_axes(*other.normals)))
+        is_alike = sum(one * its for one, its in zip(normals, alike, strict=True)) >= _SAME_SIDE
+        way = [place.take(found) - mine for place, mine in zip(other.places, own, strict=True)]
+        along = image.in_order(*way)
+        height = sum(one * step for one, step in zip(normals, along, strict=True))
+        is_alike &= (found >= 0) & (np.abs(height) <= _FARTHEST)
+        clipped = lines.clipped.take(image.rows.take(at))
+        some = np.flatnonzero(is_alike & (clipped >= 0))
+        clipped = clipped.take(some)
+        its = lines.covectors.take(clipped, axis=2), lines.reflex.take(clipped)
+        is_alike[some] = _are_kept(*its, [w.take(some) for w in way])
+        u, v, _ = along
+        sums = np.stack([np.ones_like(height), height, u * u, v * v, u * height, v * height])
+        keep = np.flatnonzero(is_alike)
+        at, sums = at.take(keep), sums.take(keep, axis=1)
+        for target, values in zip((self._weight, self._height, *self._squares, *self._rises), sums, strict=True):
+            target += np.bincount(at, values, len(target)).astype(np.float32)
+
+    def solve(self) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) offsets along the normals, in cells, and (3, n) slopes against the planes of the samples."""
+        image = self._image
+        rises = [rise / (square + _OWN_TILT) for rise, square in zip(self._rises, self._squares, strict=True)]
+        u, v, a = image.normals
+        across = rises[0] * u + rises[1] * v
+        slope = np.stack(image.along_axes(rises[0] - across * u, rises[1] - across * v, -across * a))
+        steepness = np.sqrt((slope * slope).sum(axis=0))
+        slope *= np.minimum(1, _STEEPEST / np.maximum(steepness, np.float32(1e-9)))
+        return self._height / (self._weight + _OWN_PLACE), slope
+
+
+def _move(changed, image: ImageSamples, offset: np.ndarray, slope: np.ndarray, scales: np.ndarray, spacing: float):
+    """Give the samples of an image planes that are off theirs by (n,) `offset`, in cells, and have a (3, n) `slope`
+    against them."""
+    rows, normals = image.rows, image.along_axes(*image.normals)
+    for column, component in zip(changed["positions"].T, normals, strict=True):
+        column[rows] += component * (offset * np.float32(spacing))
+    # The shortest turn from the normal n to n - slope.
+    (sx, sy, sz), (nx, ny, nz) = slope, normals
+    x, y, z = sy * nz - sz * ny, sz * nx - sx * nz, sx * ny - sy * nx
+    steepness = sx * sx + sy * sy + sz * sz
+    w = 1 + np.sqrt(1 + steepness)
+    a, b, c, d = (column.take(rows) for column in changed["rotations"].T)
+    turned = (
+        w * a - x * b - y * c - z * d,
+        w * b + x * a + y * d - z * c,
+        w * c - x * d + y * a + z * b,
+        w * d + x * c - y * b + z * a,
+    )
+    length = np.sqrt(w * w + x * x + y * y + z * z)
+    for column, values in zip(changed["rotations"].T, turned, strict=True):
+        column[rows] = values / length
+    # The first half-axis is the larger one (`ellipse_scales`).
+    less = np.abs(offset) + np.sqrt(steepness)
+    less *= np.float32(_KEPT * spacing * CUT) / np.take(scales[:, 0], rows)
+    for name in CLIP_FIELDS:
+        if name in changed:
+            cut = changed[name][:, 1].take(rows)
+            changed[name][rows, 1] = np.where(cut > 0, np.maximum(cut - less, 1), 0).astype(np.int16)

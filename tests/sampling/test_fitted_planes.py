@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Splats of curved and rough surfaces fit the samples around them, and those of flat ones stay as they are."""
+
+import numpy as np
+import pytest
+
+from splat_addon.clip_lines import CLIP_FIELDS
+from splat_addon.reference.bare import uncovered_points
+from splat_addon.sampling import DeformingSurfels, Tolerance, TriangleMesh, sample_mesh, sample_surface
+
+EDGES = {"crease_angle": np.radians(20), "fits_blending": True}
+FITTED = EDGES | {"fits_planes": True}
+
+
+def rims(surfels):
+    """(N, 16, 3) points on the rims of splats, object units."""
+    angles = np.arange(16) * np.pi / 8
+    x, y = surfels.half_axes()
+    around = np.cos(angles)[:, None] * x[:, None] + np.sin(angles)[:, None] * y[:, None]
+    return surfels.origin + surfels.positions[:, None] + around.astype(np.float64)
+
+
+@pytest.mark.parametrize("resolution", [12, 40, 160])
+def test_splats_of_a_ball_stick_out_less(sphere, resolution):
+    """The rim of a disc of radius r that touches the ball is sqrt(1 + r^2) - 1 outside of it."""
+    touching, fitted = (
+        np.linalg.norm(rims(sample_mesh(sphere, resolution=resolution, **options)), axis=2).mean() - 1
+        for options in (EDGES, FITTED)
+    )
+    assert touching > 0
+    assert fitted < 0.75 * touching
+
+
+def test_neighbours_in_another_image_count_too(sphere):
+    """Where the ball turns from one image into another, splats are moved inwards as far as elsewhere."""
+    surfels = sample_mesh(sphere, resolution=40, **FITTED)
+    places = surfels.positions + surfels.origin
+    inside = 1 - np.linalg.norm(places, axis=1)
+    least, most = np.sort(np.abs(places), axis=1)[:, 1:].T
+    # Within a column of the border, and where the third image is far.
+    beside = (most - least < 0.03) & (np.abs(places).min(axis=1) < 0.3)
+    assert beside.sum() > 60
+    assert inside[beside].mean() > 0.85 * inside[most > 0.9].mean()
+
+
+def test_rough_surfaces_stick_out_less_and_stay_covered(armadillo):
+    """Half of what splats stick out of the hull of a scan, whose triangles are smaller than they are, is gone."""
+    from scipy.spatial import cKDTree
+
+    fine = sample_mesh(armadillo, resolution=512)
+    tree, normals = cKDTree(fine.positions + fine.origin), fine.geometric_normals()
+    outside = []
+    for options in (EDGES, FITTED):
+        surfels = sample_mesh(armadillo, resolution=96, **options)
+        shown = rims(surfels)[(surfels.clip_line[:, 1] == 0) & (surfels.clip_line_2[:, 1] == 0)].reshape(-1, 3)
+        near = tree.query(shown)[1]
+        height = ((shown - fine.positions[near] - fine.origin) * normals[near]).sum(axis=1)
+        outside.append(np.maximum(height, 0).mean())
+        spacing = float(np.ptp(armadillo.positions, axis=0).max()) / 96
+        assert len(uncovered_points(armadillo, surfels, spacing)) < 0.001 * 40_000
+    assert outside[1] < 0.75 * outside[0]
+
+
+def test_flat_surfaces_stay_as_they_are(cube):
+    plain, fitted = (sample_mesh(cube(), resolution=20, **options).arrays() for options in (EDGES, FITTED))
+    for name, values in plain.items():
+        assert fitted[name].tobytes() == values.tobytes(), name
+
+
+def folded(angle: float) -> TriangleMesh:
+    """Two rectangles of 2 x 1 that meet along the y axis and turn by an angle, in radians."""
+    half = angle / 2
+    across, down = np.cos(half), -np.sin(half)
+    positions = np.array(
+        [(-across, -1, down), (0, -1, 0), (across, -1, down), (-across, 1, down), (0, 1, 0), (across, 1, down)]
+    )
+    return TriangleMesh(positions, np.array([(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4)]))
+
+
+def test_what_lies_beyond_a_clip_line_does_not_count():
+    """A fold of 10 degrees between large faces has clip lines, and both faces stay flat."""
+    surfels = sample_mesh(folded(np.radians(10)), resolution=32, **FITTED)
+    assert (surfels.clip_line[:, 1] > 0).sum() > 50
+    assert np.allclose(np.abs(surfels.geometric_normals()[:, 0]), np.sin(np.radians(5)), atol=1e-4)
+
+
+def test_splats_over_a_shallow_fold_turn_towards_it_and_others_stay():
+    angle = np.radians(2)
+    surfels = sample_mesh(folded(angle), resolution=32, **FITTED)
+    tilt, away = np.abs(surfels.geometric_normals()[:, 0]), np.abs(surfels.positions[:, 0] + surfels.origin[0]) * 16
+    assert np.allclose(tilt[away > 1.5], np.sin(angle / 2), atol=1e-5)
+    assert tilt[away < 0.6].max() < 0.9 * np.sin(angle / 2)
+
+
+def test_lines_of_splats_that_moved_keep_more_of_them_and_none_goes(armadillo):
+    plain, fitted = (sample_mesh(armadillo, resolution=64, **options) for options in (EDGES, FITTED))
+    for name in CLIP_FIELDS:
+        before, after = getattr(plain, name), getattr(fitted, name)
+        assert np.array_equal(before[:, 0], after[:, 0])
+        assert np.array_equal(before[:, 1] > 0, after[:, 1] > 0)
+        assert np.all(after[:, 1] <= before[:, 1])
+        assert (after[:, 1] < before[:, 1]).sum() > 500
+
+
+@pytest.mark.parametrize("reduction", ["none", "grazing", "surfel_normal", "three_to_one"])
+def test_every_reduction_stays_valid(sphere, reduction):
+    spacing = 2 / 12
+    surfels = sample_mesh(sphere, spacing=spacing, reduction=reduction, **FITTED)
+    assert np.allclose(np.linalg.norm(surfels.rotations, axis=1), 1, atol=1e-5)
+    assert np.abs(np.linalg.norm(surfels.positions + surfels.origin, axis=1) - 1).max() < spacing / 2
+
+
+def test_merged_samples_were_fitted_before(sphere):
+    sampling = sample_surface(sphere, resolution=96, tolerance=Tolerance(2e-3), **FITTED)
+    assert sampling.saved > 0 and sampling.error <= 2e-3
+
+
+def test_fitted_splats_follow_a_mesh_that_deforms(sphere):
+    deforming = DeformingSurfels(sphere, resolution=12, **FITTED)
+    rest, moved = sample_mesh(sphere, resolution=12, **FITTED), np.array((5.0, 0, 0))
+    surfels, _ = deforming.at(TriangleMesh(sphere.positions + moved, sphere.triangles, sphere.corner_normals))
+    assert np.allclose(surfels.positions + surfels.origin - moved, rest.positions + rest.origin, atol=1e-5)
+    assert np.abs((surfels.geometric_normals() * rest.geometric_normals()).sum(axis=1) - 1).max() < 1e-5
+
+
+def test_planes_cannot_be_fitted_without_blend_depths(cube):
+    with pytest.raises(ValueError, match="fit blending too"):
+        sample_mesh(cube(), resolution=4, fits_planes=True)
