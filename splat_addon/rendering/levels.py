@@ -37,9 +37,10 @@ def hierarchy_of(surfels: Surfels) -> Hierarchy:
 
 
 def has_levels(instance: Instance) -> bool:
-    """Whether an instance may be drawn as merged surfels: it needs many, opaque surfels. Objects that are split by
-    distance from the camera are excluded, because their surfels are selected by position."""
-    return len(instance.surfels) >= LEAST_SURFELS and not instance.is_transparent and instance.split_distance is None
+    """Whether an instance may be drawn as merged surfels: it needs many, opaque surfels, not merged already. Objects
+    that are split by distance from the camera are excluded, because their surfels are selected by position."""
+    is_opaque = not (instance.is_cut or instance.is_transparent)
+    return len(instance.surfels) >= LEAST_SURFELS and is_opaque and instance.split_distance is None
 
 
 def may_merge(instance: Instance, camera: Camera, tolerance: float) -> bool:

@@ -13,6 +13,9 @@ from .scene.camera import Camera
 from .settings import Settings
 from .shadow import ShadowMap
 
+#: Seconds that a picture spends on reading streamed surfels; what is missing then is read in the background.
+_READING = 0.05
+
 
 class Refinement:
     """The state of one view, with its own renderer.
@@ -28,6 +31,7 @@ class Refinement:
         self.samples = 0
         self._of: tuple[Scene, Camera, Settings] | None = None
         self._maps: tuple[ShadowMap, ...] | None = None
+        self._drawn: Scene | None = None
         self._refines = self._is_coarse = False
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
@@ -38,32 +42,51 @@ class Refinement:
         """
         if not self._is_of(scene, camera, settings):
             moves = self._of is not None and self._of[0] is scene and self._of[2] == settings
-            self._of, self.samples, self._maps = (scene, camera, settings), 0, None
-            self._refines, self._is_coarse = settings.samples > 1, False
-            yield from self._moving(scene, camera, settings) if moves else self.renderer.draw(scene, camera, settings)
+            self._of, self._is_coarse = (scene, camera, settings), False
+            self._begin(settings)
+            yield from self._moving(scene, camera, settings) if moves else self._first(scene, camera, settings)
             return
-        if self._refines and self.wants_more:
+        read = self._read(scene, camera, settings)
+        if read is not self._drawn:
+            self._begin(settings)
+            self._drawn = read
+        waits = self.renderer.streamed.is_waiting
+        if not waits and self._refines and self.samples < settings.samples:
             moved = sample_camera(camera, self.samples)
             fitted = moved if camera.lens else camera
-            self._maps = self.renderer.add_sample(scene, moved, fitted, settings, self.samples == 0, self._maps)
+            self._maps = self.renderer.add_sample(read, moved, fitted, settings, self.samples == 0, self._maps)
             self._refines = self._maps is not None
             self.samples += 1
         self._is_coarse = False
-        if self._refines:
+        if self._refines and self.samples:
             yield self.renderer.shown_sum(camera.size, self.samples)
         else:
-            yield from self.renderer.draw(scene, camera, settings)
+            yield from self.renderer.draw(read, camera, settings)
 
     @property
     def wants_more(self) -> bool:
         """Whether drawing again improves the picture."""
-        return self._is_coarse or (self._refines and self.samples < self._of[2].samples)
+        waits = self._is_coarse or self.renderer.streamed.is_waiting
+        return waits or (self._refines and self.samples < self._of[2].samples)
+
+    def _begin(self, settings: Settings) -> None:
+        self.samples, self._maps, self._refines = 0, None, settings.samples > 1
+
+    def _read(self, scene: Scene, camera: Camera, settings: Settings) -> Scene:
+        """The scene with the surfels that could be read in time."""
+        return self.renderer.streamed.resolved(scene, camera, settings, _READING)
+
+    def _first(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
+        """The first picture of a scene."""
+        self._drawn = self._read(scene, camera, settings)
+        return self.renderer.draw(self._drawn, camera, settings)
 
     def _moving(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
         """The picture of a camera that moves, as coarse as its pace requires."""
         drawn, device = self.pace.begin(settings), self.renderer.device
         self._is_coarse = drawn is not settings
-        for shown in self.renderer.draw(scene, camera, drawn):
+        self._drawn = self._read(scene, camera, drawn)
+        for shown in self.renderer.draw(self._drawn, camera, drawn):
             if self.pace.rate is not None:
                 device.finish(device.target([shown.texture]))
             yield shown

@@ -29,6 +29,7 @@ from .scene.camera import Camera
 from .scene.panorama import Panorama
 from .settings import Settings
 from .shadow import ShadowMap, casting, same_maps
+from .streamed import Streamed
 from .upload.resources import Resources
 from .view import build_view
 
@@ -58,6 +59,7 @@ class Renderer:
     def __init__(self, device: Device):
         self.device = device
         self.resources = Resources(device)
+        self.streamed = Streamed()
 
     def render(
         self,
@@ -96,12 +98,22 @@ class Renderer:
             turns = iter([progress])
         else:
             turns = (progress and _share(progress, turn, settings.samples) for turn in range(settings.samples))
+        read = ((self._read(scene, camera, settings, progress), camera) for scene, camera in moments)
         frames = (
             frame
-            for block, (scene, camera) in zip(blocks, moments, strict=True)
+            for block, (scene, camera) in zip(blocks, read, strict=True)
             for frame in self._samples(scene, camera, settings, block, turns, part)
         )
         return mean_frame(frames) if settings.samples > 1 else next(frames)
+
+    def _read(self, scene, camera, settings, progress: Progress | None) -> Scene:
+        """The scene with everything that its streamed instances need for this view."""
+
+        def told() -> None:
+            if progress and progress(0.0, "reading surfels") is False:
+                raise RenderCancelled
+
+        return self.streamed.resolved(scene, camera, settings, told=told)
 
     def _samples(
         self, scene, camera, settings, numbers: list[int], turns: Iterator, part: Tile | None
@@ -158,7 +170,10 @@ class Renderer:
         return self.device.target([self.resources.texture(key)]).read(0)
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
-        """For a viewport, one sample: yields the tiles. A texture is valid until the next tile is requested."""
+        """For a viewport, one sample: yields the tiles. A texture is valid until the next tile is requested.
+
+        Streamed instances are drawn as they are: `streamed.resolved` first replaces them.
+        """
         self._check(settings)
         frame_plan = plan(scene, camera, settings)
         if not frame_plan.passes:
@@ -229,6 +244,7 @@ class Renderer:
             "instances_outside": 0,
             "instances_degenerate": 0,
             "surfels_coarse": 0,
+            "short_of_memory": self.streamed.short,
             "layers": 0,
             "culled": frame_plan.facts.get("culled", 0),
             "passes": {},

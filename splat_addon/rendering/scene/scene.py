@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ...streaming import Stream
 from ...surfels import Surfels, quaternion_axes
 from .camera import Camera
 from .environment import Environment
@@ -146,7 +147,14 @@ class Placed:
 
 @dataclass(frozen=True, eq=False)
 class Instance(Placed):
-    """Surfels placed in the world."""
+    """Surfels placed in the world.
+
+    stream: the file that finer surfels are read from, as each view needs them; the shape has the coarsest ones.
+    is_cut: whether the shape is what a view draws of that, so that no view merges it further.
+    """
+
+    stream: Stream | None = None
+    is_cut: bool = False
 
     @property
     def surfels(self) -> Surfels:

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An instance that is streamed from a file looks as if it were in memory, in every kind of view, and while its blocks
+are still being read it has no hole.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import scenes
+from splat_addon.reference.metrics import psnr
+from splat_addon.rendering import (
+    Camera,
+    Equirectangular,
+    Instance,
+    Light,
+    Panorama,
+    Refinement,
+    RenderCancelled,
+    Renderer,
+    Settings,
+)
+from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.upload import packing
+from splat_addon.streaming import Stream, write_blocks
+
+SIZE = (48, 40)
+SETTINGS = Settings(detail_tolerance=1.25, outputs=("color", "depth", "normal", "coverage"))
+PLENTY = 1 << 30
+
+
+def torus(count=80_000):
+    scene, camera = scenes.torus(count, SIZE)
+    return replace(scene, lights=tuple(replace(light, casts_shadow=True) for light in scene.lights)), camera
+
+
+@pytest.fixture(scope="session")
+def file(tmp_path_factory):
+    """The path of the outer torus in several portions."""
+    path = tmp_path_factory.mktemp("streamed") / "torus.surfelblocks"
+    write_blocks(path, [torus()[0].surfels[0].surfels], portion=20_000)
+    return path
+
+
+def streamed(scene, stream, **fields):
+    """The scene with the surfels of its first object streamed."""
+    own, *others = scene.surfels
+    return replace(scene, surfels=(replace(own, shape=stream.coarsest, stream=stream, **fields), *others))
+
+
+def parallel(camera):
+    return Camera.orthographic(camera.matrix_world, 3.0, SIZE, 0.1, 10)
+
+
+def beside(camera):
+    """A part of the torus, whose other part casts a shadow into the picture."""
+    return camera.cropped(20, 4, 24, 30)
+
+
+def same(camera):
+    return camera
+
+
+@pytest.mark.parametrize("view", [same, parallel, beside], ids=lambda v: v.__name__)
+@pytest.mark.parametrize("shadows", [0, 512])
+def test_it_looks_as_if_it_were_in_memory(view, shadows, file, render):
+    scene, camera = torus()
+    settings = replace(SETTINGS, shadow_resolution=shadows)
+    found = render(streamed(scene, Stream(file, PLENTY)), view(camera), settings)
+    merged = render(scene, view(camera), settings)
+    every = render(scene, view(camera), replace(settings, detail_tolerance=0.0))
+    assert found.stats["splats_drawn"] < 0.2 * every.stats["splats_drawn"]
+    assert psnr(found.color, every.color) > max(psnr(merged.color, every.color) - 1, 31)
+    inside = every.coverage > 0.999
+    assert inside.sum() > 200 and found.coverage[inside].min() > 0.99
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_tolerance_of_0_draws_the_very_picture(method, file, render):
+    scene, camera = torus()
+    settings = replace(SETTINGS, method=method, detail_tolerance=0.0)
+    found, every = render(streamed(scene, Stream(file, PLENTY)), camera, settings), render(scene, camera, settings)
+    assert found.stats["splats_drawn"] == every.stats["splats_drawn"]
+    # sums of floats differ by their order
+    assert np.abs(found.color - every.color).max() < 2e-3 and psnr(found.color, every.color) > 90
+
+
+def test_a_moved_and_mirrored_instance_in_a_panorama(file, render):
+    scene, _ = torus()
+    matrix = np.diag([-1, 1.2, 0.7, 1.0])
+    matrix[:3, 3] = 2.0, 0.7, 0.2
+    scene = replace(scene, surfels=(replace(scene.surfels[0], matrix_world=matrix),))
+    view = Panorama(np.eye(4), Equirectangular(), (64, 32), 0.01, 100)
+    found = render(streamed(scene, Stream(file, PLENTY), matrix_world=matrix), view, SETTINGS)
+    every = render(scene, view, replace(SETTINGS, detail_tolerance=0.0))
+    assert found.stats["splats"] < 0.5 * every.stats["splats"]
+    assert (every.coverage > 0.9).sum() > 20 and psnr(found.color, every.color) > 38
+
+
+def test_a_still_second_picture_reads_and_uploads_nothing(file, on_device):
+    scene, camera = torus()
+    stream = Stream(file, PLENTY)
+    scene = streamed(scene, stream)
+
+    def job(device):
+        renderer = Renderer(device)
+        first = renderer.render(scene, camera, SETTINGS)
+        read, before = stream.rows_read, renderer.streamed.resolved(scene, camera, SETTINGS)
+        second = renderer.render(scene, camera, SETTINGS)
+        assert stream.rows_read == read > 0
+        assert renderer.streamed.resolved(scene, camera, SETTINGS) is before
+        surfels = before.surfels[0].surfels
+        held = renderer.resources._held[surfels]
+        renderer.render(scene, camera, SETTINGS)
+        assert renderer.resources._held[surfels] is held
+        return first.color, second.color
+
+    first, second = on_device(job)
+    assert np.array_equal(first, second)
+
+
+def test_a_set_too_large_for_one_texture_is_drawn_in_parts(file, render, monkeypatch):
+    monkeypatch.setattr("splat_addon.rendering.streamed.LARGEST_SET", 9000)
+    assert packing.LARGEST_SET > 9000
+    scene, camera = torus()
+    settings = replace(SETTINGS, detail_tolerance=0.0, shadow_resolution=0)
+    found, every = render(streamed(scene, Stream(file, PLENTY)), camera, settings), render(scene, camera, settings)
+    assert found.stats["instances"] == 7 and psnr(found.color, every.color) > 90
+
+
+def test_memory_that_does_not_suffice_is_reported(file, render):
+    scene, camera = torus()
+    settings = replace(SETTINGS, detail_tolerance=0.0, shadow_resolution=0)
+    found = render(streamed(scene, Stream(file, 0), name="ring"), camera, settings)
+    every = render(scene, camera, settings)
+    assert found.stats["short_of_memory"] == ("ring",) and not every.stats["short_of_memory"]
+    assert found.coverage[every.coverage > 0.999].min() > 0.98
+
+
+def test_a_render_is_cancelled_while_it_reads(file, on_device):
+    scene, camera = torus()
+    scene, asked = streamed(scene, Stream(file, PLENTY)), []
+
+    def progress(share, step):
+        asked.append(step)
+        return False
+
+    def job(device):
+        with pytest.raises(RenderCancelled):
+            Renderer(device).render(scene, camera, SETTINGS, progress)
+
+    on_device(job)
+    assert asked == ["reading surfels"]
+
+
+def test_a_viewport_has_no_hole_and_becomes_what_a_render_is(file, on_device, monkeypatch):
+    monkeypatch.setattr("splat_addon.rendering.refinement._READING", 0.0)
+    scene, camera = torus()
+    settings = replace(SETTINGS, samples=2, outputs=("color",), transparent_film=True, detail_tolerance=0.5)
+    stream = Stream(file, PLENTY)
+    scene = streamed(scene, stream)
+
+    def job(device):
+        view, pictures = Refinement(Renderer(device)), []
+        for _ in range(40):
+            for shown in view.draw(scene, camera, settings):
+                x, y, width, height = shown.part
+                pixels = device.target([shown.texture]).read(0)[y : y + height, x : x + width]
+                pictures.append(pixels * shown.scale)
+            if not view.wants_more:
+                break
+            if stream._reading:
+                stream._reading[1].result()
+        assert view.samples == 2 and not view.wants_more
+        return pictures, Renderer(device).render(scene, camera, settings).color
+
+    pictures, render = on_device(job)
+    inside = render[..., 3] > 0.999
+    assert len(pictures) > 4 and inside.sum() > 100
+    assert min(picture[..., 3][inside].min() for picture in pictures) > 0.97
+    assert np.abs(pictures[-1] - render).max() < 1e-5
+
+
+def test_many_instances_share_one_file(file, render):
+    """Forty small rings in a row, as if each were an object in memory."""
+    scene, camera = torus()
+    stream, matrices = Stream(file, PLENTY), [np.diag([0.1, 0.1, 0.1, 1.0]) for _ in range(40)]
+    for number, matrix in enumerate(matrices):
+        matrix[0, 3], matrix[1, 3] = number % 8 * 0.3 - 1, number // 8 * 0.3 - 0.6
+    surfels = scene.surfels[0].surfels
+    there = replace(scene, surfels=tuple(Instance(stream.coarsest, m, stream=stream) for m in matrices))
+    here = replace(scene, surfels=tuple(Instance(surfels, m) for m in matrices), lights=(Light("sun", energy=2),))
+    there = replace(there, lights=here.lights)
+    found = render(there, camera, replace(SETTINGS, shadow_resolution=0))
+    every = render(here, camera, replace(SETTINGS, shadow_resolution=0))
+    assert found.stats["instances"] == 40 and psnr(found.color, every.color) > 35
