@@ -7,6 +7,7 @@ from __future__ import annotations
 from . import commands, manual, mesh_sampling_settings, operators, preferences, properties, translations
 from .conversion import bring_back, mesh_settings, prediction, source_record
 from .engine import render_engine, render_passes
+from .geometry import surfel_files
 from .ui import (
     camera_panels,
     light_panels,
@@ -37,6 +38,7 @@ MODULES = (
     mesh_settings,
     preferences,
     source_record,
+    surfel_files,
     bring_back,
     operators,
     prediction,

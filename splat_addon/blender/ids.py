@@ -20,6 +20,7 @@ RENDER_PRESET = "render.surfel_preset"
 ADD_RENDER_PRESET = "render.surfel_preset_add"
 ADD_CONVERSION_PRESET = "object.surfel_conversion_preset_add"
 UPDATE_SURFELS = "object.surfels_update"
+STORE_SURFELS = "object.surfels_to_file"
 SHOW_SURFELS = "view3d.surfels_show"
 
 #: The context of texts that mean something else in Blender, whose own translations come before an extension's.
@@ -48,6 +49,9 @@ LAYER_SETTINGS = "surfel_splatting"
 
 #: An object's render settings: `object.surfel_splatting`.
 OBJECT_SETTINGS = "surfel_splatting"
+
+#: A surfel mesh's settings: `mesh.surfel_splatting`.
+MESH_SETTINGS = "surfel_splatting"
 
 #: What a surfel object was made from, and how: `object.surfel_record`.
 SURFEL_RECORD = "surfel_record"

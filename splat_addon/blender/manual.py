@@ -15,6 +15,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 
 _SETTINGS = "bpy.types.surfelsplattingsettings"
 _CONVERT, _POINTS = "guide.md#convert-a-mesh", "guide.md#convert-points-and-scans"
+_FILES = "guide.md#more-surfels-than-memory"
 _LIGHT = "guide.md#light-materials-and-cameras"
 
 #: Blender's name of a setting or an operator in lower case, with * for any letters -> page and heading; the first that
@@ -38,9 +39,12 @@ PAGES = (
     ("bpy.types.surfelsource*", _CONVERT),
     ("bpy.types.surfelrecord*", _CONVERT),
     ("bpy.types.surfelpreferences.most_megabytes", "choose.md#memory"),
+    ("bpy.types.surfelpreferences.stream_megabytes", _FILES),
     ("bpy.types.surfelpreferences*", _CONVERT),
     ("bpy.ops.object.surfels_from_mesh*", _CONVERT),
     ("bpy.ops.object.surfels_update*", _CONVERT),
+    ("bpy.ops.object.surfels_to_file*", _FILES),
+    ("bpy.types.surfelmeshsettings*", _FILES),
     ("bpy.ops.object.surfel_conversion_preset_add*", _CONVERT),
     ("bpy.ops.view3d.surfels_show*", _CONVERT),
     ("bpy.ops.object.surfels_from_points*", _POINTS),

@@ -21,6 +21,7 @@ from .ids import CONVERSION_SETTINGS
 ROOT = __package__.removesuffix(".blender").removesuffix(".splat_addon")
 
 MEGABYTE = 1_000_000
+_STREAM_MEGABYTES = 512
 
 
 class SurfelPreferences(bpy.types.AddonPreferences):
@@ -36,12 +37,23 @@ class SurfelPreferences(bpy.types.AddonPreferences):
         soft_max=64_000,
         default=0,
     )
+    stream_megabytes: IntProperty(
+        name="Memory of a Surfel File",
+        description=(
+            "Maximum memory in megabytes that a final render, and each 3D view, may use for the surfels of each file "
+            "that they are read from. Parts of a picture that need more are drawn coarser"
+        ),
+        min=16,
+        soft_max=64_000,
+        default=_STREAM_MEGABYTES,
+    )
     conversion: PointerProperty(name="Conversion", type=SurfelConversionSettings)
 
     def draw(self, context):
         layout = self.layout
         layout.use_property_split = True
         layout.prop(self, "most_megabytes")
+        layout.prop(self, "stream_megabytes")
         device = layout.box()
         device.label(text="Graphics Device", icon="SYSTEM")
         for line in device_lines():
@@ -61,6 +73,12 @@ def most_bytes() -> int | None:
     """Maximum memory of a picture in bytes; None for no limit."""
     chosen = preferences()
     return chosen.most_megabytes * MEGABYTE if chosen and chosen.most_megabytes else None
+
+
+def stream_bytes() -> int:
+    """Maximum memory for the rows of a file of surfels, in bytes."""
+    chosen = preferences()
+    return (chosen.stream_megabytes if chosen else _STREAM_MEGABYTES) * MEGABYTE
 
 
 def device_lines() -> tuple[str, ...]:

@@ -12,11 +12,12 @@ from .gaussian_ply import write_gaussian_ply
 from .gaussians import DEFAULT_FLATNESS, Gaussians, flat_gaussians
 from .placement import joined, transformed
 from .point_ply import Points
-from .surfel_ply import StoredSurfels, read_ply, write_ply
+from .surfel_ply import PlyPortions, StoredSurfels, read_ply, write_ply
 
 __all__ = [
     "DEFAULT_FLATNESS",
     "Gaussians",
+    "PlyPortions",
     "Points",
     "StoredSurfels",
     "flat_gaussians",

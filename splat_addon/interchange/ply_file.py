@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Iterator
 from itertools import islice
 from typing import BinaryIO
 
@@ -28,6 +29,15 @@ def read_vertices(path: str | os.PathLike) -> tuple[dict[str, np.ndarray], tuple
 
     Raises ValueError with one sentence for a file that is not PLY or is damaged, OSError if it cannot be opened.
     """
+    return next(vertex_portions(path))
+
+
+def vertex_portions(
+    path: str | os.PathLike, most: int | None = None
+) -> Iterator[tuple[dict[str, np.ndarray], tuple[str, ...]]]:
+    """The vertices as in `read_vertices`, but at most so many at a time; at least one portion, which may be empty. A
+    text file is a single portion.
+    """
     size = os.path.getsize(path)
     with open(path, "rb") as stream:
         header = read_header(stream)
@@ -40,9 +50,11 @@ def read_vertices(path: str | os.PathLike) -> tuple[dict[str, np.ndarray], tuple
         if not vertex.types:
             raise ValueError("The points in the PLY file have no properties, not even a position.")
         before = header.elements[: header.elements.index(vertex)]
-        read = _read_text if header.byte_order is None else _read_binary
-        columns = read(stream, size, header, before, vertex)
-    return columns, header.comments
+        if header.byte_order is None:
+            yield _read_text(stream, size, header, before, vertex), header.comments
+        else:
+            for columns in _read_binary(stream, size, header, before, vertex, most):
+                yield columns, header.comments
 
 
 def write_vertices(
@@ -70,7 +82,9 @@ def write_vertices(
             stream.write(rows.view(np.uint8).data)
 
 
-def _read_binary(stream: BinaryIO, size: int, header: Header, before, vertex: Element) -> dict[str, np.ndarray]:
+def _read_binary(
+    stream: BinaryIO, size: int, header: Header, before, vertex: Element, most: int | None
+) -> Iterator[dict[str, np.ndarray]]:
     skipped = 0
     for element in before:
         if None in element.types.values():
@@ -87,8 +101,10 @@ def _read_binary(stream: BinaryIO, size: int, header: Header, before, vertex: El
             f"but only {max(available, 0):,} bytes are left for them; it is cut off or damaged."
         )
     stream.seek(header.size + skipped)
-    rows = np.frombuffer(stream.read(vertex.count * row.itemsize), row)
-    return {name: np.ascontiguousarray(rows[name], rows[name].dtype.newbyteorder("=")) for name in vertex.types}
+    for first in range(0, max(vertex.count, 1), most or max(vertex.count, 1)):
+        count = min(most or vertex.count, vertex.count - first)
+        rows = np.frombuffer(stream.read(count * row.itemsize), row)
+        yield {name: np.ascontiguousarray(rows[name], rows[name].dtype.newbyteorder("=")) for name in vertex.types}
 
 
 def _row_type(element: Element, header: Header) -> np.dtype:

@@ -20,19 +20,21 @@ Comments: "surfel_splatting 1"; "origin X Y Z" if it is not 0; "solid" if the su
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
 from .columns import NORMAL, POSITION, ROTATION, as_columns, display_color, has, linear_to_srgb, matrix
-from .ply_file import read_vertices, write_vertices
+from .ply_file import read_vertices, vertex_portions, write_vertices
 
 _VERSION, _ORIGIN, _SOLID = "surfel_splatting 1", "origin", "solid"
 _SCALE = ("scale_0", "scale_1")
 _COLOR = ("color_0", "color_1", "color_2", "color_3")
 _DISPLAY_COLOR = ("red", "green", "blue", "alpha")
 _WHITE = (1.0, 1.0, 1.0, 1.0)
+_NO_SURFELS = "The PLY file does not hold surfels: of x y z, nx ny nz, rot_0..3, scale_0..1 one is missing."
 
 #: optional field -> its properties
 _OPTIONAL = {
@@ -82,8 +84,28 @@ def read_ply(path: str | os.PathLike) -> Surfels:
     """
     columns, comments = read_vertices(path)
     if not is_surfels(columns):
-        raise ValueError("The PLY file does not hold surfels: of x y z, nx ny nz, rot_0..3, scale_0..1 one is missing.")
+        raise ValueError(_NO_SURFELS)
     return Surfels(**_fields(columns, comments))
+
+
+class PlyPortions:
+    """The usable surfels of a file that `write_ply` made, a million at a time; it can be iterated again.
+
+    unusable: number of rows that the last iteration left out. Raises as `read_ply`, but unusable rows are no error.
+    """
+
+    def __init__(self, path: str | os.PathLike, most: int = 1 << 20):
+        self._path, self._most = path, most
+        self.unusable = 0
+
+    def __iter__(self) -> Iterator[Surfels]:
+        self.unusable = 0
+        for columns, comments in vertex_portions(self._path, self._most):
+            if not is_surfels(columns):
+                raise ValueError(_NO_SURFELS)
+            part = stored_surfels(columns, comments)
+            self.unusable += part.unusable
+            yield part.surfels
 
 
 def is_surfels(columns: dict[str, np.ndarray]) -> bool:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Replaces the instances whose surfels are streamed from a file by what a view draws of them, before it is planned.
 
-One set of surfels serves the camera and the shadow maps: blocks outside the picture are taken too, coarser, if they may
-cast shadows into it. Nothing after this knows of files.
+One set of surfels serves the camera and the shadow maps, at the camera's tolerance: blocks outside the picture are
+taken too, coarser, if they may cast shadows into it. Nothing after this knows of files.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ from mathutils import Matrix
 from ...surfels import Surfels
 from ..geometry.attributes import fill, write_surfels
 from ..geometry.points_proxy import show_as_points
+from ..ids import MESH_SETTINGS
 
 
 def add_surfel_object(
@@ -24,17 +25,25 @@ def add_surfel_object(
     mesh = write_surfels(name, surfels)
     for material in materials:
         mesh.materials.append(material)
+    return add_object_of(mesh, matrix_world @ Matrix.Translation(surfels.origin), collections)
+
+
+def add_object_of(
+    mesh: bpy.types.Mesh, matrix_world: Matrix, collections: Iterable[bpy.types.Collection]
+) -> bpy.types.Object:
+    """Add a new object of a mesh of surfels to `collections`."""
     made = bpy.data.objects.new(mesh.name, mesh)
     show_as_points(made)
     for collection in collections:
         collection.objects.link(made)
-    made.matrix_world = matrix_world @ Matrix.Translation(surfels.origin)
+    made.matrix_world = matrix_world
     return made
 
 
 def refill(made: bpy.types.Object, surfels: Surfels, materials: Iterable[bpy.types.Material | None]) -> None:
     """Replace the surfels of an object, and of all objects that share its mesh."""
     fill(made.data, surfels)
+    getattr(made.data, MESH_SETTINGS).file = ""
     made.data.materials.clear()
     for material in materials:
         made.data.materials.append(material)

@@ -135,6 +135,8 @@ def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
     """Report on a picture to the user and to scripts."""
     notes.add(_FLATTENED, frame.stats["instances_degenerate"])
     notes.add(_COARSE, frame.stats["surfels_coarse"])
+    for name in frame.stats["short_of_memory"]:
+        notes.add(f"{name}{_SHORT}")
     for what in ("transparency", "finishes"):
         if why := dict(frame.stats["plan"].skipped).get(what):
             notes.add(why[0].upper() + why[1:])
@@ -147,6 +149,7 @@ def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
 
 
 _COARSE = "16-bit storage moves surfels visibly where they lie far apart; choose Float 32 as their storage"
+_SHORT = " is coarser than it should be; raise Memory of a Surfel File in the preferences"
 _FLATTENED = "Objects with a scale of 0 on some axis are left out; give every axis a scale"
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from ...rendering import Instance, Light, Scene
 from ...rendering.upload.packing import LARGEST_SET
+from ...streaming import Stream
 from ...surfels import Surfels, portions
 from ..conversion.source_record import is_stood_in, sources_in
 from ..geometry.attributes import Points, has_surfels, has_surfels_beside_faces, have_same_values, read_stored
@@ -29,6 +30,7 @@ from .light_linking import LightSets
 from .live_meshes import LiveMeshes, Place
 from .object_detail import detail_of
 from .shading import light_of, shading_material
+from .streams import Streams, not_followed
 from .world import WorldStore
 
 
@@ -76,6 +78,7 @@ class SurfelStore:
         self.world = WorldStore()
         self.textures = TextureStore()
         self.overridden = Overridden()
+        self.streams = Streams()
         self._kept: dict[int, _Kept] = {}
         self._current: set[int] = set()
         self._followed: dict = {}
@@ -98,11 +101,13 @@ class SurfelStore:
     def begin_frame(self, changed: set[str] | None = None, are_materials_edited: bool = False) -> None:
         """Start a frame: meshes named in `changed` (None: all) are read again when next requested."""
         self.overridden.begin_frame()
+        self.streams.begin_frame()
         self.textures.begin_frame(are_materials_edited, is_told=changed is not None)
         self._current = {k for k in self._current if changed is not None and self._kept[k].name not in changed}
 
     def forget_unused(self) -> None:
-        """Drop meshes that this frame did not request."""
+        """Drop meshes and close files that this frame did not request."""
+        self.streams.forget_unused()
         self._kept = {key: kept for key, kept in self._kept.items() if key in self._current}
         names = {kept.name for kept in self._kept.values()}
         self._followed = {name: before for name, before in self._followed.items() if name in names}
@@ -133,6 +138,10 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                     "index": object_.pass_index,
                     "is_holdout": owner_of(entry).holdout_get(view_layer=depsgraph.view_layer),
                 }
+                stream = _stream_of(object_.original, store, notes) if {"surfels", "shown"} & {*what} else None
+                if stream is not None:
+                    surfels += _streamed(object_, stream, depsgraph, matrix, fields, store, notes, override)
+                    continue
                 if "surfels" in what:
                     with _attributes_of(object_) as points:
                         kept = store.get(points, points.session_uid, points.name_full)
@@ -271,6 +280,31 @@ def _instances(
     materials = tuple(shading_material(slot.material, notes, own) for slot in slots)
     textures = tuple(store.textures.get(slot.material, notes) for slot in slots) if parts[0].has_uvs else ()
     return [Instance(part, matrix_world, materials, textures=textures, **fields) for part in parts]
+
+
+def _stream_of(owner: bpy.types.Object, store: SurfelStore, notes: Notes) -> Stream | None:
+    """The file of an object in the .blend, if it has one that can be read."""
+    try:
+        return store.streams.get(owner)
+    except ValueError as error:
+        notes.left_out.append(str(error))
+        notes.add(str(error))
+        return None
+
+
+def _streamed(
+    object_, stream: Stream, depsgraph, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes, override
+) -> list[Instance]:
+    """The instance of an object whose surfels are in a file. Its points are relative to the file's origin."""
+    if sentence := not_followed(object_.original):
+        notes.add(sentence)
+    if override is not None:
+        notes.add(f"{object_.name} keeps its own colours under the overriding material, as they come from a file")
+    to_origin = np.eye(4)
+    to_origin[:3, 3] = -stream.file.origin
+    kept = (stream.coarsest,), 0, 0
+    made = _instances(object_, kept, depsgraph, matrix_world @ to_origin, fields, store, notes, None)
+    return [replace(instance, stream=stream) for instance in made]
 
 
 @contextmanager

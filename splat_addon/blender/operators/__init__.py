@@ -8,12 +8,22 @@ from . import (
     import_ply,
     render_preset,
     show_surfels,
+    store_surfels,
     surfels_from_mesh,
     surfels_from_points,
     update_surfels,
 )
 
-MODULES = (surfels_from_mesh, surfels_from_points, update_surfels, export_ply, import_ply, render_preset, show_surfels)
+MODULES = (
+    surfels_from_mesh,
+    surfels_from_points,
+    update_surfels,
+    store_surfels,
+    export_ply,
+    import_ply,
+    render_preset,
+    show_surfels,
+)
 
 
 def register():

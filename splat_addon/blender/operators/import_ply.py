@@ -6,12 +6,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import bpy
-from bpy.props import StringProperty
+from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
 from mathutils import Matrix
 
-from ...interchange import Gaussians, Points, StoredSurfels, read_contents
+from ...interchange import Gaussians, PlyPortions, Points, StoredSurfels, read_contents
 from ...sampling import surfels_from_points
+from ...streaming import write_blocks
+from ...streaming.layout import SUFFIX
 from ...surfels import Surfels
 from ..conversion.points_settings import (
     PointsProperties,
@@ -20,7 +22,8 @@ from ..conversion.points_settings import (
     keywords,
     viewpoint,
 )
-from ..conversion.surfel_objects import add_surfel_object, select_only
+from ..conversion.surfel_objects import add_object_of, add_surfel_object, select_only
+from ..geometry.surfel_files import keep_coarsest, relative_path
 from ..ids import IMPORT_PLY
 from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
@@ -36,7 +39,15 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
 
     filename_ext = ".ply"
     filepath: path_property("reading from", is_forgotten=True)
-    filter_glob: StringProperty(default="*.ply", options={"HIDDEN"})
+    filter_glob: StringProperty(default=f"*.ply;*{SUFFIX}", options={"HIDDEN"})
+    keeps_in_file: BoolProperty(
+        name="Keep in a File",
+        description=(
+            "Store the surfels in a file beside the .blend, from which every view reads only what it needs, instead "
+            "of in the .blend. For more surfels than memory holds; not for Gaussian splats and bare points"
+        ),
+        default=False,
+    )
 
     def invoke(self, context, event):
         if not self.filepath:
@@ -47,6 +58,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
     def draw(self, context):
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
+        self.layout.prop(self, "keeps_in_file")
         header, body = self.layout.panel("surfels_ply_gaussians")
         header.label(text="Gaussian Splats")
         if body:
@@ -58,6 +70,8 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
 
     def execute(self, context):
         name = Path(self.filepath.removeprefix("//")).name
+        if self.keeps_in_file or name.endswith(SUFFIX):
+            return self._keep_in_file(context, name)
         try:
             contents = read_contents(absolute(self.filepath), self.flatness)
             surfels, notes = _READERS[type(contents)](contents, self, context)
@@ -71,6 +85,29 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
         self.report({"INFO"}, said("{name}: {count:,} surfels", name=name, count=len(surfels)))
         for note in notes:
             self.report({"WARNING" if note.startswith("Skipped") else "INFO"}, note)
+        return {"FINISHED"}
+
+    def _keep_in_file(self, context, name: str):
+        """Add an object whose surfels are in a file: the chosen one, or one made from it beside the .blend."""
+        manager, mesh = context.window_manager, bpy.data.meshes.new(Path(name).stem)
+        try:
+            path, unusable = absolute(self.filepath), 0
+            if not name.endswith(SUFFIX):
+                parts, path = PlyPortions(path), absolute(f"//{Path(name).stem}{SUFFIX}")
+                manager.progress_begin(0.0, 1.0)
+                write_blocks(path, parts, lambda share, _: manager.progress_update(share))
+                manager.progress_end()
+                unusable = parts.unusable
+            count, origin = keep_coarsest(mesh, path, relative_path(path))
+        except (ValueError, OSError, MemoryError) as error:
+            bpy.data.meshes.remove(mesh)
+            self.report({"ERROR"}, f"{name}: {file_sentence(error)}")
+            return {"CANCELLED"}
+        made = add_object_of(mesh, Matrix.Translation(origin), [context.collection])
+        select_only(context, [made])
+        self.report({"INFO"}, said("{name}: {count:,} surfels", name=name, count=count))
+        if unusable:
+            self.report({"WARNING"}, f"Skipped {unusable:,} unusable surfels")
         return {"FINISHED"}
 
 
@@ -110,7 +147,7 @@ class IO_FH_surfels_ply(bpy.types.FileHandler):
     bl_idname = "IO_FH_surfels_ply"
     bl_label = "Surfels (.ply)"
     bl_import_operator = IMPORT_PLY
-    bl_file_extensions = ".ply"
+    bl_file_extensions = f".ply;{SUFFIX}"
 
     @classmethod
     def poll_drop(cls, context):

@@ -813,6 +813,44 @@ GERMAN = {
     "Choose the render engine {engine} to see the surfels": (
         "Die Render-Engine {engine} wählen, um die Surfels zu sehen"
     ),
+    "Storing surfels: {percent:.0f}%   Esc cancels": "Surfels werden gespeichert: {percent:.0f}%   Esc bricht ab",
+    "Storing was cancelled; nothing was changed": "Das Speichern wurde abgebrochen; nichts wurde geändert",
+    "The surfels belong to a linked file; store them there": (
+        "Die Surfels gehören zu einer verknüpften Datei; dort speichern"
+    ),
+    "Select an object whose surfels are in the .blend, in Object Mode": (
+        "Im Objektmodus ein Objekt auswählen, dessen Surfels in der .blend-Datei sind"
+    ),
+    "{count:,} surfels -> {path}": "{count:,} Surfels -> {path}",
+    "Store Surfels in a File": "Surfels in einer Datei speichern",
+    "Move the surfels to a file beside the .blend, from which each view reads what it needs": (
+        "Die Surfels in eine Datei neben der .blend-Datei verschieben, aus der jede Ansicht liest, was sie braucht"
+    ),
+    "Surfel File": "Surfel-Datei",
+    (
+        "File from which views read the surfels that they need. The mesh has the coarsest ones, which are drawn while "
+        "the file is missing"
+    ): (
+        "Datei, aus der Ansichten die Surfels lesen, die sie brauchen. Das Mesh hat die gröbsten, die gezeichnet "
+        "werden, solange die Datei fehlt"
+    ),
+    "Memory of a Surfel File": "Speicher einer Surfel-Datei",
+    (
+        "Maximum memory in megabytes that a final render, and each 3D view, may use for the surfels of each file that "
+        "they are read from. Parts of a picture that need more are drawn coarser"
+    ): (
+        "Höchstens so viele Megabyte Speicher darf ein endgültiger Render und jede 3D-Ansicht für die Surfels jeder "
+        "Datei benutzen, aus der sie gelesen werden. Teile eines Bildes, die mehr brauchen, werden gröber gezeichnet"
+    ),
+    "Keep in a File": "In einer Datei behalten",
+    (
+        "Store the surfels in a file beside the .blend, from which every view reads only what it needs, instead of in "
+        "the .blend. For more surfels than memory holds; not for Gaussian splats and bare points"
+    ): (
+        "Die Surfels in einer Datei neben der .blend-Datei speichern, aus der jede Ansicht nur liest, was sie braucht, "
+        "statt in der .blend-Datei. Für mehr Surfels, als der Speicher fasst; nicht für Gaussian Splats und bloße "
+        "Punkte"
+    ),
     "Converting to surfels: {percent:.0f}%   Esc cancels": "Umwandlung in Surfels: {percent:.0f}%   Esc bricht ab",
     "Counting …": "Wird gezählt …",
     "Device: {device}, {backend}": "Gerät: {device}, {backend}",

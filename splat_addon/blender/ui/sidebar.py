@@ -14,12 +14,15 @@ from ..conversion.prediction import Extent, known_extents
 from ..conversion.source_record import record_of, sources_of
 from ..export.object_detail import detail_of, finer
 from ..geometry.sources import is_surfel_object
+from ..geometry.surfel_files import file_of
 from ..ids import (
     CONVERSION_SETTINGS,
+    MESH_SETTINGS,
     OBJECT_SETTINGS,
     SHOW_SURFELS,
     SIDEBAR_PANEL,
     SIDEBAR_TAB,
+    STORE_SURFELS,
     SURFELS_FROM_MESH,
     UPDATE_SURFELS,
 )
@@ -73,6 +76,11 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
             names = ", ".join(source.name for source in sources_of(context.active_object))
             self.layout.operator(UPDATE_SURFELS, text=said("Update from {names}", names=names), icon="FILE_REFRESH")
             self._draw_unread(record_of(context.active_object).unread.splitlines(), context)
+        owner = context.active_object
+        if owner is not None and file_of(owner):
+            self.layout.prop(getattr(owner.data, MESH_SETTINGS), "file")
+        elif owner is not None and is_surfel_object(owner):
+            self.layout.operator(STORE_SURFELS, icon="FILE_NEW")
         # Other engines show a surfel object as points.
         if context.active_object is not None and is_surfel_object(context.active_object) and not shows_surfels(context):
             self.layout.operator(SHOW_SURFELS, icon="SHADING_RENDERED")

@@ -206,7 +206,10 @@ def test_unregistering_takes_the_operators_and_the_panel_away():
 
 def test_a_file_dropped_on_the_3d_view_is_imported_by_the_same_operator():
     handler = bpy.types.FileHandler.bl_rna_get_subclass_py("IO_FH_surfels_ply")
-    assert (handler.bl_import_operator, handler.bl_file_extensions) == ("import_scene.surfels_ply", ".ply")
+    assert (handler.bl_import_operator, handler.bl_file_extensions) == (
+        "import_scene.surfels_ply",
+        ".ply;.surfelblocks",
+    )
     taking = {area: handler.poll_drop(SimpleNamespace(area=SimpleNamespace(type=area))) for area in ("VIEW_3D", "INFO")}
     assert taking == {"VIEW_3D": True, "INFO": False}
     splat_addon.unregister()

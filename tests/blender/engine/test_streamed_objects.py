@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An object whose surfels are in a file is rendered from the file; where that is missing, its coarsest surfels are
+drawn and a warning says so.
+"""
+
+from dataclasses import replace
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender import preferences
+from splat_addon.blender.engine import final_render
+from splat_addon.blender.geometry import surfel_files
+from splat_addon.streaming import write_blocks
+
+
+@pytest.fixture
+def stored(scene, add_surfels, add_camera, tmp_path, monkeypatch):
+    """An object of a wavy sheet of 6,400 surfels in a file; it keeps some hundred of them."""
+    monkeypatch.setattr(surfel_files, "KEPT", 200)
+    add_camera((0, 0, 6))
+    x, y = (axis.ravel() for axis in np.meshgrid(*[np.linspace(-1, 1, 80)] * 2))
+    colors = np.stack([(np.floor(4 * x) + np.floor(4 * y)) % 2, 0 * x + 0.5, 0.5 + 0.5 * y, 0 * x + 1], axis=1)
+    made = add_surfels(np.stack([x, y, 0.2 * np.sin(3 * x)], axis=1), size=0.03, colors=colors, name="sheet")
+    scene.surfel_splatting.detail_tolerance = 0.0
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    return made
+
+
+def test_it_looks_as_it_did_in_the_blend(stored, picture):
+    before = picture()
+    bpy.ops.object.surfels_to_file()
+    after = picture()
+    assert len(stored.data.vertices) <= 200
+    assert final_render.last_frame_stats["splats"] == 6400 and not final_render.last_frame_stats["notes"]
+    assert before[..., 3].max() > 0.99 and np.abs(after - before).max() < 1e-3
+
+
+def test_a_moved_object_whose_file_has_an_origin(stored, picture, surfels_of, tmp_path):
+    far = replace(surfels_of(stored), origin=(1e4, 2e4, -5e3))
+    stored.location, stored.rotation_euler.z, stored.scale.x = (0.3, 0.2, 0.5), 0.4, 0.8
+    before = picture()
+    write_blocks(tmp_path / "far.surfelblocks", [far])
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "far.surfelblocks"))
+    assert tuple(bpy.context.object.location) == (1e4, 2e4, -5e3)
+    bpy.context.object.matrix_world = stored.matrix_world
+    stored.hide_render = True
+    after = picture()
+    assert final_render.last_frame_stats["splats"] == 6400 and np.abs(after - before).max() < 1e-3
+
+
+def test_without_its_file_the_coarsest_are_drawn_with_a_warning(stored, picture, tmp_path):
+    bpy.ops.object.surfels_to_file()
+    (tmp_path / "sheet.surfelblocks").unlink()
+    shown = picture()
+    (note,) = final_render.last_frame_stats["notes"]
+    assert "sheet is drawn with its coarsest surfels only" in note and "No such file" in note
+    assert shown[16, 16, 3] > 0.5 and final_render.last_frame_stats["splats"] == len(stored.data.vertices)
+
+
+def test_a_background_render_stops_where_the_file_is_missing(scene, stored, tmp_path):
+    bpy.ops.object.surfels_to_file()
+    (tmp_path / "sheet.surfelblocks").write_bytes(b"damaged")
+    scene.surfel_splatting.broken_objects = "STOP"
+    with pytest.raises(RuntimeError, match="not a file of surfels in blocks"):
+        bpy.ops.render.render()
+
+
+def test_too_little_memory_is_said(stored, picture, monkeypatch):
+    bpy.ops.object.surfels_to_file()
+    monkeypatch.setattr("splat_addon.blender.export.streams.stream_bytes", lambda: 0)
+    monkeypatch.setattr("splat_addon.streaming.pages._FEWEST", 1)
+    picture()
+    assert final_render.last_frame_stats["notes"] == [
+        "sheet is coarser than it should be; raise Memory of a Surfel File in the preferences"
+    ]
+
+
+def test_modifiers_are_not_followed_and_a_note_says_so(stored, picture):
+    bpy.ops.object.surfels_to_file()
+    stored.modifiers.new("Wave", "WAVE")
+    picture()
+    assert any("do not follow Wave" in note for note in final_render.last_frame_stats["notes"])
+
+
+def test_the_budget_is_the_preference():
+    assert preferences.stream_bytes() == 512_000_000

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Store Surfels in a File moves an object's surfels beside the .blend; File > Import opens and makes such files."""
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender.geometry import surfel_files
+from splat_addon.blender.geometry.attributes import write_surfels
+from splat_addon.blender.operators.store_surfels import Storing
+from splat_addon.interchange import write_ply
+from splat_addon.streaming import BlockFile, WritingCancelled, write_blocks
+from splat_addon.surfels import Surfels
+
+
+@pytest.fixture
+def opaque(random_surfels):
+    """opaque(n, origin) -> n opaque surfels of random values."""
+
+    def make(count, origin=(0, 0, 0)):
+        arrays = random_surfels(count).arrays()
+        colors = np.append(arrays["colors"][:, :3], np.ones((count, 1)), axis=1)
+        return Surfels(**{**arrays, "colors": colors}, origin=origin)
+
+    return make
+
+
+@pytest.fixture
+def saved(tmp_path):
+    """A .blend that has been saved to an empty folder, which is returned."""
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    return tmp_path
+
+
+@pytest.fixture
+def ball(cube):
+    """A surfel object of a cube."""
+    bpy.ops.object.surfels_from_mesh(resolution=32, density="RESOLUTION", source="HIDE")
+    return bpy.context.object
+
+
+def test_the_file_has_the_surfels_and_the_object_the_coarsest(ball, saved, surfels_of, monkeypatch):
+    monkeypatch.setattr(surfel_files, "KEPT", 500)
+    before = surfels_of(ball)
+    assert bpy.ops.object.surfels_to_file() == {"FINISHED"}
+    assert ball.name == "Cube surfels" and ball.data.surfel_splatting.file == "//Cube_surfels.surfelblocks"
+    assert BlockFile(saved / "Cube_surfels.surfelblocks").count == len(before) > 500
+    after = surfels_of(ball)
+    assert 0 < len(after) <= 500
+    assert np.allclose(after.local_bounds, before.local_bounds, atol=0.5)
+    assert len(list(saved.iterdir())) == 2
+
+
+def test_an_object_with_a_file_is_stored_no_second_time(ball, saved):
+    bpy.ops.object.surfels_to_file()
+    assert not bpy.ops.object.surfels_to_file.poll()
+
+
+def test_without_a_place_for_the_file_nothing_changes(ball, surfels_of):
+    count = len(surfels_of(ball))
+    with pytest.raises(RuntimeError, match="has not been saved yet"):
+        bpy.ops.object.surfels_to_file()
+    assert len(surfels_of(ball)) == count and not ball.data.surfel_splatting.file
+
+
+def test_transparent_surfels_are_refused(add_object, random_surfels, saved):
+    add_object(write_surfels("pale", random_surfels(200)))
+    with pytest.raises(RuntimeError, match="Transparent surfels"):
+        bpy.ops.object.surfels_to_file()
+    assert [path.name for path in saved.iterdir()] == ["scene.blend"]
+
+
+def test_converting_again_brings_the_surfels_back(ball, saved, surfels_of, monkeypatch):
+    monkeypatch.setattr(surfel_files, "KEPT", 500)
+    count = len(surfels_of(ball))
+    bpy.ops.object.surfels_to_file()
+    bpy.ops.object.surfels_update()
+    assert len(surfels_of(ball)) == count and not ball.data.surfel_splatting.file
+
+
+def test_cancelling_leaves_everything_as_it_was(ball, saved, surfels_of):
+    storing, count = Storing(ball, ""), len(surfels_of(ball))
+    storing.is_cancelled = True
+    with pytest.raises(WritingCancelled):
+        storing.write()
+    assert [path.name for path in saved.iterdir()] == ["scene.blend"]
+    assert len(surfels_of(ball)) == count and not ball.data.surfel_splatting.file
+
+
+def test_a_ply_file_goes_to_a_file_portion_by_portion(opaque, saved, tmp_path):
+    surfels = opaque(3000, origin=(1e6, 0, 5))
+    write_ply(saved / "scan.ply", surfels)
+    assert bpy.ops.import_scene.surfels_ply(filepath=str(saved / "scan.ply"), keeps_in_file=True) == {"FINISHED"}
+    made = bpy.context.object
+    assert made.data.surfel_splatting.file == "//scan.surfelblocks"
+    assert tuple(made.location) == (1e6, 0, 5)
+    assert BlockFile(saved / "scan.surfelblocks").count == 3000
+
+
+def test_points_cannot_be_kept_in_a_file(saved):
+    (saved / "bare.ply").write_text(
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+        "0 0 0\n"
+    )
+    with pytest.raises(RuntimeError, match="does not hold surfels"):
+        bpy.ops.import_scene.surfels_ply(filepath=str(saved / "bare.ply"), keeps_in_file=True)
+    assert not bpy.data.meshes and len(list(saved.iterdir())) == 2
+
+
+def test_a_file_is_opened_where_it_is(opaque, saved):
+    write_blocks(saved / "statue.surfelblocks", [opaque(2000)])
+    bpy.ops.import_scene.surfels_ply(filepath=str(saved / "statue.surfelblocks"))
+    assert bpy.context.object.name == "statue"
+    assert bpy.context.object.data.surfel_splatting.file == "//statue.surfelblocks"
+
+
+def test_a_damaged_file_is_an_error_and_adds_nothing(saved):
+    (saved / "bad.surfelblocks").write_bytes(b"no")
+    with pytest.raises(RuntimeError, match="not a file of surfels in blocks"):
+        bpy.ops.import_scene.surfels_ply(filepath=str(saved / "bad.surfelblocks"))
+    assert not bpy.data.meshes and not bpy.data.objects
