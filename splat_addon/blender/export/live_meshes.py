@@ -72,7 +72,8 @@ class Place(NamedTuple):
 
 @dataclass(eq=False)
 class _LiveMesh:
-    """One evaluated mesh, with all its places. said: sentences about its materials and its object.
+    """One evaluated mesh, with all its places. said: sentences about its materials and its object. bends: whether its
+    object has shape keys or modifiers that deform it.
 
     key: result of `mesh_key` for the evaluation that was read. shown: a sampling, and the surfels drawn from it.
     """
@@ -87,6 +88,7 @@ class _LiveMesh:
     places: list[Place] = field(default_factory=list)
     owner: str = ""
     said: list[str] = field(default_factory=list)
+    bends: bool = False
     deforming: DeformingSurfels | None = None
     density: dict[str, float] = field(default_factory=dict)
     spacing: float = 0.0
@@ -261,6 +263,7 @@ class LiveMeshes:
             live.topology = read_topology(mesh, live.topology)
             live.content = read_mesh(evaluated, mesh, live.topology, self._images, slots)
             live.parts = parts_by_group(evaluated, mesh, live.content.triangles, group) if group else None
+            live.bends = evaluated.original.is_deform_modified(bpy.context.scene, "RENDER")
             live.materials = tuple(shading_material(material, notes, OPTIONAL_LAYOUT) for material in slots)
 
     def _sampled(
@@ -281,17 +284,19 @@ class LiveMeshes:
         predicted = predict_count(mesh, spacing=spacing)
         if predicted > MAX_SURFELS:
             raise ValueError(f"It would be {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
-        live.deforming = _deforming(mesh, spacing, texture_mapped, ends_at_edges=live.parts is None)
+        live.deforming = _deforming(mesh, spacing, texture_mapped, live.parts is None, not live.bends)
         live.density, live.spacing = density, spacing
         self.counts["sampled"] += 1
         return live.deforming.at(mesh)[0]
 
 
-def _deforming(mesh: TriangleMesh, spacing: float, texture_mapped: bool, ends_at_edges: bool) -> DeformingSurfels:
-    """A mesh sampled as the operator does, but in the planes of its triangles: a plane that fits the surface would not
-    when this bends. ends_at_edges: False for a part of a mesh whose border continues as polygons.
+def _deforming(
+    mesh: TriangleMesh, spacing: float, texture_mapped: bool, ends_at_edges: bool, fits: bool
+) -> DeformingSurfels:
+    """A mesh sampled as the operator does. ends_at_edges: False for a part of a mesh whose border continues as
+    polygons. fits: False for a mesh that bends, because planes that fit it now would not then.
     """
-    edges = {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True} if ends_at_edges else {}
+    edges = {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True, "fits_planes": fits} if ends_at_edges else {}
     return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped, **edges)
 
 
