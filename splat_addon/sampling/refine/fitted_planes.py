@@ -54,7 +54,11 @@ def fit_planes(arrays: dict[str, np.ndarray], images: list[tuple[int, slice]], g
                 fit.add_from(another)
     changed = {name: arrays[name].copy() for name in ("positions", "rotations", *CLIP_FIELDS) if name in arrays}
     for fit, image in zip(fits, seen, strict=True):
-        _move(changed, image, *fit.solve(), arrays["scales"], grid.spacing)
+        offset, slope = fit.solve()
+        _move(changed, image, offset, slope, grid.spacing)
+        less = fit.goes_on * (_KEPT * (np.abs(offset) + np.sqrt((slope * slope).sum(axis=0))) * grid.spacing)
+        # The first half-axis is the larger one (`ellipse_scales`).
+        _cut_less(changed, image.rows, less / arrays["scales"][:, 0].take(image.rows))
     return changed
 
 
@@ -88,7 +92,8 @@ def _are_kept(covectors: np.ndarray, reflex: np.ndarray, offsets) -> np.ndarray:
 
 
 class _Fit:
-    """Sums over the neighbours of the samples of one image."""
+    """Sums over the neighbours of the samples of one image. goes_on: (n,) whether there are any beyond a line, which
+    then is no open border."""
 
     def __init__(self, image: ImageSamples, lines: _Lines):
         self._image, self._lines = image, lines
@@ -99,6 +104,7 @@ class _Fit:
         count = len(image.rows)
         self._weight, self._height = np.zeros(count, np.float32), np.zeros(count, np.float32)
         self._squares, self._rises = np.zeros((2, count), np.float32), np.zeros((2, count), np.float32)
+        self.goes_on = np.zeros(count, bool)
         for step, neighbour in image.neighbours.items():
             self._add(step, neighbour)
 
@@ -116,7 +122,9 @@ class _Fit:
         is_there &= np.abs(height) <= _FARTHEST
         at = self._clipped_at
         offset = image.along_axes(np.float32(step[0]), np.float32(step[1]), rise.take(at))
-        is_there[at] &= _are_kept(*self._own_lines, offset)
+        kept = _are_kept(*self._own_lines, offset)
+        self.goes_on[at] |= is_there[at] & ~kept
+        is_there[at] &= kept
         weight = is_there * (_DIAGONAL if all(step) else _WEIGHT)
         height *= weight
         self._weight += weight
@@ -146,7 +154,9 @@ class _Fit:
         some = np.flatnonzero(is_alike & (clipped >= 0))
         clipped = clipped.take(some)
         its = lines.covectors.take(clipped, axis=2), lines.reflex.take(clipped)
-        is_alike[some] = _are_kept(*its, [w.take(some) for w in way])
+        kept = _are_kept(*its, [w.take(some) for w in way])
+        self.goes_on[at.take(some)] |= ~kept
+        is_alike[some] = kept
         u, v, _ = along
         sums = np.stack([np.ones_like(height), height, u * u, v * v, u * height, v * height])
         keep = np.flatnonzero(is_alike)
@@ -166,7 +176,7 @@ class _Fit:
         return self._height / (self._weight + _OWN_PLACE), slope
 
 
-def _move(changed, image: ImageSamples, offset: np.ndarray, slope: np.ndarray, scales: np.ndarray, spacing: float):
+def _move(changed, image: ImageSamples, offset: np.ndarray, slope: np.ndarray, spacing: float):
     """Give the samples of an image planes that are off theirs by (n,) `offset`, in cells, and have a (3, n) `slope`
     against them."""
     rows, normals = image.rows, image.along_axes(*image.normals)
@@ -187,10 +197,11 @@ def _move(changed, image: ImageSamples, offset: np.ndarray, slope: np.ndarray, s
     length = np.sqrt(w * w + x * x + y * y + z * z)
     for column, values in zip(changed["rotations"].T, turned, strict=True):
         column[rows] = values / length
-    # The first half-axis is the larger one (`ellipse_scales`).
-    less = np.abs(offset) + np.sqrt(steepness)
-    less *= np.float32(_KEPT * spacing * CUT) / np.take(scales[:, 0], rows)
+
+
+def _cut_less(changed: dict[str, np.ndarray], rows: np.ndarray, less: np.ndarray):
+    """Let the lines of (n,) surfels cut less, by (n,) half-axes; none goes."""
     for name in CLIP_FIELDS:
         if name in changed:
             cut = changed[name][:, 1].take(rows)
-            changed[name][rows, 1] = np.where(cut > 0, np.maximum(cut - less, 1), 0).astype(np.int16)
+            changed[name][rows, 1] = np.where(cut > 0, np.maximum(cut - less * CUT, 1), 0).astype(np.int16)
