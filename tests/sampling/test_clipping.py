@@ -17,6 +17,7 @@ from splat_addon.sampling import (
     sample_mesh,
     sample_surface,
 )
+from splat_addon.sampling.edges.openings import SMALLER
 
 ANGLE = np.radians(30)
 DISC = np.array([(r * np.cos(t), r * np.sin(t)) for r in (0.3, 0.7, 0.999) for t in np.arange(24) * np.pi / 12])
@@ -260,3 +261,20 @@ def test_a_triangle_that_rounding_keeps_from_being_flat_gets_no_surfels(seed):
     turned = TriangleMesh(flat.positions @ turn, flat.triangles)
     surfels = sample_mesh(turned, spacing=0.05, crease_angle=ANGLE)
     assert np.abs(surfels.geometric_normals() @ turn[2]).min() > 0.999
+
+
+def test_splats_at_a_ragged_open_border_are_smaller_and_leave_nothing_bare():
+    """A zigzag of half a spacing is finer than two lines can follow. A straight border of edges as short keeps
+    its splats' size."""
+    spacing, x = 0.05, np.linspace(0, 1, 81)
+    outline = [*zip(x, 1 + 0.02 * (np.arange(81) % 2), strict=True), *((across, 0) for across in x)]
+    mesh = plate(outline, [t for k in range(80) for t in ((k + 1, k, k + 81), (k + 1, k + 81, k + 82))])
+    surfels = sample_mesh(mesh, spacing=spacing, crease_angle=ANGLE)
+    up, sizes = surfels.positions[:, 1] + surfels.origin[1], surfels.scales[:, 1] / (1.25 * spacing)
+    is_sample = sizes > 0.65  # and not an additional surfel at a gap
+    at_top = sizes[is_sample & (up > 0.96)]
+    assert len(at_top) > 15 and np.allclose(at_top, SMALLER)
+    assert np.allclose(sizes[is_sample & (up < 0.8)], 1)
+    points, _ = shown(surfels)
+    assert points[:, 1].max() < 1.02 + 0.2 * spacing
+    assert bare_share(surfels, *on_surface(mesh)) < 1e-3

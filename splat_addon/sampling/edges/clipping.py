@@ -15,6 +15,7 @@ from ...clip_lines import CLIP_FIELDS, are_reflex, pack_lines
 from ..ldc.grid import Grid
 from .borders import Borders
 from .meetings import BEYOND, Images, Meetings, meetings
+from .openings import smaller_at_openings
 from .ordering import order_of
 from .ragged_borders import ALL, BOTH, EITHER, FIRST, two_lines
 
@@ -53,7 +54,7 @@ def clip(
     """Find the clip lines of surfels.
 
     arrays: by field of `Surfels`, positions relative to the grid's middle. images: which of them each image sees.
-    at_centres: whether they lie at the centres of cells.
+    at_centres: whether they lie at the centres of cells, and may become smaller, in place (`openings`).
     """
     met = meetings(arrays, images, borders, grid, at_centres)
     if not len(met):
@@ -61,6 +62,10 @@ def clip(
     rows = _nearest_first(met, _one_side_of_each(met, arrays, borders))
     rows, starts, owner = _of_own_surface(met, rows)
     met = met.take(rows)
+    if at_centres and len(met):
+        off, _ = _off_line(met, met.line.take(starts.take(owner), axis=1))
+        met = smaller_at_openings(met, off > _SAME_LINE, borders, arrays["scales"])
+        _, starts, owner = _groups(met.surfel)
     lines = _lines(met, starts, owner)
     packed = [pack_lines(line.T) for line in lines]
     fields, count = {}, len(arrays["positions"])
