@@ -223,6 +223,16 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         subtype="PIXEL",
         default=Settings.detail_tolerance,
     )
+    viewport_rate: FloatProperty(
+        name="Viewport Rate",
+        description=(
+            "Pictures per second of a viewport that moves. If they take longer, they have larger surfels and fewer "
+            "pixels, until the view rests. 0 always draws all of them"
+        ),
+        min=0.0,
+        soft_max=60.0,
+        default=10.0,
+    )
     shadow_resolution: IntProperty(
         name="Resolution",
         description=(
@@ -366,6 +376,11 @@ def viewport_settings(scene: bpy.types.Scene) -> Settings:
     properties = getattr(scene, RENDER_SETTINGS)
     choices = {"supersampling": properties.viewport_supersampling, "samples": properties.viewport_samples}
     return _settings(scene, outputs=("color",), **choices)
+
+
+def viewport_rate(scene: bpy.types.Scene) -> float | None:
+    """Pictures per second of a viewport that moves; None for whatever they take."""
+    return getattr(scene, RENDER_SETTINGS).viewport_rate or None
 
 
 def _settings(scene, **choices) -> Settings:

@@ -4,6 +4,7 @@
 scene, camera, settings -> plan -> view -> passes on a device -> Frame
 """
 
+from .arrival import Arrival
 from .cryptomatte import Cryptomatte
 from .device import open_device
 from .frame import EMPTY_DEPTH, Frame
@@ -28,6 +29,7 @@ from .settings import Settings
 __all__ = (
     "EMPTY_DEPTH",
     "PRESETS",
+    "Arrival",
     "Camera",
     "Cryptomatte",
     "Environment",

@@ -36,6 +36,16 @@ def hierarchy_of(surfels: Surfels) -> Hierarchy:
     return _BUILT[surfels]
 
 
+def built_hierarchy(surfels: Surfels) -> Hierarchy | None:
+    """Their hierarchy if it has been built."""
+    return _BUILT.get(surfels)
+
+
+def keep_hierarchy(surfels: Surfels, hierarchy: Hierarchy) -> None:
+    """Keep a hierarchy that was built elsewhere."""
+    _BUILT[surfels] = hierarchy
+
+
 def has_levels(instance: Instance) -> bool:
     """Whether an instance may be drawn as merged surfels: it needs many, opaque surfels, not merged already. Objects
     that are split by distance from the camera are excluded, because their surfels are selected by position."""

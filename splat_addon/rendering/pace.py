@@ -7,39 +7,74 @@ from collections.abc import Callable
 from dataclasses import replace
 from time import perf_counter
 
+from .scene.camera import Camera
 from .settings import Settings
 
 #: The largest tolerance of a moving view, in pixels.
 COARSEST = 16.0
+#: The widest pixels of a moving view, in pixels at rest.
+WIDEST = 4.0
 #: A picture that takes less than this share of its time allows finer ones.
 _SPARE = 0.6
-#: The most that one picture changes the tolerance by.
+#: The most that one picture changes the tolerance or the resolution by.
 _STEP = 2.0
 
 
 class Pace:
-    """Multiplies the tolerance of moving views. rate: pictures per second; None: whatever they take.
+    """Multiplies the tolerance of moving views, and if fewer surfels do not help enough, the width of their pixels.
+    rate: pictures per second; None: whatever they take.
 
-    The number of splats falls with the square of the tolerance, so it changes with the root of the time.
+    The number of splats falls with the square of the tolerance, and that of pixels with the square of their width, so
+    both change with the root of the time.
     """
 
     def __init__(self, rate: float | None, clock: Callable[[], float] = perf_counter):
         self.rate = rate
         self._clock = clock
-        self._factor = 1.0
         self._started = 0.0
+        self._tolerance = self._width = 1.0
+        self._raised: tuple[float, float] | None = None
+        self._does_merging_help = True
 
-    def begin(self, settings: Settings) -> Settings:
-        """The settings to draw the next picture of a moving view with; the same object if it need not be coarser."""
+    def begin_coarsely(self) -> None:
+        """Draw the next picture as coarse as any if nothing is known about the time that it takes."""
+        if not self._started:
+            self._width = WIDEST
+
+    def begin(self, camera: Camera, settings: Settings) -> tuple[Camera, Settings]:
+        """The camera and the settings to draw the next picture of a moving view with; the same objects if they need not
+        be coarser."""
         self._started = self._clock()
-        tolerance = min(settings.detail_tolerance * self._factor, max(COARSEST, settings.detail_tolerance))
-        return settings if tolerance == settings.detail_tolerance else replace(settings, detail_tolerance=tolerance)
+        if self.rate is None:
+            return camera, settings
+        tolerance = min(settings.detail_tolerance * self._tolerance, max(COARSEST, settings.detail_tolerance))
+        size = tuple(max(round(edge / self._width), 1) for edge in camera.size)
+        return (
+            camera if size == camera.size else replace(camera, size=size),
+            settings if tolerance == settings.detail_tolerance else replace(settings, detail_tolerance=tolerance),
+        )
 
     def end(self, settings: Settings) -> None:
         """Learn from the time that the picture took. settings: those that it would have at rest."""
-        if self.rate is None or not settings.detail_tolerance:
+        if self.rate is None:
             return
-        load = (self._clock() - self._started) * self.rate
-        if not _SPARE <= load <= 1:
-            factor = self._factor * min(max((load / (_SPARE + 1) * 2) ** 0.5, 1 / _STEP), _STEP)
-            self._factor = min(max(factor, 1.0), max(COARSEST / settings.detail_tolerance, 1.0))
+        load, raised, self._raised = (self._clock() - self._started) * self.rate, self._raised, None
+        if raised and load > raised[0] * (1 + raised[1] ** -2) / 2:
+            # less than half of what fewer splats would save: fewer pixels instead
+            self._does_merging_help = False
+            self._tolerance = max(self._tolerance / raised[1], 1.0)
+            self._width = min(self._width * raised[1], WIDEST)
+        elif not _SPARE <= load <= 1:
+            self._change(load, min(max((load / (_SPARE + 1) * 2) ** 0.5, 1 / _STEP), _STEP), settings)
+
+    def _change(self, load: float, step: float, settings: Settings) -> None:
+        """Make the next picture coarser (a step above 1) or finer."""
+        most = max(COARSEST / settings.detail_tolerance, 1.0) if settings.detail_tolerance else 1.0
+        if step > 1 and self._does_merging_help and self._tolerance < most:
+            before, self._tolerance = self._tolerance, min(self._tolerance * step, most)
+            self._raised = load, self._tolerance / before
+        elif step > 1 or self._width > 1:
+            self._width = min(max(self._width * step, 1.0), WIDEST)
+        else:
+            self._tolerance = max(self._tolerance * step, 1.0)
+            self._does_merging_help |= self._tolerance == 1

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from .accumulation import sample_camera
 from .pace import Pace
-from .renderer import Renderer, Shown
+from .renderer import Renderer, Shown, Tile
 from .scene import Scene
 from .scene.camera import Camera
 from .settings import Settings
@@ -22,7 +22,7 @@ class Refinement:
 
     samples: number of samples in the shown picture; 0 for the first, which is not stored in a sum, so that a moving
         view costs no more than without refinement.
-    pace: how coarse levels of detail are while only the camera moves; at rest they are as the settings say.
+    pace: how coarse the picture is while only the camera moves; at rest it is as the settings say.
     """
 
     def __init__(self, renderer: Renderer, pace: Pace | None = None):
@@ -34,14 +34,15 @@ class Refinement:
         self._drawn: Scene | None = None
         self._refines = self._is_coarse = False
 
-    def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
+    def draw(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool = False) -> Iterator[Shown]:
         """Yield the parts of the picture to show now: with one sample if anything changed, with one more sample if
         nothing did, and unchanged once it has `settings.samples`.
 
-        A part is valid until the next is requested. Raises as `Renderer.draw`.
+        hurries: draw as if the camera moved, because more is to come. A part is valid until the next is requested.
+        Raises as `Renderer.draw`.
         """
-        if not self._is_of(scene, camera, settings):
-            moves = self._of is not None and self._of[0] is scene and self._of[2] == settings
+        if hurries or not self._is_of(scene, camera, settings):
+            moves = hurries or (self._of is not None and self._of[0] is scene and self._of[2] == settings)
             self._of, self._is_coarse = (scene, camera, settings), False
             self._begin(settings)
             yield from self._moving(scene, camera, settings) if moves else self._first(scene, camera, settings)
@@ -83,16 +84,24 @@ class Refinement:
 
     def _moving(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
         """The picture of a camera that moves, as coarse as its pace requires."""
-        drawn, device = self.pace.begin(settings), self.renderer.device
-        self._is_coarse = drawn is not settings
-        self._drawn = self._read(scene, camera, drawn)
-        for shown in self.renderer.draw(self._drawn, camera, drawn):
+        (seen, drawn), device = self.pace.begin(camera, settings), self.renderer.device
+        self._is_coarse = drawn is not settings or seen is not camera
+        self._drawn = self._read(scene, seen, drawn)
+        for shown in self.renderer.draw(self._drawn, seen, drawn):
             if self.pace.rate is not None:
                 device.finish(device.target([shown.texture]))
-            yield shown
+            yield shown._replace(place=_enlarged(shown.place, seen.size, camera.size))
         self.pace.end(settings)
 
     def _is_of(self, scene: Scene, camera: Camera, settings: Settings) -> bool:
         if self._of is None:
             return False
         return self._of[0] is scene and self._of[1].is_same(camera) and self._of[2] == settings
+
+
+def _enlarged(place: Tile, size: tuple[int, int], whole: tuple[int, int]) -> Tile:
+    """A part of a picture of one size where it lies in a picture of another."""
+    low = [round(start * edge / drawn) for start, edge, drawn in zip(place[:2], whole, size, strict=True)]
+    ends = (start + length for start, length in zip(place[:2], place[2:], strict=True))
+    high = [round(end * edge / drawn) for end, edge, drawn in zip(ends, whole, size, strict=True)]
+    return *low, high[0] - low[0], high[1] - low[1]

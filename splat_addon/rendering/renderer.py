@@ -172,7 +172,8 @@ class Renderer:
     def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
         """For a viewport, one sample: yields the tiles. A texture is valid until the next tile is requested.
 
-        Streamed instances are drawn as they are: `streamed.resolved` first replaces them.
+        Streamed instances are drawn as they are: `streamed.resolved` first replaces them. Raises `NotYet` before
+        anything is drawn if the resources load surfels that are not there yet.
         """
         self._check(settings)
         frame_plan = plan(scene, camera, settings)
@@ -264,6 +265,8 @@ class Renderer:
         )
         self.resources.cuts.begin_frame()
         self.resources.forget_atlases_but({placed.looked_up for placed in scene.shown})
+        if self.resources.loading:
+            TileContext(self.resources, frame_plan, scene, camera, settings, None).check_arrived()
         casters = casting(scene)
         shadow_views = tuple(
             build_view(casters, made.camera, settings.epsilon) for made in frame_plan.facts["shadow_maps"]

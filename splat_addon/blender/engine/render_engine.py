@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 
+from ...rendering import background
 from ..ids import ENGINE, ENGINE_LABEL
 from . import final_render, render_passes, viewport
 
@@ -34,4 +35,9 @@ class SurfelSplattingEngine(bpy.types.RenderEngine):
         viewport.guarded(self, viewport.draw, context, depsgraph)
 
 
-register, unregister = bpy.utils.register_classes_factory((SurfelSplattingEngine,))
+register, _unregister_classes = bpy.utils.register_classes_factory((SurfelSplattingEngine,))
+
+
+def unregister():
+    background.stop()
+    _unregister_classes()

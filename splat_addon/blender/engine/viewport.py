@@ -3,19 +3,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from time import monotonic
+from weakref import ref
 
 import bpy
 
-from ...rendering import Pace, Refinement, Renderer, Shown, open_device
+from ...rendering import Arrival, Pace, Refinement, Renderer, Shown, open_device
 from ..export.camera import viewport_camera
 from ..export.live_meshes import LiveMeshes
-from ..export.scene import SurfelStore, export_scene
+from ..export.scene import export_scene
+from ..export.sliced_store import SlicedStore
 from ..preferences import most_bytes
-from ..properties import viewport_settings
+from ..properties import viewport_rate, viewport_settings
+from ..spoken import said
 from .final_render import sentence_of
 
 #: Notes on the scene of the 3D view that was read last.
@@ -36,17 +40,33 @@ def update(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph
     changed = {u.id.name_full for u in depsgraph.updates if u.is_updated_geometry}
     changed |= {u.id.data.name_full for u in depsgraph.updates if u.is_updated_geometry and getattr(u.id, "data", None)}
     are_materials_edited = any(depsgraph.id_type_updated(kind) for kind in ("MATERIAL", "NODETREE", "IMAGE"))
-    state.store.begin_frame(changed, are_materials_edited)
     if are_materials_edited:
         state.live_meshes.forget_images()
-        changed = None
-    state.live_meshes.begin_frame(changed)
-    state.scene, notes = export_scene(depsgraph, state.store, state.live_meshes)
-    state.store.forget_unused()
+    # whatever changes with each picture would never be whole
+    state.store.is_sliced = state.arrival.loading.is_in_background = not _is_playing(context)
+    _read(state, depsgraph, changed, are_materials_edited)
     # A multilayer matcap is read through a data-block, which Blender does not allow to be created while drawing.
     viewport_settings(depsgraph.scene)
+    _say(engine, state)
+
+
+def _read(state: _State, depsgraph: bpy.types.Depsgraph, changed: set[str], are_materials_edited: bool = False) -> None:
+    """Read the scene; of its meshes only those that are named in `changed`, and more of those that take long."""
+    state.store.begin_frame(changed, are_materials_edited)
+    state.live_meshes.begin_frame(None if are_materials_edited else changed)
+    state.scene, notes = export_scene(depsgraph, state.store, state.live_meshes)
+    state.store.forget_unused()
     last_notes[:] = notes.sentences()
-    engine.update_stats("", "; ".join(last_notes))
+
+
+def _say(engine: bpy.types.RenderEngine, state: _State) -> None:
+    """Show what a view is waiting for, and the notes on its scene."""
+    (loading, loaded), (reading, read) = state.arrival.loading.left, state.store.left
+    # what is being read will be loaded, which takes longer
+    share = 1 - (_LOADING * (loading + read) + (1 - _LOADING) * reading) / max(loaded + read, 1)
+    text = f"{said('Preparing surfels')}: {share:.0%}" if loading + read else ""
+    engine.update_stats("", "; ".join([text, *last_notes] if text else last_notes))
+    state.says = text
 
 
 def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
@@ -54,19 +74,29 @@ def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: 
     state = _state(engine)
     if state.scene is None:
         update(engine, context, depsgraph)
+    elif state.store.has_news:
+        _read(state, depsgraph, set())
     state.refinement.renderer.device.most_bytes = most_bytes()
+    state.refinement.pace.rate = viewport_rate(depsgraph.scene)
     settings = viewport_settings(depsgraph.scene)
-    if context.screen and context.screen.is_animation_playing:
+    if _is_playing(context):
         settings = replace(settings, samples=1)
-    for shown in state.refinement.draw(state.scene, viewport_camera(context, depsgraph), settings):
+    for shown in state.arrival.draw(state.scene, viewport_camera(context, depsgraph), settings):
         engine.bind_display_space_shader(depsgraph.scene)
         _show(shown)
         engine.unbind_display_space_shader()
-    if state.refinement.wants_more:
+    if state.refinement.wants_more and not state.arrival.is_late:
         if state.refinement.samples:
             engine.tag_redraw()
         else:
             state.redraw_when_at_rest(engine)
+    if state.is_waiting or state.says:
+        _say(engine, state)
+        state.redraw_when_more_is_there(engine)
+
+
+def _is_playing(context: bpy.types.Context) -> bool:
+    return bool(context.screen and context.screen.is_animation_playing)
 
 
 def _show(shown: Shown) -> None:
@@ -78,6 +108,8 @@ def _show(shown: Shown) -> None:
     right, top = left + width, bottom + height
     across, up = shown.texture.size
     u, v = (x / across, (x + part[0]) / across), (y / up, (y + part[1]) / up)
+    if hasattr(shown.texture.handle, "filter_mode"):  # since Blender 5.1
+        shown.texture.handle.filter_mode((width, height) != tuple(part))
     shader = gpu.shader.from_builtin("IMAGE_COLOR")
     batch = batch_for_shader(
         shader,
@@ -99,37 +131,70 @@ def _show(shown: Shown) -> None:
 _REST = 0.2
 
 
-#: Pictures per second that a moving view is coarse enough for.
-_RATE = 10.0
+#: The share of loading in the time until surfels are there; the rest is reading them.
+_LOADING = 0.8
+
+#: Seconds between two looks at whether more surfels are there.
+_LOOK = 0.03
 
 
 class _State:
-    """State of one 3D view: the scene as last read, and the data on the device."""
+    """State of one 3D view: the scene as last read, and the data on the device. says: the progress that it shows."""
 
     def __init__(self):
-        self.store = SurfelStore()
+        self.store = SlicedStore()
         self.live_meshes = LiveMeshes()
-        self.refinement = Refinement(Renderer(open_device("blender")), Pace(_RATE))
+        self.refinement = Refinement(Renderer(open_device("blender")), Pace(None))
+        self.arrival = Arrival(self.refinement)
         self.scene = None
+        self.says = ""
         self._changed = 0.0
-        self._is_waiting = False
+        self._timers: set[Callable] = set()
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether surfels are being read, or are on their way to the device."""
+        return bool(self.store.left[1] or self.arrival.loading.left[0])
 
     def redraw_when_at_rest(self, engine: bpy.types.RenderEngine) -> None:
         """Request a redraw once no change has been drawn for a while."""
         self._changed = monotonic()
-        if not self._is_waiting:
-            self._is_waiting = True
-            bpy.app.timers.register(partial(self._redraw, engine), first_interval=_REST)
+        self._start(engine, _at_rest, _REST)
 
-    def _redraw(self, engine: bpy.types.RenderEngine) -> float | None:
-        """The timer's function: seconds until its next call, or None to stop."""
-        if (left := self._changed + _REST - monotonic()) > 0.01:
-            return left
-        self._is_waiting = False
-        # the view may have been closed meanwhile, and its engine freed
-        with suppress(ReferenceError):
-            engine.tag_redraw()
+    def redraw_when_more_is_there(self, engine: bpy.types.RenderEngine) -> None:
+        """Request a redraw once it would show or load more surfels."""
+        self._start(engine, _more, _LOOK)
+
+    def _start(self, engine: bpy.types.RenderEngine, wait: Callable[[_State], float], seconds: float) -> None:
+        """Redraw when wait(state) is no more than 0 seconds."""
+        if wait not in self._timers:
+            self._timers.add(wait)
+            bpy.app.timers.register(partial(_timer, ref(engine), wait), first_interval=seconds)
+
+    def stop(self, wait: Callable[[_State], float]) -> None:
+        self._timers.discard(wait)
+
+
+def _at_rest(state: _State) -> float:
+    left = state._changed + _REST - monotonic()
+    return left if left > 0.01 else 0.0
+
+
+def _more(state: _State) -> float:
+    return _LOOK if state.is_waiting and not (state.store.has_news or state.arrival.loading.has_news) else 0.0
+
+
+def _timer(engine: ref, wait: Callable[[_State], float]) -> float | None:
+    """Seconds until the next call, or None to stop. The view may have been closed meanwhile, and its engine freed."""
+    alive = engine()
+    if alive is None:
         return None
+    with suppress(ReferenceError):
+        if left := wait(alive.surfel_state):
+            return left
+        alive.surfel_state.stop(wait)
+        alive.tag_redraw()
+    return None
 
 
 def _state(engine) -> _State:

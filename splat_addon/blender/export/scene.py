@@ -56,7 +56,9 @@ class Notes:
         return [text if count == 1 else f"{text} ({count} times)" for text, count in self.counts.items()]
 
 
-class _Kept(NamedTuple):
+class Kept(NamedTuple):
+    """A mesh as it was read. parts: its surfels in portions that the renderer can hold."""
+
     name: str
     surfels: Surfels
     parts: tuple[Surfels, ...]
@@ -79,7 +81,7 @@ class SurfelStore:
         self.textures = TextureStore()
         self.overridden = Overridden()
         self.streams = Streams()
-        self._kept: dict[int, _Kept] = {}
+        self._kept: dict[int, Kept] = {}
         self._current: set[int] = set()
         self._followed: dict = {}
 
@@ -92,7 +94,7 @@ class SurfelStore:
         if key not in self._current:
             surfels, skipped, strayed = read_stored(points, self._followed, name, is_solid)
             known = (k for k in self._kept.values() if k.name == name and have_same_values(k.surfels, surfels))
-            kept = next(known, None) or _Kept(name, surfels, portions(surfels, LARGEST_SET), 0, 0)
+            kept = next(known, None) or Kept(name, surfels, portions(surfels, LARGEST_SET), 0, 0)
             self._kept[key] = kept._replace(skipped=skipped, strayed=strayed)
             self._current.add(key)
         kept = self._kept[key]
@@ -258,9 +260,12 @@ def _instances(
 ) -> list[Instance]:
     """Instances of an object that has surfels; one, unless it has more than the renderer holds in one instance.
 
-    kept: the surfel store. Raises ValueError for broken attributes or an unusable matrix.
+    kept: of the surfel store; it has no parts while they are read. Raises ValueError for broken attributes or an
+    unusable matrix.
     """
     parts, skipped, strayed = kept
+    if not parts:
+        return []
     if skipped:
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
     if strayed:

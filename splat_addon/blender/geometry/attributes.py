@@ -113,29 +113,63 @@ def read_stored(
     the wrong type, and for a mesh in edit mode, whose attributes do not contain the points (`Object.to_mesh()` does).
     NaN, zero or negative sizes and the like only drop the point concerned (see `valid_surfels`).
     """
+    name = name or mesh.name_full
+    arrays = {field: read_field(mesh, layout, name) for field, layout in stored_fields(mesh, name).items()}
+    loose = _loose_points(mesh)
+    arrays = arrays if loose is None else {name: values[loose] for name, values in arrays.items()}
+    return stored_of(arrays, is_solid or bool(mesh.get(SOLID)), {} if known is None else known, name)
+
+
+#: The name in `stored_fields` of the centres as they were written.
+_REST = "rest"
+
+
+def stored_fields(mesh: Points, name: str) -> dict[str, PointAttribute]:
+    """The attributes that make up the surfels of a mesh, by field. Raises ValueError as `read_stored`."""
     if getattr(mesh, "is_editmode", False):
         raise ValueError(
             f"The surfel mesh {mesh.name!r} is in edit mode, where its points cannot be read; leave edit mode."
         )
-    name = name or mesh.name_full
-    there = [field for field in OPTIONAL_LAYOUT if POINT_ATTRIBUTES[field].name in mesh.attributes]
-    arrays = {field: _read(mesh, POINT_ATTRIBUTES[field], name) for field in (*LAYOUT, *there)}
-    arrays["scales"] = arrays["scales"][:, :2]
-    loose = _loose_points(mesh)
-    arrays = arrays if loose is None else {name: values[loose] for name, values in arrays.items()}
-    surfels, skipped = valid_surfels(is_solid=is_solid or bool(mesh.get(SOLID)), **arrays)
+    there = (field for field in OPTIONAL_LAYOUT if POINT_ATTRIBUTES[field].name in mesh.attributes)
+    fields = {field: POINT_ATTRIBUTES[field] for field in (*LAYOUT, *there)}
+    if count_of(mesh):
+        for layout in fields.values():
+            _find(mesh, layout, name)
     rest = mesh.attributes.get(REST.name)
-    if rest is None or (rest.data_type, rest.domain) != (REST.data_type, "POINT"):
+    if rest is not None and (rest.data_type, rest.domain) == (REST.data_type, "POINT"):
+        fields[_REST] = REST
+    return fields
+
+
+def read_field(mesh: Points, layout: PointAttribute, name: str, values: np.ndarray | None = None) -> np.ndarray:
+    """(N,) or (N, columns) values of one attribute. values: the array to read into, as `room_for` makes it."""
+    values = room_for(layout, count_of(mesh)) if values is None else values
+    if len(values):
+        _find(mesh, layout, name).data.foreach_get(layout.property, values.ravel())
+    return values
+
+
+def room_for(layout: PointAttribute, count: int) -> np.ndarray:
+    """An array for the values of one attribute."""
+    shape = (count, layout.columns) if layout.columns > 1 else count
+    return np.empty(shape, _TYPES.get(layout.data_type, np.float32))
+
+
+def stored_of(arrays: dict[str, np.ndarray], is_solid: bool, known: dict, name: str) -> Stored:
+    """The surfels of arrays that were read by `stored_fields`; no Blender data is touched. known, name: as in
+    `read_stored`."""
+    arrays = dict(arrays)
+    rest = arrays.pop(_REST, None)
+    arrays["scales"] = arrays["scales"][:, :2]
+    surfels, skipped = valid_surfels(is_solid=is_solid, **arrays)
+    if rest is None:
         return Stored(surfels, skipped, 0)
-    rest = _read(mesh, REST, name)
-    rest = rest if loose is None else rest[loose]
     if skipped:
         # their numbers take the materials' way
         numbers = np.where(arrays["materials"] < 0, -1, np.arange(len(rest)))
         rest = rest[valid_surfels(**(arrays | {"materials": numbers}))[0].materials]
     if np.array_equal(surfels.positions, rest):
         return Stored(surfels, skipped, 0)
-    known = {} if known is None else known
     before = known.get(name)
     if before is not None and np.array_equal(before[1], rest) and have_same_values(before[0], surfels):
         return before[2]._replace(skipped=skipped)
@@ -144,13 +178,19 @@ def read_stored(
     return known[name][2]
 
 
-def _count(mesh: Points) -> int:
+def count_of(mesh: Points) -> int:
+    """The number of points."""
     return len(mesh.points if isinstance(mesh, bpy.types.PointCloud) else mesh.vertices)
+
+
+def has_loose_points_only(mesh: Points) -> bool:
+    """Whether all points are surfels, because the mesh has no faces."""
+    return isinstance(mesh, bpy.types.PointCloud) or not mesh.polygons
 
 
 def _loose_points(mesh: Points) -> np.ndarray | None:
     """(n,) points that belong to no face of a mesh with faces; None: all points are surfels."""
-    if isinstance(mesh, bpy.types.PointCloud) or not mesh.polygons:
+    if has_loose_points_only(mesh):
         return None
     is_loose = np.ones(len(mesh.vertices), bool)
     corners = np.empty(len(mesh.loops), np.int32)
@@ -172,15 +212,6 @@ def _padded(values: np.ndarray, columns: int) -> np.ndarray:
     if rows.shape[1] < columns:
         rows = np.pad(rows, ((0, 0), (0, columns - rows.shape[1])))
     return rows.ravel()
-
-
-def _read(mesh: Points, layout: PointAttribute, name: str) -> np.ndarray:
-    """(N,) or (N, columns) values of one attribute."""
-    shape = (_count(mesh), layout.columns) if layout.columns > 1 else _count(mesh)
-    values = np.empty(shape, _TYPES.get(layout.data_type, np.float32))
-    if len(values):
-        _find(mesh, layout, name).data.foreach_get(layout.property, values.ravel())
-    return values
 
 
 def _find(mesh: Points, layout: PointAttribute, name: str) -> bpy.types.Attribute:

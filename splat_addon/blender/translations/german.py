@@ -46,6 +46,14 @@ GERMAN = {
         "Jeden Splat für sich beleuchten und die beleuchteten Farben mischen, wie in Veröffentlichungen vor dem "
         "Deferred Shading. Die Zeit wächst mit der Zahl der Surfels statt der Samples"
     ),
+    (
+        "Pictures per second of a viewport that moves. If they take longer, they have larger surfels and fewer "
+        "pixels, until the view rests. 0 always draws all of them"
+    ): (
+        "Bilder pro Sekunde eines Ansichtsfensters, das sich bewegt. Dauern sie länger, haben sie größere Surfels und "
+        "weniger Pixel, bis die Ansicht ruht. 0 zeichnet immer alle"
+    ),
+    "Viewport Rate": "Rate im Ansichtsfenster",
     "Ramp": "Verlauf",
     (
         "Sample along all three axes and keep the surfels whose smoothed normals face their axis most. It leaves "
@@ -512,6 +520,7 @@ GERMAN = {
     "Points": "Punkte",
     "Polygons": "Polygone",
     "Position": "Position",
+    "Preparing surfels": "Surfels werden vorbereitet",
     "Preset": "Voreinstellung",
     "Preview": "Vorschau",
     "Principled": "Principled",

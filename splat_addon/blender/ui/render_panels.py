@@ -186,7 +186,7 @@ class RENDER_PT_surfel_transparency(_RenderPanel, bpy.types.Panel):
 class RENDER_PT_surfel_performance(_RenderPanel, bpy.types.Panel):
     bl_label = "Performance"
     bl_options = frozenset({"DEFAULT_CLOSED"})
-    properties = ("detail_tolerance", "storage", "accumulation", "profile", "broken_objects")
+    properties = ("detail_tolerance", "viewport_rate", "storage", "accumulation", "profile", "broken_objects")
 
     def draw(self, context):
         super().draw(context)

@@ -8,11 +8,22 @@ drawn (Vulkan then crashes), and its state leaks into Blender's own drawing.
 from __future__ import annotations
 
 from functools import lru_cache
+from pathlib import Path
 from weakref import WeakSet
 
 import numpy as np
 
 from .interface import FORMATS, PROGRAMS, PipelineDescription, check_memory, check_texture_size
+
+#: Copies the texels of one texture into another, from row `place.rows.y` on.
+_ROWS = PipelineDescription(
+    "rows",
+    (Path(__file__).resolve().parents[3] / "shaders/hosts/fullscreen.vert.glsl").read_text(encoding="utf-8"),
+    "void main() { texel = texelFetch(source, ivec2(gl_FragCoord.xy - place.rows.xy), 0); }",
+    (("Place", "place", (("vec4", "rows"),)),),
+    samplers=("source",),
+    outputs=(("vec4", "texel"),),
+)
 
 _FORMAT_NAMES = {"DEPTH32F": "DEPTH_COMPONENT32F"}
 _BLEND_NAMES = {"none": "NONE", "add": "ADDITIVE_PREMULT"}
@@ -58,6 +69,12 @@ class BlenderDevice:
         made = _Texture(self._gpu, size, format, data)
         self.textures.add(made)
         return made
+
+    def write(self, texture, first, data):
+        # `gpu` cannot write into a texture that exists, so another one is drawn into it
+        rows = self.texture((data.shape[1], len(data)), texture.format, data)
+        place, viewport = np.array([0, first, 0, 0], np.float32), (0, first, *rows.size)
+        self.draw_fullscreen(self.pipeline(_ROWS), self.target([texture]), [place], [rows], viewport)
 
     def target(self, colors, depth=None):
         return _Target(self._gpu, colors, depth)

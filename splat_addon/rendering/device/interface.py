@@ -139,6 +139,9 @@ class Device(Protocol):
         too large, or exceeds `most_bytes`.
         """
 
+    def write(self, texture: Texture, first: int, data: np.ndarray) -> None:
+        """Replace whole rows of a texture of four channels, from row `first` on. data: (rows, width, 4) float32."""
+
     def target(self, colors: list[Texture], depth: Texture | None = None) -> Target:
         """A target with colour textures in slot order, and a depth texture. Make one per frame: framebuffers belong to
         one context."""

@@ -60,6 +60,10 @@ class StandaloneDevice:
         self.textures.add(made)
         return made
 
+    def write(self, texture, first, data):
+        _, stored = _STORED.get(texture.format, ("f4", np.float32))
+        texture.handle.write(np.ascontiguousarray(stored(data)).tobytes(), (0, first, data.shape[1], len(data)))
+
     def target(self, colors, depth=None):
         return _Target(self._context, colors, depth)
 

@@ -11,6 +11,7 @@ Each module decides from a `Planning` whether the frame needs it, and records th
     VALUES                 name -> (type, value for a tile) of its values in the uniform block `frame`
     INPUTS                 sampler -> the texture for a tile that no pass writes
     DRAWN                  sampler -> the texture for a tile and what is drawn (a `DrawItem`)
+    ARRIVES                those of them with one texel or more per surfel -> whether an instance needs it
     draws(tile, p, i)      whether a pass draws the splats of an instance
     CONSTANTS              constants that Python and shaders share, by name
     margin(planning)       pixels beside a tile that its functions read
@@ -122,6 +123,7 @@ _MODELS = SHADING_MODELS.values()
 VALUES = _joined("VALUES") | {name: value for model in _MODELS for name, value in model.values.items()}
 INPUTS = _joined("INPUTS") | {name: texture for model in _MODELS for name, texture in model.tables.items()}
 DRAWN = _joined("DRAWN") | drawing.DRAWN
+ARRIVES = drawing.ARRIVES | _joined("ARRIVES")
 CONSTANTS = _joined("CONSTANTS") | {
     "SPLATS_PER_ROW": SPLATS_PER_ROW,
     "TEXELS_PER_SPLAT": TEXELS_PER_SPLAT,

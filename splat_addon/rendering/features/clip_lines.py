@@ -16,6 +16,7 @@ _IN_SPACE = (("flat", "float", "clip_in_space"),)
 
 
 DRAWN = {"clip_lines": lambda tile, placed: tile.resources.clip_lines(placed.instance.surfels)}
+ARRIVES = {"clip_lines": lambda instance: instance.surfels.clipped_count > 0}
 
 
 def _count(planning) -> int:

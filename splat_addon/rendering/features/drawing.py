@@ -37,6 +37,8 @@ def _stored(tile: TileContext, placed: DrawItem, sampler: str) -> DeviceTexture:
 DRAWN = {name: partial(_stored, sampler=name) for storage in STORAGES.values() for name in storage.samplers} | {
     "polygon_corners": lambda tile, placed: tile.resources.polygons(placed.instance.polygons),
 }
+#: Which of them take long to arrive, and whether an instance needs them.
+ARRIVES = {name: lambda instance: True for storage in STORAGES.values() for name in storage.samplers}
 
 
 def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None):

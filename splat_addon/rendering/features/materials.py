@@ -37,6 +37,7 @@ def _drawn(tile, placed):
 
 
 DRAWN = {"materials": _drawn}
+ARRIVES = {"materials": lambda instance: instance.surfels.has_own_material}
 
 
 def differ(planning) -> tuple[bool, bool]:

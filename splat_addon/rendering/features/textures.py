@@ -28,6 +28,7 @@ DRAWN = {
     "texture_atlas": lambda tile, placed: tile.resources.atlas(placed.instance.looked_up)[0],
     "texture_table": lambda tile, placed: tile.resources.atlas(placed.instance.looked_up)[1],
 }
+ARRIVES = {"surfel_uvs": lambda instance: instance.is_textured}
 
 
 def _are_textured(planning) -> tuple[bool, bool]:

@@ -7,19 +7,21 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from types import SimpleNamespace
 
 import numpy as np
 
 from ...hierarchy import Hierarchy, cut_entries
 from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
-from ..features import DRAWN, DRAWS, INPUTS
+from ..features import ARRIVES, DRAWN, DRAWS, INPUTS
 from ..identity import Identities
-from ..levels import hierarchy_of, sight
+from ..levels import has_levels, sight
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
 from ..settings import Settings
 from ..upload.cuts import Cut
+from ..upload.loading import NotYet
 from ..upload.resources import Resources, StoredSurfels, TextureKey
 from ..upload.storages import get_storage
 from ..view import DrawItem, View
@@ -100,12 +102,34 @@ class TileContext:
         return view.projection, to_world, self.window, view.near, is_parallel, self.depth_unit, 1.0 / view.scale
 
     def levels(self, instance: Instance) -> Hierarchy | None:
-        """The hierarchy of an object's surfels, if the plan has levels of detail for it."""
-        return hierarchy_of(instance.surfels) if instance in self.plan.facts.get("levels", ()) else None
+        """The hierarchy of an object's surfels, if the plan has levels of detail for it and it is there."""
+        if instance not in self.plan.facts.get("levels", ()):
+            return None
+        return self.resources.levels(instance.surfels, get_storage(self.plan.storage))
 
     def stored(self, instance: Instance) -> StoredSurfels:
         """An object's surfels on the device, including merged ones if it has levels."""
-        return self.resources.surfels(instance.surfels, get_storage(self.plan.storage), self.levels(instance))
+        may_have_levels = bool(self.settings.detail_tolerance) and has_levels(instance)
+        storage, levels = get_storage(self.plan.storage), self.levels(instance)
+        return self.resources.surfels(instance.surfels, storage, levels, may_have_levels)
+
+    def check_arrived(self) -> None:
+        """Request everything of the scene's surfels that passes read; raises `NotYet` for what is on its way."""
+        read, late = {name for p in self.plan.passes for name in p.all("inputs")}, set()
+        for instance in self.scene.surfels:
+            if instance.is_cut:
+                # the next view has another, so that it would never be there
+                self.resources.loading.exempt.add(instance.surfels)
+            wanted = [name for name, is_needed in ARRIVES.items() if name in read and is_needed(instance)]
+            for name in wanted if len(instance.surfels) else ():
+                try:
+                    DRAWN[name](self, SimpleNamespace(instance=instance))
+                except NotYet as reason:
+                    # the rest is made when it is known whether the surfels have levels
+                    late |= reason.surfels
+                    break
+        if late:
+            raise NotYet(late)
 
     def cut(self, placed: DrawItem) -> Cut:
         """The part of an instance that this view draws."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, TURN
-from ...surfels import Surfels
+from ...surfels import Surfels, quaternion_axes
 from ..scene import Finish, Material, Placed
 from .stored_order import SPLATS_PER_ROW
 
@@ -25,30 +25,36 @@ MAX_SPLATS = SPLATS_PER_ROW * MAX_ROWS
 #: Surfels of one set that leave room for merged ones, of which each replaces two or more.
 LARGEST_SET = MAX_SPLATS // 2
 
+#: Surfels that are packed at a time, few enough for temporaries to stay in the processor's cache.
+_PORTION = 1 << 14
+
 
 def pack_surfels(surfels: Surfels, order: np.ndarray) -> np.ndarray:
     """(rows, 2048, 4) float32 texels. order: (n,) numbers of the surfels in which they are stored.
 
     Raises ValueError above `MAX_SPLATS` (8.4 million).
     """
-    rows, count = row_count(len(order)), len(order)
+    rows = row_count(len(order))
     texels = np.zeros((rows * SPLATS_PER_ROW, TEXELS_PER_SPLAT, 4), np.float32)
-    filled = texels[:count]
-    filled[:, 0, :3] = surfels.positions[order]
-    filled[:, 1, :3], filled[:, 2, :3] = (axis[order] for axis in surfels.half_axes())
-    encoded = octahedral(surfels.normals[order])
-    filled[:, 0, 3], filled[:, 1, 3] = encoded[0], encoded[1]
-    filled[:, 2, 3] = surfels.materials[order]
-    if surfels.blend_depth is not None:
-        filled[:, 2, 3] += not_blended(surfels)[order] / BLEND_STEPS
-    filled[:, 3] = surfels.colors[order]
+    for start in range(0, len(order), _PORTION):
+        some = order[start : start + _PORTION]
+        filled = texels[start : start + len(some)]
+        filled[:, 0, :3] = surfels.positions[some]
+        scales = surfels.scales[some]
+        x, y, _ = quaternion_axes(surfels.rotations[some], 2)
+        filled[:, 1, :3], filled[:, 2, :3] = x * scales[:, :1], y * scales[:, 1:]
+        filled[:, 0, 3], filled[:, 1, 3] = octahedral(surfels.normals[some])
+        filled[:, 2, 3] = surfels.materials[some]
+        if surfels.blend_depth is not None:
+            filled[:, 2, 3] += not_blended(surfels.blend_depth[some]) / BLEND_STEPS
+        filled[:, 3] = surfels.colors[some]
     return texels.reshape(rows, SPLATS_PER_ROW * TEXELS_PER_SPLAT, 4)
 
 
-def not_blended(surfels: Surfels) -> np.ndarray:
-    """(N,) float64 integers from 0 to 255: the part of the radius over which a splat does not blend, in 256ths, rounded
+def not_blended(blend_depth: np.ndarray) -> np.ndarray:
+    """(n,) float64 integers from 0 to 255: the part of the radius over which a splat does not blend, in 256ths, rounded
     towards more blending. This fits into the fraction beside a material's number; 0 means no blend depth."""
-    return np.minimum(np.floor((1 - surfels.blend_depth.astype(np.float64)) * BLEND_STEPS), BLEND_STEPS - 1)
+    return np.minimum(np.floor((1 - blend_depth.astype(np.float64)) * BLEND_STEPS), BLEND_STEPS - 1)
 
 
 def pack_uvs(surfels: Surfels, order: np.ndarray) -> np.ndarray:

@@ -69,7 +69,7 @@ def pack_16_bit(surfels: Surfels, order: np.ndarray) -> tuple[tuple[np.ndarray, 
     texels[:, :, 0, 3], texels[:, :, 1, 3] = _signed_steps(normals)
     texels[:, :, 2, 2] = blocks(surfels.materials) / _STEPS
     if surfels.blend_depth is not None:
-        texels[:, :, 2, 3] = blocks(not_blended(surfels)) / _STEPS
+        texels[:, :, 2, 3] = blocks(not_blended(surfels.blend_depth)) / _STEPS
 
     colors = blocks(surfels.colors)
     brightest = np.abs(colors[..., :3]).max(axis=(1, 2))

@@ -4,19 +4,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
+from functools import partial
+from operator import itemgetter
 from typing import NamedTuple, TypeVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ...hierarchy import Hierarchy
+from ...hierarchy import Hierarchy, build_hierarchy
 from ...surfels import Surfels, concatenate
 from ..device import Device
 from ..device.interface import Pipeline, PipelineDescription, Texture
+from ..levels import built_hierarchy, hierarchy_of, keep_hierarchy
 from ..scene import Finish, Placed, SurfaceTexture
 from ..scene.polygons import Polygons, pack_polygon_bumps, pack_polygon_uvs, pack_polygons
 from .atlas import FORMAT, make_atlas
 from .cuts import Cuts
+from .loading import Loading, Made, NotYet, Packed
 from .packing import pack_clip_lines, pack_materials, pack_own_materials, pack_uvs
 from .storages import Storage
 from .stored_order import places_of, stored_order
@@ -41,29 +46,38 @@ class StoredSurfels(NamedTuple):
 
 class Resources:
     """Surfels are freed with their last Python reference, textures with the first frame that does not use them, and
-    everything by `release`. textures: those that passes wrote last, by key."""
+    everything by `release`. textures: those that passes wrote last, by key.
+
+    loading: brings large sets to the device in slices; a request for one that is on its way then raises `NotYet`. None:
+    everything is made when it is first needed.
+    """
 
     def __init__(self, device: Device):
         self.device = device
+        self.loading: Loading | None = None
         self.cuts = Cuts(device)
         self._held = WeakKeyDictionary()
         self._atlases = {}
         self.textures = {}
 
-    def surfels(self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None) -> StoredSurfels:
-        """Textures of surfels, uploaded once per storage. levels: hierarchy whose nodes are stored after them."""
+    def surfels(
+        self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None, may_have_levels: bool = False
+    ) -> StoredSurfels:
+        """Textures of surfels, uploaded once per storage. levels: hierarchy whose nodes are stored after them.
 
-        def stored() -> StoredSurfels:
-            every, order = _with_nodes(surfels, levels), self._order(surfels, levels)
-            arrays, coarse = storage.pack(every, order)
-            places = places_of(order, len(every)) if levels else None
-            textures = {
-                sampler: self.data(texels, format)
-                for (sampler, format), texels in zip(storage.textures, arrays, strict=True)
-            }
-            return StoredSurfels(textures, coarse, places)
+        may_have_levels: whether one is built where surfels are loaded in the background, for a view that will move.
+        """
+        pack = partial(_packed_surfels, storage)
+        return self._with_levels(surfels, "surfels", (storage.name,), levels, pack, may_have_levels)
 
-        return self._with_levels(surfels, "surfels", (storage.name,), levels, stored)
+    def levels(self, surfels: Surfels, storage: Storage) -> Hierarchy | None:
+        """The hierarchy of surfels; None while it is built in the background, and they are drawn without it."""
+        built = built_hierarchy(surfels)
+        if built is None and (self.loading is None or self.loading.admits(surfels)):
+            return hierarchy_of(surfels)
+        if built is None:
+            self._load(surfels, "surfels", (storage.name,), None, partial(_packed_surfels, storage), True)
+        return built
 
     def polygons(self, polygons: Polygons) -> Texture:
         """The corners of polygons, uploaded once."""
@@ -92,44 +106,73 @@ class Resources:
         if not shape.has_own_material:
             return self.data(pack_materials(slots, with_emission, finishes))
 
-        def own() -> Texture:
-            if not isinstance(shape, Surfels):
-                return self.data(pack_own_materials(shape, slots, slice(None), with_emission, finishes))
-            every, order = _with_nodes(shape, levels), self._order(shape, levels)
-            return self.data(pack_own_materials(every, slots, order, with_emission, finishes))
-
-        return self._with_levels(shape, "materials", (slots, with_emission, finishes), levels, own)
+        if not isinstance(shape, Surfels):
+            made_from = slots, with_emission, finishes
+            own = partial(pack_own_materials, shape, slots, slice(None), with_emission, finishes)
+            return self._once(shape, "materials", made_from, lambda: self.data(own()))
+        pack = partial(_packed_materials, slots, with_emission, finishes)
+        return self._with_levels(shape, "materials", (slots, with_emission, finishes), levels, pack)
 
     def surfel_uvs(self, surfels: Surfels, levels: Hierarchy | None = None) -> Texture:
         """Their texture coordinates, uploaded once."""
-
-        def uploaded() -> Texture:
-            return self.data(pack_uvs(_with_nodes(surfels, levels), self._order(surfels, levels)))
-
-        return self._with_levels(surfels, "uvs", (), levels, uploaded)
+        return self._with_levels(surfels, "uvs", (), levels, _packed_uvs)
 
     def clip_lines(self, surfels: Surfels) -> Texture:
         """The lines of those that are clipped, uploaded once; merged ones have none."""
+        return self._with_levels(surfels, "clip_lines", (), None, _packed_clip_lines)
 
-        def uploaded() -> Texture:
-            return self.data(pack_clip_lines(surfels, self._order(surfels)), "RGBA16")
-
-        return self._once(surfels, "clip_lines", None, uploaded)
-
-    def _order(self, surfels: Surfels, levels: Hierarchy | None = None) -> np.ndarray:
-        """The order in which the surfels are stored, computed once."""
-        return self._with_levels(surfels, "order", (), levels, lambda: stored_order(surfels, levels))
+    def load_some(self) -> None:
+        """For a new picture, go on with what is on its way to the device."""
+        for owner, kind, made_from, made, textures in self.loading.advance():
+            if made.levels:
+                keep_hierarchy(owner, made.levels)
+            held = self._held.setdefault(owner, {})
+            held["order"] = (made.levels,), made.order
+            held[kind] = (*made_from, made.levels), made.packed.value(textures)
 
     def _with_levels(
-        self, owner: object, kind: str, made_from: tuple, levels: Hierarchy | None, make: Callable[[], Uploaded]
-    ) -> Uploaded:
-        """Device data as in `_once`.
+        self,
+        owner: Surfels,
+        kind: str,
+        made_from: tuple,
+        levels: Hierarchy | None,
+        pack: Callable[[Surfels, np.ndarray, bool], Packed],
+        may_have_levels: bool = False,
+    ):
+        """Device data as in `_once`. pack: makes it of surfels, with their nodes, of their order, and of
+        whether they have levels.
 
         Data stored with levels also serves draws without levels, because the surfels come first.
         """
+        wanted, held = self._wanted(owner, kind, made_from, levels), self._held.setdefault(owner, {})
+        is_there = kind in held and held[kind][0] == wanted
+        if not is_there and self.loading is not None and not self.loading.admits(owner):
+            self._load(owner, kind, made_from, levels, pack, may_have_levels and levels is None)
+            raise NotYet([owner])
+
+        def uploaded():
+            packed = pack(_with_nodes(owner, levels), self._order(owner, levels), levels is not None)
+            return packed.value([self.data(*texture) for texture in packed.texels])
+
+        return self._once(owner, kind, wanted, uploaded)
+
+    def _wanted(self, owner: Surfels, kind: str, made_from: tuple, levels: Hierarchy | None) -> tuple:
+        """What data is made from, as `_held` has it."""
         (*from_before, levels_before), _ = self._held.get(owner, {}).get(kind, ((None,), None))
         is_kept = levels is None and tuple(from_before) == made_from
-        return self._once(owner, kind, (*made_from, levels_before if is_kept else levels), make)
+        return (*made_from, levels_before if is_kept else levels)
+
+    def _order(self, surfels: Surfels, levels: Hierarchy | None = None) -> np.ndarray:
+        """The order in which the surfels are stored, computed once."""
+        wanted = self._wanted(surfels, "order", (), levels)
+        return self._once(surfels, "order", wanted, lambda: stored_order(surfels, levels))
+
+    def _load(self, owner: Surfels, kind: str, made_from: tuple, levels: Hierarchy | None, pack, builds: bool) -> None:
+        """Have data made in the background, and with `builds` a hierarchy before."""
+        known, order = self._held.get(owner, {}).get("order", (None, None))
+        order = order if known == (levels,) and not builds else None
+        job = partial(_made, copy(owner), levels, order, builds and built_hierarchy(owner) is None, pack)
+        self.loading.request(owner, kind, made_from, job)
 
     def atlas(self, textures: tuple[SurfaceTexture | None, ...]) -> tuple[Texture, Texture]:
         """Texels and table of an instance's textures, uploaded once."""
@@ -182,6 +225,8 @@ class Resources:
 
     def release(self) -> None:
         """Free everything on the device except programs."""
+        if self.loading:
+            self.loading.clear()
         self._held.clear()
         self.cuts.clear()
         self._atlases.clear()
@@ -191,3 +236,29 @@ class Resources:
 def _with_nodes(surfels: Surfels, levels: Hierarchy | None) -> Surfels:
     """The surfels, then the merged nodes."""
     return concatenate([surfels, levels.nodes]) if levels else surfels
+
+
+def _made(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray | None, builds: bool, pack) -> Made:
+    """The job of `Resources._load`."""
+    levels = build_hierarchy(surfels) if builds else levels
+    order = stored_order(surfels, levels) if order is None else order
+    return Made(levels, order, pack(_with_nodes(surfels, levels), order, levels is not None))
+
+
+def _packed_surfels(storage: Storage, every: Surfels, order: np.ndarray, has_levels: bool) -> Packed:
+    arrays, coarse = storage.pack(every, order)
+    texels = tuple((array, format) for array, (_, format) in zip(arrays, storage.textures, strict=True))
+    places = places_of(order, len(every)) if has_levels else None
+    return Packed(texels, lambda made: StoredSurfels(dict(zip(storage.samplers, made, strict=True)), coarse, places))
+
+
+def _packed_materials(slots, with_emission: bool, finishes, every: Surfels, order: np.ndarray, _) -> Packed:
+    return Packed(((pack_own_materials(every, slots, order, with_emission, finishes), "RGBA32F"),), itemgetter(0))
+
+
+def _packed_uvs(every: Surfels, order: np.ndarray, _) -> Packed:
+    return Packed(((pack_uvs(every, order), "RGBA32F"),), itemgetter(0))
+
+
+def _packed_clip_lines(every: Surfels, order: np.ndarray, _) -> Packed:
+    return Packed(((pack_clip_lines(every, order), "RGBA16"),), itemgetter(0))

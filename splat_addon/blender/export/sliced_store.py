@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads large meshes of surfels over several pictures of a view, so that none waits long.
+
+A picture copies an attribute or two into arrays that a thread made room for, and which that thread then checks. Until
+that is done, the view shows what the mesh was before, or a few of its surfels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from copy import copy
+from functools import partial
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+
+from ...rendering.background import in_background
+from ...rendering.stand_in import STAND_IN, spread, widened
+from ...rendering.upload.packing import LARGEST_SET
+from ...surfels import Surfels, portions, valid_surfels
+from ..geometry.attributes import (
+    SOLID,
+    Points,
+    Stored,
+    count_of,
+    has_loose_points_only,
+    have_same_values,
+    read_field,
+    room_for,
+    stored_fields,
+    stored_of,
+)
+from .scene import Kept, SurfelStore
+
+#: Surfels that one picture may read at once, so that small meshes are there in the first one.
+AT_ONCE = 1 << 18
+#: Seconds after which a picture copies no further attribute.
+_SECONDS = 0.05
+
+
+class SlicedStore(SurfelStore):
+    """A `SurfelStore` for a view: `get` may return what was there before, a stand-in or nothing, while it reads.
+
+    is_sliced: whether it may; otherwise pictures wait for everything.
+    """
+
+    def __init__(self, clock: Callable[[], float] = perf_counter):
+        super().__init__()
+        self.is_sliced = True
+        self._clock = clock
+        self._readings: dict[int, _Reading] = {}
+        self._requested: set[int] = set()
+        self._at_once, self._until = AT_ONCE, 0.0
+
+    @property
+    def left(self) -> tuple[float, int]:
+        """Points that have not been read, and those of the meshes that they belong to."""
+        readings = self._readings.values()
+        return sum(reading.left for reading in readings), sum(reading.count for reading in readings)
+
+    @property
+    def has_news(self) -> bool:
+        """Whether reading can go on."""
+        return any(reading.has_news for reading in self._readings.values())
+
+    def begin_frame(self, changed=None, are_materials_edited=False):
+        super().begin_frame(changed, are_materials_edited)
+        self._at_once, self._until, self._requested = AT_ONCE, self._clock() + _SECONDS, set()
+        if changed is None:
+            self._readings.clear()
+        self._readings = {key: r for key, r in self._readings.items() if r.name not in (changed or ())}
+
+    def forget_unused(self):
+        self._readings = {key: r for key, r in self._readings.items() if key in self._requested}
+        before = {key: self._kept[key] for key in self._readings if key in self._kept}
+        super().forget_unused()
+        self._kept |= before
+
+    def get(self, points: Points, key: int, name: str, is_solid: bool = False):
+        """The result of `SurfelStore.get`, or what is known meanwhile, which may be no parts at all."""
+        count = count_of(points)
+        is_at_once = count <= self._at_once or not self.is_sliced or not has_loose_points_only(points)
+        if key in self._current or is_at_once:
+            self._at_once -= 0 if key in self._current else count
+            self._readings.pop(key, None)
+            return super().get(points, key, name, is_solid)
+        self._requested.add(key)
+        reading = self._readings.get(key)
+        if reading is None or reading.count != count:
+            before = [kept for kept in self._kept.values() if kept.name == name]
+            reading = self._readings[key] = _Reading(points, name, is_solid, before, self._followed.get(name))
+        try:
+            read = reading.advance(points, self._until, self._clock)
+        except Exception:
+            del self._readings[key]
+            raise
+        if read is None:
+            return reading.meanwhile, 0, 0
+        del self._readings[key]
+        if read.followed is not None:
+            self._followed[name] = read.followed
+        self._kept[key] = read.kept
+        self._current.add(key)
+        return super().get(points, key, name, is_solid)
+
+
+class _Read(NamedTuple):
+    kept: Kept
+    followed: tuple | None
+
+
+class _Reading:
+    """One mesh that is being read. before: what is kept of meshes of its name. meanwhile: the sets to show."""
+
+    def __init__(self, points: Points, name: str, is_solid: bool, before: list[Kept], followed: tuple | None):
+        self.name, self.count, self._before, self._followed = name, count_of(points), before, followed
+        self._is_solid = is_solid or bool(points.get(SOLID))
+        self._fields = stored_fields(points, name)
+        self._rooms = {f: in_background(partial(_room, of, self.count)) for f, of in self._fields.items()}
+        self._arrays: dict[str, np.ndarray] = {}
+        self._made: Future | None = None
+        self.meanwhile: tuple[Surfels, ...] = before[0].parts if before else ()
+
+    def __del__(self):
+        for future in (*getattr(self, "_rooms", {}).values(), getattr(self, "_made", None)):
+            if future is not None:
+                future.cancel()
+
+    @property
+    def left(self) -> float:
+        """Points of which no attribute has been read: the mean over its attributes, and half for checking them."""
+        return self.count * (1 - 0.5 * len(self._arrays) / len(self._fields))
+
+    @property
+    def has_news(self) -> bool:
+        if self._made is not None:
+            return self._made.done()
+        return any(room.done() for field, room in self._rooms.items() if field not in self._arrays)
+
+    def advance(self, points: Points, until: float, clock: Callable[[], float]) -> _Read | None:
+        """Go on until that time; the result when it is complete. Raises ValueError as `attributes.read_stored`."""
+        for field, room in self._rooms.items():
+            if field not in self._arrays:
+                if not room.done() or clock() > until:
+                    return None
+                self._arrays[field] = read_field(points, self._fields[field], self.name, room.result())
+        if self._made is None:
+            if not self.meanwhile:
+                self.meanwhile = _few(self._arrays, self._is_solid)
+            # copies, because an object that the thread frees would free its textures there
+            known = {} if self._followed is None else {self.name: _copied(self._followed)}
+            before = [copy(kept.surfels) for kept in self._before]
+            self._made = in_background(partial(_made, self._arrays, self._is_solid, known, self.name, before))
+        if not self._made.done():
+            return None
+        stored, parts, same, followed = self._made.result()
+        kept = Kept(self.name, stored.surfels, parts, 0, 0) if same is None else self._before[same]
+        return _Read(kept._replace(skipped=stored.skipped, strayed=stored.strayed), followed)
+
+
+def _room(layout, count: int) -> np.ndarray:
+    """An array whose memory is there, so that copying into it takes no longer than that."""
+    values = room_for(layout, count)
+    values.fill(0)
+    return values
+
+
+def _few(arrays: dict[str, np.ndarray], is_solid: bool) -> tuple[Surfels, ...]:
+    """The stand-in of surfels that have not been checked."""
+    rows = spread(len(arrays["positions"]), STAND_IN)
+    few = {name: array[rows] for name, array in arrays.items()}
+    surfels, _, _ = stored_of({name: array for name, array in few.items() if name != "rest"}, is_solid, {}, "")
+    wide = widened(surfels.arrays(), len(arrays["positions"]))
+    return (valid_surfels(is_solid=is_solid, **wide)[0],) if len(surfels) else ()
+
+
+def _copied(followed: tuple) -> tuple:
+    read, rest, stored = followed
+    return copy(read), rest, stored._replace(surfels=copy(stored.surfels))
+
+
+def _made(arrays, is_solid: bool, known: dict, name: str, before: list[Surfels]):
+    """The job: what is stored, its portions, the number of the set before that has the same values, and what `known`
+    has of it now."""
+    stored: Stored = stored_of(arrays, is_solid, known, name)
+    same = next((n for n, surfels in enumerate(before) if have_same_values(surfels, stored.surfels)), None)
+    parts = portions(stored.surfels, LARGEST_SET) if same is None else ()
+    for part in parts:
+        # what every picture asks for is found here, once
+        _ = part.is_transparent, part.local_bounds, part.largest, part.clipped_count, part.brightest
+    return stored, parts, same, known.get(name)

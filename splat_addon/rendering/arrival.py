@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A view whose surfels come in slices: what is not on the device yet is shown by a few surfels that stand for all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from weakref import WeakKeyDictionary, WeakSet
+
+from ..surfels import Surfels
+from .refinement import Refinement
+from .renderer import Shown
+from .scene import Scene
+from .scene.camera import Camera
+from .settings import Settings
+from .stand_in import STAND_IN, stand_in
+from .upload.loading import Loading, NotYet
+
+#: Least surfels that stand for a set.
+_LEAST = 64
+
+
+class Arrival:
+    """Draws what a refinement draws, without waiting: `loading` says what is on its way, for as long as it is."""
+
+    def __init__(self, refinement: Refinement, loading: Loading | None = None):
+        resources = refinement.renderer.resources
+        self.refinement = refinement
+        self.loading = resources.loading = loading or Loading(resources.device)
+        self._late: WeakSet[Surfels] = WeakSet()
+        self._stand_ins: WeakKeyDictionary[Surfels, Surfels] = WeakKeyDictionary()
+        self._shown: tuple[Scene, frozenset[Surfels], Scene] | None = None
+
+    @property
+    def is_late(self) -> bool:
+        """Whether the last picture had stand-ins."""
+        return self._shown is not None
+
+    def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
+        """Write a slice of what is on its way, and draw as `Refinement.draw`; what is late is shown by stand-ins."""
+        self.refinement.renderer.resources.load_some()
+        while True:
+            shown = self._with_stand_ins(scene)
+            try:
+                yield from self.refinement.draw(shown, camera, settings, hurries=shown is not scene)
+            except NotYet as reason:
+                if reason.surfels <= set(self._late):
+                    raise
+                self._late |= reason.surfels
+                self.refinement.pace.begin_coarsely()
+            else:
+                return
+
+    def _with_stand_ins(self, scene: Scene) -> Scene:
+        """The scene with stand-ins; the same object as long as nothing has arrived, so that it may refine."""
+        for surfels in [surfels for surfels in self._late if not self.loading.is_loading(surfels)]:
+            self._late.discard(surfels)
+            self._stand_ins.pop(surfels, None)
+        late = frozenset(i.surfels for i in scene.surfels if i.surfels in self._late)
+        if not late:
+            self._shown = None
+            return scene
+        if self._shown is None or self._shown[0] is not scene or self._shown[1] != late:
+            every = sum(map(len, late))
+            instances = (
+                replace(i, shape=self._of(i.surfels, every)) if i.surfels in late else i for i in scene.surfels
+            )
+            self._shown = scene, late, replace(scene, surfels=tuple(instances))
+        return self._shown[2]
+
+    def _of(self, surfels: Surfels, every: int) -> Surfels:
+        """The stand-in of a set, whose number is its share of all that are late."""
+        if surfels not in self._stand_ins:
+            made = stand_in(surfels, max(STAND_IN * len(surfels) // every, _LEAST))
+            self.loading.exempt.add(made)
+            self._stand_ins[surfels] = made
+        return self._stand_ins[surfels]

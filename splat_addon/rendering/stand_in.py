@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A few surfels in place of many, spread over all of them, for a view that waits for the rest."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..clip_lines import CLIP_FIELDS
+from ..surfels import Surfels
+
+#: Surfels of all stand-ins of a view together.
+STAND_IN = 1 << 16
+
+#: Factor by which they are wider than those that they replace would be, were they evenly spread.
+_WIDER = 1.3
+
+#: Fields that change over a half-axis, or are divided by it.
+_PER_AXIS = ("uv_along_x", "uv_along_y", "uv_border")
+
+
+def spread(count: int, wanted: int) -> np.ndarray:
+    """(min(wanted, count),) int64 indices: one from each of as many equal runs, so that a set in any spatial order is
+    covered evenly, and from changing places, so that a grid leaves no stripes."""
+    wanted = min(wanted, count)
+    ends = np.linspace(0, count, wanted + 1).astype(np.int64)
+    chosen = np.arange(wanted, dtype=np.uint64) * np.uint64(0x9E3779B1) % np.uint64(1 << 32)
+    return ends[:-1] + (np.diff(ends) * (chosen.astype(np.float64) / 2**32)).astype(np.int64)
+
+
+def widened(arrays: dict[str, np.ndarray], count: int) -> dict[str, np.ndarray]:
+    """The fields of n surfels that stand for `count`: as much wider as these would leave bare, and whole."""
+    chosen = len(arrays["positions"])
+    factor = np.float32(_WIDER * np.sqrt(count / chosen) if chosen < count else 1)
+    arrays = {name: array for name, array in arrays.items() if name not in CLIP_FIELDS}
+    return {name: array * factor if name in ("scales", *_PER_AXIS) else array for name, array in arrays.items()}
+
+
+def stand_in(surfels: Surfels, wanted: int) -> Surfels:
+    """At most `wanted` surfels in place of a set."""
+    rows = spread(len(surfels), wanted)
+    arrays = widened({name: array[rows] for name, array in surfels.arrays().items()}, len(surfels))
+    return Surfels(origin=surfels.origin, is_solid=surfels.is_solid, **arrays)

@@ -1,0 +1,365 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A view's large sets come to the device in slices; meanwhile others stand for them, and in the end the picture is that
+of a render, bit by bit.
+"""
+
+import gc
+from concurrent.futures import Future
+from dataclasses import replace
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import scenes
+from splat_addon.rendering import Arrival, Refinement, Renderer, Settings, arrival
+from splat_addon.rendering.levels import built_hierarchy
+from splat_addon.rendering.stand_in import spread, stand_in
+from splat_addon.rendering.upload import loading, resources
+from splat_addon.rendering.upload.loading import Loading
+
+SIZE = (64, 48)
+SETTINGS = Settings(outputs=("color",), detail_tolerance=1.5, shadow_resolution=256)
+
+
+class Thread:
+    """Jobs that run when a test says so."""
+
+    def __init__(self):
+        self.jobs = []
+
+    def __call__(self, job):
+        self.jobs.append((Future(), job))
+        return self.jobs[-1][0]
+
+    def work(self, count=None):
+        """Run the next jobs, or all of them."""
+        for future, job in self.jobs[:count]:
+            if future.set_running_or_notify_cancel():
+                try:
+                    future.set_result(job())
+                except Exception as error:
+                    future.set_exception(error)
+        del self.jobs[:count]
+
+
+class Clock:
+    """A clock that each look moves on."""
+
+    def __init__(self, step=0.0):
+        self.now, self.step = 0.0, step
+
+    def __call__(self):
+        self.now += self.step
+        return self.now
+
+
+@pytest.fixture
+def small_steps(monkeypatch):
+    """Sets of more than 5,000 surfels are large, 8,000 stand for all of them, and a picture writes at most 1 MB, a
+    quarter of it in a slice."""
+    monkeypatch.setattr(arrival, "STAND_IN", 8000)
+    for name, value in {"AT_ONCE": 5000, "MOST_BYTES": 1 << 20, "SLICE_BYTES": 1 << 18}.items():
+        monkeypatch.setattr(loading, name, value)
+
+
+def shown(device, view, scene, camera, settings):
+    """(h, w, 4) of what a view shows at its next redraw."""
+    (part,) = view.draw(scene, camera, settings)
+    texels, (left, bottom, width, height) = device.target([part.texture]).read(0), part.part
+    return texels[bottom : bottom + height, left : left + width] * part.scale
+
+
+def begun(device, clock=None):
+    thread = Thread()
+    view = Arrival(Refinement(Renderer(device)), Loading(device, thread, clock or Clock()))
+    return view, thread
+
+
+#: The surfels of a torus's larger set, and of that of a smaller torus.
+COUNT, FEWER = 35_101, 23_401
+
+
+def torus(count=60_000, **fields):
+    scene, camera = scenes.torus(count, SIZE)
+    lights = tuple(replace(light, casts_shadow=True) for light in scene.lights)
+    surfels = tuple(
+        replace(i, shape=replace(i.surfels, **{n: of(len(i.surfels)) for n, of in fields.items()}))
+        for i in scene.surfels[:1]
+    )
+    return replace(scene, lights=lights, surfels=surfels), camera
+
+
+def rough():
+    return torus(roughness=lambda n: np.linspace(0.2, 0.8, n), metallic=lambda n: np.zeros(n))
+
+
+def clipped():
+    def lines(n):
+        return np.stack([np.arange(n) * 7 % 65536 - 32768, np.arange(n) % 2 * 9000], axis=1).astype(np.int16)
+
+    return torus(clip_line=lines)
+
+
+def two():
+    """Two sets, the second of which lies behind the first."""
+    (first, camera), (second, _) = torus(), torus(40_000)
+    moved = np.array(second.surfels[0].matrix_world)
+    moved[:3, 3] += 0.5
+    return replace(first, surfels=(first.surfels[0], replace(second.surfels[0], matrix_world=moved))), camera
+
+
+SHOTS = (torus, rough, clipped, two, scenes.textured_plane)
+
+
+@pytest.mark.parametrize("storage", ["float32", "16-bit"])
+@pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.__name__)
+@pytest.mark.parametrize("tolerance", [0.0, 1.5])
+def test_the_whole_picture_is_that_of_a_render_bit_by_bit(
+    shot, storage, tolerance, small_steps, on_device, monkeypatch
+):
+    scene, camera = shot()
+    if shot is scenes.textured_plane:
+        monkeypatch.setattr(loading, "AT_ONCE", 40)
+    settings = replace(SETTINGS, storage=storage, detail_tolerance=tolerance)
+
+    def draw(device):
+        view, thread = begun(device)
+        shown(device, view, scene, camera, settings)
+        assert view.loading.left[0] >= sum(len(i.surfels) for i in scene.surfels)
+        for _ in range(200):
+            thread.work()
+            picture = shown(device, view, scene, camera, settings)
+            assert view.loading.bytes_written <= loading.MOST_BYTES
+            if not view.loading.left[0]:
+                break
+        return picture, Renderer(device).render(scene, camera, settings).color
+
+    picture, whole = on_device(draw)
+    np.testing.assert_array_equal(picture, whole)
+
+
+def test_a_set_of_a_million_comes_in_several_pictures(on_device):
+    """The limits are those of a view."""
+    scene, camera = scenes.torus(1_000_000, SIZE)
+
+    def draw(device):
+        (view, thread), written = begun(device), []
+        shown(device, view, scene, camera, SETTINGS)
+        while view.loading.left[0] and len(written) < 50:
+            thread.work()
+            picture = shown(device, view, scene, camera, SETTINGS)
+            written.append(view.loading.bytes_written)
+        return picture, written, Renderer(device).render(scene, camera, SETTINGS).color
+
+    picture, written, whole = on_device(draw)
+    assert 64e6 < sum(written) < 80e6 and len(written) >= 3
+    assert max(written) <= loading.MOST_BYTES
+    np.testing.assert_array_equal(picture, whole)
+
+
+def test_meanwhile_few_show_the_whole_object(small_steps, on_device):
+    scene, camera = torus(60_000)
+    settings = replace(SETTINGS, transparent_film=True, shadow_resolution=0)
+
+    def draw(device):
+        view, _ = begun(device)
+        first = shown(device, view, scene, camera, settings)
+        renderer = view.refinement.renderer
+        return first, renderer.resources.loading.left, Renderer(device).render(scene, camera, settings).color
+
+    first, left, whole = on_device(draw)
+    assert left == (COUNT, COUNT)
+    inside = whole[..., 3] > 0.999
+    assert inside.sum() > 300 and first[inside, 3].min() > 0.99
+    assert np.abs(first - whole)[inside, :3].mean() < 0.05
+
+
+def test_what_has_arrived_is_shown_beside_what_has_not(small_steps, on_device):
+    scene, camera = two()
+
+    def draw(device):
+        view, thread = begun(device)
+        counts, draw_scene = [], view.refinement.draw
+
+        def noted(scene, *rest, **options):
+            counts.append([len(i.surfels) for i in scene.surfels])
+            return draw_scene(scene, *rest, **options)
+
+        view.refinement.draw = noted
+        shown(device, view, scene, camera, SETTINGS)
+        thread.work(1)
+        while len(counts) < 3 or counts[-1][0] < COUNT:
+            shown(device, view, scene, camera, SETTINGS)
+        return counts
+
+    counts = on_device(draw)
+    assert counts[0] == [COUNT, FEWER] and counts[1][0] < COUNT and counts[-1][1] < FEWER
+
+
+def test_a_picture_stops_writing_when_its_time_is_up(small_steps, on_device):
+    scene, camera = torus()
+
+    def draw(device):
+        view, thread = begun(device, Clock(0.02))
+        shown(device, view, scene, camera, SETTINGS)
+        thread.work()
+        shown(device, view, scene, camera, SETTINGS)
+        return view.loading.bytes_written
+
+    assert on_device(draw) == 2 * loading.SLICE_BYTES
+
+
+def test_a_picture_may_wait_for_everything(small_steps, on_device):
+    """While an animation plays, sets change with each picture, so that they would never be whole."""
+    scene, camera = torus()
+
+    def draw(device):
+        view, thread = begun(device)
+        view.loading.is_in_background = False
+        first = shown(device, view, scene, camera, SETTINGS)
+        return first, len(thread.jobs), Renderer(device).render(scene, camera, SETTINGS).color
+
+    first, jobs, whole = on_device(draw)
+    assert jobs == 0
+    np.testing.assert_array_equal(first, whole)
+
+
+def test_small_sets_are_in_the_first_picture(on_device):
+    scene, camera = torus()
+
+    def draw(device):
+        view, thread = begun(device)
+        first = shown(device, view, scene, camera, SETTINGS)
+        return first, len(thread.jobs), Renderer(device).render(scene, camera, SETTINGS).color
+
+    first, jobs, whole = on_device(draw)
+    assert jobs == 0
+    np.testing.assert_array_equal(first, whole)
+
+
+def test_many_small_sets_are_a_large_one(small_steps, on_device):
+    """A first picture prepares no more than its share, however it is divided."""
+    scene, camera = torus(2000)
+    (instance,) = scene.surfels
+    scene = replace(scene, surfels=tuple(replace(instance.surfels) for _ in range(9)))
+
+    def draw(device):
+        view, thread = begun(device)
+        shown(device, view, scene, camera, SETTINGS)
+        return len(thread.jobs)
+
+    assert on_device(draw) == 9 - loading.AT_ONCE // len(instance.surfels)
+
+
+def test_what_is_gone_is_not_made(small_steps, on_device):
+    _, camera = torus()
+
+    def draw(device):
+        (view, thread), scene = begun(device), two()[0]
+        shown(device, view, scene, camera, SETTINGS)
+        other = replace(scene, surfels=scene.surfels[:1])
+        del scene
+        gc.collect()
+        for _ in range(2):
+            shown(device, view, other, camera, SETTINGS)
+        one = [future.cancelled() for future, _ in thread.jobs]
+        left = view.loading.left[0]
+        view.refinement.renderer.release()
+        return one, left, [future.cancelled() for future, _ in thread.jobs], view.loading.left
+
+    assert on_device(draw) == ([False, True], COUNT, [True, True], (0, 0))
+
+
+def test_a_thread_s_error_is_raised_by_each_picture(small_steps, on_device, monkeypatch):
+    scene, camera = torus()
+
+    def fail(surfels):
+        raise MemoryError("no room for nodes")
+
+    monkeypatch.setattr(resources, "build_hierarchy", fail)
+
+    def draw(device):
+        view, thread = begun(device)
+        shown(device, view, scene, camera, SETTINGS)
+        thread.work()
+        for _ in range(2):
+            with pytest.raises(MemoryError, match="no room for nodes"):
+                shown(device, view, scene, camera, SETTINGS)
+
+    on_device(draw)
+
+
+def test_a_hierarchy_is_built_in_the_background_while_every_surfel_is_drawn(small_steps, on_device):
+    """Before, the tolerance was 0, so the surfels are there without levels."""
+    scene, camera = torus()
+    surfels = scene.surfels[0].surfels
+
+    def draw(device):
+        view, thread = begun(device)
+        every = replace(SETTINGS, detail_tolerance=0.0)
+        shown(device, view, scene, camera, every)
+        while view.loading.left[0]:
+            thread.work()
+            exact = shown(device, view, scene, camera, every)
+        first = shown(device, view, scene, camera, SETTINGS)
+        built = built_hierarchy(surfels)
+        while view.loading.left[0]:
+            thread.work()
+            last = shown(device, view, scene, camera, SETTINGS)
+        return exact, first, built, last, Renderer(device).render(scene, camera, SETTINGS).color
+
+    exact, first, built, last, whole = on_device(draw)
+    assert built is None and built_hierarchy(surfels) is not None
+    np.testing.assert_array_equal(first, exact)
+    np.testing.assert_array_equal(last, whole)
+
+
+def test_surfels_are_spread_evenly():
+    rows = spread(10_000, 100)
+    assert (rows // 100 == np.arange(100)).all() and len(set(rows % 100)) > 40
+    assert (spread(7, 100) == np.arange(7)).all() and not len(spread(0, 5))
+
+
+def test_a_stand_in_keeps_textures_in_their_place():
+    """A wider splat shows more of the texture, so that a place keeps its texel."""
+    surfels = scenes.textured_plane()[0].surfels[0].surfels
+    few, rows = stand_in(surfels, len(surfels) // 4), spread(len(surfels), len(surfels) // 4)
+    assert len(few) == len(surfels) // 4 and (few.scales > 2 * surfels.scales[rows]).all()
+    for axis, name in enumerate(("uv_along_x", "uv_along_y")):
+        before, after = (getattr(s, name) / s.scales[:, axis : axis + 1] for s in (surfels, few))
+        np.testing.assert_allclose(after, before[rows], rtol=1e-5)
+    assert len(stand_in(surfels, 10**9)) == len(surfels)
+
+
+def test_rows_that_are_written_are_those_of_a_texture_made_whole(on_device):
+    texels = np.random.default_rng(3).random((40, 16, 4)).astype(np.float32)
+
+    def draw(device):
+        pictures = []
+        for format in ("RGBA32F", "RGBA16"):
+            values = texels if format == "RGBA32F" else np.rint(texels * 65535) / np.float32(65535)
+            written = device.texture((16, 40), format)
+            for first, last in ((0, 13), (13, 40)):
+                device.write(written, first, values[first:last])
+            device.restore()
+            whole = device.texture((16, 40), format, values)
+            pictures += [device.target([texture]).read(0) for texture in (written, whole)]
+        return pictures
+
+    float32, whole, unorm, whole_unorm = on_device(draw)
+    np.testing.assert_array_equal(float32, texels)
+    np.testing.assert_array_equal(whole, texels)
+    np.testing.assert_array_equal(unorm, whole_unorm)
+
+
+def test_tiles_are_whole_while_surfels_arrive(small_steps, on_device, monkeypatch):
+    """What is late is asked for before the first tile is shown, so that no tile is shown twice."""
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", 40)
+    scene, camera = two()
+
+    def draw(device):
+        view, _ = begun(device)
+        return sum(part.place[2] * part.place[3] for part in view.draw(scene, camera, SETTINGS))
+
+    assert on_device(draw) == SIZE[0] * SIZE[1]
