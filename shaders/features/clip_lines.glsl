@@ -92,8 +92,14 @@ void clip_lines_bound(inout Candidate c) {
 }
 
 #part screen_space.frag, blurs_lines, depth_bounds
+const float OTHER_SURFACE = 1.0;  // radii behind the line, at least
+const float TO_LINE = 0.25;       // pixels by which the distance to the line may be wrong
+const float STEEPEST = 8.0;       // pixels of depth per pixel; steeper, the silhouette filter blurs the crease
+
 // Beyond the line the adjacent face is visible, and may hide the splat's plane, while the pixel's filter reaches over
-// the crease. There the splat counts as much as it is visible before the line.
+// the crease. There the splat counts as much as it is visible before the line. The adjacent face meets the splat's
+// plane at the line, so the gap between both grows from there to the next pixel. A visible surface with a larger gap is
+// another one, and the splat's surface ends before it, which the silhouette filter blurs.
 void blurs_lines_bound(inout Candidate c) {
   Place place = place_at(c.plane, gl_FragCoord.xy);
   vec2 back = way_back(c.plane, place);
@@ -102,5 +108,16 @@ void blurs_lines_bound(inout Candidate c) {
   float before = plane_depth(c.plane, place_at(c.plane, vec2(at) + 0.5));
   bool is_seen = before <= texelFetch(depth_bounds, at, 0).z;
   if (!is_seen) discard;
+  float gap = c.seen.w - c.depth, away = length(back), least = OTHER_SURFACE * c.plane.radius;
+  if (gap > least) {
+    ivec2 next = ivec2(floor(gl_FragCoord.xy - back / away));
+    float seen = texelFetch(depth_bounds, clamp(next, ivec2(0), last), 0).w;
+    if (!(seen > 0.0)) return;
+    float to_next = dot(gl_FragCoord.xy - vec2(next) - 0.5, back) / away;
+    float depth = c.plane.depth + dot(c.plane.slope, place_at(c.plane, vec2(next) + 0.5).uv);
+    float growth = max(seen - depth - gap, 0.0) / to_next;
+    if (gap > least + growth * (away - TO_WITHIN + TO_LINE)) discard;
+    if (growth < STEEPEST * view.window.z * (view.is_parallel > 0.5 ? 1.0 : c.plane.depth)) c.compared = c.seen.z;
+  }
   c.compared = min(c.compared, c.seen.z);
 }

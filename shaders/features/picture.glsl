@@ -6,7 +6,7 @@
 #include "lib/background/{background}.glsl"
 
 void picture_show(inout Resolved sum, inout Seen s, Own own) {
-  bool is_own = (s.stored >= own.range.x && s.stored <= own.range.y && s.is_smooth) || !(s.there.w > 0.0);
+  bool is_own = (s.level >= own.range.x && s.level <= own.range.y && s.is_smooth) || !(s.there.w > 0.0);
   s.here = is_own ? own.color : s.there;
   s.here = s.here.w > 0.0 ? s.here : s.background;
   sum.outputs = added(sum.outputs, sample_outputs(is_own ? own.shaded_at : s.at), s.shown);

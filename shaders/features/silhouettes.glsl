@@ -10,6 +10,23 @@ void silhouettes_keep(inout Candidate c) {
   if (!c.in_space && (c.seen.w - c.compared > apart || c.plane.depth - length(c.plane.slope) - apart > c.seen.z)) discard;
 }
 
+#part screen_space.frag, opaque
+const float WITHIN_RIM = 0.75;    // pixels, so that a sample there sees the splat
+const float SEES_NOTHING = 1e38;  // nearer than what an empty sample sees
+
+// Into an empty sample a splat reaches only if it is seen within its rim: the lining of a sheet, which is hidden there,
+// does not show past the sheet.
+void silhouettes_bound(inout Candidate c) {
+  if (c.seen.z > SEES_NOTHING && !c.in_space) {
+    Place place = place_at(c.plane, gl_FragCoord.xy);
+    float to_rim = inversesqrt(max(dot(place.uv, place.uv), 1.0));
+    float share = max(to_rim - WITHIN_RIM * inversesqrt(max(dot(place.d, place.d), 1e-20)), 0.0);
+    ivec2 at = clamp(ivec2(c.plane.center + place.d * share), ivec2(0), textureSize(depth_bounds, 0) - 1);
+    float before = plane_depth(c.plane, place_at(c.plane, vec2(at) + 0.5));
+    if (before > texelFetch(depth_bounds, at, 0).z) discard;
+  }
+}
+
 #part depth_bounds.frag
 // Minimum and maximum over the filter's reach in the sample's rows.
 void silhouettes_reach(ivec2 texel, inout vec2 row) {

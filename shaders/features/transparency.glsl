@@ -87,7 +87,7 @@ void transparency_everywhere(inout bool is_inside, inout bool is_beside) {
 }
 
 void transparency_show(inout Resolved sum, inout Seen s, Own own) {
-  bool is_own = s.stored >= own.range.x && s.stored <= own.range.y;
+  bool is_own = s.level >= own.range.x && s.level <= own.range.y;
   s.here = layer_at(s.at);
   if (is_own) sum.outputs = added(sum.outputs, sample_outputs(own.shaded_at), s.shown * s.here.w / own.color.w);
   else sum.outputs = added(sum.outputs, layer_outputs_at(s.at), s.shown);

@@ -22,6 +22,13 @@ const float RATIO_RATIO = exp(-STEP * STEP / SILHOUETTE_VARIANCE);
 // other. The value avoids angles of common solids, such as 60 or 63 degrees, where rounding would decide.
 const float SMOOTH = 0.55;
 
+// Depths belong to the same surface if they are nearer or farther than its plane by at most this many times as much as
+// visibility moved it, plus this share of its slope. Nothing is filtered if neighbouring samples are, and everything
+// within this many slopes more.
+const vec2 MOVED = vec2(1.0, 4.0);
+const float BENT = 0.5;
+const vec2 REACHED = vec2(0.75, 2.25);
+
 // Normal and depth of the shaded sample; if there is none, this normal and a depth beyond everything.
 vec4 surface_at(ivec2 texel, ivec2 size, vec3 normal) {
   vec4 s = texelFetch(surface, clamp(texel, ivec2(0), size - 1), 0);
@@ -32,26 +39,60 @@ vec4 surface_at(ivec2 texel, ivec2 size, vec3 normal) {
 vec2 plane_slope(ivec2 texel, vec3 normal, float depth) {
   vec2 place = view.window.xy + (vec2(texel) + 0.5) * view.window.zw;
   float facing = view.is_parallel > 0.5 ? normal.z : (normal.z - dot(normal.xy, place)) / depth;
-  return abs(normal.xy * view.window.zw) / max(abs(facing), 1e-30);
+  return normal.xy * view.window.zw / (facing < 0.0 ? min(facing, -1e-30) : max(facing, 1e-30));
 }
 
-// Range of visibility depths within the filter that belong to the surface seen here. On either side of its depth the
-// range is twice its slope, which is the smaller one of both sides and at most what its normal implies, so that a
-// silhouette on one side does not spoil it, and neither do two, at a gap or a wire. Visibility moved the surface back
-// by up to twice as much as here; what is nearer is in front of it, except for a tolerance, because surfels of one
-// surface do not lie in one plane. zw is the range with 1.5 times the slope, for curved surfaces: if everything lies
-// within, nothing is filtered. is_folded: a neighbouring sample is on the other side of a crease.
-vec4 same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth, out bool is_folded) {
+// The smaller one of the changes of depth before and after a sample, but at most what its normal implies, so that a
+// silhouette on one side does not spoil it, and neither do two, at a gap or a wire.
+float least_change(float before, float after, float implied) {
+  float least = abs(before) < abs(after) ? before : after;
+  return abs(least) < abs(implied) ? least : implied;
+}
+
+// The surface that is shaded at a sample, with depths along the view. room: how much nearer and farther than its plane
+// it may be. slope: its change to the next sample across and up. is_folded: a neighbouring sample is on the other side
+// of a crease. is_even: the neighbouring samples see it too.
+struct SameSurface {
+  float depth;
+  vec2 room;
+  vec2 slope;
+  bool is_folded;
+  bool is_even;
+};
+
+// Visibility moved the surface back by up to several times as much as here if it is curved; what is nearer is in front
+// of it, except for a tolerance, because surfels of one surface do not lie in one plane.
+SameSurface same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth) {
   float moved = abs(view_depth(texelFetch(seen_depth, ivec2(texel.x, ROWS * texel.y), 0).r) - depth);
   vec4 left = surface_at(texel - ivec2(1, 0), size, normal), below = surface_at(texel - ivec2(0, 1), size, normal);
   vec4 right = surface_at(texel + ivec2(1, 0), size, normal), above = surface_at(texel + ivec2(0, 1), size, normal);
-  vec2 before = vec2(left.w, below.w), after = vec2(right.w, above.w);
   vec4 smooth_to = vec4(dot(left.xyz, normal), dot(right.xyz, normal), dot(below.xyz, normal), dot(above.xyz, normal));
-  is_folded = any(lessThan(smooth_to, vec4(SMOOTH)));
-  vec2 slope = min(min(abs(before - depth), abs(after - depth)), plane_slope(texel, normal, depth));
-  float sloped = 2.0 * (slope.x + slope.y);
-  vec2 room = vec2(0.25, 2.0) * moved + sloped, bent = room + 0.5 * sloped;
-  return vec4(max(depth - room.x, 0.5 * depth), depth + room.y, max(depth - bent.x, 0.5 * depth), depth + bent.y);
+  vec2 before = depth - vec2(left.w, below.w), after = vec2(right.w, above.w) - depth;
+  vec2 implied = plane_slope(texel, normal, depth);
+  vec2 slope = vec2(least_change(before.x, after.x, implied.x), least_change(before.y, after.y, implied.y));
+  vec2 room = MOVED * moved + BENT * (abs(slope.x) + abs(slope.y));
+  vec4 off = vec4(slope - before, after - slope);
+  bool is_even = all(greaterThan(off, vec4(-room.x))) && all(lessThan(off, vec4(room.y)));
+  return SameSurface(depth, room, slope, any(lessThan(smooth_to, vec4(SMOOTH))), is_even);
+}
+
+// Whether all depths that the filter reaches are so close to a surface that nothing is filtered.
+bool is_all(SameSurface same, vec2 reached) {
+  vec2 room = same.room + dot(REACHED, abs(same.slope));
+  return reached.x >= stored_depth(max(same.depth - room.x, 0.5 * same.depth)) &&
+      reached.y <= stored_depth(same.depth + room.y);
+}
+
+// Range of stored depths of a surface.
+vec2 stored_range(SameSurface same) {
+  return vec2(stored_depth(max(same.depth - same.room.x, 0.5 * same.depth)), stored_depth(same.depth + same.room.y));
+}
+
+// Change of a surface's stored depth to the next sample; exact for hardware depth, which is affine on planes.
+vec2 stored_slope(SameSurface same) {
+  vec2 half_slope = clamp(0.5 * same.slope, -0.125 * same.depth, 0.125 * same.depth);
+  return vec2(stored_depth(same.depth + half_slope.x) - stored_depth(same.depth - half_slope.x),
+              stored_depth(same.depth + half_slope.y) - stored_depth(same.depth - half_slope.y));
 }
 
 // Minimum and maximum of all stored depths that the filter reaches from here.
@@ -95,7 +136,7 @@ struct Resolved {
 };
 
 // The surface of the sample being resolved: if it is shaded, its colour and normal, fold 1 if a crease is beside it,
-// and the range of stored depths that belong to it, empty if there are none.
+// and the range of stored depths that belong to it, empty if there are none, and their slope.
 struct Own {
   ivec2 texel;
   ivec2 shaded_at;
@@ -103,11 +144,13 @@ struct Own {
   vec3 normal;
   int folds;
   vec2 range;
+  vec2 slope;
 };
 
 // One position that the filter reaches.
 struct Seen {
   float stored;  // depth at `at`, or at a neighbour that sees the same surface
+  float level;  // the same, less what the own surface's slope explains
   ivec2 at;
   vec4 there;      // what is shaded at `at`
   bool is_smooth;  // no crease between this and `at`
@@ -121,8 +164,9 @@ struct Seen {
 
 #parts
 void add_seen(inout Resolved sum, Own own, float seen, ivec2 at, vec4 there, bool is_smooth, bool is_between,
-              float weight, vec4 background) {
-  Seen s = Seen(seen, at, there, is_smooth, at == own.texel && !is_between, weight, true, false, background, background);
+              vec2 away, float weight, vec4 background) {
+  Seen s = Seen(seen, seen - dot(own.slope, away), at, there, is_smooth, at == own.texel && !is_between, weight,
+                true, false, background, background);
   #hook count(sum, s)
   #hook cut(s)
   if (seen < 1.0 && !s.is_cut) {
@@ -137,18 +181,19 @@ void add_seen(inout Resolved sum, Own own, float seen, ivec2 at, vec4 there, boo
 Resolved resolve_sample(ivec2 texel) {
   ivec2 size = textureSize(shaded, 0);
   vec2 reached = reached_range(texel, size);
-  Own own = Own(texel, shaded_at(texel, size), vec4(0.0), vec3(0.0), 0, vec2(2.0, -1.0));
+  Own own = Own(texel, shaded_at(texel, size), vec4(0.0), vec3(0.0), 0, vec2(2.0, -1.0), vec2(0.0));
   own.color = texelFetch(shaded, own.shaded_at, 0);
   vec4 seen_surface = texelFetch(surface, own.shaded_at, 0);
   seen_surface.w = abs(seen_surface.w);
   own.normal = seen_surface.xyz;
-  bool is_folded;
-  vec4 same = same_surface(own.shaded_at, size, own.normal, seen_surface.w, is_folded);
-  own.folds = is_folded ? 1 : 0;
-  bool is_there = own.color.w > 0.0;
-  if (is_there) own.range = vec2(stored_depth(same.x), stored_depth(same.y));
-  bool is_inside = is_there && !is_folded && reached.y < 1.0;
-  is_inside = is_inside && reached.x >= stored_depth(same.z) && reached.y <= stored_depth(same.w);
+  bool is_there = own.color.w > 0.0, is_inside = false;
+  if (is_there && reached.x < 1.0) {
+    SameSurface same = same_surface(own.shaded_at, size, own.normal, seen_surface.w);
+    is_inside = !same.is_folded && same.is_even && reached.y < 1.0 && is_all(same, reached);
+    own.folds = same.is_folded ? 1 : 0;
+    own.range = stored_range(same);
+    own.slope = stored_slope(same);
+  }
   vec4 background = vec4(0.0);
   #hook background(background, texel)
   Resolved sum = Resolved(vec4(0.0), 0.0, 0.0, false, false, seen_surface, NO_OUTPUTS);
@@ -172,6 +217,7 @@ Resolved resolve_sample(ivec2 texel) {
     bool is_smooth_before = true;
     for (int y = 0; y < 2 * FILTER_REACH + 1; y++) {
       ivec2 at = clamp(texel + ivec2(x - COLUMN_REACH, y - FILTER_REACH), ivec2(0), size - 1);
+      vec2 away = vec2(texel - own.shaded_at + ivec2(x - COLUMN_REACH, y - FILTER_REACH));
       float seen = texelFetch(seen_depth, ivec2(at.x, ROWS * at.y), 0).r;
       vec4 there = texelFetch(shaded, at, 0);
       bool is_smooth = true;
@@ -181,12 +227,13 @@ Resolved resolve_sample(ivec2 texel) {
         float between = texelFetch(seen_depth, ivec2(at.x, max(ROWS * at.y - 1, 0)), 0).r;
         bool is_before = abs(between - below) < 0.5 * abs(between - seen);
         add_seen(sum, own, between, is_before ? before : at, is_before ? shaded_before : there,
-                 is_before ? is_smooth_before : is_smooth, true, weight, background);
+                 is_before ? is_smooth_before : is_smooth, true, away - vec2(0.0, STEP), weight,
+                 background);
         total += weight;
         weight *= ratio;
         ratio *= RATIO_RATIO;
       }
-      add_seen(sum, own, seen, at, there, is_smooth, false, weight, background);
+      add_seen(sum, own, seen, at, there, is_smooth, false, away, weight, background);
       total += weight;
       weight *= ratio;
       ratio *= RATIO_RATIO;

@@ -27,7 +27,8 @@ MEETINGS = {
         ("a level of its depths, coarser", "features/hiz.py hosts/hiz.frag.glsl"),
         ("of layers, whose depths are compared as those of the opaque are", "features/transparency.py"),
         ("depths of methods that work in the picture are compared with its own",
-         "features/visibility.glsl features/polygons.glsl features/lines.glsl features/clip_lines.glsl"),
+         "features/visibility.glsl features/polygons.glsl features/lines.glsl features/clip_lines.glsl "
+         "features/silhouettes.glsl"),
         ("a filter tells by them where it has nothing to do", "features/lighting.py hosts/resolve.frag.glsl"),
     ),
     "depth_format": (
