@@ -150,6 +150,21 @@ def test_a_face_narrower_than_a_cell_is_covered_by_surfels_of_its_own():
     assert len(sampling.gap_triangles) < len(sampling.surfels) / 4
 
 
+@pytest.mark.parametrize("turn", [1, -1])
+def test_beside_a_narrow_face_splats_end_at_their_own_crease(turn):
+    """A narrow chamfer is between two faces, at 25 degrees to either, so surfels meet both of its creases."""
+    angles = np.radians([0, 25, 50]) * turn
+    steps = np.array([1, 0.05, 1])[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    outline = np.concatenate([[(0, 0)], np.cumsum(steps, axis=0)])
+    corners = np.array([(x, y, z) for x, z in outline for y in (0, 1)])
+    triangles = [t for k in (0, 2, 4) for t in ((k, k + 2, k + 3), (k, k + 3, k + 1))]
+    surfels = sample_mesh(TriangleMesh(corners, np.array(triangles)), spacing=0.083, crease_angle=np.radians(20))
+    places, row = shown(surfels)
+    of_first = np.abs(surfels.geometric_normals()[row, 2]) > 0.99
+    assert places[of_first, 0].max() < 1.005
+    assert places[of_first, 0].max() > 0.99
+
+
 def test_a_smooth_surface_has_no_lines(sphere):
     surfels = sample_mesh(sphere, resolution=24, crease_angle=ANGLE)
     assert surfels.clip_line is None and surfels.clip_line_2 is None and not surfels.is_clipped

@@ -29,6 +29,9 @@ _BEYOND_IS_FARTHER = np.float32(0.1)
 #: If a splat meets more edges than this, the farther ones are ignored when looking for its corner.
 _MOST_EDGES = 6
 
+#: A face that is like another one by this much more, as a cosine, belongs to that one.
+_MORE_ALIKE = 0.01
+
 #: The line that keeps the whole ellipse.
 _NO_LINE = np.array([[1], [0], [1]], np.float32)
 
@@ -61,6 +64,7 @@ def clip(
         return Clipping({}, met, np.zeros((2, 3, 0), np.float32), np.zeros(0, bool))
     rows = _nearest_first(met, _one_side_of_each(met, arrays, borders))
     rows, starts, owner = _of_own_surface(met, rows)
+    rows, starts, owner = _on_this_side(met, rows, starts, owner, borders)
     met = met.take(rows)
     if at_centres and len(met):
         off, _ = _off_line(met, met.line.take(starts.take(owner), axis=1))
@@ -134,6 +138,36 @@ def _of_own_surface(met: Meetings, rows: np.ndarray) -> tuple[np.ndarray, np.nda
         return rows, starts, owner
     rows = rows.compress(is_own.take(owner))
     return rows, *_groups(met.surfel.take(rows))[1:]
+
+
+def _on_this_side(met: Meetings, rows: np.ndarray, starts: np.ndarray, owner: np.ndarray, borders: Borders):
+    """The meetings without those of edges that lie past the surfel's nearest crease and belong to the face there.
+
+    The face of such an edge is more like the one past the crease than like the one before it. Between two parallel
+    creases there is a narrow face, over which the surfel would otherwise reach.
+    """
+    side, number, across = met.side.take(rows), np.arange(len(rows)), _across(borders)
+    crease = np.minimum.reduceat(np.where(across.take(side) >= 0, number, len(rows)), starts)
+    has_crease = crease < len(rows)
+    crease = np.where(has_crease, crease, 0)
+    first, normals = side.take(crease), borders.normals.take(side, axis=0)
+    before, past = (borders.normals.take(of, axis=0).take(owner, axis=0) for of in (first, across.take(first)))
+    like_before, like_past = (np.abs(np.einsum("ij,ij->i", normals, of)) for of in (before, past))
+    alike = np.flatnonzero((like_past > like_before + _MORE_ALIKE) & has_crease.take(owner) & (number != starts[owner]))
+    line = met.line.take(rows.take(crease.take(owner.take(alike))), axis=1)
+    dropped = alike.compress(_off_line(met.take(rows.take(alike)), line)[1] < 0)
+    if not len(dropped):
+        return rows, starts, owner
+    rows = np.delete(rows, dropped)
+    return rows, *_groups(met.surfel.take(rows))[1:]
+
+
+def _across(borders: Borders) -> np.ndarray:
+    """(B,) the side of the other face of each edge; -1 where there is none or more than one."""
+    _, starts, group = _groups(borders.edges)
+    counts = np.diff(np.append(starts, len(borders)))
+    number = np.arange(len(borders))
+    return np.where(counts.take(group) == 2, 2 * starts.take(group) + 1 - number, -1)
 
 
 def _groups(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
