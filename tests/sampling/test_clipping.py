@@ -165,6 +165,18 @@ def test_beside_a_narrow_face_splats_end_at_their_own_crease(turn):
     assert places[of_first, 0].max() > 0.99
 
 
+def test_past_its_border_a_surfel_meets_no_other_sheets():
+    """Just under the end of a plate a strip protrudes by half a spacing, and its border is nearly parallel."""
+    plate = [(-0.98, -1, 0), (0.02, -1, 0), (0.02, 1, 0), (-0.98, 1, 0)]
+    strip = [(-0.28, -1, -0.004), (0.077, -1, -0.004), (0.083, 1, -0.004), (-0.28, 1, -0.004)]
+    corners = np.array(plate + strip)
+    triangles = np.array([t for k in (0, 4) for t in ((k, k + 1, k + 2), (k, k + 2, k + 3))])
+    surfels = sample_mesh(TriangleMesh(corners, triangles), spacing=0.1, crease_angle=ANGLE)
+    places, _ = shown(surfels)
+    of_plate = (np.abs(places[:, 2]) < 0.002) & (np.abs(places[:, 1]) < 0.8)
+    assert 0 < places[of_plate, 0].max() < 0.022
+
+
 def test_a_smooth_surface_has_no_lines(sphere):
     surfels = sample_mesh(sphere, resolution=24, crease_angle=ANGLE)
     assert surfels.clip_line is None and surfels.clip_line_2 is None and not surfels.is_clipped

@@ -64,13 +64,18 @@ def clip(
         return Clipping({}, met, np.zeros((2, 3, 0), np.float32), np.zeros(0, bool))
     rows = _nearest_first(met, _one_side_of_each(met, arrays, borders))
     rows, starts, owner = _of_own_surface(met, rows)
-    rows, starts, owner = _on_this_side(met, rows, starts, owner, borders)
     met = met.take(rows)
-    if at_centres and len(met):
-        off, _ = _off_line(met, met.line.take(starts.take(owner), axis=1))
-        met = smaller_at_openings(met, off > _SAME_LINE, borders, arrays["scales"])
+    ends = _ends_in_circle(met)
+    is_own = _on_this_side(met, ends, starts, owner, borders) & ~_out_of_sight(met, ends, starts, owner)
+    if not is_own.all():
+        rows = np.flatnonzero(is_own)
+        met, ends = met.take(rows), ends.take(rows, axis=2)
         _, starts, owner = _groups(met.surfel)
-    lines = _lines(met, starts, owner)
+    if at_centres and len(met):
+        off, _ = _off_line(ends, met.line.take(starts.take(owner), axis=1))
+        met = smaller_at_openings(met, off > _SAME_LINE, borders, arrays["scales"])
+        ends, (_, starts, owner) = _ends_in_circle(met), _groups(met.surfel)
+    lines = _lines(met, ends, starts, owner)
     packed = [pack_lines(line.T) for line in lines]
     fields, count = {}, len(arrays["positions"])
     for name, values in zip(CLIP_FIELDS, packed, strict=True):
@@ -140,26 +145,55 @@ def _of_own_surface(met: Meetings, rows: np.ndarray) -> tuple[np.ndarray, np.nda
     return rows, *_groups(met.surfel.take(rows))[1:]
 
 
-def _on_this_side(met: Meetings, rows: np.ndarray, starts: np.ndarray, owner: np.ndarray, borders: Borders):
-    """The meetings without those of edges that lie past the surfel's nearest crease and belong to the face there.
+def _on_this_side(met: Meetings, ends: np.ndarray, starts: np.ndarray, owner: np.ndarray, borders: Borders):
+    """(m,) bool: False for edges that lie past the surfel's nearest crease and belong to the face there.
 
     The face of such an edge is more like the one past the crease than like the one before it. Between two parallel
     creases there is a narrow face, over which the surfel would otherwise reach.
     """
-    side, number, across = met.side.take(rows), np.arange(len(rows)), _across(borders)
-    crease = np.minimum.reduceat(np.where(across.take(side) >= 0, number, len(rows)), starts)
-    has_crease = crease < len(rows)
-    crease = np.where(has_crease, crease, 0)
-    first, normals = side.take(crease), borders.normals.take(side, axis=0)
-    before, past = (borders.normals.take(of, axis=0).take(owner, axis=0) for of in (first, across.take(first)))
+    number, across = np.arange(len(met)), _across(borders)
+    crease = np.minimum.reduceat(np.where(across.take(met.side) >= 0, number, len(met)), starts)
+    has_crease = crease < len(met)
+    others = np.flatnonzero(has_crease.take(owner) & (number != starts.take(owner)))
+    crease = crease.take(owner.take(others))
+    first, normals = met.side.take(crease), borders.normals.take(met.side.take(others), axis=0)
+    before, past = (borders.normals.take(of, axis=0) for of in (first, across.take(first)))
     like_before, like_past = (np.abs(np.einsum("ij,ij->i", normals, of)) for of in (before, past))
-    alike = np.flatnonzero((like_past > like_before + _MORE_ALIKE) & has_crease.take(owner) & (number != starts[owner]))
-    line = met.line.take(rows.take(crease.take(owner.take(alike))), axis=1)
-    dropped = alike.compress(_off_line(met.take(rows.take(alike)), line)[1] < 0)
-    if not len(dropped):
-        return rows, starts, owner
-    rows = np.delete(rows, dropped)
-    return rows, *_groups(met.surfel.take(rows))[1:]
+    alike = np.flatnonzero(like_past > like_before + _MORE_ALIKE)
+    others, line = others.take(alike), met.line.take(crease.take(alike), axis=1)
+    result = np.ones(len(met), bool)
+    result[others] = _off_line(ends.take(others, axis=2), line)[1] >= 0
+    return result
+
+
+def _out_of_sight(met: Meetings, ends: np.ndarray, starts: np.ndarray, owner: np.ndarray) -> np.ndarray:
+    """(m,) bool: True for edges that the surfel's nearest one hides from its centre.
+
+    Its surface ends before them: they are of another sheet, or of the other side of a narrow face.
+    """
+    start, line = met.start.take(starts, axis=1), met.line.take(starts, axis=1)
+    way = met.end.take(starts, axis=1) - start
+    way /= np.maximum((way * way).sum(axis=0), np.float32(1e-30))
+    along_start = (start * way).sum(axis=0).take(owner)
+    way, line = way.take(owner, axis=1), line.take(owner, axis=1)
+    hidden = np.ones(len(met), bool)
+    for x, y in ends:
+        toward = line[0] * x + line[1] * y
+        # The way from the centre to this end crosses the nearest edge's line at this share of it.
+        share = np.maximum(line[2], 0) / np.maximum(-toward, np.float32(1e-12))
+        along = (x * way[0] + y * way[1]) * share - along_start
+        hidden &= (toward + line[2] < -_SAME_LINE) & (along >= 0) & (along <= 1)
+    return hidden
+
+
+def _ends_in_circle(met: Meetings) -> np.ndarray:
+    """(2, 2, m) float32: both ends of the part of each edge that lies in the circle."""
+    (x, y), (u, v) = met.start, met.end - met.start
+    a, b, c = u * u + v * v, x * u + y * v, x * x + y * y - 1
+    root = np.sqrt(np.maximum(b * b - a * c, 0))
+    a = np.maximum(a, np.float32(1e-30))
+    shares = (np.clip((way - b) / a, 0, 1) for way in (-root, root))
+    return np.stack([np.stack([x + u * share, y + v * share]) for share in shares])
 
 
 def _across(borders: Borders) -> np.ndarray:
@@ -177,7 +211,7 @@ def _groups(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return is_first, np.flatnonzero(is_first), np.cumsum(is_first) - 1
 
 
-def _lines(met: Meetings, starts: np.ndarray, owner: np.ndarray) -> np.ndarray:
+def _lines(met: Meetings, ends: np.ndarray, starts: np.ndarray, owner: np.ndarray) -> np.ndarray:
     """(2, 3, n) lines of n surfels, in the order that says which corner they make; (1, 0, 1) for none.
 
     The nearest border is the first. Where one other leaves it, that is the second: into what the first keeps, as it
@@ -185,7 +219,7 @@ def _lines(met: Meetings, starts: np.ndarray, owner: np.ndarray) -> np.ndarray:
     """
     first = met.line.take(starts, axis=1)
     second = np.repeat(_NO_LINE, len(starts), axis=1)
-    off, place = _off_line(met, first.take(owner, axis=1))
+    off, place = _off_line(ends, first.take(owner, axis=1))
     others = np.flatnonzero(off > _SAME_LINE)
     counts = np.bincount(owner.take(others), minlength=len(starts))
     single = others.compress(counts.take(owner.take(others)) == 1)
@@ -208,17 +242,12 @@ def _lines(met: Meetings, starts: np.ndarray, owner: np.ndarray) -> np.ndarray:
     return np.stack([first, second])
 
 
-def _off_line(met: Meetings, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _off_line(ends: np.ndarray, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(m,) largest distance of the part of an edge in the circle from a line, and (m,) the same with the sign
-    of its side.
+    of its side. ends: (2, 2, m), of that part.
     """
-    (x, y), (u, v) = met.start, met.end - met.start
-    a, b, c = u * u + v * v, x * u + y * v, x * x + y * y - 1
-    root = np.sqrt(np.maximum(b * b - a * c, 0))
-    a = np.maximum(a, np.float32(1e-30))
-    off = np.zeros(len(met), np.float32)
-    for share in ((-b - root) / a, (-b + root) / a):
-        np.clip(share, 0, 1, out=share)
-        value = line[0] * (x + u * share) + line[1] * (y + v * share) + line[2]
+    off = np.zeros(line.shape[1], np.float32)
+    for x, y in ends:
+        value = line[0] * x + line[1] * y + line[2]
         np.copyto(off, value, where=np.abs(value) > np.abs(off))
     return np.abs(off), off
