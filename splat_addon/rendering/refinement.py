@@ -13,8 +13,8 @@ from .scene.camera import Camera
 from .settings import Settings
 from .shadow import ShadowMap
 
-#: Seconds that a picture spends on reading streamed surfels; what is missing then is read in the background.
-_READING = 0.05
+#: Seconds that a picture waits for streamed surfels; what is missing then comes later.
+_READING = 0.02
 
 
 class Refinement:

@@ -8,12 +8,15 @@ taken too, coarser, if they may cast shadows into it. Nothing after this knows o
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import Future, wait
 from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
 
 from ..hierarchy import Sight
+from ..streaming import Stream
+from ..streaming.stream import Seen
 from ..surfels import Surfels, portions
 from .levels import sight
 from .panorama_faces import DENSITY
@@ -23,15 +26,19 @@ from .scene.panorama import Panorama
 from .settings import Settings
 from .upload.packing import LARGEST_SET
 
-#: How many times the tolerance blocks outside the picture may be off, which are seen by their shadows alone.
+#: Seconds of reading for the first set of a view.
+_READING = 0.03
+
+#: How many times the tolerance blocks outside the picture may be off, which only
+#: their shadows show, or a view that moves on.
 BESIDE = 4.0
 
 
 class Streamed:
     """The streamed instances of the scenes that one renderer draws.
 
-    is_waiting: whether blocks of the last view are still to be read. short: names of instances that the memory sufficed
-    to draw coarser only.
+    is_waiting: whether a finer set than the last view drew is on its way. short: names of instances that the memory
+    sufficed to draw coarser only.
     """
 
     def __init__(self):
@@ -40,6 +47,7 @@ class Streamed:
         self._from: Scene | None = None
         self._scene: Scene | None = None
         self._made: dict[Instance, tuple[Surfels, tuple[Instance, ...]]] = {}
+        self._coming: dict[tuple, _Coming] = {}
 
     def resolved(
         self,
@@ -51,28 +59,37 @@ class Streamed:
     ) -> Scene:
         """The scene as this view draws it; the same object as long as nothing changes.
 
-        seconds: time for reading, as in `Stream.seen`. told: called between reads; it may raise.
-        Raises OSError if a file cannot be read.
+        seconds: time to wait. Reading and choosing go on in other threads then, and until they are done the sets of
+        earlier views are drawn, which cover everything too, or the coarsest ones. None: wait for everything. told:
+        called between reads; it may raise. Raises OSError if a file cannot be read.
         """
         self.is_waiting, self.short = False, ()
-        streams = {instance.stream for instance in scene.surfels} - {None}
+        streams = {instance.stream: 0 for instance in scene.surfels if instance.stream is not None}
         if not streams:
+            self._coming.clear()
             return scene
-        for stream in streams:
-            stream.begin_frame()
-        until, made, short = None if seconds is None else perf_counter() + seconds, {}, {}
+        if seconds is None:
+            for stream in streams:
+                stream.begin_frame()
+        until, made, short = perf_counter() + (seconds or 0.0), {}, {}
         shadows = settings.shadow_resolution > 0 and any(light.casts_shadow for light in scene.lights)
         for instance in scene.surfels:
-            if instance.stream is None or instance.is_flattened:
+            if (stream := instance.stream) is None or instance.is_flattened:
                 continue
-            view, beside = _view(instance, camera, shadows, settings.detail_tolerance)
-            left = None if until is None else max(until - perf_counter(), 0.0)
-            seen = instance.stream.seen(view, beside, left, told)
-            self.is_waiting |= not seen.is_whole
+            view, beside = _view(instance, camera, shadows, seconds is not None, settings.detail_tolerance)
+            if seconds is None:
+                seen = stream.seen(view, beside, told)
+            else:
+                # instances are made again with every change of the scene, but their order stays
+                streams[stream] += 1
+                coming = self._coming.setdefault((stream, streams[stream]), _Coming(stream))
+                seen = coming.latest(view, beside, max(until - perf_counter(), 0.0))
+                self.is_waiting |= coming.is_waiting
             short |= {instance.name: None} if seen.is_short else {}
             known = self._made.get(instance)
             is_known = known is not None and known[0] is seen.surfels
             made[instance] = known if is_known else (seen.surfels, _instances(instance, seen.surfels))
+        self._coming = {key: own for key, own in self._coming.items() if key[1] <= streams.get(key[0], 0)}
         is_same = scene is self._from and all(made[i] is self._made.get(i) for i in made)
         self._made, self.short = made, tuple(short)
         if not is_same:
@@ -81,16 +98,52 @@ class Streamed:
         return self._scene
 
 
+class _Coming:
+    """The set of one instance in a view that does not wait: the last that was finished, while another thread prepares
+    the next. Time to read doubles with each, so that sets that are soon replaced cost little.
+
+    is_waiting: whether a better set for the view is on its way.
+    """
+
+    def __init__(self, stream: Stream):
+        self._stream = stream
+        self._key, self._seen = None, Seen(stream.coarsest, False, False)
+        self._next: tuple[tuple, Future[Seen]] | None = None
+        self._seconds = _READING
+        self.is_waiting = True
+
+    def latest(self, view: Sight, beside: float | None, seconds: float) -> Seen:
+        """What is there after waiting at most so many seconds."""
+        key, until = (view.key, beside), perf_counter() + seconds
+        while True:
+            self._take(max(until - perf_counter(), 0.0))
+            self.is_waiting = self._key != key or not self._seen.is_whole
+            if self.is_waiting and self._next is None:
+                self._seconds = 2 * self._seconds if self._key == key else _READING
+                self._next = key, self._stream.ahead(view, beside, self._seconds)
+            if not self.is_waiting or perf_counter() >= until:
+                return self._seen
+
+    def _take(self, seconds: float) -> None:
+        if self._next is not None:
+            key, future = self._next
+            if wait([future], seconds).done:
+                self._key, self._seen, self._next = key, future.result(), None
+
+
 def _instances(instance: Instance, surfels: Surfels) -> tuple[Instance, ...]:
     """Ordinary instances of surfels that are a cut already, as many as the device needs to hold them."""
     return tuple(replace(instance, shape=part, stream=None, is_cut=True) for part in portions(surfels, LARGEST_SET))
 
 
-def _view(instance: Instance, camera: Camera | Panorama, shadows: bool, tolerance: float) -> tuple[Sight, float | None]:
-    """The arguments of `Stream.seen`. With shadows, backs are drawn, which a light may see."""
+def _view(
+    instance: Instance, camera: Camera | Panorama, shadows: bool, is_early: bool, tolerance: float
+) -> tuple[Sight, float | None]:
+    """The arguments of `Stream.seen`. is_early: whether later views may draw the set as well, so that it must cover
+    everything; it must also for lights that cast shadows."""
     if isinstance(camera, Panorama):
         return _all_round(instance, camera, tolerance), 1.0
-    if shadows and instance.casts_shadow:
+    if is_early or (shadows and instance.casts_shadow):
         return sight(instance, camera, False, tolerance), BESIDE
     return sight(instance, camera, instance.hides_backs(camera), tolerance), None
 

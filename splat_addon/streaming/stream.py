@@ -6,9 +6,10 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from concurrent.futures import wait as wait_for
 from functools import cached_property
 from hashlib import blake2b
+from itertools import count
+from threading import Lock
 from time import perf_counter
 from typing import NamedTuple
 from weakref import WeakValueDictionary
@@ -21,10 +22,10 @@ from ..surfels import Surfels
 from .block_file import BlockFile
 from .descent import descend
 from .layout import as_surfels
-from .pages import Pages
+from .pages import PAGE, Pages
 
-#: Pages read between two looks at the clock, and read in the background at once: some 4 and 18 MB.
-_AT_ONCE, _IN_BACKGROUND = 64, 256
+#: Pages read between two looks at the clock: some 4 MB.
+_AT_ONCE = 64
 
 
 class Seen(NamedTuple):
@@ -49,8 +50,7 @@ class Stream:
         self._kept: dict[tuple, tuple[int, Seen]] = {}
         self._same: WeakValueDictionary[bytes, Surfels] = WeakValueDictionary()
         self._frame = 0
-        self._reader = ThreadPoolExecutor(1, "surfel blocks")
-        self._reading: tuple[np.ndarray, Future] | None = None
+        self._reader, self._lock = ThreadPoolExecutor(1, "surfel blocks"), Lock()
 
     def __len__(self) -> int:
         """The number of surfels, without merged ones."""
@@ -61,7 +61,7 @@ class Stream:
         """The surfels of the roots."""
         return self._gathered(np.arange(int(self.file.blocks.roots)))
 
-    def at_most(self, count: int) -> Surfels:
+    def at_most(self, most: int) -> Surfels:
         """The finest cut with the same error everywhere that has at most this many surfels; if even the roots have
         more, these. It is read from the file, whatever the memory."""
         blocks, drawn = self.file.blocks, np.arange(int(self.file.blocks.roots))
@@ -70,7 +70,7 @@ class Stream:
         while error > 0:
             sight = Sight(everything, np.zeros(4), 1.0, 0.0, np.array([0, 0, 1.0, 0]), False, error)
             finer = cut_blocks(blocks, sight)
-            if int((blocks.last[finer] - blocks.first[finer]).sum()) > count:
+            if int((blocks.last[finer] - blocks.first[finer]).sum()) > most:
                 break
             drawn, error = finer, error / 2
             if (blocks.first_child[drawn] == blocks.last_child[drawn]).all():
@@ -88,63 +88,40 @@ class Stream:
         self._kept = {key: kept for key, kept in self._kept.items() if kept[0] == self._frame}
         self._frame += 1
 
-    def seen(
-        self,
-        sight: Sight,
-        beside: float | None = None,
-        seconds: float | None = None,
-        told: Callable[[], None] | None = None,
-    ) -> Seen:
-        """What a view draws; the same object as long as nothing changes.
+    def seen(self, sight: Sight, beside: float | None = None, told: Callable[[], None] | None = None) -> Seen:
+        """What a view draws, with everything that it needs; the same object as long as frames ask for it.
 
-        beside: as in `descend`. seconds: time to read; what is missing then is read in the background, and drawn from
-        its parents meanwhile; None reads everything. told: called between reads; it may raise.
-        Raises OSError if the file cannot be read.
+        beside: as in `descend`. told: called between reads; it may raise. Raises OSError if the file cannot be read.
         """
         key = sight.key, beside
-        if key in self._kept:
-            self._kept[key] = self._frame, self._kept[key][1]
-            return self._kept[key][1]
-        found = self._seen(sight, beside, None if seconds is None else perf_counter() + seconds, told)
-        if found.is_whole:
-            self._kept[key] = self._frame, found
+        found = self._kept[key][1] if key in self._kept else self._seen(sight, beside, None, told)
+        self._kept[key] = self._frame, found
         return found
 
-    def _seen(self, sight: Sight, beside: float | None, until: float | None, told) -> Seen:
-        self.pages.begin()
-        while True:
-            is_late = not self._take_background(until)
-            cut = descend(self.file.blocks, self.pages, sight, beside)
-            wanted = cut.wanted[: self.pages.room()]
-            if not len(wanted):
-                return Seen(self._gathered(cut.drawn), True, bool(len(cut.wanted)))
-            for start in range(0, len(wanted), _AT_ONCE):
-                if is_late or (until is not None and perf_counter() >= until):
-                    self._read_in_background(wanted[start : start + _IN_BACKGROUND])
-                    return Seen(self._gathered(cut.drawn), False, False)
-                some = wanted[start : start + _AT_ONCE]
-                self._install(some, self.pages.read(some))
-                if told:
-                    told()
+    def ahead(self, sight: Sight, beside: float | None, seconds: float) -> Future[Seen]:
+        """What a view draws after some time of reading, prepared by another thread; what is missing then is drawn from
+        its parents. Raises later as `seen`."""
+        return self._reader.submit(self._seen, sight, beside, seconds, None)
 
-    def _take_background(self, until: float | None) -> bool:
-        """Take what the background read; False if that takes longer than until then."""
-        if self._reading is None:
-            return True
-        pages, future = self._reading
-        if not wait_for([future], None if until is None else max(until - perf_counter(), 0)).done:
-            return False
-        self._reading = None
-        self._install(pages, future.result())
-        return True
-
-    def _read_in_background(self, pages: np.ndarray) -> None:
-        if self._reading is None:
-            self._reading = pages, self._reader.submit(self.pages.read, pages)
-
-    def _install(self, pages: np.ndarray, rows: np.ndarray) -> None:
-        self.pages.install(pages, rows)
-        self.rows_read += rows.size
+    def _seen(self, sight: Sight, beside: float | None, seconds: float | None, told) -> Seen:
+        until = np.inf if seconds is None else perf_counter() + seconds
+        with self._lock:
+            self.pages.begin()
+            for turn in count():
+                cut = descend(self.file.blocks, self.pages, sight, beside)
+                wanted = cut.wanted[: self.pages.room()]
+                # at least one read, so that every call makes progress
+                if not len(wanted) or (turn and perf_counter() >= until):
+                    is_whole = not len(wanted)
+                    return Seen(self._gathered(cut.drawn), is_whole, is_whole and bool(len(cut.wanted)))
+                for start in range(0, len(wanted), _AT_ONCE):
+                    some = wanted[start : start + _AT_ONCE]
+                    self.pages.install(some, self.pages.read(some))
+                    self.rows_read += len(some) * PAGE
+                    if told:
+                        told()
+                    if perf_counter() >= until:
+                        break
 
     def _gathered(self, drawn: np.ndarray) -> Surfels:
         """The surfels of these blocks, which are here; the same object for the same blocks."""

@@ -92,16 +92,16 @@ def covered(surfels, eye):
     return result
 
 
-def test_there_is_no_hole_while_blocks_are_missing(many_portions):
-    """Time for nothing, then for a little more each time: the ball stays closed, and becomes finer."""
+def test_there_is_no_hole_while_blocks_are_missing(many_portions, monkeypatch):
+    """Time for one read, then for another: the ball stays closed, and becomes finer."""
+    monkeypatch.setattr("splat_addon.streaming.stream._AT_ONCE", 3)
     stream, counts, view = Stream(many_portions, PLENTY), [], sight((0, 0, 2), 0.3)
     while True:
-        seen = stream.seen(view, seconds=0.0)
+        seen = stream.ahead(view, None, 1e-9).result()
         counts.append(len(seen.surfels))
         assert covered(seen.surfels, view).all()
         if seen.is_whole:
             break
-        stream._reading[1].result()
     assert len(counts) > 3 and counts == sorted(counts) and counts[-1] > 5 * counts[0]
     assert len(seen.surfels) == len(Stream(many_portions, PLENTY).seen(view).surfels)
 
