@@ -19,7 +19,7 @@ from splat_addon.blender.engine import viewport  # noqa: E402
 from splat_addon.blender.geometry.attributes import write_surfels  # noqa: E402
 from splat_addon.reference import scenes  # noqa: E402
 
-COUNT = 700_000
+COUNT = 1_000_000
 FILE = REPORT.with_suffix(".blend")
 PATIENCE = 600  # polls of a tenth of a second
 SOON = 0.4  # seconds within which some of it has begun
