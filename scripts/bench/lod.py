@@ -45,7 +45,7 @@ def arguments(parser) -> None:
     parser.add_argument("--model", default="dragon_vrip.ply.gz")
     parser.add_argument("--resolutions", type=int, nargs="+", default=[265, 500, 830, 2030])
     parser.add_argument("--dolly", type=int, default=60, help="pictures of its 300, of the first resolution")
-    parser.add_argument("--tolerance", type=float, default=1.25, help="pixels")
+    parser.add_argument("--tolerance", type=float, default=Settings.detail_tolerance, help="pixels")
     parser.set_defaults(turns=3)
 
 

@@ -216,7 +216,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         name="Detail Tolerance",
         description=(
             "Draw larger surfels in place of those too small to be seen, with an error of at most this many pixels. "
-            "0 draws every surfel; 1.25 makes large sets many times faster"
+            "0 draws every surfel, and takes many times as long for large sets"
         ),
         min=0.0,
         soft_max=8.0,

@@ -2,8 +2,9 @@
 """A filtered hierarchy over any set of surfels, and the cut through it that a view draws.
 
 Levels are merged from below over the cells of a grid (`clusters`, `merging`), and every merged surfel has bounds on its
-difference from the surfels it replaces (`bounds`). Runs of neighbours in a level are *blocks*, each with a box and a
-cone of normals (`blocks`), from which a view selects (`cuts`).
+difference from the surfels it replaces (`bounds`). What lies around it makes it sharper, and its bounds larger at
+borders (`surroundings`). Runs of neighbours in a level are *blocks*, each with a box and a cone of normals (`blocks`),
+from which a view selects (`cuts`).
 """
 
 from .building import Hierarchy, build_hierarchy

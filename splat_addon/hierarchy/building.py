@@ -16,6 +16,7 @@ from .clusters import clustered
 from .merging import OVERLAP, as_surfels, merged
 from .nodes import PORTION, Table, leaves
 from .runs import Runs
+from .surroundings import as_drawn
 
 #: Cells of the first level, in spacings of the surfels: nine surfels become one, so all levels together add a sixth. At
 #: twice the spacing they would add a third.
@@ -36,9 +37,9 @@ class Hierarchy:
     """A hierarchy over N surfels, with M merged nodes.
 
     nodes: the merged surfels, in the order of their creation. errors: (M, 3) float32 bounds, object units, never below
-    a child's: distance off the plane; uncovered or protruding width; error of what it shows (its size times the change
-    of colour or normal). entries: (E,) int32 indices of surfels and, from N on, of nodes, level by level, starting with
-    the surfels; blocks are runs of it.
+    a child's: distance off the plane; uncovered or protruding width, the latter several times at borders; error of what
+    it shows (its size times the change of colour or normal). entries: (E,) int32 indices of surfels and, from N on, of
+    nodes, level by level, starting with the surfels; blocks are runs of it.
     """
 
     surfels: int
@@ -76,14 +77,15 @@ def build_levels(surfels: Surfels) -> tuple[Surfels, np.ndarray, list[Level], Ge
         if merging is None:
             continue
         parents, rows, runs, waiting = merging
-        own = _errors(parents)
+        drawn = as_drawn(parents, cell)
+        own = _errors(drawn)
         own = np.maximum(own, runs.largest(worst[rows].T).T)
         fresh = np.arange(total, total + len(parents), dtype=np.int32)
         total += len(parents)
         numbers, worst = np.concatenate([fresh, numbers[waiting]]), np.concatenate([own, worst[waiting]])
         counts = np.concatenate([runs.counts, np.ones(len(waiting), runs.counts.dtype)]).astype(np.int32)
         levels.append(Level(numbers, np.concatenate([rows, waiting]).astype(np.int32), counts))
-        made.append(as_surfels(parents, surfels))
+        made.append(as_surfels(drawn, surfels))
         errors.append(own)
         places.append(_geometry(parents))
         current = current.joined([parents], waiting)

@@ -62,9 +62,13 @@ class Table:
     def of(cls, nodes: Nodes) -> Table:
         widths = {name: len(np.atleast_2d(array)) for name, array in nodes.arrays.items()}
         table = cls(widths, np.empty((len(nodes), sum(widths.values())), np.float32))
-        for name, array in nodes.arrays.items():
-            table.rows[:, table._place(name)] = np.atleast_2d(array).T
+        table.fill(nodes, slice(None))
         return table
+
+    def fill(self, nodes: Nodes, rows: slice) -> None:
+        """Writes nodes to some rows."""
+        for name, array in nodes.arrays.items():
+            self.rows[rows, self._place(name)] = np.atleast_2d(array).T
 
     def column(self, name: str) -> np.ndarray:
         """The values of one column, (n,) or (columns, n)."""
@@ -75,6 +79,10 @@ class Table:
         """Some rows as nodes, column by column."""
         some = Table(self.widths, np.take(self.rows, rows, axis=0))
         return Nodes({name: some.column(name) for name in self.widths})
+
+    def put(self, name: str, values: np.ndarray, rows: np.ndarray) -> None:
+        """Replaces the (n,) or (columns, n) values of one column in some rows."""
+        self.rows[rows, self._place(name)] = np.atleast_2d(values).T
 
     def joined(self, parts: list[Table], rows: np.ndarray) -> Table:
         """Other tables, followed by rows of this one."""
@@ -88,8 +96,14 @@ class Table:
 
 def leaves(surfels: Surfels) -> Table:
     """The surfels themselves as nodes, with exact values except for the area that clip lines cut off."""
-    parts = [Table.of(_leaves(part)) for part in portions(surfels, PORTION)]
-    return Table(parts[0].widths, np.concatenate([part.rows for part in parts]))
+    first, *more = portions(surfels, PORTION)
+    start = Table.of(_leaves(first))
+    table, done = Table(start.widths, np.empty((len(surfels), start.rows.shape[1]), np.float32)), len(first)
+    table.rows[:done] = start.rows
+    for part in more:
+        table.fill(_leaves(part), slice(done, done + len(part)))
+        done += len(part)
+    return table
 
 
 def _leaves(surfels: Surfels) -> Nodes:

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from splat_addon.clip_lines import kept
+from splat_addon.hierarchy import surroundings
 from splat_addon.surfels import quaternion_axes
 
 from .conftest import ball, leaves_of, make_surfels, sheet
@@ -94,7 +95,8 @@ def test_what_clip_lines_take_away_counts_as_sticking_out(seed):
     check(strays(seed, **lines))
 
 
-def test_a_clip_line_adds_what_it_takes_away():
+def test_a_clip_line_adds_what_it_takes_away(monkeypatch):
+    monkeypatch.setattr(surroundings, "AT_BORDERS", 1)
     positions, normals = sheet(count=3)
     line = np.tile(np.array([0, 8192], np.int16), (9, 1))  # half of a half-axis
     plain, clipped = (leaves_of(make_surfels(positions, normals, **f))[2][0, 1] for f in ({}, {"clip_line": line}))

@@ -101,7 +101,7 @@ def measure(panel: Panel, renderers: dict, most: int) -> dict[str, list[dict]]:
         for name, value in panel.limits.items():
             changed.enter_context(patch.object(DEPTH_FORMAT, name, value))
         for x, scene, camera, changes in list(panel.shots())[:most]:
-            settings, truth = Settings(supersampling=SAMPLES, **changes), None
+            settings, truth = Settings(supersampling=SAMPLES, detail_tolerance=0.0, **changes), None
             if panel.against == "truth":
                 truth = render_exact(scene, camera, replace(settings, supersampling=1), samples=SAMPLES)
             for method in METHODS:

@@ -21,7 +21,7 @@ from splat_addon.sampling import sample_mesh
 DEVICES = ("standalone",)
 QUICK = {"resolutions": [64], "size": 64}
 MODELS = ("armadillo.obj.gz", "bunny.obj.gz")
-ONE = Settings(supersampling=1, shading="phong", shadow_resolution=0, outputs=("color", "depth"))
+ONE = Settings(supersampling=1, shading="phong", shadow_resolution=0, outputs=("color", "depth"), detail_tolerance=0.0)
 QUADS = replace(ONE, method="quad")
 
 #: table -> (reference choice, {name: settings}, printed ratios, reason why ours differ)

@@ -29,7 +29,7 @@ from splat_addon.rendering.plan.frame_plan import FramePlan
 from splat_addon.sampling import TriangleMesh, joined_at_edges, sample_mesh
 from splat_addon.surfels import axes_quaternions
 
-FLAT = Settings(supersampling=1, shading="flat", outputs=("color",))
+FLAT = Settings(supersampling=1, shading="flat", outputs=("color",), detail_tolerance=0.0)
 LIT = replace(FLAT, shading="phong", shadow_resolution=0)
 UNFILTERED, FILTERED = (replace(LIT, method=name, lights_splats=True) for name in ("sprites_unfiltered", "sprites"))
 #: Half-axes in pixels of a splat that is larger than the pixel's filter, smaller, and one way larger.

@@ -106,6 +106,7 @@ def summary(rows: list[dict], chosen: list[Settings], name: str):
         mine = [row for row in rows if wanted <= row.items()]
         ratios = [row["ratio"] for row in mine]
         time = f"{geometric_mean(ratios):.1f} ({min(ratios):.1f} to {max(ratios):.1f})"
-        preset = next((f" (**{p.label}**)" for p in PRESETS.values() if p.of(YARDSTICK) == settings), "")
+        of_all = {p.label: replace(p.of(YARDSTICK), detail_tolerance=0.0) for p in PRESETS.values()}
+        preset = next((f" (**{preset}**)" for preset, values in of_all.items() if values == settings), "")
         cells = (f"{row[f'psnr_{name}']:.1f} / {row[f'flip_{name}']:.3f}" for row in mine)
         yield [label(settings) + preset, *cells, time]

@@ -10,7 +10,7 @@ from splat_addon.rendering import Settings
 from splat_addon.rendering.methods import METHODS
 
 #: The yardstick: every time is divided by its time.
-YARDSTICK = Settings(method="quad", supersampling=1, shading="flat")
+YARDSTICK = Settings(method="quad", supersampling=1, shading="flat", detail_tolerance=0.0)
 
 #: Settings that a table shows beside method and samples -> abbreviations of their values, the default first.
 FORMATS = {

@@ -207,11 +207,11 @@ GERMAN = {
     ),
     (
         "Draw larger surfels in place of those too small to be seen, with an error of at most this many pixels. 0 "
-        "draws every surfel; 1.25 makes large sets many times faster"
+        "draws every surfel, and takes many times as long for large sets"
     ): (
         "Größere Surfels anstelle von solchen zeichnen, die zu klein sind, um gesehen zu werden, mit einem Fehler "
-        "von höchstens so vielen Pixeln. 0 zeichnet jedes Surfel; 1.25 macht große Mengen um ein Vielfaches "
-        "schneller"
+        "von höchstens so vielen Pixeln. 0 zeichnet jedes Surfel und braucht für große Mengen ein Vielfaches der "
+        "Zeit"
     ),
     ("Draw lines along silhouettes and creases, with any shading. Frames take noticeably longer"): (
         "Linien entlang von Umrissen und Falten zeichnen, bei jeder Schattierung. Einzelbilder dauern merklich länger"
