@@ -147,7 +147,7 @@ class SamplingRun:
         if self.options.crease_angle is not None:
             arrays, gaps, gap_triangles = self._clipped(arrays, images, report)
         if self.options.fits_planes and self._chosen.merge is None:
-            arrays = arrays | fit_planes(arrays, _rows_of(images), self.grid)
+            arrays = arrays | fit_planes(arrays, _rows_of(images), self.grid, self._edges.borders.are_closed())
         saved, error = 0, 0.0
         if self.options.tolerance is not None:
             arrays, error = merge_flat(arrays, _axes_of(images), self.grid.spacing, self.options.tolerance)

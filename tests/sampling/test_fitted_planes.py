@@ -89,7 +89,9 @@ def test_splats_over_a_shallow_fold_turn_towards_it_and_others_stay():
     surfels = sample_mesh(folded(angle), resolution=32, **FITTED)
     tilt, away = np.abs(surfels.geometric_normals()[:, 0]), np.abs(surfels.positions[:, 0] + surfels.origin[0]) * 16
     assert np.allclose(tilt[away > 1.5], np.sin(angle / 2), atol=1e-5)
-    assert tilt[away < 0.6].max() < 0.9 * np.sin(angle / 2)
+    # At the ends of the fold are samples of triangles without an edge there.
+    is_over = (away < 0.6) & (np.abs(surfels.positions[:, 1] + surfels.origin[1]) < 0.9)
+    assert is_over.sum() > 50 and tilt[is_over].max() < 0.9 * np.sin(angle / 2)
 
 
 def test_lines_of_splats_that_moved_keep_more_of_them_and_none_goes(armadillo):

@@ -61,6 +61,10 @@ class Borders:
     def __len__(self) -> int:
         return len(self.start)
 
+    def are_closed(self) -> bool:
+        """Whether each edge has two faces or more."""
+        return not (np.bincount(self.edges) == 1).any()
+
     def take(self, rows: np.ndarray) -> Borders:
         return Borders(*(getattr(self, f.name)[rows] for f in fields(self)))
 

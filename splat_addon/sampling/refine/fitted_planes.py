@@ -34,13 +34,17 @@ _STEEPEST = np.float32(0.5)
 _KEPT = 0.5
 
 
-def fit_planes(arrays: dict[str, np.ndarray], images: list[tuple[int, slice]], grid: Grid) -> dict[str, np.ndarray]:
+def fit_planes(
+    arrays: dict[str, np.ndarray], images: list[tuple[int, slice]], grid: Grid, is_closed: bool
+) -> dict[str, np.ndarray]:
     """The fields of `Surfels` that change: positions, rotations and clip lines.
 
     arrays: samples with blend depths, which tell where the surface bends; positions relative to the grid's middle.
-    images: the samples of each image.
+    images: the samples of each image. is_closed: whether the mesh has no open border; where it has, a line may be one,
+    beyond which nothing could hide what sticks out.
     """
-    if not (arrays["blend_depth"] > LEAST_BLENDING).any():
+    is_bent = arrays["blend_depth"] > LEAST_BLENDING
+    if not is_bent.any():
         return {}
     places = np.ascontiguousarray(arrays["positions"].T) * np.float32(1 / grid.spacing)
     axes = quaternion_axes(arrays["rotations"])
@@ -54,9 +58,11 @@ def fit_planes(arrays: dict[str, np.ndarray], images: list[tuple[int, slice]], g
                 fit.add_from(another)
     changed = {name: arrays[name].copy() for name in ("positions", "rotations", *CLIP_FIELDS) if name in arrays}
     for fit, image in zip(fits, seen, strict=True):
-        offset, slope = fit.solve()
+        offset, slope = (values * is_bent.take(image.rows) for values in fit.solve())
         _move(changed, image, offset, slope, grid.spacing)
-        less = fit.goes_on * (_KEPT * (np.abs(offset) + np.sqrt((slope * slope).sum(axis=0))) * grid.spacing)
+        less = (fit.goes_on | is_closed) * (
+            _KEPT * (np.abs(offset) + np.sqrt((slope * slope).sum(axis=0))) * grid.spacing
+        )
         # The first half-axis is the larger one (`ellipse_scales`).
         _cut_less(changed, image.rows, less / arrays["scales"][:, 0].take(image.rows))
     return changed
