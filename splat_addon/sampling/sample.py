@@ -23,8 +23,8 @@ from .attributes.texture_mapping import BORDER, UV_FIELDS, is_texture_mapped
 from .attributes.texture_seams import seam_edges
 from .density import spacing_of
 from .edges.borders import DEFAULT_CREASE_ANGLE, survey_edges
-from .edges.clipping import clip
-from .edges.gaps import gap_surfels
+from .edges.clipping import clip_fields, clippings
+from .edges.gaps import BorderPlaces, gap_surfels
 from .edges.meetings import by_facing
 from .ldc.depth_cube import depth_cube
 from .ldc.grid import make_grid
@@ -168,14 +168,21 @@ class SamplingRun:
         """
         borders, bends = self._edges.borders, self._bends
         seen = _rows_of(images) if self.options.reduction == "normal" else by_facing(arrays)
-        clipping = clip(arrays, seen, borders, self.grid)
-        report(0.7)
+        places = BorderPlaces(self.mesh, borders, self.grid)
+
+        def parts():
+            for part in clippings(arrays, seen, borders, self.grid):
+                report(0.7 * part.met.seen.axis / len(seen))
+                places.cover(part)
+                yield part
+
+        fields = clip_fields(parts(), len(arrays["positions"]))
         about = self.grid, self.options.splat_size, self._sampler, self._tangents
-        gaps, triangles = gap_surfels(self.mesh, borders, clipping, *about)
+        gaps, triangles = gap_surfels(self.mesh, borders, places, *about)
         if bends is not None and gaps:
             gaps["blend_depth"] = blend_depths(*(of[triangles] for of in bends), gaps["scales"].max(axis=1))
         report(1.0)
-        return arrays | clipping.fields, gaps, triangles
+        return arrays | fields, gaps, triangles
 
 
 def _axes_of(images: tuple[Spans, ...]) -> np.ndarray:

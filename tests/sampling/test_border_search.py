@@ -137,8 +137,9 @@ def test_bends_are_about_the_angles_between_neighbours(sphere):
 
 
 @pytest.mark.parametrize("is_counted", [True, False])
+@pytest.mark.parametrize("runs", [20, 100000])
 @pytest.mark.parametrize("axis", [0, 1, 2])
-def test_every_surfel_within_reach_of_an_edge_is_found(monkeypatch, is_counted, axis):
+def test_every_surfel_within_reach_of_an_edge_is_found(monkeypatch, is_counted, runs, axis):
     random, reach = np.random.default_rng(2), 1.25
     corners = np.array([(0, 0, 0), (1, 0.7, 0.4), (0.3, 0.2, 0.4)])
     grid = make_grid(TriangleMesh(corners, np.array([(0, 1, 2)])), 1 / 40)
@@ -149,18 +150,26 @@ def test_every_surfel_within_reach_of_an_edge_is_found(monkeypatch, is_counted, 
     if not is_counted:
         monkeypatch.setattr(search, "_FEW_CELLS", 0)
         monkeypatch.setattr(search, "_CELLS_A_SURFEL", 0)
+    monkeypatch.setattr(search, "_RUNS", runs)
     order = [(axis + 1) % 3, (axis + 2) % 3]
+    # The last edges have two sides, in planes of their own.
+    ends, edges = np.concatenate([ends, ends[::-1, :, -20:]], axis=2), np.append(np.arange(60), np.arange(40, 60))
+    ascending = np.argsort(edges, kind="stable")
+    ends, edges = ends[..., ascending], edges[ascending]
     positions = (cells * grid.spacing).astype(np.float32)
-    planes = random.normal(0, 0.3, (3, 60)).astype(np.float32)
-    near, surfel, edge, above = search.image_neighbours(positions, axis, ends[:, order], planes, reach, 4.0, grid)
-    found = set(zip(near[surfel].tolist(), edge.tolist(), strict=True))
+    planes = random.normal(0, 0.3, (3, 80)).astype(np.float32)
+    bands = list(search.image_neighbours(positions, axis, ends[:, order], edges, planes, reach, 4.0, grid))
+    assert (len(bands) > 5) == (runs < 100) and sum(len(np.unique(near)) for near, *_ in bands) <= 3000
+    surfel = np.concatenate([near[surfel] for near, surfel, *_ in bands])
+    edge, above = (np.concatenate([band[k] for band in bands]) for k in (2, 3))
+    found = set(zip(surfel.tolist(), edge.tolist(), strict=True))
     start, end = (e[order].astype(float).T for e in ends)
     offset, along = cells[:, None, order] - start, end - start
     share = np.clip((offset * along).sum(2) / (along * along).sum(1), 0, 1)
     distance = np.linalg.norm(offset - share[..., None] * along, axis=2)
     assert len(found) == len(surfel)
     height = cells[:, [axis]] - planes[2] - cells[:, [order[0]]] * planes[0] - cells[:, [order[1]]] * planes[1]
-    assert np.allclose(above, height[near[surfel], edge], atol=1e-3) and np.abs(above).max() <= 4
+    assert np.allclose(above, height[surfel, edge], atol=1e-3) and np.abs(above).max() <= 4
     is_near = (distance < reach) & (np.abs(height) < 3.999)
     assert found >= set(map(tuple, np.argwhere(is_near).tolist()))
     surfels, edges = np.array(sorted(found)).T

@@ -16,6 +16,7 @@ from ..mesh.connectivity import twins
 from ..mesh.joining import have_same_values
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_areas, triangle_chunks
 from .calm_vertices import calm_vertices
+from .ordering import runs_of_equal
 
 #: Radians; planes that differ by more make a crease.
 DEFAULT_CREASE_ANGLE = math.radians(20)
@@ -181,21 +182,13 @@ def _grouped(keys: np.ndarray):
     ordered.sort()
     order = (ordered & ((np.uint64(1) << bits) - np.uint64(1))).astype(np.intp)
     ordered >>= bits
-    starts, counts = _runs(ordered)
+    starts, counts = runs_of_equal(ordered)
     if (counts > 2).any():
         at = np.flatnonzero((counts > 2)[np.repeat(np.arange(len(counts)), counts)])
         rows = order.take(at)
         order[at] = rows.take(np.lexsort((rows, keys.take(rows), ordered.take(at))))
-        starts, counts = _runs(keys.take(order))
+        starts, counts = runs_of_equal(keys.take(order))
     return order, starts, counts
-
-
-def _runs(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Starts and lengths of runs of equal values."""
-    is_first = np.ones(len(ordered) + 1, bool)
-    np.not_equal(ordered[1:], ordered[:-1], out=is_first[1:-1])
-    starts = np.flatnonzero(is_first)
-    return starts[:-1], np.diff(starts)
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ keep what lies within the border best.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,50 +42,54 @@ _DISTANCE_BITS, _LINE_BITS = 18, 8
 
 @dataclass(frozen=True, eq=False)
 class Clipping:
-    """fields: `CLIP_FIELDS` of the surfels, those that are needed. met: which surfels meet which sides of borders, the
-    nearest first. lines: (2, 3, m) at which that surfel ends, of unit direction, and reflex: (m,) bool (`clip_lines`).
+    """surfels: (n,) that lines were found for. packed: (2, n, 2) int16, their `CLIP_FIELDS`. met: which of them meet
+    which sides of borders, the nearest first. lines: (2, 3, m) at which that surfel ends, of unit direction, and
+    reflex: (m,) bool (`clip_lines`).
     """
 
-    fields: dict[str, np.ndarray]
+    surfels: np.ndarray
+    packed: np.ndarray
     met: Meetings
     lines: np.ndarray
     reflex: np.ndarray
 
 
-def clip(
+def clippings(
     arrays: dict[str, np.ndarray], images: Images, borders: Borders, grid: Grid, at_centres: bool = True
-) -> Clipping:
-    """Find the clip lines of surfels.
+) -> Iterator[Clipping]:
+    """Find the clip lines of surfels, of a few at a time.
 
-    arrays: by field of `Surfels`, positions relative to the grid's middle. images: which of them each image sees.
+    arrays: by field of `Surfels`, positions relative to the grid's middle. images: which of them each sees.
     at_centres: whether they lie at the centres of cells, and may become smaller, in place (`openings`).
     """
-    met = meetings(arrays, images, borders, grid, at_centres)
-    if not len(met):
-        return Clipping({}, met, np.zeros((2, 3, 0), np.float32), np.zeros(0, bool))
-    rows = _nearest_first(met, _one_side_of_each(met, arrays, borders))
-    rows, starts, owner = _of_own_surface(met, rows)
-    met = met.take(rows)
-    ends = _ends_in_circle(met)
-    is_own = _on_this_side(met, ends, starts, owner, borders) & ~_out_of_sight(met, ends, starts, owner)
-    if not is_own.all():
-        rows = np.flatnonzero(is_own)
-        met, ends = met.take(rows), ends.take(rows, axis=2)
-        _, starts, owner = _groups(met.surfel)
-    if at_centres and len(met):
-        off, _ = _off_line(ends, met.line.take(starts.take(owner), axis=1))
-        met = smaller_at_openings(met, off > _SAME_LINE, borders, arrays["scales"])
-        ends, (_, starts, owner) = _ends_in_circle(met), _groups(met.surfel)
-    lines = _lines(met, ends, starts, owner)
-    packed = [pack_lines(line.T) for line in lines]
-    fields, count = {}, len(arrays["positions"])
-    for name, values in zip(CLIP_FIELDS, packed, strict=True):
-        if values[:, 1].any():
-            values[values[:, 1] == 0] = 0
-            fields[name] = np.zeros((count, 2), np.int16)
-            fields[name][met.surfel.take(starts)] = values
-    reflex = are_reflex(*packed)
-    return Clipping(fields, met, lines.take(owner, axis=2), reflex.take(owner))
+    across = _across(borders)
+    for met in meetings(arrays, images, borders, grid, at_centres):
+        rows = _nearest_first(met, _one_side_of_each(met, arrays, borders))
+        rows, starts, owner = _of_own_surface(met, rows)
+        met = met.take(rows)
+        ends = _ends_in_circle(met)
+        is_own = _on_this_side(met, ends, starts, owner, borders, across) & ~_out_of_sight(met, ends, starts, owner)
+        if not is_own.all():
+            rows = np.flatnonzero(is_own)
+            met, ends = met.take(rows), ends.take(rows, axis=2)
+            _, starts, owner = _groups(met.surfel)
+        if at_centres and len(met):
+            off, _ = _off_line(ends, met.line.take(starts.take(owner), axis=1))
+            met = smaller_at_openings(met, starts, owner, off > _SAME_LINE, borders, arrays["scales"])
+            ends, (_, starts, owner) = _ends_in_circle(met), _groups(met.surfel)
+        lines = _lines(met, ends, starts, owner)
+        packed = np.stack([pack_lines(line.T) for line in lines])
+        packed[packed[..., 1] == 0] = 0
+        yield Clipping(met.surfel.take(starts), packed, met, lines.take(owner, axis=2), are_reflex(*packed).take(owner))
+
+
+def clip_fields(parts: Iterable[Clipping], count: int) -> dict[str, np.ndarray]:
+    """Those of `CLIP_FIELDS` that any of `count` surfels needs."""
+    fields = {name: np.zeros((count, 2), np.int16) for name in CLIP_FIELDS}
+    for part in parts:
+        for values, found in zip(fields.values(), part.packed, strict=True):
+            values[part.surfels] = found
+    return {name: values for name, values in fields.items() if values[:, 1].any()}
 
 
 def _one_side_of_each(met: Meetings, arrays: dict[str, np.ndarray], borders: Borders) -> np.ndarray:
@@ -145,13 +150,15 @@ def _of_own_surface(met: Meetings, rows: np.ndarray) -> tuple[np.ndarray, np.nda
     return rows, *_groups(met.surfel.take(rows))[1:]
 
 
-def _on_this_side(met: Meetings, ends: np.ndarray, starts: np.ndarray, owner: np.ndarray, borders: Borders):
+def _on_this_side(
+    met: Meetings, ends: np.ndarray, starts: np.ndarray, owner: np.ndarray, borders: Borders, across: np.ndarray
+) -> np.ndarray:
     """(m,) bool: False for edges that lie past the surfel's nearest crease and belong to the face there.
 
     The face of such an edge is more like the one past the crease than like the one before it. Between two parallel
-    creases there is a narrow face, over which the surfel would otherwise reach.
+    creases there is a narrow face, over which the surfel would otherwise reach. across: (B,), from `_across`.
     """
-    number, across = np.arange(len(met)), _across(borders)
+    number = np.arange(len(met))
     crease = np.minimum.reduceat(np.where(across.take(met.side) >= 0, number, len(met)), starts)
     has_crease = crease < len(met)
     others = np.flatnonzero(has_crease.take(owner) & (number != starts.take(owner)))

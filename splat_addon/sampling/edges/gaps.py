@@ -13,7 +13,7 @@ from ..ldc.grid import Grid
 from ..ldc.scan_conversion import expand
 from ..mesh.triangle_mesh import TriangleMesh
 from .borders import Borders
-from .clipping import Clipping, clip
+from .clipping import Clipping, clip_fields, clippings
 from .meetings import by_facing
 
 #: Distance of the places along a border that are looked at, and how far inside of it they lie, in spacings.
@@ -42,7 +42,7 @@ _PLACES, _SIZE = 2, 0.6
 def gap_surfels(
     mesh: TriangleMesh,
     borders: Borders,
-    clipping: Clipping,
+    places: BorderPlaces,
     grid: Grid,
     splat_size: float,
     sampler: MaterialSampler,
@@ -51,93 +51,83 @@ def gap_surfels(
     """The arrays of `Surfels` for bare places beside the borders, clipped like the others ({} if there are none), and
     their (k,) triangles.
 
-    clipping: of all other surfels. sampler, tangents: as in `SampleFiller`.
+    places: that all other surfels have been asked about. sampler, tangents: as in `SampleFiller`.
     """
-    if not len(borders):
-        return {}, np.empty(0, np.intp)
-    side, places = _bare(mesh, borders, clipping, grid)
+    side, at = places.bare()
     if not len(side):
         return {}, np.empty(0, np.intp)
     triangles = borders.triangles[side]
-    made = _surfels(mesh, triangles, places, borders.normals[side], grid, splat_size, sampler, tangents)
-    return made | clip(made, by_facing(made), borders, grid, at_centres=False).fields, triangles
+    made = _surfels(mesh, triangles, at, borders.normals[side], grid, splat_size, sampler, tangents)
+    parts = clippings(made, by_facing(made), borders, grid, at_centres=False)
+    return made | clip_fields(parts, len(side)), triangles
 
 
-def _bare(mesh: TriangleMesh, borders: Borders, clipping: Clipping, grid: Grid):
-    """(k,) sides of borders and (k, 3) points beside them, in their triangles, that no surfel covers."""
-    along = borders.end - borders.start
-    counts = np.ceil(np.linalg.norm(along, axis=1) / (_STEP * grid.spacing)).astype(np.int64) + 1
-    # A straight row of places beside the edge: all are moved by the same share towards the middle.
-    corners = mesh.triangles.take(borders.triangles, axis=0).T
-    middle = sum(mesh.positions.take(corner, axis=0) for corner in corners) / 3
-    depth = np.einsum("ij,ij->i", middle - borders.start, borders.inward)
-    part = np.minimum(_INSIDE * grid.spacing / np.maximum(depth, 1e-300), _TO_MIDDLE)[:, None]
-    first, last = (borders.start + along * share for share in (_ENDS, 1 - _ENDS))
-    first, last = (place + (middle - place) * part for place in (first, last))
-    offsets = np.cumsum(counts) - counts
-    is_covered = _covered(clipping, grid, first, last, counts, offsets)
-    bare = np.flatnonzero(~is_covered)
-    side = np.searchsorted(offsets, bare, side="right") - 1
-    share = (bare - offsets[side]) / np.maximum(counts[side] - 1, 1)
-    places = first[side] + (last - first)[side] * share[:, None]
-    # In a run of bare points use the second, the fourth, ...; if there is only one, use it.
-    starts = np.append(True, (bare[1:] != bare[:-1] + 1) | (side[1:] != side[:-1])) if len(bare) else bare
-    runs = np.flatnonzero(starts)
-    sizes = np.diff(np.append(runs, len(bare)))
-    run, number = expand(sizes)
-    chosen = np.flatnonzero(number % _PLACES == np.minimum(1, sizes[run] - 1))
-    # Edges far shorter than a spacing share one point: one per cell and direction.
-    cells = np.floor((places[chosen] - grid.surfel_origin) / (_CELL * grid.spacing)).astype(np.int64)
-    facing = np.rint(borders.normals[side[chosen]]).astype(np.int64) + 1
-    key = (cells @ _CELL_NUMBER) * 27 + facing @ (1, 3, 9)
-    _, kept = np.unique(key, return_index=True)
-    chosen = chosen[np.sort(kept)]
-    return side[chosen], places[chosen]
+class BorderPlaces:
+    """Places in a straight row along each side of a border, and which of them surfels cover."""
 
+    def __init__(self, mesh: TriangleMesh, borders: Borders, grid: Grid):
+        self._borders, self._grid = borders, grid
+        along = borders.end - borders.start
+        self._counts = np.ceil(np.linalg.norm(along, axis=1) / (_STEP * grid.spacing)).astype(np.int64) + 1
+        self._offsets = np.cumsum(self._counts) - self._counts
+        # All are moved by the same share towards the middle.
+        corners = mesh.triangles.take(borders.triangles, axis=0).T
+        middle = sum(mesh.positions.take(corner, axis=0) for corner in corners) / 3
+        depth = np.einsum("ij,ij->i", middle - borders.start, borders.inward)
+        part = np.minimum(_INSIDE * grid.spacing / np.maximum(depth, 1e-300), _TO_MIDDLE)[:, None]
+        ends = (borders.start + along * share for share in (_ENDS, 1 - _ENDS))
+        self._ends = [place + (middle - place) * part for place in ends]
+        self._seen = [((end - grid.surfel_origin) / grid.spacing).astype(np.float32).T for end in self._ends]
+        self._changes = np.zeros(int(self._counts.sum()) + 1, np.int64)
 
-def _covered(clipping: Clipping, grid: Grid, first, last, counts: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """(p,) bool: whether surfels that meet a side cover its `counts` places from (B, 3) `first` to `last`.
+    def cover(self, clipping: Clipping):
+        """Each surfel covers the stretch of the row that lies in its ellipse and on the kept side of its lines; at a
+        reflex corner, one stretch for each line."""
+        met = clipping.met
+        across, up = ((met.seen.axis + k) % 3 for k in (1, 2))
+        start, end = (met.seen.in_circles(met.number, *(e[k].take(met.side) for k in (across, up))) for e in self._seen)
+        way = end - start
+        a, b, c = (way * way).sum(axis=0), (start * way).sum(axis=0), (start * start).sum(axis=0) - np.float32(_COVERED)
+        root = b * b - a * c
+        a = np.maximum(a, np.float32(1e-20))
+        root = np.sqrt(np.maximum(root, 0, out=root), where=root > 0, out=np.full_like(root, np.nan))
+        low, high = np.maximum((-b - root) / a, 0), np.minimum((-b + root) / a, 1)
+        ends = [_kept_stretch(line, start, way) for line in clipping.lines]
+        reflex = clipping.reflex
+        both = np.maximum(ends[0][0], ends[1][0]), np.minimum(ends[0][1], ends[1][1])
+        lows = np.maximum(low, np.where(reflex, ends[0][0], both[0])), np.maximum(low, ends[1][0])
+        highs = np.minimum(high, np.where(reflex, ends[0][1], both[1])), np.minimum(high, ends[1][1])
+        for low, high, rows in zip(lows, highs, (slice(None), np.flatnonzero(reflex)), strict=True):
+            steps = (self._counts - 1).take(met.side[rows])
+            with np.errstate(invalid="ignore"):
+                there = np.flatnonzero(low[rows] <= high[rows])
+            steps, offset = steps.take(there), self._offsets.take(met.side[rows].take(there))
+            covered = np.ceil(low[rows].take(there) * steps - 1e-3), np.floor(high[rows].take(there) * steps + 1e-3)
+            begin, end = (offset + place.astype(np.int64) for place in covered)
+            some = begin <= end
+            np.add.at(self._changes, begin.compress(some), 1)
+            np.subtract.at(self._changes, end.compress(some) + 1, 1)
 
-    Each surfel covers the stretch of the row that lies in its ellipse and on the kept side of its lines; at a reflex
-    corner, one stretch for each line.
-    """
-    met, total = clipping.met, int(counts.sum())
-    start, way = _in_circles(met, first, last, grid)
-    a, b, c = (way * way).sum(axis=0), (start * way).sum(axis=0), (start * start).sum(axis=0) - np.float32(_COVERED)
-    root = b * b - a * c
-    a = np.maximum(a, np.float32(1e-20))
-    root = np.sqrt(np.maximum(root, 0, out=root), where=root > 0, out=np.full_like(root, np.nan))
-    low, high = np.maximum((-b - root) / a, 0), np.minimum((-b + root) / a, 1)
-    ends = [_kept_stretch(line, start, way) for line in clipping.lines]
-    reflex = clipping.reflex
-    both = np.maximum(ends[0][0], ends[1][0]), np.minimum(ends[0][1], ends[1][1])
-    lows = np.maximum(low, np.where(reflex, ends[0][0], both[0])), np.maximum(low, ends[1][0])
-    highs = np.minimum(high, np.where(reflex, ends[0][1], both[1])), np.minimum(high, ends[1][1])
-    changes = np.zeros(total + 1, np.int64)
-    for low, high, rows in zip(lows, highs, (slice(None), np.flatnonzero(reflex)), strict=True):
-        steps = (counts - 1).take(met.side[rows])
-        with np.errstate(invalid="ignore"):
-            there = np.flatnonzero(low[rows] <= high[rows])
-        steps, offset = steps.take(there), offsets.take(met.side[rows].take(there))
-        covered = np.ceil(low[rows].take(there) * steps - 1e-3), np.floor(high[rows].take(there) * steps + 1e-3)
-        begin, end = (offset + place.astype(np.int64) for place in covered)
-        some = begin <= end
-        changes += np.bincount(begin.compress(some), minlength=total + 1)
-        changes -= np.bincount(end.compress(some) + 1, minlength=total + 1)
-    return np.cumsum(changes)[:total] > 0
-
-
-def _in_circles(met, first: np.ndarray, last: np.ndarray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-    """(2, m) first place of the met side in each surfel's circle, and (2, m) the way from it to the last."""
-    ends = [((place - grid.surfel_origin) / grid.spacing).astype(np.float32).T for place in (first, last)]
-    seen = []
-    axis = met.axis.astype(np.intp)  # numpy 1.26 would count places in the axes' 8 bits
-    for end in ends:
-        u, v = (end.ravel().take((axis + k) % 3 * len(first) + met.side) for k in (1, 2))
-        u -= met.place[0]
-        v -= met.place[1]
-        seen.append(np.stack([met.inverse[0] * u + met.inverse[1] * v, met.inverse[2] * u + met.inverse[3] * v]))
-    return seen[0], seen[1] - seen[0]
+    def bare(self) -> tuple[np.ndarray, np.ndarray]:
+        """(k,) sides of borders and (k, 3) points beside them, in their triangles, that no surfel covers."""
+        bare = np.flatnonzero(np.cumsum(self._changes)[:-1] <= 0)
+        side = np.searchsorted(self._offsets, bare, side="right") - 1
+        share = (bare - self._offsets[side]) / np.maximum(self._counts[side] - 1, 1)
+        first, last = self._ends
+        places = first[side] + (last - first)[side] * share[:, None]
+        # In a run of bare points use the second, the fourth, ...; if there is only one, use it.
+        starts = np.append(True, (bare[1:] != bare[:-1] + 1) | (side[1:] != side[:-1])) if len(bare) else bare
+        runs = np.flatnonzero(starts)
+        sizes = np.diff(np.append(runs, len(bare)))
+        run, number = expand(sizes)
+        chosen = np.flatnonzero(number % _PLACES == np.minimum(1, sizes[run] - 1))
+        # Edges far shorter than a spacing share one point: one per cell and direction.
+        cells = np.floor((places[chosen] - self._grid.surfel_origin) / (_CELL * self._grid.spacing)).astype(np.int64)
+        facing = np.rint(self._borders.normals[side[chosen]]).astype(np.int64) + 1
+        key = (cells @ _CELL_NUMBER) * 27 + facing @ (1, 3, 9)
+        _, kept = np.unique(key, return_index=True)
+        chosen = chosen[np.sort(kept)]
+        return side[chosen], places[chosen]
 
 
 def _kept_stretch(line: np.ndarray, start: np.ndarray, way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

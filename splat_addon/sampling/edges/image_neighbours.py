@@ -8,11 +8,13 @@ their cells. What lies in other layers of the same cells is told by the plane of
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ..ldc.grid import BLOCK, Grid
 from ..ldc.scan_conversion import batches, expand
-from .ordering import order_of
+from .ordering import order_of, runs_of_equal
 
 #: Around the image, in cells: samples lie in it, other surfels and edges at most this far outside.
 _MARGIN = 3
@@ -23,19 +25,28 @@ _FEW_CELLS, _CELLS_A_SURFEL = 1 << 20, 16
 #: Tolerance of a reach, in cells, for float32 rounding.
 _SLACK = 1e-3
 
-#: Pairs per batch.
-_PAIRS = 32768
+#: Runs per band of rows, and pairs per batch.
+_RUNS, _PAIRS = 65536, 32768
 
 
 def image_neighbours(
-    positions: np.ndarray, axis: int, ends: np.ndarray, planes: np.ndarray, reach: float, depth: float, grid: Grid
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """(s,) surfels that come near to any edge; and of p pairs the (p,) surfel, by its number among these, the (p,) edge
-    and how much higher the surfel lies than the plane of the edge's face, (p,) cells.
+    positions: np.ndarray,
+    axis: int,
+    ends: np.ndarray,
+    edges: np.ndarray,
+    planes: np.ndarray,
+    reach: float,
+    depth: float,
+    grid: Grid,
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
+    """Yields, for each band of rows of the image, (s,) surfels that come near to any edge; and of p pairs the (p,)
+    surfel, by its number among these, the (p,) side of an edge and how much higher the surfel lies than the plane of
+    the side's face, (p,) cells. A surfel lies in one band.
 
-    positions: (N, 3) float32 surfels, relative to the grid's middle. ends: (2, 2, e) float32 of edges, across and up in
-    the image along `axis`, in cells from there. planes: (3, e) float32, their rise across and up, and height there.
-    reach: how near, in cells, as this image sees it. depth: how far above or below the plane.
+    positions: (N, 3) float32 surfels, relative to the grid's middle. ends: (2, 2, e) float32 of sides, across and up in
+    the image along `axis`, in cells from there. edges: (e,) of which edge, ascending. planes: (3, e) float32, their
+    rise across and up, and height there. reach: how near, in cells, as this image sees it. depth: how far above or
+    below the plane.
     """
     along, up = ((axis + k) % 3 for k in (1, 2))
     width, height = (2 * int(grid.middle[a]) + 2 * BLOCK + 2 * _MARGIN for a in (along, up))
@@ -44,66 +55,91 @@ def image_neighbours(
     size, scale = width * height, np.float32(1 / grid.spacing)
     kind = np.int32 if size < 2**31 else np.int64
     column, row = (np.rint(positions[:, a] * scale + s).astype(kind) for a, s in zip((along, up), shift, strict=True))
-    edge, starts, stops = _runs(ends[:, 0] + shift[0], ends[:, 1] + shift[1], reach + _SLACK, width, height)
-    row *= kind(width)
-    row += column
-    is_counted = size <= max(_FEW_CELLS, _CELLS_A_SURFEL * len(positions))
-    if is_counted:
-        crossings = np.bincount(starts, minlength=size + 1) - np.bincount(stops, minlength=size + 1)
-        near = np.flatnonzero((np.cumsum(crossings) > 0).take(row, mode="clip"))
-    else:
-        near = np.arange(len(row))
-    cells = row.take(near)
-    order = order_of(cells)
-    cells, near = cells.take(order), near.take(order)
-    if is_counted:
-        firsts = np.zeros(size + 1, np.intp)
-        np.cumsum(np.bincount(cells, minlength=size), out=firsts[1:])
-        firsts_of, stops = firsts.take(starts), firsts.take(stops)
-    else:
-        firsts_of, stops = np.searchsorted(cells, starts), np.searchsorted(cells, stops)
-    counts = stops - firsts_of
-    there = np.flatnonzero(counts)
-    edge, counts, firsts_of = edge.take(there), counts.take(there), firsts_of.take(there)
-    place = [positions[:, a].take(near) * scale for a in (along, up, axis)]
-    # In batches that fit into the processor's cache.
-    parts = [
-        _near_planes(place, firsts_of[part], counts[part], edge[part], planes, np.float32(depth))
-        for part in batches(counts, _PAIRS)
-    ]
-    nothing = np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0, np.float32)
-    return near, *(np.concatenate(found) for found in zip(*parts, nothing, strict=True))
+    # Sides of one edge share its runs.
+    sides, sides_of = runs_of_equal(edges)
+    x, y = (of.take(sides, axis=1) + s for of, s in zip(ends.swapaxes(0, 1), shift, strict=True))
+    first, stop = _rows(y, reach + _SLACK, height)
+    runs_in = np.cumsum(np.bincount(first, minlength=height + 1) - np.bincount(stop, minlength=height + 1))[:height]
+
+    def found_in(band: slice):
+        within = np.flatnonzero((first < band.stop) & (stop > band.start))
+        rows = np.maximum(first.take(within), band.start), np.minimum(stop.take(within), band.stop)
+        edge, *runs = _runs(x.take(within, axis=1), y.take(within, axis=1), rows, reach + _SLACK, width)
+        surfels = np.flatnonzero((row >= band.start) & (row < band.stop))
+        cells = (row.take(surfels) - kind(band.start)) * kind(width) + column.take(surfels)
+        for starts_or_stops in runs:
+            starts_or_stops -= band.start * width
+        near, firsts, counts = _surfels_in(*runs, cells, (band.stop - band.start) * width)
+        near, there = surfels.take(near), np.flatnonzero(counts)
+        edge = within.take(edge.take(there))
+        run, number = expand(sides_of.take(edge))
+        side, there = sides.take(edge).take(run) + number, there.take(run)
+        place = [positions[:, a].take(near) * scale for a in (along, up, axis)]
+        return near, *_near_planes(place, firsts.take(there), counts.take(there), side, planes, np.float32(depth))
+
+    return (found_in(band) for band in batches(runs_in, _RUNS) if runs_in[band].any())
 
 
-def _near_planes(place, firsts: np.ndarray, counts: np.ndarray, edge: np.ndarray, planes: np.ndarray, depth):
-    """The pairs of edges and surfels near the plane of the edge's face, in the form of `image_neighbours`.
+def _surfels_in(starts: np.ndarray, stops: np.ndarray, cells: np.ndarray, size: int):
+    """The surfels in any of r runs, in the order of their cells, as indices of `cells`; and for each run its first
+    among these and their count.
+
+    starts, stops: (r,) first cell of each run, and the cell after its last. cells: (n,) of surfels. size: number of
+    cells.
+    """
+    if size > max(_FEW_CELLS, _CELLS_A_SURFEL * len(cells)):
+        near = order_of(cells)
+        cells = cells.take(near)
+        firsts = np.searchsorted(cells, starts)
+        return near, firsts, np.searchsorted(cells, stops) - firsts
+    crossings = np.bincount(starts, minlength=size + 1) - np.bincount(stops, minlength=size + 1)
+    near = np.flatnonzero((np.cumsum(crossings) > 0).take(cells, mode="clip"))
+    cells = cells.take(near)
+    near = near.take(order_of(cells))
+    firsts = np.zeros(size + 1, np.intp)
+    np.cumsum(np.bincount(cells, minlength=size), out=firsts[1:])
+    firsts, stops = firsts.take(starts), firsts.take(stops)
+    return near, firsts, stops - firsts
+
+
+def _near_planes(place, firsts: np.ndarray, counts: np.ndarray, side: np.ndarray, planes: np.ndarray, depth):
+    """The pairs of surfels and sides near the plane of the side's face, in the form of `image_neighbours`.
 
     The candidates are runs of surfels, `counts` long, from `firsts` on. place: (s,) each: across, up and along the
     image's axis.
     """
-    # The surfels of a run are consecutive, so the values of each pair are read in order.
-    surfel = np.repeat(firsts - (np.cumsum(counts) - counts), counts)
-    surfel += np.arange(len(surfel))
-    above = place[2].take(surfel)
-    above -= np.repeat(planes[2].take(edge), counts)
-    for rise, values in zip(planes, place[:2], strict=False):
-        step = np.repeat(rise.take(edge), counts)
-        step *= values.take(surfel)
-        above -= step
-    at = np.flatnonzero(np.abs(above) <= depth)
-    return surfel.take(at), np.repeat(edge, counts).take(at), above.take(at)
+    # In batches that fit into the processor's cache.
+    parts = [(np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0, np.float32))]
+    for part in batches(counts, _PAIRS):
+        # The surfels of a run are consecutive, so the values of each pair are read in order.
+        run, number = expand(counts[part])
+        surfel, at_side = firsts[part].take(run) + number, side[part].take(run)
+        above = place[2].take(surfel)
+        above -= planes[2].take(at_side)
+        for rise, values in zip(planes, place[:2], strict=False):
+            step = rise.take(at_side)
+            step *= values.take(surfel)
+            above -= step
+        at = np.flatnonzero(np.abs(above) <= depth)
+        parts.append((surfel.take(at), at_side.take(at), above.take(at)))
+    return tuple(np.concatenate(found) for found in zip(*parts, strict=True))
 
 
-def _runs(x: np.ndarray, y: np.ndarray, reach: float, width: int, height: int):
+def _rows(y: np.ndarray, reach: float, height: int) -> tuple[np.ndarray, np.ndarray]:
+    """(e,) the first row within `reach` of each edge, and (e,) the row after the last. y: (2, e) of the edges' ends."""
+    low, high = y.min(axis=0) - reach, y.max(axis=0) + reach
+    first = np.clip(np.ceil(low), 0, height).astype(np.intp)
+    return first, np.maximum(np.clip(np.floor(high), -1, height - 1).astype(np.intp) + 1, first)
+
+
+def _runs(x: np.ndarray, y: np.ndarray, rows: tuple[np.ndarray, np.ndarray], reach: float, width: int):
     """Runs of cells within `reach` of edges, and slightly more around the ends.
 
     Returns for each of r runs the edge, the first cell, and the cell after the last. x, y: (2, e) coordinates of the
-    edges' ends.
+    edges' ends. rows: of each edge, its first and the one after its last.
     """
-    low, high = y.min(axis=0) - reach, y.max(axis=0) + reach
-    first = np.clip(np.ceil(low), 0, height).astype(np.intp)
-    last = np.clip(np.floor(high), -1, height - 1).astype(np.intp)
-    edge, number = expand(np.maximum(last - first + 1, 0))
+    first, stop = rows
+    edge, number = expand(stop - first)
     row = number + first.take(edge)
     across, rise = x[1] - x[0], y[1] - y[0]
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -7,7 +7,8 @@ the unit circle.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,29 +41,27 @@ _OFF_CENTRE = np.sqrt(0.5)
 class Meetings:
     """m meetings of a surfel with a side of an edge.
 
-    surfel, side: (m,) intp. start, end: (2, m) float32 in the unit circle, with the surface at the left. line: (3, m)
-    float32 of unit direction, above 0 on the surface. distance: (m,) float32, of the edge from the centre. facing: (m,)
-    float32 cosine between both planes, without its sign. inverse: (4, m) float32, row by row, from cells of the image
-    to half-axes. place: (2, m) float32, of the surfel in its image, in cells from the grid's middle. axis: (m,) int8,
-    of the image.
+    surfel, side: (m,) intp. number: (m,) intp, of the surfel among those `seen`. start, end: (2, m) float32 in the unit
+    circle, with the surface at the left. line: (3, m) float32 of unit direction, above 0 on the surface. distance: (m,)
+    float32, of the edge from the centre. facing: (m,) float32 cosine between both planes, without its sign.
     """
 
     surfel: np.ndarray
+    number: np.ndarray
     side: np.ndarray
     start: np.ndarray
     end: np.ndarray
     line: np.ndarray
     distance: np.ndarray
     facing: np.ndarray
-    inverse: np.ndarray
-    place: np.ndarray
-    axis: np.ndarray
+    seen: SeenSurfels
 
     def __len__(self) -> int:
         return len(self.surfel)
 
     def take(self, rows: np.ndarray) -> Meetings:
-        return Meetings(*(getattr(self, f.name).take(rows, axis=-1) for f in fields(self)))
+        given = {name: of.take(rows, axis=-1) for name, of in vars(self).items() if name != "seen"}
+        return replace(self, **given)
 
 
 def by_facing(arrays: dict[str, np.ndarray]) -> Images:
@@ -71,71 +70,83 @@ def by_facing(arrays: dict[str, np.ndarray]) -> Images:
     return [(axis, np.flatnonzero(facing == axis)) for axis in range(3)]
 
 
-def meetings(arrays, images: Images, borders: Borders, grid: Grid, at_centres: bool = True) -> Meetings:
-    """The meetings of the surfels with the sides of borders.
+def meetings(arrays, images: Images, borders: Borders, grid: Grid, at_centres: bool = True) -> Iterator[Meetings]:
+    """The meetings of surfels with the sides of borders, in parts: all of a surfel's are in one.
 
-    arrays: by field of `Surfels`, positions relative to the grid's middle. at_centres: whether they lie at the centres
-    of cells.
+    arrays: by field of `Surfels`, positions relative to the grid's middle. at_centres: whether the surfels lie at the
+    centres of cells.
     """
     ends = np.stack([borders.start, borders.end]) - grid.surfel_origin
     ends = np.ascontiguousarray(np.moveaxis(ends, 2, 1) / grid.spacing, np.float32)
     normals = np.ascontiguousarray(borders.normals.T, np.float32)
-    parts = [_in_image(arrays, axis, rows, ends, normals, grid, at_centres) for axis, rows in images]
-    joined = [np.concatenate([getattr(part, f.name) for part in parts], axis=-1) for f in fields(Meetings)]
-    return Meetings(*joined)
+    for axis, rows in images:
+        faces = np.flatnonzero(np.abs(normals[axis]) >= _LEAST_SHARE)
+        order = [(axis + k) % 3 for k in (1, 2, 0)]
+        seen = ends[:, order].take(faces, axis=2), borders.edges.take(faces), normals[order].take(faces, axis=1)
+        for met in _in_image(arrays, axis, rows, *seen, grid, at_centres):
+            if len(met):
+                yield replace(met, side=faces.take(met.side))
 
 
-def _in_image(arrays, axis: int, rows: slice | np.ndarray, ends, normals, grid: Grid, at_centres: bool) -> Meetings:
-    order = [(axis + k) % 3 for k in (1, 2, 0)]
-    positions, scales = arrays["positions"][rows], arrays["scales"][rows]
-    faces = np.flatnonzero(np.abs(normals[axis]) >= _LEAST_SHARE)
-    ends, normals = ends[:, order].take(faces, axis=2), normals[order].take(faces, axis=1)
+def _in_image(
+    arrays, axis: int, rows: slice | np.ndarray, ends, edges, normals, grid: Grid, at_centres: bool
+) -> Iterator[Meetings]:
+    """The meetings of the surfels that an image sees, with sides among those it sees."""
+    positions, scales, rotations = (arrays[name][rows] for name in ("positions", "scales", "rotations"))
     # The smaller half-axis lies across the image's axis, the larger one is foreshortened to it.
     reach = float((scales[:, 1] if isinstance(rows, slice) else scales).max(initial=0)) / grid.spacing
     search = reach if at_centres else reach + _OFF_CENTRE
     rises = -normals[:2] / normals[2]
     planes = np.stack([*rises, ends[0, 2] - (ends[0, :2] * rises).sum(axis=0)])
     farthest = np.sqrt(3) * reach * (_OFF_PLANE + _OFF_ANYHOW) / _LEAST_SHARE
-    near, surfel, edge, above = image_neighbours(positions, axis, ends[:, :2], planes, search, farthest, grid)
-    off = np.abs(above * normals[2].take(edge))
     inverse_spacing = np.float32(1 / grid.spacing)
-    # Only now that few are left, gather their attributes.
-    is_left = np.zeros(len(near), bool)
-    is_left[surfel] = True
-    left, number = np.flatnonzero(is_left), np.cumsum(is_left)
-    surfel, near = number.take(surfel) - 1, near.take(left)
-    surfels = _Seen(scales.take(near, axis=0) * inverse_spacing, arrays["rotations"][rows].take(near, axis=0), order)
-    facing = sum(n.take(edge) * own.take(surfel) for n, own in zip(normals, surfels.normal, strict=True))
+    found = image_neighbours(positions, axis, ends[:, :2], edges, planes, search, farthest, grid)
+    for near, surfel, side, above in found:
+        # Only now that few are left, gather their attributes.
+        is_left = np.zeros(len(near), bool)
+        is_left[surfel] = True
+        near, number = near.compress(is_left), np.cumsum(is_left) - 1
+        seen = SeenSurfels(axis, *(of.take(near, axis=0) for of in (positions, scales, rotations)), inverse_spacing)
+        numbers = near + rows.start if isinstance(rows, slice) else rows.take(near)
+        yield _met(seen, numbers, number.take(surfel), side, above, ends[:, :2], normals)
+
+
+def _met(
+    seen: SeenSurfels, numbers: np.ndarray, surfel, side, above, ends: np.ndarray, normals: np.ndarray
+) -> Meetings:
+    """Those of the pairs that meet. numbers: (s,) of the seen surfels."""
+    off = np.abs(above * normals[2].take(side))
+    facing = sum(n.take(side) * own.take(surfel) for n, own in zip(normals, seen.normal, strict=True))
     alike = np.flatnonzero(np.abs(facing) >= _SAME_PIECE)
-    surfel, edge, facing, off = (values.take(alike) for values in (surfel, edge, facing, off))
-    inverse = surfels.inverse.take(surfel, axis=1)
-    u, v = ((positions[:, a].take(near) * inverse_spacing).take(surfel) for a in order[:2])
-    start, end = (_in_circle(inverse, e[0].take(edge) - u, e[1].take(edge) - v) for e in ends)
+    surfel, side, facing, off = (values.take(alike) for values in (surfel, side, facing, off))
+    start, end = (seen.in_circles(surfel, *(of.take(side) for of in e)) for e in ends)
     # The face lies at the left of its edge where it is seen from the side that its normal points to.
     turned = facing < 0
     start, end = np.where(turned, end, start), np.where(turned, start, end)
     share, distance = nearest_on_segment(start, end)
     line = line_along(start, end)
     meets = distance < 1
-    meets &= off <= (_OFF_PLANE * distance + _OFF_ANYHOW) * surfels.size.take(surfel)
+    meets &= off <= (_OFF_PLANE * distance + _OFF_ANYHOW) * seen.size.take(surfel)
     meets &= (line[2] >= BEYOND) | (share == 0) | (share == 1)
-    at, seen = np.flatnonzero(meets), np.stack([u, v])
-    numbers = near + rows.start if isinstance(rows, slice) else rows.take(near)
-    return Meetings(
-        numbers.take(surfel.take(at)),
-        faces.take(edge.take(at)),
-        *(values.take(at, axis=-1) for values in (start, end, line, distance, np.abs(facing), inverse, seen)),
-        np.full(len(at), axis, np.int8),
-    )
+    at = np.flatnonzero(meets)
+    values = surfel, side, start, end, line, distance, np.abs(facing)
+    surfel, *others = (of.take(at, axis=-1) for of in values)
+    return Meetings(numbers.take(surfel), surfel, *others, seen)
 
 
-class _Seen:
-    """Surfels as their image sees them. normal: (3, s), across, up and along its axis. inverse: (4, s), row by row,
-    from cells to half-axes. size: (s,) the larger half-axis, cells."""
+class SeenSurfels:
+    """s surfels as the image along an axis sees them, in cells.
 
-    def __init__(self, scales: np.ndarray, rotations: np.ndarray, order: list[int]):
+    normal: (3, s), across, up and along its axis. place: (2, s) from the grid's middle. inverse: (4, s), row by row,
+    from cells to half-axes. size: (s,) the larger half-axis.
+    """
+
+    def __init__(self, axis: int, positions, scales, rotations, inverse_spacing: np.float32):
+        order = [(axis + k) % 3 for k in (1, 2, 0)]
+        scales = scales * inverse_spacing
         x, y, z = quaternion_axes(rotations)
-        self.normal = np.ascontiguousarray(z.T[order])
+        self.axis, self.normal = axis, np.ascontiguousarray(z.T[order])
+        self.place = np.ascontiguousarray(positions.T[order[:2]]) * inverse_spacing
         (xu, xv), (yu, yv) = (
             half_axis.T[order[:2]] * size for half_axis, size in ((x, scales[:, 0]), (y, scales[:, 1]))
         )
@@ -144,10 +155,11 @@ class _Seen:
         self.inverse /= np.where(np.abs(determinant) > 1e-12, determinant, np.float32(1e-12))
         self.size = scales.max(axis=1)
 
-
-def _in_circle(inverse: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(2, m) positions in half-axes from (m,) offsets in cells from the centre."""
-    return np.stack([inverse[0] * u + inverse[1] * v, inverse[2] * u + inverse[3] * v])
+    def in_circles(self, surfel: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """(2, m) (m,) places across and up in the image, in the half-axes of the (m,) surfels."""
+        u, v = u - self.place[0].take(surfel), v - self.place[1].take(surfel)
+        a, b, c, d = (row.take(surfel) for row in self.inverse)
+        return np.stack([a * u + b * v, c * u + d * v])
 
 
 def nearest_on_segment(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

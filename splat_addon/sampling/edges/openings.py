@@ -21,20 +21,24 @@ SMALLER = np.float32(0.7)
 _RAGGED = 3
 
 
-def smaller_at_openings(met: Meetings, is_off: np.ndarray, borders: Borders, scales: np.ndarray) -> Meetings:
+def smaller_at_openings(
+    met: Meetings, starts: np.ndarray, owner: np.ndarray, is_off: np.ndarray, borders: Borders, scales: np.ndarray
+) -> Meetings:
     """The meetings of surfels after those at ragged open borders have become smaller, in place in (N, 2) `scales`.
 
-    met: ordered by surfel. is_off: (m,) whether the edge leaves the line along the surfel's nearest one.
+    met: ordered by surfel. starts: (n,) the first meeting of each surfel. owner: (m,) each one's surfel among these.
+    is_off: (m,) whether the edge leaves the line along the surfel's nearest one.
     """
-    count = len(scales)
-    is_open = (np.bincount(borders.edges) == 1).take(borders.edges).take(met.side)
-    ragged = np.bincount(met.surfel, is_off, count) >= _RAGGED
-    ragged &= np.bincount(met.surfel, is_open, count) > 0
+    is_open = (np.bincount(borders.edges) == 1).take(borders.edges.take(met.side))
+    ragged = np.bincount(owner, is_off, len(starts)) >= _RAGGED
+    ragged &= np.bincount(owner, is_open, len(starts)) > 0
     if not ragged.any():
         return met
-    scales[ragged] *= SMALLER
-    factor = np.where(ragged.take(met.surfel), 1 / SMALLER, np.float32(1))
+    first = starts.compress(ragged)
+    scales[met.surfel.take(first)] *= SMALLER
+    met.seen.inverse[:, met.number.take(first)] *= 1 / SMALLER
+    factor = np.where(ragged.take(owner), 1 / SMALLER, np.float32(1))
     line = met.line.copy()
     line[2] *= factor
-    values = {name: getattr(met, name) * factor for name in ("start", "end", "distance", "inverse")}
+    values = {name: getattr(met, name) * factor for name in ("start", "end", "distance")}
     return replace(met, line=line, **values).take(np.flatnonzero(values["distance"] < 1))

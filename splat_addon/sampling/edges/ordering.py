@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sorts integers in less time than numpy's argsort takes."""
+"""Sorts integers in less time than numpy's argsort takes, and finds equal ones in order."""
 
 from __future__ import annotations
 
@@ -21,3 +21,11 @@ def order_of(keys: np.ndarray) -> np.ndarray:
     both.sort()
     both &= (1 << bits) - 1
     return both.astype(np.intp, copy=False)
+
+
+def runs_of_equal(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The starts and lengths of runs of equal values."""
+    is_first = np.ones(len(ordered) + 1, bool)
+    np.not_equal(ordered[1:], ordered[:-1], out=is_first[1:-1])
+    starts = np.flatnonzero(is_first)
+    return starts[:-1], np.diff(starts)

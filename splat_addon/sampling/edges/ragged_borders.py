@@ -7,13 +7,15 @@ of the surfel's nearest edge; each other one is tried as its second, at a convex
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 #: The points at which a splat is judged: rings in the unit circle.
 _RINGS = ((0.35, 4), (0.7, 7), (0.95, 11))
 
 #: Edges per batch: their points stay in the processor's cache.
-_CHUNK = 2048
+_CHUNK = 8192
 
 #: Weights are multiples of this, so that their sums are exact in any order.
 _UNIT = 2.0**-18
@@ -50,23 +52,45 @@ def two_lines(start: np.ndarray, end: np.ndarray, line: np.ndarray, owner: np.nd
 def _judged(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """For each of n surfels, (n,) the best second edge among its k edges, and (n,) what the lines keep. edges:
     (7, k, n).
+
+    A set of places is held in the bits of an integer.
     """
-    at, weights = places()
-    count = edges.shape[1]
-    inside, distance = _inside_of_each(edges, at)
+    inside, distance = _inside_of_each(edges, places()[0])
     belongs = (inside | (distance != distance.min(axis=1, keepdims=True))).all(axis=1)
-    first, others = inside[:, 0], inside[:, 1:]
-    alone = np.stack([first != belongs, ~belongs], axis=1)
-    shown = np.stack([others & first[:, None], others | first[:, None]], axis=2)
-    paired = (shown != belongs[:, None, None]).reshape(len(weights), 2 * (count - 1), -1)
-    wrong = np.concatenate([alone, paired], axis=1).astype(np.float32)
-    wrongs = (weights @ wrong.reshape(len(wrong), -1)).reshape(2 * count, -1)
+    inside, belongs = _bits(inside), _bits(belongs)
+    # The first edge with itself: its line alone, or everything.
+    both, either = inside & inside[0], inside | inside[0]
+    either[0] = _bits(np.ones(len(places()[1]), bool))
+    wrongs = np.stack([_weight(both ^ belongs), _weight(either ^ belongs)], axis=1)
     # One line if a second gains nothing.
-    wrongs[0] -= _LEAST_GAIN
-    found = wrongs.argmin(axis=0)
+    wrongs[0, 0] -= _LEAST_GAIN
+    found = wrongs.reshape(-1, wrongs.shape[2]).argmin(axis=0)
     return found // 2, np.where(found < 2, np.where(found == 0, FIRST, ALL), np.where(found % 2 == 0, BOTH, EITHER))
 
 
+def _bits(sets: np.ndarray) -> np.ndarray:
+    """(...) int32 from (p, ...) bool. A float32 holds as many bits exactly as there are places."""
+    powers = np.exp2(np.arange(len(sets), dtype=np.float32))
+    return (powers @ sets.reshape(len(sets), -1).astype(np.float32)).astype(np.int32).reshape(sets.shape[1:])
+
+
+def _weight(sets: np.ndarray) -> np.ndarray:
+    """(...) int32: what the places in each set weigh, looked up for a half of the bits at a time."""
+    low, high = _weights_of_bits()
+    return low.take(sets & (len(low) - 1)) + high.take(sets >> (len(low).bit_length() - 1))
+
+
+@cache
+def _weights_of_bits() -> np.ndarray:
+    """(2, h) int32: the weights of the places whose bits are set in each number, from the lower and the upper half of
+    the places."""
+    weights = places()[1].astype(np.int32)
+    half = len(weights) // 2
+    bits = np.arange(1 << half) >> np.arange(half)[:, None] & 1
+    return weights.reshape(2, half) @ bits.astype(np.int32)
+
+
+@cache
 def places() -> tuple[np.ndarray, np.ndarray]:
     """(2, p) float32 points in the unit circle, and (p,) the weight of the splat around each, in
     units."""
