@@ -43,28 +43,32 @@ def fit_planes(
     images: the samples of each image. is_closed: whether the mesh has no open border; where it has, a line may be one,
     beyond which nothing could hide what sticks out.
     """
-    is_bent = arrays["blend_depth"] > LEAST_BLENDING
-    if not is_bent.any():
-        return {}
-    places = np.ascontiguousarray(arrays["positions"].T) * np.float32(1 / grid.spacing)
-    axes = quaternion_axes(arrays["rotations"])
+    # Where a triangle bends, those that its surface goes on in do, too.
+    bent = np.flatnonzero(arrays["blend_depth"] > LEAST_BLENDING)
+    names = [name for name in ("positions", "rotations", *CLIP_FIELDS) if name in arrays]
+    here = {name: arrays[name].take(bent, axis=0) for name in (*names, "scales")}
+    places = np.ascontiguousarray(here["positions"].T) * np.float32(1 / grid.spacing)
+    axes = quaternion_axes(here["rotations"])
     normals = np.ascontiguousarray(axes[2].T)
-    seen = [ImageSamples(places, normals, axis, rows) for axis, rows in images if rows.stop > rows.start]
-    lines = _Lines(arrays, axes, grid.spacing)
+    spans = [(axis, slice(*np.searchsorted(bent, (rows.start, rows.stop)).tolist())) for axis, rows in images]
+    seen = [ImageSamples(places, normals, axis, rows) for axis, rows in spans if rows.stop > rows.start]
+    lines = _Lines(here, axes, grid.spacing)
     fits = [_Fit(image, lines) for image in seen]
     for fit, image in zip(fits, seen, strict=True):
         for another in seen:
             if another is not image:
                 fit.add_from(another)
-    changed = {name: arrays[name].copy() for name in ("positions", "rotations", *CLIP_FIELDS) if name in arrays}
     for fit, image in zip(fits, seen, strict=True):
-        offset, slope = (values * is_bent.take(image.rows) for values in fit.solve())
-        _move(changed, image, offset, slope, grid.spacing)
+        offset, slope = fit.solve()
+        _move(here, image, offset, slope, grid.spacing)
         less = (fit.goes_on | is_closed) * (
             _KEPT * (np.abs(offset) + np.sqrt((slope * slope).sum(axis=0))) * grid.spacing
         )
         # The first half-axis is the larger one (`ellipse_scales`).
-        _cut_less(changed, image.rows, less / arrays["scales"][:, 0].take(image.rows))
+        _cut_less(here, image.rows, less / here["scales"][:, 0].take(image.rows))
+    changed = {name: arrays[name].copy() for name in names if len(bent)}
+    for name, values in changed.items():
+        values[bent] = here[name]
     return changed
 
 
