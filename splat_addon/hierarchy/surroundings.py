@@ -105,11 +105,13 @@ class _Pairs:
         self.cosines[nodes["materials"][self.rows] != self._own("materials")] = -1
 
     def blurred(self, values: np.ndarray) -> np.ndarray:
-        """(6, m) the values that a picture shows at the centres."""
+        """(6, m) the values that a picture shows at the centres; their own if too many are crowded there to count."""
         distance = _dot(self.offsets, self.offsets) / self.nodes["radii"][self.rows] ** 2
         counted = (distance < _END) & (self.cosines > _SAME_SIDE)
         weights = np.where(counted, np.exp(_SHARPNESS * distance), 0)
-        return self._sum(values[:, self.rows] * weights) / self._sum(weights)
+        total = self._sum(weights)
+        means = self._sum(values[:, self.rows] * weights) / np.maximum(total, np.float32(1e-30))
+        return np.where(total > 0, means, values[:, self.part])
 
     def are_at_borders(self) -> np.ndarray:
         """(m,) whether neighbours are on one side only, or few."""

@@ -96,3 +96,11 @@ def test_overhang_counts_several_times_at_borders_and_creases(other, monkeypatch
     assert counts_more[first[amid & (x < -6) & (x > -30)]].mean() < 0.15
     beside = counts_more[first[amid & (x < 0) & (x > -3)]].mean()
     assert beside < 0.2 if other == "a slope" else beside > 0.7
+
+
+def test_surfels_that_are_crowded_on_one_place_stay_finite():
+    """So many face every way that a merged surfel may not be among its own candidates."""
+    rng, count = np.random.default_rng(7), 3000
+    places, normals, half = rng.normal(size=(count, 3)), rng.normal(size=(count, 3)), rng.uniform(0.1, 2, (count, 2))
+    nodes, errors, _, _ = build_levels(make_surfels(places, normals, half, materials=rng.integers(0, 9, count)))
+    assert len(nodes) and np.isfinite(errors).all() and np.isfinite(nodes.colors).all()

@@ -14,6 +14,7 @@ from ...interchange import joined, transformed, write_gaussian_ply, write_ply
 from ...surfels import Surfels
 from ..geometry.attributes import has_surfels, read_surfels
 from ..geometry.points_proxy import points_of
+from ..geometry.surfel_files import file_of
 from ..ids import EXPORT_PLY
 from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
@@ -93,6 +94,12 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
             return {"CANCELLED"}
         if unusable:
             self.report({"WARNING"}, said("Skipped {count:,} unusable surfels", count=unusable))
+        if coarse := [candidate.name for candidate in candidates if file_of(candidate)]:
+            why = said(
+                "The surfels of {names} are in files of their own; only the coarsest were written",
+                names=", ".join(coarse),
+            )
+            self.report({"WARNING"}, why)
         values = {"count": len(surfels), "objects": len(parts), "path": path}
         self.report({"INFO"}, said("{count:,} surfels of {objects} objects -> {path}", **values))
         return {"FINISHED"}

@@ -897,6 +897,9 @@ GERMAN = {
         "Surfels auswählen, die aus einem Objekt dieser Datei umgewandelt wurden"
     ),
     "Skipped {count:,} unusable surfels": "{count:,} unbrauchbare Surfels ausgelassen",
+    "The surfels of {names} are in files of their own; only the coarsest were written": (
+        "Die Surfels von {names} liegen in eigenen Dateien; nur die gröbsten wurden geschrieben"
+    ),
     "Surfels are updated in object mode; leave the current mode first": (
         "Surfels werden im Objektmodus aktualisiert; zuerst den jetzigen Modus verlassen"
     ),

@@ -119,3 +119,12 @@ def test_a_damaged_file_is_an_error_and_adds_nothing(saved):
     with pytest.raises(RuntimeError, match="not a file of surfels in blocks"):
         bpy.ops.import_scene.surfels_ply(filepath=str(saved / "bad.surfelblocks"))
     assert not bpy.data.meshes and not bpy.data.objects
+
+
+def test_exporting_says_that_only_the_coarsest_were_written(ball, saved, capfd):
+    ply = saved / "ball.ply"
+    bpy.ops.export_scene.surfels_ply(filepath=str(ply))
+    assert "coarsest" not in capfd.readouterr().out
+    bpy.ops.object.surfels_to_file()
+    bpy.ops.export_scene.surfels_ply(filepath=str(ply))
+    assert "only the coarsest were written" in capfd.readouterr().out
