@@ -36,13 +36,18 @@ class Arrival:
         """Whether the last picture had stand-ins."""
         return self._shown is not None
 
-    def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
-        """Write a slice of what is on its way, and draw as `Refinement.draw`; what is late is shown by stand-ins."""
+    def draw(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool = False) -> Iterator[Shown]:
+        """Write a slice of what is on its way, and draw as `Refinement.draw`; what is late is shown by stand-ins.
+
+        hurries: the scene is still being read, so that this picture is soon replaced.
+        """
+        if hurries:
+            self.refinement.pace.begin_coarsely()
         self.refinement.renderer.resources.load_some()
         while True:
             shown = self._with_stand_ins(scene)
             try:
-                yield from self.refinement.draw(shown, camera, settings, hurries=shown is not scene)
+                yield from self.refinement.draw(shown, camera, settings, hurries=hurries or shown is not scene)
             except NotYet as reason:
                 if reason.surfels <= set(self._late):
                     raise

@@ -81,11 +81,12 @@ def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: 
     settings = viewport_settings(depsgraph.scene)
     if _is_playing(context):
         settings = replace(settings, samples=1)
-    for shown in state.arrival.draw(state.scene, viewport_camera(context, depsgraph), settings):
+    is_read = not state.store.left[1]
+    for shown in state.arrival.draw(state.scene, viewport_camera(context, depsgraph), settings, hurries=not is_read):
         engine.bind_display_space_shader(depsgraph.scene)
         _show(shown)
         engine.unbind_display_space_shader()
-    if state.refinement.wants_more and not state.arrival.is_late:
+    if state.refinement.wants_more and is_read and not state.arrival.is_late:
         if state.refinement.samples:
             engine.tag_redraw()
         else:
