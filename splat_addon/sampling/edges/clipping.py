@@ -84,7 +84,7 @@ def clippings(
 
 
 def clip_fields(parts: Iterable[Clipping], count: int) -> dict[str, np.ndarray]:
-    """Those of `CLIP_FIELDS` that any of `count` surfels needs."""
+    """The fields among `CLIP_FIELDS` that any of `count` surfels needs."""
     fields = {name: np.zeros((count, 2), np.int16) for name in CLIP_FIELDS}
     for part in parts:
         for values, found in zip(fields.values(), part.packed, strict=True):

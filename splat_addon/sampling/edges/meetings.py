@@ -114,7 +114,7 @@ def _in_image(
 def _met(
     seen: SeenSurfels, numbers: np.ndarray, surfel, side, above, ends: np.ndarray, normals: np.ndarray
 ) -> Meetings:
-    """Those of the pairs that meet. numbers: (s,) of the seen surfels."""
+    """The pairs that do meet. numbers: (s,) of the seen surfels."""
     off = np.abs(above * normals[2].take(side))
     facing = sum(n.take(side) * own.take(surfel) for n, own in zip(normals, seen.normal, strict=True))
     alike = np.flatnonzero(np.abs(facing) >= _SAME_PIECE)
