@@ -12,6 +12,8 @@ PSNR, FLIP: the cut compared with all. uploads: of a second frame of the same vi
 
 A dolly moves the camera away to four times the distance in 300 pictures, of which some in the middle are drawn. Its
 *pop* is the FLIP difference between successive pictures, less the same difference with all surfels.
+
+The plot has the frames without shadow, and lines for other programs at the rates that were measured with them.
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ from time import perf_counter
 
 import numpy as np
 
+from bench.lod.plots import plot_times
 from measuring.models import in_view, load
 from measuring.timing import in_turn, wall
 from splat_addon.hierarchy import cut_entries
@@ -50,7 +53,7 @@ def arguments(parser) -> None:
 
 
 def run(options, report) -> None:
-    device, passes = open_device(options.device), []
+    device, passes, times = open_device(options.device), [], []
     report.header(device, f"{options.model}, {options.size} x {options.size} pixels, tolerance {options.tolerance}")
     mesh = load(options.models / options.model)
 
@@ -63,10 +66,11 @@ def run(options, report) -> None:
             yield f"{len(surfels):,}", f"built in {seconds:.2f} s", f"{levels.nbytes / own:.0%} more memory", *[""] * 11
             for view, eye in VIEWS.items():
                 for shadow in (0, 1024):
-                    yield measure(device, surfels, view, eye, shadow, options, passes)
+                    yield measure(device, surfels, view, eye, shadow, options, passes, times)
 
     report.table([name.replace("_", " ") for name in COLUMNS], rows())
     report.table(PASSES, passes, "Where the time of a cut frame goes, sun without shadow.")
+    report.plot("times", plot_times(times))
     if options.dolly > 1:
         pops = dolly(Renderer(device), sample_mesh(mesh, resolution=options.resolutions[0]), options)
         report.say(
@@ -88,8 +92,9 @@ def dolly(renderer: Renderer, surfels, options) -> list[float]:
     return pops
 
 
-def measure(device, surfels, view: str, eye, shadow: int, options, passes: list) -> tuple:
-    """One row of the table of frames, and one of the table of passes. Each kind of frame has its own renderer."""
+def measure(device, surfels, view: str, eye, shadow: int, options, passes: list, times: list) -> tuple:
+    """One row of the table of frames; without shadow also one of the table of passes and one of the plot. Each kind of
+    frame has its own renderer."""
     (scene, camera), every = in_view(surfels, options.size, eye), Settings(detail_tolerance=0.0)
     camera = replace(camera, far=camera.far * 100)
     every = replace(every, shadow_resolution=shadow, outputs=("color",))
@@ -103,20 +108,22 @@ def measure(device, surfels, view: str, eye, shadow: int, options, passes: list)
     held = {"cut": jobs["cut"]().stats["texture_bytes"]}
     uploads = renderers["cut"].resources.cuts.uploads - before
     profiled = renderers["cut"].render(lit, camera, replace(settings["cut"], profile=True))
-    times, cut = profiled.stats["passes"], drawn.spread("cut").median
+    spent, cut, every_one = profiled.stats["passes"], *(drawn.spread(kind).median for kind in ("cut", "all"))
     if not shadow:
         counted = renderers["cut"].render(lit, camera, replace(settings["cut"], outputs=("color", "overdraw")))
         over = counted.overdraw[counted.overdraw > 0]
-        each = ", ".join(f"{name} {ms:.1f}" for name, ms in times.items())
+        each = ", ".join(f"{name} {ms:.1f}" for name, ms in spent.items())
         passes.append((f"{len(surfels):,}", view, f"{over.mean() if len(over) else 0:.1f}", each))
+        milliseconds = {"all": 1e3 * every_one, "cut": 1e3 * cut, "bare": spent.get("visibility", 0)}
+        times.append({"surfels": len(surfels), "view": view, **milliseconds})
     one, other = (drawn.results[kind] for kind in ("cut", "all"))
     renderers["cut"].release()
     held["all"] = jobs["all"]().stats["texture_bytes"]
     renderers["all"].release()
     return (
         f"{len(surfels):,}", view, "sun's" if shadow else "none", f"{one.stats['splats_drawn']:,}",
-        f"{1e3 * drawn.spread('all').median:.0f}", f"{1e3 * cut:.0f}", f"{drawn.ratio('cut', 'all'):.3f}",
-        f"{times.get('visibility', 0) / 1e3 / cut:.2f}", f"{decided(lit, camera, settings['cut']) / cut:.1%}",
+        f"{1e3 * every_one:.0f}", f"{1e3 * cut:.0f}", f"{drawn.ratio('cut', 'all'):.3f}",
+        f"{spent.get('visibility', 0) / 1e3 / cut:.2f}", f"{decided(lit, camera, settings['cut']) / cut:.1%}",
         f"{psnr(one.color, other.color):.1f}", f"{mean_flip(one.color, other.color):.4f}",
         f"{held['all'] / 2**20:.0f}", f"{held['cut'] / 2**20:.0f}", uploads,
     )  # fmt: skip
