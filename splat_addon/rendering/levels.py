@@ -47,10 +47,11 @@ def keep_hierarchy(surfels: Surfels, hierarchy: Hierarchy) -> None:
 
 
 def has_levels(instance: Instance) -> bool:
-    """Whether an instance may be drawn as merged surfels: it needs many, opaque surfels, not merged already. Objects
-    that are split by distance from the camera are excluded, because their surfels are selected by position."""
-    is_opaque = not (instance.is_cut or instance.is_transparent)
-    return len(instance.surfels) >= LEAST_SURFELS and is_opaque and instance.split_distance is None
+    """Whether an instance may be drawn as merged surfels: it needs many, opaque surfels, not merged already, that
+    stay where they are. Objects that are split by distance from the camera are excluded, because their surfels are
+    selected by position."""
+    is_excluded = instance.is_cut or instance.deforms or instance.is_transparent or instance.split_distance is not None
+    return len(instance.surfels) >= LEAST_SURFELS and not is_excluded
 
 
 def may_merge(instance: Instance, camera: Camera, tolerance: float) -> bool:

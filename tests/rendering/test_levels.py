@@ -221,12 +221,14 @@ def test_parts_of_a_picture_are_drawn_with_the_whole_s_levels(render, monkeypatc
     assert psnr(tiles.color, whole.color) > 70
 
 
-def test_transparent_surfels_few_and_those_that_are_lit_by_themselves_are_all_drawn():
+def test_surfels_that_are_transparent_few_deforming_or_lit_by_themselves_are_all_drawn():
     scene, camera = far_torus()
     glass = with_surfels(scene, colors=lambda n: np.full((n, 4), 0.5))
     few, _ = far_torus(LEAST_SURFELS // 2)
+    bent = replace(scene, surfels=tuple(replace(instance, deforms=True) for instance in scene.surfels))
     assert plan(scene, camera, SOME).has("LEVELS")
-    for other, settings in ((glass, SOME), (few, SOME), (scene, EVERY), (scene, replace(SOME, lights_splats=True))):
+    lit = replace(SOME, lights_splats=True)
+    for other, settings in ((glass, SOME), (few, SOME), (bent, SOME), (scene, EVERY), (scene, lit)):
         made = plan(other, camera, settings)
         assert not made.has("LEVELS") and "levels of detail" in dict(made.skipped)
         assert not any("drawn_splats" in part.inputs for p in made.passes for part in p.parts)

@@ -220,7 +220,7 @@ class LiveMeshes:
         self.counts["meshes"] += 1
         self.counts["surfels"] += sum(map(len, live.shown[1]))
         return [
-            Instance(part, textures=textures, **place.of_instance(live.materials))
+            Instance(part, textures=textures, deforms=live.bends, **place.of_instance(live.materials))
             for part in live.shown[1]
             for place in live.sampled_at
         ]

@@ -30,6 +30,7 @@ from .light_linking import LightSets
 from .live_meshes import LiveMeshes, Place
 from .object_detail import detail_of
 from .shading import light_of, shading_material
+from .shape_changes import shape_changes
 from .streams import Streams, not_followed
 from .world import WorldStore
 
@@ -275,6 +276,7 @@ def _instances(
         )
     for sentence in passed_over.of_object(object_.original):
         notes.add(sentence)
+    fields = {**fields, "deforms": bool(shape_changes(object_.original))}
     if override is not None:
         materials = (shading_material(override, notes),)
         parts = tuple(store.overridden.get(part, override, notes) for part in parts)

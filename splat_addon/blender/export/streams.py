@@ -8,9 +8,9 @@ import os
 import bpy
 
 from ...streaming import Stream
-from ..geometry.points_proxy import is_points_modifier
 from ..geometry.surfel_files import file_of
 from ..preferences import stream_bytes
+from .shape_changes import shape_changes
 
 
 class Streams:
@@ -52,8 +52,7 @@ class Streams:
 
 def not_followed(owner: bpy.types.Object) -> str:
     """The sentence about changes of shape that surfels from a file do not follow, or an empty string."""
-    changes = [m.name for m in owner.modifiers if m.show_render and not is_points_modifier(m)]
-    changes += ["Shape Keys"] * (owner.data.shape_keys is not None)
+    changes = shape_changes(owner)
     if not changes:
         return ""
     return f"{owner.name}: surfels from a file do not follow {changes[0]}; keep them in the mesh if they are to deform"

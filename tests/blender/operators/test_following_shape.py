@@ -5,6 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.export.live_meshes import LiveMeshes
+from splat_addon.blender.export.scene import SurfelStore, export_scene
 from splat_addon.blender.geometry.attributes import read_surfels
 from splat_addon.blender.geometry.points_proxy import shown_points
 
@@ -60,6 +62,20 @@ def test_shape_keys_bend_surfels(clips_edges, sheet, convert, bent_surfels):
     assert np.abs(np.abs(long[:, 0]) - bent.scales.max(axis=1)).max() < 1e-5
     key.value = 0.0
     assert np.abs(bent_surfels(made).positions - flat.positions).max() < 1e-6
+
+
+@pytest.mark.parametrize("is_converted", [True, False])
+@pytest.mark.parametrize("has_keys", [True, False])
+def test_what_may_bend_is_drawn_without_levels_of_detail(has_keys, is_converted, sheet, convert):
+    """Building its levels again for each frame would take longer than they save."""
+    if has_keys:
+        add_keys(sheet)
+    if is_converted:
+        convert(density="RESOLUTION", resolution=16, source="HIDE")
+    else:
+        bpy.context.scene.surfel_splatting.render_meshes = "SURFELS"
+    exported, _ = export_scene(bpy.context.evaluated_depsgraph_get(), SurfelStore(), LiveMeshes())
+    assert [instance.deforms for instance in exported.surfels] == [has_keys]
 
 
 def add_armature(sheet):
