@@ -19,6 +19,7 @@ def live(scene, add_camera):
     add_camera(location=(0, 0, 10))
     scene.surfel_splatting.render_meshes = "SURFELS"
     scene.surfel_splatting.mesh_resolution = 32
+    scene.surfel_splatting.detail_tolerance = 0  # merged surfels would count
     return scene.surfel_splatting
 
 
