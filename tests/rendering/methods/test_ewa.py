@@ -7,7 +7,8 @@ from splat_addon.reference import render_ewa, scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Settings
 
-FLAT = Settings(method="ewa", shading="flat", supersampling=1)
+#: The truth has every splat.
+FLAT = Settings(method="ewa", shading="flat", supersampling=1, detail_tolerance=0)
 SIZE = (128, 128)
 
 
