@@ -20,14 +20,14 @@ PLACES = {
 
 @pytest.fixture
 def distances(convert, world_positions):
-    """distances(source) -> the distances of its surfels' centres from its surface, in the source's own space.
+    """distances(source) -> the distances of its whole surfels' centres from its surface, in the source's own space.
 
     In that space the mesh is as it was modelled; elsewhere trimesh, which is used to measure, would suffer from
     slivers.
     """
 
     def measure(source):
-        made = convert(resolution=24)[0]
+        made = convert(resolution=24, clips_edges=False)[0]
         to_source = np.linalg.inv(np.array(source.matrix_world, np.float64))
         positions = world_positions(made) @ to_source[:3, :3].T + to_source[:3, 3]
         tree = BVHTree.FromObject(source, bpy.context.evaluated_depsgraph_get())
