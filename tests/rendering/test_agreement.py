@@ -304,7 +304,9 @@ def test_picture_is_the_same_on_every_device(name, method, options, render, on_b
         brightness = np.maximum(standalone["color"], 1) if is_rough else 1
         apart = ties(here["color"] / brightness, standalone["color"] / brightness, tolerance)
         assert_few(spots(apart) if filters else apart, samples)
-        assert_few(ties(here["normal"], standalone["normal"], max(tolerance, NORMAL_TOLERANCE)), samples)
+        # filters average normals over neighbours too
+        apart = ties(here["normal"], standalone["normal"], max(tolerance, NORMAL_TOLERANCE))
+        assert_few(spots(apart) if filters else apart, samples)
         # layers multiply rounding errors, and filters add them up
         apart = TOLERANCE if has_layers else ROUNDING if filters else 0
         assert_few(np.abs(here["coverage"] - standalone["coverage"]) > apart, samples)
