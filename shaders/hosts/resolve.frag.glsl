@@ -23,8 +23,8 @@ const float RATIO_RATIO = exp(-STEP * STEP / SILHOUETTE_VARIANCE);
 const float SMOOTH = 0.55;
 
 // Depths belong to the same surface if they are nearer or farther than its plane by at most this many times as much as
-// visibility moved it, plus this share of its slope. Nothing is filtered if neighbouring samples are, and everything
-// within this many slopes more.
+// visibility moved it, plus this share of its slope. Nothing is filtered where the neighbouring samples belong to it, and
+// all that the filter reaches is within that and this many slopes more.
 const vec2 MOVED = vec2(0.5, 2.0);
 const float BENT = 0.5;
 const vec2 REACHED = vec2(0.75, 2.25);
@@ -60,8 +60,8 @@ struct SameSurface {
   bool is_even;
 };
 
-// Visibility moved the surface back by up to twice as much as here; what is nearer is in front
-// of it, except for a tolerance, because surfels of one surface do not lie in one plane.
+// Visibility moved the surface back by up to twice as much as here; what is nearer is in front of it, except for a
+// tolerance, because surfels of one surface do not lie in one plane.
 SameSurface same_surface(ivec2 texel, ivec2 size, vec3 normal, float depth) {
   float moved = abs(view_depth(texelFetch(seen_depth, ivec2(texel.x, ROWS * texel.y), 0).r) - depth);
   vec4 left = surface_at(texel - ivec2(1, 0), size, normal), below = surface_at(texel - ivec2(0, 1), size, normal);

@@ -29,8 +29,8 @@ from .upload.packing import LARGEST_SET
 #: Seconds of reading for the first set of a view.
 _READING = 0.03
 
-#: How many times the tolerance blocks outside the picture may be off, which only
-#: their shadows show, or a view that moves on.
+#: How many times the tolerance blocks outside the picture may be off: only their shadows, or a view that moves on, show
+#: them.
 BESIDE = 4.0
 
 

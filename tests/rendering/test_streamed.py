@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from splat_addon.reference import scenes
 from splat_addon.reference.metrics import psnr
@@ -22,6 +23,7 @@ from splat_addon.rendering import (
     Settings,
 )
 from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.streamed import Streamed
 from splat_addon.rendering.upload import packing
 from splat_addon.streaming import Stream, write_blocks
 
@@ -75,6 +77,16 @@ def test_it_looks_as_if_it_were_in_memory(view, shadows, file, render):
     assert psnr(found.color, every.color) > max(psnr(merged.color, every.color) - 2, 31)
     inside = every.coverage > 0.999
     assert inside.sum() > 200 and found.coverage[inside].min() > 0.99
+
+
+@pytest.mark.parametrize("casts", [True, False])
+def test_what_lies_outside_the_picture_is_there_if_it_casts_shadows(casts, file):
+    scene, camera = torus()
+    scene = streamed(scene, Stream(file, PLENTY), casts_shadow=casts)
+    own, *_ = Streamed().resolved(scene, camera.cropped(0, 0, 8, 8), SETTINGS).surfels
+    every = torus()[0].surfels[0].surfels
+    away = cKDTree(own.surfels.positions + own.surfels.origin).query(every.positions + every.origin)[0]
+    assert (away.max() < 0.3) == casts
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from splat_addon.hierarchy import build_hierarchy, cut_entries
-from splat_addon.streaming import Stream, write_blocks
-from splat_addon.streaming.pages import PAGE
+from splat_addon.streaming import BlockFile, Stream, write_blocks
+from splat_addon.streaming.pages import PAGE, Pages
 from splat_addon.surfels import concatenate
 
 from .conftest import ball, sight, sorted_rows
@@ -147,3 +147,26 @@ def test_the_coarsest_surfels_fit_a_number(many_portions):
 def test_a_small_file_works_with_no_memory_at_all(tmp_path):
     write_blocks(tmp_path / "a.surfelblocks", [ball(50)])
     assert len(Stream(tmp_path / "a.surfelblocks", 0).seen(sight(tolerance=0.0)).surfels) == 50
+
+
+def test_the_pages_used_least_recently_make_room(many_portions):
+    file = BlockFile(many_portions)
+    pages = Pages(file, 0)
+    first = np.arange(0, file.rows, PAGE)
+    others = np.flatnonzero(~pages.have(first, first + 1))
+    room = pages.room()
+    assert len(others) > room > 1
+    kept, new = others[:room], others[room : room + 1]
+
+    def there(page):
+        return bool(pages.have(np.array([page * PAGE]), np.array([page * PAGE + 1]))[0])
+
+    for page in kept:
+        pages.begin()
+        pages.install(np.array([page]), pages.read(np.array([page])))
+    pages.begin()
+    pages.use(kept[:1] * PAGE, kept[:1] * PAGE + 1)
+    pages.begin()
+    pages.install(new, pages.read(new))
+    assert there(kept[0]) and there(new[0]) and not there(kept[1])
+    assert all(map(there, kept[2:]))

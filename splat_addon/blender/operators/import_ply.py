@@ -95,8 +95,10 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
             if not name.endswith(SUFFIX):
                 parts, path = PlyPortions(path), absolute(f"//{Path(name).stem}{SUFFIX}")
                 manager.progress_begin(0.0, 1.0)
-                write_blocks(path, parts, lambda share, _: manager.progress_update(share))
-                manager.progress_end()
+                try:
+                    write_blocks(path, parts, lambda share, _: manager.progress_update(share))
+                finally:
+                    manager.progress_end()
                 unusable = parts.unusable
             count, origin = keep_coarsest(mesh, path, relative_path(path))
         except (ValueError, OSError, MemoryError) as error:
@@ -107,7 +109,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
         select_only(context, [made])
         self.report({"INFO"}, said("{name}: {count:,} surfels", name=name, count=count))
         if unusable:
-            self.report({"WARNING"}, f"Skipped {unusable:,} unusable surfels")
+            self.report({"WARNING"}, said("Skipped {count:,} unusable surfels", count=unusable))
         return {"FINISHED"}
 
 

@@ -76,11 +76,8 @@ class _Task:
         """The part of its surfels that have not arrived; half of the way is making what is then written."""
         if not self.written:
             return self.count
-        return (
-            self.count
-            * 0.5
-            * (1 - self.written / sum(texels.nbytes for texels, _ in self.future.result().packed.texels))
-        )
+        total = sum(texels.nbytes for texels, _ in self.future.result().packed.texels)
+        return self.count * (1 - self.written / total) / 2
 
 
 class Loading:

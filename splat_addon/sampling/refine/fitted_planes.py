@@ -15,10 +15,10 @@ from ...clip_lines import CLIP_FIELDS, CUT, are_reflex, unpack_lines
 from ...surfels import quaternion_axes
 from ..attributes.blend_depths import LEAST_BLENDING
 from ..ldc.grid import Grid
-from .image_samples import ImageSamples
+from .image_samples import SAME_SIDE, ImageSamples
 
-#: The least cosine between the planes of neighbours, and how far off a sample's plane they may be, in cells.
-_SAME_SIDE, _FARTHEST = np.float32(0.5), np.float32(0.9)
+#: How far off a sample's plane neighbours may be, in cells.
+_FARTHEST = np.float32(0.9)
 
 #: How much the triangle's own plane counts: for the offset as much as so many neighbours, and for the tilt as much as
 #: so many at a distance of one cell.
@@ -155,7 +155,7 @@ class _Fit:
         steps = image.along_axes(u, v, image.rise((u, v), normals))
         found = other.nearest(*(place + step for place, step in zip(own, steps, strict=True)))
         alike = image.in_order(*(n.take(found) for n in other.along_axes(*other.normals)))
-        is_alike = sum(one * its for one, its in zip(normals, alike, strict=True)) >= _SAME_SIDE
+        is_alike = sum(one * its for one, its in zip(normals, alike, strict=True)) >= SAME_SIDE
         way = [place.take(found) - mine for place, mine in zip(other.places, own, strict=True)]
         along = image.in_order(*way)
         height = sum(one * step for one, step in zip(normals, along, strict=True))

@@ -12,7 +12,7 @@ _PARTS = 8
 
 #: The least cosine between the planes of neighbours, and the farthest that one may be from where a sample's plane
 #: expects it, in cells along the axis.
-_SAME_SIDE, _FARTHEST = np.float32(0.5), np.float32(1.5)
+SAME_SIDE, _FARTHEST = np.float32(0.5), np.float32(1.5)
 
 #: Steeper planes are taken to be this steep, in cells of depth a cell.
 _STEEPEST = np.float32(2)
@@ -101,7 +101,7 @@ class ImageSamples:
         for step in ((1, 0), (0, 1)):
             expected = self.depth + self.rise(np.float32(step), self.normals)
             there = self._nearest(column + step[0], row + step[1], self._parts(expected), expected)
-            alike = sum(n * n.take(there) for n in self.normals) >= _SAME_SIDE
+            alike = sum(n * n.take(there) for n in self.normals) >= SAME_SIDE
             there[~alike] = -1
             back = np.full(len(there) + 1, -1, np.intp)
             back[there] = np.arange(len(there))
