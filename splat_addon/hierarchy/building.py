@@ -4,7 +4,7 @@ top."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -28,8 +28,15 @@ _LEAST_MERGED = 0.1
 #: A surfel waits for larger cells if its larger half-axis exceeds this many edges of the cell.
 _LARGEST = 1.25 * np.sqrt(3)
 
+#: Shares of the time: of all levels in building; in that, of the surfels as nodes; of each level in what is left for it
+#: and those above it; and in a level, of ordering, and of that and merging.
+_MERGING, _LEAVES, _OF_THE_REST, _ORDERED, _MERGED = 0.85, 0.2, 0.85, 0.3, 0.7
+
 #: Maximum doublings between the smallest and the largest cell.
 _MOST_LEVELS = 48
+
+#: Called with a finished share, 0 to 1.
+Told = Callable[[float], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,24 +65,38 @@ class Hierarchy:
         return sum(array.nbytes for array in arrays)
 
 
-def build_hierarchy(surfels: Surfels) -> Hierarchy:
-    """The hierarchy of any set of surfels; it has a single level if there are none, or too few to merge."""
-    nodes, errors, levels, geometry = build_levels(surfels)
+def build_hierarchy(surfels: Surfels, told: Told | None = None) -> Hierarchy:
+    """The hierarchy of any set of surfels; it has a single level if there are none, or too few to merge.
+
+    told: called between steps with the finished share, 0 to 1; it may raise, which ends the building.
+    """
+    told = told or _untold
+    nodes, errors, levels, geometry = build_levels(surfels, lambda share: told(_MERGING * share))
     entries, counts = depth_first(levels, len(surfels))
     blocks = make_blocks(entries, counts, geometry, np.concatenate([np.zeros((len(surfels), 3), np.float32), errors]))
+    told(1.0)
     return Hierarchy(len(surfels), nodes, errors, np.concatenate(entries), blocks)
 
 
-def build_levels(surfels: Surfels) -> tuple[Surfels, np.ndarray, list[Level], Geometry]:
-    """Merged nodes, their (M, 3) errors, the levels from the bottom up, and the places of surfels and nodes."""
+def _untold(share: float) -> None:
+    """Nobody asked for progress."""
+
+
+def build_levels(surfels: Surfels, told: Told = _untold) -> tuple[Surfels, np.ndarray, list[Level], Geometry]:
+    """Merged nodes, their (M, 3) errors, the levels from the bottom up, and the places of surfels and nodes.
+
+    told: as in `build_hierarchy`.
+    """
     current = leaves(surfels)
+    told(_LEAVES)
     numbers, worst = np.arange(len(surfels), dtype=np.int32), np.zeros((len(surfels), 3), np.float32)
     made, errors, levels, places = [empty_surfels(surfels.origin)], [worst[:0]], [], [_geometry(current)]
-    total = len(surfels)
+    total, left = len(surfels), 1 - _LEAVES
     for cell in _cells(surfels):
-        merging = _merge(current, cell)
+        merging = _merge(current, cell, lambda share, left=left: told(1 - left * (1 - _OF_THE_REST * share)))
         if merging is None:
             continue
+        left *= 1 - _OF_THE_REST
         parents, rows, runs, waiting = merging
         drawn = as_drawn(parents, cell)
         own = _errors(drawn)
@@ -107,13 +128,14 @@ def _cells(surfels: Surfels) -> Iterator[float]:
         cell *= 2
 
 
-def _merge(current: Table, cell: float) -> tuple[Table, np.ndarray, Runs, np.ndarray] | None:
+def _merge(current: Table, cell: float, told: Told) -> tuple[Table, np.ndarray, Runs, np.ndarray] | None:
     """The parents, their children's rows in runs, and the rows that wait for larger cells; None if too few merge."""
     is_large = current.column("radii") > _LARGEST * cell
     rows = np.flatnonzero(~is_large)
     if len(rows) < 2:
         return None
     order, counts = clustered(current, rows, cell)
+    told(_ORDERED)
     several = counts > 1
     is_merged = np.repeat(several, counts)
     if np.count_nonzero(is_merged) < _LEAST_MERGED * len(current):
@@ -122,7 +144,11 @@ def _merge(current: Table, cell: float) -> tuple[Table, np.ndarray, Runs, np.nda
     waiting = np.concatenate([rows[~is_merged], np.flatnonzero(is_large)])
     rows, counts = rows[is_merged], counts[several]
     runs = Runs(np.cumsum(counts) - counts, counts)
-    parts = [Table.of(merged(current.take(rows[some]), part, cell)) for some, part in runs.portions(PORTION)]
+    parts = []
+    for some, part in runs.portions(PORTION):
+        told(_ORDERED + (_MERGED - _ORDERED) * some.start / len(rows))
+        parts.append(Table.of(merged(current.take(rows[some]), part, cell)))
+    told(_MERGED)
     return current.joined(parts, waiting[:0]), rows, runs, waiting
 
 

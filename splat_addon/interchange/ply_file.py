@@ -32,6 +32,12 @@ def read_vertices(path: str | os.PathLike) -> tuple[dict[str, np.ndarray], tuple
     return next(vertex_portions(path))
 
 
+def vertex_count(path: str | os.PathLike) -> int:
+    """The number of vertices that the header declares. Raises as `read_vertices`."""
+    with open(path, "rb") as stream:
+        return _vertices(read_header(stream)).count
+
+
 def vertex_portions(
     path: str | os.PathLike, most: int | None = None
 ) -> Iterator[tuple[dict[str, np.ndarray], tuple[str, ...]]]:
@@ -41,9 +47,7 @@ def vertex_portions(
     size = os.path.getsize(path)
     with open(path, "rb") as stream:
         header = read_header(stream)
-        vertex = next((element for element in header.elements if element.name == _VERTEX), None)
-        if vertex is None:
-            raise ValueError(f"The PLY file has no element '{_VERTEX}', so there are no points in it.")
+        vertex = _vertices(header)
         if None in vertex.types.values():
             name = next(name for name, code in vertex.types.items() if code is None)
             raise ValueError(f"The property {name[:40]!r} of the PLY file's points is a list; only numbers can be.")
@@ -55,6 +59,13 @@ def vertex_portions(
         else:
             for columns in _read_binary(stream, size, header, before, vertex, most):
                 yield columns, header.comments
+
+
+def _vertices(header: Header) -> Element:
+    vertex = next((element for element in header.elements if element.name == _VERTEX), None)
+    if vertex is None:
+        raise ValueError(f"The PLY file has no element '{_VERTEX}', so there are no points in it.")
+    return vertex
 
 
 def write_vertices(

@@ -27,7 +27,7 @@ import numpy as np
 
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
 from .columns import NORMAL, POSITION, ROTATION, as_columns, display_color, has, linear_to_srgb, matrix
-from .ply_file import read_vertices, vertex_portions, write_vertices
+from .ply_file import read_vertices, vertex_count, vertex_portions, write_vertices
 
 _VERSION, _ORIGIN, _SOLID = "surfel_splatting 1", "origin", "solid"
 _SCALE = ("scale_0", "scale_1")
@@ -97,6 +97,10 @@ class PlyPortions:
     def __init__(self, path: str | os.PathLike, most: int = 1 << 20):
         self._path, self._most = path, most
         self.unusable = 0
+
+    def __len__(self) -> int:
+        """The number of rows that the file says it has."""
+        return vertex_count(self._path)
 
     def __iter__(self) -> Iterator[Surfels]:
         self.unusable = 0

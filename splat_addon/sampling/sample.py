@@ -39,6 +39,9 @@ from .refine.component_surfels import component_surfels
 from .refine.fitted_planes import fit_planes
 from .refine.missed_components import SampledSurface, missed_components
 
+#: Times of the steps that need neighbouring samples, relative to one another: clipping, fitting planes, merging.
+_TIMES = 0.3, 0.5, 0.2
+
 
 @dataclass(frozen=True, eq=False)
 class Sampling:
@@ -80,10 +83,11 @@ def sample_surface(mesh: TriangleMesh, *, progress: Progress | None = None, **op
     if run.is_empty:
         return Sampling(empty_surfels())
     surface = SampledSurface(len(run.mesh.positions))
-    images = run.images(surface, stage(progress, 0.0, 0.5))
+    # the steps that need neighbours take most of the time, where there are any
+    found, filled = (0.5, 1.0) if run.finishes_at_once else (0.2, 0.35)
+    images = run.images(surface, stage(progress, 0.0, found))
     missed = missed_components(run.mesh, surface)
-    filled = 1.0 if run.options.crease_angle is None else 0.6
-    arrays = run.filled(images, stage(progress, 0.5, filled))
+    arrays = run.filled(images, stage(progress, found, filled))
     return run.finished(arrays, images, missed, stage(progress, filled, 1.0))
 
 
@@ -117,6 +121,11 @@ class SamplingRun:
     def is_empty(self) -> bool:
         return not len(self.mesh)
 
+    @property
+    def finishes_at_once(self) -> bool:
+        """Whether no step needs neighbouring samples."""
+        return self.options.crease_angle is None and self.options.tolerance is None
+
     def images(self, surface: SampledSurface, report: Callable, share: tuple[int, int] = (0, 1)) -> tuple[Spans, ...]:
         """The spans of all samples, or of one block: share is the block's number, from 0, and the number of blocks.
 
@@ -141,16 +150,19 @@ class SamplingRun:
     ) -> Sampling:
         """The result after the steps that need neighbouring samples. missed: result of `missed_components`."""
         total = len(arrays["positions"])
+        clipping, fitting, merging = self._stages(report)
         if self._chosen.merge is not None:
             arrays = self._chosen.merge(arrays, _axes_of(images), self.grid.spacing)
         gaps, gap_triangles = {}, np.empty(0, np.intp)
         if self.options.crease_angle is not None:
-            arrays, gaps, gap_triangles = self._clipped(arrays, images, report)
-        if self.options.fits_planes and self._chosen.merge is None:
-            arrays = arrays | fit_planes(arrays, _rows_of(images), self.grid, self._edges.borders.are_closed())
+            arrays, gaps, gap_triangles = self._clipped(arrays, images, clipping)
+        if self._fits_planes:
+            about = self.grid, self._edges.borders.are_closed()
+            arrays = arrays | fit_planes(arrays, _rows_of(images), *about, fitting)
         saved, error = 0, 0.0
         if self.options.tolerance is not None:
-            arrays, error = merge_flat(arrays, _axes_of(images), self.grid.spacing, self.options.tolerance)
+            about = self.grid.spacing, self.options.tolerance
+            arrays, error = merge_flat(arrays, _axes_of(images), *about, merging)
             saved = total - len(arrays["positions"])
         if gaps:
             arrays = _appended(arrays, gaps)
@@ -160,7 +172,19 @@ class SamplingRun:
             arrays = _appended(arrays, component_surfels(self.mesh, self._coordinates, self.grid, missed, *about))
         surfels = Surfels(origin=self.grid.surfel_origin, **arrays)
         keeps_both_sides = self._chosen.merge is None and not small_parts
+        report(1.0)
         return Sampling(surfels, small_parts, keeps_both_sides, saved, error, gap_triangles)
+
+    @property
+    def _fits_planes(self) -> bool:
+        return self.options.fits_planes and self._chosen.merge is None
+
+    def _stages(self, report: Callable[[float], None]) -> list[Callable[[float], None]]:
+        """Reports for the steps that `_TIMES` lists, of which only some are taken."""
+        taken = self.options.crease_angle is not None, self._fits_planes, self.options.tolerance is not None
+        ends = np.cumsum([0.0, *np.multiply(_TIMES, taken)])
+        ends /= ends[-1] or 1.0
+        return [stage(report, first, last) for first, last in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)]
 
     def _clipped(self, arrays: dict[str, np.ndarray], images: tuple[Spans, ...], report: Callable[[float], None]):
         """The samples with their clip lines; and the arrays and triangles of additional surfels on what these

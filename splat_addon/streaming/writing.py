@@ -7,6 +7,7 @@ import os
 import shutil
 from collections.abc import Callable, Iterable
 from dataclasses import fields
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import BinaryIO
@@ -36,31 +37,36 @@ class WritingCancelled(Exception):
 
 
 def write_blocks(
-    path: str | os.PathLike, parts: Iterable[Surfels], progress: Progress | None = None, portion: int = PORTION
+    path: str | os.PathLike,
+    parts: Iterable[Surfels],
+    progress: Progress | None = None,
+    portion: int = PORTION,
+    expected: int = 0,
 ) -> int:
     """Write a file in the format of `layout`; returns the number of surfels.
 
-    parts: sets of surfels, iterated twice; those with another origin than the first are moved to it.
+    parts: sets of surfels, iterated twice; those with another origin than the first are moved to it. expected: about
+        how many they have, so that counting them is a share of the progress; 0: not known.
     The file appears under its name once it is complete. Until then it is written beside it, with temporary files of
     the size of the surfels, and all that vanishes if anything fails. Raises ValueError as `surveyed` does, OSError,
     WritingCancelled.
     """
-    total = 0
+    total = expected
 
-    def told(first: float, last: float, step: str) -> Callable[[int], None]:
-        def report(done: int) -> None:
-            share = first + (last - first) * done / total if total else first
+    def told(first: float, last: float, step: str) -> Callable[[float], None]:
+        def report(done: float) -> None:
+            share = first + (last - first) * min(done / total, 1) if total else first
             if progress and progress(share, step) is False:
                 raise WritingCancelled
 
         return report
 
-    survey = surveyed(parts, portion, told(0.0, 0.0, "Counting"))
+    survey = surveyed(parts, portion, told(0.0, 0.1, "Counting"))
     total = survey.count
     target = Path(os.path.realpath(path))
     with TemporaryDirectory(dir=target.parent, prefix=f".{target.name[:40]}-") as name:
         folder = Path(name)
-        files = filled(parts, survey, folder, told(0.0, 0.3, "Sorting"))
+        files = filled(parts, survey, folder, told(0.1, 0.3, "Sorting"))
         with whole_file(target) as stream:
             _write(stream, survey, portions_of(files, survey, portion), folder, told(0.3, 1.0, "Merging"))
     return survey.count
@@ -72,7 +78,7 @@ def _write(stream: BinaryIO, survey: Survey, portions: Iterable[np.ndarray], fol
     start = align(stream)
     for rows in portions:
         surfels = as_surfels(rows, survey.origin, survey.is_solid)
-        hierarchy = build_hierarchy(surfels)
+        hierarchy = build_hierarchy(surfels, partial(_tell, told, done, len(surfels)))
         rows = joined_rows(surfels, hierarchy.nodes, survey.kind)[hierarchy.entries]
         stream.write(rows.view(np.uint8).data)
         tables.add(hierarchy.blocks, rows, written)
@@ -94,6 +100,11 @@ def _write(stream: BinaryIO, survey: Survey, portions: Iterable[np.ndarray], fol
             "arrays": arrays,
         },
     )
+
+
+def _tell(told: Callable[[float], None], before: int, count: int, share: float) -> None:
+    """Tell how many surfels are done when a share of `count` is, after those before."""
+    told(before + share * count)
 
 
 class _Tables:

@@ -274,7 +274,7 @@ def test_what_is_gone_is_not_made(small_steps, on_device):
 def test_a_thread_s_error_is_raised_by_each_picture(small_steps, on_device, monkeypatch):
     scene, camera = torus()
 
-    def fail(surfels):
+    def fail(surfels, told):
         raise MemoryError("no room for nodes")
 
     monkeypatch.setattr(resources, "build_hierarchy", fail)
@@ -288,6 +288,44 @@ def test_a_thread_s_error_is_raised_by_each_picture(small_steps, on_device, monk
                 shown(device, view, scene, camera, SETTINGS)
 
     on_device(draw)
+
+
+def test_what_is_left_falls_while_a_hierarchy_is_built(small_steps, on_device, monkeypatch):
+    scene, camera = torus()
+    build = resources.build_hierarchy
+
+    def draw(device):
+        (view, thread), left = begun(device), []
+
+        def watched(surfels, told):
+            def looked(share):
+                told(share)
+                left.append(view.loading.left[0])
+
+            return build(surfels, looked)
+
+        monkeypatch.setattr(resources, "build_hierarchy", watched)
+        shown(device, view, scene, camera, SETTINGS)
+        thread.work()
+        return left, view.loading.left[0]
+
+    left, last = on_device(draw)
+    assert left[0] > 0.9 * COUNT and left == sorted(left, reverse=True) and len(set(left)) > 5
+    assert left[-1] < 0.7 * COUNT and last == COUNT / 2
+
+
+def test_a_job_that_nobody_waits_for_ends_at_its_next_step(small_steps, on_device, monkeypatch):
+    scene, camera = torus()
+
+    def draw(device):
+        view, thread = begun(device)
+        shown(device, view, scene, camera, SETTINGS)
+        future, _ = thread.jobs[0]
+        monkeypatch.setattr(resources, "build_hierarchy", lambda _, told: [view.loading.clear(), told(0.1)])
+        thread.work()
+        return future.exception()
+
+    assert isinstance(on_device(draw), loading.Withdrawn)
 
 
 def test_a_hierarchy_is_built_in_the_background_while_every_surfel_is_drawn(small_steps, on_device):

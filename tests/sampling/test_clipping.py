@@ -196,6 +196,24 @@ def test_clipping_can_be_cancelled_and_says_how_far_it_is(cube):
         sample_mesh(cube(), resolution=8, crease_angle=ANGLE, progress=lambda share: share < 0.8)
 
 
+def test_fitting_and_merging_say_how_far_they_are(cube):
+    shares = []
+    sample_mesh(
+        cube(),
+        resolution=8,
+        crease_angle=ANGLE,
+        fits_blending=True,
+        fits_planes=True,
+        tolerance=Tolerance(0.01),
+        progress=shares.append,
+    )
+    assert shares == sorted(shares) and shares[-1] == 1
+    # splats end at lines before these shares, fit the surface between the first two, and are merged between the others
+    clipped, fitted = (0.35 + 0.65 * share for share in (0.3, 0.8))
+    assert sum(clipped < share < fitted for share in shares) >= 12
+    assert sum(fitted < share < 1 for share in shares) >= 3
+
+
 def test_without_the_option_there_are_no_lines(cube):
     assert not sample_mesh(cube(), resolution=8).is_clipped
 

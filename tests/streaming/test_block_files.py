@@ -87,10 +87,30 @@ def test_cancelling_leaves_nothing_and_keeps_an_older_file(step, tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["a.surfelblocks"] and path.read_bytes() == b"older"
 
 
-def test_progress_rises_to_the_end(tmp_path):
+@pytest.mark.parametrize("expected", [0, 9000, 100])
+def test_progress_rises_to_the_end(expected, tmp_path):
     shares = []
-    write_blocks(tmp_path / "a.surfelblocks", [ball(3000)] * 3, lambda share, _: shares.append(share), portion=1000)
+    write_blocks(tmp_path / "a.surfelblocks", [ball(3000)] * 3, lambda share, _: shares.append(share), 1000, expected)
     assert shares == sorted(shares) and shares[-1] == 1
+    assert sum(0 < share <= 0.1 for share in shares) >= (3 if expected else 0)
+
+
+def test_a_portion_tells_while_it_is_merged(tmp_path):
+    steps = []
+    write_blocks(tmp_path / "a.surfelblocks", [ball(30_000)], lambda share, step: steps.append((step, share)))
+    merging = [share for step, share in steps if step == "Merging"]
+    assert len(set(merging)) > 6 and max(np.diff(merging)) < 0.3
+
+
+@pytest.mark.parametrize("step", ["Counting", "Sorting", "Merging"])
+def test_ctrl_c_leaves_nothing(step, tmp_path):
+    def press(share, name):
+        if name == step:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_blocks(tmp_path / "a.surfelblocks", [ball(3000)], press, portion=1000)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,6 @@ from mathutils import Matrix
 
 from ...interchange import Gaussians, PlyPortions, Points, StoredSurfels, read_contents
 from ...sampling import surfels_from_points
-from ...streaming import write_blocks
 from ...streaming.layout import SUFFIX
 from ...surfels import Surfels
 from ..conversion.points_settings import (
@@ -28,9 +27,10 @@ from ..ids import IMPORT_PLY
 from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
+from .modal_writing import ModalWriting, Writing
 
 
-class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Operator):
+class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, bpy.types.Operator):
     """Read surfels from a PLY file: one written by this extension, flat Gaussian splats, or any other points"""
 
     bl_idname = IMPORT_PLY
@@ -50,6 +50,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
     )
 
     def invoke(self, context, event):
+        self._is_asked = True
         if not self.filepath:
             return super().invoke(context, event)
         # dropped: show the settings without a file browser
@@ -68,49 +69,68 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ImportHelper, bpy.types.Oper
         if body:
             draw_points_properties(body, self)
 
+    @property
+    def _name(self) -> str:
+        """The name of the chosen file."""
+        return Path(self.filepath.removeprefix("//")).name
+
     def execute(self, context):
-        name = Path(self.filepath.removeprefix("//")).name
-        if self.keeps_in_file or name.endswith(SUFFIX):
-            return self._keep_in_file(context, name)
+        # confirmed in the file browser or a dialog; the same operator may be repeated from the redo panel
+        is_asked, self._is_asked = getattr(self, "_is_asked", False), False
+        if self.keeps_in_file and not self._name.endswith(SUFFIX):
+            return self.write_in_thread(context) if is_asked else self.write_now(context)
         try:
+            if self._name.endswith(SUFFIX):
+                self._open(context, absolute(self.filepath))
+                return {"FINISHED"}
             contents = read_contents(absolute(self.filepath), self.flatness)
             surfels, notes = _READERS[type(contents)](contents, self, context)
             if not len(surfels):
                 raise ValueError(f"The file gives no surfels{': ' if notes else ''}{'; '.join(notes)}.")
         except (ValueError, OSError, MemoryError) as error:
-            self.report({"ERROR"}, f"{name}: {file_sentence(error)}")
-            return {"CANCELLED"}
-        made = add_surfel_object(Path(name).stem, surfels, Matrix(), [context.collection])
+            return self._fail(error)
+        made = add_surfel_object(Path(self._name).stem, surfels, Matrix(), [context.collection])
         select_only(context, [made])
-        self.report({"INFO"}, said("{name}: {count:,} surfels", name=name, count=len(surfels)))
+        self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=len(surfels)))
         for note in notes:
             self.report({"WARNING" if note.startswith("Skipped") else "INFO"}, note)
         return {"FINISHED"}
 
-    def _keep_in_file(self, context, name: str):
-        """Add an object whose surfels are in a file: the chosen one, or one made from it beside the .blend."""
-        manager, mesh = context.window_manager, bpy.data.meshes.new(Path(name).stem)
+    def _begin(self, context):
+        return Keeping(absolute(self.filepath), absolute(f"//{Path(self._name).stem}{SUFFIX}"))
+
+    def _finish(self, context, keeping):
+        self._open(context, keeping.path)
+        if keeping.unusable:
+            self.report({"WARNING"}, said("Skipped {count:,} unusable surfels", count=keeping.unusable))
+
+    def _open(self, context, path: str):
+        """Add an object whose surfels are in a file of blocks. Raises OSError or ValueError."""
+        mesh = bpy.data.meshes.new(Path(self._name).stem)
         try:
-            path, unusable = absolute(self.filepath), 0
-            if not name.endswith(SUFFIX):
-                parts, path = PlyPortions(path), absolute(f"//{Path(name).stem}{SUFFIX}")
-                manager.progress_begin(0.0, 1.0)
-                try:
-                    write_blocks(path, parts, lambda share, _: manager.progress_update(share))
-                finally:
-                    manager.progress_end()
-                unusable = parts.unusable
             count, origin = keep_coarsest(mesh, path, relative_path(path))
-        except (ValueError, OSError, MemoryError) as error:
+        except BaseException:
             bpy.data.meshes.remove(mesh)
-            self.report({"ERROR"}, f"{name}: {file_sentence(error)}")
-            return {"CANCELLED"}
+            raise
         made = add_object_of(mesh, Matrix.Translation(origin), [context.collection])
         select_only(context, [made])
-        self.report({"INFO"}, said("{name}: {count:,} surfels", name=name, count=count))
-        if unusable:
-            self.report({"WARNING"}, said("Skipped {count:,} unusable surfels", count=unusable))
-        return {"FINISHED"}
+        self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=count))
+
+    def _sentence(self, error):
+        return f"{self._name}: {file_sentence(error)}"
+
+
+class Keeping(Writing):
+    """The surfels of a PLY file on their way to a file of blocks. Raises OSError, and ValueError if it is no PLY."""
+
+    def __init__(self, source: str, path: str):
+        parts = PlyPortions(source)
+        super().__init__(path, parts, len(parts))
+
+    @property
+    def unusable(self) -> int:
+        """Number of rows that were no surfels."""
+        return self._parts.unusable
 
 
 def _from_surfels(contents: StoredSurfels, properties, context) -> tuple[Surfels, list[str]]:

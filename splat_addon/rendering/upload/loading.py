@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass
+from functools import partial
 from time import perf_counter
 from typing import NamedTuple
 from weakref import WeakSet, ref
@@ -62,11 +63,28 @@ class Arrived(NamedTuple):
     textures: list[Texture]
 
 
+class Withdrawn(Exception):
+    """Nobody waits for a job any more."""
+
+
+class JobShare:
+    """What a job has done, told by its thread. It refers to nothing, because the thread may be the last to free it."""
+
+    def __init__(self):
+        self.share, self.is_withdrawn = 0.0, False
+
+    def __call__(self, share: float) -> None:
+        if self.is_withdrawn:
+            raise Withdrawn
+        self.share = share
+
+
 @dataclass(eq=False)
 class _Task:
     made_from: tuple
     count: int
     future: Future
+    done: JobShare
     textures: list[Texture]
     slices: Iterator[int] | None = None
     written: int = 0
@@ -75,9 +93,14 @@ class _Task:
     def left(self) -> float:
         """The part of its surfels that have not arrived; half of the way is making what is then written."""
         if not self.written:
-            return self.count
+            return self.count * (1 - self.done.share / 2)
         total = sum(texels.nbytes for texels, _ in self.future.result().packed.texels)
         return self.count * (1 - self.written / total) / 2
+
+    def withdraw(self) -> None:
+        """End the job, at its next step if it has begun."""
+        self.done.is_withdrawn = True
+        self.future.cancel()
 
 
 class Loading:
@@ -107,12 +130,14 @@ class Loading:
         self._at_once -= len(surfels)
         return True
 
-    def request(self, owner: Surfels, kind: str, made_from: tuple, job: Callable[[], Made]) -> None:
-        """Start a job, which must not refer to the owner itself: the thread would free it, and its textures."""
+    def request(self, owner: Surfels, kind: str, made_from: tuple, job: Callable[[JobShare], Made]) -> None:
+        """Start a job, which must not refer to the owner itself: the thread would free it, and its textures. It calls
+        its argument with what it has done, as a share."""
         key = ref(owner), kind
         if key not in self._tasks:
             self._total += len(owner)
-            self._tasks[key] = _Task(made_from, len(owner), self._run(job), [])
+            done = JobShare()
+            self._tasks[key] = _Task(made_from, len(owner), self._run(partial(job, done)), done, [])
 
     def is_loading(self, surfels: Surfels) -> bool:
         return any(owner() is surfels for owner, _ in self._tasks)
@@ -134,7 +159,7 @@ class Loading:
             for key, task in list(self._tasks.items()):
                 owner = key[0]()
                 if owner is None:
-                    task.future.cancel()
+                    task.withdraw()
                     del self._tasks[key]
                 elif task.future.done() and not task.future.cancelled():
                     if not self._write(task, until):
@@ -175,6 +200,6 @@ class Loading:
 
     def clear(self) -> None:
         for task in self._tasks.values():
-            task.future.cancel()
+            task.withdraw()
         self._tasks.clear()
         self._total = 0

@@ -21,7 +21,7 @@ from ..scene import Finish, Placed, SurfaceTexture
 from ..scene.polygons import Polygons, pack_polygon_bumps, pack_polygon_uvs, pack_polygons
 from .atlas import FORMAT, make_atlas
 from .cuts import Cuts
-from .loading import Loading, Made, NotYet, Packed
+from .loading import JobShare, Loading, Made, NotYet, Packed
 from .packing import pack_clip_lines, pack_materials, pack_own_materials, pack_uvs
 from .storages import Storage
 from .stored_order import places_of, stored_order
@@ -238,11 +238,21 @@ def _with_nodes(surfels: Surfels, levels: Hierarchy | None) -> Surfels:
     return concatenate([surfels, levels.nodes]) if levels else surfels
 
 
-def _made(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray | None, builds: bool, pack) -> Made:
+#: The share of a job that building a hierarchy takes, and of what is left, finding the order.
+_BUILDING, _ORDERING = 0.7, 0.3
+
+
+def _made(
+    surfels: Surfels, levels: Hierarchy | None, order: np.ndarray | None, builds: bool, pack, told: JobShare
+) -> Made:
     """The job of `Resources._load`."""
-    levels = build_hierarchy(surfels) if builds else levels
+    built = _BUILDING if builds else 0.0
+    levels = build_hierarchy(surfels, lambda share: told(built * share)) if builds else levels
     order = stored_order(surfels, levels) if order is None else order
-    return Made(levels, order, pack(_with_nodes(surfels, levels), order, levels is not None))
+    told(built + (1 - built) * _ORDERING)
+    packed = pack(_with_nodes(surfels, levels), order, levels is not None)
+    told(1.0)
+    return Made(levels, order, packed)
 
 
 def _packed_surfels(storage: Storage, every: Surfels, order: np.ndarray, has_levels: bool) -> Packed:

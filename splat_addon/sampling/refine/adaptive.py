@@ -10,6 +10,7 @@ over an edge: surfels become smaller towards creases and borders.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -93,22 +94,29 @@ class _Nodes:
 
 
 def merge_flat(
-    arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float, tolerance: Tolerance
+    arrays: dict[str, np.ndarray],
+    axes: np.ndarray,
+    spacing: float,
+    tolerance: Tolerance,
+    report: Callable[[float], None] = lambda share: None,
 ) -> tuple[dict[str, np.ndarray], float]:
     """Merge flat regions; returns the remaining surfels, the mask of those that were not merged first, and the largest
     error in object units.
 
     arrays: by field of `Surfels`, positions relative to a corner of a cell. axes: (N,) the image of each sample.
+    report: called between steps with the finished share, 0 to 1.
     """
     base, order = _samples(arrays, axes, spacing)
     levels = [base]
     while len(levels) <= LEVELS and len(levels[-1].keys):
+        report(0.5 * (1 - len(levels[-1].keys) / len(base.keys)))
         levels.append(_parents(levels[-1], 2 ** (len(levels) - 1), spacing, tolerance))
     parts, error = [], 0.0
     optional = _averaged(arrays)
     has_uvs = "uvs" in arrays
     wanted = np.arange(len(levels[-1].keys))
     for level in range(len(levels) - 1, 0, -1):
+        report(1 - 0.5 * level / len(levels))
         nodes = levels[level].take(wanted)
         alone = _goes_on_around(nodes, level, levels[max(level - 2, 0)], spacing, tolerance)
         discs = nodes.take(np.flatnonzero(alone))

@@ -9,6 +9,8 @@ line keeps slightly more of a splat that has moved, because it no longer ends ex
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, CUT, are_reflex, unpack_lines
@@ -35,13 +37,17 @@ _KEPT = 0.5
 
 
 def fit_planes(
-    arrays: dict[str, np.ndarray], images: list[tuple[int, slice]], grid: Grid, is_closed: bool
+    arrays: dict[str, np.ndarray],
+    images: list[tuple[int, slice]],
+    grid: Grid,
+    is_closed: bool,
+    report: Callable[[float], None] = lambda share: None,
 ) -> dict[str, np.ndarray]:
     """The fields of `Surfels` that change: positions, rotations and clip lines.
 
     arrays: samples with blend depths, which tell where the surface bends; positions relative to the grid's middle.
     images: the samples of each image. is_closed: whether the mesh has no open border; where it has, a line may be one,
-    beyond which nothing could hide what sticks out.
+    beyond which nothing could hide what sticks out. report: called between steps with the finished share, 0 to 1.
     """
     # Where a triangle bends, those that its surface goes on in do, too.
     bent = np.flatnonzero(arrays["blend_depth"] > LEAST_BLENDING)
@@ -51,14 +57,25 @@ def fit_planes(
     axes = quaternion_axes(here["rotations"])
     normals = np.ascontiguousarray(axes[2].T)
     spans = [(axis, slice(*np.searchsorted(bent, (rows.start, rows.stop)).tolist())) for axis, rows in images]
-    seen = [ImageSamples(places, normals, axis, rows) for axis, rows in spans if rows.stop > rows.start]
+    spans = [span for span in spans if span[1].stop > span[1].start]
+    # for each image, its grid, its own neighbours, those in the other images, and the solution
+    steps = iter(np.linspace(0, 1, len(spans) * (len(spans) + 2) + 1)[1:].tolist())
+    seen = []
+    for axis, rows in spans:
+        seen.append(ImageSamples(places, normals, axis, rows))
+        report(next(steps))
     lines = _Lines(here, axes, grid.spacing)
-    fits = [_Fit(image, lines) for image in seen]
+    fits = []
+    for image in seen:
+        fits.append(_Fit(image, lines))
+        report(next(steps))
     for fit, image in zip(fits, seen, strict=True):
         for another in seen:
             if another is not image:
                 fit.add_from(another)
+                report(next(steps))
     for fit, image in zip(fits, seen, strict=True):
+        report(next(steps))
         offset, slope = fit.solve()
         _move(here, image, offset, slope, grid.spacing)
         less = (fit.goes_on | is_closed) * (

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Store Surfels in a File moves an object's surfels beside the .blend; File > Import opens and makes such files."""
 
+from threading import Event
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 import pytest
 
 from splat_addon.blender.geometry import surfel_files
 from splat_addon.blender.geometry.attributes import write_surfels
+from splat_addon.blender.operators import import_ply, modal_writing
 from splat_addon.blender.operators.store_surfels import Storing
 from splat_addon.interchange import write_ply
 from splat_addon.streaming import BlockFile, WritingCancelled, write_blocks
@@ -85,6 +89,72 @@ def test_cancelling_leaves_everything_as_it_was(ball, saved, surfels_of):
         storing.write()
     assert [path.name for path in saved.iterdir()] == ["scene.blend"]
     assert len(surfels_of(ball)) == count and not ball.data.surfel_splatting.file
+
+
+class Pressed:
+    """An event of the window, as `modal` reads it."""
+
+    def __init__(self, kind):
+        self.type = kind
+
+
+class Operator(modal_writing.ModalWriting):
+    """The mix-in as Blender runs it from a button."""
+
+    def __init__(self, writing):
+        self.writing, self.said, self.finished = writing, [], 0
+
+    def _begin(self, context):
+        return self.writing
+
+    def _finish(self, context, writing):
+        self.finished += 1
+
+    def report(self, kinds, text):
+        self.said.append((*kinds, text))
+
+
+@pytest.fixture
+def window(monkeypatch):
+    """A context with what `modal` asks of a window, and texts of its status bar."""
+    monkeypatch.setattr(modal_writing, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
+    texts, calls = [], SimpleNamespace(event_timer_add=lambda *_, **__: 1, event_timer_remove=lambda _: None)
+    calls.modal_handler_add = lambda _: None
+    return SimpleNamespace(
+        window_manager=calls, window=None, texts=texts, workspace=SimpleNamespace(status_text_set=texts.append)
+    )
+
+
+@pytest.mark.parametrize("is_pressed", [False, True])
+def test_esc_cancels_keeping_a_file(is_pressed, opaque, saved, window):
+    write_ply(saved / "scan.ply", opaque(3000))
+    keeping, may_go = import_ply.Keeping(str(saved / "scan.ply"), str(saved / "scan.surfelblocks")), Event()
+    write = keeping.write
+    keeping.write = lambda: (may_go.wait(10), write(lambda share: None))
+    operator = Operator(keeping)
+    assert operator.write_in_thread(window) == {"RUNNING_MODAL"}
+    if is_pressed:
+        assert operator.modal(window, Pressed("ESC")) == {"RUNNING_MODAL"}
+    may_go.set()
+    while (ended := operator.modal(window, Pressed("TIMER"))) == {"RUNNING_MODAL"}:
+        pass
+    assert ended == ({"CANCELLED"} if is_pressed else {"FINISHED"}) and operator.finished == (not is_pressed)
+    assert (saved / "scan.surfelblocks").exists() != is_pressed and len(list(saved.iterdir())) == 3 - is_pressed
+    assert operator.said == [("INFO", "Storing was cancelled; nothing was changed")] * is_pressed
+    assert "Esc cancels" in window.texts[0] and window.texts[-1] is None
+
+
+def test_ctrl_c_in_the_background_leaves_nothing(opaque, saved, monkeypatch):
+    write_ply(saved / "scan.ply", opaque(3000))
+
+    def press(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("splat_addon.streaming.writing.build_hierarchy", press)
+    with pytest.raises(KeyboardInterrupt):
+        Operator(import_ply.Keeping(str(saved / "scan.ply"), str(saved / "scan.surfelblocks"))).write_now(bpy.context)
+    assert sorted(path.name for path in saved.iterdir()) == ["scan.ply", "scene.blend"]
+    assert not bpy.data.meshes
 
 
 def test_a_ply_file_goes_to_a_file_portion_by_portion(opaque, saved, tmp_path):
