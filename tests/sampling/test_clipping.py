@@ -196,11 +196,11 @@ def test_clipping_can_be_cancelled_and_says_how_far_it_is(cube):
         sample_mesh(cube(), resolution=8, crease_angle=ANGLE, progress=lambda share: share < 0.8)
 
 
-def test_fitting_and_merging_say_how_far_they_are(cube):
+def test_fitting_and_merging_say_how_far_they_are(sphere):
     shares = []
     sample_mesh(
-        cube(),
-        resolution=8,
+        sphere,
+        resolution=32,
         crease_angle=ANGLE,
         fits_blending=True,
         fits_planes=True,
