@@ -136,6 +136,11 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
                 "Split by Vertex Group",
                 "Draw polygons where the weights of a vertex group are 0.5 or more, and surfels elsewhere",
             ),
+            (
+                "SPACING",
+                "Split by Spacing",
+                "Draw polygons where the surfels would be too far apart in the picture, and surfels elsewhere",
+            ),
         ],
         default="SCENE",
         update=_read_again,
@@ -147,6 +152,14 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
         default=10.0,
         min=1e-6,
         soft_max=1000.0,
+        update=_read_again,
+    )
+    split_pixels: FloatProperty(
+        name="Pixels per Surfel",
+        description="The object is drawn as polygons where its surfels are more pixels apart than this",
+        default=2.0,
+        min=0.1,
+        soft_max=10.0,
         update=_read_again,
     )
     split_group: StringProperty(
@@ -169,27 +182,33 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
     )
 
 
+#: kind of split -> the property, and field of `Form`, that it needs.
+_SPLIT_BY = {"DISTANCE": "split_distance", "SPACING": "split_pixels", "GROUP": "split_group"}
+
+
 class Form(NamedTuple):
     """How a mesh is rendered.
 
     kind: one of the items of `render_as`.
     split_distance: distance from the camera up to which it is polygons.
-    group: vertex group whose weights decide between polygons and splats.
+    split_pixels: pixels between its surfels above which it is polygons.
+    split_group: vertex group whose weights decide between polygons and splats.
     is_default: whether its object leaves the choice to the scene.
     """
 
     kind: str
     split_distance: float | None = None
-    group: str = ""
+    split_pixels: float | None = None
+    split_group: str = ""
     is_default: bool = False
 
     @property
     def has_polygons(self) -> bool:
-        return self.kind in ("POLYGONS", "DISTANCE", "GROUP")
+        return self.kind in ("POLYGONS", "DISTANCE", "SPACING", "GROUP")
 
     @property
     def has_surfels(self) -> bool:
-        return self.kind in ("SURFELS", "DISTANCE", "GROUP")
+        return self.kind in ("SURFELS", "DISTANCE", "SPACING", "GROUP")
 
     @property
     def of_transparent(self) -> Form:
@@ -212,8 +231,8 @@ def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) ->
     kind, settings = chosen[0].render_as, chosen[0]
     if kind == "GROUP" and not settings.split_group:
         raise ValueError("It is split by a vertex group, and none is chosen; choose one in its object properties.")
-    distance = settings.split_distance if kind == "DISTANCE" else None
-    return Form(kind, distance, settings.split_group if kind == "GROUP" else "")
+    name = _SPLIT_BY.get(kind)
+    return Form(kind, **{name: getattr(settings, name)} if name else {})
 
 
 class RENDER_PT_surfel_meshes(EnginePanel, bpy.types.Panel):
@@ -242,10 +261,10 @@ class OBJECT_PT_surfel_splatting(EnginePanel, bpy.types.Panel):
         super().draw(context)
         settings = getattr(context.object, OBJECT_SETTINGS)
         self.layout.prop(settings, "render_as")
-        if settings.render_as == "DISTANCE":
-            self.layout.prop(settings, "split_distance")
-        elif settings.render_as == "GROUP":
+        if settings.render_as == "GROUP":
             self.layout.prop_search(settings, "split_group", context.object, "vertex_groups")
+        elif name := _SPLIT_BY.get(settings.render_as):
+            self.layout.prop(settings, name)
         self.layout.prop(settings, "detail")
 
 

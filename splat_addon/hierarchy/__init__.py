@@ -8,6 +8,6 @@ from which a view selects (`cuts`).
 """
 
 from .building import Hierarchy, build_hierarchy
-from .cuts import Sight, cut_entries
+from .cuts import Sight, Split, cut_entries
 
-__all__ = ["Hierarchy", "Sight", "build_hierarchy", "cut_entries"]
+__all__ = ["Hierarchy", "Sight", "Split", "build_hierarchy", "cut_entries"]

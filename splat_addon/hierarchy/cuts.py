@@ -17,6 +17,20 @@ from .building import Hierarchy
 
 
 @dataclass(frozen=True, eq=False)
+class Split:
+    """Where an object that is polygons near the eye is surfels.
+
+    model_view: (3, 4) from the object's space to the view's, world units. begin: distance from the eye at which surfels
+    begin, judged by their centres. end: distance at which polygons end. Merged surfels must lie wholly beyond it, so
+    that the surfels that meet the polygons are the finest.
+    """
+
+    model_view: np.ndarray
+    begin: float
+    end: float
+
+
+@dataclass(frozen=True, eq=False)
 class Sight:
     """A view of one object, in the object's space, relative to the surfels' origin.
 
@@ -24,7 +38,7 @@ class Sight:
     units. pixels: the most pixels that an object unit covers, at distance 1 of a perspective view or anywhere in a
     parallel one. near: the smallest distance that counts, world units. eye: (4,) homogeneous; w = 0 for the direction
     towards the eye of a parallel view. hides_backs: whether backs are invisible. tolerance: in pixels; 0 draws the
-    surfels themselves.
+    surfels themselves. split: None for an object that is surfels everywhere.
     """
 
     planes: np.ndarray
@@ -34,11 +48,14 @@ class Sight:
     eye: np.ndarray
     hides_backs: bool
     tolerance: float
+    split: Split | None = None
 
     @property
     def key(self) -> bytes:
         """A key that is equal for equal views."""
         numbers = (self.planes, self.depth, self.eye, (self.pixels, self.near, self.hides_backs, self.tolerance))
+        if self.split:
+            numbers += self.split.model_view, (self.split.begin, self.split.end)
         return b"".join(np.asarray(n, np.float64).tobytes() for n in numbers)
 
     @property
@@ -62,6 +79,10 @@ def cut_blocks(blocks: Blocks, sight: Sight) -> np.ndarray:
     while len(front):
         front = front[may_be_seen(blocks, front, sight)]
         is_fine = pixels_of_errors(blocks, front, sight) <= sight.tolerance
+        if sight.split:
+            near, far = distances(blocks, front, sight)
+            is_kept = far >= sight.split.begin
+            front, is_fine = front[is_kept], (is_fine & (near > sight.split.end))[is_kept]
         is_fine |= blocks.first_child[front] == blocks.last_child[front]
         drawn.append(front[is_fine])
         coarse = front[~is_fine]
@@ -84,6 +105,17 @@ def pixels_of_errors(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarr
     # merged surfels must not touch the near plane, where methods may treat splats differently
     error = np.where((nearest > sight.near) | (error == 0), error, np.inf)
     return error / np.maximum(nearest, sight.near)
+
+
+def distances(blocks: Blocks, rows: np.ndarray, sight: Sight) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) bounds on the distances of each block's points from the eye, along the view if it is parallel."""
+    middle, half = _middle_half(blocks, rows)
+    matrix = sight.split.model_view
+    middle, half = middle @ matrix[:, :3].T + matrix[:, 3], half @ np.abs(matrix[:, :3]).T
+    if sight.is_parallel:
+        return -middle[:, 2] - half[:, 2], -middle[:, 2] + half[:, 2]
+    away = np.abs(middle)
+    return np.linalg.norm(np.maximum(away - half, 0), axis=1), np.linalg.norm(away + half, axis=1)
 
 
 def may_be_seen(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:

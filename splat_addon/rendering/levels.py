@@ -7,11 +7,12 @@ of surfels first and then of merged nodes, in storage order.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ..hierarchy import Hierarchy, Sight, build_hierarchy
+from ..hierarchy import Hierarchy, Sight, Split, build_hierarchy
 from ..hierarchy.merging import OVERLAP
 from ..surfels import Surfels
 from .scene import Instance
@@ -48,9 +49,8 @@ def keep_hierarchy(surfels: Surfels, hierarchy: Hierarchy) -> None:
 
 def has_levels(instance: Instance) -> bool:
     """Whether an instance may be drawn as merged surfels: it needs many, opaque surfels, not merged already, that
-    stay where they are. Objects that are split by distance from the camera are excluded, because their surfels are
-    selected by position."""
-    is_excluded = instance.is_cut or instance.deforms or instance.is_transparent or instance.split_distance is not None
+    stay where they are."""
+    is_excluded = instance.is_cut or instance.deforms or instance.is_transparent
     return len(instance.surfels) >= LEAST_SURFELS and not is_excluded
 
 
@@ -64,15 +64,22 @@ def may_merge(instance: Instance, camera: Camera, tolerance: float) -> bool:
     some = instance.surfels.scales[:: max(len(instance.surfels) // LEAST_SURFELS, 1)]
     spacing = float(np.median(some.min(axis=1))) / OVERLAP
     farthest = float(-instance.corners(camera)[:, 2].min())
-    pixels = _pixels(camera) * float(np.linalg.norm(linear, 2))
+    pixels = camera.pixels_per_unit() * float(np.linalg.norm(linear, 2))
     return _FINEST_ERROR * spacing * pixels <= tolerance * (1 if camera.is_orthographic else max(farthest, camera.near))
 
 
-def sight(instance: Instance, camera: Camera, hides_backs: bool, tolerance: float) -> Sight:
-    """A camera's view of an instance. tolerance: in pixels of the camera's picture."""
+def sight(
+    instance: Instance,
+    camera: Camera,
+    hides_backs: bool,
+    tolerance: float,
+    split_distances: tuple[float, float] | None = None,
+) -> Sight:
+    """A camera's view of an instance. tolerance: in pixels of the camera's picture. split_distances: where the surfels
+    of a split object begin, and where its polygons end, world units."""
     matrix = instance.model_view(camera)
     x, y, depth = matrix[0], matrix[1], -matrix[2]
-    left, right, bottom, top = _whole_pixels(camera)
+    left, right, bottom, top = camera.whole_pixels()
     across, up = _BESIDE * (right - left) / camera.size[0], _BESIDE * (top - bottom) / camera.size[1]
     one = np.array([0, 0, 0, 1.0])
     spread = one if camera.is_orthographic else depth
@@ -89,21 +96,6 @@ def sight(instance: Instance, camera: Camera, hides_backs: bool, tolerance: floa
         eye = np.append(inverse[:, 2] / np.linalg.norm(inverse[:, 2]), 0.0)
     else:
         eye = np.append(-inverse @ matrix[:3, 3], 1.0)
-    pixels = _pixels(camera) * float(np.linalg.norm(matrix[:3, :3], 2))
-    return Sight(np.array(planes), depth, pixels, camera.near, eye, hides_backs, tolerance)
-
-
-def _whole_pixels(camera: Camera) -> tuple[float, float, float, float]:
-    """The camera's window moved by less than a pixel, so that all samples of a picture have one cut."""
-    (left, right, bottom, top), edges = camera.window, []
-    for first, last, count in ((left, right, camera.size[0]), (bottom, top, camera.size[1])):
-        step = float(f"{(last - first) / count:.11g}")  # without the last digits, which moving changes
-        middle = round((first + last) / 2 / step) * step
-        edges += [middle - count / 2 * step, middle + count / 2 * step]
-    return tuple(edges)
-
-
-def _pixels(camera: Camera) -> float:
-    """Pixels per world unit at distance 1, or anywhere for a parallel view."""
-    left, right, bottom, top = _whole_pixels(camera)
-    return max(camera.size[0] / (right - left), camera.size[1] / (top - bottom))
+    pixels = camera.pixels_per_unit() * float(np.linalg.norm(matrix[:3, :3], 2))
+    seen = Sight(np.array(planes), depth, pixels, camera.near, eye, hides_backs, tolerance)
+    return replace(seen, split=Split(matrix[:3], *split_distances)) if split_distances else seen

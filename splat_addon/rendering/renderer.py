@@ -269,7 +269,8 @@ class Renderer:
             TileContext(self.resources, frame_plan, scene, camera, settings, None).check_arrived()
         casters = casting(scene)
         shadow_views = tuple(
-            build_view(casters, made.camera, settings.epsilon) for made in frame_plan.facts["shadow_maps"]
+            build_view(casters, made.camera, settings.epsilon, are_split=False)
+            for made in frame_plan.facts["shadow_maps"]
         )
         whole = None
         if frame_plan.tiles != ((0, 0, *camera.size),):

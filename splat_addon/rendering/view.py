@@ -73,11 +73,14 @@ class View:
         return _LEAST_STEPS / 2**24 * (1.0 if linear_depth else self.depth_span)
 
 
-def build_view(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | None = None) -> View:
+def build_view(
+    scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | None = None, are_split: bool = True
+) -> View:
     """The scene's instances as seen by this camera. epsilon: how far visibility moves splats back, in radii.
 
     whole: clip range of the camera that this one is cropped from, if any, so that depths are rounded alike in all parts
         of a picture.
+    are_split: whether split objects are polygons near this camera and surfels beyond; they cast shadows as both.
     """
     seen, outside, degenerate = seen_by(scene, camera)
     near, far, scale = whole or clipped(camera, seen, epsilon)
@@ -90,9 +93,11 @@ def build_view(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | 
         model_view[:3] *= scale
         overlap = epsilon * radii.get(instance, 0.0) * scale
         of_kind = placed[type(instance)]
-        hides_backs, limit = instance.hides_backs(camera), _split_distance(instance) * scale
+        hides_backs, limit = instance.hides_backs(camera), _split_distance(instance, camera) if are_split else 0.0
+        if limit is None:
+            continue
         is_whole = not beyond(instance.some_places(camera), camera).any()
-        of_kind.append(DrawItem(instance, model_view, normal_matrix, hides_backs, is_whole, overlap, limit))
+        of_kind.append(DrawItem(instance, model_view, normal_matrix, hides_backs, is_whole, overlap, limit * scale))
     return View(
         scale=scale,
         near=camera.near * scale,
@@ -108,15 +113,27 @@ def build_view(scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | 
     )
 
 
-def _split_distance(instance: Placed) -> float:
-    """The distance at which the instance begins or ends, world units.
+def _split_distance(instance: Placed, camera: Camera) -> float | None:
+    """The distance at which the instance begins or ends, world units; 0 if it is seen everywhere, None if nowhere.
 
     Splats begin before polygons end, so that their weights sum to 1 or more where polygons end (Guennebaud et al. 2006,
     section 5.1).
     """
-    if instance.split_distance is None or instance.shape.is_transparent:
+    if not instance.is_split or instance.shape.is_transparent:
         return 0.0
-    return max(instance.split_distance - SPLIT_OVERLAP * instance.radius, 0.0)
+    end, (nearest, farthest) = instance.polygons_end(camera), instance.distances(camera)
+    if isinstance(instance, PolygonInstance):
+        return None if nearest > end or not end else end if farthest > end else 0.0
+    begin = max(end - SPLIT_OVERLAP * instance.radius, 0.0)
+    return None if farthest < begin else begin if nearest < end else 0.0
+
+
+def split_distances(placed: DrawItem, view: View) -> tuple[float, float] | None:
+    """Where the surfels of a split object begin, and where its polygons end, world units; None if all are shown."""
+    if not placed.split_distance:
+        return None
+    begin = placed.split_distance / view.scale
+    return begin, begin + SPLIT_OVERLAP * placed.instance.radius
 
 
 def overlapping_radii(scene: Scene) -> dict[PolygonInstance, float]:

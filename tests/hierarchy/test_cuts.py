@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """In every view, the cut draws each visible surfel exactly once: itself, or in one of the nodes above it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from splat_addon.hierarchy import Sight, build_hierarchy, cut_entries
+from splat_addon.hierarchy import Sight, Split, build_hierarchy, cut_entries
 
 from .conftest import ball, leaves_of, make_surfels
 
@@ -41,6 +43,35 @@ def drawn(view):
 def test_every_surfel_is_drawn_once(eye, tolerance):
     times, _ = drawn(sight(eye, tolerance))
     assert (times == 1).all()
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.floats(2.5, 30), st.floats(-1.2, 0.9), st.floats(0, 20), st.booleans())
+def test_a_split_ball_is_its_surfels_beyond_the_split_of_which_those_at_polygons_are_not_merged(
+    distance, offset, tolerance, is_parallel
+):
+    """offset: of the split from the ball's middle."""
+    begin, view = distance + offset, sight((0, 0, distance), tolerance)
+    split = Split(np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -distance]]), begin, begin + 2 * HALF)
+    if is_parallel:
+        view = replace(view, eye=np.array([0, 0, 1.0, 0]))
+    times, _ = drawn(replace(view, split=split))
+    away = SURFELS.positions - [0, 0, distance]
+    far = -away[:, 2] if is_parallel else np.linalg.norm(away, axis=1)
+    assert (times[far > begin] == 1).all() and times.max(initial=0) <= 1
+    assert times[far < begin - 40 * HALF].sum() == 0
+    entries = cut_entries(HIERARCHY, replace(view, split=split))
+    entries = np.arange(COUNT) if entries is None else entries
+    merged = np.concatenate([BELOW[e] for e in entries if e >= COUNT] or [np.zeros(0, int)])
+    assert (far[merged] > split.end).all()
+
+
+def test_half_of_a_split_ball_is_left_out_and_most_of_the_other_half_is_merged():
+    count = 100_000
+    many = build_hierarchy(make_surfels(*ball(count), half=HALF * (COUNT / count) ** 0.5))
+    split = Split(np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, -8.0]]), 8.0, 8.02)
+    finest, merged = (len(cut_entries(many, replace(sight((0, 0, 8), t), split=split))) for t in (0, 8))
+    assert 0.45 * count < finest < 0.6 * count and merged < 0.4 * finest
 
 
 @settings(deadline=None, max_examples=30)

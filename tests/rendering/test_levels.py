@@ -68,6 +68,12 @@ def clipped():
     return with_surfels(scene, clip_line=lines), camera
 
 
+def split():
+    """The part of the torus that is surfels: all but its nearest third."""
+    scene, camera = far_torus()
+    return replace(scene, surfels=tuple(replace(i, split_distance=3.2) for i in scene.surfels)), camera
+
+
 @pytest.mark.parametrize("shot", [far_torus, rough, parallel, turned, solid, clipped], ids=lambda shot: shot.__name__)
 def test_fewer_splats_draw_the_same_picture(shot, render):
     scene, camera = shot()

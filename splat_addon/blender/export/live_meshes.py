@@ -64,9 +64,12 @@ class Place(NamedTuple):
     form: Form
     detail: float
 
-    def of_instance(self, materials: tuple[Material, ...]) -> dict:
-        """The fields of an instance at this place."""
+    def of_instance(self, materials: tuple[Material, ...], spacing: float) -> dict:
+        """The fields of an instance at this place. spacing: of its surfels, in units of the object."""
         placed = {"matrix_world": self.matrix, "materials": materials, "split_distance": self.form.split_distance}
+        if self.form.split_pixels is not None:
+            # None: a matrix of zeros leaves nothing to see
+            placed["split_length"] = spacing * _stretch(self.matrix) / self.form.split_pixels or None
         return placed | self.fields
 
 
@@ -181,12 +184,12 @@ class LiveMeshes:
 
         override: the material override of this view layer.
         """
-        key = *mesh_key(evaluated), override and override.session_uid, place.form.group
+        key = *mesh_key(evaluated), override and override.session_uid, place.form.split_group
         if key not in self._frame:
-            live = self._kept.setdefault(self._lasting_key(evaluated, place.form.group), _LiveMesh())
+            live = self._kept.setdefault(self._lasting_key(evaluated, place.form.split_group), _LiveMesh())
             live.places, live.owner = [], owner.name
             if live.key != key or self._changed is None or evaluated.data.name_full in self._changed:
-                self._read(live, evaluated, place.form.group, override)
+                self._read(live, evaluated, place.form.split_group, override)
                 live.key = key
             self._frame[key] = live
         self._frame[key].places.append(place)
@@ -220,7 +223,7 @@ class LiveMeshes:
         self.counts["meshes"] += 1
         self.counts["surfels"] += sum(map(len, live.shown[1]))
         return [
-            Instance(part, textures=textures, deforms=live.bends, **place.of_instance(live.materials))
+            Instance(part, textures=textures, deforms=live.bends, **place.of_instance(live.materials, live.spacing))
             for part in live.shown[1]
             for place in live.sampled_at
         ]
@@ -235,7 +238,7 @@ class LiveMeshes:
             notes.add(sentence)
         looked_up = {"textures": live.kept_textures(), "normal_maps": live.kept_normal_maps()}
         return [
-            PolygonInstance(part, **looked_up, **place.of_instance(live.materials))
+            PolygonInstance(part, **looked_up, **place.of_instance(live.materials, live.spacing))
             for part in live.drawn[1]
             for place in live.drawn_at
         ]
@@ -300,13 +303,18 @@ def _deforming(
     return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped, **edges)
 
 
+def _stretch(matrix: np.ndarray) -> float:
+    """The largest factor by which a matrix lengthens."""
+    return float(np.linalg.norm(matrix[:3, :3], 2))
+
+
 def _by_resolution(live: _LiveMesh, resolution: float, depsgraph) -> float:
     # deforming meshes keep their surfels, unless they are stretched too far
     return live.spacing if live.deforming else grid_spacing(live.content.triangles, resolution=resolution)
 
 
 def _by_spacing(live: _LiveMesh, spacing: float, depsgraph) -> float:
-    stretch = max(float(np.linalg.norm(matrix[:3, :3], 2)) for matrix in live.matrices)
+    stretch = max(map(_stretch, live.matrices))
     return live.kept_if_near(spacing / stretch if stretch > 0 else math.inf)
 
 

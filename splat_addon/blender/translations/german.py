@@ -220,6 +220,9 @@ GERMAN = {
         "Bis zu einer Entfernung von der Kamera Polygone und dahinter Surfels zeichnen. Das dauert länger als"
         " Surfels allein"
     ),
+    "Draw polygons where the surfels would be too far apart in the picture, and surfels elsewhere": (
+        "Polygone zeichnen, wo die Surfels im Bild zu weit auseinander wären, und anderswo Surfels"
+    ),
     "Draw polygons where the weights of a vertex group are 0.5 or more, and surfels elsewhere": (
         "Polygone zeichnen, wo die Gewichte einer Vertexgruppe 0,5 oder mehr sind, und anderswo Surfels"
     ),
@@ -608,6 +611,7 @@ GERMAN = {
     "Spacing": "Abstand",
     "Splat Size": "Splatgröße",
     "Split by Distance": "Nach Entfernung teilen",
+    "Split by Spacing": "Nach Abstand teilen",
     "Split by Vertex Group": "Nach Vertexgruppe teilen",
     "Sprites": "Sprites",
     "Sprites, Unfiltered": "Sprites, ungefiltert",
@@ -669,6 +673,9 @@ GERMAN = {
     ): (
         "Mindestzahl der Samples eines endgültigen Renderns mit Tiefen- oder Bewegungsunschärfe, weil ein "
         "einzelnes Sample keine Unschärfe zeigt. Auf 1 setzen, damit allein Samples zählt"
+    ),
+    "The object is drawn as polygons where its surfels are more pixels apart than this": (
+        "Das Objekt wird als Polygone gezeichnet, wo seine Surfels mehr Pixel auseinander sind als dieser Wert"
     ),
     "The object is drawn as polygons where its weights are 0.5 or more": (
         "Das Objekt wird als Polygone gezeichnet, wo ihre Gewichte 0,5 oder mehr sind"

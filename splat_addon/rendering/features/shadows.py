@@ -105,12 +105,11 @@ def run(tile, p: Pass):
 
 
 def _as_cast(view: View, camera: Camera) -> View:
-    """A view as it casts shadows into a map: objects split by distance from the camera are complete, and polygons are
-    moved back by a few texels so that they do not shadow themselves where shading normals differ from their own."""
+    """A view as it casts shadows into a map: polygons are moved back by a few texels so that they do not shadow
+    themselves where shading normals differ from their own."""
     left, right, _, _ = camera.window
     texel = (right - left) / camera.size[0] * (view.scale if camera.is_orthographic else 1.0)
-    polygons = tuple(replace(p, split_distance=0.0, setback=SETBACK * texel) for p in view.polygons)
-    return replace(view, placed=tuple(replace(p, split_distance=0.0) for p in view.placed), polygons=polygons)
+    return replace(view, polygons=tuple(replace(p, setback=SETBACK * texel) for p in view.polygons))
 
 
 def lights_texture(tile):

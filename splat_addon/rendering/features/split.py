@@ -8,7 +8,7 @@ from .drawing import SPLAT_HOSTS
 
 
 def _count(planning) -> int:
-    return sum(placed.split_distance is not None for placed in planning.shown)
+    return sum(placed.is_split for placed in planning.shown)
 
 
 def passes(planning):

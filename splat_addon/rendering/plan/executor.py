@@ -24,7 +24,7 @@ from ..upload.cuts import Cut
 from ..upload.loading import NotYet
 from ..upload.resources import Resources, StoredSurfels, TextureKey
 from ..upload.storages import get_storage
-from ..view import DrawItem, View
+from ..view import DrawItem, View, split_distances
 from .frame_plan import FramePlan
 from .graph import Loop, Pass, Step, Texture
 from .programs import describe, frame_value
@@ -136,7 +136,8 @@ class TileContext:
         instance, levels = placed.instance, self.levels(placed.instance)
         if levels is None:
             return Cut(len(instance.surfels), instance.surfels.clipped_count, None)
-        seen = sight(instance, self.camera, placed.hides_backs, self.settings.detail_tolerance)
+        split = split_distances(placed, self.view)
+        seen = sight(instance, self.camera, placed.hides_backs, self.settings.detail_tolerance, split)
         places = self.stored(instance).places
         return self.resources.cuts.get(
             (levels, seen.key),

@@ -87,6 +87,20 @@ class Camera:
         window = (left + x * step_x, left + (x + width) * step_x, bottom + y * step_y, bottom + (y + height) * step_y)
         return replace(self, window=window, size=(width, height))
 
+    def whole_pixels(self) -> tuple[float, float, float, float]:
+        """The window moved by less than a pixel, so that all samples of a picture, and all its parts, have one."""
+        (left, right, bottom, top), edges = self.window, []
+        for first, last, count in ((left, right, self.size[0]), (bottom, top, self.size[1])):
+            step = float(f"{(last - first) / count:.11g}")  # without the last digits, which moving changes
+            middle = round((first + last) / 2 / step) * step
+            edges += [middle - count / 2 * step, middle + count / 2 * step]
+        return tuple(edges)
+
+    def pixels_per_unit(self) -> float:
+        """The most pixels that a world unit covers at distance 1, or anywhere in a parallel view."""
+        left, right, bottom, top = self.whole_pixels()
+        return max(self.size[0] / (right - left), self.size[1] / (top - bottom))
+
     def is_same(self, other: Camera) -> bool:
         """Whether both cameras show the same picture of any scene."""
         names = [f.name for f in fields(self) if f.name != "matrix_world"]

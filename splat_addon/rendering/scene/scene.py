@@ -45,6 +45,8 @@ class Placed:
         `object_index`.
     split_distance: from the camera, world units, up to which an object is drawn as polygons, and beyond it as surfels,
         by two instances that have the same; None: each is drawn everywhere. Shadows are cast by both.
+    split_length: a length in world units, by which it is split instead: it is drawn as polygons where this length may
+        cover more than a pixel, so that surfels never lie too far apart (Guennebaud et al. 2006, section 5.2).
     is_holdout: it hides everything behind it and shows nothing: the picture has an alpha of 0 there.
     """
 
@@ -57,6 +59,7 @@ class Placed:
     name: str = ""
     index: int = 0
     split_distance: float | None = None
+    split_length: float | None = None
     is_holdout: bool = False
 
     def __post_init__(self):
@@ -69,8 +72,11 @@ class Placed:
         object.__setattr__(self, "matrix_world", matrix)
         object.__setattr__(self, "materials", tuple(self.materials) or (Material(),))
         object.__setattr__(self, "textures", tuple(self.textures))
-        if self.split_distance is not None and not 0 < self.split_distance < math.inf:
-            raise ValueError(f"An instance's split_distance must be finite and above 0, not {self.split_distance}.")
+        for name in ("split_distance", "split_length"):
+            if (value := getattr(self, name)) is not None and not 0 < value < math.inf:
+                raise ValueError(f"An instance's {name} must be finite and above 0, not {value}.")
+        if None not in (self.split_distance, self.split_length):
+            raise ValueError("An instance is split by a split_distance or by a split_length; leave one of them out.")
 
     @property
     def radius(self) -> float:
@@ -82,6 +88,19 @@ class Placed:
         """(3,) the matrix's singular values: the largest factor by which it lengthens, and those perpendicular to
         it."""
         return np.linalg.svd(self.matrix_world[:3, :3], compute_uv=False)
+
+    @property
+    def is_split(self) -> bool:
+        """Whether it is polygons near the camera and surfels beyond."""
+        return not (self.split_distance is None and self.split_length is None)
+
+    def polygons_end(self, camera: Camera) -> float:
+        """The distance from a camera up to which a split object is polygons, world units; infinite, or 0, if a parallel
+        camera shows all of it in one form."""
+        if self.split_length is None:
+            return self.split_distance
+        pixels = self.split_length * camera.pixels_per_unit()
+        return pixels if not camera.is_orthographic else math.inf if pixels > 1 else 0.0
 
     @property
     def is_flattened(self) -> bool:
@@ -118,6 +137,14 @@ class Placed:
         """(8, 3) float64 corners of a box around it, in the camera's view space."""
         model_view = self.model_view(camera)
         return self._local_corners @ model_view[:3, :3].T + model_view[:3, 3]
+
+    def distances(self, camera: Camera) -> tuple[float, float]:
+        """Bounds on the distances of its points from the camera, along the view of a parallel one; world units."""
+        corners = self.corners(camera)
+        if camera.is_orthographic:
+            return float(-corners[:, 2].max()), float(-corners[:, 2].min())
+        nearest = np.clip(0.0, corners.min(axis=0), corners.max(axis=0))
+        return float(np.linalg.norm(nearest)), float(np.linalg.norm(corners, axis=1).max())
 
     def world_corners(self) -> np.ndarray:
         """(8, 3) float64 corners of a box around it, in world space."""

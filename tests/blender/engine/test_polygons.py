@@ -226,12 +226,14 @@ def psnr_inside(one, other):
 
 
 @pytest.mark.parametrize("method", ["quad", "mip"])
-@pytest.mark.parametrize("kind", ["DISTANCE", "GROUP"])
+@pytest.mark.parametrize("kind", ["DISTANCE", "SPACING", "GROUP"])
 def test_a_split_object_looks_whole(kind, method, ball, look, picture):
     look.surfel_splatting.method = method
     look.surfel_splatting.supersampling = 2 if method == "quad" else 1
     settings = ball.surfel_splatting
     settings.split_distance = 7.0
+    focal = 64 * look.camera.data.lens / look.camera.data.sensor_width
+    settings.split_pixels = 3 / 90 * focal / 7.0
     group = ball.vertex_groups.new(name="near")
     group.add([v.index for v in ball.data.vertices if v.co.x + 0.3 * v.co.z > 0.1], 1.0, "REPLACE")
     settings.split_group = "near"
@@ -246,6 +248,17 @@ def test_a_split_object_looks_whole(kind, method, ball, look, picture):
     assert pictures[kind][whole, 3].min() > 0.999
     assert psnr_inside(pictures[kind], pictures["POLYGONS"]) > 45
     assert psnr_inside(pictures[kind], pictures["SURFELS"]) > 43
+
+
+@pytest.mark.parametrize(
+    ("pixels", "scale", "forms"), [(0.25, 1, ["polygons"]), (1, 1, ["splats"]), (0.5, 2, ["polygons"])]
+)
+def test_surfels_too_far_apart_in_the_picture_are_polygons(pixels, scale, forms, ball, look, picture):
+    """Half a pixel is between the ball's surfels at its middle, and a whole one if it is twice as large."""
+    ball.surfel_splatting.render_as, ball.surfel_splatting.split_pixels = "SPACING", pixels
+    ball.scale = [scale] * 3
+    assert (picture()[..., 3] > 0.999).sum() > 500
+    assert [form for form in ("polygons", "splats") if final_render.last_frame_stats[form]] == forms
 
 
 def test_a_split_mesh_that_does_not_change_is_kept(ball, look, packed, tmp_path):
