@@ -4,10 +4,11 @@
 Levels are merged from below over the cells of a grid (`clusters`, `merging`), and every merged surfel has bounds on its
 difference from the surfels it replaces (`bounds`). What lies around it makes it sharper, and its bounds larger at
 borders (`surroundings`). Runs of neighbours in a level are *blocks*, each with a box and a cone of normals (`blocks`),
-from which a view selects (`cuts`).
+from which a view selects (`cuts`). When surfels move, the tree stays and is fitted to them (`refitting`).
 """
 
 from .building import Hierarchy, build_hierarchy
 from .cuts import Sight, Split, cut_entries
+from .refitting import refit_hierarchy
 
-__all__ = ["Hierarchy", "Sight", "Split", "build_hierarchy", "cut_entries"]
+__all__ = ["Hierarchy", "Sight", "Split", "build_hierarchy", "cut_entries", "refit_hierarchy"]

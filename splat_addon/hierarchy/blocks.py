@@ -14,8 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .runs import Runs
+
 #: Maximum number of entries in a block.
 BLOCK = 32
+
+#: Entries per batch, few enough for temporaries to stay in the processor's cache.
+_PORTION = 1 << 14
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,12 +28,13 @@ class Level:
     """One level above the surfels, with m entries: first the parents, then entries that wait for larger cells.
 
     numbers: (m,) index of the surfel or node; nodes come after the surfels. children: (n,) entries of the level below,
-    ordered by parent. counts: (m,) number of children of each entry, 1 for those that wait.
+    ordered by parent. counts: (m,) number of children of each entry, 1 for those that wait. cell: size of the cells.
     """
 
     numbers: np.ndarray
     children: np.ndarray
     counts: np.ndarray
+    cell: float
 
 
 class Geometry(NamedTuple):
@@ -86,7 +92,7 @@ def depth_first(levels: list[Level], surfels: int) -> tuple[list[np.ndarray], li
 
 
 def make_blocks(entries: list[np.ndarray], counts: list[np.ndarray], geometry: Geometry, errors: np.ndarray) -> Blocks:
-    """entries, counts: of `depth_first`. errors: (N + M, 3) of surfels and nodes."""
+    """entries, counts: of `depth_first`. errors: (M, 3) of the nodes."""
     offsets = np.cumsum([0, *map(len, entries)])
     runs = [_between(np.array([0]), np.array([len(entries[-1])]))]
     families = []
@@ -127,20 +133,9 @@ def _bounds(entries, starts, geometry: Geometry, errors, below, children):
     """
     if not len(entries):
         return np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3))
-    radii = geometry.radii[entries]
-    low, high, dots = [], [], 0.0
-    normals = geometry.normals[:, entries]
-    sums = np.add.reduceat(normals, starts, axis=1)
-    axes = sums / np.maximum(np.linalg.norm(sums, axis=0), 1e-12)
-    owner = np.repeat(np.arange(len(starts)), np.diff(np.append(starts, len(entries))))
-    for k, column in enumerate(geometry.positions):
-        values = column[entries]
-        low.append(np.minimum.reduceat(values - radii, starts))
-        high.append(np.maximum.reduceat(values + radii, starts))
-        dots = dots + normals[k] * axes[k, owner]
-    low, high, axes = np.stack(low, 1), np.stack(high, 1), axes.T
-    angles = np.arccos(np.clip(np.minimum.reduceat(dots, starts), -1, 1)) + 1e-3
-    largest = np.maximum.reduceat(errors[entries], starts, axis=0)
+    runs = Runs(starts, np.diff(np.append(starts, len(entries))))
+    parts = [_own(entries[some], part, geometry, errors) for some, part in runs.portions(_PORTION)]
+    low, high, axes, angles, largest = (np.concatenate(column) for column in zip(*parts, strict=True))
     if below is None:
         return low, high, axes, angles, largest
     owner = np.repeat(np.arange(len(starts)), np.diff(np.append(children, len(below[0]))))
@@ -152,3 +147,17 @@ def _bounds(entries, starts, geometry: Geometry, errors, below, children):
         np.maximum(angles, np.maximum.reduceat(apart, children)),
         np.maximum(largest, np.maximum.reduceat(below[4], children, axis=0)),
     )
+
+
+def _own(entries: np.ndarray, runs: Runs, geometry: Geometry, errors: np.ndarray) -> tuple:
+    """The same for runs of entries, each a block, without what is below them."""
+    positions, normals, radii = (np.take(array, entries, axis=-1) for array in geometry)
+    sums = runs.sum(normals)
+    axes = sums / np.maximum(np.linalg.norm(sums, axis=0), 1e-12)
+    dots = np.einsum("kn,kn->n", normals, runs.spread(axes))
+    angles = np.arccos(np.clip(runs.least(dots), -1, 1)) + 1e-3
+    nodes, own = entries - (len(geometry.radii) - len(errors)), np.zeros((len(entries), 3), np.float32)
+    if nodes.max() >= 0:
+        own = np.where(nodes[:, None] >= 0, errors[np.maximum(nodes, 0)], own)
+    largest = np.maximum.reduceat(own, runs.starts, axis=0)
+    return runs.least(positions - radii).T, runs.largest(positions + radii).T, axes.T, angles, largest

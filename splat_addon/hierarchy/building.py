@@ -14,7 +14,7 @@ from ..surfels import Surfels, concatenate, empty_surfels
 from .blocks import Blocks, Geometry, Level, depth_first, make_blocks
 from .clusters import clustered
 from .merging import OVERLAP, as_surfels, merged
-from .nodes import PORTION, Table, leaves
+from .nodes import PORTION, Leaves, Table
 from .runs import Runs
 from .surroundings import as_drawn
 
@@ -30,7 +30,7 @@ _LARGEST = 1.25 * np.sqrt(3)
 
 #: Shares of the time: of all levels in building; in that, of the surfels as nodes; of each level in what is left for it
 #: and those above it; and in a level, of ordering, and of that and merging.
-_MERGING, _LEAVES, _OF_THE_REST, _ORDERED, _MERGED = 0.85, 0.2, 0.85, 0.3, 0.7
+_MERGING, _LEAVES, _OF_THE_REST, _ORDERED, _MERGED = 0.9, 0.05, 0.85, 0.25, 0.7
 
 #: Maximum doublings between the smallest and the largest cell.
 _MOST_LEVELS = 48
@@ -46,13 +46,17 @@ class Hierarchy:
     nodes: the merged surfels, in the order of their creation. errors: (M, 3) float32 bounds, object units, never below
     a child's: distance off the plane; uncovered or protruding width, the latter several times at borders; error of what
     it shows (its size times the change of colour or normal). entries: (E,) int32 indices of surfels and, from N on, of
-    nodes, level by level, starting with the surfels; blocks are runs of it.
+    nodes, level by level, starting with the surfels; blocks are runs of it. counts: (E - N,) int32, how many entries of
+    the level below each entry above the surfels' level stands for; those of successive entries follow one another.
+    cells: cell size of each level above the surfels.
     """
 
     surfels: int
     nodes: Surfels
     errors: np.ndarray
     entries: np.ndarray
+    counts: np.ndarray
+    cells: tuple[float, ...]
     blocks: Blocks
 
     def __len__(self) -> int:
@@ -61,7 +65,7 @@ class Hierarchy:
     @cached_property
     def nbytes(self) -> int:
         """Memory in bytes beside the surfels."""
-        arrays = (*self.nodes.arrays().values(), self.errors, self.entries, *vars(self.blocks).values())
+        arrays = (*self.nodes.arrays().values(), self.errors, self.entries, self.counts, *vars(self.blocks).values())
         return sum(array.nbytes for array in arrays)
 
 
@@ -73,9 +77,11 @@ def build_hierarchy(surfels: Surfels, told: Told | None = None) -> Hierarchy:
     told = told or _untold
     nodes, errors, levels, geometry = build_levels(surfels, lambda share: told(_MERGING * share))
     entries, counts = depth_first(levels, len(surfels))
-    blocks = make_blocks(entries, counts, geometry, np.concatenate([np.zeros((len(surfels), 3), np.float32), errors]))
+    blocks = make_blocks(entries, counts, geometry, errors)
+    every = np.concatenate([np.zeros(0, np.int32), *counts])
+    cells = tuple(level.cell for level in levels)
     told(1.0)
-    return Hierarchy(len(surfels), nodes, errors, np.concatenate(entries), blocks)
+    return Hierarchy(len(surfels), nodes, errors, np.concatenate(entries), every, cells, blocks)
 
 
 def _untold(share: float) -> None:
@@ -87,32 +93,52 @@ def build_levels(surfels: Surfels, told: Told = _untold) -> tuple[Surfels, np.nd
 
     told: as in `build_hierarchy`.
     """
-    current = leaves(surfels)
-    told(_LEAVES)
+    current = Leaves(surfels)
     numbers, worst = np.arange(len(surfels), dtype=np.int32), np.zeros((len(surfels), 3), np.float32)
-    made, errors, levels, places = [empty_surfels(surfels.origin)], [worst[:0]], [], [_geometry(current)]
+    made, errors, levels, places = [empty_surfels(surfels.origin)], [worst[:0]], [], [geometry_of(current)]
     total, left = len(surfels), 1 - _LEAVES
+    told(_LEAVES)
     for cell in _cells(surfels):
-        merging = _merge(current, cell, lambda share, left=left: told(1 - left * (1 - _OF_THE_REST * share)))
-        if merging is None:
+
+        def told_of_level(share: float, left=left) -> None:
+            told(1 - left * (1 - _OF_THE_REST * share))
+
+        families = _families(current, cell)
+        told_of_level(_ORDERED)
+        if families is None:
             continue
         left *= 1 - _OF_THE_REST
-        parents, rows, runs, waiting = merging
-        drawn = as_drawn(parents, cell)
-        own = _errors(drawn)
-        own = np.maximum(own, runs.largest(worst[rows].T).T)
+        rows, runs, waiting = families
+        parents, drawn, own = merged_level(current, worst, rows, runs, cell, told_of_level)
         fresh = np.arange(total, total + len(parents), dtype=np.int32)
         total += len(parents)
         numbers, worst = np.concatenate([fresh, numbers[waiting]]), np.concatenate([own, worst[waiting]])
         counts = np.concatenate([runs.counts, np.ones(len(waiting), runs.counts.dtype)]).astype(np.int32)
-        levels.append(Level(numbers, np.concatenate([rows, waiting]).astype(np.int32), counts))
+        levels.append(Level(numbers, np.concatenate([rows, waiting]).astype(np.int32), counts, cell))
         made.append(as_surfels(drawn, surfels))
         errors.append(own)
-        places.append(_geometry(parents))
+        places.append(geometry_of(parents))
         current = current.joined([parents], waiting)
     nodes = concatenate(made[1:]) if levels else made[0]
     geometry = Geometry(*(np.concatenate(parts, axis=-1) for parts in zip(*places, strict=True)))
     return nodes, np.concatenate(errors), levels, geometry
+
+
+def merged_level(
+    current: Table | Leaves, worst: np.ndarray, rows: np.ndarray, runs: Runs, cell: float, told: Told = _untold
+) -> tuple[Table, Table, np.ndarray]:
+    """The parents of runs of rows of a level, the same as they are drawn, and their (m, 3) errors.
+
+    worst: (n, 3) errors of the level's rows. told: as in `build_hierarchy`, of this level.
+    """
+    parts = []
+    for some, part in runs.portions(PORTION):
+        told(_ORDERED + (_MERGED - _ORDERED) * some.start / len(rows))
+        parts.append(Table.of(merged(current.take(rows[some]), part, cell)))
+    told(_MERGED)
+    parents = Table(parts[0].widths, np.concatenate([part.rows for part in parts]))
+    drawn = as_drawn(parents, cell)
+    return parents, drawn, np.maximum(_errors(drawn), np.maximum.reduceat(worst[rows], runs.starts, axis=0))
 
 
 def _cells(surfels: Surfels) -> Iterator[float]:
@@ -128,28 +154,22 @@ def _cells(surfels: Surfels) -> Iterator[float]:
         cell *= 2
 
 
-def _merge(current: Table, cell: float, told: Told) -> tuple[Table, np.ndarray, Runs, np.ndarray] | None:
-    """The parents, their children's rows in runs, and the rows that wait for larger cells; None if too few merge."""
+def _families(current: Table | Leaves, cell: float) -> tuple[np.ndarray, Runs, np.ndarray] | None:
+    """The rows that merge, in runs with one parent each, and the rows that wait for larger cells; None if too few
+    merge."""
     is_large = current.column("radii") > _LARGEST * cell
     rows = np.flatnonzero(~is_large)
     if len(rows) < 2:
         return None
     order, counts = clustered(current, rows, cell)
-    told(_ORDERED)
     several = counts > 1
     is_merged = np.repeat(several, counts)
     if np.count_nonzero(is_merged) < _LEAST_MERGED * len(current):
         return None
     rows = rows[order]
     waiting = np.concatenate([rows[~is_merged], np.flatnonzero(is_large)])
-    rows, counts = rows[is_merged], counts[several]
-    runs = Runs(np.cumsum(counts) - counts, counts)
-    parts = []
-    for some, part in runs.portions(PORTION):
-        told(_ORDERED + (_MERGED - _ORDERED) * some.start / len(rows))
-        parts.append(Table.of(merged(current.take(rows[some]), part, cell)))
-    told(_MERGED)
-    return current.joined(parts, waiting[:0]), rows, runs, waiting
+    counts = counts[several]
+    return rows[is_merged], Runs(np.cumsum(counts) - counts, counts), waiting
 
 
 def _errors(nodes: Table) -> np.ndarray:
@@ -159,5 +179,5 @@ def _errors(nodes: Table) -> np.ndarray:
     return np.stack([nodes.column("off"), extent, shown], axis=1)
 
 
-def _geometry(nodes: Table) -> Geometry:
+def geometry_of(nodes: Table | Leaves) -> Geometry:
     return Geometry(*(nodes.column(name) for name in ("positions", "normals", "radii")))

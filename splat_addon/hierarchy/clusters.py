@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .nodes import PORTION, Table
+from .nodes import PORTION, Leaves, Table
 from .ordering import BITS, sorted_with_order
 
 #: In cells: the gap in depth after which another sheet begins, and the maximum extent of a sheet.
@@ -22,7 +22,7 @@ MOST_DEPTH = 1.5
 _STEPS = 16
 
 
-def clustered(table: Table, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray]:
+def clustered(table: Table | Leaves, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray]:
     """(n,) order that brings the given rows together by cluster, and the (m,) sizes of the clusters in that order."""
     order, is_first, depth = _sorted(table, rows, cell)
     is_first[1:] |= depth[1:] - depth[:-1] > GAP * _STEPS
@@ -35,7 +35,7 @@ def clustered(table: Table, rows: np.ndarray, cell: float) -> tuple[np.ndarray, 
     return order, np.diff(np.append(starts, len(order)))
 
 
-def _sorted(table: Table, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _sorted(table: Table | Leaves, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(n,) order by place and depth; in this order, (n,) bool that marks each new place, and the (n,) depths in
     steps.
     """

@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from ..clip_lines import CLIP_FIELDS, CUT
-from ..surfels import Surfels, portions, quaternion_axes
+from ..surfels import Surfels, quaternion_axes
 from .texture_places import gradients
 
 #: Fields that are plainly averaged. Colours, normals, roughness and texture coordinates have their own rules.
@@ -75,9 +77,13 @@ class Table:
         array = np.ascontiguousarray(self.rows[:, self._place(name)].T)
         return array[0] if name in _SINGLE else array
 
+    def of_rows(self, rows: np.ndarray) -> Table:
+        """A table of some rows."""
+        return Table(self.widths, np.take(self.rows, rows, axis=0))
+
     def take(self, rows: np.ndarray) -> Nodes:
         """Some rows as nodes, column by column."""
-        some = Table(self.widths, np.take(self.rows, rows, axis=0))
+        some = self.of_rows(rows)
         return Nodes({name: some.column(name) for name in self.widths})
 
     def put(self, name: str, values: np.ndarray, rows: np.ndarray) -> None:
@@ -94,57 +100,75 @@ class Table:
         return slice(start, start + self.widths[name])
 
 
-def leaves(surfels: Surfels) -> Table:
-    """The surfels themselves as nodes, with exact values except for the area that clip lines cut off."""
-    first, *more = portions(surfels, PORTION)
-    start = Table.of(_leaves(first))
-    table, done = Table(start.widths, np.empty((len(surfels), start.rows.shape[1]), np.float32)), len(first)
-    table.rows[:done] = start.rows
-    for part in more:
-        table.fill(_leaves(part), slice(done, done + len(part)))
-        done += len(part)
-    return table
+class Leaves:
+    """The surfels themselves as nodes, computed when they are taken, with exact values except for the area that clip
+    lines cut off. It has the members of `Table` that building needs.
+    """
+
+    def __init__(self, surfels: Surfels):
+        self.surfels = surfels
+
+    def __len__(self) -> int:
+        return len(self.surfels)
+
+    def column(self, name: str) -> np.ndarray:
+        """As `Table.column`, of the geometry."""
+        return self._geometry[name]
+
+    def take(self, rows: np.ndarray) -> Nodes:
+        """Some surfels as nodes."""
+        given = {name: np.take(array, rows, axis=0) for name, array in self.surfels.arrays().items()}
+        return _leaves(given)
+
+    def joined(self, parts: list[Table], rows: np.ndarray) -> Table:
+        """Other tables, followed by rows of this one."""
+        return Table(parts[0].widths, np.concatenate([*(part.rows for part in parts), Table.of(self.take(rows)).rows]))
+
+    @cached_property
+    def _geometry(self) -> dict[str, np.ndarray]:
+        surfels, normals = self.surfels, np.empty((3, len(self)), np.float32)
+        for start in range(0, len(self), PORTION):
+            some = slice(start, start + PORTION)
+            normals[:, some] = quaternion_axes(surfels.rotations[some])[2].T
+        columns = {"positions": surfels.positions.T, "normals": normals, "radii": surfels.radius}
+        return {name: np.ascontiguousarray(array) for name, array in columns.items()} | {"materials": surfels.materials}
 
 
-def _leaves(surfels: Surfels) -> Nodes:
-    x, y, z = quaternion_axes(surfels.rotations)
-    scales = surfels.scales
-    values = {name: np.atleast_2d(getattr(surfels, name).T) for name in (*MEANS, "roughness") if _has(surfels, name)}
-    if surfels.has_uvs:
-        values["uv"] = np.concatenate([surfels.uvs.T, gradients(surfels, x, y)])
-    zero = np.zeros(len(surfels), np.float32)
-    return Nodes(
-        {
-            "positions": surfels.positions.T,
-            "normals": z.T,
-            "first_axis": (x * scales[:, :1]).T,
-            "second_axis": (y * scales[:, 1:]).T,
-            "radii": surfels.radius,
-            "areas": scales[:, 0] * scales[:, 1],
-            "materials": surfels.materials,
-            "shading": surfels.normals.T,
-            "colors": surfels.colors.T,
-            "off": zero,
-            "uncovered": zero,
-            "overhang": _cut_off(surfels),
-            "spread": zero,
-            **values,
-        }
-    )
+def _leaves(surfels: dict[str, np.ndarray]) -> Nodes:
+    """Nodes from the fields of surfels."""
+    x, y, z = quaternion_axes(surfels["rotations"])
+    scales, zero = surfels["scales"], np.zeros(len(x), np.float32)
+    values = {name: np.atleast_2d(surfels[name].T) for name in (*MEANS, "roughness") if name in surfels}
+    if all(name in surfels for name in ("uvs", "uv_along_x", "uv_along_y")):
+        values["uv"] = np.concatenate([surfels["uvs"].T, gradients(surfels, x, y)])
+    nodes = {
+        "positions": surfels["positions"].T,
+        "normals": z.T,
+        "first_axis": (x * scales[:, :1]).T,
+        "second_axis": (y * scales[:, 1:]).T,
+        "radii": np.maximum(scales[:, 0], scales[:, 1]),
+        "areas": scales[:, 0] * scales[:, 1],
+        "materials": surfels["materials"],
+        "shading": surfels["normals"].T,
+        "colors": surfels["colors"].T,
+        "off": zero,
+        "uncovered": zero,
+        "overhang": _cut_off(surfels),
+        "spread": zero,
+        **values,
+    }
+    return Nodes({name: np.ascontiguousarray(array) for name, array in nodes.items()})
 
 
-def _has(surfels: Surfels, name: str) -> bool:
-    return getattr(surfels, name) is not None
-
-
-def _cut_off(surfels: Surfels) -> np.ndarray:
+def _cut_off(surfels: dict[str, np.ndarray]) -> np.ndarray:
     """(n,) float32 distance by which ellipses extend beyond what their clip lines keep, object units.
 
     A single line on the far side of the centre removes no more than its depth. With two lines, or a line that removes
     the centre, the kept part may be anywhere in the ellipse.
     """
-    if not surfels.is_clipped:
-        return np.zeros(len(surfels), np.float32)
-    cuts = [getattr(surfels, name)[:, 1] / CUT for name in CLIP_FIELDS if _has(surfels, name)]
+    radii = surfels["scales"].max(axis=1)
+    cuts = [surfels[name][:, 1] / CUT for name in CLIP_FIELDS if name in surfels]
+    if not cuts:
+        return np.zeros_like(radii)
     deepest, both = np.max(cuts, axis=0), np.sum([cut > 0 for cut in cuts], axis=0) > 1
-    return (np.where(both | (deepest > 1), 2.0, deepest) * surfels.radius).astype(np.float32)
+    return (np.where(both | (deepest > 1), 2.0, deepest) * radii).astype(np.float32)

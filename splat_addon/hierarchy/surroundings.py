@@ -53,8 +53,10 @@ _PORTION = 1 << 12
 def as_drawn(nodes: Table, cell: float) -> Table:
     """Merged surfels of one level with sharpened normals and colours, spreads that include the change, and overhangs as
     they count.
+
+    cell: of the level. Where surfels have moved apart since they were built, neighbours are searched farther away.
     """
-    keys, order = _voxels(nodes.column("positions"), cell)
+    keys, order = _voxels(nodes.column("positions"), max(cell, float(np.median(nodes.column("radii")))))
     some = nodes.take(order)
     values = np.concatenate([some["shading"], some["colors"][:3]])
     change, is_border = np.empty_like(values), np.empty(len(order), bool)

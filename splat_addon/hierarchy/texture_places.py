@@ -9,16 +9,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..surfels import Surfels
 from .runs import Runs
 
 #: Maximum deviation, in cells.
 MOST_SLIP = 0.5
 
 
-def gradients(surfels: Surfels, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """(6, N) gradient of u, then of v, along the three axes of the object. x, y: (N, 3) unit axes of the ellipses."""
-    along = surfels.uv_along_x / surfels.scales[:, :1], surfels.uv_along_y / surfels.scales[:, 1:]
+def gradients(surfels: dict[str, np.ndarray], x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """(6, N) gradient of u, then of v, along the three axes of the object.
+
+    surfels: fields of N surfels. x, y: (N, 3) unit axes of the ellipses.
+    """
+    along = surfels["uv_along_x"] / surfels["scales"][:, :1], surfels["uv_along_y"] / surfels["scales"][:, 1:]
     rows = [x * along[0][:, k : k + 1] + y * along[1][:, k : k + 1] for k in (0, 1)]
     return np.concatenate(rows, axis=1).T
 

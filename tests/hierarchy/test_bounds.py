@@ -24,7 +24,10 @@ def ellipse_points(surfels, rows, places):
 
 
 def check(surfels):
-    below, nodes, errors, _ = leaves_of(surfels)
+    check_bounds(surfels, *leaves_of(surfels)[:3])
+
+
+def check_bounds(surfels, below, nodes, errors):
     x, y, z = (axis.astype(float) for axis in quaternion_axes(nodes.rotations))
     lines, reflex = surfels.clip_lines()
     disc = np.concatenate([CIRCLE * r for r in (0.25, 0.5, 0.75, 1)] + [[(0, 0)]])
@@ -50,7 +53,6 @@ def check(surfels):
         apart = np.stack([own @ x[k], own @ y[k]], -1)[:, None] - np.stack([covered @ x[k], covered @ y[k]], -1)
         # coverage is tested at places a quarter of a half-axis apart
         assert np.linalg.norm(apart, axis=-1).min(axis=1).max() <= extent + surfels.radius[rows].max() / 4
-    return errors
 
 
 def nearest_outside(flat, scales, beyond):
