@@ -14,21 +14,27 @@ from .scene import Scene
 from .scene.camera import Camera
 from .settings import Settings
 from .stand_in import STAND_IN, stand_in
-from .upload.loading import Loading, NotYet
+from .upload.loading import Loading, NotYet, ProgramsNotYet
 
 #: Least surfels that stand for a set.
 _LEAST = 64
 
 
 class Arrival:
-    """Draws what a refinement draws, without waiting: `loading` says what is on its way, for as long as it is."""
+    """Draws what a refinement draws, without waiting: `loading` says what is on its way, for as long as it is.
+
+    is_compiling: whether the last picture was left out, because its time went into compiling programs. Only before the
+        first one that is shown.
+    """
 
     def __init__(self, refinement: Refinement, loading: Loading | None = None):
         resources = refinement.renderer.resources
         self.refinement = refinement
         self.loading = resources.loading = loading or Loading(resources.device)
+        self.is_compiling = False
         self._late: WeakSet[Surfels] = WeakSet()
         self._stand_ins: WeakKeyDictionary[Surfels, Surfels] = WeakKeyDictionary()
+        self._last: tuple[Scene, Camera, Settings, Shown] | None = None
         self._shown: tuple[Scene, frozenset[Surfels], Scene] | None = None
 
     @property
@@ -44,17 +50,42 @@ class Arrival:
         if hurries:
             self.refinement.pace.begin_coarsely()
         self.refinement.renderer.resources.load_some()
+        # what has just arrived is drawn in about the time of the stand-ins first
+        hurries, self.is_compiling = hurries or self.is_late, False
         while True:
             shown = self._with_stand_ins(scene)
+            if self.loading.bytes_written and self._is_same(shown, camera, settings):
+                # the time went into writing, and stand-ins look as they did
+                yield self._last[-1]
+                return
             try:
-                yield from self.refinement.draw(shown, camera, settings, hurries=hurries or shown is not scene)
+                yield from self._noted(shown, camera, settings, hurries or shown is not scene)
             except NotYet as reason:
                 if reason.surfels <= set(self._late):
                     raise
                 self._late |= reason.surfels
                 self.refinement.pace.begin_coarsely()
-            else:
+            except ProgramsNotYet:
+                self.is_compiling = True
                 return
+            else:
+                self.loading.compiles_in_slices &= not shown.shown
+                return
+
+    def _noted(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool) -> Iterator[Shown]:
+        """What the refinement draws, and what it was if that is a single texture, which then stays as it is."""
+        parts, self._last = 0, None
+        for part in self.refinement.draw(scene, camera, settings, hurries=hurries):
+            parts += 1
+            yield part
+        if parts == 1:
+            self._last = scene, camera, settings, part
+
+    def _is_same(self, scene: Scene, camera: Camera, settings: Settings) -> bool:
+        """Whether the last picture was of the same stand-ins."""
+        if not self.is_late or self._last is None:
+            return False
+        return self._last[0] is scene and self._last[1].is_same(camera) and self._last[2] == settings
 
     def _with_stand_ins(self, scene: Scene) -> Scene:
         """The scene with stand-ins; the same object as long as nothing has arrived, so that it may refine."""

@@ -17,6 +17,7 @@ from ..hierarchy.merging import OVERLAP
 from ..surfels import Surfels
 from .scene import Instance
 from .scene.camera import Camera
+from .stand_in import STAND_INS
 
 #: For fewer surfels than this a cut saves less than it costs.
 LEAST_SURFELS = 4096
@@ -50,7 +51,8 @@ def keep_hierarchy(surfels: Surfels, hierarchy: Hierarchy) -> None:
 def has_levels(instance: Instance) -> bool:
     """Whether an instance may be drawn as merged surfels: it needs many, opaque surfels, not merged already, that
     stay where they are."""
-    is_excluded = instance.is_cut or instance.deforms or instance.is_transparent
+    is_cut = instance.is_cut or instance.surfels in STAND_INS
+    is_excluded = is_cut or instance.deforms or instance.is_transparent
     return len(instance.surfels) >= LEAST_SURFELS and not is_excluded
 
 

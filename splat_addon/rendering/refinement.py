@@ -39,8 +39,15 @@ class Refinement:
         nothing did, and unchanged once it has `settings.samples`.
 
         hurries: draw as if the camera moved, because more is to come. A part is valid until the next is requested.
-        Raises as `Renderer.draw`.
+        Raises as `Renderer.draw`, and then begins again with the next picture.
         """
+        try:
+            yield from self._parts(scene, camera, settings, hurries)
+        except Exception:
+            self._of, self._refines = None, False
+            raise
+
+    def _parts(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool) -> Iterator[Shown]:
         if hurries or not self._is_of(scene, camera, settings):
             moves = hurries or (self._of is not None and self._of[0] is scene and self._of[2] == settings)
             self._of, self._is_coarse = (scene, camera, settings), False

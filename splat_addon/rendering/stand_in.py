@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from weakref import WeakSet
+
 import numpy as np
 
 from ..clip_lines import CLIP_FIELDS
@@ -16,6 +18,10 @@ _WIDER = 1.3
 
 #: Fields that change over a half-axis, or are divided by it.
 _PER_AXIS = ("uv_along_x", "uv_along_y", "uv_border")
+
+
+#: Sets that stand for others. They have no levels of detail, which would take longer to build than they are seen.
+STAND_INS: WeakSet[Surfels] = WeakSet()
 
 
 def spread(count: int, wanted: int) -> np.ndarray:
@@ -39,4 +45,10 @@ def stand_in(surfels: Surfels, wanted: int) -> Surfels:
     """At most `wanted` surfels in place of a set."""
     rows = spread(len(surfels), wanted)
     arrays = widened({name: array[rows] for name, array in surfels.arrays().items()}, len(surfels))
-    return Surfels(origin=surfels.origin, is_solid=surfels.is_solid, **arrays)
+    return standing_in(Surfels(origin=surfels.origin, is_solid=surfels.is_solid, **arrays))
+
+
+def standing_in(surfels: Surfels) -> Surfels:
+    """The set, known as one that stands for others."""
+    STAND_INS.add(surfels)
+    return surfels

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
-from splat_addon.rendering import Arrival, Refinement, Renderer, Settings, arrival
+from splat_addon.rendering import Arrival, Refinement, Renderer, Settings, arrival, levels
 from splat_addon.rendering.levels import built_hierarchy
 from splat_addon.rendering.stand_in import spread, stand_in
 from splat_addon.rendering.upload import loading, resources
@@ -202,12 +202,54 @@ def test_a_picture_stops_writing_when_its_time_is_up(small_steps, on_device):
 
     def draw(device):
         view, thread = begun(device, Clock(0.02))
+        view.loading.compiles_in_slices = False
         shown(device, view, scene, camera, SETTINGS)
         thread.work()
         shown(device, view, scene, camera, SETTINGS)
         return view.loading.bytes_written
 
     assert on_device(draw) == 2 * loading.SLICE_BYTES
+
+
+def test_before_anything_is_shown_programs_are_compiled_over_several_pictures(small_steps, on_device):
+    scene, camera = torus(4000)
+
+    def draw(device):
+        (view, _), pictures = begun(device, Clock(0.06)), 1
+        # an empty scene shows nothing that could vanish again
+        list(view.draw(replace(scene, surfels=()), camera, SETTINGS))
+        while not list(view.draw(scene, camera, SETTINGS)):
+            assert view.is_compiling and pictures < 50
+            pictures += 1
+        last = shown(device, view, scene, camera, SETTINGS)
+        view.loading._programs.clear()
+        list(view.draw(scene, camera, replace(SETTINGS, shading="flat")))
+        return pictures, view.is_compiling, last, Renderer(device).render(scene, camera, SETTINGS).color
+
+    pictures, is_compiling, last, whole = on_device(draw)
+    assert pictures > 4 and not is_compiling
+    np.testing.assert_array_equal(last, whole)
+
+
+def test_stand_ins_are_drawn_once_while_slices_are_written(small_steps, on_device, monkeypatch):
+    scene, camera = torus()
+
+    def draw(device):
+        (view, thread), drawn, written = begun(device), [], []
+        draw_all = view.refinement.renderer.draw
+        monkeypatch.setattr(view.refinement.renderer, "draw", lambda *of: (drawn.append(of[0]), draw_all(*of))[1])
+        first = shown(device, view, scene, camera, SETTINGS)
+        thread.work()
+        drawn.clear()
+        while view.is_late:
+            picture = shown(device, view, scene, camera, SETTINGS)
+            written.append(view.loading.bytes_written)
+            if view.is_late:
+                np.testing.assert_array_equal(picture, first)
+        return drawn, written
+
+    drawn, written = on_device(draw)
+    assert len(written) >= 3 and all(written) and drawn[0] is scene
 
 
 def test_a_picture_may_wait_for_everything(small_steps, on_device):
@@ -351,6 +393,19 @@ def test_a_hierarchy_is_built_in_the_background_while_every_surfel_is_drawn(smal
     assert built is None and built_hierarchy(surfels) is not None
     np.testing.assert_array_equal(first, exact)
     np.testing.assert_array_equal(last, whole)
+
+
+def test_stand_ins_have_no_levels(small_steps, on_device, monkeypatch):
+    """Building them would take longer than the picture."""
+    scene, camera = torus()
+    monkeypatch.setattr(levels, "build_hierarchy", lambda surfels: pytest.fail("a hierarchy was built at once"))
+
+    def draw(device):
+        view, _ = begun(device)
+        shown(device, view, scene, camera, SETTINGS)
+        return view.is_late
+
+    assert on_device(draw)
 
 
 def test_surfels_are_spread_evenly():

@@ -86,7 +86,9 @@ def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: 
         engine.bind_display_space_shader(depsgraph.scene)
         _show(shown)
         engine.unbind_display_space_shader()
-    if state.refinement.wants_more and is_read and not state.arrival.is_late:
+    if state.arrival.is_compiling:
+        engine.tag_redraw()
+    elif state.refinement.wants_more and is_read and not state.arrival.is_late:
         if state.refinement.samples:
             engine.tag_redraw()
         else:

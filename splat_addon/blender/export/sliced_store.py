@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...rendering.background import in_background
-from ...rendering.stand_in import STAND_IN, spread, widened
+from ...rendering.stand_in import STAND_IN, spread, standing_in, widened
 from ...rendering.upload.packing import LARGEST_SET
 from ...surfels import Surfels, portions, valid_surfels
 from ..geometry.attributes import (
@@ -173,7 +173,7 @@ def _few(arrays: dict[str, np.ndarray], is_solid: bool) -> tuple[Surfels, ...]:
     few = {name: array[rows] for name, array in arrays.items()}
     surfels, _, _ = stored_of({name: array for name, array in few.items() if name != "rest"}, is_solid, {}, "")
     wide = widened(surfels.arrays(), len(arrays["positions"]))
-    return (valid_surfels(is_solid=is_solid, **wide)[0],) if len(surfels) else ()
+    return (standing_in(valid_surfels(is_solid=is_solid, **wide)[0]),) if len(surfels) else ()
 
 
 def _copied(followed: tuple) -> tuple:

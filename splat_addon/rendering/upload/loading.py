@@ -18,7 +18,7 @@ from ...hierarchy import Hierarchy
 from ...surfels import Surfels
 from ..background import in_background
 from ..device import Device
-from ..device.interface import Texture
+from ..device.interface import Pipeline, PipelineDescription, Texture
 
 #: Surfels that one picture may prepare at once, so that small sets are there in the first one.
 AT_ONCE = 1 << 17
@@ -35,6 +35,10 @@ class NotYet(Exception):
     def __init__(self, surfels: Iterable[Surfels]):
         super().__init__("Surfels are on their way to the device.")
         self.surfels = set(surfels)
+
+
+class ProgramsNotYet(Exception):
+    """Compiling programs has taken this picture's time; the next one goes on."""
 
 
 class Packed(NamedTuple):
@@ -107,7 +111,8 @@ class Loading:
     """What is on its way to a device.
 
     run: starts a job in the background. bytes_written: by the last picture. is_in_background: whether large sets are
-    made there; otherwise pictures wait for them. exempt: sets that are made at once in any case.
+    made there; otherwise pictures wait for them. exempt: sets that are made at once in any case. compiles_in_slices:
+    whether a picture ends where compiling programs has taken its time, because none has been shown yet.
     """
 
     def __init__(self, device: Device, run=in_background, clock: Callable[[], float] = perf_counter):
@@ -116,7 +121,9 @@ class Loading:
         self._at_once, self._total = AT_ONCE, 0
         self.exempt: WeakSet[Surfels] = WeakSet()
         self.bytes_written = 0
-        self.is_in_background = True
+        self.is_in_background = self.compiles_in_slices = True
+        self._programs: set[PipelineDescription] = set()
+        self._compiled_until = 0.0
 
     def __del__(self):
         self.clear()
@@ -129,6 +136,16 @@ class Loading:
             return False
         self._at_once -= len(surfels)
         return True
+
+    def program(self, description: PipelineDescription) -> Pipeline:
+        """The device's pipeline. If it is new and the time of this picture is over, ProgramsNotYet is raised after it
+        was compiled."""
+        program = self._device.pipeline(description)
+        if self.compiles_in_slices and description not in self._programs:
+            self._programs.add(description)
+            if self._clock() > self._compiled_until:
+                raise ProgramsNotYet
+        return program
 
     def request(self, owner: Surfels, kind: str, made_from: tuple, job: Callable[[JobShare], Made]) -> None:
         """Start a job, which must not refer to the owner itself: the thread would free it, and its textures. It calls
@@ -155,6 +172,7 @@ class Loading:
     def advance(self) -> Iterator[Arrived]:
         """Write this picture's share, in the order of the requests; yields what is complete."""
         until, self.bytes_written, self._at_once = self._clock() + _SECONDS, 0, AT_ONCE
+        self._compiled_until = until
         try:
             for key, task in list(self._tasks.items()):
                 owner = key[0]()

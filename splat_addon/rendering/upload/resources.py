@@ -220,8 +220,8 @@ class Resources:
         self.textures = {key: texture for key, texture in self.textures.items() if key in wanted}
 
     def pipeline(self, description: PipelineDescription) -> Pipeline:
-        """The device's pipeline, which all renderers share."""
-        return self.device.pipeline(description)
+        """The device's pipeline, which all renderers share. Raises as `Loading.program`."""
+        return (self.loading.program if self.loading else self.device.pipeline)(description)
 
     def release(self) -> None:
         """Free everything on the device except programs."""
