@@ -112,21 +112,33 @@ def test_planes_that_differ_by_just_the_angle_make_no_crease():
     (31, (0.1, 0.1), True), (14, (0.2, 6), True), (14, (6, 0.2), True),
 ])  # fmt: skip
 @pytest.mark.parametrize("is_smooth", [True, False])
-def test_a_fold_is_a_crease_the_sooner_the_higher_a_face_is_beside_a_splat(degrees, heights, is_crease, is_smooth):
+def test_a_fold_is_a_crease_the_sooner_the_larger_a_face_is_beside_a_splat(degrees, heights, is_crease, is_smooth):
     """With larger faces a smaller angle already makes a crease; the crease angle is 30 degrees.
 
     heights: of both triangles above their fold, in units of a splat's reach.
     """
-    half, run = np.radians(degrees) / 2, 3 * max(heights)
+    assert is_a_crease(degrees, heights, 6 * max(heights), is_smooth) == is_crease
+
+
+@pytest.mark.parametrize(("length", "is_crease"), [(4, False), (7, False), (9, True)])
+def test_a_fold_between_faces_a_few_splats_long_is_none(length, is_crease):
+    """Splats in fitted planes follow it; it is 14 degrees, and the crease angle is 30."""
+    assert is_a_crease(14, (6, 6), length) == is_crease
+
+
+def is_a_crease(degrees, heights, length, is_smooth=True):
+    """Whether two triangles meet in a border at any scale. length: of their fold, in units of a splat's reach."""
+    half, run = np.radians(degrees) / 2, length / 2
     y, z = np.cos(half), -np.sin(half)
     there, back = np.array((0, y, z)) * heights[0], np.array((0, -y, z)) * heights[1]
     positions = np.array([(-run, 0, 0), (run, 0, 0), there, back])
     mesh = TriangleMesh(positions, np.array([(0, 1, 2), (1, 0, 3)]))
     flat = np.repeat(survey_normals(mesh)[:, None], 3, axis=1)
     mesh = TriangleMesh(positions, mesh.triangles, np.full((2, 3, 3), (0.0, 0, 1)) if is_smooth else flat)
-    for scale in (1e-5, 1, 1e5):
-        there = TriangleMesh(positions * scale, mesh.triangles, mesh.corner_normals)
-        assert len(survey_edges(there, np.radians(30), scale).borders) == (6 if is_crease else 4)
+    scaled = [(TriangleMesh(positions * scale, mesh.triangles, mesh.corner_normals), scale) for scale in (1e-5, 1, 1e5)]
+    [borders] = {len(survey_edges(there, np.radians(30), scale).borders) for there, scale in scaled}
+    assert borders in (4, 6)
+    return borders == 6
 
 
 def test_bends_are_about_the_angles_between_neighbours(sphere):

@@ -21,9 +21,13 @@ from .ordering import runs_of_equal
 #: Radians; planes that differ by more make a crease.
 DEFAULT_CREASE_ANGLE = math.radians(20)
 
-#: Beside a triangle that is higher than splats reach, the crease's angle is smaller in proportion, down to this share
+#: Beside a triangle that is larger than splats reach, the crease's angle is smaller in proportion, down to this share
 #: of it. Such folds are few. Splats that reach over them stick out of silhouettes, and hide and shadow the face beyond.
 LEAST_FOLD = 1 / 6
+
+#: As large as a triangle counts its height, or this share of its longest edge where that is less: on triangles of a few
+#: splats, as scans have, there would be a line in every splat, and `fitted_planes` follows such a surface as well.
+_OF_LENGTH = 1 / 4
 
 #: Largest difference of a component of colour across an edge where it still goes on.
 COLOR_BREAK = 0.02
@@ -89,9 +93,11 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE, reach:
     units. Vertices at the same position count as one. An edge with one face, or with more than two, is a border of each
     of them. Faces with opposite winding are compared as if it were the same.
     """
-    normals, sizes, heights = _unit_normals(mesh)
-    angles, large = np.full(len(mesh), float(angle)), np.flatnonzero(heights > reach)
-    angles[large] *= np.maximum(reach / heights[large], LEAST_FOLD)
+    normals, sizes, lengths = _unit_normals(mesh)
+    # Twice the area by the length is the height.
+    extents = np.minimum(sizes * (sizes / lengths), lengths * _OF_LENGTH)
+    angles, large = np.full(len(mesh), float(angle)), np.flatnonzero(extents > reach)
+    angles[large] *= np.maximum(reach / extents[large], LEAST_FOLD)
     triangles, numbers, edge, bends = _breaking(mesh, normals, angles)
     a, b = mesh.triangles[triangles, numbers], mesh.triangles[triangles, (numbers + 1) % 3]
     start, end = mesh.positions.take(a, axis=0), mesh.positions.take(b, axis=0)
@@ -241,25 +247,25 @@ def _looks(mesh: TriangleMesh) -> np.ndarray | None:
 
 
 def _unit_normals(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(3, T) float32 unit normals of the triangles; (T,) float32 root of twice their areas; (T,) float32
-    heights over their longest edges.
+    """(3, T) float32 unit normals of the triangles; (T,) float32 root of twice their areas; (T,) float32 longest
+    edges.
     """
     normals, sizes = np.empty((3, len(mesh)), np.float32), np.empty(len(mesh), np.float32)
-    heights = np.empty(len(mesh), np.float32)
+    lengths = np.empty(len(mesh), np.float32)
     for chunk in triangle_chunks(len(mesh)):
         corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles[chunk]))
         edges = corners - corners[:, (1, 2, 0)]
         edges *= edges
-        longest = np.sqrt(np.maximum(edges.sum(axis=0).max(axis=0), 1e-300))
+        longest = np.maximum(edges.sum(axis=0).max(axis=0), 1e-300)
+        np.sqrt(longest, out=lengths[chunk], casting="same_kind")
         vectors = doubled_areas(corners)
         square = vectors[0] * vectors[0]
         square += vectors[1] * vectors[1]
         square += vectors[2] * vectors[2]
         length = np.sqrt(np.maximum(square, 1e-300, out=square), out=square)
         np.sqrt(length, out=sizes[chunk], casting="same_kind")
-        np.divide(length, longest, out=heights[chunk], casting="same_kind")
         np.divide(vectors, length, out=normals[:, chunk], casting="same_kind")
-    return normals, sizes, heights
+    return normals, sizes, lengths
 
 
 def _dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -67,7 +67,7 @@ def test_a_shallow_fold_is_no_edge_by_default(ends_at_ridge):
 
 def test_a_smaller_crease_angle_finds_a_shallow_fold(ends_at_ridge):
     """The faces are larger than the splats, so the fold counts although 4 degrees are less than the angle."""
-    assert ends_at_ridge(crease_angle=np.radians(12))
+    assert ends_at_ridge(crease_angle=np.radians(8))
 
 
 @pytest.mark.parametrize(("degrees", "is_edge"), [(40, True), (2, False)])
