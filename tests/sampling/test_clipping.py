@@ -200,7 +200,7 @@ def test_fitting_and_merging_say_how_far_they_are(sphere):
     shares = []
     sample_mesh(
         sphere,
-        resolution=32,
+        resolution=128,
         crease_angle=ANGLE,
         fits_blending=True,
         fits_planes=True,

@@ -99,10 +99,11 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE, reach:
     angles, large = np.full(len(mesh), float(angle)), np.flatnonzero(extents > reach)
     angles[large] *= np.maximum(reach / extents[large], LEAST_FOLD)
     triangles, numbers, edge, bends = _breaking(mesh, normals, angles)
-    a, b = mesh.triangles[triangles, numbers], mesh.triangles[triangles, (numbers + 1) % 3]
-    start, end = mesh.positions.take(a, axis=0), mesh.positions.take(b, axis=0)
     corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles.take(triangles, axis=0)))
-    doubled = doubled_areas(corners).T
+    # In rows, of which some are taken later.
+    by_corner, rows = np.ascontiguousarray(corners.transpose(1, 2, 0)), np.arange(len(triangles))
+    start, end = by_corner[numbers, rows], by_corner[(numbers + 1) % 3, rows]
+    doubled = np.ascontiguousarray(doubled_areas(corners).T)
     if not (has_plane := _have_planes(corners, doubled)).all():
         rows = triangles, numbers, edge, start, end, doubled
         triangles, numbers, edge, start, end, doubled = (each[has_plane] for each in rows)

@@ -11,7 +11,7 @@ from ..attributes.ellipses import ellipse_rotations, ellipse_scales
 from ..attributes.material_sampler import MaterialSampler, Samples
 from ..ldc.grid import Grid
 from ..ldc.scan_conversion import expand
-from ..mesh.triangle_mesh import TriangleMesh
+from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at
 from .borders import Borders
 from .clipping import Clipping, clip_fields, clippings
 from .meetings import by_facing
@@ -71,13 +71,14 @@ class BorderPlaces:
         self._counts = np.ceil(np.linalg.norm(along, axis=1) / (_STEP * grid.spacing)).astype(np.int64) + 1
         self._offsets = np.cumsum(self._counts) - self._counts
         # All are moved by the same share towards the middle.
-        corners = mesh.triangles.take(borders.triangles, axis=0).T
-        middle = sum(mesh.positions.take(corner, axis=0) for corner in corners) / 3
+        corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles.take(borders.triangles, axis=0)))
+        middle = (corners[:, 0] + corners[:, 1] + corners[:, 2]).T / 3
         depth = np.einsum("ij,ij->i", middle - borders.start, borders.inward)
         part = np.minimum(_INSIDE * grid.spacing / np.maximum(depth, 1e-300), _TO_MIDDLE)[:, None]
         ends = (borders.start + along * share for share in (_ENDS, 1 - _ENDS))
         self._ends = [place + (middle - place) * part for place in ends]
-        self._seen = [((end - grid.surfel_origin) / grid.spacing).astype(np.float32).T for end in self._ends]
+        seen = ((end - grid.surfel_origin).T / grid.spacing for end in self._ends)
+        self._seen = [np.ascontiguousarray(end, np.float32) for end in seen]
         self._changes = np.zeros(int(self._counts.sum()) + 1, np.int64)
 
     def cover(self, clipping: Clipping):

@@ -74,7 +74,7 @@ def image_neighbours(
         edge = within.take(edge.take(there))
         run, number = expand(sides_of.take(edge))
         side, there = sides.take(edge).take(run) + number, there.take(run)
-        place = [positions[:, a].take(near) * scale for a in (along, up, axis)]
+        place = np.ascontiguousarray(positions.take(near, axis=0).T[[along, up, axis]]) * scale
         return near, *_near_planes(place, firsts.take(there), counts.take(there), side, planes, np.float32(depth))
 
     return (found_in(band) for band in batches(runs_in, _RUNS) if runs_in[band].any())

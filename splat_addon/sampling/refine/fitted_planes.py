@@ -10,6 +10,7 @@ line keeps slightly more of a splat that has moved, because it no longer ends ex
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from ...clip_lines import CLIP_FIELDS, CUT, are_reflex, unpack_lines
 from ...surfels import quaternion_axes
 from ..attributes.blend_depths import LEAST_BLENDING
 from ..ldc.grid import Grid
+from ..mesh.triangle_mesh import triangle_chunks
+from ..workers import in_order
 from .image_samples import SAME_SIDE, ImageSamples
 
 #: How far off a sample's plane neighbours may be, in cells.
@@ -31,6 +34,13 @@ _WEIGHT, _DIAGONAL = np.float32(1), np.float32(0.7)
 
 #: The steepest tilt, as a slope.
 _STEEPEST = np.float32(0.5)
+
+#: Samples per batch: at least, so that operations take longer than their calls, and at most, so that they stay in the
+#: processor's cache; and batches in between, so that threads are equally busy.
+_LEAST, _MOST, _BATCHES = 2048, 32768, 12
+
+#: The share of the time that it takes to find neighbours.
+_FINDING = 0.4
 
 #: A line cuts less by this share of the offset and the slope of its splat.
 _KEPT = 0.5
@@ -51,61 +61,68 @@ def fit_planes(
     """
     # Where a triangle bends, those that its surface goes on in do, too.
     bent = np.flatnonzero(arrays["blend_depth"] > LEAST_BLENDING)
-    names = [name for name in ("positions", "rotations", *CLIP_FIELDS) if name in arrays]
-    here = {name: arrays[name].take(bent, axis=0) for name in (*names, "scales")}
-    places = np.ascontiguousarray(here["positions"].T) * np.float32(1 / grid.spacing)
-    axes = quaternion_axes(here["rotations"])
-    normals = np.ascontiguousarray(axes[2].T)
+    if not len(bent):
+        return {}
+    changed = {name: arrays[name].copy() for name in ("positions", "rotations", *CLIP_FIELDS) if name in arrays}
+    places, normals = _places_and_normals(arrays, bent, grid.spacing)
     spans = [(axis, slice(*np.searchsorted(bent, (rows.start, rows.stop)).tolist())) for axis, rows in images]
-    spans = [span for span in spans if span[1].stop > span[1].start]
-    # for each image, its grid, its own neighbours, those in the other images, and the solution
-    steps = iter(np.linspace(0, 1, len(spans) * (len(spans) + 2) + 1)[1:].tolist())
-    seen = []
-    for axis, rows in spans:
-        seen.append(ImageSamples(places, normals, axis, rows))
-        report(next(steps))
-    lines = _Lines(here, axes, grid.spacing)
-    fits = []
-    for image in seen:
-        fits.append(_Fit(image, lines))
-        report(next(steps))
-    for fit, image in zip(fits, seen, strict=True):
+    spans = [(axis, rows) for axis, rows in spans if rows.stop > rows.start]
+    seen, done = [], 0
+    for image in in_order(partial(ImageSamples, places, normals, *span) for span in spans):
+        seen.append(image)
+        done += len(image)
+        report(_FINDING * done / len(bent))
+
+    def fit(image: ImageSamples, part: slice) -> int:
+        """Fit the planes of these samples, in place; returns how many there are."""
+        rows = bent.take(image.rows[part])
+        scales = arrays["scales"].take(rows, axis=0)
+        sums = _Fit(image, part, _Lines(changed, rows, scales / np.float32(grid.spacing)))
         for another in seen:
             if another is not image:
-                fit.add_from(another)
-                report(next(steps))
-    for fit, image in zip(fits, seen, strict=True):
-        report(next(steps))
-        offset, slope = fit.solve()
-        _move(here, image, offset, slope, grid.spacing)
-        less = (fit.goes_on | is_closed) * (
-            _KEPT * (np.abs(offset) + np.sqrt((slope * slope).sum(axis=0))) * grid.spacing
-        )
+                sums.add_from(another)
+        offset, slope = sums.solve()
+        _move(changed, rows, [n[part] for n in image.along_axes(*image.normals)], offset, slope, grid.spacing)
+        moved = np.abs(offset) + np.sqrt((slope * slope).sum(axis=0))
+        less = (sums.goes_on | is_closed) * (_KEPT * moved * grid.spacing)
         # The first half-axis is the larger one (`ellipse_scales`).
-        _cut_less(here, image.rows, less / here["scales"][:, 0].take(image.rows))
-    changed = {name: arrays[name].copy() for name in names if len(bent)}
-    for name, values in changed.items():
-        values[bent] = here[name]
+        _cut_less(changed, rows, less / scales[:, 0])
+        return len(rows)
+
+    size, done = min(max(len(bent) // _BATCHES, _LEAST), _MOST), 0
+    for count in in_order(partial(fit, image, part) for image in seen for part in triangle_chunks(len(image), size)):
+        done += count
+        report(_FINDING + (1 - _FINDING) * done / len(bent))
     return changed
 
 
-class _Lines:
-    """Which offsets from a surfel its lines keep. clipped: (N,) index among the c surfels with lines, or -1. covectors:
-    (2, 4, c), above 0 at offsets in cells, and 1, on the kept side. reflex: (c,) whether one line's side is enough."""
+def _places_and_normals(arrays: dict[str, np.ndarray], rows: np.ndarray, spacing: float):
+    """(3, n) float32 places in cells from the grid's middle, and (3, n) unit normals of planes."""
+    places, normals = np.empty((2, 3, len(rows)), np.float32)
+    for part in triangle_chunks(len(rows)):
+        some = rows[part]
+        np.multiply(arrays["positions"].take(some, axis=0).T, np.float32(1 / spacing), out=places[:, part])
+        normals[:, part] = quaternion_axes(arrays["rotations"].take(some, axis=0))[2].T
+    return places, normals
 
-    def __init__(self, arrays: dict[str, np.ndarray], axes: tuple[np.ndarray, ...], spacing: float):
-        count = len(arrays["positions"])
-        packed = [arrays.get(name, np.zeros((count, 2), np.int16)) for name in CLIP_FIELDS]
-        rows = np.flatnonzero((packed[0][:, 1] > 0) | (packed[1][:, 1] > 0))
-        self.clipped = np.full(count, -1, np.intp)
-        self.clipped[rows] = np.arange(len(rows))
-        packed = [values.take(rows, axis=0) for values in packed]
+
+class _Lines:
+    """Which offsets from n samples their lines keep. clipped: (n,) index among the c samples with lines, or -1.
+    covectors: (2, 4, c), above 0 at offsets in cells, and 1, on the kept side. reflex: (c,) whether one line's side is
+    enough."""
+
+    def __init__(self, arrays: dict[str, np.ndarray], rows: np.ndarray, sizes: np.ndarray):
+        """sizes: (n, 2) half-axes, in cells."""
+        none = np.zeros((len(rows), 2), np.int16)
+        packed = [arrays[name].take(rows, axis=0) if name in arrays else none for name in CLIP_FIELDS]
+        self.at = np.flatnonzero((packed[0][:, 1] > 0) | (packed[1][:, 1] > 0))
+        self.clipped = np.full(len(rows), -1, np.intp)
+        self.clipped[self.at] = np.arange(len(self.at))
+        packed, sizes = [values.take(self.at, axis=0) for values in packed], sizes.take(self.at, axis=0)
         self.reflex = are_reflex(*packed)
-        half_axes = [
-            axis.take(rows, axis=0).T / (size.take(rows) / np.float32(spacing))
-            for axis, size in zip(axes, arrays["scales"].T, strict=False)
-        ]
-        self.covectors = np.empty((2, 4, len(rows)), np.float32)
+        x, y, _ = quaternion_axes(arrays["rotations"].take(rows.take(self.at), axis=0), 2)
+        half_axes = x.T / sizes[:, 0], y.T / sizes[:, 1]
+        self.covectors = np.empty((2, 4, len(self.at)), np.float32)
         for covector, line in zip(self.covectors, packed, strict=True):
             a, b, c = unpack_lines(line).T
             covector[:3], covector[3] = a * half_axes[0] + b * half_axes[1], c
@@ -119,37 +136,36 @@ def _are_kept(covectors: np.ndarray, reflex: np.ndarray, offsets) -> np.ndarray:
 
 
 class _Fit:
-    """Sums over the neighbours of the samples of one image. goes_on: (n,) whether there are any beyond a line, which
-    then is no open border."""
+    """Sums over the neighbours of n samples, a part of an image. goes_on: (n,) whether there are any beyond a line,
+    which then is no open border."""
 
-    def __init__(self, image: ImageSamples, lines: _Lines):
-        self._image, self._lines = image, lines
-        clipped = lines.clipped.take(image.rows)
-        self._clipped_at = np.flatnonzero(clipped >= 0)
-        clipped = clipped.take(self._clipped_at)
-        self._own_lines = lines.covectors.take(clipped, axis=2), lines.reflex.take(clipped)
-        count = len(image.rows)
+    def __init__(self, image: ImageSamples, part: slice, lines: _Lines):
+        self._image, self._lines, self._next_axes = image, lines, image.next_axes(part)
+        self._places, self._normals = ([row[part] for row in rows] for rows in (image.places, image.normals))
+        self._depth = image.depth[part]
+        count = len(self._depth)
         self._weight, self._height = np.zeros(count, np.float32), np.zeros(count, np.float32)
         self._squares, self._rises = np.zeros((2, count), np.float32), np.zeros((2, count), np.float32)
         self.goes_on = np.zeros(count, bool)
-        for step, neighbour in image.neighbours.items():
+        self._neighbours = image.neighbours(part)
+        for step, neighbour in self._neighbours.items():
             self._add(step, neighbour)
 
     def _add(self, step: tuple[int, int], neighbour: np.ndarray):
-        """Add what the image has at this step from its samples. neighbour: (n,) by number in the image, or -1."""
+        """Add what the image has at this step from the samples. neighbour: (n,) by number in the image, or -1."""
         image = self._image
         rise = image.depth.take(neighbour)
-        rise -= image.depth
-        u, v, a = image.normals
+        rise -= self._depth
+        u, v, a = self._normals
         height = a * rise
         for along, component in zip(step, (u, v), strict=True):
             if along:
                 (np.add if along > 0 else np.subtract)(height, component, out=height)
         is_there = neighbour >= 0
         is_there &= np.abs(height) <= _FARTHEST
-        at = self._clipped_at
+        at = self._lines.at
         offset = image.along_axes(np.float32(step[0]), np.float32(step[1]), rise.take(at))
-        kept = _are_kept(*self._own_lines, offset)
+        kept = _are_kept(self._lines.covectors, self._lines.reflex, offset)
         self.goes_on[at] |= is_there[at] & ~kept
         is_there[at] &= kept
         weight = is_there * (_DIAGONAL if all(step) else _WEIGHT)
@@ -164,11 +180,11 @@ class _Fit:
     def add_from(self, other: ImageSamples):
         """Add neighbours that another image has at the steps where this one has none."""
         image, lines = self._image, self._lines
-        is_next = image.next_axis == other.axis
-        missing = [np.flatnonzero(is_next & (image.neighbours[step] < 0)) for step in image.STEPS]
+        is_next = self._next_axes == other.axis
+        missing = [np.flatnonzero(is_next & (self._neighbours[step] < 0)) for step in image.STEPS]
         at = np.concatenate(missing)
         u, v = np.repeat(np.array(image.STEPS, np.float32), [len(m) for m in missing], axis=0).T
-        own, normals = [place.take(at) for place in image.places], [n.take(at) for n in image.normals]
+        own, normals = ([row.take(at) for row in rows] for rows in (self._places, self._normals))
         steps = image.along_axes(u, v, image.rise((u, v), normals))
         found = other.nearest(*(place + step for place, step in zip(own, steps, strict=True)))
         alike = image.in_order(*(n.take(found) for n in other.along_axes(*other.normals)))
@@ -177,7 +193,7 @@ class _Fit:
         along = image.in_order(*way)
         height = sum(one * step for one, step in zip(normals, along, strict=True))
         is_alike &= (found >= 0) & (np.abs(height) <= _FARTHEST)
-        clipped = lines.clipped.take(image.rows.take(at))
+        clipped = lines.clipped.take(at)
         some = np.flatnonzero(is_alike & (clipped >= 0))
         clipped = clipped.take(some)
         its = lines.covectors.take(clipped, axis=2), lines.reflex.take(clipped)
@@ -195,7 +211,7 @@ class _Fit:
         """(n,) offsets along the normals, in cells, and (3, n) slopes against the planes of the samples."""
         image = self._image
         rises = [rise / (square + _OWN_TILT) for rise, square in zip(self._rises, self._squares, strict=True)]
-        u, v, a = image.normals
+        u, v, a = self._normals
         across = rises[0] * u + rises[1] * v
         slope = np.stack(image.along_axes(rises[0] - across * u, rises[1] - across * v, -across * a))
         steepness = np.sqrt((slope * slope).sum(axis=0))
@@ -203,10 +219,9 @@ class _Fit:
         return self._height / (self._weight + _OWN_PLACE), slope
 
 
-def _move(changed, image: ImageSamples, offset: np.ndarray, slope: np.ndarray, spacing: float):
-    """Give the samples of an image planes that are off theirs by (n,) `offset`, in cells, and have a (3, n) `slope`
+def _move(changed, rows: np.ndarray, normals: list[np.ndarray], offset: np.ndarray, slope: np.ndarray, spacing: float):
+    """Give samples with these normals planes that are off theirs by (n,) `offset`, in cells, and have a (3, n) `slope`
     against them."""
-    rows, normals = image.rows, image.along_axes(*image.normals)
     for column, component in zip(changed["positions"].T, normals, strict=True):
         column[rows] += component * (offset * np.float32(spacing))
     # The shortest turn from the normal n to n - slope.
@@ -214,7 +229,7 @@ def _move(changed, image: ImageSamples, offset: np.ndarray, slope: np.ndarray, s
     x, y, z = sy * nz - sz * ny, sz * nx - sx * nz, sx * ny - sy * nx
     steepness = sx * sx + sy * sy + sz * sz
     w = 1 + np.sqrt(1 + steepness)
-    a, b, c, d = (column.take(rows) for column in changed["rotations"].T)
+    a, b, c, d = changed["rotations"].take(rows, axis=0).T
     turned = (
         w * a - x * b - y * c - z * d,
         w * b + x * a + y * d - z * c,
@@ -230,5 +245,5 @@ def _cut_less(changed: dict[str, np.ndarray], rows: np.ndarray, less: np.ndarray
     """Let the lines of (n,) surfels cut less, by (n,) half-axes; none goes."""
     for name in CLIP_FIELDS:
         if name in changed:
-            cut = changed[name][:, 1].take(rows)
+            cut = changed[name].take(rows, axis=0)[:, 1]
             changed[name][rows, 1] = np.where(cut > 0, np.maximum(cut - less * CUT, 1), 0).astype(np.int16)

@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
 from ..edges.ordering import order_of
+from ..mesh.triangle_mesh import triangle_chunks
 
 #: Samples of one cell are ordered by depth in these parts of a cell.
 _PARTS = 8
@@ -23,8 +26,6 @@ class ImageSamples:
 
     axis: of the image. rows: (n,) of all samples. places: three of (n,) float32, x, y and z in cells from the grid's
     middle. depth: (n,), the one along the axis. normals: three of (n,) across, up and along the axis, unit.
-    next_axis: (n,) of the image that the surface would be seen in if it were steeper. neighbours: step in columns and
-    rows -> (n,) number of the sample there, or -1.
     """
 
     STEPS = ((1, 0), (-1, 0), (0, 1), (0, -1))
@@ -35,15 +36,29 @@ class ImageSamples:
         self._lowest = [np.floor(place.min()) for place in here]
         self._size = [int(place.max() - low) + 1 for place, low in zip(here, self._lowest, strict=True)]
         self._bits = (self._size[2] * _PARTS).bit_length()
-        keys = self._keys(*self._cells(*here))
+        keys = self._keys(*here)
         order = order_of(keys)
         self._sorted, self.rows = keys.take(order), order + rows.start
         self.places = [place.take(self.rows) for place in places]
         self.depth = self.places[axis]
         self.normals = [normals[k].take(self.rows) for k in self._order]
-        u, v, _ = self.normals
-        self.next_axis = np.where(np.abs(u) >= np.abs(v), self._order[0], self._order[1])
-        self.neighbours = self._all_neighbours()
+        self._next = self._next_samples()
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def neighbours(self, part: slice) -> dict[tuple[int, int], np.ndarray]:
+        """Step in columns and rows -> (p,) number of the sample there, or -1, for the p samples of a part."""
+        found = {step: there[part] for step, there in self._next.items()}
+        for u, v in product((-1, 1), repeat=2):
+            corner = self._next[0, v].take(found[u, 0])
+            found[u, v] = np.where(corner >= 0, corner, self._next[u, 0].take(found[0, v]))
+        return found
+
+    def next_axes(self, part: slice) -> np.ndarray:
+        """(p,) axis of the image that the surface would be seen in if it were steeper."""
+        u, v, _ = (n[part] for n in self.normals)
+        return np.where(np.abs(u) >= np.abs(v), self._order[0], self._order[1])
 
     def along_axes(self, u, v, a) -> list:
         """What is given across, up and along the axis, as x, y and z."""
@@ -66,28 +81,25 @@ class ImageSamples:
     def nearest(self, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
         """(m,) numbers of the samples in the same cells as places and nearest to them in depth, or -1."""
         u, v, depth = self.in_order(x, y, z)
-        return self._nearest(*self._cells(u, v, depth), depth)
+        return self._nearest(self._keys(u, v, depth), depth)
 
-    def _cells(self, u: np.ndarray, v: np.ndarray, depth: np.ndarray):
-        """Columns and rows, from 1, and parts of depth; beside the image, those of a margin of one cell."""
+    def _keys(self, u: np.ndarray, v: np.ndarray, depth: np.ndarray) -> np.ndarray:
+        """Numbers by row, column and part of depth; beside the image, those of a margin of one cell."""
         (left, low, _), (width, height, _) = self._lowest, self._size
         column = np.clip(np.floor(u - left), -1, width) + 1
         row = np.clip(np.floor(v - low), -1, height) + 1
-        return column.astype(np.int64), row.astype(np.int64), self._parts(depth)
+        cells = row.astype(np.int64) * (width + 2) + column.astype(np.int64)
+        return (cells << self._bits) + self._parts(depth)
 
     def _parts(self, depth: np.ndarray) -> np.ndarray:
         return np.clip((depth - self._lowest[2]) * _PARTS, 0, self._size[2] * _PARTS - 1).astype(np.int64)
 
-    def _keys(self, column: np.ndarray, row: np.ndarray, parts: np.ndarray) -> np.ndarray:
-        return ((row * (self._size[0] + 2) + column) << self._bits) + parts
-
-    def _nearest(self, column, row, parts, depth: np.ndarray) -> np.ndarray:
-        keys = self._keys(column, row, parts)
+    def _nearest(self, keys: np.ndarray, depth: np.ndarray) -> np.ndarray:
         after = np.searchsorted(self._sorted, keys)
         keys >>= self._bits
         found, gap = np.full(len(keys), -1, np.intp), np.full(len(keys), _FARTHEST, np.float32)
         for number in (after - 1, after):
-            np.clip(number, 0, len(self.rows) - 1, out=number)
+            np.clip(number, 0, len(self) - 1, out=number)
             off = np.abs(self.depth.take(number) - depth)
             nearer = off < gap
             nearer &= self._sorted.take(number) >> self._bits == keys
@@ -95,25 +107,19 @@ class ImageSamples:
             np.copyto(gap, off, where=nearer)
         return found
 
-    def _all_neighbours(self) -> dict[tuple[int, int], np.ndarray]:
-        column, row, _ = self._cells(*self.in_order(*self.places))
-        ahead, found = {}, {}
-        for step in ((1, 0), (0, 1)):
-            expected = self.depth + self.rise(np.float32(step), self.normals)
-            there = self._nearest(column + step[0], row + step[1], self._parts(expected), expected)
-            alike = sum(n * n.take(there) for n in self.normals) >= SAME_SIDE
-            there[~alike] = -1
-            back = np.full(len(there) + 1, -1, np.intp)
-            back[there] = np.arange(len(there))
-            # One more, so that the neighbour of none is none.
-            ahead[step] = np.append(there, -1)
+    def _next_samples(self) -> dict[tuple[int, int], np.ndarray]:
+        """One of `STEPS` -> (n + 1,) numbers of the samples there, or -1; the last, so that none has none."""
+        found = {}
+        for step, cells in (((1, 0), 1), ((0, 1), self._size[0] + 2)):
+            ahead, back = np.full((2, len(self) + 1), -1, np.intp)
+            for part in triangle_chunks(len(self)):
+                normals = [n[part] for n in self.normals]
+                expected = self.depth[part] + self.rise(np.float32(step), normals)
+                keys = (((self._sorted[part] >> self._bits) + cells) << self._bits) + self._parts(expected)
+                there = self._nearest(keys, expected)
+                alike = sum(n * of.take(there) for n, of in zip(normals, self.normals, strict=True)) >= SAME_SIDE
+                there[~alike] = -1
+                ahead[part], back[there] = there, np.arange(part.start, part.stop)
             back[-1] = -1
-            ahead[-step[0], -step[1]] = back
-        for step, numbers in ahead.items():
-            found[step] = numbers[:-1]
-        for u in (-1, 1):
-            for v in (-1, 1):
-                across, up = ahead[u, 0], ahead[0, v]
-                corner = up.take(across[:-1])
-                found[u, v] = np.where(corner >= 0, corner, across.take(up[:-1]))
+            found[step], found[-step[0], -step[1]] = ahead, back
         return found

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs jobs in threads: numpy frees the interpreter in its long operations, so that several go on at once."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+
+#: More threads would wait for the interpreter between operations, and hold more memory.
+_MOST = 4
+
+
+def in_order(jobs: Iterable[Callable]) -> Iterator:
+    """The results of jobs that are independent of each other, in their order, whatever the number of threads.
+
+    Few more jobs are begun than results are taken, so that these need not be kept. What a job raises is raised here.
+    """
+    count = min(os.cpu_count() or 1, _MOST)
+    if count == 1:
+        yield from (job() for job in jobs)
+        return
+    with ThreadPoolExecutor(count) as pool:
+        begun = deque()
+        try:
+            for job in jobs:
+                begun.append(pool.submit(job))
+                if len(begun) > count:
+                    yield begun.popleft().result()
+            while begun:
+                yield begun.popleft().result()
+        finally:
+            for job in begun:
+                job.cancel()
