@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A file of more surfels than memory holds: its first picture, the longest one of a flight, and the memory.
 
-A landscape is written portion by portion, by another process; then it is drawn as the 3D view does it: once after
-opening the file, and while the camera flies over it. *Read* is the part of a picture's time in which surfels are chosen
-and waited for; the rest is packed, uploaded and drawn.
+A landscape is written portion by portion, by another process, unless --file names one that is there; then it is drawn
+as the 3D view does it: once after opening the file, and while the camera flies over it at the view's rate. *Read* is
+the part of a picture's time in which surfels are chosen and waited for; the rest is packed, uploaded and drawn.
 """
 
 from __future__ import annotations
@@ -15,8 +15,19 @@ from time import perf_counter
 
 import numpy as np
 
-from splat_addon.rendering import Camera, Instance, Light, Refinement, Renderer, Scene, Settings, look_at, open_device
-from splat_addon.streaming import Stream, write_blocks
+from splat_addon.rendering import (
+    Camera,
+    Instance,
+    Light,
+    Pace,
+    Refinement,
+    Renderer,
+    Scene,
+    Settings,
+    look_at,
+    open_device,
+)
+from splat_addon.streaming import BlockFile, Stream, write_blocks
 from splat_addon.surfels import Surfels
 
 DEVICES = ("standalone",)
@@ -31,7 +42,8 @@ def arguments(parser) -> None:
     parser.add_argument("--size", type=int, default=512, help="pixels along each side")
     parser.add_argument("--flight", type=int, default=60, help="pictures of the flight")
     parser.add_argument("--budget", type=int, default=512, help="megabytes for rows of the file")
-    parser.add_argument("--file", type=Path, help="a file to keep, and to take if it is there")
+    parser.add_argument("--rate", type=float, default=10, help="pictures a second that the flight asks for")
+    parser.add_argument("--file", type=Path, help="a file to fly over; it is written if it is not there, and kept")
 
 
 class Landscape:
@@ -78,7 +90,7 @@ def run(options, report) -> None:
         device, seconds = open_device(options.device), perf_counter() - started
         report.header(device, f"{options.size} x {options.size} pixels, {options.budget} MB for rows of the file")
         written = f", written in {seconds:.0f} s with {megabytes(resource.RUSAGE_CHILDREN)}" if is_new else ""
-        report.say(f"{options.side**2:,} surfels in a file of {path.stat().st_size / 1e9:.1f} GB{written}.")
+        report.say(f"{BlockFile(path).count:,} surfels in a file of {path.stat().st_size / 1e9:.1f} GB{written}.")
         before = megabytes(resource.RUSAGE_SELF)
         report.table([n.replace("_", " ") for n in COLUMNS], (fly(device, path, s, options) for s in (0, 1024)))
         report.say(f"At most {megabytes(resource.RUSAGE_SELF)} resident, {before} before the file was opened.")
@@ -98,12 +110,12 @@ def fly(device, path: Path, shadow: int, options) -> tuple:
     stream = Stream(path, options.budget * 1_000_000)
     sun = Light("sun", energy=3, direction=(-0.5, 0.4, -0.6), casts_shadow=shadow > 0)
     scene = Scene((Instance(stream.coarsest, stream=stream),), (sun,), (0.2, 0.2, 0.2))
-    view, times, reads = Refinement(Renderer(device)), [], []
+    view, times, reads = Refinement(Renderer(device), Pace(options.rate)), [], []
     resolved = view.renderer.streamed.resolved
 
-    def timed(*arguments):
+    def timed(*arguments, **named):
         begun = perf_counter()
-        found = resolved(*arguments)
+        found = resolved(*arguments, **named)
         reads.append(1e3 * (perf_counter() - begun))
         return found
 

@@ -20,9 +20,13 @@ _SPARE = 0.6
 _STEP = 2.0
 
 
+#: Surfels of files that a moving view may draw in any case, and in its first picture.
+LEAST_STREAMED = 1 << 15
+
+
 class Pace:
-    """Multiplies the tolerance of moving views, and if fewer surfels do not help enough, the width of their pixels.
-    rate: pictures per second; None: whatever they take.
+    """Limits how many surfels a moving view takes from files, multiplies its tolerance, and if fewer surfels do not
+    help enough, the width of its pixels. rate: pictures per second; None: whatever they take.
 
     The number of splats falls with the square of the tolerance, and that of pixels with the square of their width, so
     both change with the root of the time.
@@ -35,6 +39,12 @@ class Pace:
         self._tolerance = self._width = 1.0
         self._raised: tuple[float, float] | None = None
         self._does_merging_help = True
+        self._most = float(LEAST_STREAMED)
+
+    @property
+    def most(self) -> int | None:
+        """Surfels that a moving view may take from files."""
+        return None if self.rate is None else int(self._most)
 
     def begin_coarsely(self) -> None:
         """Draw the next picture as coarse as any if nothing is known about the time that it takes."""
@@ -54,8 +64,9 @@ class Pace:
             settings if tolerance == settings.detail_tolerance else replace(settings, detail_tolerance=tolerance),
         )
 
-    def end(self, settings: Settings) -> None:
-        """Learn from the time that the picture took. settings: those that it would have at rest."""
+    def end(self, settings: Settings, streamed: int = 0) -> None:
+        """Learn from the time that the picture took. settings: those that it would have at rest. streamed: surfels that
+        it had from files."""
         if self.rate is None:
             return
         load, raised, self._raised = (self._clock() - self._started) * self.rate, self._raised, None
@@ -64,10 +75,13 @@ class Pace:
             self._does_merging_help = False
             self._tolerance = max(self._tolerance / raised[1], 1.0)
             self._width = min(self._width * raised[1], WIDEST)
+        elif streamed > LEAST_STREAMED and load > 1:
+            # others come later, and the tolerance is not what decides how many there are
+            self._most = max(min(streamed, self._most) / min(load, _STEP**2), LEAST_STREAMED)
         elif not _SPARE <= load <= 1:
-            self._change(load, min(max((load / (_SPARE + 1) * 2) ** 0.5, 1 / _STEP), _STEP), settings)
+            self._change(load, min(max((load / (_SPARE + 1) * 2) ** 0.5, 1 / _STEP), _STEP), settings, streamed)
 
-    def _change(self, load: float, step: float, settings: Settings) -> None:
+    def _change(self, load: float, step: float, settings: Settings, streamed: int) -> None:
         """Make the next picture coarser (a step above 1) or finer."""
         most = max(COARSEST / settings.detail_tolerance, 1.0) if settings.detail_tolerance else 1.0
         if step > 1 and self._does_merging_help and self._tolerance < most:
@@ -75,6 +89,10 @@ class Pace:
             self._raised = load, self._tolerance / before
         elif step > 1 or self._width > 1:
             self._width = min(max(self._width * step, 1.0), WIDEST)
-        else:
+        elif self._tolerance > 1:
             self._tolerance = max(self._tolerance * step, 1.0)
             self._does_merging_help |= self._tolerance == 1
+        else:
+            self._does_merging_help = True
+            # far more than there are would take long to find out that they are too many
+            self._most = min(self._most / step**2, max(_STEP**2 * streamed, LEAST_STREAMED))

@@ -52,6 +52,10 @@ class Refinement:
             moves = hurries or (self._of is not None and self._of[0] is scene and self._of[2] == settings)
             self._of, self._is_coarse = (scene, camera, settings), False
             self._begin(settings)
+            if any(instance.stream is not None for instance in scene.surfels):
+                # of what is in files, a few surfels are there at once, and the rest comes as quickly as it can be drawn
+                self.pace.begin_coarsely()
+                moves = True
             yield from self._moving(scene, camera, settings) if moves else self._first(scene, camera, settings)
             return
         read = self._read(scene, camera, settings)
@@ -80,9 +84,9 @@ class Refinement:
     def _begin(self, settings: Settings) -> None:
         self.samples, self._maps, self._refines = 0, None, settings.samples > 1
 
-    def _read(self, scene: Scene, camera: Camera, settings: Settings) -> Scene:
-        """The scene with the surfels that could be read in time."""
-        return self.renderer.streamed.resolved(scene, camera, settings, _READING)
+    def _read(self, scene: Scene, camera: Camera, settings: Settings, most: int | None = None) -> Scene:
+        """The scene with the surfels that could be read in time, at most so many of them."""
+        return self.renderer.streamed.resolved(scene, camera, settings, _READING, most=most)
 
     def _first(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
         """The first picture of a scene."""
@@ -92,13 +96,15 @@ class Refinement:
     def _moving(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
         """The picture of a camera that moves, as coarse as its pace requires."""
         (seen, drawn), device = self.pace.begin(camera, settings), self.renderer.device
-        self._is_coarse = drawn is not settings or seen is not camera
-        self._drawn = self._read(scene, seen, drawn)
+        self._drawn = self._read(scene, seen, drawn, self.pace.most)
+        cuts = () if self.pace.most is None or self._drawn is scene else self._drawn.surfels
+        streamed = sum(len(instance.surfels) for instance in cuts if instance.is_cut)
+        self._is_coarse = drawn is not settings or seen is not camera or streamed > 0
         for shown in self.renderer.draw(self._drawn, seen, drawn):
             if self.pace.rate is not None:
                 device.finish(device.target([shown.texture]))
             yield shown._replace(place=_enlarged(shown.place, seen.size, camera.size))
-        self.pace.end(settings)
+        self.pace.end(settings, streamed)
 
     def _is_of(self, scene: Scene, camera: Camera, settings: Settings) -> bool:
         if self._of is None:

@@ -56,12 +56,14 @@ class Streamed:
         settings: Settings,
         seconds: float | None = None,
         told: Callable[[], None] | None = None,
+        most: int | None = None,
     ) -> Scene:
         """The scene as this view draws it; the same object as long as nothing changes.
 
         seconds: time to wait. Reading and choosing go on in other threads then, and until they are done the sets of
         earlier views are drawn, which cover everything too, or the coarsest ones. None: wait for everything. told:
-        called between reads; it may raise. Raises OSError if a file cannot be read.
+        called between reads; it may raise. most: surfels that all sets together may have when there is no time to wait
+        for everything. Raises OSError if a file cannot be read.
         """
         self.is_waiting, self.short = False, ()
         streams = {instance.stream: 0 for instance in scene.surfels if instance.stream is not None}
@@ -71,6 +73,7 @@ class Streamed:
         if seconds is None:
             for stream in streams:
                 stream.begin_frame()
+        share = most and most // sum(instance.stream is not None for instance in scene.surfels)
         until, made, short = perf_counter() + (seconds or 0.0), {}, {}
         shadows = settings.shadow_resolution > 0 and any(light.casts_shadow for light in scene.lights)
         for instance in scene.surfels:
@@ -83,7 +86,7 @@ class Streamed:
                 # instances are made again with every change of the scene, but their order stays
                 streams[stream] += 1
                 coming = self._coming.setdefault((stream, streams[stream]), _Coming(stream))
-                seen = coming.latest(view, beside, max(until - perf_counter(), 0.0))
+                seen = coming.latest(view, beside, max(until - perf_counter(), 0.0), share)
                 self.is_waiting |= coming.is_waiting
             short |= {instance.name: None} if seen.is_short else {}
             known = self._made.get(instance)
@@ -112,15 +115,15 @@ class _Coming:
         self._seconds = _READING
         self.is_waiting = True
 
-    def latest(self, view: Sight, beside: float | None, seconds: float) -> Seen:
-        """What is there after waiting at most so many seconds."""
-        key, until = (view.key, beside), perf_counter() + seconds
+    def latest(self, view: Sight, beside: float | None, seconds: float, most: int | None) -> Seen:
+        """What is there after waiting at most so many seconds. most: as in `descend`."""
+        key, until = (view.key, beside, most is None), perf_counter() + seconds
         while True:
             self._take(max(until - perf_counter(), 0.0))
             self.is_waiting = self._key != key or not self._seen.is_whole
             if self.is_waiting and self._next is None:
                 self._seconds = 2 * self._seconds if self._key == key else _READING
-                self._next = key, self._stream.ahead(view, beside, self._seconds)
+                self._next = key, self._stream.ahead(view, beside, self._seconds, most)
             if not self.is_waiting or perf_counter() >= until:
                 return self._seen
 

@@ -25,13 +25,15 @@ class Cut(NamedTuple):
     wanted: np.ndarray
 
 
-def descend(blocks: Blocks, pages: Pages, sight: Sight, beside: float | None) -> Cut:
+def descend(blocks: Blocks, pages: Pages, sight: Sight, beside: float | None, most: int | None = None) -> Cut:
     """The cut as far as pages are there, which are noted as used.
 
-    beside: blocks outside the picture may be off by this many times the tolerance; None leaves them out.
+    beside: blocks outside the picture may be off by this many times the tolerance; None leaves them out. most: rows
+        that it may have, if the roots have no more; the blocks of the largest errors of each level become finer.
     """
     front, drawn, wanted, urgency = np.arange(int(blocks.roots)), [], [], []
     front, pixels = _errors(blocks, front, sight, beside)
+    room = np.inf if most is None else most - _rows(blocks, front).sum()
     while len(front):
         pages.use(blocks.first[front], blocks.last[front])
         starts, ends = blocks.first_child[front], blocks.last_child[front]
@@ -47,15 +49,34 @@ def descend(blocks: Blocks, pages: Pages, sight: Sight, beside: float | None) ->
         is_here = pages.have(first, last)
         lacks = np.zeros(len(coarse), bool)
         lacks[owners[~is_here]] = True
-        drawn.append(coarse[lacks])
-        wanted.append(kept[~is_here])
-        urgency.append(pixels[owners[~is_here]])
-        goes_on = ~lacks[owners]
+        more = np.bincount(owners, _rows(blocks, kept), len(coarse)) - _rows(blocks, coarse)
+        fits = _fits(more, pixels, room)
+        goes = fits & ~lacks
+        room -= more[goes].sum()
+        drawn.append(coarse[~goes])
+        is_wanted = ~is_here & fits[owners]
+        wanted.append(kept[is_wanted])
+        urgency.append(pixels[owners[is_wanted]])
+        goes_on = goes[owners]
         front, pixels = kept[goes_on], own_pixels[goes_on]
     if not drawn:
         return Cut(front, front)
     rows = np.concatenate(wanted)[np.argsort(-np.concatenate(urgency), kind="stable")]
     return Cut(np.concatenate(drawn), pages.missing(blocks.first[rows], blocks.last[rows]))
+
+
+def _rows(blocks: Blocks, numbers: np.ndarray) -> np.ndarray:
+    """(n,) the number of rows of each block."""
+    return blocks.last[numbers] - blocks.first[numbers]
+
+
+def _fits(more: np.ndarray, pixels: np.ndarray, room: float) -> np.ndarray:
+    """(n,) bool: which blocks may become finer, those of the largest errors first. more: rows that this adds."""
+    fits = np.ones(len(more), bool)
+    if np.isfinite(room):
+        order = np.argsort(-pixels, kind="stable")
+        fits[order] = np.cumsum(more[order]) <= room
+    return fits
 
 
 def _errors(blocks: Blocks, rows: np.ndarray, sight: Sight, beside: float | None) -> tuple[np.ndarray, np.ndarray]:

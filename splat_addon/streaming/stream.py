@@ -94,21 +94,21 @@ class Stream:
         beside: as in `descend`. told: called between reads; it may raise. Raises OSError if the file cannot be read.
         """
         key = sight.key, beside
-        found = self._kept[key][1] if key in self._kept else self._seen(sight, beside, None, told)
+        found = self._kept[key][1] if key in self._kept else self._seen(sight, beside, None, None, told)
         self._kept[key] = self._frame, found
         return found
 
-    def ahead(self, sight: Sight, beside: float | None, seconds: float) -> Future[Seen]:
+    def ahead(self, sight: Sight, beside: float | None, seconds: float, most: int | None = None) -> Future[Seen]:
         """What a view draws after some time of reading, prepared by another thread; what is missing then is drawn from
-        its parents. Raises later as `seen`."""
-        return self._reader.submit(self._seen, sight, beside, seconds, None)
+        its parents. most: as in `descend`. Raises later as `seen`."""
+        return self._reader.submit(self._seen, sight, beside, most, seconds, None)
 
-    def _seen(self, sight: Sight, beside: float | None, seconds: float | None, told) -> Seen:
+    def _seen(self, sight: Sight, beside: float | None, most: int | None, seconds: float | None, told) -> Seen:
         until = np.inf if seconds is None else perf_counter() + seconds
         with self._lock:
             self.pages.begin()
             for turn in count():
-                cut = descend(self.file.blocks, self.pages, sight, beside)
+                cut = descend(self.file.blocks, self.pages, sight, beside, most)
                 wanted = cut.wanted[: self.pages.room()]
                 # at least one read, so that every call makes progress
                 if not len(wanted) or (turn and perf_counter() >= until):

@@ -9,7 +9,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.rendering import Pace, Refinement, Renderer, Settings
-from splat_addon.rendering.pace import COARSEST, WIDEST
+from splat_addon.rendering.pace import COARSEST, LEAST_STREAMED, WIDEST
 
 SIZE = (240, 160)
 CAMERA = scenes.torus(100, SIZE)[1]
@@ -69,6 +69,37 @@ def test_where_merging_does_not_help_there_are_fewer_pixels(tolerance):
 def test_both_help_where_each_does_for_a_part():
     tolerances, widths = choices(lambda tolerance, width: 400 / tolerance**2 / width**2, pictures=30)
     assert tolerances[-1] == COARSEST and widths[-1] > 1 and 400 / tolerances[-1] ** 2 / widths[-1] ** 2 <= 0.1
+
+
+def streamed(seconds, pictures=40, there=10**6):
+    """How many surfels of a file successive pictures have; `seconds` gives a picture's time for them."""
+    clock, found = Clock(), []
+    pace = Pace(10.0, clock)
+    for _ in range(pictures):
+        pace.begin(CAMERA, SETTINGS)
+        found.append(min(pace.most, there))
+        clock.now += seconds(found[-1])
+        pace.end(SETTINGS, found[-1])
+    return found
+
+
+def test_a_view_takes_as_many_surfels_from_files_as_its_rate_allows():
+    found = streamed(lambda count: 0.01 + count / 2e6)
+    assert found[0] == LEAST_STREAMED and found == sorted(found) and 0.06 <= 0.01 + found[-1] / 2e6 <= 0.1
+    assert streamed(lambda count: 1e-3)[-1] == 10**6
+    assert set(streamed(lambda count: 5.0)) == {LEAST_STREAMED}
+
+
+def test_a_view_that_becomes_slow_takes_fewer_at_once():
+    clock = Clock()
+    pace = Pace(10.0, clock)
+    for seconds in (*[0.01] * 10, 1.0, 1.0, 1.0):
+        before = pace.most
+        pace.begin(CAMERA, SETTINGS)
+        clock.now += seconds
+        pace.end(SETTINGS, before)
+        assert (pace.most >= before) if seconds < 0.1 else pace.most == max(before // 4, LEAST_STREAMED)
+    assert Pace(None).most is None
 
 
 @pytest.mark.parametrize("slow", [lambda width: 1.0, lambda width: 1.0 / width**2])

@@ -106,6 +106,28 @@ def test_there_is_no_hole_while_blocks_are_missing(many_portions, monkeypatch):
     assert len(seen.surfels) == len(Stream(many_portions, PLENTY).seen(view).surfels)
 
 
+def test_a_view_in_a_hurry_has_no_more_surfels_than_it_asks_for_and_no_hole(many_portions):
+    stream, view, errors = Stream(many_portions, PLENTY), sight((0, 0, 2), 0.3), []
+    whole = stream.seen(view).surfels
+    roots = len(stream.coarsest)
+    for most in (roots, 2 * roots, len(whole) // 4, len(whole) // 2, 2 * len(whole)):
+        seen = stream.ahead(view, None, 10.0, most).result()
+        assert seen.is_whole and covered(seen.surfels, view).all()
+        assert most / 4 < len(seen.surfels) <= most or seen.surfels is whole
+        errors.append(seen.surfels.scales.max())
+    assert seen.surfels is whole and errors == sorted(errors, reverse=True) and errors[0] > 2 * errors[-1]
+
+
+def test_what_a_view_in_a_hurry_does_not_draw_is_not_read(many_portions):
+    view = sight((0, 0, 2), 0.3)
+    read = []
+    for most in (400, None):
+        stream = Stream(many_portions, PLENTY)
+        stream.ahead(view, None, 10.0, most).result()
+        read.append(stream.rows_read)
+    assert read[0] < read[1] / 4
+
+
 def test_the_memory_is_never_exceeded_and_what_does_not_fit_is_coarser(many_portions):
     budget = 12 * PAGE * 80
     stream = Stream(many_portions, budget)
