@@ -7,8 +7,8 @@ own. `block_file` opens it, `pages` keeps the rows that were read last within a 
 view with ordinary `Surfels`; blocks that have not been read yet are replaced by their parents.
 """
 
-from .block_file import BlockFile
+from .block_file import BlockFile, described
 from .stream import Stream
 from .writing import WritingCancelled, write_blocks
 
-__all__ = ["BlockFile", "Stream", "WritingCancelled", "write_blocks"]
+__all__ = ["BlockFile", "Stream", "WritingCancelled", "described", "write_blocks"]

@@ -14,6 +14,26 @@ from .layout import read_directory, row_type
 from .writing import COLUMNS
 
 
+def described(path: str | os.PathLike) -> dict:
+    """What a file holds, in plain values. Raises OSError or ValueError as `layout.read_directory`."""
+    file = BlockFile(path)
+    file.close()
+    blocks = file.blocks
+    corners = blocks.low[: int(blocks.roots)].min(axis=0), blocks.high[: int(blocks.roots)].max(axis=0)
+    low, high = ((file.origin + corner).tolist() for corner in corners)
+    return {
+        "file": str(file.path),
+        "bytes": file.path.stat().st_size,
+        "surfels": file.count,
+        "rows": file.rows,
+        "blocks": len(blocks),
+        "fields": list(file.kind.names),
+        "solid": file.is_solid,
+        "low": low,
+        "high": high,
+    }
+
+
 class BlockFile:
     """count: number of surfels. rows: number of rows, merged ones included. kind: type of a row. blocks: the table,
     whose arrays are read from the file as they are looked at.

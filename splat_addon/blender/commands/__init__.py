@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`blender FILE.blend --command surfels convert|render|merge|info|template`: for farms, pipelines and scripts.
+"""`blender FILE.blend --command surfels convert|render|merge|store|info|template`: for farms, pipelines and scripts.
 
 Each command may be stopped at any moment and run again: existing results are kept, missing ones are made, and a file
 gets its name only once it is complete. Exit codes: 0 done, 1 failed, after one sentence, 2 wrong arguments.
@@ -13,11 +13,18 @@ import sys
 import bpy
 
 from ..engine.final_render import sentence_of
-from . import convert, info, merge, render, template
+from . import convert, info, merge, render, store, template
 
 NAME = "surfels"
 
-_COMMANDS = {"convert": convert, "render": render, "merge": merge, "info": info, "template": template}
+_COMMANDS = {
+    "convert": convert,
+    "render": render,
+    "merge": merge,
+    "store": store,
+    "info": info,
+    "template": template,
+}
 
 
 def run(arguments: list[str]) -> int:

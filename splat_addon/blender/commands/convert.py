@@ -39,6 +39,11 @@ def add_conversion_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments that `merge` needs too."""
     parser.add_argument("--objects", nargs="+", help="names; without them everything visible that has surfaces")
     parser.add_argument("--blocks", type=int, help="how many blocks of the sampling grid machines share")
+    add_density_arguments(parser)
+
+
+def add_density_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments that override the sidebar's density."""
     density = parser.add_mutually_exclusive_group()
     for name, kind in (("resolution", int), ("spacing", float), ("count", int)):
         density.add_argument(f"--{name}", type=kind, help=DENSITIES[name.upper()].description)
@@ -90,8 +95,14 @@ def block_file(out: Path, number: int, count: int) -> Path:
 
 def new_batch(options: argparse.Namespace, sampler: Callable[..., Sampling] = sample_surface) -> ConversionBatch:
     """A batch with the chosen settings. sampler: replaces `sample_surface`, with the same arguments."""
-    sources, chosen = sources_of(options.objects), choices(settings_of(options))
-    return ConversionBatch(sources, chosen, bpy.context.view_layer.objects.active, sampler)
+    return batch_of(sources_of(options.objects), options, sampler)
+
+
+def batch_of(
+    sources: list[bpy.types.Object], options: argparse.Namespace, sampler: Callable[..., Sampling] = sample_surface
+) -> ConversionBatch:
+    """A batch of these sources. sampler: as in `new_batch`."""
+    return ConversionBatch(sources, choices(settings_of(options)), bpy.context.view_layer.objects.active, sampler)
 
 
 def settings_of(options: argparse.Namespace):

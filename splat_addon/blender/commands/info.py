@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`surfels info`: prints what a file contains, as text or as JSON."""
+"""`surfels info`: prints what the .blend contains, or a file of surfels in blocks, as text or as JSON."""
 
 from __future__ import annotations
 
@@ -10,22 +10,28 @@ from pathlib import Path
 
 import bpy
 
+from ...streaming import described
+from ...streaming.layout import SUFFIX
 from ..export.camera import picture_size
 from ..geometry.attributes import has_surfels
 from ..geometry.sources import has_surfaces
 from ..ids import ENGINE
 
 HELP = "tell what the file holds"
-DESCRIPTION = "Tells what the file holds: its engine, frames, size, surfel objects, and what could be converted."
+DESCRIPTION = (
+    "Tells what the .blend holds: its engine, frames, size, surfel objects, and what could be converted; or what a "
+    f"{SUFFIX} file holds."
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", nargs="?", type=Path, help=f"a {SUFFIX} file; without it the .blend")
     parser.add_argument("--json", action="store_true", help="one line of JSON for programs")
 
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
-    """Print the information; writes no file."""
-    facts = _facts(bpy.context.scene)
+    """Print the information; writes no file. Raises OSError or ValueError as `described`."""
+    facts = described(options.file) if options.file else _facts(bpy.context.scene)
     if options.json:
         print(json.dumps(facts), flush=True)
     else:

@@ -3,18 +3,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import bpy
-import numpy as np
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ...interchange import joined, transformed, write_gaussian_ply, write_ply
-from ...surfels import Surfels
-from ..geometry.attributes import has_surfels, read_surfels
-from ..geometry.points_proxy import points_of
+from ...interchange import joined, write_gaussian_ply, write_ply
+from ..geometry.attributes import has_surfels
 from ..geometry.surfel_files import file_of
+from ..geometry.world_surfels import world_surfels
 from ..ids import EXPORT_PLY
 from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
@@ -76,7 +72,7 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
     def execute(self, context):
         candidates = context.selected_objects if self.use_selection else context.visible_objects
         try:
-            parts, unusable = _world_surfels(candidates, context.evaluated_depsgraph_get())
+            parts, unusable = world_surfels(candidates, context.evaluated_depsgraph_get())
             if not parts:
                 raise ValueError(
                     said("No selected object is surfels; convert one first, or choose others")
@@ -111,22 +107,6 @@ def _may_hold_surfels(candidate: bpy.types.Object) -> bool:
     if candidate.type not in {"MESH", "POINTCLOUD"}:
         return False
     return has_surfels(candidate.data) or any(modifier.type == "NODES" for modifier in candidate.modifiers)
-
-
-def _world_surfels(candidates: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> tuple[list[Surfels], int]:
-    """The surfels of those objects that are surfels, in world space, each set with its own materials; and the number of
-    unusable ones."""
-    parts, unusable, slots = [], 0, 0
-    for candidate in candidates:
-        evaluated = candidate.evaluated_get(depsgraph)
-        with points_of(evaluated) as holders:
-            for points in filter(has_surfels, holders):
-                surfels, skipped = read_surfels(points)
-                surfels = replace(surfels, materials=surfels.materials + np.int32(slots))
-                parts.append(transformed(surfels, np.array(evaluated.matrix_world, np.float64)))
-                unusable += skipped
-                slots += max(len(candidate.material_slots), 1)
-    return parts, unusable
 
 
 def draw_menu_entry(menu, context):

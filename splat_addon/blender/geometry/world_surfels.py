@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The surfels of objects in world space, as files need them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import bpy
+import numpy as np
+
+from ...interchange import transformed
+from ...surfels import Surfels
+from .attributes import has_surfels, read_surfels
+from .points_proxy import points_of
+
+
+def world_surfels(candidates: Iterable[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> tuple[list[Surfels], int]:
+    """The surfels of those objects that are surfels, in world space, each set with its own materials; and the number of
+    unusable ones."""
+    parts, unusable, slots = [], 0, 0
+    for candidate in candidates:
+        evaluated = candidate.evaluated_get(depsgraph)
+        with points_of(evaluated) as holders:
+            for points in filter(has_surfels, holders):
+                surfels, skipped = read_surfels(points)
+                surfels = replace(surfels, materials=surfels.materials + np.int32(slots))
+                parts.append(transformed(surfels, np.array(evaluated.matrix_world, np.float64)))
+                unusable += skipped
+                slots += max(len(candidate.material_slots), 1)
+    return parts, unusable

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`surfels store` makes a complete file of surfels in blocks or none, and `surfels info` tells what it holds."""
+
+import json
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender.geometry.world_surfels import world_surfels
+from splat_addon.interchange import write_ply
+from splat_addon.streaming import BlockFile, Stream, described
+from splat_addon.streaming.layout import as_surfels
+
+
+def every_surfel(path):
+    """The surfels of a file, without merged ones."""
+    file = BlockFile(path)
+    first, last = file.blocks.first, file.blocks.last
+    rows = []
+    for number in np.flatnonzero(file.blocks.first_child == file.blocks.last_child):
+        some = np.empty(last[number] - first[number], file.kind)
+        file.read_into(some, int(first[number]))
+        rows.append(some)
+    return as_surfels(np.concatenate(rows), file.origin, file.is_solid)
+
+
+def sorted_places(surfels):
+    places = surfels.positions + surfels.origin
+    return places[np.lexsort(places.T)]
+
+
+@pytest.mark.parametrize("name", ["Sphere surfels", "floor"])
+def test_objects_are_stored_in_world_space_and_converted_if_they_are_no_surfels(
+    name, animation, surfels_command, tmp_path
+):
+    bpy.data.objects[name].location.z += 3
+    bpy.context.view_layer.update()
+    out = tmp_path / "new.surfelblocks"
+    code, said = surfels_command("store", "--objects", name, "--resolution", 40, "--out", out)
+    assert code == 0 and f"wrote {out}" in said and "Merging: 100%" in said
+    made = bpy.data.objects[name if name.endswith("surfels") else f"{name} surfels"]
+    (whole,), _ = world_surfels([made], bpy.context.evaluated_depsgraph_get())
+    found = every_surfel(out)
+    assert f"{len(found):,} surfels" in said and len(found) == len(whole) > 1000
+    assert found.positions[:, 2].max() + found.origin[2] >= 3 and sorted(tmp_path.iterdir())[-1] == out
+    np.testing.assert_allclose(sorted_places(found), sorted_places(whole), atol=1e-5)
+    assert "there already" in surfels_command("store", "--objects", name, "--out", out)[1]
+
+
+def test_a_ply_file_is_stored_and_told_of(animation, surfels_command, surfels_of, tmp_path):
+    surfels = surfels_of(bpy.data.objects["Sphere surfels"])
+    write_ply(tmp_path / "scan.ply", surfels)
+    out = tmp_path / "scan.surfelblocks"
+    assert surfels_command("store", "--ply", tmp_path / "scan.ply", "--out", out)[0] == 0
+    code, said = surfels_command("info", out, "--json")
+    facts = json.loads(said)
+    assert code == 0 and facts == described(out) and facts["surfels"] == len(surfels) < facts["rows"]
+    low, high = surfels.local_bounds
+    assert (np.array(facts["low"]) <= low + surfels.origin).all()
+    assert (np.array(facts["high"]) >= high + surfels.origin).all()
+    assert f"surfels: {len(surfels)}" in surfels_command("info", out)[1]
+    stream = Stream(out, 0)
+    assert len(stream) == len(surfels)
+    stream.close()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("--objects", "walls"), "no object 'walls'"),
+        (("--objects", "camera"), "'camera' has no surface to convert"),
+        (("--objects", "floor", "--spacing", 1e-9), "floor: "),
+        (("--ply", "nowhere.ply"), "nowhere.ply: No such file"),
+        (("--ply", "bare.ply"), "does not hold surfels"),
+    ],
+)
+def test_what_cannot_be_stored_leaves_nothing(arguments, sentence, animation, surfels_command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bare.ply").write_text(
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+        "0 0 0\n"
+    )
+    code, said = surfels_command("store", *arguments, "--out", "new.surfelblocks")
+    assert code == 1 and sentence in said
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["anim.blend", "bare.ply"]
+
+
+def test_a_wrong_name_and_surfels_in_a_file_are_refused(animation, surfels_command, tmp_path):
+    assert (
+        "is a .surfelblocks file, not 'new.ply'"
+        in surfels_command("store", "--objects", "floor", "--out", tmp_path / "new.ply")[1]
+    )
+    bpy.context.view_layer.objects.active = bpy.data.objects["Sphere surfels"]
+    bpy.ops.object.surfels_to_file()
+    out = tmp_path / "new.surfelblocks"
+    assert "in a file already" in surfels_command("store", "--objects", "Sphere surfels", "--out", out)[1]
+    assert surfels_command("info", tmp_path / "anim.blend")[0] == 1
