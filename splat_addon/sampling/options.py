@@ -14,6 +14,12 @@ from .refine.adaptive import Tolerance
 DEFAULT_SPLAT_SIZE = 1.25
 
 
+def check_crease_angle(angle: float | None) -> None:
+    """Raise ValueError with one sentence for an angle, in radians, that no crease can have; None: none is sought."""
+    if angle is not None and not 0 < angle <= math.pi:
+        raise ValueError(f"A crease's angle must be above 0 and up to pi radians, not {angle}.")
+
+
 @dataclass(frozen=True)
 class Density:
     """How close samples lie and which of them are kept; together they determine the number of surfels.
@@ -72,8 +78,7 @@ class SamplingOptions(Density):
 
     def __post_init__(self):
         super().__post_init__()
-        if self.crease_angle is not None and not 0 < self.crease_angle <= math.pi:
-            raise ValueError(f"A crease's angle must be above 0 and up to pi radians, not {self.crease_angle}.")
+        check_crease_angle(self.crease_angle)
         if self.fits_planes and not self.fits_blending:
             raise ValueError("Planes are fitted where blend depths tell that the surface bends; fit blending too.")
         if not (math.isfinite(self.splat_size) and self.splat_size > 0):

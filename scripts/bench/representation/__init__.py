@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from functools import partial
 
+from bench.representation import points
 from bench.representation.error import over_grey, picture_error
 from bench.representation.meshes import load_colored, view
 from measuring.models import short
@@ -47,6 +48,8 @@ def arguments(parser) -> None:
     parser.add_argument("--model", nargs="+", default=MODELS, help='files among the models, or "plate"')
     parser.add_argument("--views", type=int, default=3, choices=(1, 2, 3))
     parser.add_argument("--exact", type=int, default=0, help="samples along a pixel of exact pictures; 0 for none")
+    parser.add_argument("--points", type=int, default=0, help="measure random points of this number instead")
+    parser.add_argument("--noise", type=float, nargs="+", default=[0.0], help="of points, in spacings")
     parser.add_argument("--kind", nargs="+", default=list(KINDS), choices=KINDS, help="of exact pictures")
 
 
@@ -55,6 +58,9 @@ def run(options, report) -> None:
     exact = f"exact pictures of {options.exact} x {options.exact} samples" if options.exact else "no exact pictures"
     report.header(renderer.device, f"{options.size} x {options.size} pixels; {exact}")
     meshes = {name: load_colored(options.models, name) for name in options.model}
+    if options.points:
+        report.table(points.COLUMNS, points.rows(meshes, renderer, options, report))
+        return
     report.table(COLUMNS, rows(meshes, renderer, options, report))
     columns = "model", "resolution", "kind", "surfels", "added", "lines", "two", "reflex", "conversion"
     report.table(columns, conversions(meshes, options))

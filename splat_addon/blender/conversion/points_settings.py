@@ -4,12 +4,14 @@ import."""
 
 from __future__ import annotations
 
+import math
+
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 from mathutils import Vector
 
 from ...interchange import DEFAULT_FLATNESS
-from ...sampling.points import DEFAULT_NEIGHBOURS, ISOLATED_CHOICES, MAX_NEIGHBOURS
+from ...sampling.points import DEFAULT_CREASE_ANGLE, DEFAULT_NEIGHBOURS, ISOLATED_CHOICES, MAX_NEIGHBOURS
 from ..density_properties import splat_size_property
 
 
@@ -47,6 +49,23 @@ class PointsProperties:
         ),
         default="OUTWARD",
     )
+    finds_creases: BoolProperty(
+        name="Find Creases",
+        description=(
+            "End surfels at edges where planes through neighbouring points meet, and give each side its own normal. "
+            "It takes up to six times as long. Edges closer than about three distances between points are not told "
+            "apart, and noise of a quarter of that distance hides them"
+        ),
+        default=False,
+    )
+    crease_angle: FloatProperty(
+        name="Crease Angle",
+        description="A crease is where planes through neighbouring points meet at more than this angle",
+        subtype="ANGLE",
+        default=DEFAULT_CREASE_ANGLE,
+        min=math.radians(1),
+        max=math.pi,
+    )
     flatness: FloatProperty(
         name="Flatness",
         description=(
@@ -62,13 +81,14 @@ class PointsProperties:
 #: Settings that only Gaussian splats have.
 GAUSSIAN_NAMES = ("flatness",)
 
-#: Arguments of `surfels_from_points` that are properties of the same name.
+#: Arguments of `surfels_from_points` that are properties of the same name; the angle is one only if creases are sought.
 _KEYWORDS = {"neighbours": int, "splat_size": float, "isolated": str.lower}
 
 
 def keywords(properties: PointsProperties) -> dict:
     """Keyword arguments for `surfels_from_points`, without the viewpoint."""
-    return {name: kind(getattr(properties, name)) for name, kind in _KEYWORDS.items()}
+    angle = properties.crease_angle if properties.finds_creases else None
+    return {name: kind(getattr(properties, name)) for name, kind in _KEYWORDS.items()} | {"crease_angle": angle}
 
 
 def viewpoint(properties: PointsProperties, context: bpy.types.Context) -> Vector | None:
@@ -87,7 +107,7 @@ def draw_points_properties(layout: bpy.types.UILayout, properties: PointsPropert
     layout.use_property_split = True
     layout.use_property_decorate = False
     for name in PointsProperties.__annotations__:
-        if name not in GAUSSIAN_NAMES:
+        if name not in GAUSSIAN_NAMES and (name != "crease_angle" or properties.finds_creases):
             layout.prop(properties, name)
 
 

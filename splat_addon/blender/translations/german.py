@@ -481,6 +481,19 @@ GERMAN = {
     "Normals Face": "Normalen nach",
     "Not Sampled": "Nicht abgetastet",
     "Nothing": "Nichts",
+    "Find Creases": "Falten finden",
+    (
+        "End surfels at edges where planes through neighbouring points meet, and give each side its own normal. "
+        "It takes up to six times as long. Edges closer than about three distances between points are not told "
+        "apart, and noise of a quarter of that distance hides them"
+    ): (
+        "Surfel an Kanten enden lassen, wo sich Ebenen durch benachbarte Punkte treffen, und jeder Seite ihre eigene "
+        "Normale geben. Das dauert bis zu sechsmal so lange. Kanten, die näher als etwa drei Punktabstände beieinander "
+        "liegen, werden nicht unterschieden, und Rauschen von einem Viertel dieses Abstands verbirgt sie"
+    ),
+    "A crease is where planes through neighbouring points meet at more than this angle": (
+        "Eine Falte ist, wo sich Ebenen durch benachbarte Punkte in einem größeren Winkel treffen"
+    ),
     (
         "Number of neighbours from which a point's normal and size are estimated. More smooth out noise; "
         "fewer keep small details"

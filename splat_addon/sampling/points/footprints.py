@@ -11,7 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .normals import CHUNK
+from .creases import Creases
+from .normals import CHUNK, tangent_frames
 
 #: Directions in which a region's extent is measured; an even number, so that each has an opposite.
 DIRECTIONS = 16
@@ -28,6 +29,9 @@ _SAME_SHEET_COSINE = 0.3
 #: extent of 2.5 (with the spacing of `_spacings`); the regions of random points seldom exceed 1.5.
 _LONGEST = 2.5
 
+#: The same at creases, where nothing but random gaps is between a point and its line.
+_LONGEST_AT_LINES = 1.5
+
 #: The spacing around a point is the smallest estimate from this many neighbours or more, so that a small group of stray
 #: points is not mistaken for a sparse surface.
 _FEWEST = 4
@@ -41,6 +45,7 @@ def tangent_ellipses(
     normals: np.ndarray,
     neighbours: np.ndarray,
     splat_size: float,
+    creases: Creases | None = None,
     report: Callable[[float], None] = lambda share: None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The ellipses' longer axes, (N, 3) float64 unit vectors, their half-axes, (N, 2) float64, and which of them are
@@ -50,34 +55,36 @@ def tangent_ellipses(
     splat_size: half-axis in units of the spacing, which is the edge of a square or rectangular region. An ellipse that
         would not cover its region is enlarged until it does. Ellipses are known, (n,) bool, if the point has a
         neighbour beside it.
+    creases: the lines up to which regions go on. Neighbours on their other sides do not bound a region.
     report: called with the finished share.
     """
     count = len(neighbours)
     axes, half_axes, known = np.empty((count, 3)), np.empty((count, 2)), np.empty(count, bool)
     columns, normal_columns = np.ascontiguousarray(positions.T), np.ascontiguousarray(normals.T)
+    least_alike = np.full(count, _SAME_SHEET_COSINE)
+    if creases is not None:
+        least_alike[creases.points] = creases.cosine
     for start in range(0, count, CHUNK):
         part = slice(start, min(start + CHUNK, count))
         near, own = np.ascontiguousarray(neighbours[part].T), normal_columns[:, part]
         frame = (*tangent_frames(normals[part]), normals[part])
         away = [column[near] - column[part] for column in columns]
         along_u, along_v, height = (sum(a * n for a, n in zip(away, w.T, strict=True)) for w in frame)
-        bounds = sum(column[near] * n for column, n in zip(normal_columns, own, strict=True)) > _SAME_SHEET_COSINE
+        bounds = sum(column[near] * n for column, n in zip(normal_columns, own, strict=True)) > least_alike[part]
         bounds &= np.abs(height) <= _STEEPEST_SLOPE * np.hypot(along_u, along_v)
         spacing, known[part] = _spacings(along_u, along_v, bounds)
-        angle, ellipses = _ellipses(_reaches(along_u / spacing, along_v / spacing, bounds), splat_size)
+        if creases is not None:
+            rows, spacings, ends = _ends(creases, part, frame)
+            spacing[rows] = np.minimum(spacing[rows], spacings)
+        reach, is_open = _reaches(along_u / spacing, along_v / spacing, bounds)
+        reach = np.minimum(reach, _LONGEST)
+        if creases is not None:
+            reach[:, rows] = _up_to_lines(reach[:, rows], is_open[:, rows], ends / spacing[rows])
+        angle, ellipses = _ellipses(reach, splat_size)
         half_axes[part] = ellipses * spacing[:, None]
         axes[part] = frame[0] * np.cos(angle)[:, None] + frame[1] * np.sin(angle)[:, None]
         report(part.stop / count)
     return axes, half_axes, known
-
-
-def tangent_frames(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Two (N, 3) unit vectors that make a right-handed frame with unit normals (Duff et al. 2017)."""
-    x, y, z = normals.T
-    sign = np.copysign(1.0, z)
-    a = -1 / (sign + z)
-    b = x * y * a
-    return np.stack([1 + sign * x * x * a, sign * b, -sign * x], 1), np.stack([b, sign + y * y * a, -y], 1)
 
 
 def _spacings(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -94,8 +101,8 @@ def _spacings(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> tuple[np.ndar
     return np.where(known, spacing, 1), known
 
 
-def _reaches(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> np.ndarray:
-    """(D, n) distance to the region's border in each direction.
+def _reaches(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(D, n) distance to the region's border in each direction, and (D, n) bool, whether nothing bounds it there.
 
     u, v: (k, n) neighbours in the tangent plane, in spacings. bounds: (k, n) which of them count. The border towards a
         neighbour at d is the bisector, which direction e meets at |d|^2 / (2 d.e). An open direction takes the distance
@@ -115,8 +122,28 @@ def _reaches(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> np.ndarray:
             values[row], values[row + half] = weighted.max(axis=0), -weighted.min(axis=0)
     with np.errstate(divide="ignore", over="ignore"):
         reach = np.where(cosine >= _OPEN_COSINE, 1 / np.maximum(reach, 0), np.inf)
-    reach = np.where(np.isinf(reach), np.roll(reach, half, axis=0), reach)
-    return np.minimum(np.where(np.isinf(reach), 0.5, reach), _LONGEST)
+    is_open = np.isinf(reach)
+    reach = np.where(is_open, np.roll(reach, half, axis=0), reach)
+    return np.where(np.isinf(reach), 0.5, reach), is_open
+
+
+def _ends(creases: Creases, part: slice, frame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The rows of a part's points at creases, their spacings, and (D, rows) distance at which their surface ends in
+    each direction, object units; infinite where it does not. frame: the part's tangents and normals, (n, 3) each."""
+    found = slice(*np.searchsorted(creases.points, (part.start, part.stop)))
+    rows = creases.points[found] - part.start
+    angles = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
+    u, v = (np.einsum("nlc,nc->nl", creases.inward[found], axis[rows]) for axis in frame[:2])
+    outward = -(np.cos(angles)[:, None, None] * u + np.sin(angles)[:, None, None] * v)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.where(outward > 0, np.maximum(creases.distances[found], 0) / outward, np.inf)
+    return rows, creases.spacings[found], ends.min(axis=2)
+
+
+def _up_to_lines(reach: np.ndarray, is_open: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """(D, n) reaches that go on to the surface's end where no neighbour bounds them before."""
+    reach = np.where(is_open & np.isfinite(ends), np.maximum(reach, ends), reach)
+    return np.minimum(reach, _LONGEST_AT_LINES)
 
 
 def _ellipses(reach: np.ndarray, splat_size: float) -> tuple[np.ndarray, np.ndarray]:

@@ -9,14 +9,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...clip_lines import CLIP_FIELDS
 from ...surfels import Surfels, axes_quaternions, empty_surfels
-from ..options import DEFAULT_SPLAT_SIZE
+from ..options import DEFAULT_SPLAT_SIZE, check_crease_angle
 from ..progress import Progress, stage
 from .cells import spatial_order
 from .cleanup import finite_points, first_of_each, isolated_points
-from .footprints import tangent_ellipses, tangent_frames
+from .creases import CREASE_NEIGHBOURS, clip_fields, find_creases
+from .footprints import tangent_ellipses
 from .neighbours import nearest_neighbours
-from .normals import plane_normals
+from .normals import plane_normals, tangent_frames
 from .orientation import consistent_signs, facing_outward, facing_viewpoint
 from .report import PointsReport
 
@@ -30,7 +32,13 @@ MAX_NEIGHBOURS = 256
 DEFAULT_COLOR = (0.8, 0.8, 0.8, 1.0)
 
 #: The start and end of each step as shares of the total time.
-_STAGES = {"neighbours": (0.05, 0.6), "normals": (0.6, 0.7), "sides": (0.7, 0.85), "ellipses": (0.85, 1.0)}
+_STAGES = {
+    "neighbours": (0.05, 0.6),
+    "normals": (0.6, 0.7),
+    "sides": (0.7, 0.8),
+    "creases": (0.8, 0.9),
+    "ellipses": (0.9, 1.0),
+}
 
 #: How isolated points are treated.
 ISOLATED_CHOICES = {
@@ -49,6 +57,7 @@ def surfels_from_points(
     splat_size: float = DEFAULT_SPLAT_SIZE,
     isolated: str = "drop",
     viewpoint: tuple[float, float, float] | None = None,
+    crease_angle: float | None = None,
     progress: Progress | None = None,
 ) -> tuple[Surfels, PointsReport]:
     """Surfels of N points in the order of the points, and a report of what was left out and what was estimated.
@@ -59,12 +68,14 @@ def surfels_from_points(
         estimated.
     splat_size: half-axis of an estimated splat, in spacings. isolated: a name in `ISOLATED_CHOICES`.
     viewpoint: (3,), object units, where the scanner stood: estimated normals face it; None: they face outward.
+    crease_angle: radians; points near an edge where planes meet at more than this get the normal of their own side and
+        end there (`creases`, with its limits); given normals stay. None: no creases are sought.
     progress: called regularly with the finished share, 0 to 1; if it returns False, `SamplingCancelled` is raised.
 
     Raises ValueError with one sentence for wrong shapes or settings, or for too few usable points.
     """
     given = _checked(positions, normals, radii, colors)
-    _check_settings(neighbours, splat_size, isolated, viewpoint)
+    _check_settings(neighbours, splat_size, isolated, viewpoint, crease_angle)
     report = PointsReport(len(given["positions"]), kept_isolated=isolated == "keep")
     usable = np.flatnonzero(finite_points(given["positions"]))
     report = replace(report, non_finite=report.points - len(usable))
@@ -76,7 +87,8 @@ def surfels_from_points(
     report = replace(report, duplicates=len(usable) - len(kept))
     order = kept[spatial_order(given["positions"][kept])]
     given = {name: values[order] for name, values in given.items() if values is not None}
-    surfels, keep, report = _estimate(given, neighbours, splat_size, isolated, viewpoint, report, progress)
+    options = neighbours, splat_size, isolated, viewpoint, crease_angle
+    surfels, keep, report = _estimate(given, *options, report, progress)
     rank = np.argsort(order[keep], kind="stable")
     arrays = {name: array[keep][rank] for name, array in surfels.items()}
     positions = given["positions"][keep][rank]
@@ -91,7 +103,7 @@ def _middle(positions: np.ndarray) -> np.ndarray:
     return np.array([np.partition(column, half)[half] for column in positions.T]) if len(positions) else np.zeros(3)
 
 
-def _estimate(given, neighbours, splat_size, isolated, viewpoint, report, progress):
+def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, report, progress):
     """Fields of `Surfels` except the positions, indices of the points to keep, and the report."""
     positions = given["positions"]
     positions = positions - _middle(positions)
@@ -105,19 +117,31 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, report, progre
     alone = np.zeros(len(positions), bool)
     nearest, distances = np.empty((len(positions), 0), np.int32), np.empty((len(positions), 0), np.float32)
     if len(positions) > _FEWEST_NEIGHBOURS:
+        wanted = neighbours if crease_angle is None else max(neighbours, CREASE_NEIGHBOURS)
         told = stage(progress, *_STAGES["neighbours"])
-        nearest, distances = nearest_neighbours(positions, min(neighbours, len(positions) - 1), told)
-        alone = isolated_points(nearest, distances)
-    normals, parts = _normals(given, positions, missing_normals, nearest, viewpoint, progress)
-    axes, scales = _ellipses(given, positions, normals, missing_radii, nearest, distances, alone, splat_size, progress)
+        nearest, distances = nearest_neighbours(positions, min(wanted, len(positions) - 1), told)
+        alone = isolated_points(nearest[:, :neighbours], distances[:, :neighbours])
+    normals, parts = _normals(given, positions, missing_normals, nearest[:, :neighbours], viewpoint, progress)
+    planes, creases = normals, None
+    if crease_angle is not None and nearest.shape[1]:
+        told = stage(progress, *_STAGES["creases"])
+        creases = find_creases(positions, normals, nearest, distances, crease_angle, told)
+        planes = normals.copy()
+        planes[creases.points] = creases.normals
+        normals = np.where(missing_normals[:, None], planes, normals)
+    axes, scales = _ellipses(
+        given, positions, planes, missing_radii, nearest, distances, alone, splat_size, creases, progress
+    )
     colors, default_colors = _colors(given, len(positions))
     fields = {
-        "rotations": axes_quaternions(axes, np.cross(normals, axes), normals),
+        "rotations": axes_quaternions(axes, np.cross(planes, axes), planes),
         "scales": scales,
         "normals": normals,
         "colors": colors,
         "materials": np.zeros(len(positions), np.int32),
     }
+    if creases is not None:
+        fields |= clip_fields(creases, axes, planes, scales)
     keep = np.flatnonzero(~alone) if isolated == "drop" else np.arange(len(positions))
     return fields, keep, replace(
         report,
@@ -126,7 +150,13 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, report, progre
         estimated_radii=int(missing_radii[keep].sum()),
         default_colors=int(default_colors[keep].sum()),
         parts=parts,
+        creases=_number_clipped(fields, keep),
     )  # fmt: skip
+
+
+def _number_clipped(fields: dict[str, np.ndarray], keep: np.ndarray) -> int:
+    """How many of the points to keep have a clip line."""
+    return int(np.count_nonzero(sum(fields[name][keep, 1] > 0 for name in CLIP_FIELDS if name in fields)))
 
 
 def _normals(given, positions, missing, nearest, viewpoint, progress) -> tuple[np.ndarray, int]:
@@ -148,13 +178,13 @@ def _normals(given, positions, missing, nearest, viewpoint, progress) -> tuple[n
 
 
 def _ellipses(
-    given, positions, normals, missing, nearest, distances, alone, splat_size, progress
+    given, positions, normals, missing, nearest, distances, alone, splat_size, creases, progress
 ) -> tuple[np.ndarray, np.ndarray]:
     """(N, 3) unit directions of the first half-axis, and (N, 2) half-axes."""
     if not missing.any():
         return tangent_frames(normals)[0], np.repeat(given["radii"][:, None], 2, axis=1)
     axes, scales, known = tangent_ellipses(
-        positions, normals, nearest, splat_size, stage(progress, *_STAGES["ellipses"])
+        positions, normals, nearest, splat_size, creases, stage(progress, *_STAGES["ellipses"])
     )
     # A point with no neighbour in its own plane, or none nearby, takes its size from the nearest point that has one.
     stray = alone | ~known | ~_are_sizes(scales).all(axis=1)
@@ -224,7 +254,8 @@ def _checked(positions, normals, radii, colors) -> dict[str, np.ndarray | None]:
     return arrays
 
 
-def _check_settings(neighbours, splat_size, isolated, viewpoint):
+def _check_settings(neighbours, splat_size, isolated, viewpoint, crease_angle):
+    check_crease_angle(crease_angle)
     if not (_FEWEST_NEIGHBOURS <= neighbours <= MAX_NEIGHBOURS and neighbours == int(neighbours)):
         raise ValueError(
             f"The neighbours must be a whole number from {_FEWEST_NEIGHBOURS} to {MAX_NEIGHBOURS}, not {neighbours}."

@@ -31,7 +31,7 @@ def plane_normals(
     columns = np.ascontiguousarray(positions.T)
     for start in range(0, len(neighbours), CHUNK):
         part = slice(start, min(start + CHUNK, len(neighbours)))
-        normals[part] = _least_directions(_covariances(columns, neighbours[part], part))
+        normals[part] = least_directions(_covariances(columns, neighbours[part], part))
         report(part.stop / len(neighbours))
     return normals
 
@@ -50,7 +50,7 @@ def _covariances(columns: np.ndarray, neighbours: np.ndarray, part: slice) -> np
     return moments / np.where(trace > 0, trace, 1)
 
 
-def _least_directions(moments: np.ndarray) -> np.ndarray:
+def least_directions(moments: np.ndarray) -> np.ndarray:
     """(n, 3) unit eigenvectors of the least eigenvalue of symmetric 3 x 3 matrices.
 
     The eigenvalue comes from Smith's trigonometric formula (1961), the vector is the longest cross product of two rows
@@ -77,3 +77,12 @@ def _least_directions(moments: np.ndarray) -> np.ndarray:
         matrices = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])[:, :, doubtful].transpose(2, 0, 1)
         vectors[doubtful] = np.linalg.eigh(matrices)[1][:, :, 0]
     return vectors
+
+
+def tangent_frames(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Two (N, 3) unit vectors that make a right-handed frame with unit normals (Duff et al. 2017)."""
+    x, y, z = normals.T
+    sign = np.copysign(1.0, z)
+    a = -1 / (sign + z)
+    b = x * y * a
+    return np.stack([1 + sign * x * x * a, sign * b, -sign * x], 1), np.stack([b, sign + y * y * a, -y], 1)

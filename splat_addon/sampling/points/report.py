@@ -13,6 +13,7 @@ class PointsReport:
     isolated: found, and left out unless `kept_isolated`.
     estimated_normals, estimated_radii, default_colors: surfels whose own value was missing or unusable.
     parts: connected parts, each oriented as a whole; 0 if no normal was estimated.
+    creases: surfels that end at an edge between planes through their neighbours.
     """
 
     points: int
@@ -25,6 +26,7 @@ class PointsReport:
     estimated_radii: int = 0
     default_colors: int = 0
     parts: int = 0
+    creases: int = 0
 
     def skipped(self) -> dict[str, int]:
         """reason -> number of points left out for it; only reasons that occurred."""
@@ -43,6 +45,7 @@ class PointsReport:
                 self.estimated_normals
             ),
             f"radii of {self.estimated_radii:,} points from their neighbours": self.estimated_radii,
+            f"edges at which {self.creases:,} points end, where planes through their neighbours meet": self.creases,
             f"the colour of {self.default_colors:,} points, which have none": self.default_colors,
         }
         estimated = "; ".join(what for what, count in made_up.items() if count)

@@ -200,3 +200,18 @@ def test_progress_rises_to_the_end(scan):
     for conversion in batch.prepared(bpy.context):
         batch.sample(conversion, shares.append)
     assert shares == sorted(shares) and shares[-1] == 1.0 and shares[0] < 0.6
+
+
+def test_creases_are_found_where_they_are_asked_for(add_mesh, convert_points, surfels_of):
+    random = np.random.default_rng(1)
+    face, points = random.integers(0, 6, 6000), random.random((6000, 3))
+    points[np.arange(6000), face // 2] = face % 2
+    add_mesh("Cube", points.tolist(), [])
+    assert not surfels_of(convert_points(source="KEEP")).is_clipped
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.data.objects["Cube"].select_set(True)
+    cut = surfels_of(convert_points(source="KEEP", finds_creases=True))
+    assert 300 < cut.clipped_count < 3000
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.data.objects["Cube"].select_set(True)
+    assert not surfels_of(convert_points(finds_creases=True, crease_angle=np.radians(100))).is_clipped

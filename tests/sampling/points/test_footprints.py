@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from splat_addon.sampling import surfels_from_points
-from splat_addon.sampling.points.footprints import tangent_frames
+from splat_addon.sampling.points.normals import tangent_frames
 
 
 def uncovered_share(surfels, points, normals, near=32):
