@@ -244,6 +244,7 @@ class Renderer:
             "instances": 0,
             "instances_outside": 0,
             "instances_degenerate": 0,
+            "instances_hidden": 0,
             "surfels_coarse": 0,
             "short_of_memory": self.streamed.short,
             "layers": 0,
@@ -292,6 +293,8 @@ class Renderer:
             stats["surfels_coarse"] = max(stats["surfels_coarse"], sum(s.coarse for s in stored))
             target = execution.run(frame_plan.steps, context)
             stats["layers"] = execution.turns
+            stats["instances_hidden"] += len(context.hidden)
+            stats["splats_drawn"] -= sum(context.cut(p).count for p in context.hidden)
             yield tile, target
         del stats["tile"]
 

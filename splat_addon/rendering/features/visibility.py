@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ..plan.graph import Part, Pass, Texture
 from ..view import View
-from . import depth_format, silhouettes
+from . import depth_format, hidden_objects, silhouettes
 from .drawing import draw_polygons, draw_splats, storage_samplers
 
 DEPTH = Texture("visibility_depth", "DEPTH32F", is_multisampled=True)
@@ -48,7 +48,9 @@ def passes(planning):
         planning.skip("visibility", f"of {planning.method.name} the nearest splat wins, and nothing blends")
         return
     why = f"splats may hide one another; {planning.find(depth_format.linear)[1]}"
-    yield drawn("visibility", why, own_parts(planning, nearest_depth(planning)), planning)
+    seen = nearest_depth(planning)
+    made = drawn("visibility", why, own_parts(planning, seen), planning)
+    yield made._replace(each=hidden_objects.search(planning, seen, silhouettes.rows_of(seen)))
 
 
 def parts(planning, p):
@@ -62,17 +64,20 @@ def run(tile, p: Pass):
     """Fill the depth texture and the other textures about the nearest surface."""
     target = tile.target(p)
     target.clear(color=0.0 if p.colors else None, depth=1.0)
+    by_rows = tile
     if silhouettes.rows_of(p.depth) > 1:
-        tile = replace(tile, view=_seen_by_rows(tile.view, target.size[1]))
+        by_rows = replace(tile, view=_seen_by_rows(tile.view, target.size[1]))
     polygons = tile.view.polygons if p.kind != "layer" else ()
-    draw(tile, p, target, tile.drawn_by(p), polygons)
+    for splats in hidden_objects.front_to_back(tile, p):
+        draw(by_rows, p, target, splats, polygons)
+        polygons = ()
     return target
 
 
 def draw(tile, p: Pass, target, splats, polygons, viewport=None) -> None:
-    """Draw splats and polygons with the pass's programs."""
-    draw_splats(tile, p, target, splats, "visibility.vert", "splats", viewport=viewport)
+    """Draw polygons and splats with the pass's programs: polygons first, because they hide much and cost little."""
     draw_polygons(tile, p, target, polygons, "polygon_visibility.vert", "polygons", viewport=viewport)
+    draw_splats(tile, p, target, splats, "visibility.vert", "splats", viewport=viewport)
 
 
 def _seen_by_rows(view: View, rows: int) -> View:

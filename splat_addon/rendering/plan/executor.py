@@ -64,8 +64,15 @@ class TileContext:
         return self.resources.device.target(colors, depth and self.texture(depth))
 
     def drawn_by(self, p: Pass) -> tuple[DrawItem, ...]:
-        """The splats of the tile's view that a pass draws."""
-        return tuple(d for d in self.view.placed if all(draws(self, p, d.instance) for draws in DRAWS))
+        """The splats of the tile's view that a pass draws, except what was found to be hidden."""
+        return tuple(
+            d for d in self.view.placed if d not in self.hidden and all(draws(self, p, d.instance) for draws in DRAWS)
+        )
+
+    @cached_property
+    def hidden(self) -> set[DrawItem]:
+        """Objects that passes found to be behind all that is seen."""
+        return set()
 
     def textures(self, p: Pass, program: Pipeline, placed: DrawItem | None = None) -> list[DeviceTexture]:
         """The textures that a program samples. placed: the object being drawn."""
