@@ -38,6 +38,7 @@ from .refine.adaptive import merge_flat
 from .refine.component_surfels import component_surfels
 from .refine.fitted_planes import fit_planes
 from .refine.missed_components import SampledSurface, missed_components
+from .workers import in_order
 
 #: Times of the steps that need neighbouring samples, relative to one another: clipping, fitting planes, merging.
 _TIMES = 0.3, 0.5, 0.2
@@ -241,11 +242,17 @@ def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[flo
     total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
     # Temporaries of a batch should be small beside the result, but numpy is slow on small batches.
     limit = min(BATCH, max(BATCH // 4, total // 8))
-    done = 0
+    jobs, done = [], 0
     for axis, spans in enumerate(images):
         # a span costs about as much as a sample
         for part in batches(spans.counts + 1, limit):
             count = int(spans.counts[part].sum(dtype=np.int64))
-            filler.fill(spans[part], axis, slice(done, done + count))
+            jobs.append(partial(_filled, filler, spans[part], axis, slice(done, done + count)))
             done += count
-            report(done / total)
+    for rows in in_order(jobs):
+        report(rows.stop / total)
+
+
+def _filled(filler: SampleFiller, spans: Spans, axis: int, rows: slice) -> slice:
+    filler.fill(spans, axis, rows)
+    return rows

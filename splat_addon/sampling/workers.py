@@ -33,3 +33,8 @@ def in_order(jobs: Iterable[Callable]) -> Iterator:
         finally:
             for job in begun:
                 job.cancel()
+
+
+def run_all(jobs: Iterable[Callable[[], None]]):
+    """Run independent jobs that write their results where they belong."""
+    deque(in_order(jobs), maxlen=0)

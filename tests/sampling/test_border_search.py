@@ -170,7 +170,9 @@ def test_every_surfel_within_reach_of_an_edge_is_found(monkeypatch, is_counted, 
     ends, edges = ends[..., ascending], edges[ascending]
     positions = (cells * grid.spacing).astype(np.float32)
     planes = random.normal(0, 0.3, (3, 80)).astype(np.float32)
-    bands = list(search.image_neighbours(positions, axis, ends[:, order], edges, planes, reach, 4.0, grid))
+    bands = [
+        find() for find in search.image_neighbours(positions, axis, ends[:, order], edges, planes, reach, 4.0, grid)
+    ]
     assert (len(bands) > 5) == (runs < 100) and sum(len(np.unique(near)) for near, *_ in bands) <= 3000
     surfel = np.concatenate([near[surfel] for near, surfel, *_ in bands])
     edge, above = (np.concatenate([band[k] for band in bands]) for k in (2, 3))
@@ -186,3 +188,18 @@ def test_every_surfel_within_reach_of_an_edge_is_found(monkeypatch, is_counted, 
     assert found >= set(map(tuple, np.argwhere(is_near).tolist()))
     surfels, edges = np.array(sorted(found)).T
     assert distance[surfels, edges].max() < 3 * reach and len(found) < 3 * is_near.sum()
+
+
+@pytest.mark.parametrize("length", [0.5, 3, 20])
+def test_no_edge_near_one_of_few_surfels_is_left_out(length):
+    random, reach, size = np.random.default_rng(3), 2.2, (90, 70)
+    surfels = random.integers(0, size, (40, 2))
+    middle, angle = random.random((2000, 2)) * size, random.random(2000) * np.pi
+    half = np.stack([np.cos(angle), np.sin(angle)], axis=1) * length / 2
+    start, end = middle - half, middle + half
+    found = search._near_any(*np.stack([start, end]).transpose(2, 0, 1), reach, *surfels.T, size)
+    share = np.clip(((surfels[:, None] - start) * (end - start)).sum(2) / length**2, 0, 1)
+    distance = np.linalg.norm(surfels[:, None] - start - share[..., None] * (end - start), axis=2).min(axis=0)
+    # a surfel is up to half a cell from the centre of its cell
+    assert set(np.flatnonzero(distance < reach + 0.5)) <= set(found.tolist())
+    assert (len(found) < 2000) == (length < 10)

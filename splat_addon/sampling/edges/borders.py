@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+from functools import partial
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from ..ldc.scan_conversion import expand
 from ..mesh.connectivity import twins
 from ..mesh.joining import have_same_values
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_areas, triangle_chunks
+from ..workers import run_all
 from .calm_vertices import calm_vertices
 from .ordering import runs_of_equal
 
@@ -253,7 +255,8 @@ def _unit_normals(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray, np.ndarra
     """
     normals, sizes = np.empty((3, len(mesh)), np.float32), np.empty(len(mesh), np.float32)
     lengths = np.empty(len(mesh), np.float32)
-    for chunk in triangle_chunks(len(mesh)):
+
+    def fill(chunk: slice):
         corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles[chunk]))
         edges = corners - corners[:, (1, 2, 0)]
         edges *= edges
@@ -266,6 +269,8 @@ def _unit_normals(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray, np.ndarra
         length = np.sqrt(np.maximum(square, 1e-300, out=square), out=square)
         np.sqrt(length, out=sizes[chunk], casting="same_kind")
         np.divide(vectors, length, out=normals[:, chunk], casting="same_kind")
+
+    run_all(partial(fill, chunk) for chunk in triangle_chunks(len(mesh)))
     return normals, sizes, lengths
 
 

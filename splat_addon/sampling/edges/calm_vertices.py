@@ -9,10 +9,12 @@ that triangle, and that the triangles around the vertex close a fan.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from ..mesh.triangle_mesh import TriangleMesh, triangle_chunks
+from ..workers import run_all
 
 #: Bits of a vertex's hash that tell whether the triangles around another close a fan: sums of them are exact.
 _FAN_BITS = 24
@@ -48,7 +50,8 @@ def calm_vertices(
     if mesh.surveyed is None or not mesh.surveyed.is_closed:
         is_restless |= _at_borders(mesh, places)
     toward = np.empty((3, count), np.float32)
-    for chunk in triangle_chunks(count):
+
+    def compare(chunk: slice):
         given = None
         if mesh.corner_normals is not None:
             rows = mesh.corner_normals[chunk].reshape(-1, 9)
@@ -65,6 +68,8 @@ def calm_vertices(
             if labels is not None:
                 strange |= labels[chunk.start * 3 + k : chunk.stop * 3 : 3] != label_of.take(vertex)
             is_restless[vertex.compress(strange)] = True
+
+    run_all(partial(compare, chunk) for chunk in triangle_chunks(count))
     cosines = np.ones(count, np.float32)
     for row, vertices in zip(toward, places, strict=True):
         row[is_restless.take(vertices)] = 1

@@ -7,13 +7,15 @@ keep what lies within the border best.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, are_reflex, pack_lines
 from ..ldc.grid import Grid
+from ..workers import in_order
 from .borders import Borders
 from .meetings import BEYOND, Images, Meetings, meetings
 from .openings import smaller_at_openings
@@ -62,25 +64,35 @@ def clippings(
     arrays: by field of `Surfels`, positions relative to the grid's middle. images: which of them each sees.
     at_centres: whether they lie at the centres of cells, and may become smaller, in place (`openings`).
     """
-    across = _across(borders)
-    for met in meetings(arrays, images, borders, grid, at_centres):
-        rows = _nearest_first(met, _one_side_of_each(met, arrays, borders))
-        rows, starts, owner = _of_own_surface(met, rows)
-        met = met.take(rows)
-        ends = _ends_in_circle(met)
-        is_own = _on_this_side(met, ends, starts, owner, borders, across) & ~_out_of_sight(met, ends, starts, owner)
-        if not is_own.all():
-            rows = np.flatnonzero(is_own)
-            met, ends = met.take(rows), ends.take(rows, axis=2)
-            _, starts, owner = _groups(met.surfel)
-        if at_centres and len(met):
-            off, _ = _off_line(ends, met.line.take(starts.take(owner), axis=1))
-            met = smaller_at_openings(met, starts, owner, off > _SAME_LINE, borders, arrays["scales"])
-            ends, (_, starts, owner) = _ends_in_circle(met), _groups(met.surfel)
-        lines = _lines(met, ends, starts, owner)
-        packed = np.stack([pack_lines(line.T) for line in lines])
-        packed[packed[..., 1] == 0] = 0
-        yield Clipping(met.surfel.take(starts), packed, met, lines.take(owner, axis=2), are_reflex(*packed).take(owner))
+    about = arrays, borders, _across(borders), at_centres
+    jobs = (partial(_clipping, meet, *about) for meet in meetings(arrays, images, borders, grid, at_centres))
+    return (part for part in in_order(jobs) if part is not None)
+
+
+def _clipping(
+    meet: Callable[[], Meetings], arrays: dict[str, np.ndarray], borders: Borders, across: np.ndarray, at_centres: bool
+) -> Clipping | None:
+    """Run a job of `meetings` and find the lines of its surfels, if there are any. across: (B,), from `_across`."""
+    met = meet()
+    if not len(met):
+        return None
+    rows = _nearest_first(met, _one_side_of_each(met, arrays, borders))
+    rows, starts, owner = _of_own_surface(met, rows)
+    met = met.take(rows)
+    ends = _ends_in_circle(met)
+    is_own = _on_this_side(met, ends, starts, owner, borders, across) & ~_out_of_sight(met, ends, starts, owner)
+    if not is_own.all():
+        rows = np.flatnonzero(is_own)
+        met, ends = met.take(rows), ends.take(rows, axis=2)
+        _, starts, owner = _groups(met.surfel)
+    if at_centres and len(met):
+        off, _ = _off_line(ends, met.line.take(starts.take(owner), axis=1))
+        met = smaller_at_openings(met, starts, owner, off > _SAME_LINE, borders, arrays["scales"])
+        ends, (_, starts, owner) = _ends_in_circle(met), _groups(met.surfel)
+    lines = _lines(met, ends, starts, owner)
+    packed = np.stack([pack_lines(line.T) for line in lines])
+    packed[packed[..., 1] == 0] = 0
+    return Clipping(met.surfel.take(starts), packed, met, lines.take(owner, axis=2), are_reflex(*packed).take(owner))
 
 
 def clip_fields(parts: Iterable[Clipping], count: int) -> dict[str, np.ndarray]:

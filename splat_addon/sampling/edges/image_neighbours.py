@@ -8,7 +8,9 @@ their cells. What lies in other layers of the same cells is told by the plane of
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import product
 
 import numpy as np
 
@@ -25,6 +27,9 @@ _FEW_CELLS, _CELLS_A_SURFEL = 1 << 20, 16
 #: Tolerance of a reach, in cells, for float32 rounding.
 _SLACK = 1e-3
 
+#: Edge of the blocks, in cells, in which edges are looked for beside few surfels.
+_BLOCK = 8
+
 #: Runs per band of rows, and pairs per batch.
 _RUNS, _PAIRS = 65536, 32768
 
@@ -38,10 +43,10 @@ def image_neighbours(
     reach: float,
     depth: float,
     grid: Grid,
-) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
-    """Yields, for each band of rows of the image, (s,) surfels that come near to any edge; and of p pairs the (p,)
-    surfel, by its number among these, the (p,) side of an edge and how much higher the surfel lies than the plane of
-    the side's face, (p,) cells. A surfel lies in one band.
+) -> Iterator[Callable[[], tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]]:
+    """Yields a job for each band of rows of the image, which finds (s,) surfels that come near to any edge; and of p
+    pairs the (p,) surfel, by its number among these, the (p,) side of an edge and how much higher the surfel lies than
+    the plane of the side's face, (p,) cells. A surfel lies in one band.
 
     positions: (N, 3) float32 surfels, relative to the grid's middle. ends: (2, 2, e) float32 of sides, across and up in
     the image along `axis`, in cells from there. edges: (e,) of which edge, ascending. planes: (3, e) float32, their
@@ -58,6 +63,9 @@ def image_neighbours(
     # Sides of one edge share its runs.
     sides, sides_of = runs_of_equal(edges)
     x, y = (of.take(sides, axis=1) + s for of, s in zip(ends.swapaxes(0, 1), shift, strict=True))
+    if len(positions) < len(sides):
+        near = _near_any(x, y, reach + _SLACK, column, row, (width, height))
+        sides, sides_of, x, y = sides.take(near), sides_of.take(near), x.take(near, axis=1), y.take(near, axis=1)
     first, stop = _rows(y, reach + _SLACK, height)
     runs_in = np.cumsum(np.bincount(first, minlength=height + 1) - np.bincount(stop, minlength=height + 1))[:height]
 
@@ -77,7 +85,24 @@ def image_neighbours(
         place = np.ascontiguousarray(positions.take(near, axis=0).T[[along, up, axis]]) * scale
         return near, *_near_planes(place, firsts.take(there), counts.take(there), side, planes, np.float32(depth))
 
-    return (found_in(band) for band in batches(runs_in, _RUNS) if runs_in[band].any())
+    return (partial(found_in, band) for band in batches(runs_in, _RUNS) if runs_in[band].any())
+
+
+def _near_any(x: np.ndarray, y: np.ndarray, reach: float, column: np.ndarray, row: np.ndarray, size) -> np.ndarray:
+    """Indices of edges that may be near a surfel: long ones, and those with one in the blocks around their middles.
+
+    x, y: (2, e) of the edges' ends. column, row: of the surfels. size: (width, height) of the image.
+    """
+    wide, high = (cells // _BLOCK + 3 for cells in size)
+    is_near = np.zeros((high, wide), bool)
+    at = row // _BLOCK + 1, column // _BLOCK + 1
+    for up, across in product((-1, 0, 1), repeat=2):
+        is_near[at[0] + up, at[1] + across] = True
+    across, up = (
+        np.clip((of[0] + of[1]) / (2 * _BLOCK) + 1, 0, n - 1).astype(np.intp) for of, n in ((x, wide), (y, high))
+    )
+    is_long = np.hypot(x[1] - x[0], y[1] - y[0]) / 2 + reach > _BLOCK - 1
+    return np.flatnonzero(is_near[up, across] | is_long)
 
 
 def _surfels_in(starts: np.ndarray, stops: np.ndarray, cells: np.ndarray, size: int):

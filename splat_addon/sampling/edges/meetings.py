@@ -7,8 +7,9 @@ the unit circle.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -70,8 +71,10 @@ def by_facing(arrays: dict[str, np.ndarray]) -> Images:
     return [(axis, np.flatnonzero(facing == axis)) for axis in range(3)]
 
 
-def meetings(arrays, images: Images, borders: Borders, grid: Grid, at_centres: bool = True) -> Iterator[Meetings]:
-    """The meetings of surfels with the sides of borders, in parts: all of a surfel's are in one.
+def meetings(
+    arrays, images: Images, borders: Borders, grid: Grid, at_centres: bool = True
+) -> Iterator[Callable[[], Meetings]]:
+    """Yields jobs that find the meetings of surfels with the sides of borders: all of a surfel's are found by one.
 
     arrays: by field of `Surfels`, positions relative to the grid's middle. at_centres: whether the surfels lie at the
     centres of cells.
@@ -83,15 +86,13 @@ def meetings(arrays, images: Images, borders: Borders, grid: Grid, at_centres: b
         faces = np.flatnonzero(np.abs(normals[axis]) >= _LEAST_SHARE)
         order = [(axis + k) % 3 for k in (1, 2, 0)]
         seen = ends[:, order].take(faces, axis=2), borders.edges.take(faces), normals[order].take(faces, axis=1)
-        for met in _in_image(arrays, axis, rows, *seen, grid, at_centres):
-            if len(met):
-                yield replace(met, side=faces.take(met.side))
+        yield from _in_image(arrays, axis, rows, faces, *seen, grid, at_centres)
 
 
 def _in_image(
-    arrays, axis: int, rows: slice | np.ndarray, ends, edges, normals, grid: Grid, at_centres: bool
-) -> Iterator[Meetings]:
-    """The meetings of the surfels that an image sees, with sides among those it sees."""
+    arrays, axis: int, rows: slice | np.ndarray, faces: np.ndarray, ends, edges, normals, grid: Grid, at_centres: bool
+) -> Iterator[Callable[[], Meetings]]:
+    """Yields jobs for the surfels that an image sees, with the sides that it sees. faces: number of each side."""
     positions, scales, rotations = (arrays[name][rows] for name in ("positions", "scales", "rotations"))
     # The smaller half-axis lies across the image's axis, the larger one is foreshortened to it.
     reach = float((scales[:, 1] if isinstance(rows, slice) else scales).max(initial=0)) / grid.spacing
@@ -100,15 +101,20 @@ def _in_image(
     planes = np.stack([*rises, ends[0, 2] - (ends[0, :2] * rises).sum(axis=0)])
     farthest = np.sqrt(3) * reach * (_OFF_PLANE + _OFF_ANYHOW) / _LEAST_SHARE
     inverse_spacing = np.float32(1 / grid.spacing)
-    found = image_neighbours(positions, axis, ends[:, :2], edges, planes, search, farthest, grid)
-    for near, surfel, side, above in found:
+
+    def met(find: Callable) -> Meetings:
+        near, surfel, side, above = find()
         # Only now that few are left, gather their attributes.
         is_left = np.zeros(len(near), bool)
         is_left[surfel] = True
         near, number = near.compress(is_left), np.cumsum(is_left) - 1
         seen = SeenSurfels(axis, *(of.take(near, axis=0) for of in (positions, scales, rotations)), inverse_spacing)
         numbers = near + rows.start if isinstance(rows, slice) else rows.take(near)
-        yield _met(seen, numbers, number.take(surfel), side, above, ends[:, :2], normals)
+        found = _met(seen, numbers, number.take(surfel), side, above, ends[:, :2], normals)
+        return replace(found, side=faces.take(found.side))
+
+    found = image_neighbours(positions, axis, ends[:, :2], edges, planes, search, farthest, grid)
+    return (partial(met, find) for find in found)
 
 
 def _met(
