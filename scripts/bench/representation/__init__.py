@@ -8,7 +8,8 @@ surfels as the operator makes them, drawn by the device; "whole": the same witho
 planes. The others are exact pictures (--exact): "now" of whole splats; "clip" with clip lines; "blend" with a blend
 depth per surfel; "both"; "fit" in fitted planes, too. PSNR is measured in sRGB. A pixel is wrong if a component differs
 by more than 0.15; bare if the mesh covers it fully and the surfels less than 0.98; spilled if the surfels cover more
-than 0.02 of it and the mesh nothing. Conversion: median ratio of processor time to conversion without edges.
+than 0.02 of it and the mesh nothing. Conversion: median ratios of its time to that without edges, by the processor's
+and by the clock.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from bench.representation import points
 from bench.representation.error import over_grey, picture_error
 from bench.representation.meshes import load_colored, view
 from measuring.models import short
-from measuring.timing import Spread, in_turn, processor
+from measuring.timing import Spread, both, in_turn
 from splat_addon.reference import render_exact
 from splat_addon.reference.triangles import render_triangles
 from splat_addon.rendering import Renderer, Scene, Settings, open_device
@@ -62,7 +63,7 @@ def run(options, report) -> None:
         report.table(points.COLUMNS, points.rows(meshes, renderer, options, report))
         return
     report.table(COLUMNS, rows(meshes, renderer, options, report))
-    columns = "model", "resolution", "kind", "surfels", "added", "lines", "two", "reflex", "conversion"
+    columns = "model", "resolution", "kind", "surfels", "added", "lines", "two", "reflex", "work", "clock"
     report.table(columns, conversions(meshes, options))
 
 
@@ -118,12 +119,13 @@ def conversions(meshes, options):
         for resolution in options.resolution:
             jobs = {k: partial(sample_surface, mesh, resolution=resolution, **KINDS[k]) for k in options.kind}
             now = jobs.get("now", partial(converted, mesh, {"resolution": resolution}, "now"))
-            turns = in_turn({"now": now} | jobs, options.turns, processor)
+            turns = in_turn({"now": now} | jobs, options.turns, both)
             for kind in options.kind:
                 sampling, (lines, reflex) = turns.results[kind], turns.results[kind].surfels.clip_lines()
                 cut = lines[..., 2] < 1
-                ratio = Spread.of(turns.ratios(kind, "now"))
+                clock, work = (Spread.of(turns.part(lambda pair, k=k: pair[k]).ratios(kind, "now")) for k in (0, 1))
                 yield (
                     short(name), resolution, kind, f"{len(sampling.surfels):,}", len(sampling.gap_triangles),
-                    f"{cut.any(axis=1).sum():,}", f"{cut.all(axis=1).sum():,}", f"{reflex.sum():,}", f"{ratio:.2f}",
+                    f"{cut.any(axis=1).sum():,}", f"{cut.all(axis=1).sum():,}", f"{reflex.sum():,}", f"{work:.2f}",
+                    f"{clock:.2f}",
                 )  # fmt: skip
