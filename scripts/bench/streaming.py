@@ -3,7 +3,8 @@
 
 A landscape is written portion by portion, by another process, unless --file names one that is there; then it is drawn
 as the 3D view does it: once after opening the file, and while the camera flies over it at the view's rate. *Read* is
-the part of a picture's time in which surfels are chosen and waited for; the rest is packed, uploaded and drawn.
+the part of a picture's time in which surfels are chosen and waited for; the rest is packed, uploaded and drawn. *At
+rest* is the time from the flight's end to the whole picture, and what its own drawing took.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from __future__ import annotations
 import resource
 from multiprocessing import get_context
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, sleep
 
 import numpy as np
 
@@ -34,7 +35,7 @@ DEVICES = ("standalone",)
 QUICK = {"side": 300, "size": 64, "flight": 3}
 #: Surfels that are made at once; period and height of the landscape's waves, in widths of it.
 PART, WAVES = 1_000_000, ((0.1, 0.012), (0.023, 0.003), (0.0041, 0.0005))
-COLUMNS = "shadow first,_s longest,_ms read median,_ms read splats".split()
+COLUMNS = "shadow first,_s longest,_ms read median,_ms read splats at_rest,_s that_picture,_ms splats".split()
 
 
 def arguments(parser) -> None:
@@ -132,10 +133,16 @@ def fly(device, path: Path, shadow: int, options) -> tuple:
     first = perf_counter() - started
     for share in np.linspace(0, 1, options.flight):
         draw(share)
-    splats = len(view._drawn.surfels[0].surfels)
+    moving, rests = len(view._drawn.surfels[0].surfels), perf_counter()
+    flown, read = list(times), list(reads)
+    while view.wants_more:
+        draw(1.0)
+        sleep(0.02)  # the 3D view does other things between its pictures
+    rested = perf_counter() - rests
     view.renderer.release()
     stream.close()
     return (
-        "sun's" if shadow else "none", f"{first:.2f}", f"{max(times):.0f}", f"{max(reads):.0f}",
-        f"{np.median(times):.0f}", f"{np.median(reads):.0f}", f"{splats:,}",
+        "sun's" if shadow else "none", f"{first:.2f}", f"{max(flown):.0f}", f"{max(read):.0f}",
+        f"{np.median(flown):.0f}", f"{np.median(read):.0f}", f"{moving:,}",
+        f"{rested:.1f}", f"{max(times[len(flown):], default=0):.0f}", f"{len(view._drawn.surfels[0].surfels):,}",
     )  # fmt: skip

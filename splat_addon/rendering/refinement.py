@@ -33,6 +33,7 @@ class Refinement:
         self._maps: tuple[ShadowMap, ...] | None = None
         self._drawn: Scene | None = None
         self._refines = self._is_coarse = False
+        self._moved: Shown | None = None
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool = False) -> Iterator[Shown]:
         """Yield the parts of the picture to show now: with one sample if anything changed, with one more sample if
@@ -59,6 +60,11 @@ class Refinement:
             yield from self._moving(scene, camera, settings) if moves else self._first(scene, camera, settings)
             return
         read = self._read(scene, camera, settings)
+        if self.renderer.streamed.is_waiting and self._moved is not None:
+            # each set on the way to the whole one would take the time of a picture at rest
+            yield self._moved
+            return
+        self._moved = None
         if read is not self._drawn:
             self._begin(settings)
             self._drawn = read
@@ -83,6 +89,7 @@ class Refinement:
 
     def _begin(self, settings: Settings) -> None:
         self.samples, self._maps, self._refines = 0, None, settings.samples > 1
+        self._moved = None
 
     def _read(self, scene: Scene, camera: Camera, settings: Settings, most: int | None = None) -> Scene:
         """The scene with the surfels that could be read in time, at most so many of them."""
@@ -100,10 +107,14 @@ class Refinement:
         cuts = () if self.pace.most is None or self._drawn is scene else self._drawn.surfels
         streamed = sum(len(instance.surfels) for instance in cuts if instance.is_cut)
         self._is_coarse = drawn is not settings or seen is not camera or streamed > 0
+        parts = 0
         for shown in self.renderer.draw(self._drawn, seen, drawn):
             if self.pace.rate is not None:
                 device.finish(device.target([shown.texture]))
-            yield shown._replace(place=_enlarged(shown.place, seen.size, camera.size))
+            parts, enlarged = parts + 1, shown._replace(place=_enlarged(shown.place, seen.size, camera.size))
+            yield enlarged
+        if parts == 1 and self.pace.rate is not None:
+            self._moved = enlarged
         self.pace.end(settings, streamed)
 
     def _is_of(self, scene: Scene, camera: Camera, settings: Settings) -> bool:

@@ -4,6 +4,7 @@ are still being read it has no hole.
 """
 
 from dataclasses import replace
+from time import sleep
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from splat_addon.rendering import (
     Equirectangular,
     Instance,
     Light,
+    Pace,
     Panorama,
     Refinement,
     RenderCancelled,
@@ -23,6 +25,7 @@ from splat_addon.rendering import (
     Settings,
 )
 from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.pace import WIDEST
 from splat_addon.rendering.streamed import Streamed
 from splat_addon.rendering.upload import packing
 from splat_addon.streaming import Stream, write_blocks
@@ -200,6 +203,29 @@ def test_a_viewport_has_no_hole_and_becomes_what_a_render_is(file, on_device, sl
     inside = render[..., 3] > 0.999
     assert len(pictures) > 4 and inside.sum() > 100
     assert min(picture[..., 3][inside].min() for picture in pictures) > 0.97
+    assert np.abs(pictures[-1] - render).max() < 2e-2 and psnr(pictures[-1], render) > 60
+
+
+def test_a_view_at_rest_keeps_its_moving_picture_until_everything_is_read(file, on_device, slow, monkeypatch):
+    scene, camera = torus()
+    settings = replace(SETTINGS, outputs=("color",), shadow_resolution=0, detail_tolerance=0.5)
+    scene = streamed(scene, Stream(file, PLENTY))
+
+    def job(device):
+        view, drawn, pictures = Refinement(Renderer(device), Pace(1e6)), [], []
+        draw = view.renderer.draw
+        monkeypatch.setattr(view.renderer, "draw", lambda *of: (drawn.append(of[1].size), draw(*of))[1])
+        for _ in range(2000):
+            pictures.append(shown_by(view, device, scene, camera, settings))
+            if not view.wants_more:
+                break
+            sleep(0.005)
+        return pictures, drawn, Renderer(device).render(scene, camera, settings).color
+
+    pictures, drawn, render = on_device(job)
+    coarse = tuple(round(edge / WIDEST) for edge in camera.size)
+    assert drawn == [coarse, camera.size] and len(pictures) > 4
+    assert all(np.array_equal(picture, pictures[0]) for picture in pictures[:-1])
     assert np.abs(pictures[-1] - render).max() < 2e-2 and psnr(pictures[-1], render) > 60
 
 
