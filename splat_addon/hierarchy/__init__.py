@@ -7,8 +7,8 @@ borders (`surroundings`). Runs of neighbours in a level are *blocks*, each with 
 from which a view selects (`cuts`). When surfels move, the tree stays and is fitted to them (`refitting`).
 """
 
-from .building import Hierarchy, build_hierarchy
+from .building import Hierarchy, Told, build_hierarchy
 from .cuts import Sight, Split, cut_entries
 from .refitting import refit_hierarchy
 
-__all__ = ["Hierarchy", "Sight", "Split", "build_hierarchy", "cut_entries", "refit_hierarchy"]
+__all__ = ["Hierarchy", "Sight", "Split", "Told", "build_hierarchy", "cut_entries", "refit_hierarchy"]

@@ -5,7 +5,7 @@ top."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -48,7 +48,7 @@ class Hierarchy:
     it shows (its size times the change of colour or normal). entries: (E,) int32 indices of surfels and, from N on, of
     nodes, level by level, starting with the surfels; blocks are runs of it. counts: (E - N,) int32, how many entries of
     the level below each entry above the surfels' level stands for; those of successive entries follow one another.
-    cells: cell size of each level above the surfels.
+    cells: cell size of each level above the surfels. built_looseness: its `looseness` when it was built.
     """
 
     surfels: int
@@ -58,6 +58,11 @@ class Hierarchy:
     counts: np.ndarray
     cells: tuple[float, ...]
     blocks: Blocks
+    built_looseness: float = 0.0
+
+    def looseness(self, surfels: Surfels) -> float:
+        """The median error of its nodes in median radii of its surfels; 0 without nodes."""
+        return float(np.median(self.errors.max(axis=1)) / np.median(surfels.radius)) if len(self) else 0.0
 
     def __len__(self) -> int:
         return len(self.nodes)
@@ -81,7 +86,8 @@ def build_hierarchy(surfels: Surfels, told: Told | None = None) -> Hierarchy:
     every = np.concatenate([np.zeros(0, np.int32), *counts])
     cells = tuple(level.cell for level in levels)
     told(1.0)
-    return Hierarchy(len(surfels), nodes, errors, np.concatenate(entries), every, cells, blocks)
+    made = Hierarchy(len(surfels), nodes, errors, np.concatenate(entries), every, cells, blocks)
+    return replace(made, built_looseness=made.looseness(surfels))
 
 
 def _untold(share: float) -> None:

@@ -7,16 +7,19 @@ of surfels first and then of merged nodes, in storage order.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from weakref import WeakKeyDictionary
+from itertools import zip_longest
+from weakref import WeakKeyDictionary, WeakSet
 
 import numpy as np
 
-from ..hierarchy import Hierarchy, Sight, Split, build_hierarchy
+from ..hierarchy import Hierarchy, Sight, Split, Told, build_hierarchy, refit_hierarchy
 from ..hierarchy.merging import OVERLAP
 from ..surfels import Surfels
-from .scene import Instance
+from .scene import Instance, Scene
 from .scene.camera import Camera
+from .settings import Settings
 from .stand_in import STAND_INS
 
 #: For fewer surfels than this a cut saves less than it costs.
@@ -25,17 +28,43 @@ LEAST_SURFELS = 4096
 #: A method's filter may show splats that are less than this many pixels outside the picture.
 _BESIDE = 8.0
 
-#: The error of the finest merged surfels that are worth a hierarchy, in spacings, at most.
-_FINEST_ERROR = 2.0
+#: Size of the merged surfels of a cut: their spacing where the tolerance is a pixel, in pixels.
+_CUT_SPACING = 1.2
+
+#: Work of building a hierarchy, and of fitting one to moved surfels, per surfel: in surfels drawn in one sample.
+_BUILDING, _REFITTING = 3.0, 2.5
+
+#: The share of surfels that a cut must spare a view at least.
+_LEAST_SPARED = 0.1
+
+#: The most by which errors of a refitted hierarchy may have grown, relative to the surfels; beyond, another is built.
+_WORN = 2.0
+
+#: Surfels of an instance from which a view's cut is estimated.
+_SOME = 256
 
 _BUILT: WeakKeyDictionary[Surfels, Hierarchy] = WeakKeyDictionary()
+#: The hierarchies of what sets were in the frame before; None if they had none.
+_BEFORE: WeakKeyDictionary[Surfels, Hierarchy | None] = WeakKeyDictionary()
+#: Sets that an earlier picture has drawn. What is drawn twice will be drawn often.
+_DRAWN: WeakSet[Surfels] = WeakSet()
 
 
 def hierarchy_of(surfels: Surfels) -> Hierarchy:
-    """The hierarchy of a set of surfels, built on first use and kept as long as the set."""
+    """The hierarchy of a set of surfels, made on first use and kept as long as the set."""
     if surfels not in _BUILT:
-        _BUILT[surfels] = build_hierarchy(surfels)
+        keep_hierarchy(surfels, make_hierarchy(surfels, hierarchy_before(surfels)))
     return _BUILT[surfels]
+
+
+def make_hierarchy(surfels: Surfels, before: Hierarchy | None, told: Told | None = None) -> Hierarchy:
+    """A hierarchy fitted from the one that the surfels had before they moved, or built if there is none or it fits
+    badly. told: as in `build_hierarchy`."""
+    if before is not None:
+        fitted = refit_hierarchy(before, surfels)
+        if fitted.looseness(surfels) <= _WORN * fitted.built_looseness:
+            return fitted
+    return build_hierarchy(surfels, told)
 
 
 def built_hierarchy(surfels: Surfels) -> Hierarchy | None:
@@ -44,30 +73,86 @@ def built_hierarchy(surfels: Surfels) -> Hierarchy | None:
 
 
 def keep_hierarchy(surfels: Surfels, hierarchy: Hierarchy) -> None:
-    """Keep a hierarchy that was built elsewhere."""
+    """Keep a hierarchy that was made elsewhere."""
     _BUILT[surfels] = hierarchy
+    _BEFORE.pop(surfels, None)
+
+
+def hierarchy_before(surfels: Surfels) -> Hierarchy | None:
+    """The hierarchy that a set had in the frame before, which can be fitted to it."""
+    return _BEFORE.get(surfels)
+
+
+def replaced(before: Sequence[Surfels], now: Sequence[Surfels]) -> None:
+    """Sets of one object were replaced by others in a new frame. Where they have as many surfels of the same materials,
+    these are taken to be the same ones, moved."""
+    for old, new in zip_longest(before, now):
+        if new is None or new is old:
+            continue
+        is_moved = old is not None and len(old) == len(new) and np.array_equal(old.materials, new.materials)
+        _BEFORE[new] = _BUILT.get(old, _BEFORE.get(old)) if is_moved else None
+
+
+def was_drawn(scene: Scene) -> None:
+    """A picture of the scene is complete."""
+    _DRAWN.update(instance.surfels for instance in scene.surfels)
 
 
 def has_levels(instance: Instance) -> bool:
-    """Whether an instance may be drawn as merged surfels: it needs many, opaque surfels, not merged already, that
-    stay where they are."""
-    is_cut = instance.is_cut or instance.surfels in STAND_INS
-    is_excluded = is_cut or instance.deforms or instance.is_transparent
+    """Whether an instance may be drawn as merged surfels: it needs many, opaque surfels, not merged already."""
+    is_excluded = instance.is_cut or instance.is_transparent or instance.surfels in STAND_INS
     return len(instance.surfels) >= LEAST_SURFELS and not is_excluded
 
 
-def may_merge(instance: Instance, camera: Camera, tolerance: float) -> bool:
-    """Whether, seen from its farthest corner, merged surfels may be within the tolerance, judged from a sample."""
-    if not tolerance or not has_levels(instance):
+def is_worth_preparing(instance: Instance) -> bool:
+    """Whether a hierarchy is made for it where surfels are loaded in the background, whatever the view: not if its
+    surfels have just replaced others, as in each frame of an animation."""
+    return has_levels(instance) and (instance.surfels in _DRAWN or instance.surfels not in _BEFORE)
+
+
+def merging(scene: Scene, camera: Camera, settings: Settings) -> frozenset[Instance]:
+    """The instances that are drawn as merged surfels: those whose hierarchy is there, or spares so many surfels in this
+    frame's samples that making it pays.
+
+    Making it also pays for sets that were drawn before, unless an object's surfels are others in each frame. Shadow
+    maps are not counted.
+    """
+    found = []
+    if not settings.detail_tolerance:
+        return frozenset()
+    for surfels, instances in _by_set(filter(has_levels, scene.surfels)).items():
+        if surfels in _BUILT or _pays(surfels, instances, camera, settings):
+            found += instances
+    return frozenset(found)
+
+
+def _by_set(instances: Iterable[Instance]) -> dict[Surfels, list[Instance]]:
+    sets = {}
+    for instance in instances:
+        sets.setdefault(instance.surfels, []).append(instance)
+    return sets
+
+
+def _pays(surfels: Surfels, instances: list[Instance], camera: Camera, settings: Settings) -> bool:
+    spared = [_spared(instance, camera, settings.detail_tolerance) for instance in instances]
+    if max(spared) < _LEAST_SPARED:
         return False
-    if instance.surfels in _BUILT:
+    if surfels in _DRAWN or surfels not in _BEFORE:
         return True
-    linear = instance.model_view(camera)[:3, :3]
-    some = instance.surfels.scales[:: max(len(instance.surfels) // LEAST_SURFELS, 1)]
-    spacing = float(np.median(some.min(axis=1))) / OVERLAP
-    farthest = float(-instance.corners(camera)[:, 2].min())
-    pixels = camera.pixels_per_unit() * float(np.linalg.norm(linear, 2))
-    return _FINEST_ERROR * spacing * pixels <= tolerance * (1 if camera.is_orthographic else max(farthest, camera.near))
+    work = _BUILDING if _BEFORE[surfels] is None else _REFITTING
+    return settings.samples * sum(spared) >= work
+
+
+def _spared(instance: Instance, camera: Camera, tolerance: float) -> float:
+    """The share of an instance's surfels that a cut spares, from the spacing of some of them in the picture."""
+    matrix, step = instance.model_view(camera), max(len(instance.surfels) // _SOME, 1)
+    spacing = instance.surfels.scales[::step].min(axis=1) / OVERLAP
+    depth = -(instance.surfels.positions[::step] @ matrix[2, :3] + matrix[2, 3])
+    pixels = spacing * camera.pixels_per_unit() * float(np.linalg.norm(matrix[:3, :3], 2))
+    if not camera.is_orthographic:
+        pixels = pixels / np.maximum(depth, camera.near)
+    drawn = np.minimum((_CUT_SPACING * pixels / tolerance) ** 2, 1)
+    return float(1 - np.mean(np.where(depth > 0, drawn, 0)))
 
 
 def sight(

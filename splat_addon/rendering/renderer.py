@@ -18,6 +18,7 @@ from .features.outputs import PIXELS, check_samplers
 from .features.sample_sum import SUM
 from .frame import OUTPUTS, Frame
 from .identity import Identified, nearer
+from .levels import was_drawn
 from .panorama_faces import panorama_frame
 from .plan.build import plan
 from .plan.executor import Execution, TileContext, texture_key
@@ -134,10 +135,13 @@ class Renderer:
         for number in numbers:
             if isinstance(camera, Panorama):
                 seen = camera.cropped(*part) if part else camera
-                yield panorama_frame(seen, number, settings, draw, next(turns))
+                frame = panorama_frame(seen, number, settings, draw, next(turns))
             else:
                 moved = sample_camera(camera, number)
-                yield draw(moved, moved if camera.lens else camera, settings, next(turns), part)
+                frame = draw(moved, moved if camera.lens else camera, settings, next(turns), part)
+            if number == numbers[-1]:
+                was_drawn(scene)
+            yield frame
 
     def _frame(
         self, scene, camera: Camera, settings, progress, frame_plan: FramePlan, are_shared_done: bool, part: Tile | None
@@ -188,6 +192,7 @@ class Renderer:
                     texture_key(PIXELS["combined"], _drawn(tile, frame_plan)[2:], frame_plan)
                 )
                 yield Shown(tile, texture, (frame_plan.margin, frame_plan.margin, *tile[2:]))
+            was_drawn(scene)
         finally:
             self.device.restore()
 
@@ -209,6 +214,7 @@ class Renderer:
             stats = self._new_stats(frame_plan)
             for _ in self._tiles(scene, moved, settings, frame_plan, stats, None, are_shared_done):
                 pass
+            was_drawn(scene)
         finally:
             self.device.restore()
         return frame_plan.facts["shadow_maps"]

@@ -12,7 +12,7 @@ import pytest
 from splat_addon.reference import scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Equirectangular, Light, Panorama, Renderer, Settings, plan
-from splat_addon.rendering.levels import LEAST_SURFELS
+from splat_addon.rendering.levels import LEAST_SURFELS, hierarchy_of, replaced
 from splat_addon.rendering.methods import METHODS
 
 SIZE = (48, 40)
@@ -227,14 +227,67 @@ def test_parts_of_a_picture_are_drawn_with_the_whole_s_levels(render, monkeypatc
     assert psnr(tiles.color, whole.color) > 70
 
 
-def test_surfels_that_are_transparent_few_deforming_or_lit_by_themselves_are_all_drawn():
+def test_surfels_that_are_transparent_few_or_lit_by_themselves_are_all_drawn():
     scene, camera = far_torus()
     glass = with_surfels(scene, colors=lambda n: np.full((n, 4), 0.5))
     few, _ = far_torus(LEAST_SURFELS // 2)
-    bent = replace(scene, surfels=tuple(replace(instance, deforms=True) for instance in scene.surfels))
     assert plan(scene, camera, SOME).has("LEVELS")
     lit = replace(SOME, lights_splats=True)
-    for other, settings in ((glass, SOME), (few, SOME), (bent, SOME), (scene, EVERY), (scene, lit)):
+    for other, settings in ((glass, SOME), (few, SOME), (scene, EVERY), (scene, lit)):
         made = plan(other, camera, settings)
         assert not made.has("LEVELS") and "levels of detail" in dict(made.skipped)
         assert not any("drawn_splats" in part.inputs for p in made.passes for part in p.parts)
+
+
+def next_frame(scene):
+    """The scene in the next frame, in which its surfels have moved by different lengths."""
+    moved = []
+    for instance in scene.surfels:
+        x, y, z = instance.surfels.positions.T
+        bent = replace(instance.surfels, positions=np.stack([x + 0.1 * z, y, z], axis=1))
+        replaced([instance.surfels], [bent])
+        moved.append(replace(instance, shape=bent))
+    return replace(scene, surfels=tuple(moved))
+
+
+def built(scene):
+    return [hierarchy_of(instance.surfels) for instance in scene.surfels]
+
+
+@pytest.mark.parametrize("has_hierarchy", [True, False])
+def test_surfels_that_move_in_each_frame_are_merged_if_its_samples_pay_for_it(has_hierarchy):
+    scene, camera = far_torus()
+    if has_hierarchy:
+        built(scene)
+    bent = next_frame(scene)
+    assert [plan(bent, camera, replace(SOME, samples=n)).has("LEVELS") for n in (1, 16)] == [False, True]
+    near = replace(camera, window=tuple(edge / 20 for edge in camera.window))
+    assert not plan(bent, near, replace(SOME, samples=16)).has("LEVELS")
+    # three samples pay for fitting, and not for building
+    assert plan(bent, camera, replace(SOME, samples=3)).has("LEVELS") == has_hierarchy
+
+
+def test_surfels_that_have_come_to_rest_are_merged(on_device):
+    bent = next_frame(far_torus()[0])
+    camera = far_torus()[1]
+
+    def draw(device):
+        return [Renderer(device).render(bent, camera, SOME).stats["splats_drawn"] for _ in range(2)]
+
+    first, second = on_device(draw)
+    assert first == sum(len(i.surfels) for i in bent.surfels) and second < 0.3 * first
+
+
+def test_moved_surfels_keep_their_tree_while_it_fits(render):
+    scene, camera = far_torus()
+    trees = built(scene)
+    bent = next_frame(scene)
+    every, some = (render(bent, camera, replace(s, samples=4)) for s in (EVERY, SOME))
+    assert all(now.entries is before.entries for now, before in zip(built(bent), trees, strict=True))
+    assert some.stats["splats_drawn"] < 0.3 * every.stats["splats_drawn"]
+    assert psnr(some.color, every.color) > 37
+    surfels = bent.surfels[0].surfels
+    order = np.random.default_rng(0).permutation(len(surfels))
+    mixed = replace(surfels, **{name: array[order] for name, array in surfels.arrays().items()})
+    replaced([surfels], [mixed])
+    assert hierarchy_of(mixed).entries is not trees[0].entries

@@ -19,6 +19,7 @@ import bpy
 import numpy as np
 
 from ...rendering import Instance, Material, NormalTexture, PolygonInstance, Polygons, SurfaceTexture
+from ...rendering.levels import replaced
 from ...rendering.upload.packing import LARGEST_SET
 from ...sampling import (
     DEFAULT_CREASE_ANGLE,
@@ -218,12 +219,14 @@ class LiveMeshes:
         sampled = self._sampled(live, depsgraph, finer(density, live.detail), texture_mapped)
         if live.shown is None or live.shown[0] is not sampled:
             whole = joined_at_edges(sampled, *live.parts, live.spacing) if live.parts else sampled
-            live.shown = sampled, portions(whole, LARGEST_SET)
+            before, live.shown = live.shown, (sampled, portions(whole, LARGEST_SET))
+            if before is not None:
+                replaced(before[1], live.shown[1])
         textures = live.kept_textures() if sampled.has_uvs else ()
         self.counts["meshes"] += 1
         self.counts["surfels"] += sum(map(len, live.shown[1]))
         return [
-            Instance(part, textures=textures, deforms=live.bends, **place.of_instance(live.materials, live.spacing))
+            Instance(part, textures=textures, **place.of_instance(live.materials, live.spacing))
             for part in live.shown[1]
             for place in live.sampled_at
         ]

@@ -14,6 +14,7 @@ import bpy
 import numpy as np
 
 from ...rendering import Instance, Light, Scene
+from ...rendering.levels import replaced
 from ...rendering.upload.packing import LARGEST_SET
 from ...streaming import Stream
 from ...surfels import Surfels, portions
@@ -30,7 +31,6 @@ from .light_linking import LightSets
 from .live_meshes import LiveMeshes, Place
 from .object_detail import detail_of
 from .shading import light_of, shading_material
-from .shape_changes import shape_changes
 from .streams import Streams, not_followed
 from .world import WorldStore
 
@@ -67,6 +67,12 @@ class Kept(NamedTuple):
     strayed: int
 
 
+def tell_replaced(before: list[Kept], kept: Kept) -> None:
+    """Tell the renderer what a mesh's surfels were in the frame before."""
+    if before and all(kept.parts is not old.parts for old in before):
+        replaced(before[-1].parts, kept.parts)
+
+
 class SurfelStore:
     """Keeps the `Surfels` of meshes between frames: the same object as long as the values are unchanged.
 
@@ -94,8 +100,10 @@ class SurfelStore:
         """
         if key not in self._current:
             surfels, skipped, strayed = read_stored(points, self._followed, name, is_solid)
-            known = (k for k in self._kept.values() if k.name == name and have_same_values(k.surfels, surfels))
-            kept = next(known, None) or Kept(name, surfels, portions(surfels, LARGEST_SET), 0, 0)
+            before = [kept for kept in self._kept.values() if kept.name == name]
+            kept = next((k for k in before if have_same_values(k.surfels, surfels)), None)
+            kept = kept or Kept(name, surfels, portions(surfels, LARGEST_SET), 0, 0)
+            tell_replaced(before, kept)
             self._kept[key] = kept._replace(skipped=skipped, strayed=strayed)
             self._current.add(key)
         kept = self._kept[key]
@@ -276,7 +284,6 @@ def _instances(
         )
     for sentence in passed_over.of_object(object_.original):
         notes.add(sentence)
-    fields = {**fields, "deforms": bool(shape_changes(object_.original))}
     if override is not None:
         materials = (shading_material(override, notes),)
         parts = tuple(store.overridden.get(part, override, notes) for part in parts)

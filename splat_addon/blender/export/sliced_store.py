@@ -32,7 +32,7 @@ from ..geometry.attributes import (
     stored_fields,
     stored_of,
 )
-from .scene import Kept, SurfelStore
+from .scene import Kept, SurfelStore, tell_replaced
 
 #: Surfels that one picture may read at once, so that small meshes are there in the first one.
 AT_ONCE = 1 << 18
@@ -87,9 +87,8 @@ class SlicedStore(SurfelStore):
             self._readings.pop(key, None)
             return super().get(points, key, name, is_solid)
         self._requested.add(key)
-        reading = self._readings.get(key)
+        reading, before = self._readings.get(key), [kept for kept in self._kept.values() if kept.name == name]
         if reading is None or reading.count != count:
-            before = [kept for kept in self._kept.values() if kept.name == name]
             reading = self._readings[key] = _Reading(points, name, is_solid, before, self._followed.get(name))
         try:
             read = reading.advance(points, self._until, self._clock)
@@ -101,6 +100,7 @@ class SlicedStore(SurfelStore):
         del self._readings[key]
         if read.followed is not None:
             self._followed[name] = read.followed
+        tell_replaced(before, read.kept)
         self._kept[key] = read.kept
         self._current.add(key)
         return super().get(points, key, name, is_solid)

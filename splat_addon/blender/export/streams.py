@@ -8,9 +8,9 @@ import os
 import bpy
 
 from ...streaming import Stream
+from ..geometry.points_proxy import is_points_modifier
 from ..geometry.surfel_files import file_of
 from ..preferences import stream_bytes
-from .shape_changes import shape_changes
 
 
 class Streams:
@@ -52,7 +52,14 @@ class Streams:
 
 def not_followed(owner: bpy.types.Object) -> str:
     """The sentence about changes of shape that surfels from a file do not follow, or an empty string."""
-    changes = shape_changes(owner)
+    changes = _shape_changes(owner)
     if not changes:
         return ""
     return f"{owner.name}: surfels from a file do not follow {changes[0]}; keep them in the mesh if they are to deform"
+
+
+def _shape_changes(owner: bpy.types.Object) -> list[str]:
+    """The names of an object's modifiers in renders, except the one that shows points, and of its shape keys."""
+    changes = [m.name for m in owner.modifiers if m.show_render and not is_points_modifier(m)]
+    has_keys = getattr(owner.data, "shape_keys", None) is not None
+    return [*changes, *(["Shape Keys"] if has_keys else [])]

@@ -8,7 +8,7 @@ the same instance with different cuts.
 
 from __future__ import annotations
 
-from ..levels import LEAST_SURFELS, may_merge
+from .. import levels
 from ..plan.graph import Part
 from ..upload.cuts import NUMBERS_PER_ROW
 from . import lit_splats
@@ -22,8 +22,7 @@ def merging(planning) -> frozenset:
     """The instances that may have merged surfels in the picture; only these may have them in shadow maps."""
     if planning.find(lit_splats.wanted):
         return frozenset()
-    tolerance = planning.settings.detail_tolerance
-    return frozenset(i for i in planning.scene.surfels if may_merge(i, planning.camera, tolerance))
+    return levels.merging(planning.scene, planning.camera, planning.settings)
 
 
 def passes(planning):
@@ -37,7 +36,9 @@ def passes(planning):
             planning.facts["levels"] = found
             planning.has("LEVELS", f"{len(found)} instances may have surfels too small to be seen one by one")
         else:
-            planning.skip("levels of detail", f"no opaque instance of {LEAST_SURFELS:,} surfels or more is so far away")
+            planning.skip(
+                "levels of detail", f"no opaque instance of {levels.LEAST_SURFELS:,} surfels or more is worth it"
+            )
     return ()
 
 

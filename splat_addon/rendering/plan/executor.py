@@ -16,7 +16,7 @@ from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
 from ..features import ARRIVES, DRAWN, DRAWS, INPUTS
 from ..identity import Identities
-from ..levels import has_levels, sight
+from ..levels import is_worth_preparing, sight
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
 from ..settings import Settings
@@ -116,7 +116,7 @@ class TileContext:
 
     def stored(self, instance: Instance) -> StoredSurfels:
         """An object's surfels on the device, including merged ones if it has levels."""
-        may_have_levels = bool(self.settings.detail_tolerance) and has_levels(instance)
+        may_have_levels = bool(self.settings.detail_tolerance) and is_worth_preparing(instance)
         storage, levels = get_storage(self.plan.storage), self.levels(instance)
         return self.resources.surfels(instance.surfels, storage, levels, may_have_levels)
 

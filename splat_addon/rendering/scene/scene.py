@@ -178,13 +178,10 @@ class Instance(Placed):
 
     stream: the file that finer surfels are read from, as each view needs them; the shape has the coarsest ones.
     is_cut: whether the shape is what a view draws of that, so that no view merges it further.
-    deforms: whether its surfels may move apart in each frame. It is drawn without levels of detail, because building
-        them would take longer than they save in one frame.
     """
 
     stream: Stream | None = None
     is_cut: bool = False
-    deforms: bool = False
 
     @property
     def surfels(self) -> Surfels:

@@ -12,11 +12,11 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ...hierarchy import Hierarchy, build_hierarchy
+from ...hierarchy import Hierarchy
 from ...surfels import Surfels, concatenate
 from ..device import Device
 from ..device.interface import Pipeline, PipelineDescription, Texture
-from ..levels import built_hierarchy, hierarchy_of, keep_hierarchy
+from ..levels import built_hierarchy, hierarchy_before, hierarchy_of, keep_hierarchy, make_hierarchy
 from ..scene import Finish, Placed, SurfaceTexture
 from ..scene.polygons import Polygons, pack_polygon_bumps, pack_polygon_uvs, pack_polygons
 from .atlas import FORMAT, make_atlas
@@ -171,7 +171,10 @@ class Resources:
         """Have data made in the background, and with `builds` a hierarchy before."""
         known, order = self._held.get(owner, {}).get("order", (None, None))
         order = order if known == (levels,) and not builds else None
-        job = partial(_made, copy(owner), levels, order, builds and built_hierarchy(owner) is None, pack)
+        makes = None
+        if builds and built_hierarchy(owner) is None:
+            makes = partial(make_hierarchy, before=hierarchy_before(owner))
+        job = partial(_made, copy(owner), levels, order, makes, pack)
         self.loading.request(owner, kind, made_from, job)
 
     def atlas(self, textures: tuple[SurfaceTexture | None, ...]) -> tuple[Texture, Texture]:
@@ -242,12 +245,10 @@ def _with_nodes(surfels: Surfels, levels: Hierarchy | None) -> Surfels:
 _BUILDING, _ORDERING = 0.7, 0.3
 
 
-def _made(
-    surfels: Surfels, levels: Hierarchy | None, order: np.ndarray | None, builds: bool, pack, told: JobShare
-) -> Made:
-    """The job of `Resources._load`."""
-    built = _BUILDING if builds else 0.0
-    levels = build_hierarchy(surfels, lambda share: told(built * share)) if builds else levels
+def _made(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray | None, makes, pack, told: JobShare) -> Made:
+    """The job of `Resources._load`. makes: `make_hierarchy`, or None."""
+    built = _BUILDING if makes else 0.0
+    levels = makes(surfels, told=lambda share: told(built * share)) if makes else levels
     order = stored_order(surfels, levels) if order is None else order
     told(built + (1 - built) * _ORDERING)
     packed = pack(_with_nodes(surfels, levels), order, levels is not None)

@@ -9,6 +9,7 @@ from splat_addon.blender.export.live_meshes import LiveMeshes
 from splat_addon.blender.export.scene import SurfelStore, export_scene
 from splat_addon.blender.geometry.attributes import read_surfels
 from splat_addon.blender.geometry.points_proxy import shown_points
+from splat_addon.rendering.levels import hierarchy_before, hierarchy_of
 
 
 @pytest.fixture
@@ -65,17 +66,32 @@ def test_shape_keys_bend_surfels(clips_edges, sheet, convert, bent_surfels):
 
 
 @pytest.mark.parametrize("is_converted", [True, False])
-@pytest.mark.parametrize("has_keys", [True, False])
-def test_what_may_bend_is_drawn_without_levels_of_detail(has_keys, is_converted, sheet, convert):
-    """Building its levels again for each frame would take longer than they save."""
-    if has_keys:
-        add_keys(sheet)
+@pytest.mark.parametrize("is_bent", [True, False])
+def test_surfels_that_bend_have_the_hierarchy_of_the_frame_before(is_bent, is_converted, sheet, convert):
+    key = add_keys(sheet)
     if is_converted:
         convert(density="RESOLUTION", resolution=16, source="HIDE")
     else:
         bpy.context.scene.surfel_splatting.render_meshes = "SURFELS"
-    exported, _ = export_scene(bpy.context.evaluated_depsgraph_get(), SurfelStore(), LiveMeshes())
-    assert [instance.deforms for instance in exported.surfels] == [has_keys]
+    store, live = SurfelStore(), LiveMeshes()
+
+    def surfels():
+        store.begin_frame()
+        live.begin_frame()
+        (instance,) = export_scene(bpy.context.evaluated_depsgraph_get(), store, live)[0].surfels
+        store.forget_unused()
+        return instance.surfels
+
+    key.value = 0.0
+    first = surfels()
+    built = hierarchy_of(first)
+    key.value = 0.5 * is_bent
+    bpy.context.view_layer.update()
+    second = surfels()
+    assert (second is not first) == is_bent
+    assert hierarchy_before(second) is (built if is_bent else None)
+    fitted = hierarchy_of(second)
+    assert len(fitted) and fitted.entries is built.entries
 
 
 def add_armature(sheet):
