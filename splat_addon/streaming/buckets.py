@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ..hierarchy.ordering import morton_codes
-from ..surfels import Surfels
+from ..surfels import OPAQUE, Surfels
 from .layout import as_rows, row_type
 
 #: Every which surfel of the parts is in the sample that tells where to cut.
@@ -50,8 +50,11 @@ def surveyed(parts: Iterable[Surfels], portion: int, told: Callable[[int], None]
         if not len(part):
             continue
         if part.is_transparent:
+            pale = int((part.colors[:, 3] < OPAQUE).sum())
             raise ValueError(
-                "Transparent surfels have no levels of detail, so they cannot be stored in blocks; keep them apart."
+                "Transparent surfels have no levels of detail, so they cannot be stored in a file of blocks, and "
+                f"{pale:,} of the first {count + len(part):,} have an alpha below 1; make them opaque, or keep them in "
+                "an object of their own."
             )
         origin = part.origin if origin is None else origin
         positions = moved(part, origin)

@@ -50,6 +50,7 @@ class Stream:
         self._kept: dict[tuple, tuple[int, Seen]] = {}
         self._same: WeakValueDictionary[bytes, Surfels] = WeakValueDictionary()
         self._frame = 0
+        # a thread of its own: what others compute in the background may take a minute, and a view waits for this one
         self._reader, self._lock = ThreadPoolExecutor(1, "surfel blocks"), Lock()
 
     def __len__(self) -> int:

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs inside a Blender window: imports a PLY with Keep in a File twice, and presses Esc the first time.
+
+test_keeping.py reads the report.
+"""
+
+import sys
+from pathlib import Path
+
+import bpy
+
+sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
+
+from steps import REPORT, in_view, play  # noqa: E402
+
+import splat_addon  # noqa: E402
+from splat_addon.interchange import write_ply  # noqa: E402
+from splat_addon.reference import scenes  # noqa: E402
+
+COUNT = 600_000
+PATIENCE = 300  # polls of a fifth of a second
+FOLDER = REPORT.with_suffix("")
+
+
+def press(window, key):
+    for value in ("PRESS", "RELEASE"):
+        window.event_simulate(type=key, value=value, x=400, y=300)
+
+
+def files():
+    return sorted(path.name for path in FOLDER.iterdir())
+
+
+def steps():
+    """Yields the seconds to wait after each step, and returns the report."""
+    FOLDER.mkdir(exist_ok=True)
+    for path in FOLDER.iterdir():
+        path.unlink()
+    report, window = {}, bpy.context.window_manager.windows[0]
+    bpy.ops.wm.save_as_mainfile(filepath=str(FOLDER / "scene.blend"))
+    write_ply(FOLDER / "scan.ply", scenes.torus(COUNT)[0].surfels[0].surfels)
+    for name in ("cancelled", "kept"):
+        with in_view():
+            bpy.ops.import_scene.surfels_ply(
+                "INVOKE_DEFAULT", True, filepath=str(FOLDER / "scan.ply"), keeps_in_file=True
+            )
+        yield 1.0
+        press(window, "RET")  # confirms the dialog
+        yield 1.0
+        running = [operator.bl_idname for operator in window.modal_operators]
+        if name == "cancelled":
+            press(window, "ESC")
+        for _ in range(PATIENCE):
+            yield 0.2
+            if not len(window.modal_operators):
+                break
+        report[name] = running, files(), [owner.name for owner in bpy.data.objects], len(bpy.data.meshes)
+    return report
+
+
+splat_addon.register()
+play(steps(), and_quit=True)
