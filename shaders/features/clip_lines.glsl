@@ -79,6 +79,14 @@ void clip_lines_bound(inout Candidate c) {
   if (!is_inside_lines(clip_in_space > 0.5 ? c.place.xy : gl_FragCoord.xy)) discard;
 }
 
+#part screen_space.vert, blurs_lines
+// Where the filter reaches over a line, the face beyond it may be nearer by as much as blurs_lines_bound allows. The
+// hardware's depth test must not hide the splat there.
+void clip_lines_reach(Plane plane, inout float nearest) {
+  float before = length(plane.slope) + (1.0 + 4.0 * draw.epsilon) * plane.radius;
+  nearest = max(min(nearest, plane.depth - before), view.near);
+}
+
 #part screen_space.frag, blurs_lines
 #include "lib/clipped_share.glsl"
 

@@ -1,7 +1,8 @@
 // References: Botsch et al. 2005, section 4; Guennebaud et al. 2006, section 3.2 (the bounds of a splat).
 // Summary: for screen-space methods: a triangle around the splat's footprint, and its attributes. Hooks: `clip` before
 //          the method adjusts the splat, `clipped` afterwards, `place` for splats not drawn in the picture; `replaced`
-//          if the method has replaced axes, `cull` for splats that need not be drawn.
+//          if the method has replaced axes, `reach` for splats that nearer ones may not hide, `cull` for splats that
+//          need not be drawn.
 
 #include "lib/nowhere.glsl"
 #include "hosts/splat.glsl"
@@ -46,7 +47,9 @@ void main() {
     // circles. The corner is beside the splat, not above: surfaces at grazing angles change fastest upwards.
     vec2 pixels = axes * (half_axes * (MARGIN * corner.yx * axes));
     vec4 clip = view.projection * vec4(view.window.xy + (middle + pixels) * view.window.zw, -1.0, 1.0);
-    gl_Position = vec4(clip.xy / clip.w, clamp(2.0 * stored_depth(nearest_depth(plane)) - 1.0, -1.0, 1.0), 1.0);
+    float nearest = nearest_depth(plane);
+    #hook reach(plane, nearest)
+    gl_Position = vec4(clip.xy / clip.w, clamp(2.0 * stored_depth(nearest) - 1.0, -1.0, 1.0), 1.0);
     #hook cull(plane, middle, axes, half_axes)
   }
 }
