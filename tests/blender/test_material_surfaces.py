@@ -7,6 +7,9 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.materials.material_surfaces import MeshLayers, material_surface
+from splat_addon.blender.materials.surface_textures import has_holes
+
 TEXELS = 4
 ENCODED = np.random.default_rng(3).integers(0, 256, (TEXELS, TEXELS, 4)) / 255
 
@@ -302,3 +305,56 @@ def test_a_material_in_a_slot_that_no_face_uses_is_not_complained_about(painted,
     procedural(nodes, image)
     painted(Nodes("used").material, nodes.material)
     assert "Warning" not in capfd.readouterr().out
+
+
+def leaf(image, covers="SECOND", color=(1, 1, 1, 1)):
+    """The nodes of a leaf card, whose image's alpha mixes it with a Transparent BSDF, and its Mix Shader."""
+    nodes = Nodes()
+    texture, mix = nodes.texture(image()), nodes.add("ShaderNodeMixShader")
+    clear = nodes.add("ShaderNodeBsdfTransparent")
+    clear.inputs["Color"].default_value = color
+    nodes.link(texture, "Color", nodes.principled, "Base Color").link(texture, "Alpha", mix, 0)
+    first, second = (clear, nodes.principled) if covers == "SECOND" else (nodes.principled, clear)
+    nodes.link(first, "BSDF", mix, 1).link(second, "BSDF", mix, 2)
+    return nodes.link(mix, "Shader", nodes.tree.get_output_node("ALL"), "Surface"), mix
+
+
+@pytest.mark.parametrize("covers", ["FIRST", "SECOND"])
+def test_a_mix_with_a_transparent_shader_is_opacity(image, painted, covers):
+    nodes, _ = leaf(image, covers)
+    nodes.principled.inputs["Alpha"].default_value = 0.5
+    surfels, texel = painted(nodes.material)
+    share = ENCODED[texel][:, 3] if covers == "SECOND" else 1 - ENCODED[texel][:, 3]
+    assert np.allclose(surfels.colors[:, 3], 0.5 * share, atol=1e-6)
+
+
+def test_a_leaf_card_has_the_holes_of_its_image(image, add_square):
+    nodes, _ = leaf(image)
+    square = add_square()
+    surface, unread = material_surface(nodes.material, MeshLayers(square.data))
+    assert not unread
+    assert has_holes(surface)
+
+
+def test_a_constant_share_is_opacity(painted):
+    nodes = Nodes()
+    mix, clear = nodes.add("ShaderNodeMixShader"), nodes.add("ShaderNodeBsdfTransparent")
+    mix.inputs[0].default_value = 0.25
+    nodes.principled.inputs["Base Color"].default_value = (0.1, 0.2, 0.3, 1)
+    nodes.link(clear, "BSDF", mix, 1).link(nodes.principled, "BSDF", mix, 2)
+    nodes.link(mix, "Shader", nodes.tree.get_output_node("ALL"), "Surface")
+    surfels, _ = painted(nodes.material)
+    assert np.allclose(surfels.colors, (0.1, 0.2, 0.3, 0.25))
+
+
+def test_a_tinted_transparent_shader_is_no_hole(image, add_square):
+    nodes, _ = leaf(image, color=(1, 0.5, 0.5, 1))
+    _, unread = material_surface(nodes.material, MeshLayers(add_square().data))
+    assert [what.channel for what in unread] == ["color", "opacity"]
+
+
+def test_what_cannot_be_read_in_a_mix_is_reported_as_a_mix(image, add_square):
+    nodes, mix = leaf(image)
+    nodes.link(nodes.add("ShaderNodeTexNoise"), "Fac", mix, 0)
+    _, unread = material_surface(nodes.material, MeshLayers(add_square().data))
+    assert {what.reason for what in unread} == {"a Mix Shader node"}

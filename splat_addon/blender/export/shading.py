@@ -14,6 +14,7 @@ from ...rendering import Finish, Light, Material
 from ...rendering.upload.packing import reflectance
 from ..materials.node_products import linked
 from ..materials.node_trees import uses_nodes
+from ..materials.transparent_mixes import transparent_mix
 from . import passed_over
 
 #: Blender's light type -> its emitting area, by which the energy of a non-normalised light is multiplied, as in Cycles:
@@ -211,9 +212,11 @@ def _levelled(ior: float, level: float) -> float:
 
 
 def output_source(tree: bpy.types.NodeTree, output_type: str, *wanted: str) -> bpy.types.Node | None:
-    """The node of one of the types `wanted` that feeds the tree's active output, or None."""
+    """The node of one of the types `wanted` that feeds the tree's active output, also mixed with a Transparent BSDF, or
+    None."""
     for node in tree.nodes:
         if node.type == output_type and node.is_active_output and (found := linked(node.inputs["Surface"])):
-            source = found[0]
+            mix = transparent_mix(found[0])
+            source = found[0] if mix is None else mix.shader
             return source if source.type in wanted and not source.mute else None
     return None

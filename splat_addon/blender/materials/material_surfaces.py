@@ -21,6 +21,7 @@ from .node_trees import uses_nodes
 from .shader_mixes import channels
 from .texture_images import UnreadableError, linear_pixels
 from .texture_placement import placement, uv_layer
+from .transparent_mixes import TransparentMix, transparent_mix
 
 
 @dataclass(frozen=True)
@@ -135,11 +136,23 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
     if not uses_nodes(material):
         return plain, []
     shader = surface_shader(material)
+    if (found := _behind_holes(shader, layers)) is not None:
+        return found, []
     if shader is None or shader.bl_idname not in SHADERS:
         if shader is None:
             return plain, [Unread("color", "no shader at its output")]
         return plain, [Unread(channel, f"a {shader.bl_label} node") for channel in channels(shader)]
     return _Reader(shader, layers).surface()
+
+
+def _behind_holes(shader: bpy.types.Node | None, layers: MeshLayers) -> Surface | None:
+    """The surface of a shader mixed with a Transparent BSDF; None for anything else, or if not all of it can be read,
+    so that the mix is baked as a whole."""
+    mix = transparent_mix(shader)
+    if mix is None or "color" not in SHADERS.get(mix.shader.bl_idname, ()):
+        return None
+    surface, unread = _Reader(mix.shader, layers, mix).surface()
+    return None if unread else surface
 
 
 def plain_color(material: bpy.types.Material) -> tuple[tuple[float, float, float, float], bool]:
@@ -162,18 +175,27 @@ def _bare_surface(layers: MeshLayers) -> Surface:
 
 
 class _Reader:
-    """Reads one shader node."""
+    """Reads one shader node. mix: with a Transparent BSDF, if it is in one."""
 
-    def __init__(self, shader: bpy.types.ShaderNode, layers: MeshLayers):
-        self._shader, self._layers = shader, layers
+    def __init__(self, shader: bpy.types.ShaderNode, layers: MeshLayers, mix: TransparentMix | None = None):
+        self._shader, self._layers, self._mix = shader, layers, mix
         self._sockets = SHADERS[shader.bl_idname]
         self._unread: list[Unread] = []
 
     def surface(self) -> tuple[Surface, list[Unread]]:
         alpha = self._product("opacity") if "opacity" in self._sockets else Product((1.0,))
+        if self._mix is not None:
+            alpha = self._in_mix(alpha)
         color, opacity = self._color(alpha) if "color" in self._sockets else (Channel((0.0, 0.0, 0.0, 1.0)), None)
         rest = {name: self._channel(name) for name in ("roughness", "metallic", "emission") if name in self._sockets}
         return Surface(color, opacity, normal_map=self._normal_map(), **rest), self._unread
+
+    def _in_mix(self, alpha: Product) -> Product:
+        try:
+            return alpha * self._mix.opacity()
+        except UnreadableError as error:
+            self._unread.append(Unread("opacity", str(error)))
+            return alpha
 
     def _color(self, alpha: Product) -> tuple[Channel, Channel | None]:
         """The colour, with the alpha if it comes from the same image, and the remaining part of the alpha."""

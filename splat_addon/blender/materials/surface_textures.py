@@ -17,6 +17,7 @@ from .material_surfaces import SHADERS, MeshLayers, surface_shader
 from .node_products import ImageSource, linked, product
 from .node_trees import uses_nodes
 from .texture_images import UnreadableError
+from .transparent_mixes import transparent_mix
 
 
 def texture_of(surface: Surface) -> SurfaceTexture | None:
@@ -95,6 +96,8 @@ class TextureStore:
 
     def _read(self, material: bpy.types.Material | None) -> SurfaceTexture | None:
         shader = surface_shader(material) if material is not None and uses_nodes(material) else None
+        mix = transparent_mix(shader)
+        shader = shader if mix is None else mix.shader
         sockets = SHADERS.get(shader.bl_idname, {}).get("color") if shader is not None else None
         if sockets is None:
             return None
@@ -109,6 +112,7 @@ class TextureStore:
         self._forget_if_painted(source.node.image)
         alpha = shader.inputs.get("Alpha")
         uses_alpha = alpha is not None and linked(alpha) == (source.node, "Alpha")
+        uses_alpha |= mix is not None and mix.is_alpha_of(source.node)
         return SurfaceTexture(MeshLayers(None, _images=self._images).image(source, uses_alpha), tuple(read.value))
 
     def _forget_if_painted(self, image: bpy.types.Image | None) -> None:

@@ -278,8 +278,8 @@ def test_a_group_that_is_not_there_is_named(group, sentence, ball, picture, said
     assert "Sphere is left out: It is split by" in text and sentence in text
 
 
-def leaf_card(pixels) -> bpy.types.Object:
-    """A plane whose Base Color and Alpha come from one image."""
+def leaf_card(pixels, is_mixed=False) -> bpy.types.Object:
+    """A plane whose Base Color and Alpha come from one image, or whose alpha mixes it with a Transparent BSDF."""
     image = bpy.data.images.new("leaf", *pixels.shape[1::-1], alpha=True, float_buffer=True)
     image.pixels.foreach_set(np.float32(pixels).ravel())
     material = principled(Roughness=1.0)
@@ -287,7 +287,13 @@ def leaf_card(pixels) -> bpy.types.Object:
     texture = tree.nodes.new("ShaderNodeTexImage")
     texture.image = image
     tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
-    tree.links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
+    if is_mixed:
+        mix, clear = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfTransparent")
+        for output, to in ((texture.outputs["Alpha"], 0), (clear.outputs[0], 1), (shader.outputs[0], 2)):
+            tree.links.new(output, mix.inputs[to])
+        tree.links.new(mix.outputs[0], tree.get_output_node("ALL").inputs["Surface"])
+    else:
+        tree.links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
     bpy.ops.mesh.primitive_plane_add(size=3)
     bpy.context.object.data.materials.append(material)
     return bpy.context.object
@@ -300,11 +306,11 @@ def leaf(size=32) -> np.ndarray:
     return inside[..., None] * np.array((0.1, 0.6, 0.2, 1.0))
 
 
-@pytest.mark.parametrize("form", ["SCENE", "POLYGONS"])
-def test_a_leaf_card_is_seen_through_as_in_cycles(form, look, picture, said, switch_to_cycles):
+@pytest.mark.parametrize(("form", "is_mixed"), [("SCENE", False), ("POLYGONS", False), ("SCENE", True)])
+def test_a_leaf_card_is_seen_through_as_in_cycles(form, is_mixed, look, picture, said, switch_to_cycles):
     """It is polygons, by default and on demand, and none of the black around the leaf is visible."""
     look.surfel_splatting.samples = 16
-    card = leaf_card(leaf())
+    card = leaf_card(leaf(), is_mixed)
     card.surfel_splatting.render_as = form
     add_sun(look)
     ours = picture()
