@@ -18,5 +18,5 @@ void main() {
   normal = splat.normal;
   hand_on(splat, index);
   #hook axes(splat, widened)
-  gl_Position = splat.is_hidden ? NOWHERE : quad_corner(splat, eye);
+  gl_Position = splat.is_hidden ? nowhere(splat.position) : quad_corner(splat, eye);
 }

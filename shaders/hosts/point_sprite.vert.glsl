@@ -23,5 +23,5 @@ void main() {
   float behind = splat.side_weight < 1.0 ? BACK_EPSILON * draw.epsilon * radius : 0.0;
   bool is_before = !(depth >= view.near);
   float stored = min(2.0 * stored_depth(depth + behind) - 1.0, 1.0);
-  gl_Position = splat.is_hidden || is_before ? NOWHERE : vec4(clip.xy / clip.w, stored, 1.0);
+  gl_Position = splat.is_hidden || is_before ? nowhere(splat.position) : vec4(clip.xy / clip.w, stored, 1.0);
 }

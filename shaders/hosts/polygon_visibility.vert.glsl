@@ -17,5 +17,5 @@ void main() {
   hand_on_corner(gl_VertexID, slot, eye);
   vec4 moved = polygon_corner(eye, draw.epsilon);
   #hook moved(gl_VertexID, slot, eye, first, outward, moved)
-  gl_Position = is_hidden ? NOWHERE : moved;
+  gl_Position = is_hidden ? nowhere(first) : moved;
 }

@@ -16,5 +16,5 @@ void main() {
   corner_color = corner_texel(gl_VertexID, 2).rgb;
   hand_on_corner(gl_VertexID, place.w, eye);
   #hook plane(gl_VertexID, place.w, first, outward, is_back)
-  gl_Position = is_back && draw.hides_backs > 0.5 ? NOWHERE : view.projection * vec4(eye, 1.0);
+  gl_Position = is_back && draw.hides_backs > 0.5 ? nowhere(first) : view.projection * vec4(eye, 1.0);
 }

@@ -34,7 +34,7 @@ void main() {
   normal = splat.normal;
   hand_on(splat, index);
   #hook replaced(true_plane, plane, in_space)
-  gl_Position = NOWHERE;
+  gl_Position = nowhere(splat.position);
   #hook place(splat, corner, in_space)
   if (!splat.is_hidden && !in_space) {
     vec2 size, middle;
@@ -46,10 +46,12 @@ void main() {
     // Stretched along the picture's axes instead of rotated to the ellipse's, whose direction depends on rounding for
     // circles. The corner is beside the splat, not above: surfaces at grazing angles change fastest upwards.
     vec2 pixels = axes * (half_axes * (MARGIN * corner.yx * axes));
+    bool is_culled = false;
+    #hook cull(plane, middle, axes, half_axes, is_culled)
     vec4 clip = view.projection * vec4(view.window.xy + (middle + pixels) * view.window.zw, -1.0, 1.0);
     float nearest = nearest_depth(plane);
     #hook reach(plane, nearest)
-    gl_Position = vec4(clip.xy / clip.w, clamp(2.0 * stored_depth(nearest) - 1.0, -1.0, 1.0), 1.0);
-    #hook cull(plane, middle, axes, half_axes)
+    nearest = clamp(2.0 * stored_depth(nearest) - 1.0, -1.0, 1.0);
+    if (!is_culled) gl_Position = vec4(clip.xy / clip.w, nearest, 1.0);
   }
 }

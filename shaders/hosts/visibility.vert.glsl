@@ -25,5 +25,5 @@ void main() {
   #hook move(splat, radius, offset)
   vec4 moved = splat_corner(eye, offset);
   #hook shape(splat, corner, offset, moved)
-  gl_Position = splat.is_hidden ? NOWHERE : moved;
+  gl_Position = splat.is_hidden ? nowhere(splat.position) : moved;
 }

@@ -1,7 +1,8 @@
-// References: rendering/view.py, `DrawItem.is_whole`.
-// Summary: the position of all corners of skipped splats, so that they have no area. If the whole instance is in the
-//          picture, so is this position: outside the view volume it would make the hardware clip neighbouring
-//          triangles. If some of the instance is clipped anyway, it is in front of the near plane, where it is rejected
-//          fastest.
+// References: none needed.
+// Summary: the position of all corners of what is skipped, so that it has no area: where its middle would be. A software
+//          rasterizer clips all triangles of a batch if one corner of them is outside the view volume, so skipped ones
+//          must not be outside unless their neighbours are, too.
 
-#define NOWHERE vec4(0.0, 0.0, draw.nowhere, 1.0)
+vec4 nowhere(vec3 eye) {
+  return view.projection * vec4(eye, 1.0);
+}

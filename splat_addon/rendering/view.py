@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .depth_range import ClipRange, beyond, clipped, seen_by
+from .depth_range import ClipRange, clipped, seen_by
 from .scene import Instance, Placed, PolygonInstance, Scene
 from .scene.camera import Camera
 
@@ -28,7 +28,6 @@ class DrawItem:
     """model_view: (4, 4) float64, positions (without origin) to scaled view space.
     normal_matrix: (3, 3) float64, its inverse transpose up to a positive factor.
     hides_backs: splats or polygons that face away are skipped.
-    is_whole: the camera sees all of it, judged from a sample.
     overlap: of polygons, how far behind them splats still count, view units.
     setback: minimum distance by which a visibility pass moves it back, beside `View.least_offset` and in its unit.
     split_distance: of polygons the farthest distance, of splats the least of their centres, view units; 0: no limit.
@@ -38,7 +37,6 @@ class DrawItem:
     model_view: np.ndarray
     normal_matrix: np.ndarray
     hides_backs: bool
-    is_whole: bool
     overlap: float = 0.0
     split_distance: float = 0.0
     setback: float = 0.0
@@ -96,8 +94,7 @@ def build_view(
         hides_backs, limit = instance.hides_backs(camera), _split_distance(instance, camera) if are_split else 0.0
         if limit is None:
             continue
-        is_whole = not beyond(instance.some_places(camera), camera).any()
-        of_kind.append(DrawItem(instance, model_view, normal_matrix, hides_backs, is_whole, overlap, limit * scale))
+        of_kind.append(DrawItem(instance, model_view, normal_matrix, hides_backs, overlap, limit * scale))
     return View(
         scale=scale,
         near=camera.near * scale,

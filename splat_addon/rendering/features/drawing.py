@@ -89,7 +89,6 @@ def draw_block(tile: TileContext, placed: DrawItem, epsilon: float) -> np.ndarra
         max(tile.view.least_offset(tile.plan.linear_depth), placed.setback),
         *tile.identities.slots(placed.instance),
         placed.split_distance,
-        0.0 if placed.is_whole else -2.0,
     )
     return std140(DRAW, values)
 

@@ -32,7 +32,7 @@ VIEW: Block = (
 #: light_set: 1 in the channel of the instance's set. orientation: -1 for a mirrored object. epsilon: how far visibility
 #: moves splats back, in radii, or polygons, in view units. least_offset: of both, as a share of the distance; of an
 #: orthographic camera a length. first_slot, more_slots: number of its first material slot, and of those after it.
-#: split_distance: as of `DrawItem`. nowhere: the depth, between -1 and 1 in the view, at which skipped splats collapse.
+#: split_distance: as of `DrawItem`.
 DRAW: Block = (
     "Draw",
     "draw",
@@ -47,7 +47,6 @@ DRAW: Block = (
         ("float", "first_slot"),
         ("float", "more_slots"),
         ("float", "split_distance"),
-        ("float", "nowhere"),
     ),
 )
 
