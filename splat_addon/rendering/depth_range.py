@@ -124,6 +124,21 @@ def beyond(corners: np.ndarray, camera: Camera) -> np.ndarray:
     )
 
 
+def picture_bounds(seen, camera: Camera) -> tuple[float, float, float, float] | None:
+    """Left, bottom, right and top in pixels of everything that `seen_by` found; None if any of it is not wholly in
+    front of the camera, or there is nothing."""
+    if not seen:
+        return None
+    corners = np.concatenate([instance.corners(camera) for instance, *_ in seen])
+    depths = -corners[:, 2:]
+    if not (depths >= camera.near).all():
+        return None
+    left, right, bottom, top = camera.window
+    places = corners[:, :2] / (1.0 if camera.is_orthographic else depths)
+    pixels = (places - (left, bottom)) / (right - left, top - bottom) * camera.size
+    return (*pixels.min(axis=0).tolist(), *pixels.max(axis=0).tolist())
+
+
 def _clip_range(camera: Camera, seen, epsilon: float) -> tuple[float, float]:
     if not seen:
         return camera.near, camera.far

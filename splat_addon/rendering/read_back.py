@@ -17,16 +17,21 @@ def background_pixel(scene: Scene, settings: Settings) -> tuple[float, float, fl
     return (0.0, 0.0, 0.0, 0.0) if settings.transparent_film else (*scene.world, 1.0)
 
 
+def background_texels(scene: Scene, settings: Settings) -> dict[str, np.ndarray]:
+    """pixel texture -> (4,) float32 texel of a pixel that nothing covers."""
+    pixels = {"color": background_pixel(scene, settings), "depth": EMPTY_DEPTH, "shadow": 1.0}
+    texels = {texture: np.zeros(4, np.float32) for texture, _ in HELD_BY.values()}
+    for name, value in pixels.items():
+        texture, where = HELD_BY[name]
+        texels[texture][where] = value
+    return texels
+
+
 def background(scene: Scene, size, settings: Settings) -> dict[str, np.ndarray]:
     """The arrays of a picture without splats."""
-    width, height = size
-    pixels = {"color": background_pixel(scene, settings), "depth": EMPTY_DEPTH, "shadow": 1.0}
-    arrays = {}
-    for name in read_arrays(settings.outputs):
-        where = HELD_BY[name][1]
-        shape = (height, width) if isinstance(where, int) else (height, width, where.stop - where.start)
-        arrays[name] = np.full(shape, pixels.get(name, 0.0), np.float32)
-    return arrays
+    texels = background_texels(scene, settings)
+    held = {name: texels[HELD_BY[name][0]][HELD_BY[name][1]] for name in read_arrays(settings.outputs)}
+    return {name: np.full((*size[::-1], *np.shape(texel)), texel) for name, texel in held.items()}
 
 
 def read_arrays(outputs: tuple[str, ...]) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .depth_range import ClipRange, clipped, seen_by
+from .depth_range import ClipRange, clipped, picture_bounds, seen_by
 from .scene import Instance, Placed, PolygonInstance, Scene
 from .scene.camera import Camera
 
@@ -50,6 +50,7 @@ class View:
     degenerate: instances whose matrix flattens space, so that they have no normals.
     depth_span: how many times the resolution of float32 the hardware's depth resolves at its farthest: far / near, of
         an orthographic camera far - near in view units.
+    bounds: left, bottom, right, top in pixels outside of which nothing is; None if that is not known.
     polygons: draw items of polygons. contact: maximum depth of polygons behind splats of the same surface.
     """
 
@@ -62,6 +63,7 @@ class View:
     outside: int
     degenerate: int
     depth_span: float
+    bounds: tuple[float, float, float, float] | None = None
     polygons: tuple[DrawItem, ...] = ()
     contact: float = 0.0
 
@@ -105,6 +107,7 @@ def build_view(
         outside=outside,
         degenerate=degenerate,
         depth_span=(far - near) * scale if camera.is_orthographic else far / near,
+        bounds=picture_bounds(seen, camera),
         polygons=tuple(placed[PolygonInstance]),
         contact=(1 + 4 * epsilon) * max(radii.values(), default=0.0) * scale,
     )

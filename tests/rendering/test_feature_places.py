@@ -128,7 +128,10 @@ MEETINGS = {
         ("what finds what is nearest is drawn by its pass", "features/shadows.py features/object_id.glsl"),
         ("what is seen and has no sums is a hole", "features/holdout.py lib/hole.glsl"),
     ),
-    "world": (("a picture of nothing but the world refines too", "features/sample_sum.py"),),
+    "world": (
+        ("a picture of nothing but the world refines too", "features/sample_sum.py"),
+        ("a world that is a picture is drawn where nothing else is", "plan/executor.py"),
+    ),
 }  # fmt: skip
 
 

@@ -152,7 +152,7 @@ class _Target:
     def clear(self, color=None, depth=None):
         values = {}
         if color is not None:
-            values["color"] = (color,) * 4
+            values["color"] = tuple(np.broadcast_to(color, 4).tolist())
         if depth is not None:
             values["depth"] = depth
         with self.framebuffer.bind():

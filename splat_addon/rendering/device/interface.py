@@ -9,7 +9,7 @@ functions is identical on both.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 from weakref import WeakSet
@@ -103,8 +103,9 @@ class Target(Protocol):
 
     size: tuple[int, int]
 
-    def clear(self, color: float | None = None, depth: float | None = None) -> None:
-        """Fill every colour texture with one value, and the depth texture with another."""
+    def clear(self, color: float | Sequence[float] | None = None, depth: float | None = None) -> None:
+        """Fill every colour texture with one value, or one for each of four channels, and the depth texture with
+        another."""
 
     def read(self, slot: int) -> np.ndarray:
         """The pixels of a colour texture: (h, w, channels) float32, row 0 at the bottom."""

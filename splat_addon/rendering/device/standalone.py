@@ -136,8 +136,8 @@ class _Target:
         framebuffer.depth_mask = depth is not None
         if self._colors:
             framebuffer.color_mask = self._mask(color is not None)
-        value = color or 0.0
-        framebuffer.clear(value, value, value, value, depth=1.0 if depth is None else depth)
+        value = np.broadcast_to(0.0 if color is None else color, 4).tolist()
+        framebuffer.clear(*value, depth=1.0 if depth is None else depth)
         if self._colors:
             framebuffer.color_mask = self._mask(True)
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ..plan.graph import Part, Pass, Texture, fill
+from ..plan.graph import Part, Pass, Texture, fill_all
 from ..plan.tiles import tile_edge
 from . import gbuffer, polygons
 from .drawing import LIT_HOSTS
@@ -73,7 +73,7 @@ def _depths(planning) -> Pass:
         choices=(("samples", "mean" if settings.multisampling else "each"),),
     )
     sums = gbuffer.depth_parts(planning, "opaque", reads=(gbuffer.COLOR, gbuffer.NORMAL))
-    return Pass("occluders", why, "occluders.frag", fill, (own, sums, *polygons.joined(planning)))
+    return Pass("occluders", why, "occluders.frag", fill_all, (own, sums, *polygons.joined(planning)))
 
 
 def is_present(planning) -> bool:

@@ -5,6 +5,7 @@ stored for a later filter."""
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture, fill
+from ..read_back import background_texels
 from . import depth_bounds, outputs, silhouettes, visibility
 from .drawing import LIGHTING_HOSTS
 
@@ -18,6 +19,15 @@ def _samples(planning) -> tuple[tuple[str, int], ...]:
     is_mean = settings.multisampling and not settings.sample_shading
     taps = 1 if is_mean else settings.multisampling or 1
     return ("SAMPLES", settings.supersampling), ("TAPS", taps), ("MEAN_OF", settings.multisampling)
+
+
+def fill_pixels(tile, p: Pass):
+    """Fill the picture: with the background, where nothing is seen."""
+    if tile.seen_part(p):
+        pixels = background_texels(tile.scene, tile.settings)
+        for texture in p.fills:
+            tile.resources.device.target([tile.texture(texture)]).clear(color=pixels[texture.name])
+    return fill(tile, p)
 
 
 def deferred(planning, reason: str, kind: str = "opaque") -> Pass:
@@ -35,7 +45,8 @@ def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque"
         called=((seen, "seen_depth"),),
         constants=(("SAMPLES", planning.settings.supersampling), ("ROWS", silhouettes.rows_of(seen))),
     )
-    return Pass("resolve", reason, "resolve.frag", fill, (own,), kind, state or {}, adds=bool(state))
+    run = fill if state else fill_pixels
+    return Pass("resolve", reason, "resolve.frag", run, (own,), kind, state or {}, adds=bool(state))
 
 
 def layer_pixels(planning, depth: Texture, writes: tuple[Texture, ...]) -> Pass:
@@ -61,7 +72,7 @@ def passes(planning):
         yield _filtered(planning, "silhouettes are filtered", visibility.nearest_depth(planning), pixels)
     else:
         own = Part("lighting", writes=pixels, constants=_samples(planning))
-        yield Pass("shading", once, "shading.frag", fill, (own,))
+        yield Pass("shading", once, "shading.frag", fill_pixels, (own,))
 
 
 def parts(planning, p):

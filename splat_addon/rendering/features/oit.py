@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from ..plan.graph import Part, Pass, Texture, fill
+from ..plan.graph import Part, Pass, Texture, fill, fill_all
 from . import gbuffer, lighting, lit_splats
 from .rasterizers import rasterized
 
@@ -28,5 +28,5 @@ def passes_of_rest(planning, peeled: Texture, layers: Texture) -> tuple[Pass, ..
         Pass("rest", "all that is left is added up", host, run, rest, "rest", state, each=each),
         Pass("oit_shading", "its weights tell how much it hides", "oit_shading.frag", fill, (shade,), "rest"),
         Pass("oit_layer", "nearer layers cover it", "oit_layer.frag", fill, (put,), "rest", add, adds=True),
-        Pass("peel_oit", "it covers what is opaque", "peel_oit.frag", fill, (peel,), "rest"),
+        Pass("peel_oit", "it covers what is opaque", "peel_oit.frag", fill_all, (peel,), "rest"),
     )

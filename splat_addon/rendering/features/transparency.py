@@ -15,7 +15,7 @@ of its samples, and so does the opaque picture behind them.
 
 from __future__ import annotations
 
-from ..plan.graph import Loop, Part, Pass, Texture, fill, of_pixels
+from ..plan.graph import Loop, Part, Pass, Texture, fill_all, of_pixels
 from . import depth_bounds, gbuffer, lighting, oit, outputs, visibility
 from .drawing import SPLAT_HOSTS
 
@@ -71,19 +71,19 @@ def passes(planning):
 
 def _body(planning) -> tuple[Pass, ...]:
     in_space = planning.method.rasterizer == "object_space"
-    own = visibility.own_parts(planning, DEPTH, has_polygons=False)
+    own, ends = visibility.own_parts(planning, DEPTH, has_polygons=False), "layers end where nothing is left"
     found = visibility.drawn("visibility", "behind nearer layers, before what is opaque", own, planning, "layer")
     occupied = Part("transparency", reads=(DEPTH,), writes=(OCCUPANCY,))
     bounds = depth_bounds.bounds(planning, "depths are compared in the shader", DEPTH, "layer")
     peel = Part("transparency", reads=(DEPTH, lighting.SHADED), updates=(PEELED,))
     return (
         found,
-        Pass("layer_occupancy", "layers end where nothing is left", "layer_occupancy.frag", fill, (occupied,), "layer"),
+        Pass("layer_occupancy", ends, "layer_occupancy.frag", fill_all, (occupied,), "layer"),
         *(() if in_space else (bounds,)),
         gbuffer.attributes(planning, "splats of one layer blend", DEPTH, "layer"),
         lighting.deferred(planning, "a layer is lit once", "layer"),
         lighting.layer_pixels(planning, DEPTH, (COLOR, COLOR_DEPTH)),
-        Pass("peel", "the next layer lies behind this one", "peel.frag", fill, (peel,), "layer"),
+        Pass("peel", "the next layer lies behind this one", "peel.frag", fill_all, (peel,), "layer"),
     )
 
 

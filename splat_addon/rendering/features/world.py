@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..plan.graph import Part, Pass, fill
+from ..plan.graph import Part, Pass, fill_all
 from . import outputs
 from .drawing import LIGHTING_HOSTS
 
@@ -30,12 +30,13 @@ _LIGHTS = Part("world", inputs=("environment_image", "environment_levels"), choi
 
 def passes(planning):
     """An empty world is a pass of its own."""
+    planning.facts["has_backdrop"] = is_shown(planning)
     if not planning.shown:
         planning.skip("all other passes", "the scene has neither surfels nor polygons: the picture is its background")
         if is_shown(planning):
             samples = ("SAMPLES", planning.settings.supersampling)
             own = Part("world", writes=outputs.pixel_textures(planning), constants=(samples,), called=outputs.CALLED)
-            yield Pass("background", "the world is a picture", "background.frag", fill, (own,))
+            yield Pass("background", "the world is a picture", "background.frag", fill_all, (own,))
     elif not planning.scene.environment:
         planning.skip("environment", "the world is even")
 

@@ -25,7 +25,7 @@ class Method:
         their methods here.
     sprites_hide: visibility too is of its sprites. Else it is of the exact ellipses.
     writes_depth: at every pixel: the hardware's depth would differ from the one that the method corrects or clamps.
-    widens: its quads in space, past the exact ellipses that visibility is of.
+    widens: its quads in space, past the exact ellipses that visibility is of, edge-on by any number of pixels.
     pixel_variance: of its pixel filter, samples squared; 1/12 is that of a box. Textures are looked up under it.
     """
 

@@ -17,6 +17,7 @@ from ..device.interface import Texture as DeviceTexture
 from ..features import ARRIVES, DRAWN, DRAWS, INPUTS
 from ..identity import Identities
 from ..levels import is_worth_preparing, sight
+from ..methods import get_method
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
 from ..settings import Settings
@@ -26,9 +27,13 @@ from ..upload.resources import Resources, StoredSurfels, TextureKey
 from ..upload.storages import get_storage
 from ..view import DrawItem, View, split_distances
 from .frame_plan import FramePlan
-from .graph import Loop, Pass, Step, Texture
+from .graph import Loop, Pass, Step, Texture, of_pixels
 from .programs import describe, frame_value
 from .uniforms import DRAW, VIEW, Block, std140
+
+#: Methods that do not widen splats in space draw less than this many pixels beyond their ellipses, and what rejects
+#: hidden splats reads less.
+_BESIDE = 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,13 +191,30 @@ class TileContext:
         """The program of a pass. variants: of its parts, beside those in all programs."""
         return self.resources.pipeline(describe(self.plan, p, vertex, *variants))
 
+    def seen_part(self, p: Pass) -> tuple[int, int, int, int] | None:
+        """x, y, width, height of the part of a pass's target outside of which nothing is seen; None for all of it.
+
+        Of textures with samples it includes what filters read beside the pixels that they write.
+        """
+        is_everywhere = self.plan.facts["has_backdrop"] or get_method(self.plan.method).widens
+        if is_everywhere or self.view.bounds is None:
+            return None
+        writes_pixels = all(texture.per is of_pixels for texture in p.fills)
+        reach, size = _BESIDE + self.plan.margin * (1 if writes_pixels else 2), np.array(self.camera.size)
+        bounds = np.reshape(self.view.bounds, (2, 2))
+        first, last = np.clip(bounds[0] - reach, 0, size), np.clip(bounds[1] + reach, 0, size)
+        scale = np.array(self.plan.size(p.fills[0], self.camera.size)) / size
+        first, last = np.floor(first * scale).astype(int), np.ceil(last * scale).astype(int)
+        return (*first.tolist(), *(last - first).tolist())
+
     def fill(self, p: Pass, viewport=None) -> Target:
-        """Draw over everything that a pass writes."""
+        """Draw over everything that a pass writes, or a part: x, y, width, height of the target."""
         target, program = self.target(p), self.program(p)
         if p.depth and p.state.get("depth_write"):
             target.clear(depth=1.0)
-        device = self.resources.device
-        device.draw_fullscreen(program, target, self.blocks(program), self.textures(p, program), viewport=viewport)
+        if viewport is None or min(viewport[2:]) > 0:
+            blocks, textures = self.blocks(program), self.textures(p, program)
+            self.resources.device.draw_fullscreen(program, target, blocks, textures, viewport=viewport)
         return target
 
 

@@ -96,6 +96,11 @@ class Part(NamedTuple):
 
 
 def fill(tile, p: Pass):
+    """Run a pass that draws over what it writes, where anything is seen. Elsewhere the contents are undefined."""
+    return tile.fill(p, tile.seen_part(p))
+
+
+def fill_all(tile, p: Pass):
     """Run a pass that draws over everything that it writes."""
     return tile.fill(p)
 
