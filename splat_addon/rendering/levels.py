@@ -19,7 +19,6 @@ from ..hierarchy.merging import OVERLAP
 from ..surfels import Surfels
 from .scene import Instance, Scene
 from .scene.camera import Camera
-from .settings import Settings
 from .stand_in import STAND_INS
 
 #: For fewer surfels than this a cut saves less than it costs.
@@ -110,18 +109,18 @@ def is_worth_preparing(instance: Instance) -> bool:
     return has_levels(instance) and (instance.surfels in _DRAWN or instance.surfels not in _BEFORE)
 
 
-def merging(scene: Scene, camera: Camera, settings: Settings) -> frozenset[Instance]:
-    """The instances that are drawn as merged surfels: those whose hierarchy is there, or spares so many surfels in this
-    frame's samples that making it pays.
+def merging(scene: Scene, camera: Camera, tolerance: float, samples: int) -> frozenset[Instance]:
+    """The instances that are drawn as merged surfels: those whose hierarchy is there, or spares so many surfels in the
+    samples of this scene, which may be one moment of a frame, that making it pays.
 
     Making it also pays for sets that were drawn before, unless an object's surfels are others in each frame. Shadow
     maps are not counted.
     """
     found = []
-    if not settings.detail_tolerance:
+    if not tolerance:
         return frozenset()
     for surfels, instances in _by_set(filter(has_levels, scene.surfels)).items():
-        if surfels in _BUILT or _pays(surfels, instances, camera, settings):
+        if surfels in _BUILT or _pays(surfels, instances, camera, tolerance, samples):
             found += instances
     return frozenset(found)
 
@@ -133,14 +132,14 @@ def _by_set(instances: Iterable[Instance]) -> dict[Surfels, list[Instance]]:
     return sets
 
 
-def _pays(surfels: Surfels, instances: list[Instance], camera: Camera, settings: Settings) -> bool:
-    spared = [_spared(instance, camera, settings.detail_tolerance) for instance in instances]
+def _pays(surfels: Surfels, instances: list[Instance], camera: Camera, tolerance: float, samples: int) -> bool:
+    spared = [_spared(instance, camera, tolerance) for instance in instances]
     if max(spared) < _LEAST_SPARED:
         return False
     if surfels in _DRAWN or surfels not in _BEFORE:
         return True
     work = _BUILDING if _BEFORE[surfels] is None else _REFITTING
-    return settings.samples * sum(spared) >= work
+    return samples * sum(spared) >= work
 
 
 def _spared(instance: Instance, camera: Camera, tolerance: float) -> float:

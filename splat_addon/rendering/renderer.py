@@ -127,7 +127,7 @@ class Renderer:
 
         def draw(moved: Camera, fitted: Camera, settings: Settings, told: Progress | None, part=None) -> Frame:
             nonlocal maps
-            frame_plan = plan(scene, moved, settings, shadow_camera=fitted, part=part)
+            frame_plan = plan(scene, moved, settings, shadow_camera=fitted, part=part, samples=len(numbers))
             are_shared_done = maps is not None and same_maps(maps, frame_plan.facts["shadow_maps"])
             maps = frame_plan.facts["shadow_maps"]
             return self._frame(scene, moved, settings, told, frame_plan, are_shared_done, part)

@@ -22,7 +22,7 @@ def merging(planning) -> frozenset:
     """The instances that may have merged surfels in the picture; only these may have them in shadow maps."""
     if planning.find(lit_splats.wanted):
         return frozenset()
-    return levels.merging(planning.scene, planning.camera, planning.settings)
+    return levels.merging(planning.scene, planning.camera, planning.settings.detail_tolerance, planning.samples)
 
 
 def passes(planning):

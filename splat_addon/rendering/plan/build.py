@@ -27,14 +27,15 @@ def plan(
     shadow_camera: Camera | None = None,
     is_added_up: bool = False,
     part: tuple[int, int, int, int] | None = None,
+    samples: int | None = None,
 ) -> FramePlan:
     """The passes that this picture needs.
 
     shadow_camera: the camera that shadow maps are fitted to, if different, so that similar cameras can share maps.
         is_added_up: whether the picture is one sample of a refining view. part: x, y, width, height in pixels, if only
-        a part of the picture is drawn.
+        a part of the picture is drawn. samples: number of samples that show this scene, if fewer than the picture's.
     """
-    planning = Planning(scene, camera, settings, shadow_camera or camera, is_added_up)
+    planning = Planning(scene, camera, settings, shadow_camera or camera, is_added_up, samples or settings.samples)
     if settings.multisampling and planning.method.rasterizer != "object_space":
         raise ValueError(
             f"Method {planning.method.name} filters in screen space, where hardware multisampling has no effect; set "

@@ -17,14 +17,22 @@ Found = TypeVar("Found")
 
 class Planning:
     """shadow_camera: the camera that shadow maps are fitted to. is_added_up: whether the picture is a sample of a
-    refining view.
+    refining view. samples: number of samples that show the scene.
 
     choices, facts: as in `FramePlan`; features add to both.
     """
 
-    def __init__(self, scene: Scene, camera: Camera, settings: Settings, shadow_camera: Camera, is_added_up: bool):
+    def __init__(
+        self,
+        scene: Scene,
+        camera: Camera,
+        settings: Settings,
+        shadow_camera: Camera,
+        is_added_up: bool,
+        samples: int,
+    ):
         self.scene, self.camera, self.settings = scene, camera, settings
-        self.shadow_camera, self.is_added_up = shadow_camera, is_added_up
+        self.shadow_camera, self.is_added_up, self.samples = shadow_camera, is_added_up, samples
         self.method, self.model = get_method(settings.method), get_shading_model(settings.shading)
         self.shown = scene.shown
         self.features: list[tuple[str, str]] = []
