@@ -26,7 +26,7 @@ from splat_addon.rendering.plan import executor
 from splat_addon.rendering.settings import OUTPUTS
 from splat_addon.surfels import Surfels, axes_quaternions
 
-FLAT = Settings(method="quad", shading="flat")
+FLAT = Settings(method="quad", shading="flat", detail_tolerance=0)
 RADIUS = 5.0
 #: Turned so that no face's edge lies along a row or a column.
 MATRIX = np.eye(4)

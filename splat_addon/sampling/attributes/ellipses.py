@@ -34,13 +34,13 @@ def ellipse_rotations(normals: np.ndarray, axis: int) -> np.ndarray:
     normals: (3, t) float64 unit normals.
     With cos p, sin p the direction of (Nu, Nv) and r its length, the local axes are x = (-Na cos p, -Na sin p, r),
     y = (sin p, -cos p, 0), z = (r cos p, r sin p, Na): half a turn about (sqrt((1-Na)/2), 0, sqrt((1+Na)/2)), then p
-    about the image's axis. No pole is special: where r is 0, p is 0.
+    about the image's axis. No pole is special: where r is 0, or so small that its square has lost digits, p is 0.
     """
     u, v, a = (normals[(axis + k) % 3] for k in (1, 2, 0))
     r = np.sqrt(u * u + v * v)
     with np.errstate(invalid="ignore", divide="ignore"):
         cosine = u / r
-    cosine[np.flatnonzero(r == 0)] = 1
+    cosine[np.flatnonzero(r < 1e-150)] = 1
     cosine_half, sine_half = _half_angle(cosine)
     np.copysign(sine_half, v, out=sine_half)
     upright, tilted = _half_angle(a)
