@@ -30,6 +30,9 @@ _BESIDE = 8.0
 #: Size of the merged surfels of a cut: their spacing where the tolerance is a pixel, in pixels.
 _CUT_SPACING = 1.2
 
+#: The share that merged surfels are of those that they stand for, at most: the finest of them stand for three.
+_FIRST_MERGED = 0.35
+
 #: Work of building a hierarchy, and of fitting one to moved surfels, per surfel: in surfels drawn in one sample.
 _BUILDING, _REFITTING = 3.0, 2.5
 
@@ -150,7 +153,8 @@ def _spared(instance: Instance, camera: Camera, tolerance: float) -> float:
     pixels = spacing * camera.pixels_per_unit() * float(np.linalg.norm(matrix[:3, :3], 2))
     if not camera.is_orthographic:
         pixels = pixels / np.maximum(depth, camera.near)
-    drawn = np.minimum((_CUT_SPACING * pixels / tolerance) ** 2, 1)
+    merged = (_CUT_SPACING * pixels / tolerance) ** 2
+    drawn = np.where(merged <= _FIRST_MERGED, merged, 1)
     return float(1 - np.mean(np.where(depth > 0, drawn, 0)))
 
 
