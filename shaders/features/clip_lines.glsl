@@ -83,8 +83,7 @@ void clip_lines_bound(inout Candidate c) {
 // Where the filter reaches over a line, the face beyond it may be nearer by as much as blurs_lines_bound allows. The
 // hardware's depth test must not hide the splat there.
 void clip_lines_reach(Plane plane, inout float nearest) {
-  float before = length(plane.slope) + (1.0 + 4.0 * draw.epsilon) * plane.radius;
-  nearest = max(min(nearest, plane.depth - before), view.near);
+  nearest = max(min(nearest, plane.depth - length(plane.slope) - most_nearer(plane)), view.near);
 }
 
 #part screen_space.frag, blurs_lines
@@ -104,28 +103,35 @@ const float OTHER_SURFACE = 1.0;  // radii behind the line, at least
 const float TO_LINE = 0.25;       // pixels by which the distance to the line may be wrong
 const float STEEPEST = 8.0;       // pixels of depth per pixel; steeper, the silhouette filter blurs the crease
 
+// By how much per pixel the depth from the splat's plane to the visible surface grows, from `gap` here to the next sample
+// away from the line. It is endless if that sample is empty.
+float growth_of(float gap, Plane plane, vec2 back) {
+  ivec2 next = ivec2(floor(gl_FragCoord.xy - normalize(back))), last = textureSize(depth_bounds, 0) - 1;
+  float seen = texelFetch(depth_bounds, clamp(next, ivec2(0), last), 0).z;
+  float depth = plane.depth + dot(plane.slope, place_at(plane, vec2(next) + 0.5).uv);
+  return (seen - depth - gap) / dot(gl_FragCoord.xy - vec2(next) - 0.5, normalize(back));
+}
+
 // Beyond the line the adjacent face is visible, and may hide the splat's plane, while the pixel's filter reaches over
 // the crease. There the splat counts as much as it is visible before the line. The adjacent face meets the splat's
 // plane at the line, so the gap between both grows from there to the next pixel. A visible surface with a larger gap is
-// another one, and the splat's surface ends before it, which the silhouette filter blurs.
+// another one: if it is behind, the splat's surface ends before it, which the silhouette filter blurs, and if it is
+// nearer, it hides the splat.
 void blurs_lines_bound(inout Candidate c) {
   Place place = place_at(c.plane, gl_FragCoord.xy);
   vec2 back = way_back(c.plane, place);
-  if (c.in_space || back == vec2(0.0) || c.depth - c.seen.z > (1.0 + 4.0 * draw.epsilon) * c.plane.radius) return;
+  if (c.in_space || back == vec2(0.0)) return;
   ivec2 last = textureSize(depth_bounds, 0) - 1, at = clamp(ivec2(floor(gl_FragCoord.xy + back)), ivec2(0), last);
   float before = plane_depth(c.plane, place_at(c.plane, vec2(at) + 0.5));
   bool is_seen = before <= texelFetch(depth_bounds, at, 0).z;
   if (!is_seen) discard;
-  float gap = c.seen.w - c.depth, away = length(back), least = OTHER_SURFACE * c.plane.radius;
-  if (gap > least) {
-    ivec2 next = ivec2(floor(gl_FragCoord.xy - back / away));
-    float seen = texelFetch(depth_bounds, clamp(next, ivec2(0), last), 0).w;
-    if (!(seen > 0.0)) return;
-    float to_next = dot(gl_FragCoord.xy - vec2(next) - 0.5, back) / away;
-    float depth = c.plane.depth + dot(c.plane.slope, place_at(c.plane, vec2(next) + 0.5).uv);
-    float growth = max(seen - depth - gap, 0.0) / to_next;
-    if (gap > least + growth * (away - TO_WITHIN + TO_LINE)) discard;
-    if (growth < STEEPEST * view.window.z * (view.is_parallel > 0.5 ? 1.0 : c.plane.depth)) c.compared = c.seen.z;
+  float gap = c.seen.w - c.depth, nearer = c.depth - c.seen.z, from_line = length(back) - TO_WITHIN + TO_LINE;
+  if (nearer > (1.0 + 4.0 * draw.epsilon) * c.plane.radius) {
+    if (nearer > most_nearer(c.plane) || nearer > -growth_of(-nearer, c.plane, back) * from_line) discard;
+  } else if (gap > OTHER_SURFACE * c.plane.radius) {
+    float growth = max(growth_of(gap, c.plane, back), 0.0);
+    if (gap > OTHER_SURFACE * c.plane.radius + growth * from_line) discard;
+    if (growth < STEEPEST * pixel_length(c.plane)) c.compared = c.seen.z;
   }
   c.compared = min(c.compared, c.seen.z);
 }

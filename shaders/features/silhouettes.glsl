@@ -7,7 +7,8 @@
 // front of it beyond the rim.
 void silhouettes_keep(inout Candidate c) {
   float apart = (1.0 + 4.0 * draw.epsilon) * c.plane.radius;
-  if (!c.in_space && (c.seen.w - c.compared > apart || c.plane.depth - length(c.plane.slope) - apart > c.seen.z)) discard;
+  bool is_behind = c.depth <= c.seen.z && c.plane.depth - length(c.plane.slope) - apart > c.seen.z;
+  if (!c.in_space && (c.seen.w - c.compared > apart || is_behind)) discard;
 }
 
 #part screen_space.frag, opaque

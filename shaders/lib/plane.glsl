@@ -17,6 +17,16 @@ struct Plane {
   vec3 det;      // of the map from the picture to the plane, times depth at the centre over depth: det.z - d . det.xy
 };
 
+// Length of a pixel at the splat's centre.
+float pixel_length(Plane plane) {
+  return view.window.z * (view.is_parallel > 0.5 ? 1.0 : plane.depth);
+}
+
+// Beyond a concave crease the filter reaches into a face that is nearer, by at most this.
+float most_nearer(Plane plane) {
+  return (1.0 + 4.0 * draw.epsilon) * plane.radius + 4.0 * pixel_length(plane);
+}
+
 #part vertex
 // Change of depth per pixel, at the centre.
 vec2 depth_gradient(Plane plane) {

@@ -69,10 +69,13 @@ def test_a_steep_face_is_filtered_over_its_crease(render):
     assert np.count_nonzero(apart(mesh, camera, 0.02, render) > 0.1) <= 6
 
 
-def test_a_wall_is_filtered_over_the_steep_floor_before_it(render):
-    """Measured: 24 pixels are wrong; it was 51 when the floor's depth hid the filtered end of the wall."""
+@pytest.mark.parametrize("spacing, measured, before", [(0.02, 24, 51), (0.01, 57, 75)])
+def test_a_wall_is_filtered_over_the_steep_floor_before_it(spacing, measured, before, render):
+    """Measured: pixels that are wrong. The floor's depth hid the filtered end of the wall: by the hardware's test where
+    splats are as wide as pixels, and by that of the shader where the floor comes many of their radii nearer."""
     floor = [(-1, -1.2, 3.24), (1, -1.2, 3.24), (1, 0, 0), (-1, 0.1, 0)]
     wall = [(-1, 0.1, 0), (1, 0, 0), (1, 1, -0.1), (-1, 1, -0.1)]
     mesh = sheets(((1, 0.2, 0.2), floor), ((0.1, 0.2, 1), wall))
     camera = Camera.perspective(look_at((0.1, 0.2, 6), (0, 0, 0), (0, 1, 0)), 0.3, (64, 64), 0.1, 100)
-    assert np.count_nonzero(apart(mesh, camera, 0.02, render) > 0.1) <= 35
+    wrong = np.count_nonzero(apart(mesh, camera, spacing, render) > 0.1)
+    assert wrong <= (measured + before) // 2, wrong
