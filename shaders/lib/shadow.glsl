@@ -127,12 +127,6 @@ Met tap_toward(ShadowPlace here, vec3 toward, int number) {
 // Fraction of the distance behind a lamp at which the search for blockers begins.
 const float NEAREST_SHARE = 0.25;
 
-// How far before the lit point a tap met a blocker, in the units of `past` below: past as much, the cone of rays from the
-// point to the lamp ends.
-float blocker_gap(ShadowPlace here, Met met) {
-  return here.atlas.w > 0.5 ? here.depth - met.way : dot(here.position, here.position) / met.way - 1.0;
-}
-
 // Rays pass the point towards parts of the lamp, whose half-axes lamp_u and lamp_v are in the light's view (tangents
 // for a sun): at the fraction t of the distance from the lamp, their spread is (1 - t) / t of the lamp's size.
 float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lamp_v) {
@@ -143,11 +137,9 @@ float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lam
   float blockers = 0.0, sum = 0.0;
   for (int i = 0; i < SEARCH_TAPS; i++) {
     vec2 tap = soft_tap(i, SEARCH_TAPS);
-    float past = pow(tap.x, SEARCH_POWER) * reach;  // denser in the middle, where close blockers hide the lamp
+    float past = tap.x * tap.x * reach;  // denser in the middle, where close blockers hide the lamp
     Met met = tap_toward(here, here.position + past * (cos(tap.y) * lamp_u + sin(tap.y) * lamp_v), i);
-    // What a wide tap meets right beside the point, like the other side of an open fold, is outside the cone of rays to
-    // the lamp and hides none of it.
-    if (met.depth + bias < met.lit && (!SEARCHES_CONE || (past - blocker_gap(here, met)) * size <= 2.0 * bias)) {
+    if (met.depth + bias < met.lit) {
       blockers += 1.0;
       sum += met.way;
     }

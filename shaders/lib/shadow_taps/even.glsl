@@ -7,9 +7,6 @@ vec2 hard_filter(vec2 distance) {
   return max(2.0 - abs(distance), 0.0);
 }
 
-// Blockers right before the point are inside the cone of rays to the lamp only near the search's middle.
-const bool SEARCHES_CONE = true;
-const float SEARCH_POWER = 4.0;
 const int SEARCH_TAPS = SOFT_SAMPLES, FILTER_TAPS = SOFT_SAMPLES;
 
 // Radius and angle in the unit disc.

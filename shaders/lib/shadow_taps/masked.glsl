@@ -14,9 +14,6 @@ vec2 hard_filter(vec2 distance) {
   return clamp(2.5 - abs(distance), 0.0, 1.0);
 }
 
-// A search denser in the middle leaves combs in penumbrae, and one of the cone alone needs it to find near blockers.
-const bool SEARCHES_CONE = false;
-const float SEARCH_POWER = 2.0;
 // A mask hides some of them; if several surfaces block, their mean depth is that of the kept ones.
 const int SEARCH_TAPS = 2 * SOFT_SAMPLES, FILTER_TAPS = 4 * SOFT_SAMPLES;
 
