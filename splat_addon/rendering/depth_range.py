@@ -130,12 +130,9 @@ def picture_bounds(seen, camera: Camera) -> tuple[float, float, float, float] | 
     if not seen:
         return None
     corners = np.concatenate([instance.corners(camera) for instance, *_ in seen])
-    depths = -corners[:, 2:]
-    if not (depths >= camera.near).all():
+    if not (-corners[:, 2] >= camera.near).all():
         return None
-    left, right, bottom, top = camera.window
-    places = corners[:, :2] / (1.0 if camera.is_orthographic else depths)
-    pixels = (places - (left, bottom)) / (right - left, top - bottom) * camera.size
+    pixels = camera.pixels_of(corners)
     return (*pixels.min(axis=0).tolist(), *pixels.max(axis=0).tolist())
 
 

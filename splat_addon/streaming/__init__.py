@@ -9,6 +9,6 @@ view with ordinary `Surfels`; blocks that have not been read yet are replaced by
 
 from .block_file import BlockFile, described
 from .stream import Stream
-from .writing import WritingCancelled, write_blocks
+from .writing import PORTION, WritingCancelled, write_blocks
 
-__all__ = ["BlockFile", "Stream", "WritingCancelled", "described", "write_blocks"]
+__all__ = ["PORTION", "BlockFile", "Stream", "WritingCancelled", "described", "write_blocks"]

@@ -21,7 +21,7 @@ from ..surfels import Surfels
 from .buckets import Survey, filled, portions_of, surveyed
 from .layout import align, as_surfels, begin, finish, joined_rows
 
-#: Surfels of one hierarchy.
+#: Surfels of one hierarchy, and those that are best given at once.
 PORTION = 1 << 20
 
 #: Columns of `Blocks` -> their type in the file.

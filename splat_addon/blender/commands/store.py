@@ -10,7 +10,7 @@ from pathlib import Path
 import bpy
 
 from ...interchange import PlyPortions
-from ...streaming import write_blocks
+from ...streaming import PORTION, write_blocks
 from ...streaming.layout import SUFFIX
 from ...surfels import Surfels, portions
 from ..geometry.sources import is_surfel_object
@@ -24,9 +24,6 @@ DESCRIPTION = (
     "Stores surfels, in world coordinates, in a file from which views read only what they need: those of a PLY file, "
     "or of objects, which are converted first if they are no surfels. File > Import > Surfels opens it."
 )
-
-#: Surfels that are sorted at once.
-_PART = 1 << 20
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -47,7 +44,7 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
         print(f"there already: {out}", flush=True)
         return
     if options.ply:
-        parts = PlyPortions(options.ply, _PART)
+        parts = PlyPortions(options.ply)
         expected = len(parts)
     else:
         parts = _of_objects(options)
@@ -75,7 +72,7 @@ def _of_objects(options: argparse.Namespace) -> Sequence[Surfels]:
     surfels, skipped = world_surfels(owners, bpy.context.evaluated_depsgraph_get())
     if skipped:
         print(f"{skipped:,} unusable surfels skipped", flush=True)
-    return [part for each in surfels for part in portions(each, _PART)]
+    return [part for each in surfels for part in portions(each, PORTION)]
 
 
 def _printed() -> Callable[[float, str], None]:

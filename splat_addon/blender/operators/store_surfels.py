@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 
+from ...streaming import PORTION
 from ...streaming.layout import SUFFIX
 from ...surfels import portions
 from ..geometry.attributes import read_surfels
@@ -14,9 +15,6 @@ from ..ids import STORE_SURFELS
 from ..spoken import said
 from .file_paths import absolute, path_property
 from .modal_writing import ModalWriting, Writing
-
-#: Surfels that are sorted at once.
-_PART = 1 << 20
 
 
 class Storing(Writing):
@@ -31,7 +29,7 @@ class Storing(Writing):
         path = absolute(filepath or f"//{bpy.path.clean_name(owner.name)}{SUFFIX}")
         self._owner = owner
         surfels, self.unusable = read_surfels(owner.data)
-        super().__init__(path, portions(surfels, _PART), len(surfels))
+        super().__init__(path, portions(surfels, PORTION), len(surfels))
 
     def finish(self) -> int:
         """Leave the coarsest surfels in the object; returns how many the file holds."""

@@ -92,19 +92,13 @@ def front_to_back(tile, p: Pass) -> Iterator[list[DrawItem]]:
 def is_hidden(placed: DrawItem, farthest: np.ndarray, tile) -> bool:
     """Whether an object's box is beyond what every cell under it sees. farthest: (rows, columns), view units."""
     camera: Camera = tile.camera
-    corners, radius = placed.instance.corners(camera), placed.instance.radius
-    depths = -corners[:, 2]
-    nearest = float(depths.min()) - _NEARER * radius
+    corners = placed.instance.corners(camera)
+    nearest = float(-corners[:, 2].max()) - _NEARER * placed.instance.radius
     if not camera.is_orthographic and nearest <= camera.near:
         return False
-    left, right, bottom, top = camera.window
-    spread = 1.0 if camera.is_orthographic else depths
-    cells = tile.plan.samples / COVER_CELL
-    ends = []
-    for values, first, last, pixels in ((0, left, right, camera.size[0]), (1, bottom, top, camera.size[1])):
-        at = (corners[:, values] / spread - first) / (last - first) * pixels
-        ends.append((int((at.min() - _BESIDE) * cells // 1), int((at.max() + _BESIDE) * cells // 1) + 1))
-    (x, right), (y, top) = ends
-    rows, columns = farthest.shape
-    under = farthest[min(max(y, 0), rows - 1) : max(top, 1), min(max(x, 0), columns - 1) : max(right, 1)]
+    pixels, cells = camera.pixels_of(corners), tile.plan.samples / COVER_CELL
+    first = np.floor((pixels.min(axis=0) - _BESIDE) * cells).astype(int)
+    last = np.floor((pixels.max(axis=0) + _BESIDE) * cells).astype(int) + 1
+    (x, y), (right, top) = np.clip(first, 0, np.array(farthest.shape[::-1]) - 1), np.maximum(last, 1)
+    under = farthest[y:top, x:right]
     return nearest * tile.view.scale > float(under.max()) * (1 + 1e-6)

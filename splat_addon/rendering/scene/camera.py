@@ -127,6 +127,13 @@ class Camera:
         eye = np.stack([x * spread + 0 * depths, y[:, None] * spread + 0 * depths, -depths], axis=-1)
         return eye @ self.matrix_world[:3, :3].T + self.matrix_world[:3, 3]
 
+    def pixels_of(self, points: np.ndarray) -> np.ndarray:
+        """(n, 2) places in the picture, in pixels from its bottom left, of (n, 3) points in view space before the
+        camera."""
+        left, right, bottom, top = self.window
+        places = points[:, :2] / (1.0 if self.is_orthographic else -points[:, 2:])
+        return (places - (left, bottom)) / (right - left, top - bottom) * self.size
+
     def projection(self, near: float, far: float) -> np.ndarray:
         """(4, 4) float64 OpenGL projection (clip z from -w to w) of this window between two depths."""
         left, right, bottom, top = self.window
