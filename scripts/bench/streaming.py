@@ -133,16 +133,24 @@ def fly(device, path: Path, shadow: int, options) -> tuple:
     first = perf_counter() - started
     for share in np.linspace(0, 1, options.flight):
         draw(share)
-    moving, rests = len(view._drawn.surfels[0].surfels), perf_counter()
+    moving, rests = splats(view), perf_counter()
     flown, read = list(times), list(reads)
     while view.wants_more:
         draw(1.0)
         sleep(0.02)  # the 3D view does other things between its pictures
     rested = perf_counter() - rests
+    whole = splats(view)
+    # otherwise it refers to itself, and the next flight has both in memory
+    del view.renderer.streamed.resolved
     view.renderer.release()
     stream.close()
     return (
         "sun's" if shadow else "none", f"{first:.2f}", f"{max(flown):.0f}", f"{max(read):.0f}",
         f"{np.median(flown):.0f}", f"{np.median(read):.0f}", f"{moving:,}",
-        f"{rested:.1f}", f"{max(times[len(flown):], default=0):.0f}", f"{len(view._drawn.surfels[0].surfels):,}",
+        f"{rested:.1f}", f"{max(times[len(flown):], default=0):.0f}", f"{whole:,}",
     )  # fmt: skip
+
+
+def splats(view: Refinement) -> int:
+    """The number in the last picture."""
+    return sum(len(instance.surfels) for instance in view._drawn.surfels)

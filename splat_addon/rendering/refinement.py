@@ -93,7 +93,9 @@ class Refinement:
 
     def _read(self, scene: Scene, camera: Camera, settings: Settings, most: int | None = None) -> Scene:
         """The scene with the surfels that could be read in time, at most so many of them."""
-        return self.renderer.streamed.resolved(scene, camera, settings, _READING, most=most)
+        return self.renderer.streamed.resolved(
+            scene, camera, settings, _READING, most=most, needs_whole=self._moved is not None
+        )
 
     def _first(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
         """The first picture of a scene."""

@@ -24,10 +24,12 @@ from .scene import Instance, Scene
 from .scene.camera import Camera
 from .scene.panorama import Panorama
 from .settings import Settings
-from .upload.packing import LARGEST_SET
 
 #: Seconds of reading for the first set of a view.
 _READING = 0.03
+
+#: Surfels that are packed and drawn at a time, neighbours in space: what that takes besides is of this size.
+PART = 1 << 18
 
 #: How many times the tolerance blocks outside the picture may be off: only their shadows, or a view that moves on, show
 #: them.
@@ -57,13 +59,15 @@ class Streamed:
         seconds: float | None = None,
         told: Callable[[], None] | None = None,
         most: int | None = None,
+        needs_whole: bool = False,
     ) -> Scene:
         """The scene as this view draws it; the same object as long as nothing changes.
 
         seconds: time to wait. Reading and choosing go on in other threads then, and until they are done the sets of
         earlier views are drawn, which cover everything too, or the coarsest ones. None: wait for everything. told:
         called between reads; it may raise. most: surfels that all sets together may have when there is no time to wait
-        for everything. Raises OSError if a file cannot be read.
+        for everything. needs_whole: the sets of earlier views stay until all that this one needs is read. Raises
+        OSError if a file cannot be read.
         """
         self.is_waiting, self.short = False, ()
         streams = {instance.stream: 0 for instance in scene.surfels if instance.stream is not None}
@@ -86,7 +90,7 @@ class Streamed:
                 # instances are made again with every change of the scene, but their order stays
                 streams[stream] += 1
                 coming = self._coming.setdefault((stream, streams[stream]), _Coming(stream))
-                seen = coming.latest(view, beside, max(until - perf_counter(), 0.0), share)
+                seen = coming.latest(view, beside, max(until - perf_counter(), 0.0), share, needs_whole)
                 self.is_waiting |= coming.is_waiting
             short |= {instance.name: None} if seen.is_short else {}
             known = self._made.get(instance)
@@ -115,15 +119,15 @@ class _Coming:
         self._seconds = _READING
         self.is_waiting = True
 
-    def latest(self, view: Sight, beside: float | None, seconds: float, most: int | None) -> Seen:
-        """What is there after waiting at most so many seconds. most: as in `descend`."""
+    def latest(self, view: Sight, beside: float | None, seconds: float, most: int | None, needs_whole: bool) -> Seen:
+        """What is there after waiting at most so many seconds. most, needs_whole: as in `Stream.ahead`."""
         key, until = (view.key, beside, most is None), perf_counter() + seconds
         while True:
             self._take(max(until - perf_counter(), 0.0))
             self.is_waiting = self._key != key or not self._seen.is_whole
             if self.is_waiting and self._next is None:
                 self._seconds = 2 * self._seconds if self._key == key else _READING
-                self._next = key, self._stream.ahead(view, beside, self._seconds, most)
+                self._next = key, self._stream.ahead(view, beside, self._seconds, most, needs_whole)
             if not self.is_waiting or perf_counter() >= until:
                 return self._seen
 
@@ -131,12 +135,13 @@ class _Coming:
         if self._next is not None:
             key, future = self._next
             if wait([future], seconds).done:
-                self._key, self._seen, self._next = key, future.result(), None
+                seen, self._key, self._next = future.result(), key, None
+                self._seen = self._seen._replace(is_whole=False) if seen.surfels is None else seen
 
 
 def _instances(instance: Instance, surfels: Surfels) -> tuple[Instance, ...]:
-    """Ordinary instances of surfels that are a cut already, as many as the device needs to hold them."""
-    return tuple(replace(instance, shape=part, stream=None, is_cut=True) for part in portions(surfels, LARGEST_SET))
+    """Ordinary instances of surfels that are a cut already."""
+    return tuple(replace(instance, shape=part, stream=None, is_cut=True) for part in portions(surfels, PART))
 
 
 def _view(

@@ -18,6 +18,7 @@ import numpy as np
 
 from ..hierarchy import Sight
 from ..hierarchy.cuts import cut_blocks
+from ..hierarchy.ordering import spatial_order
 from ..surfels import Surfels
 from .block_file import BlockFile
 from .descent import descend
@@ -29,10 +30,11 @@ _AT_ONCE = 64
 
 
 class Seen(NamedTuple):
-    """surfels: what a view draws. is_whole: nothing that it needs is still to be read. is_short: the memory did not
-    suffice, so that some blocks are coarser than the view needs."""
+    """surfels: what a view draws; None if it is not whole, and only the whole was asked for. is_whole: nothing that the
+    view needs is still to be read. is_short: the memory did not suffice, so that some blocks are coarser than it needs.
+    """
 
-    surfels: Surfels
+    surfels: Surfels | None
     is_whole: bool
     is_short: bool
 
@@ -95,16 +97,26 @@ class Stream:
         beside: as in `descend`. told: called between reads; it may raise. Raises OSError if the file cannot be read.
         """
         key = sight.key, beside
-        found = self._kept[key][1] if key in self._kept else self._seen(sight, beside, None, None, told)
+        found = self._kept[key][1] if key in self._kept else self._seen(sight, beside, None, None, told, False)
         self._kept[key] = self._frame, found
         return found
 
-    def ahead(self, sight: Sight, beside: float | None, seconds: float, most: int | None = None) -> Future[Seen]:
+    def ahead(
+        self,
+        sight: Sight,
+        beside: float | None,
+        seconds: float,
+        most: int | None = None,
+        needs_whole: bool = False,
+    ) -> Future[Seen]:
         """What a view draws after some time of reading, prepared by another thread; what is missing then is drawn from
-        its parents. most: as in `descend`. Raises later as `seen`."""
-        return self._reader.submit(self._seen, sight, beside, most, seconds, None)
+        its parents. most: as in `descend`. needs_whole: no surfels are gathered before all that it needs is read.
+        Raises later as `seen`."""
+        return self._reader.submit(self._seen, sight, beside, most, seconds, None, needs_whole)
 
-    def _seen(self, sight: Sight, beside: float | None, most: int | None, seconds: float | None, told) -> Seen:
+    def _seen(
+        self, sight: Sight, beside: float | None, most: int | None, seconds: float | None, told, needs_whole: bool
+    ) -> Seen:
         until = np.inf if seconds is None else perf_counter() + seconds
         with self._lock:
             self.pages.begin()
@@ -114,6 +126,8 @@ class Stream:
                 # at least one read, so that every call makes progress
                 if not len(wanted) or (turn and perf_counter() >= until):
                     is_whole = not len(wanted)
+                    if needs_whole and not is_whole:
+                        return Seen(None, False, False)
                     return Seen(self._gathered(cut.drawn), is_whole, is_whole and bool(len(cut.wanted)))
                 for start in range(0, len(wanted), _AT_ONCE):
                     some = wanted[start : start + _AT_ONCE]
@@ -130,8 +144,11 @@ class Stream:
         surfels = self._same.get(key)
         if surfels is None:
             blocks = self.file.blocks
-            rows = self.pages.gathered(blocks.first[drawn], blocks.last[drawn])
-            surfels = self._same[key] = as_surfels(rows, self.file.origin, self.file.is_solid)
+            # any run of them is then close together
+            drawn = drawn[spatial_order((blocks.low[drawn] + blocks.high[drawn]) / 2)]
+            fields = self.pages.gathered(blocks.first[drawn], blocks.last[drawn])
+            surfels = Surfels(origin=self.file.origin, is_solid=self.file.is_solid, **fields)
+            self._same[key] = surfels
         return surfels
 
     def close(self) -> None:

@@ -26,7 +26,7 @@ from splat_addon.rendering import (
 )
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.pace import WIDEST
-from splat_addon.rendering.streamed import Streamed
+from splat_addon.rendering.streamed import PART, Streamed
 from splat_addon.rendering.upload import packing
 from splat_addon.streaming import Stream, write_blocks
 
@@ -136,13 +136,21 @@ def test_a_still_second_picture_reads_and_uploads_nothing(file, on_device):
     assert np.array_equal(first, second)
 
 
-def test_a_set_too_large_for_one_texture_is_drawn_in_parts(file, render, monkeypatch):
-    monkeypatch.setattr("splat_addon.rendering.streamed.LARGEST_SET", 9000)
-    assert packing.LARGEST_SET > 9000
+def test_a_large_set_is_packed_and_drawn_in_parts_of_neighbours(file, render, monkeypatch):
+    assert 9000 < PART <= packing.LARGEST_SET
+    monkeypatch.setattr("splat_addon.rendering.streamed.PART", 9000)
     scene, camera = torus()
     settings = replace(SETTINGS, detail_tolerance=0.0, shadow_resolution=0)
-    found, every = render(streamed(scene, Stream(file, PLENTY)), camera, settings), render(scene, camera, settings)
+    there = streamed(scene, Stream(file, PLENTY))
+    found, every = render(there, camera, settings), render(scene, camera, settings)
     assert found.stats["instances"] == 7 and psnr(found.color, every.color) > 90
+    parts = [i.surfels for i in Streamed().resolved(there, camera, settings).surfels if i.is_cut]
+    assert len(parts) == 6 and sum(map(volume, parts)) < 3 * volume(scene.surfels[0].surfels)
+
+
+def volume(surfels):
+    """The volume of a box around the centres."""
+    return np.prod(np.ptp(surfels.positions, axis=0))
 
 
 def test_memory_that_does_not_suffice_is_reported(file, render):

@@ -118,6 +118,15 @@ def test_a_view_in_a_hurry_has_no_more_surfels_than_it_asks_for_and_no_hole(many
     assert seen.surfels is whole and errors == sorted(errors, reverse=True) and errors[0] > 2 * errors[-1]
 
 
+def test_nothing_is_gathered_before_the_whole_is_read_if_only_that_is_wanted(many_portions, monkeypatch):
+    monkeypatch.setattr("splat_addon.streaming.stream._AT_ONCE", 3)
+    stream, seen, view = Stream(many_portions, PLENTY), [], sight((0, 0, 2), 0.3)
+    while not seen or not seen[-1].is_whole:
+        seen.append(stream.ahead(view, None, 1e-9, needs_whole=True).result())
+    assert len(seen) > 3 and [one.surfels for one in seen[:-1]] == [None] * (len(seen) - 1)
+    assert len(seen[-1].surfels) == len(Stream(many_portions, PLENTY).seen(view).surfels)
+
+
 def test_what_a_view_in_a_hurry_does_not_draw_is_not_read(many_portions):
     view = sight((0, 0, 2), 0.3)
     read = []
