@@ -99,9 +99,7 @@ void clip_lines_bound(inout Candidate c) {
 }
 
 #part screen_space.frag, blurs_lines, depth_bounds
-const float OTHER_SURFACE = 1.0;  // radii behind the line, at least
-const float TO_LINE = 0.25;       // pixels by which the distance to the line may be wrong
-const float STEEPEST = 8.0;       // pixels of depth per pixel; steeper, the silhouette filter blurs the crease
+const float TO_LINE = 0.25;  // pixels by which the distance to the line may be wrong
 
 // By how much per pixel the depth from the splat's plane to the visible surface grows, from `gap` here to the next sample
 // away from the line. It is endless if that sample is empty.
@@ -114,9 +112,8 @@ float growth_of(float gap, Plane plane, vec2 back) {
 
 // Beyond the line the adjacent face is visible, and may hide the splat's plane, while the pixel's filter reaches over
 // the crease. There the splat counts as much as it is visible before the line. The adjacent face meets the splat's
-// plane at the line, so the gap between both grows from there to the next pixel. A visible surface with a larger gap is
-// another one: if it is behind, the splat's surface ends before it, which the silhouette filter blurs, and if it is
-// nearer, it hides the splat.
+// plane at the line, so the gap between both grows from there to the next pixel. A visible surface that is nearer by a
+// larger gap is another one, and hides the splat. The twin: seen_past_lines in reference/clipped_kernels.py.
 void blurs_lines_bound(inout Candidate c) {
   Place place = place_at(c.plane, gl_FragCoord.xy);
   vec2 back = way_back(c.plane, place);
@@ -125,13 +122,23 @@ void blurs_lines_bound(inout Candidate c) {
   float before = plane_depth(c.plane, place_at(c.plane, vec2(at) + 0.5));
   bool is_seen = before <= texelFetch(depth_bounds, at, 0).z;
   if (!is_seen) discard;
-  float gap = c.seen.w - c.depth, nearer = c.depth - c.seen.z, from_line = length(back) - TO_WITHIN + TO_LINE;
-  if (nearer > (1.0 + 4.0 * draw.epsilon) * c.plane.radius) {
-    if (nearer > most_nearer(c.plane) || nearer > -growth_of(-nearer, c.plane, back) * from_line) discard;
-  } else if (gap > OTHER_SURFACE * c.plane.radius) {
-    float growth = max(growth_of(gap, c.plane, back), 0.0);
-    if (gap > OTHER_SURFACE * c.plane.radius + growth * from_line) discard;
-    if (growth < STEEPEST * pixel_length(c.plane)) c.compared = c.seen.z;
-  }
+  float nearer = c.depth - c.seen.z, from_line = length(back) - TO_WITHIN + TO_LINE;
+  if (nearer > (1.0 + 4.0 * draw.epsilon) * c.plane.radius &&
+      (nearer > most_nearer(c.plane) || nearer > -growth_of(-nearer, c.plane, back) * from_line)) discard;
   c.compared = min(c.compared, c.seen.z);
+}
+
+#part screen_space.frag, blurs_lines, depth_bounds, silhouettes
+const float OTHER_SURFACE = 1.0;  // radii behind the line, at least
+const float STEEPEST = 8.0;       // pixels of depth per pixel; steeper, the silhouette filter blurs the crease
+
+// A visible surface that is behind by a larger gap is another one too: the splat's surface ends before it, and the
+// silhouette filter blurs that end.
+void blurs_lines_ends_bound(inout Candidate c) {
+  vec2 back = way_back(c.plane, place_at(c.plane, gl_FragCoord.xy));
+  float gap = c.seen.w - c.depth, from_line = length(back) - TO_WITHIN + TO_LINE;
+  if (c.in_space || back == vec2(0.0) || gap <= OTHER_SURFACE * c.plane.radius) return;
+  float growth = max(growth_of(gap, c.plane, back), 0.0);
+  if (gap > OTHER_SURFACE * c.plane.radius + growth * from_line) discard;
+  if (growth < STEEPEST * pixel_length(c.plane)) c.compared = c.seen.z;
 }

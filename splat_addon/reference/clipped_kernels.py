@@ -6,6 +6,8 @@ The twin of shaders/features/clip_lines.glsl, for many splats at once and for ra
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .methods.clip_lines import clipped_share, there
@@ -15,17 +17,23 @@ from .splats import Splats
 #: Pixels past a line, up to which a sample's area is at most partly beyond it.
 TO_WITHIN = 0.75
 
+#: Pixels by which the distance to a line may be wrong.
+TO_LINE = 0.25
+
+#: Pixels, as a length at the splat, by which a face beyond a concave crease may be nearer than the radius allows.
+NEARER_PIXELS = 4.0
+
 
 def kernel_ends(splats: Splats, grid: RayGrid, ray: np.ndarray, splat: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(M,) share of each kernel that its lines keep, and (M,) the ray on which it is seen or hidden: its own, or where
-    its lines have ended it there, the nearest on which they have not.
+    """(M,) share of each kernel that its lines keep, and (M, 2) the way in pixels from rays that have passed a line to
+    where they have not; (0, 0) for the others.
 
     ray, splat: (M,) numbers.
     """
-    share, nearest = np.ones(len(ray)), ray.copy()
+    share, back = np.ones(len(ray)), np.zeros((len(ray), 2))
     rows = np.flatnonzero((splats.clip[splat, :, 2] < 1).any(axis=1))
     if not len(rows):
-        return share, nearest
+        return share, back
     of, lines, reflex = splat[rows], there(splats.clip[splat[rows]]), splats.reflex[splat[rows]]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         place, change = _places(splats, grid, ray[rows], of)
@@ -35,20 +43,53 @@ def kernel_ends(splats: Splats, grid: RayGrid, ray: np.ndarray, splat: np.ndarra
         inside = (np.einsum("nli,ni->nl", lines[..., :2], place) + lines[..., 2]) / length
         first = np.where(reflex, inside[:, 0] > inside[:, 1], inside[:, 0] < inside[:, 1])
         one = np.arange(len(rows)), np.where(first, 0, 1)
-        back = (TO_WITHIN - inside[one])[:, None] * gradient[one] / length[one][:, None]
-    ended = np.flatnonzero((inside[one] < 0) & np.isfinite(back).all(axis=1))
-    row, column = np.divmod(ray[rows[ended]], grid.shape[1])
-    x, y = (np.floor(np.stack([column, row], axis=1) + 0.5 + back[ended])).T
-    nearest[rows[ended]] = np.clip(y, 0, grid.shape[0] - 1) * grid.shape[1] + np.clip(x, 0, grid.shape[1] - 1)
-    return share, nearest
+        way = (TO_WITHIN - inside[one])[:, None] * gradient[one] / length[one][:, None]
+    ended = np.flatnonzero((inside[one] < 0) & np.isfinite(way).all(axis=1))
+    back[rows[ended]] = way[ended]
+    return share, back
+
+
+def seen_past_lines(
+    splats: Splats, grid: RayGrid, ray: np.ndarray, splat: np.ndarray, back: np.ndarray,
+    visibility: np.ndarray, depth_on: Callable[[np.ndarray, np.ndarray], np.ndarray], epsilon: float,
+) -> np.ndarray:  # fmt: skip
+    """(M,) bool: whether splats are seen on rays that have passed one of their lines.
+
+    They are if they are seen before the line and only the face beyond it hides them, which meets their plane there.
+    ray, splat: (M,) numbers. back: (M, 2) of `kernel_ends`, none (0, 0). visibility: (count,) depth up to which each
+    ray sees. depth_on(splat, ray): (M,) depths of planes on rays, held near the splats. epsilon: in radii.
+    """
+    before = grid.numbers(*np.floor(grid.columns_rows(ray) + 0.5 + back.T))
+    is_seen = depth_on(splat, before) <= visibility[before]
+    nearer, apart = depth_on(splat, ray) - visibility[ray], (1 + 4 * epsilon) * splats.radius()[splat]
+    depth = np.ones(len(splat)) if grid.camera.is_orthographic else -splats.center[splat, 2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        allowed = np.minimum(
+            apart + NEARER_PIXELS * depth * grid.steps()[0],
+            _growth(splats, grid, ray, splat, back, visibility, nearer),
+        )
+    return is_seen & ((nearer <= apart) | (nearer <= allowed))
+
+
+def _growth(splats: Splats, grid: RayGrid, ray, splat, back: np.ndarray, visibility, nearer) -> np.ndarray:
+    """(M,) by how much the visible surface may have come nearer than the plane since the line, if from there on it
+    comes nearer as it does from the ray to the next; -inf if that ray sees nothing.
+
+    nearer: (M,) by how much it is nearer on the ray.
+    """
+    length = np.linalg.norm(back, axis=1)
+    way, at = back / length[:, None], grid.columns_rows(ray)
+    beyond = np.floor(at + 0.5 - way.T)
+    origin, direction = grid.through(*beyond)
+    further = _depth(splats, splat, origin, direction) - visibility[grid.numbers(*beyond)]
+    return (further - nearer) / np.einsum("in,ni->n", at - beyond, way) * (length - TO_WITHIN + TO_LINE)
 
 
 def _places(splats: Splats, grid: RayGrid, ray: np.ndarray, splat: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(M, 2) where rays meet planes, in half-axes, infinite where they do not; (M, 2, 2) their change by a pixel."""
     origin, direction = grid.rays(ray)
     across = origin if grid.camera.is_orthographic else direction
-    steps = np.array([grid.camera.window[1] - grid.camera.window[0], grid.camera.window[3] - grid.camera.window[2]])
-    steps /= np.array(grid.camera.size) * grid.samples
+    steps = grid.steps()
     place, ends = _met(splats, splat, origin, direction), []
     for axis in (0, 1):
         for step in (-0.5, 1.0):
@@ -60,10 +101,17 @@ def _places(splats: Splats, grid: RayGrid, ray: np.ndarray, splat: np.ndarray) -
 
 def _met(splats: Splats, splat: np.ndarray, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:
     plane, u, v, center = (a[splat] for a in (splats.plane, splats.u, splats.v, splats.center))
-    depth = np.einsum("ij,ij->i", plane, center - origin) / np.einsum("ij,ij->i", plane, direction)
+    depth = _depth(splats, splat, origin, direction)
     offset = origin + depth[:, None] * direction - center
     square = np.einsum("ij,ij->i", plane, plane)
     place = np.stack(
         [np.einsum("ij,ij->i", offset, dual) / square for dual in (np.cross(v, plane), np.cross(plane, u))], axis=1
     )
     return np.where(depth[:, None] > 0, place, np.inf)
+
+
+def _depth(splats: Splats, splat: np.ndarray, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:
+    """(M,) depth at which rays meet planes, negative behind the eye."""
+    plane = splats.plane[splat]
+    across = np.einsum("ij,ij->i", plane, splats.center[splat] - origin)
+    return across / np.einsum("ij,ij->i", plane, direction)

@@ -17,7 +17,7 @@ from ..rendering.frame import EMPTY_DEPTH, Frame
 from ..rendering.scene import Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.settings import Settings
-from .clipped_kernels import kernel_ends
+from .clipped_kernels import kernel_ends, seen_past_lines
 from .exact import DEFAULTS, shaded_rays
 from .filters import SIGMA
 from .rays import RayGrid, average, candidates, splats_in, visible_depth
@@ -64,10 +64,10 @@ def render_ewa(
     splats = eye_splats(scene, camera).as_asked(settings).as_opaque()
     before = -splats.center[:, 2] > (-np.inf if camera.is_orthographic else camera.near)
     grid = RayGrid.of_pixels(camera, 1, 0, 0, *camera.size)
-    visibility, apart = _visibility(splats, grid, settings.epsilon), 1 + 4 * settings.epsilon
+    visibility = _visibility(splats, grid, settings.epsilon)
     splats = splats.take(np.flatnonzero(before))
     projections = project(splats, camera, filter_sigma)
-    surface = average(splats, grid, _contributions(splats, projections, grid, visibility, cutoff, apart))
+    surface = average(splats, grid, _contributions(splats, projections, grid, visibility, cutoff, settings.epsilon))
     rays = shaded_rays(surface, grid, scene, camera, settings)
     depth = np.full(grid.count, EMPTY_DEPTH)
     depth[surface.rays] = surface.depth
@@ -116,12 +116,13 @@ def _visibility(splats: Splats, grid: RayGrid, epsilon: float) -> np.ndarray:
 
 
 def _contributions(
-    splats: Splats, projections: Projections, grid: RayGrid, visibility: np.ndarray, cutoff: float, apart: float
+    splats: Splats, projections: Projections, grid: RayGrid, visibility: np.ndarray, cutoff: float, epsilon: float
 ):
-    """Rays, splats, weights, depths and positions of visible splats, in chunks.
+    """Rays, splats, weights, depths and positions of visible splats, in chunks."""
 
-    apart: in radii, how far before a splat another surface lies that does not meet it at a clip line.
-    """
+    def depth_on(splat, ray):
+        return _plane_depth(splats, projections, splat, grid, ray)
+
     half = cutoff * np.sqrt(np.stack([projections.variance[:, 0, 0], projections.variance[:, 1, 1]], axis=1))
     limit = np.array(grid.shape[::-1])
     first = np.clip(np.ceil(projections.center - half - 0.5 - 1e-6), 0, limit).astype(np.int64)
@@ -135,13 +136,14 @@ def _contributions(
         row, column = np.divmod(ray, grid.shape[1])
         offset = np.stack([column, row], axis=1) + 0.5 - projections.center[splat]
         square = np.einsum("ni,nij,nj->n", offset, inverse[local[splat]], offset)
-        depth = _plane_depth(splats, projections, splat, grid, ray)
-        camera = grid.camera
-        share, nearest = kernel_ends(splats, grid, ray, splat)
-        meets = (nearest != ray) & (depth - visibility[ray] <= apart * splats.radius()[splat])
-        meets &= _plane_depth(splats, projections, splat, grid, nearest) <= visibility[nearest]
-        seen = (square <= cutoff**2) & (depth >= camera.near) & (depth <= camera.far) & (share > 0)
-        seen &= (depth <= visibility[ray]) | meets
+        reached = np.flatnonzero(square <= cutoff**2)
+        ray, splat, square = ray[reached], splat[reached], square[reached]
+        depth = depth_on(splat, ray)
+        share, back = kernel_ends(splats, grid, ray, splat)
+        seen = depth <= visibility[ray]
+        past = np.flatnonzero(back.any(axis=1))
+        seen[past] = seen_past_lines(splats, grid, ray[past], splat[past], back[past], visibility, depth_on, epsilon)
+        seen &= (depth >= grid.camera.near) & (depth <= grid.camera.far) & (share > 0)
         ray, splat = ray[seen], splat[seen]
         weight = projections.amplitude[splat] * np.exp(-square[seen] / 2) * share[seen]
         weight *= splats.side_weight()[splat]

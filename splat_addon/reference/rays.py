@@ -49,10 +49,23 @@ class RayGrid:
 
     def rays(self, rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Origins and directions, two (n, 3) arrays in eye space; direction z is -1, so that a depth is a parameter."""
+        return self.through(*self.columns_rows(rays))
+
+    def columns_rows(self, rays: np.ndarray) -> np.ndarray:
+        """(2, n) columns and rows of rays."""
         row, column = np.divmod(rays, self.shape[1])
+        return np.stack([column, row])
+
+    def numbers(self, column: np.ndarray, row: np.ndarray) -> np.ndarray:
+        """(n,) numbers of the rays that are nearest to columns and rows, which may be outside the grid."""
+        rows, columns = self.shape
+        return (np.clip(row, 0, rows - 1) * columns + np.clip(column, 0, columns - 1)).astype(np.int64)
+
+    def through(self, column: np.ndarray, row: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """As `rays`, for n columns and rows, which may be outside the grid."""
         left, bottom = self._corner()
-        step_x, step_y = self._steps()
-        origin, direction = np.zeros((len(rays), 3)), np.zeros((len(rays), 3))
+        step_x, step_y = self.steps()
+        origin, direction = np.zeros((len(row), 3)), np.zeros((len(row), 3))
         across = origin if self.camera.is_orthographic else direction
         across[:, 0] = left + (self.first[0] + column + 0.5) * step_x
         across[:, 1] = bottom + (self.first[1] + row + 0.5) * step_y
@@ -62,14 +75,15 @@ class RayGrid:
     def boxes(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Window-plane boxes (N, 2) as first and end (column, row) in this grid, two (N, 2) integer arrays."""
         limit = np.array(self.shape[::-1])
-        first = np.ceil((low - self._corner()) / self._steps() - self.first - 0.5 - 1e-6)
-        end = np.floor((high - self._corner()) / self._steps() - self.first - 0.5 + 1e-6) + 1
+        first = np.ceil((low - self._corner()) / self.steps() - self.first - 0.5 - 1e-6)
+        end = np.floor((high - self._corner()) / self.steps() - self.first - 0.5 + 1e-6) + 1
         return tuple(np.clip(edge, 0, limit).astype(np.int64) for edge in (first, end))
 
     def _corner(self) -> np.ndarray:
         return np.array([self.camera.window[0], self.camera.window[2]])
 
-    def _steps(self) -> np.ndarray:
+    def steps(self) -> np.ndarray:
+        """(2,) from a ray to the next, as a length at depth 1."""
         left, right, bottom, top = self.camera.window
         return np.array([right - left, top - bottom]) / np.array(self.camera.size) / self.samples
 
