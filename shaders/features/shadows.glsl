@@ -62,7 +62,7 @@ void shadows_add(inout Fragment f) {
 #part shaded_sample
 #include "lib/faced_normal.glsl"
 void shadows_prepare(inout Shaded s) {
-  shadow_turn = 0.125 + 0.25 * float((s.texel.x & 1) + 2 * (s.texel.y & 1));
+  shadow_turn = fract(frame.shadow_turn + 0.25 * float((s.texel.x & 1) + 2 * (s.texel.y & 1)));
 }
 
 #part shaded_sample, planes_apart
@@ -84,6 +84,6 @@ void shadows_polygons_prepare(inout Shaded s) {
 #part lit_splats.frag
 #include "lib/faced_normal.glsl"
 void shadows_prepare(Splat splat, int index) {
-  shadow_turn = 0.125 + 0.25 * float(index & 3);
+  shadow_turn = fract(frame.shadow_turn + 0.25 * float(index & 3));
   shadow_plane = geometric_normal(splat);
 }

@@ -6,7 +6,8 @@
 //          map, and continue in the next face: shadows have no seams where faces meet.
 
 const int SOFT_SAMPLES = 32;
-// Neighbouring samples of the picture use different taps, so a pixel of 2 x 2 samples has four times as many.
+// Neighbouring samples of the picture use different taps, so a pixel of 2 x 2 samples has four times as many; and so do
+// the pictures of which a picture is the mean.
 float shadow_turn;
 // Normal of the lit plane: the geometric normal, which differs from the shading normal on smooth-shaded surfaces.
 vec3 shadow_plane;

@@ -55,7 +55,7 @@ def sample_camera(camera: Camera, number: int) -> Camera:
     Offsets are uniform over the pixel, so the mean has a box filter one pixel wide.
     """
     ((x, y, *on_lens),) = sample_points(1, number)
-    moved = _moved(camera, x - 0.5, y - 0.5)
+    moved = replace(_moved(camera, x - 0.5, y - 0.5), sample=number)
     return _through(moved, camera.lens.points(np.array(on_lens))) if camera.lens else moved
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from ..plan.graph import Part, Pass, Texture
@@ -41,6 +42,10 @@ def maps(planning):
     return made
 
 
+#: Successive samples begin the spirals of their taps at fractions of a step that fill it evenly (the golden ratio).
+_TURN = (math.sqrt(5) - 1) / 2
+
+VALUES = {"shadow_turn": ("float", lambda tile: (0.125 + _TURN * tile.camera.sample) % 1)}
 INPUTS = {
     "shadow_maps": lambda t: t.resources.data(
         pack_shadow_maps(t.plan.facts["shadow_maps"], t.shadow_views, t.camera, t.view.scale)

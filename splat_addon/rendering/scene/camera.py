@@ -21,6 +21,7 @@ class Camera:
         orthographic one in world units.
     size: width, height in pixels. near, far: clip distances along -Z, world units.
     lens: used by renders with several samples, for perspective cameras; None is a pinhole.
+    sample: the number of the picture's sample that this camera takes; noise differs from sample to sample.
     """
 
     matrix_world: np.ndarray
@@ -30,6 +31,7 @@ class Camera:
     far: float = 1000.0
     is_orthographic: bool = False
     lens: Lens | None = None
+    sample: int = 0
 
     def __post_init__(self):
         matrix = np.array(self.matrix_world, np.float64)

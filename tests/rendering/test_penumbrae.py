@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Penumbrae of opaque casters on a floor are smooth: beside rays to the lamp they have no tears, hatch or steps."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+
+from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at
+from splat_addon.sampling import TriangleMesh, sample_mesh
+
+SIZE, WIDTH, MIDDLE = 72, 3.2, -0.6
+CHALK = (Material(roughness=1.0, ior=1.0),)
+CAMERA = Camera.orthographic(look_at((MIDDLE, 0, 5), (MIDDLE, 0, 0), (0, 1, 0)), WIDTH, (SIZE, SIZE), 0.05, 20)
+PLACE = (5.0, -0.7, 8.0)
+AXES = 1.6 * look_at(PLACE, (0, 0, 0))[:3, :2].T
+LAMPS = {
+    "sun": Light("sun", energy=3, direction=(-1, 0.15, -1.6), size=0.5, casts_shadow=True),
+    "point": Light("point", energy=900, position=PLACE, size=0.8, casts_shadow=True),
+    "area": Light(
+        "area", energy=900, position=PLACE, direction=np.negative(PLACE), half_axes=AXES, is_round=True,
+        casts_shadow=True,
+    ),
+}  # fmt: skip
+#: Opposite corners of boxes.
+CASTERS = {
+    "standing": np.array([(-0.5, -0.6, 0.0), (0.5, 0.6, 1.0)]),
+    "floating": np.array([(-0.5, -0.6, 0.5), (0.5, 0.6, 0.7)]),
+}
+LAMP_POINTS = 400
+
+
+def sampled(low, high, resolution: int) -> Instance:
+    box = trimesh.creation.box(np.subtract(high, low)).apply_translation(np.add(low, high) / 2)
+    surfels = sample_mesh(TriangleMesh(box.vertices, box.faces), resolution=resolution)
+    return Instance(replace(surfels, colors=np.ones((len(surfels), 4))), materials=CHALK)
+
+
+@pytest.fixture(scope="module")
+def floor():
+    return sampled((-6, -6, -0.2), (6, 6, 0), 160)
+
+
+def pixel_places() -> np.ndarray:
+    """(h, w, 3) of the floor's points that pixels see."""
+    at = ((np.arange(SIZE) + 0.5) / SIZE - 0.5) * WIDTH
+    x, y = np.meshgrid(at + MIDDLE, at)
+    return np.stack([x, y, 0 * x], axis=2)
+
+
+def seen_share(lamp: Light, box: np.ndarray) -> np.ndarray:
+    """The (h, w) share of the lamp's disc that rays from the floor reach past the box."""
+    place, k = pixel_places().reshape(-1, 3), np.arange(LAMP_POINTS)
+    r, turn = np.sqrt((k + 0.5) / LAMP_POINTS), k * math.pi * (3 - math.sqrt(5))
+    if lamp.kind == "sun":
+        middle = np.broadcast_to(-np.array(lamp.direction) / np.linalg.norm(lamp.direction), place.shape)
+        size, farthest = math.tan(lamp.size / 2), np.inf
+    else:
+        middle, size, farthest = np.array(lamp.position) - place, lamp.size, 1.0
+    if lamp.kind == "area":
+        u, v = lamp.half_axes
+    else:
+        u = np.cross(middle, (0, 1, 0))
+        u *= size / np.linalg.norm(u, axis=1, keepdims=True)
+        v = np.cross(middle, u) / np.linalg.norm(middle, axis=1, keepdims=True)
+    arrives = np.zeros(len(place))
+    for a, b in zip(r * np.cos(turn), r * np.sin(turn), strict=True):
+        ray = middle + a * np.asarray(u) + b * np.asarray(v)
+        ends = np.stack([(corner - place) / ray for corner in box])
+        enters, leaves = ends.min(axis=0).max(axis=1), ends.max(axis=0).min(axis=1)
+        arrives += ~((enters < leaves) & (leaves > 1e-6) & (enters < farthest))
+    return (arrives / LAMP_POINTS).reshape(SIZE, SIZE)
+
+
+def beside(box: np.ndarray) -> np.ndarray:
+    """(h, w) bool: pixels whose neighbours, and they themselves, show the floor."""
+    wide = np.abs(pixel_places()[..., :2]) < box[1, :2] + 1.5 * WIDTH / SIZE
+    return ~wide.all(axis=2)
+
+
+@pytest.fixture
+def error(render, floor):
+    """error(lamp, caster, samples) -> (h, w): by how much the share of the lamp's light that arrives is too large."""
+
+    def measure(lamp: str, caster: str, samples: int) -> np.ndarray:
+        box = CASTERS[caster]
+        scene = Scene([sampled(*box, 48), floor], [LAMPS[lamp]])
+        settings = Settings(samples=samples, outputs=("color", "shadow"))
+        drawn = render(scene, CAMERA, settings).shadow[..., 0]
+        return np.where(beside(box), drawn - seen_share(LAMPS[lamp], box), 0.0)
+
+    return measure
+
+
+def roughness(error: np.ndarray) -> float:
+    """The root of the mean square of how far four neighbours of a pixel, together, differ from it four times."""
+    bent = 4 * error[1:-1, 1:-1] - error[2:, 1:-1] - error[:-2, 1:-1] - error[1:-1, 2:] - error[1:-1, :-2]
+    return float(np.sqrt((bent**2).mean()))
+
+
+@pytest.mark.parametrize("caster", CASTERS)
+@pytest.mark.parametrize("lamp", LAMPS)
+def test_a_penumbra_is_what_rays_say_and_not_torn(lamp, caster, error):
+    """It is 0.018 to 0.033 off, and 0.04 to 0.067 rough.
+
+    A search of blockers in the cone of rays to the lamp alone misses some: 0.08 rough under the sun, 0.10 under the
+    area lamp.
+    """
+    off = error(lamp, caster, samples=1)
+    assert np.sqrt((off**2).mean()) < 0.038
+    assert roughness(off) < 0.075
+
+
+@pytest.mark.parametrize("lamp", ["sun", "area"])
+def test_each_sample_of_a_picture_has_its_own_taps(lamp, error):
+    """Otherwise a penumbra would wear the same hatch in each sample, and their mean would, too: 0.8 as rough."""
+    assert roughness(error(lamp, "floating", samples=16)) < 0.5 * roughness(error(lamp, "floating", samples=1))
