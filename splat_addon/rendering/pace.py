@@ -20,6 +20,9 @@ _SPARE = 0.6
 _STEP = 2.0
 
 
+#: The share of a picture's time after which a call of the view ends: the last step may take as long again.
+SLICE = 0.4
+
 #: Surfels of files that a moving view may draw in any case, and in its first picture.
 LEAST_STREAMED = 1 << 15
 
@@ -40,6 +43,14 @@ class Pace:
         self._raised: tuple[float, float] | None = None
         self._does_merging_help = True
         self._most = float(LEAST_STREAMED)
+
+    def slice_end(self) -> float | None:
+        """The time at which a call of the view that begins now should end; None: once it has a picture."""
+        return None if self.rate is None else self._clock() + SLICE / self.rate
+
+    def is_over(self, end: float | None) -> bool:
+        """Whether that time has come."""
+        return end is not None and self._clock() >= end
 
     @property
     def most(self) -> int | None:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from .accumulation import sample_camera
 from .pace import Pace
+from .plan.graph import Pause
 from .renderer import Renderer, Shown, Tile
 from .scene import Scene
 from .scene.camera import Camera
@@ -22,7 +23,8 @@ class Refinement:
 
     samples: number of samples in the shown picture; 0 for the first, which is not stored in a sum, so that a moving
         view costs no more than without refinement.
-    pace: how coarse the picture is while only the camera moves; at rest it is as the settings say.
+    pace: how coarse the picture is while only the camera moves; at rest it is as the settings say. With a rate, a
+        picture at rest that takes longer is drawn in slices, one a call, and the one before stays until it is complete.
     """
 
     def __init__(self, renderer: Renderer, pace: Pace | None = None):
@@ -33,11 +35,12 @@ class Refinement:
         self._maps: tuple[ShadowMap, ...] | None = None
         self._drawn: Scene | None = None
         self._refines = self._is_coarse = False
-        self._moved: Shown | None = None
+        self._last: Shown | None = None
+        self._begun: tuple[int, Iterator[Shown | Pause]] | None = None
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool = False) -> Iterator[Shown]:
         """Yield the parts of the picture to show now: with one sample if anything changed, with one more sample if
-        nothing did, and unchanged once it has `settings.samples`.
+        nothing did and it could be drawn in time, and unchanged once it has `settings.samples`.
 
         hurries: draw as if the camera moved, because more is to come. A part is valid until the next is requested.
         Raises as `Renderer.draw`, and then begins again with the next picture.
@@ -45,57 +48,91 @@ class Refinement:
         try:
             yield from self._parts(scene, camera, settings, hurries)
         except Exception:
-            self._of, self._refines = None, False
+            self._of, self._refines, self._begun = None, False, None
             raise
 
     def _parts(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool) -> Iterator[Shown]:
         if hurries or not self._is_of(scene, camera, settings):
             moves = hurries or (self._of is not None and self._of[0] is scene and self._of[2] == settings)
-            self._of, self._is_coarse = (scene, camera, settings), False
+            self._of, self._is_coarse, self._last = (scene, camera, settings), False, None
             self._begin(settings)
             if any(instance.stream is not None for instance in scene.surfels):
                 # of what is in files, a few surfels are there at once, and the rest comes as quickly as it can be drawn
                 self.pace.begin_coarsely()
                 moves = True
-            yield from self._moving(scene, camera, settings) if moves else self._first(scene, camera, settings)
+            first = self._moving(scene, camera, settings) if moves else self._first(scene, camera, settings)
+            yield from self._noted(first, camera)
             return
         read = self._read(scene, camera, settings)
-        if self.renderer.streamed.is_waiting and self._moved is not None:
+        if self.renderer.streamed.is_waiting and self._last is not None:
             # each set on the way to the whole one would take the time of a picture at rest
-            yield self._moved
+            yield self._last
             return
-        self._moved = None
         if read is not self._drawn:
             self._begin(settings)
             self._drawn = read
+        yield from self._noted(self._slice(read, camera, settings), camera)
+
+    def _slice(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
+        """Go on with a picture at rest. It is shown once it is complete, and the last one until then."""
+        end, resources, device = self.pace.slice_end(), self.renderer.resources, self.renderer.device
+        if self._begun is None or self._begun[0] != resources.arrivals:
+            # what has arrived meanwhile would be in a part of the picture only
+            self._begun = resources.arrivals, self._at_rest(scene, camera, settings)
+        for part in self._begun[1]:
+            if not isinstance(part, Pause):
+                self._last = None
+                yield part
+            elif self._last is not None:
+                if part.target is not None and end is not None:
+                    device.finish(part.target)
+                if self.pace.is_over(end):
+                    device.restore()
+                    yield self._last
+                    return
+        self._begun = None
+
+    def _at_rest(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown | Pause]:
+        """The picture with one more sample, and pauses."""
         waits = self.renderer.streamed.is_waiting
         if not waits and self._refines and self.samples < settings.samples:
             moved = sample_camera(camera, self.samples)
-            fitted = moved if camera.lens else camera
-            self._maps = self.renderer.add_sample(read, moved, fitted, settings, self.samples == 0, self._maps)
+            fitted, is_first = moved if camera.lens else camera, not self.samples
+            self._maps = yield from self.renderer.add_sample(scene, moved, fitted, settings, is_first, self._maps)
             self._refines = self._maps is not None
             self.samples += 1
         self._is_coarse = False
         if self._refines and self.samples:
             yield self.renderer.shown_sum(camera.size, self.samples)
         else:
-            yield from self.renderer.draw(read, camera, settings)
+            yield from self.renderer.draw(scene, camera, settings, in_slices=True)
+
+    def _noted(self, parts: Iterator[Shown], camera: Camera) -> Iterator[Shown]:
+        """The parts; what fills the whole picture may be shown again."""
+        for part in parts:
+            yield part
+            is_whole = part.place == (0, 0, *camera.size)
+            self._last = part if is_whole and self.pace.rate is not None else None
+
+    @property
+    def is_drawing(self) -> bool:
+        """Whether a picture at rest has been drawn in part."""
+        return self._begun is not None
 
     @property
     def wants_more(self) -> bool:
         """Whether drawing again improves the picture."""
-        waits = self._is_coarse or self.renderer.streamed.is_waiting
+        waits = self._is_coarse or self.is_drawing or self.renderer.streamed.is_waiting
         return waits or (self._refines and self.samples < self._of[2].samples)
 
     def _begin(self, settings: Settings) -> None:
         self.samples, self._maps, self._refines = 0, None, settings.samples > 1
-        self._moved = None
+        self._begun = None
 
     def _read(self, scene: Scene, camera: Camera, settings: Settings, most: int | None = None) -> Scene:
         """The scene with the surfels that could be read in time, at most so many of them."""
-        return self.renderer.streamed.resolved(
-            scene, camera, settings, _READING, most=most, needs_whole=self._moved is not None
-        )
+        needs_whole = self._last is not None
+        return self.renderer.streamed.resolved(scene, camera, settings, _READING, most=most, needs_whole=needs_whole)
 
     def _first(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
         """The first picture of a scene."""
@@ -109,14 +146,10 @@ class Refinement:
         cuts = () if self.pace.most is None or self._drawn is scene else self._drawn.surfels
         streamed = sum(len(instance.surfels) for instance in cuts if instance.is_cut)
         self._is_coarse = drawn is not settings or seen is not camera or streamed > 0
-        parts = 0
         for shown in self.renderer.draw(self._drawn, seen, drawn):
             if self.pace.rate is not None:
                 device.finish(device.target([shown.texture]))
-            parts, enlarged = parts + 1, shown._replace(place=_enlarged(shown.place, seen.size, camera.size))
-            yield enlarged
-        if parts == 1 and self.pace.rate is not None:
-            self._moved = enlarged
+            yield shown._replace(place=_enlarged(shown.place, seen.size, camera.size))
         self.pace.end(settings, streamed)
 
     def _is_of(self, scene: Scene, camera: Camera, settings: Settings) -> bool:

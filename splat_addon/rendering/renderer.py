@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from time import perf_counter
 from typing import NamedTuple
 
@@ -12,8 +12,8 @@ import numpy as np
 from .accumulation import mean_frame, sample_blocks, sample_camera
 from .depth_range import clip_range
 from .device import Device
+from .device.interface import Target, texture_bytes
 from .device.interface import Texture as DeviceTexture
-from .device.interface import texture_bytes
 from .features.outputs import PIXELS, check_samplers
 from .features.sample_sum import SUM
 from .frame import OUTPUTS, Frame
@@ -23,7 +23,7 @@ from .panorama_faces import panorama_frame
 from .plan.build import plan
 from .plan.executor import Execution, TileContext, texture_key
 from .plan.frame_plan import FramePlan
-from .plan.graph import Texture
+from .plan.graph import Pause, Texture
 from .read_back import assembled, background, background_pixel, positions_of, read_tile
 from .scene import Scene
 from .scene.camera import Camera
@@ -173,8 +173,11 @@ class Renderer:
         key = texture_key(texture, _drawn(tile, frame_plan)[2:], frame_plan)
         return self.device.target([self.resources.texture(key)]).read(0)
 
-    def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
-        """For a viewport, one sample: yields the tiles. A texture is valid until the next tile is requested.
+    def draw(
+        self, scene: Scene, camera: Camera, settings: Settings, in_slices: bool = False
+    ) -> Iterator[Shown | Pause]:
+        """For a viewport, one sample: yields the tiles, and with `in_slices` pauses. A texture is valid until the next
+        tile is requested.
 
         Streamed instances are drawn as they are: `streamed.resolved` first replaces them. Raises `NotYet` before
         anything is drawn if the resources load surfels that are not there yet.
@@ -186,8 +189,13 @@ class Renderer:
             yield Shown((0, 0, *camera.size), self.device.texture((1, 1), "RGBA32F", pixel), (0, 0, 1, 1))
             return
         try:
-            for tile, _ in self._tiles(scene, camera, settings, frame_plan, self._new_stats(frame_plan), None):
+            for drawn in self._slices(scene, camera, settings, frame_plan, self._new_stats(frame_plan), None):
+                if isinstance(drawn, Pause):
+                    if in_slices:
+                        yield drawn
+                    continue
                 self.device.restore()
+                tile, _ = drawn
                 texture = self.resources.texture(
                     texture_key(PIXELS["combined"], _drawn(tile, frame_plan)[2:], frame_plan)
                 )
@@ -198,8 +206,9 @@ class Renderer:
 
     def add_sample(
         self, scene: Scene, moved: Camera, fitted: Camera, settings: Settings, is_first: bool, maps
-    ) -> tuple[ShadowMap, ...] | None:
+    ) -> Generator[Pause, None, tuple[ShadowMap, ...] | None]:
         """Add the picture of one sample to the sum of the previous ones, whose shadow maps were `maps`; None for none.
+        It pauses as long as the sum is that of the previous ones.
 
         moved: the sample's camera. fitted: the camera that shadow maps are fitted to. Returns this sample's maps, or
             None if the picture is only background and there is nothing to add.
@@ -212,8 +221,9 @@ class Renderer:
                 self.device.target([self._sum(moved.size)]).clear(color=0.0)
             are_shared_done = maps is not None and same_maps(maps, frame_plan.facts["shadow_maps"])
             stats = self._new_stats(frame_plan)
-            for _ in self._tiles(scene, moved, settings, frame_plan, stats, None, are_shared_done):
-                pass
+            for drawn in self._slices(scene, moved, settings, frame_plan, stats, None, are_shared_done):
+                if isinstance(drawn, Pause) and len(frame_plan.tiles) == 1:
+                    yield drawn
             was_drawn(scene)
         finally:
             self.device.restore()
@@ -258,7 +268,14 @@ class Renderer:
             "passes": {},
         }
 
-    def _tiles(self, scene, camera, settings, frame_plan, stats, progress, are_shared_done=False):
+    def _tiles(self, *of) -> Iterator[tuple[Tile, Target]]:
+        """As `_slices`, without pauses."""
+        return (drawn for drawn in self._slices(*of) if not isinstance(drawn, Pause))
+
+    def _slices(
+        self, scene, camera, settings, frame_plan, stats, progress, are_shared_done=False
+    ) -> Iterator[tuple[Tile, Target] | Pause]:
+        """Draw a plan's tiles. Nothing else may be drawn with these resources during a pause."""
         if not frame_plan.passes:
             return
         check_samplers(frame_plan, self.device.max_samplers)
@@ -294,10 +311,13 @@ class Renderer:
             stats["instances"] += len(view.placed) + len(view.polygons)
             stats["instances_outside"] += view.outside
             stats["instances_degenerate"] = view.degenerate
-            stats["splats_drawn"] += sum(context.cut(p).count for p in view.placed)
-            stored = [context.stored(p.instance) for p in view.placed]
-            stats["surfels_coarse"] = max(stats["surfels_coarse"], sum(s.coarse for s in stored))
-            target = execution.run(frame_plan.steps, context)
+            coarse = 0
+            for p in view.placed:
+                stats["splats_drawn"] += context.cut(p).count
+                coarse += context.stored(p.instance).coarse
+                yield Pause()
+            stats["surfels_coarse"] = max(stats["surfels_coarse"], coarse)
+            target = yield from execution.run(frame_plan.steps, context)
             stats["layers"] = execution.turns
             stats["instances_hidden"] += len(context.hidden)
             stats["splats_drawn"] -= sum(context.cut(p).count for p in context.hidden)

@@ -29,7 +29,7 @@ from .settings import Settings
 _READING = 0.03
 
 #: Surfels that are packed and drawn at a time, neighbours in space: what that takes besides is of this size.
-PART = 1 << 18
+PART = 1 << 16
 
 #: How many times the tolerance blocks outside the picture may be off: only their shadows, or a view that moves on, show
 #: them.

@@ -75,7 +75,7 @@ def test_a_loop_ends_where_nothing_is_left(surfaces, turns, ends):
     """turns: the expected number, including the last one, which finds nothing left."""
     tile = Tile(surfaces)
     execution = Execution(False, lambda p, number: None, lambda p, target: None)
-    execution.run((LOOP,), tile)
+    list(execution.run((LOOP,), tile))
     assert execution.turns == turns and ("rest" in tile.ran) is ends
     assert tile.ran.count("put") == min(surfaces, 3) == tile.swapped
 
@@ -84,10 +84,10 @@ def test_what_is_made_once_is_made_with_the_first_tile():
     maps, tiles = VISIBLE._replace(once="key"), [Tile(0), Tile(0)]
     execution = Execution(False, lambda p, number: None, lambda p, target: None)
     for tile in tiles:
-        execution.run((maps, SHADE), tile)
+        list(execution.run((maps, SHADE), tile))
     assert [tile.ran for tile in tiles] == [["visible", "shade"], ["shade"]]
     again = Tile(0)
-    Execution(True, lambda p, number: None, lambda p, target: None).run((maps, SHADE), again)
+    list(Execution(True, lambda p, number: None, lambda p, target: None).run((maps, SHADE), again))
     assert again.ran == ["shade"]
 
 

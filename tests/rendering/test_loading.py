@@ -237,7 +237,9 @@ def test_stand_ins_are_drawn_once_while_slices_are_written(small_steps, on_devic
     def draw(device):
         (view, thread), drawn, written = begun(device), [], []
         draw_all = view.refinement.renderer.draw
-        monkeypatch.setattr(view.refinement.renderer, "draw", lambda *of: (drawn.append(of[0]), draw_all(*of))[1])
+        monkeypatch.setattr(
+            view.refinement.renderer, "draw", lambda *of, **how: (drawn.append(of[0]), draw_all(*of, **how))[1]
+        )
         first = shown(device, view, scene, camera, SETTINGS)
         thread.work()
         drawn.clear()

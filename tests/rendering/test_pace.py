@@ -161,9 +161,9 @@ def test_at_rest_the_picture_is_that_of_the_settings(samples, does_merging_help,
         renderer = Renderer(device)
         view, drawn, drawing = Refinement(renderer, Pace(10.0, clock)), [], renderer.draw
 
-        def noted(scene, camera, settings):
+        def noted(scene, camera, settings, **how):
             drawn.append((settings.detail_tolerance, camera.size))
-            return drawing(scene, camera, settings)
+            return drawing(scene, camera, settings, **how)
 
         def show(moved):
             for shown in view.draw(scene, moved, settings):

@@ -3,12 +3,14 @@
 
 from dataclasses import replace
 from importlib import import_module
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
-from splat_addon.rendering import Environment, Lens, Light, Refinement, Renderer, Scene, Settings, plan
+from splat_addon.rendering import Environment, Lens, Light, Pace, Refinement, Renderer, Scene, Settings, plan
+from splat_addon.rendering.features import drawing
 from splat_addon.rendering.plan import executor
 
 SETTINGS = Settings(method="quad", samples=4, outputs=("color",))
@@ -105,6 +107,67 @@ def test_a_view_of_several_tiles_has_no_seams(method, small_tiles, redraws, rend
     first = render(scene, camera, replace(settings, samples=1)).color
     np.testing.assert_array_equal(seen[0][0], first)
     np.testing.assert_allclose(seen[4][0], render(scene, camera, settings).color, atol=2e-6)
+
+
+class Looks:
+    """A clock that each look moves on by a second, so that every slice is as short as it can be."""
+
+    now = 0.0
+
+    def __call__(self):
+        self.now += 1.0
+        return self.now
+
+
+def rest(device, scene, cameras, settings):
+    """The pictures of a view with a rate, from the first camera on until it wants no more, and what it was."""
+    made, pictures = Refinement(Renderer(device), Pace(10.0, Looks())), []
+    for turn in range(2000):
+        camera = cameras[min(turn, len(cameras) - 1)]
+        pictures.append(shown_picture(made.renderer, made.draw(scene, camera, settings), camera.size))
+        if turn >= len(cameras) and not made.wants_more:
+            return pictures, made
+    raise AssertionError("It is never complete.")
+
+
+def distinct(pictures):
+    """The pictures without those that are as the one before."""
+    return pictures[:1] + [b for a, b in pairwise(pictures) if not np.array_equal(a, b)]
+
+
+@pytest.mark.parametrize("samples", [2, 3])
+@pytest.mark.parametrize("method", ["quad", "mip"])
+def test_at_rest_slices_change_nothing_until_the_picture_is_complete(method, samples, on_device, render, monkeypatch):
+    monkeypatch.setattr(drawing, "AT_ONCE", 300)
+    scene, camera = torus()
+    settings = replace(SETTINGS, method=method, samples=samples, shadow_resolution=128)
+    pictures, made = on_device(lambda device: rest(device, scene, [camera], settings))
+    seen = distinct(pictures)
+    assert len(pictures) > 20 * samples and made.samples == samples
+    expected = [render(scene, camera, replace(settings, samples=n)).color for n in range(1, samples + 1)]
+    np.testing.assert_array_equal(seen[0], expected[0])
+    for picture in seen:
+        assert min(np.abs(picture - other).max() for other in expected) < 2e-6
+    np.testing.assert_allclose(pictures[-1], expected[-1], atol=2e-6)
+
+
+def test_a_camera_that_moves_ends_what_was_begun(on_device, render, monkeypatch):
+    monkeypatch.setattr(drawing, "AT_ONCE", 300)
+    scene, camera = torus()
+    moved = replace(camera, window=tuple(v + 0.1 for v in camera.window))
+    pictures, _ = on_device(lambda device: rest(device, scene, [camera] * 9 + [moved], SETTINGS))
+    assert len(distinct(pictures[:9])) == 1
+    np.testing.assert_allclose(pictures[-1], render(scene, moved, SETTINGS).color, atol=2e-6)
+
+
+def test_tiles_of_a_picture_at_rest_are_shown_together(small_tiles, on_device, render):
+    """The sum of the samples is shown while another is drawn, so that no tile may be ahead."""
+    scene, camera = torus()
+    settings = replace(SETTINGS, samples=3)
+    pictures, _ = on_device(lambda device: rest(device, scene, [camera], settings))
+    expected = [render(scene, camera, replace(settings, samples=n)).color for n in range(1, 4)]
+    for picture in pictures:
+        assert min(np.abs(picture - other).max() for other in expected) < 2e-6
 
 
 def test_whatever_changes_starts_anew(redraws, render):

@@ -222,7 +222,7 @@ def test_a_view_at_rest_keeps_its_moving_picture_until_everything_is_read(file, 
     def job(device):
         view, drawn, pictures = Refinement(Renderer(device), Pace(1e6)), [], []
         draw = view.renderer.draw
-        monkeypatch.setattr(view.renderer, "draw", lambda *of: (drawn.append(of[1].size), draw(*of))[1])
+        monkeypatch.setattr(view.renderer, "draw", lambda *of, **how: (drawn.append(of[1].size), draw(*of, **how))[1])
         for _ in range(2000):
             pictures.append(shown_by(view, device, scene, camera, settings))
             if not view.wants_more:

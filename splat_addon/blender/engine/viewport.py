@@ -89,7 +89,7 @@ def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: 
     if state.arrival.is_compiling:
         engine.tag_redraw()
     elif state.refinement.wants_more and is_read and not state.arrival.is_late:
-        if state.refinement.samples:
+        if state.refinement.samples or state.refinement.is_drawing:
             engine.tag_redraw()
         else:
             state.redraw_when_at_rest(engine)

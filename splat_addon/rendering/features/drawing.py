@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Generator, Iterable
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ import numpy as np
 from ..device.interface import Pipeline
 from ..device.interface import Texture as DeviceTexture
 from ..methods.method import RASTERIZERS
-from ..plan.graph import Pass
+from ..plan.graph import Pass, Pause
 from ..plan.uniforms import DRAW, std140
 from ..scene.light import MAX_LIGHT_SETS
 from ..upload.storages import STORAGES, get_storage
@@ -20,6 +20,9 @@ from ..view import DrawItem
 
 if TYPE_CHECKING:
     from ..plan.executor import TileContext
+
+#: Triangles of a draw call, after which drawing may pause.
+AT_ONCE = 1 << 16
 
 #: Fragment shaders that add splats to sums.
 SPLAT_HOSTS = tuple(f"{name}.frag" for name in RASTERIZERS)
@@ -41,8 +44,10 @@ DRAWN = {name: partial(_stored, sampler=name) for storage in STORAGES.values() f
 ARRIVES = {name: lambda instance: True for storage in STORAGES.values() for name in storage.samplers}
 
 
-def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None):
-    """One draw call per instance, and another for its splats with clip lines, which are stored first.
+def draw_splats(
+    tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None
+) -> Generator[Pause]:
+    """Draw each instance, its splats with clip lines, which are stored first, apart; pauses after each draw call.
 
     variants: of the pass's programs. viewport: as `Device.draw_triangles` takes it.
     """
@@ -53,26 +58,32 @@ def draw_splats(tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawIt
         for more, first, end in ((own, cut.clipped, cut.count), ((*own, "clipped"), 0, cut.clipped)):
             if first < end:
                 program = programs[more] = programs.get(more) or tile.program(p, vertex, *variants, *more)
-                _draw(tile, p, target, placed, tile.settings.epsilon, program, (first, end - first), viewport)
+                yield from _draw(tile, p, target, placed, tile.settings.epsilon, program, range(first, end), viewport)
 
 
 def draw_polygons(
     tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None
-):
+) -> Generator[Pause]:
     """Draw polygons; epsilon: how far behind polygons splats may lie. Those with holes have a program of their own."""
     programs = {}
     for placed in placed_ones:
         kinds = {"cut_out": placed.instance.is_cut_out, "bumped": placed.instance.is_bumped}
         more = tuple(kind for kind, is_so in kinds.items() if is_so)
         program = programs[more] = programs.get(more) or tile.program(p, vertex, *variants, *more)
-        _draw(tile, p, target, placed, placed.overlap, program, (0, placed.instance.polygons.triangles), viewport)
+        which = range(placed.instance.polygons.triangles)
+        yield from _draw(tile, p, target, placed, placed.overlap, program, which, viewport)
 
 
-def _draw(tile, p, target, placed: DrawItem, epsilon: float, program: Pipeline, which: tuple[int, int], viewport):
-    """Draw. which: first triangle and number of triangles."""
+def _draw(
+    tile, p, target, placed: DrawItem, epsilon: float, program: Pipeline, which: range, viewport
+) -> Generator[Pause]:
+    """Draw. which: numbers of the triangles."""
     blocks = tile.blocks(program, draw_block(tile, placed, epsilon))
     textures = tile.textures(p, program, placed)
-    tile.resources.device.draw_triangles(program, target, which[1], blocks, textures, viewport, which[0])
+    for start in which[::AT_ONCE]:
+        count = min(AT_ONCE, which.stop - start)
+        tile.resources.device.draw_triangles(program, target, count, blocks, textures, viewport, start)
+        yield Pause(target)
 
 
 def draw_block(tile: TileContext, placed: DrawItem, epsilon: float) -> np.ndarray:

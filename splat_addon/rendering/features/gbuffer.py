@@ -94,6 +94,6 @@ def run(tile, p: Pass):
     target, vertex = tile.target(p), p.host.replace(".frag", ".vert")
     target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
     drawn = tile.drawn_by(p)
-    draw_splats(tile, p, target, [d for d in drawn if not d.instance.is_textured], vertex)
-    draw_splats(tile, p, target, [d for d in drawn if d.instance.is_textured], vertex, "textured")
+    yield from draw_splats(tile, p, target, [d for d in drawn if not d.instance.is_textured], vertex)
+    yield from draw_splats(tile, p, target, [d for d in drawn if d.instance.is_textured], vertex, "textured")
     return target

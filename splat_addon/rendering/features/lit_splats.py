@@ -79,5 +79,5 @@ def run(tile, p: Pass):
         blocks = tile.blocks(light, draw_block(tile, placed, tile.settings.epsilon))
         viewport = 0, 0, SPLATS_PER_ROW, row_count(len(placed.instance.surfels))
         tile.resources.device.draw_triangles(light, lit, 1, blocks, textures, viewport)
-        draw_splats(tile, p, target, [placed], p.host.replace(".frag", ".vert"))
+        yield from draw_splats(tile, p, target, [placed], p.host.replace(".frag", ".vert"))
     return target

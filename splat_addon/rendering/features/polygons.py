@@ -93,6 +93,6 @@ def run(tile, p: Pass):
     target = tile.target(p)
     target.clear(color=0.0, depth=1.0)
     drawn = [d for d in tile.view.polygons if not d.instance.is_holdout]
-    draw_polygons(tile, p, target, [d for d in drawn if not d.instance.is_textured], "polygons.vert")
-    draw_polygons(tile, p, target, [d for d in drawn if d.instance.is_textured], "polygons.vert", "textured")
+    yield from draw_polygons(tile, p, target, [d for d in drawn if not d.instance.is_textured], "polygons.vert")
+    yield from draw_polygons(tile, p, target, [d for d in drawn if d.instance.is_textured], "polygons.vert", "textured")
     return target

@@ -105,7 +105,9 @@ def run(tile, p: Pass):
         view = _as_cast(view, made.camera)
         from_light = replace(tile, plan=seen, camera=made.camera, view=view, shadow_views=())
         drawn = p._replace(state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
-        visibility.draw(from_light, drawn, target, view.placed, view.polygons, (*made.place, *made.camera.size))
+        yield from visibility.draw(
+            from_light, drawn, target, view.placed, view.polygons, (*made.place, *made.camera.size)
+        )
     return target
 
 

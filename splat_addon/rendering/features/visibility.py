@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from dataclasses import replace
 
-from ..plan.graph import Part, Pass, Texture
+from ..plan.graph import Part, Pass, Pause, Texture
 from ..view import View
 from . import depth_format, hidden_objects, silhouettes
 from .drawing import draw_polygons, draw_splats, storage_samplers
@@ -69,15 +70,15 @@ def run(tile, p: Pass):
         by_rows = replace(tile, view=_seen_by_rows(tile.view, target.size[1]))
     polygons = tile.view.polygons if p.kind != "layer" else ()
     for splats in hidden_objects.front_to_back(tile, p):
-        draw(by_rows, p, target, splats, polygons)
+        yield from draw(by_rows, p, target, splats, polygons)
         polygons = ()
     return target
 
 
-def draw(tile, p: Pass, target, splats, polygons, viewport=None) -> None:
+def draw(tile, p: Pass, target, splats, polygons, viewport=None) -> Generator[Pause]:
     """Draw polygons and splats with the pass's programs: polygons first, because they hide much and cost little."""
-    draw_polygons(tile, p, target, polygons, "polygon_visibility.vert", "polygons", viewport=viewport)
-    draw_splats(tile, p, target, splats, "visibility.vert", "splats", viewport=viewport)
+    yield from draw_polygons(tile, p, target, polygons, "polygon_visibility.vert", "polygons", viewport=viewport)
+    yield from draw_splats(tile, p, target, splats, "visibility.vert", "splats", viewport=viewport)
 
 
 def _seen_by_rows(view: View, rows: int) -> View:

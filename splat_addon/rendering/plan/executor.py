@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from types import SimpleNamespace
@@ -27,7 +27,7 @@ from ..upload.resources import Resources, StoredSurfels, TextureKey
 from ..upload.storages import get_storage
 from ..view import DrawItem, View, split_distances
 from .frame_plan import FramePlan
-from .graph import Loop, Pass, Step, Texture, of_pixels
+from .graph import Loop, Pass, Pause, Step, Texture, of_pixels
 from .programs import describe, frame_value
 from .uniforms import DRAW, VIEW, Block, std140
 
@@ -132,6 +132,7 @@ class TileContext:
             if instance.is_cut:
                 # the next view has another, so that it would never be there
                 self.resources.loading.exempt.add(instance.surfels)
+                continue
             wanted = [name for name, is_needed in ARRIVES.items() if name in read and is_needed(instance)]
             for name in wanted if len(instance.surfels) else ():
                 try:
@@ -229,8 +230,8 @@ def texture_key(texture: Texture, size: tuple[int, int], plan: FramePlan, is_nex
     return name, *plan.size(texture, size), plan.format(texture), plan.multisamples_of(texture)
 
 
-def run_pass(tile: TileContext, p: Pass) -> Target:
-    """Run a pass; returns the target that it drew into."""
+def run_pass(tile: TileContext, p: Pass) -> Target | Generator[Pause, None, Target]:
+    """What `Pass.run` returns."""
     return p.run(tile, p)
 
 
@@ -242,37 +243,42 @@ class Execution:
         self._is_shared_done, self._told, self._done = is_shared_done, told, done
         self.turns = 0
 
-    def run(self, steps: tuple[Step, ...], tile: TileContext) -> Target | None:
-        """Run all steps; returns the target of the last pass. turns: maximum number of iterations of loops in any
-        tile."""
+    def run(self, steps: tuple[Step, ...], tile: TileContext) -> Generator[Pause, None, Target | None]:
+        """Run all steps, with pauses between and in them; returns the target of the last pass. turns: maximum number of
+        iterations of loops in any tile."""
         self._number, target = 0, None
         for step in steps:
-            target = self._repeat(step, tile) if isinstance(step, Loop) else self._pass(step, tile)
+            # none after the last, which completes what is seen
+            yield Pause(target)
+            target = yield from self._repeat(step, tile) if isinstance(step, Loop) else self._pass(step, tile)
         self._is_shared_done = True
         return target
 
-    def _pass(self, p: Pass, tile: TileContext) -> Target | None:
+    def _pass(self, p: Pass, tile: TileContext) -> Generator[Pause, None, Target | None]:
         self._number += 1
         if p.once is not None and self._is_shared_done:
             return None
         self._told(p, self._number - 1)
         target = run_pass(tile, p)
+        if isinstance(target, Generator):
+            target = yield from target
         self._done(p, target)
         for texture in p.all("updates"):
             tile.swap(texture)
         return target
 
-    def _repeat(self, loop: Loop, tile: TileContext) -> None:
+    def _repeat(self, loop: Loop, tile: TileContext) -> Generator[Pause, None, None]:
         first = self._number
         for turn in range(loop.times):
             for p in loop.body:
-                target = self._pass(p, tile)
+                target = yield from self._pass(p, tile)
+                yield Pause(target)
                 if loop.stop in p.fills and not target.read(p.colors.index(loop.stop)).any():
                     self._number = first + len(loop.body) * loop.times + len(loop.last)
                     return
             self.turns = max(self.turns, turn + 1)
         for p in loop.last:
-            self._pass(p, tile)
+            yield from self._pass(p, tile)
         self.turns = max(self.turns, loop.times + bool(loop.last))
 
 

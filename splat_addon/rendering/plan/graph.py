@@ -95,6 +95,13 @@ class Part(NamedTuple):
         return self._replace(writes=writes, updates=updates)
 
 
+class Pause(NamedTuple):
+    """A moment at which drawing may be interrupted for as long as other pictures of its renderer wait. target: what was
+    drawn into, if anything."""
+
+    target: Any = None
+
+
 def fill(tile, p: Pass):
     """Run a pass that draws over what it writes, where anything is seen. Elsewhere the contents are undefined."""
     return tile.fill(p, tile.seen_part(p))
@@ -109,8 +116,9 @@ class Pass(NamedTuple):
     """name: shown to the user. reason: why the frame needs it. host: its fragment shader, by which features identify
     it.
 
-    run: run(tile, pass) -> the target that was drawn into. kind: "opaque", "layer", "rest", ..., for features.
-    state: of its pipelines, fields of `PipelineDescription`. adds: draws onto existing contents without clearing.
+    run: run(tile, pass) -> the target that was drawn into, or a generator that yields `Pause` and returns it. kind:
+    "opaque", "layer", "rest", ..., for features. state: of its pipelines, fields of `PipelineDescription`. adds: draws
+    onto existing contents without clearing.
     once: for a pass that runs once for all tiles, the value that its result depends on; it runs again if `is_same` with
         the last frame's value is False. each: a pass that it runs itself for each instance.
     """

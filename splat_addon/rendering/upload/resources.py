@@ -46,7 +46,8 @@ class StoredSurfels(NamedTuple):
 
 class Resources:
     """Surfels are freed with their last Python reference, textures with the first frame that does not use them, and
-    everything by `release`. textures: those that passes wrote last, by key.
+    everything by `release`. textures: those that passes wrote last, by key. arrivals: how often what was on its way has
+    come.
 
     loading: brings large sets to the device in slices; a request for one that is on its way then raises `NotYet`. None:
     everything is made when it is first needed.
@@ -59,6 +60,7 @@ class Resources:
         self._held = WeakKeyDictionary()
         self._atlases = {}
         self.textures = {}
+        self.arrivals = 0
 
     def surfels(
         self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None, may_have_levels: bool = False
@@ -124,6 +126,7 @@ class Resources:
     def load_some(self) -> None:
         """For a new picture, go on with what is on its way to the device."""
         for owner, kind, made_from, made, textures in self.loading.advance():
+            self.arrivals += 1
             if made.levels:
                 keep_hierarchy(owner, made.levels)
             held = self._held.setdefault(owner, {})
