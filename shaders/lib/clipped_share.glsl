@@ -1,11 +1,14 @@
 // References: features/clip_lines.glsl; Sheppard 1899 (two correlated normal variables, both above their means).
-// Summary: the share of kernel times pixel filter on the kept side of a splat's lines, and the nearest kept point.
+// Summary: the share of kernel times pixel filter on the kept side of a splat's lines, over how dense kernels are there;
+//          and the nearest kept point.
 
 #include "lib/place.glsl"
 #include "lib/normal_share.glsl"
 #include "lib/kernel_under_pixel.glsl"
 
 const float LEAST_SHARE = 0.006;  // smaller shares are 0: the approximation ends there
+const float NORMAL_AT_0 = 0.39894228;
+const float WITHIN_TWO = 0.9533;  // of a Gaussian, within two standard deviations, by share_beyond
 const float TO_WITHIN = 0.75;     // pixels past the line, up to which a sample's area is at most partly beyond it
 
 // The share of a Gaussian on the kept side of both lines. one, other: the share of each line alone; correlation: of the
@@ -20,6 +23,14 @@ float share_before(float x) {
   return x < NORMAL_END ? share_beyond(-max(x, -NORMAL_END)) : 1.0;
 }
 
+// How dense the kernels of equally spaced splats lie where a pixel sees their kept sides, 1 far from lines. Their centres
+// are on that side alone, so at a line they are half as dense; without this, creases would be sharper than the filter.
+// Kernels end at two standard deviations. inside, deviation, share: of the distance from a line, and what it keeps.
+float kernel_density(float inside, float deviation, float share) {
+  float mean = (inside + NORMAL_AT_0 * exp(-0.5 * min(inside * inside, 20.0)) / max(share, LEAST_SHARE)) * deviation;
+  return min(0.5 + (share_before(max(mean, 0.0) * inversesqrt(SPLAT_VARIANCE)) - 0.5) / WITHIN_TWO, 1.0);
+}
+
 float clipped_share(Plane plane, Place place) {
   vec2 middle;
   mat2 seen;
@@ -31,8 +42,10 @@ float clipped_share(Plane plane, Place place) {
   vec2 inside = vec2(dot(clip_first.xy, middle) + clip_first.z, dot(clip_second.xy, middle) + clip_second.z) / deviation;
   float one = share_before(inside.x), other = share_before(inside.y);
   float both = both_keep(one, other, dot(clip_second.xy, across) / (deviation.x * deviation.y));
-  float share = clip_is_reflex > 0.5 ? one + other - both : both;
-  return share > LEAST_SHARE ? share : 0.0;
+  vec2 density = vec2(kernel_density(inside.x, deviation.x, one), kernel_density(inside.y, deviation.y, other));
+  float share = clip_is_reflex > 0.5 ? one + other - both : both, all_density = density.x * density.y;
+  if (clip_is_reflex > 0.5) all_density = density.x + density.y - all_density;
+  return share > LEAST_SHARE ? share / all_density : 0.0;
 }
 
 // Distance in pixels past the nearest line to a kept point; 0 for kept points.

@@ -13,6 +13,11 @@ from .plane import Plane, gradients, places
 #: Smaller shares are 0: the approximation ends there.
 LEAST_SHARE = 0.006
 
+NORMAL_AT_0 = 0.39894228
+
+#: Of a Gaussian, within two standard deviations, where kernels end; by the approximation of its share.
+WITHIN_TWO = 0.9533
+
 #: Half-axes squared, beyond which the pixel is too large for float precision.
 LARGEST_PIXEL = 1e8
 
@@ -48,7 +53,7 @@ def _in_picture(at, lines: np.ndarray, reflex: np.ndarray) -> np.ndarray:
 
 
 def clipped_share(place: np.ndarray, change: np.ndarray, lines: np.ndarray, reflex: np.ndarray) -> np.ndarray:
-    """(M,) share of kernel times pixel on the kept side of the lines.
+    """(M,) share of kernel times pixel on the kept side of the lines, over how dense kernels are there.
 
     place: (M, 2) positions of the pixels in half-axes, infinite beyond the plane's horizon. change: (M, 2, 2) change of
     the position per pixel along x and y. lines: (1 or M, 2, 3). reflex: (M,) bool.
@@ -63,7 +68,21 @@ def clipped_share(place: np.ndarray, change: np.ndarray, lines: np.ndarray, refl
     correlation = np.einsum("ni,ni->n", across[:, 0], direction[:, 1]) / deviation.prod(axis=1)
     both = _both_keep(one, other, correlation)
     share = np.where(reflex, one + other - both, both)
-    return np.where(share > LEAST_SHARE, share, 0.0)
+    density = _kernel_density(inside, deviation)
+    both_dense = density.prod(axis=1)
+    density = np.where(reflex, density.sum(axis=1) - both_dense, both_dense)
+    return np.where(share > LEAST_SHARE, share / density, 0.0)
+
+
+def _kernel_density(inside: np.ndarray, deviation: np.ndarray) -> np.ndarray:
+    """(M, 2) how dense the kernels of equally spaced splats lie where a pixel sees their kept sides; 1 far from lines.
+
+    Their centres are on that side alone. inside: (M, 2) distance from the lines, in deviations of kernel times pixel.
+    """
+    share = np.maximum(_share_before(inside), LEAST_SHARE)
+    mean = (inside + NORMAL_AT_0 * np.exp(-0.5 * np.minimum(inside**2, 20.0)) / share) * deviation
+    beside = _share_before(np.maximum(mean, 0.0) / KERNEL_VARIANCE**0.5)
+    return np.minimum(0.5 + (beside - 0.5) / WITHIN_TWO, 1.0)
 
 
 def _share_before(inside: np.ndarray) -> np.ndarray:
