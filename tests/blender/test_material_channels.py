@@ -121,6 +121,73 @@ def test_an_inverted_colour_is_read(nodes, made):
     assert np.allclose(surfels.colors[:, :3], 1 - ENCODED[texel][:, :3], atol=1e-6)
 
 
+def ramp(nodes, number, *stops, interpolation="LINEAR"):
+    """A Color Ramp over a number; stops: (place, colour)."""
+    node = nodes.add("ShaderNodeValToRGB", {0: number})
+    node.color_ramp.interpolation = interpolation
+    for element, (place, color) in zip(node.color_ramp.elements, stops, strict=True):
+        element.position, element.color = place, color
+    return node
+
+
+BLACK, WHITE = (0, 0, 0, 1), (1, 1, 1, 1)
+
+
+@pytest.mark.parametrize(("interpolation", "slope"), [("LINEAR", 5.0), ("CONSTANT", 1e9)])
+def test_a_ramp_of_an_images_alpha_is_its_alpha(nodes, made, interpolation, slope):
+    """Leaf cards sharpen their alpha so; before ramps were read, such a card was an opaque square."""
+    texture = nodes.texture(alpha_mode="STRAIGHT")
+    nodes.link(texture.outputs["Color"], "Base Color")
+    sharp = ramp(nodes, texture.outputs["Alpha"], (0.4, BLACK), (0.6, WHITE), interpolation=interpolation)
+    nodes.link(sharp.outputs["Color"], "Alpha")
+    surfels, texel = made(nodes)
+    start = 0.4 if interpolation == "LINEAR" else 0.6
+    assert np.allclose(surfels.colors[:, 3], np.clip((ENCODED[texel][:, 3] - start) * slope, 0, 1), atol=0.02)
+
+
+@pytest.mark.parametrize(("is_used", "rim"), [(True, 1.0), (False, 0.5)])
+def test_beside_a_sharpened_alpha_the_colour_is_not_darkened_by_alpha(nodes, made, is_used, rim):
+    """Cycles divides the colour by the alpha if anything uses the alpha; without that, cards had dark rims."""
+    values = np.ones((TEXELS, TEXELS, 4))
+    values[:2, :, 3], values[0, :, :3], values[0, :, 3] = 0.5, 0, 0
+    texture = nodes.texture(values, "sRGB", "STRAIGHT")
+    nodes.link(texture.outputs["Color"], "Base Color")
+    if is_used:
+        nodes.link(nodes.math("GREATER_THAN", texture.outputs["Alpha"], -1.0), "Alpha")
+    surfels, (row, _) = made(nodes)
+    assert np.allclose(surfels.colors[row >= 2, :3], 1)
+    assert np.allclose(surfels.colors[row == 1, :3], rim, atol=0.01)
+    assert np.allclose(surfels.colors[row == 0, :3], 1.0 if is_used else 0.0, atol=0.01)
+
+
+def test_data_are_not_multiplied_by_alpha(nodes, made):
+    nodes.link(nodes.texture(alpha_mode="STRAIGHT").outputs["Color"], "Base Color")
+    surfels, texel = made(nodes)
+    assert np.allclose(surfels.colors[:, :3], ENCODED[texel][:, :3], atol=1e-5)
+
+
+def test_a_ramp_colours_a_number(nodes, made):
+    texture = nodes.texture()
+    colored = ramp(nodes, texture.outputs["Alpha"], (0, (1, 0, 0, 0)), (1, (0, 0.5, 1, 1)))
+    nodes.link(colored.outputs["Color"], "Base Color")
+    nodes.link(colored.outputs["Alpha"], "Roughness")
+    surfels, texel = made(nodes)
+    number = ENCODED[texel][:, 3:]
+    assert np.allclose(surfels.colors[:, :3], (1 - number) * (1, 0, 0) + number * (0, 0.5, 1), atol=1e-5)
+    assert np.allclose(surfels.roughness, number[:, 0], atol=1e-5)
+
+
+@pytest.mark.parametrize("interpolation", ["LINEAR", "SMOOTHSTEP"])
+def test_a_mapped_range_is_read(nodes, made, interpolation):
+    alpha, limits = nodes.texture().outputs["Alpha"], {1: 0.2, 2: 0.7, 3: 0.9, 4: 0.1}
+    node = nodes.add("ShaderNodeMapRange", {0: alpha, **limits}, interpolation_type=interpolation)
+    nodes.link(nodes.add("ShaderNodeClamp", {0: node.outputs[0], 1: 0.2, 2: 0.8}).outputs[0], "Roughness")
+    surfels, texel = made(nodes)
+    place = np.clip((ENCODED[texel][:, 3] - 0.2) / 0.5, 0, 1)
+    eased = place if interpolation == "LINEAR" else place * place * (3 - 2 * place)
+    assert np.allclose(surfels.roughness, np.clip(0.9 - 0.8 * eased, 0.2, 0.8), atol=1e-5)
+
+
 def test_an_alpha_that_is_cut_off_as_in_gltf_covers_the_share_of_its_pixels(nodes, made, add_square):
     """The importer computes 1 - (alpha < 0.5). A single surfel on the whole image gets the mean of that."""
     texture = nodes.texture(alpha_mode="STRAIGHT")
@@ -225,6 +292,14 @@ def test_its_strength_is_taken(nodes, made):
         (lambda n: n.link(n.add("ShaderNodeBump").outputs[0], "Normal"), "normal comes from a Bump node"),
         (lambda n: n.link(n.add("ShaderNodeTexNoise").outputs[0], "Roughness"), "roughness comes from a Noise"),
         (lambda n: n.link(n.add("ShaderNodeTexNoise").outputs[1], "Emission Color"), "emission comes from a Noise"),
+        (
+            lambda n: n.link(n.add("ShaderNodeMapRange", {3: n.texture().outputs[1]}).outputs[0], "Alpha"),
+            "linked range",
+        ),
+        (
+            lambda n: n.link(n.math("LESS_THAN", n.add("ShaderNodeVertexColor").outputs[1], 0.5), "Alpha"),
+            "but one image",
+        ),
         (lambda n: normal_map(n, (0, 0, 1), space="WORLD"), "normal comes from a normal map in world space"),
         (lambda n: normal_map(n, (0, 0, 1), uv_map="nowhere"), "UV map 'nowhere'"),
     ],

@@ -101,9 +101,10 @@ class MeshLayers:
             raise UnreadableError(f"an image texture in {node.projection.lower()} projection")
         # Blender's Cubic and Smart equal Linear where a texture is not magnified.
         interpolation = "Closest" if node.interpolation == "Closest" else "Linear"
-        key = node.image.session_uid, keep_alpha, node.extension, interpolation
+        is_apart = not keep_alpha and any(not link.is_muted for link in node.outputs["Alpha"].links)
+        key = node.image.session_uid, keep_alpha, node.extension, interpolation, is_apart
         if key not in self._images:
-            self._images[key] = Image(linear_pixels(node.image, keep_alpha), node.extension, interpolation)
+            self._images[key] = Image(linear_pixels(node.image, keep_alpha, is_apart), node.extension, interpolation)
         return _mapped(self._images[key], source) if source.functions else self._images[key]
 
 
@@ -220,7 +221,7 @@ class _Reader:
     def _made(self, name: str, read: Product) -> Channel | None:
         """The channel of a product; that of its plain socket if an image or a layer cannot be read."""
         try:
-            factors = tuple(self._factor(source, _is_alpha(source)) for source in read.sources)
+            factors = tuple(self._factor(source, _is_alpha(source) and source.is_number) for source in read.sources)
         except UnreadableError as error:
             read, factors = self._plain(name, error), ()
         return Channel(read.value * (3 // len(read.value)) if name == "emission" else read.value, factors)
@@ -245,9 +246,9 @@ class _Reader:
     def _factor(self, source: ImageSource | AttributeSource, uses_alpha: bool) -> Texture | VertexColors:
         if isinstance(source, AttributeSource):
             return VertexColors(self._layers.color(source.name), source.weights, uses_alpha=False)
-        image = self._layers.image(source, uses_alpha)
+        image = self._layers.image(source, uses_alpha or _is_alpha(source))
         name, matrix, wraps = placement(source.node, self._layers.mesh)
-        weights = RED if source.weights is not None and source.functions else source.weights
+        weights = (RED if source.is_number else None) if source.functions else source.weights
         return Texture(image, self._layers.uv(name), matrix, weights, uses_alpha, wraps)
 
     def _normal_map(self) -> NormalMap | None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads a socket of a shader's node tree as a product of constants, image textures and attributes.
 
-Importers and painters make such products. A Math or Invert node over one image is read too: it is applied to the
-image's pixels. Anything else raises `UnreadableError`, whose text ends the sentence "it comes from ...".
+Importers and painters make such products. A node over one image that `function_nodes` knows is read too: it is applied
+to the image's pixels. Anything else raises `UnreadableError`, whose text ends the sentence "it comes from ...".
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import bpy
 import numpy as np
 
 from ...sampling.attributes.surfaces import ALPHA, BLUE, GREEN, LUMINANCE, RED
+from . import function_nodes
 from .texture_images import UnreadableError
 
 Socket = bpy.types.NodeSocket
@@ -26,11 +27,25 @@ class ImageSource:
 
     weights: for its r, g, b, a, to make one number; None: the colour.
     functions: applied to pixels, one after another, on the colour or that number.
+    makes_color: whether they make a colour of that number.
     """
 
     node: bpy.types.ShaderNodeTexImage
     weights: tuple[float, ...] | None = None
     functions: tuple[Callable[[np.ndarray], np.ndarray], ...] = ()
+    makes_color: bool = False
+
+    @property
+    def is_number(self) -> bool:
+        """Whether it ends as one number."""
+        return self.weights is not None and not self.makes_color
+
+    def weighted(self, weights: tuple[float, ...]) -> ImageSource:
+        """One number of its colour."""
+        if not self.makes_color:
+            return replace(self, weights=weights)
+        number = np.float32(weights[:3])[:, None]
+        return replace(self, functions=(*self.functions, lambda colors: colors @ number), makes_color=False)
 
 
 @dataclass(frozen=True)
@@ -39,6 +54,15 @@ class AttributeSource:
 
     name: str
     weights: tuple[float, ...] | None = None
+
+    @property
+    def is_number(self) -> bool:
+        """Whether it is one number."""
+        return self.weights is not None
+
+    def weighted(self, weights: tuple[float, ...]) -> AttributeSource:
+        """One number of its colour."""
+        return replace(self, weights=weights)
 
 
 @dataclass(frozen=True)
@@ -66,21 +90,24 @@ class Product:
             return Product((float(np.dot(self.value, weights[:3])),))
         kept = [k for k in range(3) if weights[k]]
         # Factors of the colour must scale its components alike, so that the sum is a product again.
-        if len(self.sources) > 1 or self.sources[0].weights or len({self.value[k] for k in kept}) > 1:
+        if len(self.sources) > 1 or self.sources[0].is_number or len({self.value[k] for k in kept}) > 1:
             raise UnreadableError("one number of a product of colours")
-        return Product((self.value[kept[0]],), (replace(self.sources[0], weights=weights),))
+        return Product((self.value[kept[0]],), (self.sources[0].weighted(weights),))
 
-    def mapped(self, function: Callable[[np.ndarray], np.ndarray], name: str) -> Product:
-        """Apply a function to each component; name: of the node that does it."""
+    def mapped(self, function: Callable[[np.ndarray], np.ndarray], name: str, count: int | None = None) -> Product:
+        """Apply a function of arrays (..., components); name: of the node that does it. count: the result's components,
+        if they are more than its own."""
+        count = count or len(self.value)
         if not self.sources:
             return Product(tuple(function(np.array(self.value)).tolist()))
         if len(self.sources) > 1 or not isinstance(self.sources[0], ImageSource):
-            raise UnreadableError(f"a {name} node over more than one image")
+            raise UnreadableError(f"a {name} node over anything but one image")
         scale, source = np.float32(self.value if len(set(self.value)) > 1 else self.value[0]), self.sources[0]
-        if scale.ndim and source.weights:
+        if scale.ndim and source.is_number:
             raise UnreadableError(f"a {name} node over a tinted number")
         functions = (*source.functions, lambda pixels: function(pixels * scale))
-        return Product((1.0,) * len(self.value), (replace(source, functions=functions),))
+        makes_color = count == 3 and source.weights is not None
+        return Product((1.0,) * count, (replace(source, functions=functions, makes_color=makes_color),))
 
 
 def product(socket: Socket) -> Product:
@@ -257,52 +284,6 @@ _MIX_INPUTS = {
 }
 
 
-def _safe(function: Callable) -> Callable:
-    """The product with non-finite values set to 0, as in shaders."""
-
-    @np.errstate(divide="ignore", invalid="ignore", over="ignore")
-    def safe(a, b):
-        return np.nan_to_num(function(a, b), nan=0.0, posinf=0.0, neginf=0.0)
-
-    return safe
-
-
-_OPERATIONS = {
-    "ADD": np.add,
-    "SUBTRACT": np.subtract,
-    "MULTIPLY": np.multiply,
-    "DIVIDE": _safe(np.divide),
-    "POWER": _safe(np.power),
-    "MINIMUM": np.minimum,
-    "MAXIMUM": np.maximum,
-    "LESS_THAN": np.less,
-    "GREATER_THAN": np.greater,
-}
-
-
-def _math(node: Node, read: Read) -> Product:
-    operation = _OPERATIONS.get(node.operation)
-    if operation is None:
-        raise UnreadableError(f"a Math node that does {node.operation.replace('_', ' ').title()}")
-    a, b = read(node.inputs[0]), read(node.inputs[1])
-    if node.operation == "MULTIPLY" and not node.use_clamp:
-        return a * b
-    if a.sources and b.sources:
-        raise UnreadableError(f"a Math node over two sources that does {node.operation.replace('_', ' ').title()}")
-    top = (lambda x: np.clip(x, 0, 1)) if node.use_clamp else (lambda x: x)
-    if a.sources:
-        return a.mapped(lambda x: top(operation(x, b.value[0]) * 1.0), "Math")
-    return b.mapped(lambda x: top(operation(a.value[0], x) * 1.0), "Math")
-
-
-def _invert(node: Node, read: Read) -> Product:
-    factor = node.inputs[0]
-    if linked(factor) is not None:
-        raise UnreadableError("an Invert Color node with a linked factor")
-    share = factor.default_value
-    return read(node.inputs[1]).mapped(lambda x: x + share * (1 - 2 * x), "Invert Color")
-
-
 #: (node, output) -> function of the node, and of a reader for its input sockets, that returns its `Product`
 _READERS: dict[tuple[str, str], Reader] = {
     ("ShaderNodeRGB", "Color"): _output,
@@ -323,6 +304,5 @@ _READERS: dict[tuple[str, str], Reader] = {
     ("ShaderNodeRGBToBW", "Val"): _component(LUMINANCE),
     ("ShaderNodeMix", "Result_Color"): _mix,
     ("ShaderNodeMixRGB", "Color"): _mix,
-    ("ShaderNodeMath", "Value"): _math,
-    ("ShaderNodeInvert", "Color"): _invert,
+    **function_nodes.READERS,
 }

@@ -7,6 +7,8 @@ premultiplied. Sampling needs linear pixels with straight alpha, or opaque pixel
 
 from __future__ import annotations
 
+from itertools import product
+
 import bpy
 import numpy as np
 
@@ -15,12 +17,14 @@ class UnreadableError(Exception):
     """An input of a shader comes from something that cannot be read; the text ends the sentence "it comes from ..."."""
 
 
-def linear_pixels(image: bpy.types.Image, keep_alpha: bool) -> np.ndarray:
+def linear_pixels(image: bpy.types.Image, keep_alpha: bool, is_apart: bool = False) -> np.ndarray:
     """(h, w, 4) float32, scene-linear in Rec. 709, not premultiplied, row 0 at the bottom.
 
     keep_alpha: whether the material uses the image's alpha; otherwise the result is opaque and, as in Cycles and
-    EEVEE, its colour premultiplied, unless the image's own alpha mode says that they are not related. In mode None an
-    image has no alpha to keep.
+    EEVEE, its colour premultiplied, unless the image's own alpha mode says that they are not related, or its colours
+    are data. In mode None an image has no alpha to keep.
+    is_apart: whether something else uses the alpha that is not kept. Then Cycles divides the interpolated colour by it,
+    so the colour continues beyond the rim of what is covered.
     Raises UnreadableError for an image without pixels, a tiled or moving one, or an encoding other than sRGB.
     """
     if image.source not in ("FILE", "GENERATED"):
@@ -29,15 +33,36 @@ def linear_pixels(image: bpy.types.Image, keep_alpha: bool) -> np.ndarray:
     colors, alpha = pixels[..., :3], pixels[..., 3:]
     if not image.is_float:
         _decode(pixels, image)
-    is_related = image.alpha_mode not in _ALPHA_IS_UNRELATED
-    if image.alpha_mode == "NONE" or not keep_alpha:
-        if is_related and not image.is_float:
+    is_related = image.alpha_mode not in _ALPHA_IS_UNRELATED and image.colorspace_settings.name not in _DATA
+    has_alpha = keep_alpha and image.alpha_mode != "NONE"
+    if is_related and image.is_float and (has_alpha or is_apart):
+        colors /= np.where(alpha == 0, 1, alpha)
+    if is_related and is_apart:
+        _continue_beyond_rim(colors, alpha)
+    if not has_alpha:
+        if is_related and not image.is_float and not is_apart:
             colors *= alpha
         alpha[...] = 1.0
-    elif is_related and image.is_float:
-        colors /= np.where(alpha == 0, 1, alpha)
     return pixels
 
+
+def _continue_beyond_rim(colors: np.ndarray, alpha: np.ndarray) -> None:
+    """Give texels without alpha the mean colour of their eight neighbours, weighted by alpha, or black, in place."""
+    clear = np.flatnonzero(alpha == 0)
+    if not len(clear):
+        return
+    height, width = alpha.shape[:2]
+    row, column = np.divmod(clear, width)
+    total, weight = np.zeros((len(clear), 3), np.float32), np.zeros((len(clear), 1), np.float32)
+    for down, right in product((-1, 0, 1), repeat=2):
+        beside = np.clip(row + down, 0, height - 1), np.clip(column + right, 0, width - 1)
+        total += colors[beside] * alpha[beside]
+        weight += alpha[beside]
+    colors[row, column] = total / np.where(weight == 0, 1, weight)
+
+
+#: Colour spaces of values that are no colours, which no alpha multiplies.
+_DATA = ("Non-Color", "Raw")
 
 _ALPHA_IS_UNRELATED = ("CHANNEL_PACKED", "NONE")
 
