@@ -13,6 +13,7 @@ from ...rendering import Polygons
 from ...rendering.scene.polygons import MAX_TRIANGLES
 from ...sampling import Surface, Texture, TriangleMesh, corner_values, normal_map_texture
 from ...surfels import OPAQUE
+from ..materials.material_surfaces import CHANNEL_NAMES
 from ..materials.surface_textures import has_holes
 
 
@@ -47,8 +48,19 @@ def left_out_of_polygons(owner: str, mesh: TriangleMesh) -> Iterator[str]:
     """One sentence for each material property that polygons do not support."""
     if any(surface.normal_map is not None and normal_map_texture(surface) is None for surface in _used(mesh)):
         yield f"{owner} has a normal map that is not one image in tangent space; render it as surfels to see it"
+    if names := sorted({CHANNEL_NAMES[name] for surface in _used(mesh) for name in _only_at_corners(surface)}):
+        yield f"{owner} has an image for its {' and '.join(names)}, which polygons show at corners; render as surfels"
     if is_transparent(mesh):
         yield f"{owner} is transparent, which polygons are only by their colour's image; render it as surfels"
+
+
+def _only_at_corners(surface: Surface) -> Iterator[str]:
+    """The channels with images that polygons look up at their corners alone."""
+    for name in ("color", "roughness", "metallic", "emission"):
+        channel = getattr(surface, name)
+        has_image = channel is not None and any(isinstance(factor, Texture) for factor in channel.factors)
+        if has_image and not (name == "color" and surface.color_texture is not None):
+            yield name
 
 
 def is_transparent(mesh: TriangleMesh) -> bool:

@@ -391,3 +391,19 @@ def test_a_normal_map_that_polygons_do_not_show_is_named(look, picture, said):
     add_normal_map(bpy.context.object.data.materials[0], space="OBJECT")
     picture()
     assert "Cube has a normal map that is not one image in tangent space" in said()
+
+
+@pytest.mark.parametrize("channel", ["Emission Color", "Roughness", "Base Color"])
+def test_images_that_polygons_show_at_corners_alone_are_named(channel, look, picture, said):
+    """The colour's image is looked up pixel by pixel, and those of other channels are not."""
+    bpy.ops.mesh.primitive_cube_add()
+    material = principled(Emission_Strength=1.0)
+    bpy.context.object.data.materials.append(material)
+    node = material.node_tree.nodes.new("ShaderNodeTexImage")
+    node.image = bpy.data.images.new("spots", 4, 4)
+    material.node_tree.links.new(node.outputs["Color"], material.node_tree.nodes["Principled BSDF"].inputs[channel])
+    picture()
+    name = {"Emission Color": "emission", "Roughness": "roughness"}.get(channel)
+    told = said()
+    assert (f"Cube has an image for its {name}, which polygons show at corners" in told) == (name is not None)
+    assert ("at corners" in told) == (name is not None)
