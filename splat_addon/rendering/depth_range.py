@@ -39,16 +39,8 @@ def clipped(camera: Camera, seen, epsilon: float) -> ClipRange:
     return ClipRange(near, far, _power_of_two_scale(camera, seen, near))
 
 
-def sees_any(scene: Scene, camera: Camera) -> bool:
-    """Whether any instance may be in the camera's picture."""
-    return bool(seen_by(scene, camera)[0])
-
-
-def visible_corners(scene: Scene, camera: Camera) -> tuple[np.ndarray, np.ndarray] | None:
-    """World corners (n, 3) of the boxes of visible objects, and (8, 3) corners of the visible part of space."""
-    seen, _, _ = seen_by(scene, camera)
-    if not seen:
-        return None
+def visible_space(camera: Camera, seen) -> tuple[float, float, np.ndarray]:
+    """The least and greatest depth of what `seen_by` found, and (8, 3) world corners of the visible space between."""
     near, far = _clip_range(camera, seen, 0.0)
     left, right, bottom, top = camera.window
     spread = (1.0, 1.0) if camera.is_orthographic else (near, far)
@@ -58,8 +50,7 @@ def visible_corners(scene: Scene, camera: Camera) -> tuple[np.ndarray, np.ndarra
         for x in (left, right)
         for y in (bottom, top)
     ]
-    space = np.array(eye) @ camera.matrix_world[:3, :3].T + camera.matrix_world[:3, 3]
-    return np.concatenate([instance.world_corners() for instance, *_ in seen]), space
+    return near, far, np.array(eye) @ camera.matrix_world[:3, :3].T + camera.matrix_world[:3, 3]
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,10 @@ from .frame import EMPTY_DEPTH, Frame
 from .scene.camera import Camera
 from .scene.panorama import Panorama
 from .settings import NEAREST, OUTPUTS, Settings, held_arrays
+from .shadow_receivers import Viewers
 
-#: (a sample's camera, the one that shadow maps are fitted to, settings, progress) -> Frame
-Draw = Callable[[Camera, Camera, Settings, object], Frame]
+#: (a sample's camera, the cameras that its shadow maps serve, settings, progress) -> Frame
+Draw = Callable[[Camera, Viewers, Settings, object], Frame]
 
 #: Pixels of a face per finest pixel of the panorama, where the face is coarsest.
 DENSITY = 2.0
@@ -62,13 +63,15 @@ def panorama_frame(panorama: Panorama, number: int, settings: Settings, draw: Dr
     which smooths by about a pixel.
     """
     x, y, *place = sample_points(1, number)[0]
-    faces = _faces(panorama, place)
+    faces, around = _faces(panorama, place), tuple(cube_views(panorama, DENSITY))
     interpolated = _cubic if settings.samples > 1 else _bilinear
     look_up = {**dict.fromkeys(NEAREST, _nearest), "depth": _distance}
     pixels, stats = {}, {}
     for turn, face in enumerate(faces):
         camera = sample_camera(face.camera, number)
-        frame = draw(camera, face.camera, _in_pixels_of_faces(settings), _share(progress, turn, len(faces)))
+        frame = draw(
+            camera, Viewers(face.camera, around), _in_pixels_of_faces(settings), _share(progress, turn, len(faces))
+        )
         stats = _added(stats, frame.stats)
         looks = face.looks - (x - 0.5, y - 0.5)
         for name in held_arrays(settings.outputs):

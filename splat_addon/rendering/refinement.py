@@ -13,6 +13,7 @@ from .scene import Scene
 from .scene.camera import Camera
 from .settings import Settings
 from .shadow import ShadowMap
+from .shadow_receivers import viewers
 
 #: Seconds that a picture waits for streamed surfels; what is missing then comes later.
 _READING = 0.02
@@ -97,8 +98,8 @@ class Refinement:
         waits = self.renderer.streamed.is_waiting
         if not waits and self._refines and self.samples < settings.samples:
             moved = sample_camera(camera, self.samples)
-            fitted, is_first = moved if camera.lens else camera, not self.samples
-            self._maps = yield from self.renderer.add_sample(scene, moved, fitted, settings, is_first, self._maps)
+            of, is_first = viewers(camera, moved), not self.samples
+            self._maps = yield from self.renderer.add_sample(scene, moved, of, settings, is_first, self._maps)
             self._refines = self._maps is not None
             self.samples += 1
         self._is_coarse = False

@@ -29,10 +29,11 @@ from .scene import Scene
 from .scene.camera import Camera
 from .scene.panorama import Panorama
 from .settings import Settings
-from .shadow import ShadowMap, casting, same_maps
+from .shadow import ShadowMap, among, casting, same_maps
+from .shadow_receivers import Viewers, viewers
 from .streamed import Streamed
 from .upload.resources import Resources
-from .view import build_view
+from .view import View, build_view
 
 #: x, y, width, height in pixels.
 Tile = tuple[int, int, int, int]
@@ -119,15 +120,12 @@ class Renderer:
     def _samples(
         self, scene, camera, settings, numbers: list[int], turns: Iterator, part: Tile | None
     ) -> Iterator[Frame]:
-        """The pictures of these samples; samples that would draw the same shadow maps share them.
-
-        Maps are fitted to the camera's view through pixel centres, unless a lens moves the eye.
-        """
+        """The pictures of these samples; samples that would draw the same shadow maps share them."""
         maps = None
 
-        def draw(moved: Camera, fitted: Camera, settings: Settings, told: Progress | None, part=None) -> Frame:
+        def draw(moved: Camera, of: Viewers, settings: Settings, told: Progress | None, part=None) -> Frame:
             nonlocal maps
-            frame_plan = plan(scene, moved, settings, shadow_camera=fitted, part=part, samples=len(numbers))
+            frame_plan = plan(scene, moved, settings, viewers=of, part=part, samples=len(numbers))
             are_shared_done = maps is not None and same_maps(maps, frame_plan.facts["shadow_maps"])
             maps = frame_plan.facts["shadow_maps"]
             return self._frame(scene, moved, settings, told, frame_plan, are_shared_done, part)
@@ -138,7 +136,7 @@ class Renderer:
                 frame = panorama_frame(seen, number, settings, draw, next(turns))
             else:
                 moved = sample_camera(camera, number)
-                frame = draw(moved, moved if camera.lens else camera, settings, next(turns), part)
+                frame = draw(moved, viewers(camera, moved), settings, next(turns), part)
             if number == numbers[-1]:
                 was_drawn(scene)
             yield frame
@@ -205,15 +203,15 @@ class Renderer:
             self.device.restore()
 
     def add_sample(
-        self, scene: Scene, moved: Camera, fitted: Camera, settings: Settings, is_first: bool, maps
+        self, scene: Scene, moved: Camera, of: Viewers, settings: Settings, is_first: bool, maps
     ) -> Generator[Pause, None, tuple[ShadowMap, ...] | None]:
         """Add the picture of one sample to the sum of the previous ones, whose shadow maps were `maps`; None for none.
         It pauses as long as the sum is that of the previous ones.
 
-        moved: the sample's camera. fitted: the camera that shadow maps are fitted to. Returns this sample's maps, or
+        moved: the sample's camera. of: the cameras that shadow maps serve. Returns this sample's maps, or
             None if the picture is only background and there is nothing to add.
         """
-        frame_plan = plan(scene, moved, settings, shadow_camera=fitted, is_added_up=True)
+        frame_plan = plan(scene, moved, settings, viewers=of, is_added_up=True)
         if not frame_plan.passes:
             return None
         try:
@@ -291,11 +289,7 @@ class Renderer:
         self.resources.forget_atlases_but({placed.looked_up for placed in scene.shown})
         if self.resources.loading:
             TileContext(self.resources, frame_plan, scene, camera, settings, None).check_arrived()
-        casters = casting(scene)
-        shadow_views = tuple(
-            build_view(casters, made.camera, settings.epsilon, are_split=False)
-            for made in frame_plan.facts["shadow_maps"]
-        )
+        shadow_views = tuple(_seen_by_light(casting(scene), made, settings) for made in frame_plan.facts["shadow_maps"])
         whole = None
         if frame_plan.tiles != ((0, 0, *camera.size),):
             drawn = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan))
@@ -342,6 +336,13 @@ class Renderer:
                 stats["passes"][p.name] = stats["passes"].get(p.name, 0.0) + elapsed
 
         return told, done
+
+
+def _seen_by_light(casters: Scene, made: ShadowMap, settings: Settings) -> View:
+    """What is drawn into a shadow map. The range of a sun's depths is that of all casters around, because its lookups
+    depend on it."""
+    whole = clip_range(casters, made.camera, settings.epsilon) if made.camera.is_orthographic else None
+    return build_view(among(casters, made.casters), made.drawn, settings.epsilon, whole, are_split=False)
 
 
 def _share(progress: Progress, turn: int, count: int) -> Progress:

@@ -12,10 +12,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .depth_range import sees_any, visible_corners
-from .scene import Scene
+from .depth_range import beyond
+from .scene import Placed, Scene
 from .scene.camera import Camera, look_at
 from .scene.light import MAX_SUN_HALF_ANGLE, Light
+from .shadow_casters import in_the_way
+from .shadow_receivers import (
+    FILTER_REACH,
+    Receivers,
+    Viewers,
+    looked_up,
+    receivers,
+    spread_of,
+    together,
+    used_texels,
+)
 from .view import View
 
 #: Maximum number of maps in the atlas; the last lights cast no shadow if there are more.
@@ -25,6 +36,8 @@ MAX_MAPS = 64
 FACE_WINDOW = 1.05
 #: Wider spots use cube faces like a point light.
 MAX_SPOT_WINDOW = 2.5
+#: Smaller maps than this are not cheaper.
+LEAST_SIDE = 32
 #: fields of `Scene` that contain shadow casters
 _KINDS = ("surfels", "polygons")
 #: The nearest distance of a caster, as a fraction of the farthest one's; closer casters cast no shadow.
@@ -36,42 +49,124 @@ class ShadowMap:
     """light: number in the scene. camera: the light's view. place: (x, y) of the map in the atlas, in texels.
 
     is_face: whether it is one face of a cube around a light, and continues in the adjacent faces.
+    used: x, y, width and height of the part that is drawn, which holds all that the picture looks up.
+    casters: the instances that may block the light on its way to what is seen.
     """
 
     light: int
     camera: Camera
     place: tuple[int, int]
-    is_face: bool = False
+    is_face: bool
+    used: tuple[int, int, int, int]
+    casters: tuple[Placed, ...]
+
+    @property
+    def drawn(self) -> Camera:
+        """The light's view of the part that is drawn."""
+        return self.camera if self.used == (0, 0, *self.camera.size) else self.camera.cropped(*self.used)
+
+    @property
+    def viewport(self) -> tuple[int, int, int, int]:
+        """That part in the atlas."""
+        return self.place[0] + self.used[0], self.place[1] + self.used[1], *self.used[2:]
 
 
-def shadow_maps(scene: Scene, camera: Camera, resolution: int) -> tuple[tuple[ShadowMap, ...], int]:
-    """The maps that a picture needs, and the number of lights left without. resolution: texels along a map's side."""
+def shadow_maps(
+    scene: Scene, viewers: Viewers, resolution: int, lights_splats: bool = False
+) -> tuple[tuple[ShadowMap, ...], int]:
+    """The maps that a picture needs, and the number of lights left without. resolution: texels along a map's side, or
+    fewer where the picture's pixels are so large that these suffice. lights_splats: as in `receivers`.
+
+    How many lights there is room for does not depend on the camera, so that none loses its shadow while it moves.
+    """
     if not any(light.casts_shadow for light in scene.lights):
         return (), 0
-    casters = casting(scene)
-    if not casters.shown:
+    casters = [placed for placed in casting(scene).shown if not placed.is_flattened]
+    if not casters:
         return (), 0
-    corners = np.concatenate([instance.world_corners() for instance in casters.shown])
-    seen = visible_corners(scene, camera)
-    cameras, without = [], 0
+    corners = np.stack([instance.world_corners() for instance in casters])
+    for_sun = receivers(scene, replace(viewers.sun, lens=None), lights_splats)
+    for_lamps = [receivers(scene, camera, lights_splats) for camera in viewers.lamps]
+    made, without, count = [], 0, 0
     for number, light in enumerate(scene.lights):
         if light.casts_shadow:
-            whole = _CAMERAS[light.kind](light, corners, seen, resolution)
-            own = [c for c in whole if sees_any(casters, c)]
-            if len(cameras) + len(own) > MAX_MAPS:
+            whole = _CAMERAS[light.kind](light, corners.reshape(-1, 3), for_sun, resolution)
+            own = [c for c in whole if sees(c, corners).any()]
+            if count + len(own) > MAX_MAPS:
                 without += 1
-            else:
-                cameras += [(number, c, len(whole) > 1) for c in own]
-    columns = atlas_columns(len(cameras))
-    places = ((k % columns * resolution, k // columns * resolution) for k in range(len(cameras)))
-    maps = (ShadowMap(light, c, place, is_face) for (light, c, is_face), place in zip(cameras, places, strict=True))
-    return tuple(maps), without
+                continue
+            count += len(own)
+            seen = [one and one.of(light) for one in ([for_sun] if light.kind == "sun" else for_lamps)]
+            made += _needed(number, light, own, [one for one in seen if one], casters, corners, len(whole) > 1)
+    return _placed(made), without
+
+
+def _needed(
+    number, light, cameras: list[Camera], seen: list[Receivers], casters, corners, are_faces
+) -> list[ShadowMap]:
+    """The maps of a light that a picture looks up, with as many texels as it needs. seen: by each camera of the
+    picture. casters, corners: as in `shadow_maps`."""
+    looks = [together([looked_up(c, one, spread_of(light, c)) for one in seen]) for c in cameras]
+    if not any(looks):
+        return []
+    # the next face of a cube has the same texels
+    side = enough(max(one.side for one in looks if one), cameras[0].size[0])
+    found = []
+    for camera in (smaller(c, side) for c in cameras):
+        spread = spread_of(light, camera)
+        if one := together([looked_up(camera, one, spread) for one in seen]):
+            block = sees(camera, corners) & in_the_way(light, texel_of(camera), seen, spread, corners)
+            own = tuple(caster for caster, may in zip(casters, block.tolist(), strict=True) if may)
+            if own:
+                found.append(ShadowMap(number, camera, (0, 0), are_faces, used_texels(camera, one), own))
+    return found
+
+
+def enough(needed: float, resolution: int) -> int:
+    """Texels along a map's side: the resolution, halved as often as leaves the needed number.
+
+    A size is kept until twice as many texels are needed as it has at least, so an animation changes it rarely.
+    """
+    side = resolution
+    while side % 2 == 0 and side // 2 >= max(needed, LEAST_SIDE):
+        side //= 2
+    return side
+
+
+def smaller(camera: Camera, side: int) -> Camera:
+    """A light's view with fewer texels, and with so much more around its window as filters read there."""
+    if side == camera.size[0]:
+        return camera
+    wider = side / (side - 2 * FILTER_REACH)
+    return replace(camera, window=tuple(edge * wider for edge in camera.window), size=(side, side))
+
+
+def _placed(maps: list[ShadowMap]) -> tuple[ShadowMap, ...]:
+    """The maps at their places in the atlas: in rows, the largest first."""
+    order = sorted(range(len(maps)), key=lambda k: -maps[k].camera.size[0])
+    across = atlas_columns(len(maps)) * max((made.camera.size[0] for made in maps), default=0)
+    places, x, y, height = {}, 0, 0, 0
+    for k in order:
+        side = maps[k].camera.size[0]
+        if x + side > across:
+            x, y, height = 0, y + height, 0
+        places[k] = x, y
+        x, height = x + side, max(height, side)
+    return tuple(replace(made, place=places[k]) for k, made in enumerate(maps))
+
+
+def sees(camera: Camera, corners: np.ndarray) -> np.ndarray:
+    """(n,) whether the boxes with these (n, 8, 3) world corners may be in the camera's picture."""
+    view = (corners - camera.matrix_world[:3, 3]) @ camera.matrix_world[:3, :3]
+    return ~beyond(view.reshape(-1, 3), camera).reshape(6, *corners.shape[:2]).all(axis=2).any(axis=0)
 
 
 def same_maps(some: tuple[ShadowMap, ...], others: tuple[ShadowMap, ...]) -> bool:
     """Whether two sets of maps have the same contents, for the same scene."""
     return len(some) == len(others) and all(
-        a.light == b.light and a.place == b.place and a.camera.is_same(b.camera)
+        a.light == b.light
+        and (a.place, a.used, a.casters) == (b.place, b.used, b.casters)
+        and a.camera.is_same(b.camera)
         for a, b in zip(some, others, strict=True)
     )
 
@@ -90,6 +185,18 @@ def casting(scene: Scene) -> Scene:
     """The scene with only the instances that cast shadows."""
     kinds = {name: tuple(i for i in getattr(scene, name) if i.casts_shadow and len(i.shape)) for name in _KINDS}
     return replace(scene, **kinds, lights=())
+
+
+def among(scene: Scene, instances: tuple[Placed, ...]) -> Scene:
+    """The scene with only some of its instances."""
+    own = set(instances)
+    return replace(scene, **{name: tuple(i for i in getattr(scene, name) if i in own) for name in _KINDS})
+
+
+def texel_of(camera: Camera) -> float:
+    """The length of a map's texel, world units; of a lamp's at distance 1."""
+    left, right, _, _ = camera.window
+    return (right - left) / camera.size[0]
 
 
 def pack_shadow_maps(maps, views: tuple[View, ...], camera: Camera, scale: float) -> np.ndarray:
@@ -135,10 +242,10 @@ def map_ranges(maps: tuple[ShadowMap, ...], lights: int) -> np.ndarray:
     return np.stack([np.concatenate([[0], np.cumsum(counts)[:-1]]), counts], axis=1)
 
 
-# Each gives the cameras of a light. corners: (8 n, 3) world, of n boxes of casters. seen: `view.visible_corners`.
+# Each gives the cameras of a light. corners: (8 n, 3) world, of n boxes of casters. seen: by the camera, if anything.
 
 
-def _sun(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
+def _sun(light: Light, corners: np.ndarray, seen: Receivers | None, resolution: int) -> list[Camera]:
     """One parallel camera for a sun. It covers what is both in the picture and in the scene, plus casters beside it
     that soften its shadows, up to as much again. It extends back to the farthest caster above that and no farther,
     because depths are stored as 24-bit fractions of its length."""
@@ -146,9 +253,9 @@ def _sun(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camer
     to_light = frame[:3, :3].T
     if seen is None:
         return []
-    receivers, visible, casters = (places @ to_light.T for places in (*seen, corners))
-    lowest = np.maximum(receivers.min(axis=0), visible.min(axis=0))
-    low, high = lowest[:2], np.minimum(receivers.max(axis=0), visible.max(axis=0))[:2]
+    lit, visible, casters = (places @ to_light.T for places in (seen.corners.reshape(-1, 3), seen.space, corners))
+    lowest = np.maximum(lit.min(axis=0), visible.min(axis=0))
+    low, high = lowest[:2], np.minimum(lit.max(axis=0), visible.max(axis=0))[:2]
     if not (low < high).all():
         return []
     margin = 0.02 * (high - low).max()

@@ -134,6 +134,6 @@ def decided(scene, camera, settings) -> float:
     started = perf_counter()
     made = plan(scene, camera, settings)
     for instance in made.facts.get("levels", ()):
-        for seen in (camera, *(m.camera for m in made.facts["shadow_maps"])):
+        for seen in (camera, *(m.drawn for m in made.facts["shadow_maps"])):
             cut_entries(hierarchy_of(instance.surfels), sight(instance, seen, False, settings.detail_tolerance))
     return perf_counter() - started

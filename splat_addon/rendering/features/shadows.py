@@ -34,7 +34,8 @@ def maps(planning):
     if not planning.model.is_lit or not planning.settings.shadow_resolution:
         planning.skip("shadows", "they are switched off, or nothing is lit")
         return ()
-    made, without = shadow_maps(planning.scene, planning.shadow_camera, planning.settings.shadow_resolution)
+    resolution, by_splat = planning.settings.shadow_resolution, planning.find(lit_splats.wanted)
+    made, without = shadow_maps(planning.scene, planning.viewers, resolution, by_splat)
     if without:
         planning.skip(f"shadows of {without} lights", f"there is room for {MAX_MAPS} maps")
     if not made:
@@ -103,11 +104,9 @@ def run(tile, p: Pass):
             multisamples=0, sample_shading=False,
         )  # fmt: skip
         view = _as_cast(view, made.camera)
-        from_light = replace(tile, plan=seen, camera=made.camera, view=view, shadow_views=())
+        from_light = replace(tile, plan=seen, camera=made.drawn, view=view, shadow_views=())
         drawn = p._replace(state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
-        yield from visibility.draw(
-            from_light, drawn, target, view.placed, view.polygons, (*made.place, *made.camera.size)
-        )
+        yield from visibility.draw(from_light, drawn, target, view.placed, view.polygons, made.viewport)
     return target
 
 

@@ -13,6 +13,7 @@ from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK, depth_format, 
 from ..scene import Scene
 from ..scene.camera import Camera
 from ..settings import Settings
+from ..shadow_receivers import Viewers
 from ..upload.storages import get_storage
 from .frame_plan import FramePlan
 from .graph import Part, Pass, changed, trimmed
@@ -24,18 +25,20 @@ def plan(
     scene: Scene,
     camera: Camera,
     settings: Settings,
-    shadow_camera: Camera | None = None,
+    viewers: Viewers | None = None,
     is_added_up: bool = False,
     part: tuple[int, int, int, int] | None = None,
     samples: int | None = None,
 ) -> FramePlan:
     """The passes that this picture needs.
 
-    shadow_camera: the camera that shadow maps are fitted to, if different, so that similar cameras can share maps.
+    viewers: the cameras that shadow maps serve, if there are others, so that similar cameras can share maps.
         is_added_up: whether the picture is one sample of a refining view. part: x, y, width, height in pixels, if only
         a part of the picture is drawn. samples: number of samples that show this scene, if fewer than the picture's.
     """
-    planning = Planning(scene, camera, settings, shadow_camera or camera, is_added_up, samples or settings.samples)
+    planning = Planning(
+        scene, camera, settings, viewers or Viewers(camera, (camera,)), is_added_up, samples or settings.samples
+    )
     if settings.multisampling and planning.method.rasterizer != "object_space":
         raise ValueError(
             f"Method {planning.method.name} filters in screen space, where hardware multisampling has no effect; set "

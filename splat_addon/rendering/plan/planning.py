@@ -11,13 +11,14 @@ from ..scene import Scene
 from ..scene.camera import Camera
 from ..settings import Settings
 from ..shading_models import get_shading_model
+from ..shadow_receivers import Viewers
 
 Found = TypeVar("Found")
 
 
 class Planning:
-    """shadow_camera: the camera that shadow maps are fitted to. is_added_up: whether the picture is a sample of a
-    refining view. samples: number of samples that show the scene.
+    """viewers: the cameras that shadow maps serve. is_added_up: whether the picture is a sample of a refining view.
+    samples: number of samples that show the scene.
 
     choices, facts: as in `FramePlan`; features add to both.
     """
@@ -27,12 +28,12 @@ class Planning:
         scene: Scene,
         camera: Camera,
         settings: Settings,
-        shadow_camera: Camera,
+        viewers: Viewers,
         is_added_up: bool,
         samples: int,
     ):
         self.scene, self.camera, self.settings = scene, camera, settings
-        self.shadow_camera, self.is_added_up, self.samples = shadow_camera, is_added_up, samples
+        self.viewers, self.is_added_up, self.samples = viewers, is_added_up, samples
         self.method, self.model = get_method(settings.method), get_shading_model(settings.shading)
         self.shown = scene.shown
         self.features: list[tuple[str, str]] = []

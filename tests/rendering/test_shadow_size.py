@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shadow maps have as many texels as the picture's pixels need, and no picture shows that they have no more."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import trimesh
+
+from splat_addon.reference.metrics import mean_flip
+from splat_addon.rendering import (
+    Camera,
+    Equirectangular,
+    Instance,
+    Lens,
+    Light,
+    Material,
+    Panorama,
+    PolygonInstance,
+    Scene,
+    Settings,
+    look_at,
+    make_polygons,
+    plan,
+    shadow_receivers,
+)
+from splat_addon.rendering.shadow import LEAST_SIDE, enough, same_maps
+from splat_addon.sampling import TriangleMesh, sample_mesh
+
+SETTINGS = Settings(outputs=("color",))
+SIZE = (96, 72)
+LIGHTS = {
+    "sun": Light("sun", energy=3, direction=(-0.5, 0.6, -1)),
+    "low sun": Light("sun", energy=3, direction=(-1, 0.3, -0.2)),
+    "sized sun": Light("sun", energy=3, direction=(-0.5, 0.6, -1), size=0.1),
+    "point": Light("point", energy=300, position=(1.5, -1, 3)),
+    "ball": Light("point", energy=300, position=(1.5, -1, 3), size=0.2),
+    "spot": Light("spot", energy=300, position=(1.5, -1, 3), direction=(-1.5, 1, -3), spot_angle=1.2),
+    "area": Light(
+        "area", energy=200, position=(1.5, -1, 3), direction=(-1, 1, -3), half_axes=((0.4, 0, 0), (0, 0.3, 0))
+    ),
+}
+LIGHTS = {name: replace(light, casts_shadow=True) for name, light in LIGHTS.items()}
+CHALK = (Material(roughness=1.0, ior=1.0),)
+
+
+def meshes():
+    """A ball, a box and a thin pole on a floor, each with the resolution of its surfels."""
+    yield trimesh.creation.icosphere(3, 0.5).apply_translation((-0.3, -0.3, 0.7)), 30
+    yield trimesh.creation.box((0.4, 0.4, 1.0)).apply_translation((0.8, 0.4, 0.5)), 30
+    yield trimesh.creation.box((0.05, 0.05, 1.6)).apply_translation((-0.9, 0.6, 0.8)), 80
+    yield trimesh.creation.box((5, 5, 0.2)).apply_translation((0, 0, -0.1)), 100
+
+
+def surfels(mesh, resolution: int, opacity: float = 1.0) -> Instance:
+    sampled = sample_mesh(TriangleMesh(mesh.vertices, mesh.faces), resolution=resolution)
+    return Instance(replace(sampled, colors=np.tile((1, 1, 1, opacity), (len(sampled), 1))), materials=CHALK)
+
+
+def still_life(kind: str, light: Light) -> Scene:
+    made = list(meshes())
+    if kind == "polygons":
+        polygons = [PolygonInstance(make_polygons(mesh.vertices, mesh.faces), materials=CHALK) for mesh, _ in made]
+        return Scene((), (light,), (0.05, 0.05, 0.05), polygons=polygons)
+    opacities = (0.5 if kind == "glass" else 1.0, 1.0, 1.0, 1.0)
+    splats = [surfels(*one, opacity) for one, opacity in zip(made, opacities, strict=True)]
+    return Scene(splats, (light,), (0.05, 0.05, 0.05))
+
+
+@pytest.fixture(scope="module")
+def scene_of():
+    """scene_of(kind, light); the surfels of a kind are made once."""
+    made = {}
+
+    def scene(kind: str, light: Light) -> Scene:
+        if kind not in made:
+            made[kind] = still_life(kind, light)
+        return replace(made[kind], lights=(light,))
+
+    return scene
+
+
+def from_afar(distance: float, size=SIZE, **options) -> Camera:
+    eye = distance * np.array((4.0, -5.0, 4.0))
+    return Camera.perspective(look_at(eye, (0.2, 0, 0.5)), 0.7, size, near=0.1, far=1000, **options)
+
+
+def maps_of(scene, camera, settings=SETTINGS, **options):
+    return plan(scene, camera, settings, **options).facts["shadow_maps"]
+
+
+def sides(*arguments, **options) -> set:
+    return {made.camera.size[0] for made in maps_of(*arguments, **options)}
+
+
+@pytest.fixture
+def full(monkeypatch):
+    """full(make): the result of a function that draws with maps of full size."""
+
+    def made(make):
+        with monkeypatch.context() as changed:
+            changed.setattr(shadow_receivers, "TEXELS_PER_PIXEL", math.inf)
+            return make()
+
+    return made
+
+
+@pytest.mark.parametrize("kind", ["splats", "glass", "polygons"])
+@pytest.mark.parametrize("name", LIGHTS)
+def test_a_small_picture_is_as_close_to_its_limit_as_with_full_maps(name, kind, scene_of, render, full):
+    """Its limit is the mean of many samples with full maps. The difference itself is bounded, too."""
+    scene, camera = scene_of(kind, LIGHTS[name]), from_afar(6)
+    assert max(sides(scene, camera)) < SETTINGS.shadow_resolution
+    limit = full(lambda: render(scene, camera, replace(SETTINGS, samples=16)).color)
+    covered = np.abs(limit - limit[0, 0]).max(axis=2) > 0.01
+    for samples, bound in ((1, 0.001), (4, 0.0006)):
+        settings = replace(SETTINGS, samples=samples)
+        small, large = render(scene, camera, settings).color, full(lambda s=settings: render(scene, camera, s).color)
+        errors = [np.sqrt(((color - limit)[covered] ** 2).mean()) for color in (small, large)]
+        assert errors[0] < 1.1 * errors[1] + 0.0015, (samples, errors)
+        assert mean_flip(small, large) < bound, (samples, mean_flip(small, large))
+
+
+@pytest.mark.parametrize("name", ["sun", "ball", "spot"])
+def test_a_dolly_does_not_flicker_where_sizes_change(name, scene_of, render, full):
+    scene, settings = scene_of("splats", LIGHTS[name]), replace(SETTINGS, samples=2)
+    cameras = [from_afar(distance) for distance in np.geomspace(2, 8, 14)]
+    found = [max(sides(scene, camera)) for camera in cameras]
+    assert len(set(found)) >= 3 and found == sorted(found, reverse=True)
+    small = [render(scene, camera, settings).color for camera in cameras]
+    large = full(lambda: [render(scene, camera, settings).color for camera in cameras])
+    steps = [[mean_flip(before, after) for before, after in pairwise(colors)] for colors in (small, large)]
+    pops = np.subtract(*steps)
+    assert pops.max() < 0.0008 and pops.mean() < 0.0002, (pops.max(), pops.mean())
+
+
+@pytest.mark.parametrize("name", LIGHTS)
+def test_where_a_map_is_needed_in_full_nothing_changes(name, scene_of, render, full):
+    scene, camera = scene_of("splats", LIGHTS[name]), from_afar(1, (160, 120))
+    one, every = maps_of(scene, camera), full(lambda: maps_of(scene, camera))
+    assert {made.camera.size for made in one} == {(SETTINGS.shadow_resolution,) * 2}
+    assert same_maps(one, every)
+    assert np.array_equal(render(scene, camera, SETTINGS).color, full(lambda: render(scene, camera, SETTINGS).color))
+
+
+@pytest.mark.parametrize("resolution", [31, 64, 100, 1000, 1024, 4097])
+def test_a_map_has_enough_texels_and_less_than_twice_as_many(resolution):
+    for needed in (1, 20, 33, 64, 65, 500, 1e5, math.inf):
+        side = enough(needed, resolution)
+        assert side == resolution or side >= max(needed, LEAST_SIDE)
+        assert side % 2 or side // 2 < max(needed, LEAST_SIDE)
+        assert resolution % side == 0
+
+
+def test_the_nearest_object_and_the_smallest_pixel_decide(scene_of):
+    """A light that lights only far objects has small maps, also beside near ones."""
+    light = LIGHTS["point"]
+    scene, camera = scene_of("splats", light), from_afar(9)
+    close = replace(scene.surfels[0], matrix_world=from_afar(8.9).matrix_world @ np.diag((0.2, 0.2, 0.2, 1)))
+    both = replace(scene, surfels=(*scene.surfels, replace(close, light_set=1)))
+    assert sides(scene, camera) == sides(replace(both, lights=(replace(light, receivers=(0,)),)), camera)
+    assert min(sides(both, camera)) > 2 * max(sides(scene, camera))
+    finer = from_afar(9, (4 * SIZE[0], 4 * SIZE[1]))
+    assert min(sides(scene, finer)) > max(sides(scene, camera))
+
+
+@pytest.mark.parametrize("name", LIGHTS)
+def test_parts_and_samples_of_a_picture_have_the_same_maps(name, scene_of, render):
+    scene, camera = scene_of("splats", LIGHTS[name]), from_afar(6)
+    whole = maps_of(scene, camera)
+    for part in ((0, 0, 48, 72), (40, 30, 10, 10)):
+        assert same_maps(whole, maps_of(scene, camera, part=part))
+    one = render(scene, camera, SETTINGS).color
+    part = render(scene, camera, SETTINGS, part=(30, 20, 40, 30)).color
+    np.testing.assert_allclose(part, one[20:50, 30:70], atol=1e-4)
+
+
+@pytest.mark.parametrize("name", ["point", "area"])
+def test_a_panorama_and_a_lens_have_one_size_of_a_lamp_s_maps(name, scene_of, render):
+    scene = scene_of("splats", LIGHTS[name])
+    panorama = Panorama(from_afar(6).matrix_world, Equirectangular(), (64, 32), near=0.1, far=1000)
+    through = replace(from_afar(6), lens=Lens(0.05, 30.0))
+    for camera in (panorama, through):
+        frames = [render(scene, camera, replace(SETTINGS, samples=samples)) for samples in (1, 3)]
+        one, other = (frame.stats["plan"].facts["shadow_maps"] for frame in frames)
+        assert same_maps(one, other) and one[0].camera.size[0] < SETTINGS.shadow_resolution
