@@ -39,6 +39,7 @@ class Pace:
         self.rate = rate
         self._clock = clock
         self._started = 0.0
+        self._paused: float | None = None
         self._tolerance = self._width = 1.0
         self._raised: tuple[float, float] | None = None
         self._does_merging_help = True
@@ -47,6 +48,16 @@ class Pace:
     def slice_end(self) -> float | None:
         """The time at which a call of the view that begins now should end; None: once it has a picture."""
         return None if self.rate is None else self._clock() + SLICE / self.rate
+
+    def pause(self) -> None:
+        """The time until `go_on` is not the picture's."""
+        self._paused = self._clock()
+
+    def go_on(self) -> None:
+        """Go on with the picture after a pause, if there was one."""
+        if self._paused is not None:
+            self._started += self._clock() - self._paused
+            self._paused = None
 
     def is_over(self, end: float | None) -> bool:
         """Whether that time has come."""
@@ -65,7 +76,7 @@ class Pace:
     def begin(self, camera: Camera, settings: Settings) -> tuple[Camera, Settings]:
         """The camera and the settings to draw the next picture of a moving view with; the same objects if they need not
         be coarser."""
-        self._started = self._clock()
+        self._started, self._paused = self._clock(), None
         if self.rate is None:
             return camera, settings
         tolerance = min(settings.detail_tolerance * self._tolerance, max(COARSEST, settings.detail_tolerance))

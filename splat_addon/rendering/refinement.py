@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from .accumulation import sample_camera
 from .pace import Pace
@@ -25,7 +26,7 @@ class Refinement:
     samples: number of samples in the shown picture; 0 for the first, which is not stored in a sum, so that a moving
         view costs no more than without refinement.
     pace: how coarse the picture is while only the camera moves; at rest it is as the settings say. With a rate, a
-        picture at rest that takes longer is drawn in slices, one a call, and the one before stays until it is complete.
+        picture that takes longer is drawn in slices, one a call, and the one before stays until it is complete.
     """
 
     def __init__(self, renderer: Renderer, pace: Pace | None = None):
@@ -37,11 +38,12 @@ class Refinement:
         self._drawn: Scene | None = None
         self._refines = self._is_coarse = False
         self._last: Shown | None = None
-        self._begun: tuple[int, Iterator[Shown | Pause]] | None = None
+        self._begun: _Begun | None = None
+        self._is_behind = False
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool = False) -> Iterator[Shown]:
         """Yield the parts of the picture to show now: with one sample if anything changed, with one more sample if
-        nothing did and it could be drawn in time, and unchanged once it has `settings.samples`.
+        nothing did, and unchanged once it has `settings.samples`, or until the next could be drawn in time.
 
         hurries: draw as if the camera moved, because more is to come. A part is valid until the next is requested.
         Raises as `Renderer.draw`, and then begins again with the next picture.
@@ -53,16 +55,25 @@ class Refinement:
             raise
 
     def _parts(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool) -> Iterator[Shown]:
+        self._is_behind = not hurries and self._must_complete(scene, camera, settings)
+        if self._is_behind:
+            yield from self._noted(self._slice(), camera)
+            return
         if hurries or not self._is_of(scene, camera, settings):
-            moves = hurries or (self._of is not None and self._of[0] is scene and self._of[2] == settings)
-            self._of, self._is_coarse, self._last = (scene, camera, settings), False, None
+            turns = self._of is not None and self._of[0] is scene and self._of[2] == settings
+            if hurries or not turns or self._of[1].size != camera.size:
+                # the last picture is of something else
+                self._last = None
+            moves = hurries or turns
+            self._of, self._is_coarse = (scene, camera, settings), False
             self._begin(settings)
             if any(instance.stream is not None for instance in scene.surfels):
                 # of what is in files, a few surfels are there at once, and the rest comes as quickly as it can be drawn
                 self.pace.begin_coarsely()
                 moves = True
             first = self._moving(scene, camera, settings) if moves else self._first(scene, camera, settings)
-            yield from self._noted(first, camera)
+            self._begun = _Begun(self.renderer.resources.arrivals, first, True)
+            yield from self._noted(self._slice(), camera)
             return
         read = self._read(scene, camera, settings)
         if self.renderer.streamed.is_waiting and self._last is not None:
@@ -72,15 +83,23 @@ class Refinement:
         if read is not self._drawn:
             self._begin(settings)
             self._drawn = read
-        yield from self._noted(self._slice(read, camera, settings), camera)
-
-    def _slice(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
-        """Go on with a picture at rest. It is shown once it is complete, and the last one until then."""
-        end, resources, device = self.pace.slice_end(), self.renderer.resources, self.renderer.device
-        if self._begun is None or self._begun[0] != resources.arrivals:
+        arrivals = self.renderer.resources.arrivals
+        if self._begun is None or self._begun.arrivals != arrivals:
             # what has arrived meanwhile would be in a part of the picture only
-            self._begun = resources.arrivals, self._at_rest(scene, camera, settings)
-        for part in self._begun[1]:
+            self._begun = _Begun(arrivals, self._at_rest(read, camera, settings), False)
+        yield from self._noted(self._slice(), camera)
+
+    def _must_complete(self, scene: Scene, camera: Camera, settings: Settings) -> bool:
+        """Whether a picture of a moving camera was begun: none would ever be complete if each move began another."""
+        if self._begun is None or not self._begun.moves or self._begun.arrivals != self.renderer.resources.arrivals:
+            return False
+        return self._of[0] is scene and self._of[1].size == camera.size and self._of[2] == settings
+
+    def _slice(self) -> Iterator[Shown]:
+        """Go on with the picture that was begun. It is shown once it is complete, and the last one until then."""
+        end, device = self.pace.slice_end(), self.renderer.device
+        self.pace.go_on()
+        for part in self._begun.parts:
             if not isinstance(part, Pause):
                 self._last = None
                 yield part
@@ -89,6 +108,7 @@ class Refinement:
                     device.finish(part.target)
                 if self.pace.is_over(end):
                     device.restore()
+                    self.pace.pause()
                     yield self._last
                     return
         self._begun = None
@@ -117,8 +137,8 @@ class Refinement:
 
     @property
     def is_drawing(self) -> bool:
-        """Whether a picture at rest has been drawn in part."""
-        return self._begun is not None
+        """Whether a picture has been drawn in part, or another view was asked for meanwhile."""
+        return self._begun is not None or self._is_behind
 
     @property
     def wants_more(self) -> bool:
@@ -132,22 +152,25 @@ class Refinement:
 
     def _read(self, scene: Scene, camera: Camera, settings: Settings, most: int | None = None) -> Scene:
         """The scene with the surfels that could be read in time, at most so many of them."""
-        needs_whole = self._last is not None
+        needs_whole = most is None and self._last is not None
         return self.renderer.streamed.resolved(scene, camera, settings, _READING, most=most, needs_whole=needs_whole)
 
-    def _first(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
+    def _first(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown | Pause]:
         """The first picture of a scene."""
         self._drawn = self._read(scene, camera, settings)
         return self.renderer.draw(self._drawn, camera, settings)
 
-    def _moving(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
+    def _moving(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown | Pause]:
         """The picture of a camera that moves, as coarse as its pace requires."""
         (seen, drawn), device = self.pace.begin(camera, settings), self.renderer.device
         self._drawn = self._read(scene, seen, drawn, self.pace.most)
         cuts = () if self.pace.most is None or self._drawn is scene else self._drawn.surfels
         streamed = sum(len(instance.surfels) for instance in cuts if instance.is_cut)
         self._is_coarse = drawn is not settings or seen is not camera or streamed > 0
-        for shown in self.renderer.draw(self._drawn, seen, drawn):
+        for shown in self.renderer.draw(self._drawn, seen, drawn, in_slices=True):
+            if isinstance(shown, Pause):
+                yield shown
+                continue
             if self.pace.rate is not None:
                 device.finish(device.target([shown.texture]))
             yield shown._replace(place=_enlarged(shown.place, seen.size, camera.size))
@@ -157,6 +180,15 @@ class Refinement:
         if self._of is None:
             return False
         return self._of[0] is scene and self._of[1].is_same(camera) and self._of[2] == settings
+
+
+class _Begun(NamedTuple):
+    """A picture that is being drawn. arrivals: of the resources when it began. moves: whether it is one of a moving
+    camera, or the first."""
+
+    arrivals: int
+    parts: Iterator[Shown | Pause]
+    moves: bool
 
 
 def _enlarged(place: Tile, size: tuple[int, int], whole: tuple[int, int]) -> Tile:

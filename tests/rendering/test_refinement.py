@@ -119,9 +119,9 @@ class Looks:
         return self.now
 
 
-def rest(device, scene, cameras, settings):
+def rest(device, scene, cameras, settings, pace=None):
     """The pictures of a view with a rate, from the first camera on until it wants no more, and what it was."""
-    made, pictures = Refinement(Renderer(device), Pace(10.0, Looks())), []
+    made, pictures = Refinement(Renderer(device), pace or Pace(10.0, Looks())), []
     for turn in range(2000):
         camera = cameras[min(turn, len(cameras) - 1)]
         pictures.append(shown_picture(made.renderer, made.draw(scene, camera, settings), camera.size))
@@ -158,6 +158,41 @@ def test_a_camera_that_moves_ends_what_was_begun(on_device, render, monkeypatch)
     pictures, _ = on_device(lambda device: rest(device, scene, [camera] * 9 + [moved], SETTINGS))
     assert len(distinct(pictures[:9])) == 1
     np.testing.assert_allclose(pictures[-1], render(scene, moved, SETTINGS).color, atol=2e-6)
+
+
+class Fine(Pace):
+    """The pace of a view that never becomes coarser."""
+
+    def end(self, settings, streamed=0):
+        pass
+
+
+def test_a_camera_that_moves_on_is_shown_behind_but_whole(on_device, render, monkeypatch):
+    monkeypatch.setattr(drawing, "AT_ONCE", 1000)
+    scene, camera = torus()
+    cameras = [replace(camera, window=tuple(v + 0.003 * k for v in camera.window)) for k in range(60)]
+    settings = replace(SETTINGS, samples=1)
+    pictures, made = on_device(lambda device: rest(device, scene, cameras, settings, Fine(10.0, Looks())))
+    expected = np.array([render(scene, one, settings).color for one in cameras])
+    seen = [np.flatnonzero((expected == picture).all(axis=(1, 2, 3))) for picture in pictures]
+    assert all(len(which) == 1 for which in seen)
+    numbers = np.concatenate(seen)
+    assert (np.diff(numbers) >= 0).all() and 4 < len(set(numbers.tolist())) < 20
+    assert (numbers[:60] <= np.arange(60)).all() and numbers[-1] == 59 and not made.is_drawing
+
+
+def test_a_scene_that_changes_with_each_picture_is_shown_at_once(on_device, render, monkeypatch):
+    monkeypatch.setattr(drawing, "AT_ONCE", 1000)
+    scene, camera = torus()
+    settings = replace(SETTINGS, samples=1)
+    scenes_of = [replace(scene, world=(0.1 * k, 0, 0)) for k in range(5)]
+
+    def job(device):
+        made = Refinement(Renderer(device), Fine(10.0, Looks()))
+        return [shown_picture(made.renderer, made.draw(one, camera, settings), camera.size) for one in scenes_of]
+
+    for found, one in zip(on_device(job), scenes_of, strict=True):
+        np.testing.assert_array_equal(found, render(one, camera, settings).color)
 
 
 def test_tiles_of_a_picture_at_rest_are_shown_together(small_tiles, on_device, render):
