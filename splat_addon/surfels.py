@@ -254,6 +254,13 @@ def portions(surfels: Surfels, size: int) -> tuple[Surfels, ...]:
     )
 
 
+def prepared(parts: tuple[Surfels, ...]) -> tuple[Surfels, ...]:
+    """The same sets, with what every picture asks for found already; a thread may do that."""
+    for part in parts:
+        _ = part.is_transparent, part.local_bounds, part.largest, part.clipped_count, part.brightest
+    return parts
+
+
 def empty_surfels(origin=(0.0, 0.0, 0.0)) -> Surfels:
     """A set of no surfels."""
     return Surfels(origin=origin, **{n: np.zeros((0, c) if c > 1 else 0, t) for n, (c, t) in LAYOUT.items()})

@@ -16,8 +16,7 @@ import numpy as np
 
 from ..hierarchy import Sight
 from ..streaming import Stream
-from ..streaming.stream import Seen
-from ..surfels import Surfels, portions
+from ..streaming.stream import Gathered, Seen
 from .levels import sight
 from .panorama_faces import DENSITY
 from .scene import Instance, Scene
@@ -27,9 +26,6 @@ from .settings import Settings
 
 #: Seconds of reading for the first set of a view.
 _READING = 0.03
-
-#: Surfels that are packed and drawn at a time, neighbours in space: what that takes besides is of this size.
-PART = 1 << 16
 
 #: How many times the tolerance blocks outside the picture may be off: only their shadows, or a view that moves on, show
 #: them.
@@ -48,7 +44,7 @@ class Streamed:
         self.short: tuple[str, ...] = ()
         self._from: Scene | None = None
         self._scene: Scene | None = None
-        self._made: dict[Instance, tuple[Surfels, tuple[Instance, ...]]] = {}
+        self._made: dict[Instance, tuple[Gathered, tuple[Instance, ...]]] = {}
         self._coming: dict[tuple, _Coming] = {}
 
     def resolved(
@@ -94,8 +90,8 @@ class Streamed:
                 self.is_waiting |= coming.is_waiting
             short |= {instance.name: None} if seen.is_short else {}
             known = self._made.get(instance)
-            is_known = known is not None and known[0] is seen.surfels
-            made[instance] = known if is_known else (seen.surfels, _instances(instance, seen.surfels))
+            is_known = known is not None and known[0] is seen.gathered
+            made[instance] = known if is_known else (seen.gathered, _instances(instance, seen.gathered))
         self._coming = {key: own for key, own in self._coming.items() if key[1] <= streams.get(key[0], 0)}
         is_same = scene is self._from and all(made[i] is self._made.get(i) for i in made)
         self._made, self.short = made, tuple(short)
@@ -114,7 +110,7 @@ class _Coming:
 
     def __init__(self, stream: Stream):
         self._stream = stream
-        self._key, self._seen = None, Seen(stream.coarsest, False, False)
+        self._key, self._seen = None, Seen(stream.roots, False, False)
         self._next: tuple[tuple, Future[Seen]] | None = None
         self._seconds = _READING
         self.is_waiting = True
@@ -136,12 +132,12 @@ class _Coming:
             key, future = self._next
             if wait([future], seconds).done:
                 seen, self._key, self._next = future.result(), key, None
-                self._seen = self._seen._replace(is_whole=False) if seen.surfels is None else seen
+                self._seen = self._seen._replace(is_whole=False) if seen.gathered is None else seen
 
 
-def _instances(instance: Instance, surfels: Surfels) -> tuple[Instance, ...]:
+def _instances(instance: Instance, gathered: Gathered) -> tuple[Instance, ...]:
     """Ordinary instances of surfels that are a cut already."""
-    return tuple(replace(instance, shape=part, stream=None, is_cut=True) for part in portions(surfels, PART))
+    return tuple(replace(instance, shape=part, stream=None, is_cut=True) for part in gathered.parts)
 
 
 def _view(

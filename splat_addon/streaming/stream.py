@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
 from functools import cached_property
 from hashlib import blake2b
 from itertools import count
@@ -19,7 +20,7 @@ import numpy as np
 from ..hierarchy import Sight
 from ..hierarchy.cuts import cut_blocks
 from ..hierarchy.ordering import spatial_order
-from ..surfels import Surfels
+from ..surfels import Surfels, portions, prepared
 from .block_file import BlockFile
 from .descent import descend
 from .layout import as_surfels
@@ -29,14 +30,31 @@ from .pages import PAGE, Pages
 _AT_ONCE = 64
 
 
+#: Surfels that are packed and drawn at a time, neighbours in space: what that takes besides is of this size.
+PART = 1 << 16
+
+
+@dataclass(frozen=True, eq=False)
+class Gathered:
+    """The surfels of some blocks, and the same in parts of at most `PART`, which share their arrays."""
+
+    surfels: Surfels
+    parts: tuple[Surfels, ...]
+
+
 class Seen(NamedTuple):
-    """surfels: what a view draws; None if it is not whole, and only the whole was asked for. is_whole: nothing that the
-    view needs is still to be read. is_short: the memory did not suffice, so that some blocks are coarser than it needs.
+    """gathered: what a view draws; None if it is not whole, and only the whole was asked for. is_whole: nothing that
+    the view needs is still to be read. is_short: the memory did not suffice, so that some blocks are coarser than it
+    needs.
     """
 
-    surfels: Surfels | None
+    gathered: Gathered | None
     is_whole: bool
     is_short: bool
+
+    @property
+    def surfels(self) -> Surfels | None:
+        return self.gathered and self.gathered.surfels
 
 
 class Stream:
@@ -50,7 +68,7 @@ class Stream:
         self.pages = Pages(self.file, most_bytes)
         self.rows_read = 0
         self._kept: dict[tuple, tuple[int, Seen]] = {}
-        self._same: WeakValueDictionary[bytes, Surfels] = WeakValueDictionary()
+        self._same: WeakValueDictionary[bytes, Gathered] = WeakValueDictionary()
         self._frame = 0
         # a thread of its own: what others compute in the background may take a minute, and a view waits for this one
         self._reader, self._lock = ThreadPoolExecutor(1, "surfel blocks"), Lock()
@@ -60,9 +78,14 @@ class Stream:
         return self.file.count
 
     @cached_property
+    def roots(self) -> Gathered:
+        """The surfels of the roots, which are always there."""
+        return self._gathered(np.arange(int(self.file.blocks.roots)))
+
+    @property
     def coarsest(self) -> Surfels:
         """The surfels of the roots."""
-        return self._gathered(np.arange(int(self.file.blocks.roots)))
+        return self.roots.surfels
 
     def at_most(self, most: int) -> Surfels:
         """The finest cut with the same error everywhere that has at most this many surfels; if even the roots have
@@ -138,18 +161,18 @@ class Stream:
                     if perf_counter() >= until:
                         break
 
-    def _gathered(self, drawn: np.ndarray) -> Surfels:
+    def _gathered(self, drawn: np.ndarray) -> Gathered:
         """The surfels of these blocks, which are here; the same object for the same blocks."""
         key = blake2b(np.ascontiguousarray(drawn, np.int64).data, digest_size=16).digest()
-        surfels = self._same.get(key)
-        if surfels is None:
+        gathered = self._same.get(key)
+        if gathered is None:
             blocks = self.file.blocks
             # any run of them is then close together
             drawn = drawn[spatial_order((blocks.low[drawn] + blocks.high[drawn]) / 2)]
             fields = self.pages.gathered(blocks.first[drawn], blocks.last[drawn])
             surfels = Surfels(origin=self.file.origin, is_solid=self.file.is_solid, **fields)
-            self._same[key] = surfels
-        return surfels
+            gathered = self._same[key] = Gathered(surfels, prepared(portions(surfels, PART)))
+        return gathered
 
     def close(self) -> None:
         """Stop reading; what was given stays valid."""

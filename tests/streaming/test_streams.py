@@ -127,6 +127,16 @@ def test_nothing_is_gathered_before_the_whole_is_read_if_only_that_is_wanted(man
     assert len(seen[-1].surfels) == len(Stream(many_portions, PLENTY).seen(view).surfels)
 
 
+def test_the_reader_finds_what_every_picture_asks_for(many_portions, monkeypatch):
+    """So that the first picture of a large set does not."""
+    monkeypatch.setattr("splat_addon.streaming.stream.PART", 1000)
+    seen = Stream(many_portions, PLENTY).ahead(sight((0, 0, 2), 0.3), None, 10.0).result()
+    parts = seen.gathered.parts
+    assert len(parts) > 4 and sum(map(len, parts)) == len(seen.surfels) and max(map(len, parts)) == 1000
+    asked = {"is_transparent", "local_bounds", "largest", "clipped_count", "brightest"}
+    assert all(asked <= vars(part).keys() for part in parts)
+
+
 def test_what_a_view_in_a_hurry_does_not_draw_is_not_read(many_portions):
     view = sight((0, 0, 2), 0.3)
     read = []

@@ -19,7 +19,7 @@ import numpy as np
 from ...rendering.background import in_background
 from ...rendering.stand_in import STAND_IN, spread, standing_in, widened
 from ...rendering.upload.packing import LARGEST_SET
-from ...surfels import Surfels, portions, valid_surfels
+from ...surfels import Surfels, portions, prepared, valid_surfels
 from ..geometry.attributes import (
     SOLID,
     Points,
@@ -186,8 +186,5 @@ def _made(arrays, is_solid: bool, known: dict, name: str, before: list[Surfels])
     has of it now."""
     stored: Stored = stored_of(arrays, is_solid, known, name)
     same = next((n for n, surfels in enumerate(before) if have_same_values(surfels, stored.surfels)), None)
-    parts = portions(stored.surfels, LARGEST_SET) if same is None else ()
-    for part in parts:
-        # what every picture asks for is found here, once
-        _ = part.is_transparent, part.local_bounds, part.largest, part.clipped_count, part.brightest
+    parts = prepared(portions(stored.surfels, LARGEST_SET)) if same is None else ()
     return stored, parts, same, known.get(name)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..plan.executor import TileContext
 
 #: Triangles of a draw call, after which drawing may pause.
-AT_ONCE = 1 << 16
+AT_ONCE = 1 << 15
 
 #: Fragment shaders that add splats to sums.
 SPLAT_HOSTS = tuple(f"{name}.frag" for name in RASTERIZERS)
