@@ -30,7 +30,7 @@ write_blocks = modal_writing.write_blocks
 
 
 def write_held(path, parts, progress, expected):
-    """Write as ever, but the first step lasts until `may_end` or Esc, so that no machine is too fast for the key."""
+    """Write as usual, but the first step lasts until `may_end` or Esc, so that no machine is too fast for the key."""
 
     def held(share, step):
         while progress(share, step) and not may_end.is_set():

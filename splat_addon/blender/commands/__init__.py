@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`blender FILE.blend --command surfels convert|render|merge|store|info|template`: for farms, pipelines and scripts.
+"""`blender FILE.blend --command surfels convert|points|render|merge|store|info|template`: for farms and scripts.
 
 Each command may be stopped at any moment and run again: existing results are kept, missing ones are made, and a file
 gets its name only once it is complete. Exit codes: 0 done, 1 failed, after one sentence, 2 wrong arguments.
@@ -13,12 +13,13 @@ import sys
 import bpy
 
 from ..engine.final_render import sentence_of
-from . import convert, info, merge, render, store, template
+from . import convert, info, merge, points, render, store, template
 
 NAME = "surfels"
 
 _COMMANDS = {
     "convert": convert,
+    "points": points,
     "render": render,
     "merge": merge,
     "store": store,

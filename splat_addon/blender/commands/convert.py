@@ -11,7 +11,7 @@ from pathlib import Path
 import bpy
 
 from ...sampling import Sampling, sample_block, sample_surface, write_blocks
-from ..conversion.batch import ConversionBatch
+from ..conversion.batch import Batch, ConversionBatch
 from ..conversion.mesh_conversion import sampling_options
 from ..conversion.mesh_settings import choices
 from ..conversion.ties import tie
@@ -122,29 +122,36 @@ def sources_of(names: list[str] | None) -> list[bpy.types.Object]:
         if not found:
             raise ValueError("Nothing visible has surfaces to convert; name objects with --objects.")
         return found
+    return named(names, has_surfaces, "no surface to convert, or is surfels already")
+
+
+def named(names: list[str], can: Callable[[bpy.types.Object], bool], lacks: str) -> list[bpy.types.Object]:
+    """The objects of these names. Raises ValueError for a name that does not exist, and for an object for which `can`
+    is false; lacks: what such an object has."""
     missing = [name for name in names if name not in bpy.context.scene.objects]
     if missing:
         raise ValueError(f"The scene has no object {missing[0]!r}.")
     found = [bpy.context.scene.objects[name] for name in names]
-    if bare := [each.name for each in found if not has_surfaces(each)]:
-        raise ValueError(f"The object {bare[0]!r} has no surface to convert, or is surfels already.")
+    if unfit := [each.name for each in found if not can(each)]:
+        raise ValueError(f"The object {unfit[0]!r} has {lacks}.")
     return found
 
 
-def refuse(batch: ConversionBatch) -> None:
+def refuse(batch: Batch) -> None:
     """Raise ValueError if any object cannot be converted."""
     if batch.refused:
         raise ValueError("; ".join(f"{name}: {sentence}" for name, sentence in batch.refused))
 
 
-def place(batch: ConversionBatch, settings) -> None:
-    """Add the surfel objects, tied to their hidden sources. Raises ValueError if any object was refused."""
+def place(batch: Batch, settings, kind: str = "MESH") -> None:
+    """Add the surfel objects, tied to their hidden sources; kind, settings: of their record. Raises ValueError if any
+    object was refused."""
     refuse(batch)
     for conversion, made in batch.place_all(bpy.context):
         print(f"{conversion.name}: {conversion.summary()}", flush=True)
         for note in conversion.notes:
             print(f"{conversion.name}: {note}", flush=True)
-        for note in tie(conversion, made, "MESH", settings, follows=True, hides=True):
+        for note in tie(conversion, made, kind, settings, follows=True, hides=True):
             print(note, flush=True)
 
 

@@ -2,8 +2,11 @@
 """`surfels convert` saves a complete file of surfels or none; `surfels info` describes what a file contains."""
 
 import json
+import math
 
 import bpy
+import numpy as np
+import pytest
 
 
 def test_converted_objects_are_in_a_new_file(animation, surfels_command, tmp_path):
@@ -24,6 +27,47 @@ def test_a_name_that_is_not_there_saves_nothing(animation, surfels_command, tmp_
 def test_a_density_that_cannot_be_met_saves_nothing(animation, surfels_command, tmp_path):
     code, said = surfels_command("convert", "--objects", "floor", "--spacing", 1e-9, "--out", tmp_path / "out.blend")
     assert code == 1 and "floor: " in said
+    assert [path.name for path in tmp_path.iterdir()] == ["anim.blend"]
+
+
+@pytest.fixture
+def cloud(animation):
+    """A mesh of 400 bare points, on a square at the height 2."""
+    mesh = bpy.data.meshes.new("cloud")
+    mesh.from_pydata([(x / 10, y / 10, 2) for x in range(20) for y in range(20)], [], [])
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("cloud", mesh))
+
+
+def test_bare_points_are_converted_with_the_operators_settings(cloud, surfels_command, surfels_of, tmp_path):
+    out = tmp_path / "out.blend"
+    code, said = surfels_command("points", "--out", out, "--splat-size", 2, "--facing", "camera", "--crease-angle", 45)
+    assert code == 0 and f"wrote {out}" in said and "400 points -> 400 surfels" in said
+    bpy.ops.wm.open_mainfile(filepath=str(out))
+    made = bpy.data.objects["cloud surfels"]
+    assert bpy.data.objects["cloud"].hide_render and not bpy.data.objects["floor"].hide_render
+    record = made.surfel_record
+    assert record.kind == "POINTS" and record.points.splat_size == 2 and record.points.facing == "CAMERA"
+    assert record.points.crease_angle == pytest.approx(math.radians(45)) and not record.points.finds_creases
+    surfels = surfels_of(made)
+    assert np.allclose(surfels.normals, (0, 0, 1), atol=1e-3) and np.median(surfels.scales) == pytest.approx(
+        0.2, rel=0.2
+    )
+    assert "there already" in surfels_command("points", "--out", out)[1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (("--objects", "cloud", "walls"), 1, "no object 'walls'"),
+        (("--objects", "sun"), 1, "'sun' has no points"),
+        (("--neighbours", -1), 2, "-1 is out of range"),
+        (("--stray", "eat"), 2, "unrecognized"),
+        (("--isolated", "eat"), 2, "EAT"),
+    ],
+)
+def test_what_cannot_be_done_with_points_saves_nothing(cloud, surfels_command, tmp_path, arguments, code, said):
+    done, told = surfels_command("points", "--out", tmp_path / "out.blend", *arguments)
+    assert done == code and said in told
     assert [path.name for path in tmp_path.iterdir()] == ["anim.blend"]
 
 
