@@ -80,6 +80,15 @@ void clip_lines_bound(inout Candidate c) {
 }
 
 #part screen_space.vert, blurs_lines
+#include "lib/line_in_picture.glsl"
+
+// Signed distances in pixels from the lines, wherever the plane is before its horizon.
+void clip_lines_replaced(Plane true_plane, Plane plane, bool in_space) {
+  vec3 first = line_in_picture(clip_first, plane), second = line_in_picture(clip_second, plane);
+  from_first = first / max(length(first.xy), 1e-20);
+  from_second = second / max(length(second.xy), 1e-20);
+}
+
 // Where the filter reaches over a line, the face beyond it may be nearer by as much as blurs_lines_bound allows. The
 // hardware's depth test must not hide the splat there.
 void clip_lines_reach(Plane plane, inout float nearest) {
@@ -99,15 +108,24 @@ void clip_lines_bound(inout Candidate c) {
 }
 
 #part screen_space.frag, blurs_lines, depth_bounds
-const float TO_LINE = 0.25;  // pixels by which the distance to the line may be wrong
+const float TO_WITHIN = 0.75;  // pixels past the line, up to which a sample's area is at most partly beyond it
+const float TO_LINE = 0.25;    // pixels by which the distance to the line may be wrong
+
+// Distance in pixels past the nearest line to a kept point, at most 0 for kept points. way: the unit vector back.
+float past_line(out vec2 way) {
+  float one = dot(from_first, vec3(gl_FragCoord.xy, 1.0)), other = dot(from_second, vec3(gl_FragCoord.xy, 1.0));
+  bool is_first = clip_is_reflex > 0.5 ? one > other : one < other;
+  way = is_first ? from_first.xy : from_second.xy;
+  return is_first ? -one : -other;
+}
 
 // By how much per pixel the depth from the splat's plane to the visible surface grows, from `gap` here to the next sample
 // away from the line. It is endless if that sample is empty.
-float growth_of(float gap, Plane plane, vec2 back) {
-  ivec2 next = ivec2(floor(gl_FragCoord.xy - normalize(back))), last = textureSize(depth_bounds, 0) - 1;
+float growth_of(float gap, Plane plane, vec2 way) {
+  ivec2 next = ivec2(floor(gl_FragCoord.xy - way)), last = textureSize(depth_bounds, 0) - 1;
   float seen = texelFetch(depth_bounds, clamp(next, ivec2(0), last), 0).z;
   float depth = plane.depth + dot(plane.slope, place_at(plane, vec2(next) + 0.5).uv);
-  return (seen - depth - gap) / dot(gl_FragCoord.xy - vec2(next) - 0.5, normalize(back));
+  return (seen - depth - gap) / dot(gl_FragCoord.xy - vec2(next) - 0.5, way);
 }
 
 // Beyond the line the adjacent face is visible, and may hide the splat's plane, while the pixel's filter reaches over
@@ -115,16 +133,16 @@ float growth_of(float gap, Plane plane, vec2 back) {
 // plane at the line, so the gap between both grows from there to the next pixel. A visible surface that is nearer by a
 // larger gap is another one, and hides the splat. The twin: seen_past_lines in reference/clipped_kernels.py.
 void blurs_lines_bound(inout Candidate c) {
-  Place place = place_at(c.plane, gl_FragCoord.xy);
-  vec2 back = way_back(c.plane, place);
-  if (c.in_space || back == vec2(0.0)) return;
-  ivec2 last = textureSize(depth_bounds, 0) - 1, at = clamp(ivec2(floor(gl_FragCoord.xy + back)), ivec2(0), last);
+  vec2 way;
+  float past = past_line(way), nearer = c.depth - c.seen.z, growth = growth_of(-nearer, c.plane, way);
+  if (c.in_space || past <= 0.0) return;
+  vec2 before_line = gl_FragCoord.xy + (TO_WITHIN + past) * way;
+  ivec2 at = clamp(ivec2(floor(before_line)), ivec2(0), textureSize(depth_bounds, 0) - 1);
   float before = plane_depth(c.plane, place_at(c.plane, vec2(at) + 0.5));
   bool is_seen = before <= texelFetch(depth_bounds, at, 0).z;
   if (!is_seen) discard;
-  float nearer = c.depth - c.seen.z, from_line = length(back) - TO_WITHIN + TO_LINE;
   if (nearer > (1.0 + 4.0 * draw.epsilon) * c.plane.radius &&
-      (nearer > most_nearer(c.plane) || nearer > -growth_of(-nearer, c.plane, back) * from_line)) discard;
+      (nearer > most_nearer(c.plane) || nearer > -growth * (past + TO_LINE))) discard;
   c.compared = min(c.compared, c.seen.z);
 }
 
@@ -135,10 +153,9 @@ const float STEEPEST = 8.0;       // pixels of depth per pixel; steeper, the sil
 // A visible surface that is behind by a larger gap is another one too: the splat's surface ends before it, and the
 // silhouette filter blurs that end.
 void blurs_lines_ends_bound(inout Candidate c) {
-  vec2 back = way_back(c.plane, place_at(c.plane, gl_FragCoord.xy));
-  float gap = c.seen.w - c.depth, from_line = length(back) - TO_WITHIN + TO_LINE;
-  if (c.in_space || back == vec2(0.0) || gap <= OTHER_SURFACE * c.plane.radius) return;
-  float growth = max(growth_of(gap, c.plane, back), 0.0);
-  if (gap > OTHER_SURFACE * c.plane.radius + growth * from_line) discard;
+  vec2 way;
+  float past = past_line(way), gap = c.seen.w - c.depth, growth = max(growth_of(gap, c.plane, way), 0.0);
+  if (c.in_space || past <= 0.0 || gap <= OTHER_SURFACE * c.plane.radius) return;
+  if (gap > OTHER_SURFACE * c.plane.radius + growth * (past + TO_LINE)) discard;
   if (growth < STEEPEST * pixel_length(c.plane)) c.compared = c.seen.z;
 }

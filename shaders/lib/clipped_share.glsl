@@ -1,6 +1,5 @@
 // References: features/clip_lines.glsl; Sheppard 1899 (two correlated normal variables, both above their means).
-// Summary: the share of kernel times pixel filter on the kept side of a splat's lines, over how dense kernels are there;
-//          and the nearest kept point.
+// Summary: the share of kernel times pixel filter on the kept side of a splat's lines, over how dense kernels are there.
 
 #include "lib/place.glsl"
 #include "lib/normal_share.glsl"
@@ -9,7 +8,6 @@
 const float LEAST_SHARE = 0.006;  // smaller shares are 0: the approximation ends there
 const float NORMAL_AT_0 = 0.39894228;
 const float WITHIN_TWO = 0.9533;  // of a Gaussian, within two standard deviations, by share_beyond
-const float TO_WITHIN = 0.75;     // pixels past the line, up to which a sample's area is at most partly beyond it
 
 // The share of a Gaussian on the kept side of both lines. one, other: the share of each line alone; correlation: of the
 // distances to them. Exact if both lines go through the middle, and for parallel or perpendicular lines.
@@ -46,16 +44,4 @@ float clipped_share(Plane plane, Place place) {
   float share = clip_is_reflex > 0.5 ? one + other - both : both, all_density = density.x * density.y;
   if (clip_is_reflex > 0.5) all_density = density.x + density.y - all_density;
   return share > LEAST_SHARE ? share / all_density : 0.0;
-}
-
-// Distance in pixels past the nearest line to a kept point; 0 for kept points.
-vec2 way_back(Plane plane, Place place) {
-  mat2 change = place.scale * place_turn(plane, place);
-  vec2 first = clip_first.xy * change, second = clip_second.xy * change;
-  float one = (dot(clip_first.xy, place.uv) + clip_first.z) / max(length(first), 1e-20);
-  float other = (dot(clip_second.xy, place.uv) + clip_second.z) / max(length(second), 1e-20);
-  bool is_first = clip_is_reflex > 0.5 ? one > other : one < other;
-  vec2 gradient = is_first ? first : second;
-  float inside = is_first ? one : other;
-  return inside < 0.0 && place.k > 0.0 ? (TO_WITHIN - inside) / max(length(gradient), 1e-20) * gradient : vec2(0.0);
 }

@@ -11,9 +11,12 @@ from .drawing import SPLAT_HOSTS
 
 _VARYINGS = (("flat", "vec3", "clip_first"), ("flat", "vec3", "clip_second"), ("flat", "float", "clip_is_reflex"))
 
-#: Method kinds whose lines refer to positions in the ellipse; the others' refer to positions in the picture.
-_IN_SPACE = (("flat", "float", "clip_in_space"),)
-
+#: word -> what else vertices hand on: whether lines refer to positions in the ellipse or in the picture; where a method
+#: blurs lines, distances from them in the picture.
+_MORE_VARYINGS = {
+    "cuts_at_lines": (("flat", "float", "clip_in_space"),),
+    "blurs_lines": (("flat", "vec3", "from_first"), ("flat", "vec3", "from_second")),
+}
 
 DRAWN = {"clip_lines": lambda tile, placed: tile.resources.clip_lines(placed.instance.surfels)}
 ARRIVES = {"clip_lines": lambda instance: instance.surfels.clipped_count > 0}
@@ -36,7 +39,7 @@ def is_present(planning) -> bool:
 def parts(planning, p):
     if p.host in (*SPLAT_HOSTS, "visibility.frag"):
         words = _words(planning, p)
-        varyings = (*_VARYINGS, *(_IN_SPACE if "cuts_at_lines" in words else ()))
+        varyings = (*_VARYINGS, *(v for word in words for v in _MORE_VARYINGS.get(word, ())))
         yield Part("clip_lines", words, inputs=("clip_lines",), varyings=varyings, only="clipped")
 
 
