@@ -70,14 +70,16 @@ class Renderer:
         settings: Settings | None = None,
         progress: Progress | None = None,
         part: Tile | None = None,
+        is_only: bool = False,
     ) -> Frame:
         """The whole picture in numpy arrays, or a part of it.
 
         part: x, y, width, height in pixels. Values shared by the whole picture are computed as if it were drawn whole;
             if the part's tiles are also tiles of the whole picture, its pixels are bit-identical.
+        is_only: whether no further picture of the scene follows, so that little is prepared for such.
         Raises ValueError for settings that do not fit, RuntimeError where the device fails, RenderCancelled.
         """
-        return self.render_moments([(scene, camera)], 1, settings, progress, part)
+        return self.render_moments([(scene, camera)], 1, settings, progress, part, is_only)
 
     def render_moments(
         self,
@@ -86,11 +88,12 @@ class Renderer:
         settings: Settings | None = None,
         progress: Progress | None = None,
         part: Tile | None = None,
+        is_only: bool = False,
     ) -> Frame:
         """The mean over the time of an open shutter: `count` scenes, each with its share of the samples.
 
         moments: each is requested when the previous one has been drawn; `accumulation.moment_places` gives their times.
-        part: as in `render`.
+        part, is_only: as in `render`.
         Raises as `render`, and ValueError for more moments than samples.
         """
         settings = settings or Settings()
@@ -104,7 +107,7 @@ class Renderer:
         frames = (
             frame
             for block, (scene, camera) in zip(blocks, read, strict=True)
-            for frame in self._samples(scene, camera, settings, block, turns, part)
+            for frame in self._samples(scene, camera, settings, block, turns, part, is_only and count == 1)
         )
         return mean_frame(frames) if settings.samples > 1 else next(frames)
 
@@ -118,14 +121,14 @@ class Renderer:
         return self.streamed.resolved(scene, camera, settings, told=told)
 
     def _samples(
-        self, scene, camera, settings, numbers: list[int], turns: Iterator, part: Tile | None
+        self, scene, camera, settings, numbers: list[int], turns: Iterator, part: Tile | None, is_only: bool
     ) -> Iterator[Frame]:
         """The pictures of these samples; samples that would draw the same shadow maps share them."""
         maps = None
 
         def draw(moved: Camera, of: Viewers, settings: Settings, told: Progress | None, part=None) -> Frame:
             nonlocal maps
-            frame_plan = plan(scene, moved, settings, viewers=of, part=part, samples=len(numbers))
+            frame_plan = plan(scene, moved, settings, viewers=of, part=part, samples=len(numbers), is_only=is_only)
             are_shared_done = maps is not None and same_maps(maps, frame_plan.facts["shadow_maps"])
             maps = frame_plan.facts["shadow_maps"]
             return self._frame(scene, moved, settings, told, frame_plan, are_shared_done, part)

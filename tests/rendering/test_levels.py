@@ -269,6 +269,14 @@ def test_surfels_that_move_in_each_frame_are_merged_if_its_samples_pay_for_it(ha
     assert plan(bent, camera, replace(SOME, samples=3)).has("LEVELS") == has_hierarchy
 
 
+def test_the_only_picture_of_a_scene_has_levels_if_its_samples_pay_for_them():
+    scene, camera = far_torus()
+    assert plan(scene, camera, SOME).has("LEVELS")
+    assert [plan(scene, camera, replace(SOME, samples=n), is_only=True).has("LEVELS") for n in (1, 16)] == [False, True]
+    built(scene)
+    assert plan(scene, camera, SOME, is_only=True).has("LEVELS")
+
+
 def test_surfels_that_have_come_to_rest_are_merged(on_device):
     bent = next_frame(far_torus()[0])
     camera = far_torus()[1]

@@ -22,7 +22,8 @@ def merging(planning) -> frozenset:
     """The instances that may have merged surfels in the picture; only these may have them in shadow maps."""
     if planning.find(lit_splats.wanted):
         return frozenset()
-    return levels.merging(planning.scene, planning.camera, planning.settings.detail_tolerance, planning.samples)
+    tolerance = planning.settings.detail_tolerance
+    return levels.merging(planning.scene, planning.camera, tolerance, planning.samples, planning.is_only)
 
 
 def passes(planning):

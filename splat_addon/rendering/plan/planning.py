@@ -18,7 +18,7 @@ Found = TypeVar("Found")
 
 class Planning:
     """viewers: the cameras that shadow maps serve. is_added_up: whether the picture is a sample of a refining view.
-    samples: number of samples that show the scene.
+    samples: number of samples that show the scene. is_only: whether no further picture shows it.
 
     choices, facts: as in `FramePlan`; features add to both.
     """
@@ -31,9 +31,11 @@ class Planning:
         viewers: Viewers,
         is_added_up: bool,
         samples: int,
+        is_only: bool = False,
     ):
         self.scene, self.camera, self.settings = scene, camera, settings
         self.viewers, self.is_added_up, self.samples = viewers, is_added_up, samples
+        self.is_only = is_only
         self.method, self.model = get_method(settings.method), get_shading_model(settings.shading)
         self.shown = scene.shown
         self.features: list[tuple[str, str]] = []

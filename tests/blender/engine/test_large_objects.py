@@ -32,7 +32,7 @@ def test_merged_surfels_fit_beside_those_of_the_largest_set(add_camera, add_surf
     add_camera(location=(0, 0, 60))
     x, y = np.meshgrid(np.linspace(-2, 2, 91), np.linspace(-2, 2, 91))
     add_surfels(np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1), size=0.06)
-    bpy.context.scene.surfel_splatting.detail_tolerance = 1.25
+    bpy.context.scene.surfel_splatting.detail_tolerance, bpy.context.scene.surfel_splatting.samples = 1.25, 16
     monkeypatch.setattr(packing, "MAX_SPLATS", 8704)
     monkeypatch.setattr(scene, "LARGEST_SET", 8704)
     with pytest.raises(RuntimeError, match="can hold 8,704 surfels"):
