@@ -48,17 +48,23 @@ def linear_pixels(image: bpy.types.Image, keep_alpha: bool, is_apart: bool = Fal
 
 def _continue_beyond_rim(colors: np.ndarray, alpha: np.ndarray) -> None:
     """Give texels without alpha the mean colour of their eight neighbours, weighted by alpha, or black, in place."""
-    clear = np.flatnonzero(alpha == 0)
-    if not len(clear):
+    is_clear = alpha[..., 0] == 0
+    if not is_clear.any():
         return
-    height, width = alpha.shape[:2]
-    row, column = np.divmod(clear, width)
-    total, weight = np.zeros((len(clear), 3), np.float32), np.zeros((len(clear), 1), np.float32)
-    for down, right in product((-1, 0, 1), repeat=2):
-        beside = np.clip(row + down, 0, height - 1), np.clip(column + right, 0, width - 1)
+    has_neighbour = ~is_clear
+    for rows in (has_neighbour, has_neighbour.T):
+        beside = rows.copy(order="K")
+        rows[1:] |= beside[:-1]
+        rows[:-1] |= beside[1:]
+    row, column = np.nonzero(is_clear & has_neighbour)
+    total, weight = np.zeros((len(row), 3), np.float32), np.zeros((len(row), 1), np.float32)
+    height, width = is_clear.shape
+    for y, x in product((-1, 0, 1), repeat=2):
+        beside = np.clip(row + y, 0, height - 1), np.clip(column + x, 0, width - 1)
         total += colors[beside] * alpha[beside]
         weight += alpha[beside]
-    colors[row, column] = total / np.where(weight == 0, 1, weight)
+    np.copyto(colors, 0, where=is_clear[..., None])
+    colors[row, column] = total / weight
 
 
 #: Colour spaces of values that are no colours, which no alpha multiplies.
