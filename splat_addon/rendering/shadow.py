@@ -49,6 +49,7 @@ class ShadowMap:
     """light: number in the scene. camera: the light's view. place: (x, y) of the map in the atlas, in texels.
 
     is_face: whether it is one face of a cube around a light, and continues in the adjacent faces.
+    is_smaller: whether it has fewer texels than the settings allow, because these are far smaller than pixels.
     used: x, y, width and height of the part that is drawn, which holds all that the picture looks up.
     casters: the instances that may block the light on its way to what is seen.
     """
@@ -57,6 +58,7 @@ class ShadowMap:
     camera: Camera
     place: tuple[int, int]
     is_face: bool
+    is_smaller: bool
     used: tuple[int, int, int, int]
     casters: tuple[Placed, ...]
 
@@ -118,19 +120,22 @@ def _needed(
             block = sees(camera, corners) & in_the_way(light, texel_of(camera), seen, spread, corners)
             own = tuple(caster for caster, may in zip(casters, block.tolist(), strict=True) if may)
             if own:
-                found.append(ShadowMap(number, camera, (0, 0), are_faces, used_texels(camera, one), own))
+                is_smaller = side < cameras[0].size[0]
+                found.append(ShadowMap(number, camera, (0, 0), are_faces, is_smaller, used_texels(camera, one), own))
     return found
 
 
 def enough(needed: float, resolution: int) -> int:
-    """Texels along a map's side: the resolution, halved as often as leaves the needed number.
+    """Texels along a map's side: the resolution or three quarters of it, halved as often as leaves the needed number.
 
-    A size is kept until twice as many texels are needed as it has at least, so an animation changes it rarely.
+    A size is kept until a third more or fewer texels are needed, so an animation changes it rarely. Sizes remain
+    multiples of 4, the side of the masks of transparent surfaces, if the resolution is one of 16.
     """
     side = resolution
     while side % 2 == 0 and side // 2 >= max(needed, LEAST_SIDE):
         side //= 2
-    return side
+    less = side // 4 * 3
+    return less if side % 16 == 0 and less >= max(needed, LEAST_SIDE) else side
 
 
 def smaller(camera: Camera, side: int) -> Camera:

@@ -19,8 +19,8 @@ from .scene import Scene
 from .scene.camera import Camera
 from .scene.light import MAX_SUN_HALF_ANGLE, Light
 
-#: A map has at least so many texels along the smallest pixel that looks it up, or as many as the settings allow. It
-#: has at most twice as many, so that where its size changes, the change cannot be seen.
+#: A map has at least so many texels along the smallest pixel that looks it up, or as many as the settings allow. Where
+#: its size changes, shadows move by parts of a texel, an eighth of a pixel, which cannot be seen.
 TEXELS_PER_PIXEL = 8
 
 #: Texels that filters read on each side of a lookup (shaders/lib/shadow_taps).

@@ -146,12 +146,14 @@ def test_where_a_map_is_needed_in_full_nothing_changes(name, scene_of, render, f
 
 
 @pytest.mark.parametrize("resolution", [31, 64, 100, 1000, 1024, 4097])
-def test_a_map_has_enough_texels_and_less_than_twice_as_many(resolution):
+def test_a_map_has_enough_texels_and_few_more(resolution):
     for needed in (1, 20, 33, 64, 65, 500, 1e5, math.inf):
         side = enough(needed, resolution)
         assert side == resolution or side >= max(needed, LEAST_SIDE)
-        assert side % 2 or side // 2 < max(needed, LEAST_SIDE)
-        assert resolution % side == 0
+        least = max(needed, LEAST_SIDE)
+        assert side % 2 or side // 2 < least
+        assert side % 16 or resolution % side or side * 3 // 4 < least
+        assert resolution % side == 0 or resolution * 3 % (side * 4) == 0
 
 
 def test_the_nearest_object_and_the_smallest_pixel_decide(scene_of):

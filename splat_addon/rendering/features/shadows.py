@@ -18,6 +18,11 @@ from .drawing import LIT_HOSTS, SPLAT_HOSTS
 SETBACK = 2.0
 
 
+#: Where at least 8 texels are along a pixel, merged surfels may be so many times larger in texels: they are still three
+#: times smaller than those of the picture.
+COARSER = 2.0
+
+
 def _of_atlas(plan, pixels: tuple[int, int]) -> tuple[int, int]:
     return atlas_size(plan.facts["shadow_maps"])
 
@@ -104,7 +109,10 @@ def run(tile, p: Pass):
             multisamples=0, sample_shading=False,
         )  # fmt: skip
         view = _as_cast(view, made.camera)
-        from_light = replace(tile, plan=seen, camera=made.drawn, view=view, shadow_views=())
+        settings = tile.settings
+        if made.is_smaller:
+            settings = replace(settings, detail_tolerance=COARSER * settings.detail_tolerance)
+        from_light = replace(tile, plan=seen, camera=made.drawn, settings=settings, view=view, shadow_views=())
         drawn = p._replace(state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
         yield from visibility.draw(from_light, drawn, target, view.placed, view.polygons, made.viewport)
     return target
