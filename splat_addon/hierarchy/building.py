@@ -152,7 +152,8 @@ def _cells(surfels: Surfels) -> Iterator[float]:
     if not len(surfels):
         return
     low, high = surfels.local_bounds
-    cell = FIRST_CELL * float(np.median(surfels.scales.min(axis=1))) / OVERLAP
+    shorter = np.minimum(*surfels.scales.T)
+    cell = FIRST_CELL * float(np.median(shorter)) / OVERLAP
     for _ in range(_MOST_LEVELS):
         yield cell
         if cell > 2 * float((high - low).max()):

@@ -9,6 +9,7 @@ are its children, so every place is drawn once, at one level (Dachsbacher et al.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -63,6 +64,22 @@ class Sight:
         return self.eye[3] == 0
 
 
+class Boxes(NamedTuple):
+    """The boxes of n blocks. middle, half: (3, n) float64, the latter half their extent."""
+
+    middle: np.ndarray
+    half: np.ndarray
+
+    @classmethod
+    def of(cls, blocks: Blocks, rows: np.ndarray) -> Boxes:
+        low, high = (np.take(corner, rows, axis=0).T.astype(np.float64) for corner in (blocks.low, blocks.high))
+        return cls((low + high) / 2, (high - low) / 2)
+
+    def some(self, are: np.ndarray) -> Boxes:
+        """Those of a choice, (n,) bool."""
+        return Boxes(self.middle[:, are], self.half[:, are])
+
+
 def cut_entries(hierarchy: Hierarchy, sight: Sight) -> np.ndarray | None:
     """(n,) int32 indices of the surfels and nodes to draw, neighbours together; None: all surfels, in any order."""
     blocks = hierarchy.blocks
@@ -77,10 +94,12 @@ def cut_blocks(blocks: Blocks, sight: Sight) -> np.ndarray:
     """The indices of the blocks that are drawn."""
     front, drawn = np.arange(int(blocks.roots)), []
     while len(front):
-        front = front[may_be_seen(blocks, front, sight)]
-        is_fine = pixels_of_errors(blocks, front, sight) <= sight.tolerance
+        boxes = Boxes.of(blocks, front)
+        is_seen = may_be_seen(blocks, front, boxes, sight)
+        front, boxes = front[is_seen], boxes.some(is_seen)
+        is_fine = pixels_of_errors(blocks, front, boxes, sight) <= sight.tolerance
         if sight.split:
-            near, far = distances(blocks, front, sight)
+            near, far = distances(boxes, sight)
             is_kept = far >= sight.split.begin
             front, is_fine = front[is_kept], (is_fine & (near > sight.split.end))[is_kept]
         is_fine |= blocks.first_child[front] == blocks.last_child[front]
@@ -90,44 +109,40 @@ def cut_blocks(blocks: Blocks, sight: Sight) -> np.ndarray:
     return np.concatenate(drawn) if drawn else np.zeros(0, int)
 
 
-def _middle_half(blocks: Blocks, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    low, high = blocks.low[rows].astype(np.float64), blocks.high[rows].astype(np.float64)
-    return (low + high) / 2, (high - low) / 2
-
-
-def pixels_of_errors(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
+def pixels_of_errors(blocks: Blocks, rows: np.ndarray, boxes: Boxes, sight: Sight) -> np.ndarray:
     """(n,) largest error of each block in pixels, at its nearest point."""
-    error = blocks.errors[rows].max(axis=1, initial=0.0) * sight.pixels
+    off, extent, shown = blocks.errors[rows].T
+    error = np.maximum(np.maximum(off, extent), shown).astype(np.float64) * sight.pixels
     if sight.is_parallel:
         return error
-    middle, half = _middle_half(blocks, rows)
-    nearest = middle @ sight.depth[:3] + sight.depth[3] - half @ np.abs(sight.depth[:3])
+    nearest = sight.depth[:3] @ boxes.middle + sight.depth[3] - np.abs(sight.depth[:3]) @ boxes.half
     # merged surfels must not touch the near plane, where methods may treat splats differently
     error = np.where((nearest > sight.near) | (error == 0), error, np.inf)
     return error / np.maximum(nearest, sight.near)
 
 
-def distances(blocks: Blocks, rows: np.ndarray, sight: Sight) -> tuple[np.ndarray, np.ndarray]:
+def distances(boxes: Boxes, sight: Sight) -> tuple[np.ndarray, np.ndarray]:
     """(n,) bounds on the distances of each block's points from the eye, along the view if it is parallel."""
-    middle, half = _middle_half(blocks, rows)
     matrix = sight.split.model_view
-    middle, half = middle @ matrix[:, :3].T + matrix[:, 3], half @ np.abs(matrix[:, :3]).T
+    middle, half = matrix[:, :3] @ boxes.middle + matrix[:, 3:], np.abs(matrix[:, :3]) @ boxes.half
     if sight.is_parallel:
-        return -middle[:, 2] - half[:, 2], -middle[:, 2] + half[:, 2]
+        return -middle[2] - half[2], -middle[2] + half[2]
     away = np.abs(middle)
-    return np.linalg.norm(np.maximum(away - half, 0), axis=1), np.linalg.norm(away + half, axis=1)
+    return np.linalg.norm(np.maximum(away - half, 0), axis=0), np.linalg.norm(away + half, axis=0)
 
 
-def may_be_seen(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
+def may_be_seen(blocks: Blocks, rows: np.ndarray, boxes: Boxes, sight: Sight) -> np.ndarray:
     """(n,) bool: whether the box intersects the view volume, and the cone of normals contains a direction towards the
     eye."""
-    middle, half = _middle_half(blocks, rows)
-    seen = (middle @ sight.planes[:, :3].T + sight.planes[:, 3] + half @ np.abs(sight.planes[:, :3]).T >= 0).all(axis=1)
+    middle, half = boxes
+    planes, offsets = sight.planes[:, :3], sight.planes[:, 3:]
+    seen = (planes @ middle + offsets + np.abs(planes) @ half >= 0).all(axis=0)
     if sight.hides_backs:
-        away = -np.broadcast_to(sight.eye[:3], middle.shape) if sight.is_parallel else middle - sight.eye[:3]
-        distance = np.maximum(np.linalg.norm(away, axis=1), 1e-300)
-        radius = 0.0 if sight.is_parallel else np.linalg.norm(half, axis=1)
-        angle = np.arccos(np.clip(np.einsum("nk,nk->n", away, blocks.axes[rows]) / distance, -1, 1))
+        eye = sight.eye[:3, None]
+        away = -np.broadcast_to(eye, middle.shape) if sight.is_parallel else middle - eye
+        distance = np.maximum(np.linalg.norm(away, axis=0), 1e-300)
+        radius = 0.0 if sight.is_parallel else np.linalg.norm(half, axis=0)
+        angle = np.arccos(np.clip(np.einsum("kn,nk->n", away, blocks.axes[rows]) / distance, -1, 1))
         # every normal of the cone points away from every point of the box
         angle = angle + blocks.angles[rows]
         seen &= ~((angle < np.pi / 2) & (distance * np.cos(angle) > radius))

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..hierarchy import Sight
 from ..hierarchy.blocks import Blocks, ranges
-from ..hierarchy.cuts import may_be_seen, pixels_of_errors
+from ..hierarchy.cuts import Boxes, may_be_seen, pixels_of_errors
 from .pages import Pages
 
 
@@ -81,11 +81,12 @@ def _fits(more: np.ndarray, pixels: np.ndarray, room: float) -> np.ndarray:
 
 def _errors(blocks: Blocks, rows: np.ndarray, sight: Sight, beside: float | None) -> tuple[np.ndarray, np.ndarray]:
     """The blocks that count, and the error of each in pixels."""
-    is_seen = may_be_seen(blocks, rows, sight)
+    boxes = Boxes.of(blocks, rows)
+    is_seen = may_be_seen(blocks, rows, boxes, sight)
     if beside is None:
         rows = rows[is_seen]
-        return rows, pixels_of_errors(blocks, rows, sight)
-    pixels = pixels_of_errors(blocks, rows, sight)
+        return rows, pixels_of_errors(blocks, rows, boxes.some(is_seen), sight)
+    pixels = pixels_of_errors(blocks, rows, boxes, sight)
     outside = np.flatnonzero(~is_seen)
     pixels[outside] = _pixels_all_round(blocks, rows[outside], sight) / beside
     return rows, pixels
