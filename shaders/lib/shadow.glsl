@@ -127,6 +127,10 @@ Met tap_toward(ShadowPlace here, vec3 toward, int number) {
 
 // Fraction of the distance behind a lamp at which the search for blockers begins.
 const float NEAREST_SHARE = 0.25;
+// Blockers outside the cone of rays from the point to the lamp, like the other side of an open fold, hide none of it. In
+// the search they hardly count, but they are found there, so that the outermost part of a penumbra is not missed. Of the
+// taps that follow, at a mean distance, only those far outside the cone are left out.
+const float LEAST_COUNT = 0.01, WIDEST_CONE = 2.0;
 
 // Rays pass the point towards parts of the lamp, whose half-axes lamp_u and lamp_v are in the light's view (tangents
 // for a sun): at the fraction t of the distance from the lamp, their spread is (1 - t) / t of the lamp's size.
@@ -135,26 +139,33 @@ float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lam
   float reach = is_parallel ? min(here.depth - here.depths.y, 0.25 / (size * max(here.window.z, here.window.w)))
                             : min(1.0 / NEAREST_SHARE, length(here.position) / size) - 1.0;
   reach = max(reach, 0.0);
+  // The way to the lit point, like `Met.way`. Of a tap at `past`, the cone is as far before the point as `past` says: by
+  // that length for a sun, and by that share of the tap's way for a lamp.
+  float whole = is_parallel ? here.depth : dot(here.position, here.position), close = 2.0 * bias / size;
   float blockers = 0.0, sum = 0.0;
   for (int i = 0; i < SEARCH_TAPS; i++) {
     vec2 tap = soft_tap(i, SEARCH_TAPS);
-    float past = tap.x * tap.x * reach;  // denser in the middle, where close blockers hide the lamp
+    float past = searched(tap.x) * reach;  // denser in the middle, where close blockers hide the lamp
     Met met = tap_toward(here, here.position + past * (cos(tap.y) * lamp_u + sin(tap.y) * lamp_v), i);
     if (met.depth + bias < met.lit) {
-      blockers += 1.0;
-      sum += met.way;
+      float before = max(is_parallel ? whole - met.way : whole / met.way - 1.0, 0.0);
+      float count = clamp(2.0 - past / (before + close), LEAST_COUNT, 1.0);
+      blockers += count;
+      sum += count * met.way;
     }
   }
   if (blockers == 0.0) return 1.0;
-  float blocker = sum / (blockers * (is_parallel ? 1.0 : dot(here.position, here.position)));
-  float gap = max(is_parallel ? here.depth - blocker : 1.0 / blocker - 1.0, 0.0);
+  float blocker = sum / blockers;
+  float gap = max(is_parallel ? whole - blocker : whole / blocker - 1.0, 0.0);
   if (size * gap < 4.0 * bias) return hard_share(here, bias);
   float lit = 0.0;
   for (int i = 0; i < FILTER_TAPS; i++) {
     vec2 tap = soft_tap(i, FILTER_TAPS);
     float past = tap.x * min(gap, reach);
     Met met = tap_toward(here, here.position + past * (cos(tap.y) * lamp_u + sin(tap.y) * lamp_v), i);
-    lit += met.depth + bias >= met.lit ? 1.0 : 0.0;
+    float before = max(past - 2.0 * close, 0.0) / WIDEST_CONE;
+    bool is_near_cone = is_parallel ? met.way + before <= whole : met.way * (1.0 + before) <= whole;
+    lit += met.depth + bias < met.lit && is_near_cone ? 0.0 : 1.0;
   }
   return lit / float(FILTER_TAPS);
 }

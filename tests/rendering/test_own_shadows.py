@@ -148,6 +148,22 @@ def test_nor_does_one_with_folds_that_ends_at_them(is_smooth, light, with_and_wi
         assert falsely_dark(truth, *with_and_without([made], LIGHTS[light])) < 0.01, resolution
 
 
+def valley() -> trimesh.Trimesh:
+    """Two slopes of 31 degrees that meet at a fold."""
+    places = [(x, y, 0.6 * abs(x)) for x in (-1, 0, 1) for y in (-1, 1)]
+    return trimesh.Trimesh(places, [(0, 2, 3), (0, 3, 1), (2, 4, 5), (2, 5, 3)], process=False)
+
+
+@pytest.mark.parametrize("kind", ["area", "point"])
+def test_nor_do_the_sides_of_an_open_fold_shadow_each_other(kind, with_and_without):
+    """The whole lamp is seen from everywhere, but the search for blockers reaches farther than the rays to it do."""
+    shape = {"half_axes": ((0.86, 0, 0.51), (0, 1, 0))} if kind == "area" else {"size": 1.0}
+    light = Light(kind, energy=300, position=(-2.6, 0, 4.3), direction=(2.6, 0, -4.3), **shape)
+    truth, camera = valley(), replace(CAMERA, matrix_world=look_at((0.5, -2.5, 4), (0, 0, 0.2)))
+    made = instance(truth, 128, is_smooth=False, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
+    assert falsely_dark(arriving(truth, light, camera), *with_and_without([made], light, camera)) < 0.01
+
+
 @pytest.mark.parametrize("is_smooth", [True, False])
 def test_nor_does_it_scaled_and_mirrored(is_smooth, with_and_without):
     mesh, scale = uv_sphere(), np.diag((-1.1, 0.8, 1.0, 1.0))

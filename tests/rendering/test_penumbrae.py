@@ -28,6 +28,7 @@ LAMPS = {
 CASTERS = {
     "standing": np.array([(-0.5, -0.6, 0.0), (0.5, 0.6, 1.0)]),
     "floating": np.array([(-0.5, -0.6, 0.5), (0.5, 0.6, 0.7)]),
+    "high": np.array([(1.8, -0.65, 4.0), (2.4, -0.05, 4.2)]),
 }
 LAMP_POINTS = 400
 
@@ -82,14 +83,16 @@ def beside(box: np.ndarray) -> np.ndarray:
 
 @pytest.fixture
 def error(render, floor):
-    """error(lamp, caster, samples) -> (h, w): by how much the share of the lamp's light that arrives is too large."""
+    """error(name of a lamp, caster, samples) -> (h, w): by how much the arriving share of its light is too large."""
 
-    def measure(lamp: str, caster: str, samples: int) -> np.ndarray:
-        box = CASTERS[caster]
-        scene = Scene([sampled(*box, 48), floor], [LAMPS[lamp]])
+    def measure(name: str, caster: str, samples: int) -> np.ndarray:
+        box, lamp = CASTERS[caster], LAMPS[name]
+        if box[0, 2] > 1:  # its penumbrae would cover the picture
+            lamp = replace(lamp, size=0.2 * lamp.size, half_axes=0.2 * np.asarray(lamp.half_axes))
+        scene = Scene([sampled(*box, 48), floor], [lamp])
         settings = Settings(samples=samples, outputs=("color", "shadow"))
         drawn = render(scene, CAMERA, settings).shadow[..., 0]
-        return np.where(beside(box), drawn - seen_share(LAMPS[lamp], box), 0.0)
+        return np.where(beside(box), drawn - seen_share(lamp, box), 0.0)
 
     return measure
 

@@ -9,6 +9,11 @@ vec2 hard_filter(vec2 distance) {
 
 const int SEARCH_TAPS = SOFT_SAMPLES, FILTER_TAPS = SOFT_SAMPLES;
 
+// Where the search for blockers has its taps, relative to its reach, from their radius in the unit disc.
+float searched(float radius) {
+  return radius * radius * radius * radius;
+}
+
 // Radius and angle in the unit disc.
 vec2 soft_tap(int number, int count) {
   float at = float(number) + shadow_turn;

@@ -17,6 +17,11 @@ vec2 hard_filter(vec2 distance) {
 // A mask hides some of them; if several surfaces block, their mean depth is that of the kept ones.
 const int SEARCH_TAPS = 2 * SOFT_SAMPLES, FILTER_TAPS = 4 * SOFT_SAMPLES;
 
+// As in `even.glsl`; a search denser in the middle would leave combs in penumbrae of masks.
+float searched(float radius) {
+  return radius * radius;
+}
+
 // Radius and angle in the unit disc. count: a multiple of 16.
 vec2 soft_tap(int number, int count) {
   ivec2 place = ivec2(number & 3, (number >> 2) & 3);
