@@ -6,7 +6,6 @@
 #include "lib/kernel_under_pixel.glsl"
 
 const float LEAST_SHARE = 0.006;  // smaller shares are 0: the approximation ends there
-const float NORMAL_AT_0 = 0.39894228;
 const float WITHIN_TWO = 0.9533;  // of a Gaussian, within two standard deviations, by share_beyond
 
 // The share of a Gaussian on the kept side of both lines. one, other: the share of each line alone; correlation: of the
@@ -23,10 +22,11 @@ float share_before(float x) {
 
 // How dense the kernels of equally spaced splats lie where a pixel sees their kept sides, 1 far from lines. Their centres
 // are on that side alone, so at a line they are half as dense; without this, creases would be sharper than the filter.
-// Kernels end at two standard deviations. inside, deviation, share: of the distance from a line, and what it keeps.
-float kernel_density(float inside, float deviation, float share) {
-  float mean = (inside + NORMAL_AT_0 * exp(-0.5 * min(inside * inside, 20.0)) / max(share, LEAST_SHARE)) * deviation;
-  return min(0.5 + (share_before(max(mean, 0.0) * inversesqrt(SPLAT_VARIANCE)) - 0.5) / WITHIN_TWO, 1.0);
+// Kernels end at two standard deviations. inside: of the pixel's part of the kernel, from a line, in deviations of it.
+float kernel_density(float inside, float deviation) {
+  // Within 0.05 up to 3 deviations of the mean of a normal distribution's kept side, and 2 % of it beyond.
+  float mean = 0.5 * (inside + sqrt(inside * (inside - 0.74) + 2.29)) * deviation;
+  return min(0.5 + (share_before(mean * inversesqrt(SPLAT_VARIANCE)) - 0.5) / WITHIN_TWO, 1.0);
 }
 
 float clipped_share(Plane plane, Place place) {
@@ -40,7 +40,7 @@ float clipped_share(Plane plane, Place place) {
   vec2 inside = vec2(dot(clip_first.xy, middle) + clip_first.z, dot(clip_second.xy, middle) + clip_second.z) / deviation;
   float one = share_before(inside.x), other = share_before(inside.y);
   float both = both_keep(one, other, dot(clip_second.xy, across) / (deviation.x * deviation.y));
-  vec2 density = vec2(kernel_density(inside.x, deviation.x, one), kernel_density(inside.y, deviation.y, other));
+  vec2 density = vec2(kernel_density(inside.x, deviation.x), kernel_density(inside.y, deviation.y));
   float share = clip_is_reflex > 0.5 ? one + other - both : both, all_density = density.x * density.y;
   if (clip_is_reflex > 0.5) all_density = density.x + density.y - all_density;
   return share > LEAST_SHARE ? share / all_density : 0.0;

@@ -13,8 +13,6 @@ from .plane import Plane, gradients, places
 #: Smaller shares are 0: the approximation ends there.
 LEAST_SHARE = 0.006
 
-NORMAL_AT_0 = 0.39894228
-
 #: Of a Gaussian, within two standard deviations, where kernels end; by the approximation of its share.
 WITHIN_TWO = 0.9533
 
@@ -79,9 +77,8 @@ def _kernel_density(inside: np.ndarray, deviation: np.ndarray) -> np.ndarray:
 
     Their centres are on that side alone. inside: (M, 2) distance from the lines, in deviations of kernel times pixel.
     """
-    share = np.maximum(_share_before(inside), LEAST_SHARE)
-    mean = (inside + NORMAL_AT_0 * np.exp(-0.5 * np.minimum(inside**2, 20.0)) / share) * deviation
-    beside = _share_before(np.maximum(mean, 0.0) / KERNEL_VARIANCE**0.5)
+    mean = 0.5 * (inside + np.sqrt(inside * (inside - 0.74) + 2.29)) * deviation  # of a normal distribution's kept side
+    beside = _share_before(mean / KERNEL_VARIANCE**0.5)
     return np.minimum(0.5 + (beside - 0.5) / WITHIN_TWO, 1.0)
 
 
