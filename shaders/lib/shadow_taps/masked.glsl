@@ -17,7 +17,8 @@ vec2 hard_filter(vec2 distance) {
 // A mask hides some of them; if several surfaces block, their mean depth is that of the kept ones.
 const int SEARCH_TAPS = 2 * SOFT_SAMPLES, FILTER_TAPS = 4 * SOFT_SAMPLES;
 
-// As in `even.glsl`; a search denser in the middle would leave combs in penumbrae of masks.
+// The square of the radius, evenly over the disc: a search that is denser in the middle leaves combs in the penumbrae of
+// masks.
 float searched(float radius) {
   return radius * radius;
 }
