@@ -5,13 +5,14 @@
 #include "lib/normal_share.glsl"
 #include "lib/kernel_under_pixel.glsl"
 
+const float TWO_OVER_PI = 0.63661977;
 const float LEAST_SHARE = 0.006;  // smaller shares are 0: the approximation ends there
-const float WITHIN_TWO = 0.9533;  // of a Gaussian, within two standard deviations, by share_beyond
+const float LEAST_WITHIN = 0.05;  // the least share within the rim that divides
 
 // The share of a Gaussian on the kept side of both lines. one, other: the share of each line alone; correlation: of the
 // distances to them. Exact if both lines go through the middle, and for parallel or perpendicular lines.
 float both_keep(float one, float other, float correlation) {
-  float turn = asin(clamp(correlation, -1.0, 1.0)) * 0.63661977;
+  float turn = asin(clamp(correlation, -1.0, 1.0)) * TWO_OVER_PI;
   return mix(one * other, turn > 0.0 ? min(one, other) : max(one + other - 1.0, 0.0), abs(turn));
 }
 
@@ -20,13 +21,23 @@ float share_before(float x) {
   return x < NORMAL_END ? share_beyond(-max(x, -NORMAL_END)) : 1.0;
 }
 
-// How dense the kernels of equally spaced splats lie where a pixel sees their kept sides, 1 far from lines. Their centres
-// are on that side alone, so at a line they are half as dense; without this, creases would be sharper than the filter.
-// Kernels end at two standard deviations. inside: of the pixel's part of the kernel, from a line, in deviations of it.
-float kernel_density(float inside, float deviation) {
-  // Within 0.05 up to 3 deviations of the mean of a normal distribution's kept side, and 2 % of it beyond.
-  float mean = 0.5 * (inside + sqrt(inside * (inside - 0.74) + 2.29)) * deviation;
-  return min(0.5 + (share_before(mean * inversesqrt(SPLAT_VARIANCE)) - 0.5) / WITHIN_TWO, 1.0);
+// How dense the kernels of equally spaced splats lie where a pixel sees their kept sides, 1 far from a line. Their
+// centres are on that side alone, so at the line they are half as dense; without this, creases would be sharper than the
+// filter. The mean distance of what is kept of a Gaussian, and the density there, are fitted curves.
+// inside: distance from both lines, in deviations of kernel times pixel.
+vec2 kernel_density(vec2 inside, vec2 deviation) {
+  vec2 mean = min(0.5 * (inside + sqrt(inside * inside + 4.0 * TWO_OVER_PI)) * deviation, vec2(1.0));
+  return 0.5 + mean - 0.5 * mean * mean;
+}
+
+// The method's weight ends at the rim, and what lies beyond a line may lie beyond the rim, too: how much a line keeps of
+// the part within the rim, from its share of all. together: squared correlation of the distances to line and rim.
+vec2 share_within_rim(vec2 share, vec2 q, vec2 middle, mat2 seen, vec2 deviation) {
+  vec2 outward = q * inversesqrt(max(dot(q, q), 1e-20)), across = seen * outward;
+  float variance = max(dot(outward, across), 1e-20);
+  float within = max(share_before((1.0 - dot(outward, middle)) * inversesqrt(variance)), LEAST_WITHIN);
+  vec2 together = max(-vec2(dot(clip_first.xy, across), dot(clip_second.xy, across)), vec2(0.0)) / deviation;
+  return mix(share, min(share / within, vec2(1.0)), min(together * together / variance, vec2(1.0)));
 }
 
 float clipped_share(Plane plane, Place place) {
@@ -38,9 +49,11 @@ float clipped_share(Plane plane, Place place) {
   vec2 across = seen * clip_first.xy;
   vec2 deviation = sqrt(max(vec2(dot(clip_first.xy, across), dot(clip_second.xy, seen * clip_second.xy)), 1e-20));
   vec2 inside = vec2(dot(clip_first.xy, middle) + clip_first.z, dot(clip_second.xy, middle) + clip_second.z) / deviation;
-  float one = share_before(inside.x), other = share_before(inside.y);
+  vec2 kept = vec2(share_before(inside.x), share_before(inside.y));
+  kept = share_within_rim(kept, q, middle, seen, deviation);
+  float one = kept.x, other = kept.y;
   float both = both_keep(one, other, dot(clip_second.xy, across) / (deviation.x * deviation.y));
-  vec2 density = vec2(kernel_density(inside.x, deviation.x), kernel_density(inside.y, deviation.y));
+  vec2 density = kernel_density(inside, deviation);
   float share = clip_is_reflex > 0.5 ? one + other - both : both, all_density = density.x * density.y;
   if (clip_is_reflex > 0.5) all_density = density.x + density.y - all_density;
   return share > LEAST_SHARE ? share / all_density : 0.0;

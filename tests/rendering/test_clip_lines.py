@@ -71,9 +71,9 @@ def test_in_a_concave_corner_the_filter_reaches_over_both_faces(render):
     assert apart.max() < 0.13
 
 
-def two_tone_roof(is_turned):
-    """A black and a white face that meet at a convex fold of 25 degrees, upright or slanting in the picture."""
-    turn = np.array([(0.9, 0.436, 0), (-0.436, 0.9, 0), (0, 0, 1)]) if is_turned else np.eye(3)
+def two_tone_roof():
+    """A black and a white face that meet at a convex fold of 25 degrees, which slants in the picture."""
+    turn = np.array([(0.9, 0.436, 0), (-0.436, 0.9, 0), (0, 0, 1)])
     corners = np.array([(0, -1, 0), (0, 1, 0), (-1, -1, -0.222), (-1, 1, -0.222), (1, -1, -0.222), (1, 1, -0.222)])
     triangles = np.array([(0, 1, 2), (2, 1, 3), (0, 4, 1), (4, 5, 1)])
     colors = np.ones((4, 3, 4), np.float32)
@@ -82,20 +82,21 @@ def two_tone_roof(is_turned):
     return TriangleMesh(corners @ turn.T, triangles, corner_colors=colors, surfaces=(surface,))
 
 
-@pytest.mark.parametrize(("is_turned", "least"), [(False, 0.95), (True, 0.77)])
-def test_a_crease_is_about_as_wide_as_the_pixels_filter(is_turned, least, render):
+@pytest.mark.parametrize(("pixels_apart", "least"), [(0.75, 0.8), (1.5, 0.92), (3, 0.95)])
+def test_a_crease_is_about_as_wide_as_the_pixels_filter(pixels_apart, least, render):
     """White spills as far onto the black face as the filter of float64 triangles takes it.
 
-    Measured: 0.98 of the truth upright and 0.80 slanting; it was 0.84 and 0.70 when kernels thinned out towards lines.
+    Measured: 0.83, 0.96 and 1.00 of the truth; it was 0.70, 0.73 and 0.78 when kernels thinned out towards their line
+    and were cut by it and by their rim as if both were independent.
     """
-    mesh, camera = two_tone_roof(is_turned), Camera.perspective(look_at((0, 0, 4), (0, 0, 0)), 0.35, SIZE, 0.1, 100)
-    surfels = sample_mesh(mesh, spacing=0.75 * 1.4 / SIZE[0], crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
+    mesh, camera = two_tone_roof(), Camera.perspective(look_at((0, 0, 4), (0, 0, 0)), 0.35, SIZE, 0.1, 100)
+    spacing = pixels_apart * 1.4 / SIZE[0]
+    surfels = sample_mesh(mesh, spacing=spacing, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
     frame = render(Scene((surfels,)), camera, replace(FLAT, method="mip", supersampling=1))
     truth = render_triangles(mesh.positions[mesh.triangles], mesh.corner_colors[..., :3], camera).color[..., 0]
     sees_black = (truth > 0.01) & (truth < 0.3)
-    ratio = frame.color[sees_black, 0].sum() / truth[sees_black].sum()
     assert np.count_nonzero(sees_black) > 100
-    assert least < ratio < 1.02
+    assert least < frame.color[sees_black, 0].sum() / truth[sees_black].sum() < 1.05
 
 
 def lined_roof():

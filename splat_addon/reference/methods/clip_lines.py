@@ -13,8 +13,8 @@ from .plane import Plane, gradients, places
 #: Smaller shares are 0: the approximation ends there.
 LEAST_SHARE = 0.006
 
-#: Of a Gaussian, within two standard deviations, where kernels end; by the approximation of its share.
-WITHIN_TWO = 0.9533
+#: The least share within the rim that divides.
+LEAST_WITHIN = 0.05
 
 #: Half-axes squared, beyond which the pixel is too large for float precision.
 LARGEST_PIXEL = 1e8
@@ -62,7 +62,7 @@ def clipped_share(place: np.ndarray, change: np.ndarray, lines: np.ndarray, refl
     across = np.einsum("nij,nkj->nki", seen, direction)
     deviation = np.sqrt(np.maximum(np.einsum("nki,nki->nk", direction, across), 1e-20))
     inside = (np.einsum("nki,ni->nk", direction, middle) + lines[..., 2]) / deviation
-    one, other = _share_before(inside).T
+    one, other = _share_within_rim(_share_before(inside), place, middle, across, seen, deviation).T
     correlation = np.einsum("ni,ni->n", across[:, 0], direction[:, 1]) / deviation.prod(axis=1)
     both = _both_keep(one, other, correlation)
     share = np.where(reflex, one + other - both, both)
@@ -77,9 +77,23 @@ def _kernel_density(inside: np.ndarray, deviation: np.ndarray) -> np.ndarray:
 
     Their centres are on that side alone. inside: (M, 2) distance from the lines, in deviations of kernel times pixel.
     """
-    mean = 0.5 * (inside + np.sqrt(inside * (inside - 0.74) + 2.29)) * deviation  # of a normal distribution's kept side
-    beside = _share_before(mean / KERNEL_VARIANCE**0.5)
-    return np.minimum(0.5 + (beside - 0.5) / WITHIN_TWO, 1.0)
+    mean = np.minimum(0.5 * (inside + np.sqrt(inside**2 + 8 / np.pi)) * deviation, 1.0)
+    return 0.5 + mean - 0.5 * mean**2
+
+
+def _share_within_rim(share, place, middle, across, seen, deviation) -> np.ndarray:
+    """(M, 2) share that each line keeps of the part within the rim, from its (M, 2) share of all.
+
+    seen: (M, 2, 2) covariance of kernel times pixel; across: (M, 2, 2) the same, taken along the lines' directions.
+    """
+    place = np.where(np.isfinite(place), place, 1.0)
+    outward = place / np.maximum(np.linalg.norm(place, axis=1, keepdims=True), 1e-10)
+    variance = np.maximum(np.einsum("ni,nij,nj->n", outward, seen, outward), 1e-20)
+    beside = (1.0 - np.einsum("ni,ni->n", outward, middle)) / np.sqrt(variance)
+    within = np.maximum(_share_before(beside), LEAST_WITHIN)[:, None]
+    together = np.maximum(-np.einsum("nki,ni->nk", across, outward), 0.0) / deviation
+    together = np.minimum(together**2 / variance[:, None], 1.0)
+    return share + together * (np.minimum(share / within, 1.0) - share)
 
 
 def _share_before(inside: np.ndarray) -> np.ndarray:
