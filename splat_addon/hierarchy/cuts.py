@@ -76,7 +76,7 @@ class Boxes(NamedTuple):
         return cls((low + high) / 2, (high - low) / 2)
 
     def some(self, are: np.ndarray) -> Boxes:
-        """Those of a choice, (n,) bool."""
+        """The boxes where `are`, (n,) bool, is true."""
         return Boxes(self.middle[:, are], self.half[:, are])
 
 
