@@ -9,7 +9,7 @@ planes. The others are exact pictures (--exact): "now" of whole splats; "clip" w
 depth per surfel; "both"; "fit" in fitted planes, too. PSNR is measured in sRGB. A pixel is wrong if a component differs
 by more than 0.15; bare if the mesh covers it fully and the surfels less than 0.98; spilled if the surfels cover more
 than 0.02 of it and the mesh nothing. Conversion: median ratios of its time to that without edges, by the processor's
-and by the clock.
+and by the clock. Frame: median ratio of the processor time of a frame to that of whole surfels.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from bench.representation import points
 from bench.representation.error import over_grey, picture_error
 from bench.representation.meshes import load_colored, view
 from measuring.models import short
-from measuring.timing import Spread, both, in_turn
+from measuring.timing import Spread, both, in_turn, processor
 from splat_addon.reference import render_exact
 from splat_addon.reference.triangles import render_triangles
 from splat_addon.rendering import Renderer, Scene, Settings, open_device
@@ -65,6 +65,7 @@ def run(options, report) -> None:
     report.table(COLUMNS, rows(meshes, renderer, options, report))
     columns = "model", "resolution", "kind", "surfels", "added", "lines", "two", "reflex", "work", "clock"
     report.table(columns, conversions(meshes, options))
+    report.table(("model", "resolution", "view", "frame"), frames(meshes, renderer, options))
 
 
 def converted(mesh, density: dict, kind: str):
@@ -129,3 +130,14 @@ def conversions(meshes, options):
                     f"{cut.any(axis=1).sum():,}", f"{cut.all(axis=1).sum():,}", f"{reflex.sum():,}", f"{work:.2f}",
                     f"{clock:.2f}",
                 )  # fmt: skip
+
+
+def frames(meshes, renderer, options):
+    for name, mesh in meshes.items():
+        for resolution in options.resolution:
+            scenes = {kind: Scene((converted(mesh, {"resolution": resolution}, kind),)) for kind in ("now", "fit")}
+            for k in range(options.views):
+                camera = view(mesh, k, options.size)
+                jobs = {kind: partial(renderer.render, scene, camera, SETTINGS) for kind, scene in scenes.items()}
+                ratios = in_turn(jobs, options.turns, processor).ratios("fit", "now")
+                yield short(name), resolution, k, f"{Spread.of(ratios).median:.2f}"
