@@ -113,6 +113,7 @@ MEETINGS = {
         ("all rows of a sample have holes by one threshold", "features/cut_outs.py"),
         ("pixels are filtered over silhouettes, and so are mattes",
          "features/lighting.py hosts/resolve.frag.glsl identity.py"),
+        ("they are blurred where a clipped splat ends before another surface", "features/clip_lines.glsl"),
     ),
     "transparency": (
         ("outputs of layers are handed on", "features/outputs.py"),
