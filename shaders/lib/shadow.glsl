@@ -125,8 +125,6 @@ Met tap_toward(ShadowPlace here, vec3 toward, int number) {
   return met;
 }
 
-// Fraction of the distance behind a lamp at which the search for blockers begins.
-const float NEAREST_SHARE = 0.25;
 // Blockers outside the cone of rays from the point to the lamp, like the other side of an open fold, hide none of it. In
 // the search they hardly count, but they are found there, so that the outermost part of a penumbra is not missed. Of the
 // taps that follow, at a mean distance, only those far outside the cone are left out.

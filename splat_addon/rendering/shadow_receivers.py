@@ -26,9 +26,12 @@ TEXELS_PER_PIXEL = 8
 #: Texels that filters read on each side of a lookup (shaders/lib/shadow_taps).
 FILTER_REACH = 4
 
-#: shaders/lib/shadow.glsl: the search for blockers reaches so many half-axes of a lamp beside the lit position, at its
-#: distance (1 / NEAREST_SHARE - 1); shaders/features/shadows.glsl: axes of the ellipse that stands for a rectangle.
-_SEARCH, _ROUND = 3.0, 1.13
+#: The search for blockers begins at this share of the distance from a lamp; so it reaches, in half-axes of the lamp,
+#: 1 / NEAREST_SHARE - 1 beside the lit position.
+NEAREST_SHARE = 0.25
+
+#: Half-axes of the ellipse that stands for a rectangle (shaders/features/shadows.glsl), over those of the rectangle.
+_ROUND = 1.13
 
 #: A position may be so many pixels beside the box of its object, because filters widen splats.
 _BESIDE = 3
@@ -186,7 +189,7 @@ def spread_of(light: Light, camera: Camera) -> float:
         left, right, _, _ = camera.window
         return min(_tangent(light) * camera.far, (right - left) / 4)
     half = math.hypot(*np.ravel(light.half_axes)) if light.kind == "area" else light.size
-    return _SEARCH * _ROUND * half
+    return (1 / NEAREST_SHARE - 1) * _ROUND * half
 
 
 def _tangent(light: Light) -> float:

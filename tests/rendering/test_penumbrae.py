@@ -1,19 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Penumbrae of opaque casters on a floor are smooth: beside rays to the lamp they have no tears, hatch or steps."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
-import trimesh
 
-from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.rendering import Camera, Light, Scene, Settings, look_at
+from tests.rendering.lamp_rays import floor_places, sampled, seen_share
 
 SIZE, WIDTH, MIDDLE = 72, 3.2, -0.6
-CHALK = (Material(roughness=1.0, ior=1.0),)
 CAMERA = Camera.orthographic(look_at((MIDDLE, 0, 5), (MIDDLE, 0, 0), (0, 1, 0)), WIDTH, (SIZE, SIZE), 0.05, 20)
+PLACES = floor_places(SIZE, WIDTH, MIDDLE)
 PLACE = (5.0, -0.7, 8.0)
 AXES = 1.6 * look_at(PLACE, (0, 0, 0))[:3, :2].T
 LAMPS = {
@@ -30,13 +28,6 @@ CASTERS = {
     "floating": np.array([(-0.5, -0.6, 0.5), (0.5, 0.6, 0.7)]),
     "high": np.array([(1.8, -0.65, 4.0), (2.4, -0.05, 4.2)]),
 }
-LAMP_POINTS = 400
-
-
-def sampled(low, high, resolution: int) -> Instance:
-    box = trimesh.creation.box(np.subtract(high, low)).apply_translation(np.add(low, high) / 2)
-    surfels = sample_mesh(TriangleMesh(box.vertices, box.faces), resolution=resolution)
-    return Instance(replace(surfels, colors=np.ones((len(surfels), 4))), materials=CHALK)
 
 
 @pytest.fixture(scope="module")
@@ -44,40 +35,9 @@ def floor():
     return sampled((-6, -6, -0.2), (6, 6, 0), 160)
 
 
-def pixel_places() -> np.ndarray:
-    """(h, w, 3) of the floor's points that pixels see."""
-    at = ((np.arange(SIZE) + 0.5) / SIZE - 0.5) * WIDTH
-    x, y = np.meshgrid(at + MIDDLE, at)
-    return np.stack([x, y, 0 * x], axis=2)
-
-
-def seen_share(lamp: Light, box: np.ndarray) -> np.ndarray:
-    """The (h, w) share of the lamp's disc that rays from the floor reach past the box."""
-    place, k = pixel_places().reshape(-1, 3), np.arange(LAMP_POINTS)
-    r, turn = np.sqrt((k + 0.5) / LAMP_POINTS), k * math.pi * (3 - math.sqrt(5))
-    if lamp.kind == "sun":
-        middle = np.broadcast_to(-np.array(lamp.direction) / np.linalg.norm(lamp.direction), place.shape)
-        size, farthest = math.tan(lamp.size / 2), np.inf
-    else:
-        middle, size, farthest = np.array(lamp.position) - place, lamp.size, 1.0
-    if lamp.kind == "area":
-        u, v = lamp.half_axes
-    else:
-        u = np.cross(middle, (0, 1, 0))
-        u *= size / np.linalg.norm(u, axis=1, keepdims=True)
-        v = np.cross(middle, u) / np.linalg.norm(middle, axis=1, keepdims=True)
-    arrives = np.zeros(len(place))
-    for a, b in zip(r * np.cos(turn), r * np.sin(turn), strict=True):
-        ray = middle + a * np.asarray(u) + b * np.asarray(v)
-        ends = np.stack([(corner - place) / ray for corner in box])
-        enters, leaves = ends.min(axis=0).max(axis=1), ends.max(axis=0).min(axis=1)
-        arrives += ~((enters < leaves) & (leaves > 1e-6) & (enters < farthest))
-    return (arrives / LAMP_POINTS).reshape(SIZE, SIZE)
-
-
 def beside(box: np.ndarray) -> np.ndarray:
     """(h, w) bool: pixels whose neighbours, and they themselves, show the floor."""
-    wide = np.abs(pixel_places()[..., :2]) < box[1, :2] + 1.5 * WIDTH / SIZE
+    wide = np.abs(PLACES[..., :2]) < box[1, :2] + 1.5 * WIDTH / SIZE
     return ~wide.all(axis=2)
 
 
@@ -92,7 +52,7 @@ def error(render, floor):
         scene = Scene([sampled(*box, 48), floor], [lamp])
         settings = Settings(samples=samples, outputs=("color", "shadow"))
         drawn = render(scene, CAMERA, settings).shadow[..., 0]
-        return np.where(beside(box), drawn - seen_share(lamp, box), 0.0)
+        return np.where(beside(box), drawn - seen_share(lamp, box, PLACES), 0.0)
 
     return measure
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .ramps import PLACES
+from . import ramps
 from .texture_images import UnreadableError
 
 
@@ -66,16 +66,16 @@ def _ramp(component: slice, count: int) -> Callable:
     """A reader of some components of a ramp's colour: of `count`."""
 
     def read_ramp(node, read):
-        table = np.array([node.color_ramp.evaluate(k / (PLACES - 1)) for k in range(PLACES)], np.float32)[:, component]
+        table = ramps.table(node.color_ramp)[:, component]
         is_smooth = node.color_ramp.interpolation != "CONSTANT"
 
         def looked_up(numbers: np.ndarray) -> np.ndarray:
-            place = np.clip(numbers[..., 0], 0, 1) * (PLACES - 1)
+            place = np.clip(numbers[..., 0], 0, 1) * (len(table) - 1)
             low = place.astype(np.int32)
             if not is_smooth:
                 return table[low]
             share = (place - low)[..., None]
-            return table[low] * (1 - share) + table[np.minimum(low + 1, PLACES - 1)] * share
+            return table[low] * (1 - share) + table[np.minimum(low + 1, len(table) - 1)] * share
 
         return read(node.inputs[0]).mapped(looked_up, "Color Ramp", count)
 

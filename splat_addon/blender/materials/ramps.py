@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The colour ramp for the ramp shading.
+"""Colour ramps as tables, and the one for the ramp shading.
 
-It is the ramp of a texture, because Blender offers add-ons no ramp of their own.
+That is the ramp of a texture, because Blender offers add-ons no ramp of their own.
 """
 
 from __future__ import annotations
@@ -17,6 +17,11 @@ PLACES = 256
 _kept = Settings.ramp
 
 
+def table(ramp: bpy.types.ColorRamp) -> np.ndarray:
+    """(PLACES, 4) float32 colours and alphas of a ramp, from 0 to 1."""
+    return np.array([ramp.evaluate(place) for place in np.linspace(0, 1, PLACES).tolist()], np.float32)
+
+
 def ramp_of(texture: bpy.types.Texture | None) -> Ramp:
     """The ramp of a texture; three even steps without a texture or if its ramp is switched off.
 
@@ -25,8 +30,7 @@ def ramp_of(texture: bpy.types.Texture | None) -> Ramp:
     global _kept
     if texture is None or not texture.use_color_ramp:
         return Settings.ramp
-    evaluate = texture.color_ramp.evaluate
-    colors = np.array([evaluate(place)[:3] for place in np.linspace(0, 1, PLACES).tolist()], np.float32).clip(0)
+    colors = table(texture.color_ramp)[:, :3].clip(0)
     if not np.array_equal(_kept.colors, colors):
         _kept = Ramp(colors)
     return _kept

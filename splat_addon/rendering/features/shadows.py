@@ -10,6 +10,7 @@ from ..plan.graph import Part, Pass, Texture
 from ..scene.camera import Camera
 from ..scene.light import pack_lights
 from ..shadow import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps, same_maps, shadow_maps
+from ..shadow_receivers import NEAREST_SHARE
 from ..view import View
 from . import lit_splats, visibility
 from .drawing import LIT_HOSTS, SPLAT_HOSTS
@@ -17,10 +18,11 @@ from .drawing import LIT_HOSTS, SPLAT_HOSTS
 #: Offset of polygons, in texels of a map: a filter reaches two texels, over which planes at 45 degrees differ by this.
 SETBACK = 2.0
 
-
 #: Where at least 8 texels are along a pixel, merged surfels may be so many times larger in texels: they are still three
 #: times smaller than those of the picture.
 COARSER = 2.0
+
+CONSTANTS = {"NEAREST_SHARE": NEAREST_SHARE}
 
 
 def _of_atlas(plan, pixels: tuple[int, int]) -> tuple[int, int]:
