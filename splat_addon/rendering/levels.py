@@ -7,9 +7,8 @@ of surfels first and then of merged nodes, in storage order.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
-from itertools import zip_longest
 from weakref import WeakKeyDictionary, WeakSet
 
 import numpy as np
@@ -85,14 +84,12 @@ def hierarchy_before(surfels: Surfels) -> Hierarchy | None:
     return _BEFORE.get(surfels)
 
 
-def replaced(before: Sequence[Surfels], now: Sequence[Surfels]) -> None:
-    """Sets of one object were replaced by others in a new frame. Where they have as many surfels of the same materials,
-    these are taken to be the same ones, moved."""
-    for old, new in zip_longest(before, now):
-        if new is None or new is old:
-            continue
-        is_moved = old is not None and len(old) == len(new) and np.array_equal(old.materials, new.materials)
-        _BEFORE[new] = _BUILT.get(old, _BEFORE.get(old)) if is_moved else None
+def replaced(before: Surfels, now: Surfels) -> None:
+    """The set of an object was replaced by another in a new frame. If that has as many surfels of the same materials,
+    they are taken to be the same ones, moved."""
+    if now is not before:
+        is_moved = len(before) == len(now) and np.array_equal(before.materials, now.materials)
+        _BEFORE[now] = _BUILT.get(before, _BEFORE.get(before)) if is_moved else None
 
 
 def was_drawn(scene: Scene) -> None:

@@ -31,6 +31,7 @@ class DrawItem:
     overlap: of polygons, how far behind them splats still count, view units.
     setback: minimum distance by which a visibility pass moves it back, beside `View.least_offset` and in its unit.
     split_distance: of polygons the farthest distance, of splats the least of their centres, view units; 0: no limit.
+    part: of the storage, for a draw call.
     """
 
     instance: Placed
@@ -40,6 +41,7 @@ class DrawItem:
     overlap: float = 0.0
     split_distance: float = 0.0
     setback: float = 0.0
+    part: int = 0
 
 
 @dataclass(frozen=True, eq=False)

@@ -245,7 +245,7 @@ def next_frame(scene):
     for instance in scene.surfels:
         x, y, z = instance.surfels.positions.T
         bent = replace(instance.surfels, positions=np.stack([x + 0.1 * z, y, z], axis=1))
-        replaced([instance.surfels], [bent])
+        replaced(instance.surfels, bent)
         moved.append(replace(instance, shape=bent))
     return replace(scene, surfels=tuple(moved))
 
@@ -299,5 +299,5 @@ def test_moved_surfels_keep_their_tree_while_it_fits(render):
     surfels = bent.surfels[0].surfels
     order = np.random.default_rng(0).permutation(len(surfels))
     mixed = replace(surfels, **{name: array[order] for name, array in surfels.arrays().items()})
-    replaced([surfels], [mixed])
+    replaced(surfels, mixed)
     assert hierarchy_of(mixed).entries is not trees[0].entries

@@ -20,7 +20,6 @@ import numpy as np
 
 from ...rendering import Instance, Material, NormalTexture, PolygonInstance, Polygons, SurfaceTexture
 from ...rendering.levels import replaced
-from ...rendering.upload.packing import LARGEST_SET
 from ...sampling import (
     DEFAULT_CREASE_ANGLE,
     STRETCHED_SHARE,
@@ -35,7 +34,7 @@ from ...sampling import (
     predict_count,
     projected_area,
 )
-from ...surfels import OPTIONAL_LAYOUT, Surfels, portions
+from ...surfels import OPTIONAL_LAYOUT, Surfels
 from ..conversion.automatic_density import automatic_spacing
 from ..conversion.camera_density import without_camera
 from ..conversion.mesh_conversion import MAX_SURFELS
@@ -99,7 +98,7 @@ class _LiveMesh:
     surface: tuple[TriangleMesh, Outline] | None = None
     drawn: tuple[TriangleMesh, tuple[Polygons, ...]] | None = None
     parts: MeshParts | None = None
-    shown: tuple[Surfels, tuple[Surfels, ...]] | None = None
+    shown: tuple[Surfels, Surfels] | None = None
 
     @property
     def sampled_at(self) -> list[Place]:
@@ -219,15 +218,14 @@ class LiveMeshes:
         sampled = self._sampled(live, depsgraph, finer(density, live.detail), texture_mapped)
         if live.shown is None or live.shown[0] is not sampled:
             whole = joined_at_edges(sampled, *live.parts, live.spacing) if live.parts else sampled
-            before, live.shown = live.shown, (sampled, portions(whole, LARGEST_SET))
+            before, live.shown = live.shown, (sampled, whole)
             if before is not None:
                 replaced(before[1], live.shown[1])
         textures = live.kept_textures() if sampled.has_uvs else ()
         self.counts["meshes"] += 1
-        self.counts["surfels"] += sum(map(len, live.shown[1]))
+        self.counts["surfels"] += len(live.shown[1])
         return [
-            Instance(part, textures=textures, **place.of_instance(live.materials, live.spacing))
-            for part in live.shown[1]
+            Instance(live.shown[1], textures=textures, **place.of_instance(live.materials, live.spacing))
             for place in live.sampled_at
         ]
 

@@ -15,9 +15,8 @@ import numpy as np
 
 from ...rendering import Instance, Light, Scene
 from ...rendering.levels import replaced
-from ...rendering.upload.packing import LARGEST_SET
 from ...streaming import Stream
-from ...surfels import Surfels, portions
+from ...surfels import Surfels
 from ..conversion.source_record import is_stood_in, sources_in
 from ..geometry.attributes import Points, has_surfels, has_surfels_beside_faces, have_same_values, read_stored
 from ..geometry.gaussian_clouds import is_gaussian_cloud
@@ -58,19 +57,18 @@ class Notes:
 
 
 class Kept(NamedTuple):
-    """A mesh as it was read. parts: its surfels in portions that the renderer can hold."""
+    """A mesh as it was read."""
 
     name: str
     surfels: Surfels
-    parts: tuple[Surfels, ...]
     skipped: int
     strayed: int
 
 
 def tell_replaced(before: list[Kept], kept: Kept) -> None:
     """Tell the renderer what a mesh's surfels were in the frame before."""
-    if before and all(kept.parts is not old.parts for old in before):
-        replaced(before[-1].parts, kept.parts)
+    if before and all(kept.surfels is not old.surfels for old in before):
+        replaced(before[-1].surfels, kept.surfels)
 
 
 class SurfelStore:
@@ -92,8 +90,8 @@ class SurfelStore:
         self._current: set[int] = set()
         self._followed: dict = {}
 
-    def get(self, points: Points, key: int, name: str, is_solid: bool = False) -> tuple[tuple[Surfels, ...], int, int]:
-        """The result of `attributes.read_stored`, in portions that the renderer can hold; read once per mesh and frame.
+    def get(self, points: Points, key: int, name: str, is_solid: bool = False) -> tuple[Surfels | None, int, int]:
+        """The result of `attributes.read_stored`; read once per mesh and frame. There may be no surfels yet.
 
         key: session_uid of the mesh, or of the mesh that the points were made beside. name: identifies it in the next
             evaluation.
@@ -102,12 +100,12 @@ class SurfelStore:
             surfels, skipped, strayed = read_stored(points, self._followed, name, is_solid)
             before = [kept for kept in self._kept.values() if kept.name == name]
             kept = next((k for k in before if have_same_values(k.surfels, surfels)), None)
-            kept = kept or Kept(name, surfels, portions(surfels, LARGEST_SET), 0, 0)
+            kept = kept or Kept(name, surfels, 0, 0)
             tell_replaced(before, kept)
             self._kept[key] = kept._replace(skipped=skipped, strayed=strayed)
             self._current.add(key)
         kept = self._kept[key]
-        return kept.parts, kept.skipped, kept.strayed
+        return kept.surfels, kept.skipped, kept.strayed
 
     def begin_frame(self, changed: set[str] | None = None, are_materials_edited: bool = False) -> None:
         """Start a frame: meshes named in `changed` (None: all) are read again when next requested."""
@@ -267,13 +265,13 @@ def _content(entry: bpy.types.DepsgraphObjectInstance) -> tuple[str, ...]:
 def _instances(
     object_, kept, depsgraph, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes: Notes, override
 ) -> list[Instance]:
-    """Instances of an object that has surfels; one, unless it has more than the renderer holds in one instance.
+    """The instance of an object that has surfels; none while the surfel store, whose result `kept` is, reads them.
 
-    kept: of the surfel store; it has no parts while they are read. Raises ValueError for broken attributes or an
+    Raises ValueError for broken attributes or an
     unusable matrix.
     """
-    parts, skipped, strayed = kept
-    if not parts:
+    surfels, skipped, strayed = kept
+    if surfels is None:
         return []
     if skipped:
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
@@ -286,14 +284,13 @@ def _instances(
         notes.add(sentence)
     if override is not None:
         materials = (shading_material(override, notes),)
-        parts = tuple(store.overridden.get(part, override, notes) for part in parts)
-        return [Instance(part, matrix_world, materials, **fields) for part in parts]
-    own = parts[0].arrays().keys()
+        return [Instance(store.overridden.get(surfels, override, notes), matrix_world, materials, **fields)]
+    own = surfels.arrays().keys()
     # a point cloud made by modifiers has no slots of its own
     slots = object_.original.evaluated_get(depsgraph).material_slots
     materials = tuple(shading_material(slot.material, notes, own) for slot in slots)
-    textures = tuple(store.textures.get(slot.material, notes) for slot in slots) if parts[0].has_uvs else ()
-    return [Instance(part, matrix_world, materials, textures=textures, **fields) for part in parts]
+    textures = tuple(store.textures.get(slot.material, notes) for slot in slots) if surfels.has_uvs else ()
+    return [Instance(surfels, matrix_world, materials, textures=textures, **fields)]
 
 
 def _stream_of(owner: bpy.types.Object, store: SurfelStore, notes: Notes) -> Stream | None:
@@ -316,7 +313,7 @@ def _streamed(
         notes.add(f"{object_.name} keeps its own colours under the overriding material, as they come from a file")
     to_origin = np.eye(4)
     to_origin[:3, 3] = -stream.file.origin
-    kept = (stream.coarsest,), 0, 0
+    kept = stream.coarsest, 0, 0
     made = _instances(object_, kept, depsgraph, matrix_world @ to_origin, fields, store, notes, None)
     return [replace(instance, stream=stream) for instance in made]
 

@@ -18,8 +18,7 @@ import numpy as np
 
 from ...rendering.background import in_background
 from ...rendering.stand_in import STAND_IN, spread, standing_in, widened
-from ...rendering.upload.packing import LARGEST_SET
-from ...surfels import Surfels, portions, prepared, valid_surfels
+from ...surfels import Surfels, prepared, valid_surfels
 from ..geometry.attributes import (
     SOLID,
     Points,
@@ -79,7 +78,7 @@ class SlicedStore(SurfelStore):
         self._kept |= before
 
     def get(self, points: Points, key: int, name: str, is_solid: bool = False):
-        """The result of `SurfelStore.get`, or what is known meanwhile, which may be no parts at all."""
+        """The result of `SurfelStore.get`, or what is known meanwhile, which may be nothing."""
         count = count_of(points)
         is_at_once = count <= self._at_once or not self.is_sliced or not has_loose_points_only(points)
         if key in self._current or is_at_once:
@@ -112,7 +111,7 @@ class _Read(NamedTuple):
 
 
 class _Reading:
-    """One mesh that is being read. before: what is kept of meshes of its name. meanwhile: the sets to show."""
+    """One mesh that is being read. before: what is kept of meshes of its name. meanwhile: the set to show."""
 
     def __init__(self, points: Points, name: str, is_solid: bool, before: list[Kept], followed: tuple | None):
         self.name, self.count, self._before, self._followed = name, count_of(points), before, followed
@@ -121,7 +120,7 @@ class _Reading:
         self._rooms = {f: in_background(partial(_room, of, self.count)) for f, of in self._fields.items()}
         self._arrays: dict[str, np.ndarray] = {}
         self._made: Future | None = None
-        self.meanwhile: tuple[Surfels, ...] = before[0].parts if before else ()
+        self.meanwhile: Surfels | None = before[0].surfels if before else None
 
     def __del__(self):
         for future in (*getattr(self, "_rooms", {}).values(), getattr(self, "_made", None)):
@@ -147,7 +146,7 @@ class _Reading:
                     return None
                 self._arrays[field] = read_field(points, self._fields[field], self.name, room.result())
         if self._made is None:
-            if not self.meanwhile:
+            if self.meanwhile is None:
                 self.meanwhile = _few(self._arrays, self._is_solid)
             # copies, because an object that the thread frees would free its textures there
             known = {} if self._followed is None else {self.name: _copied(self._followed)}
@@ -155,8 +154,8 @@ class _Reading:
             self._made = in_background(partial(_made, self._arrays, self._is_solid, known, self.name, before))
         if not self._made.done():
             return None
-        stored, parts, same, followed = self._made.result()
-        kept = Kept(self.name, stored.surfels, parts, 0, 0) if same is None else self._before[same]
+        stored, same, followed = self._made.result()
+        kept = Kept(self.name, stored.surfels, 0, 0) if same is None else self._before[same]
         return _Read(kept._replace(skipped=stored.skipped, strayed=stored.strayed), followed)
 
 
@@ -167,13 +166,13 @@ def _room(layout, count: int) -> np.ndarray:
     return values
 
 
-def _few(arrays: dict[str, np.ndarray], is_solid: bool) -> tuple[Surfels, ...]:
-    """The stand-in of surfels that have not been checked."""
+def _few(arrays: dict[str, np.ndarray], is_solid: bool) -> Surfels | None:
+    """The stand-in of surfels that have not been checked, if any of them are usable."""
     rows = spread(len(arrays["positions"]), STAND_IN)
     few = {name: array[rows] for name, array in arrays.items()}
     surfels, _, _ = stored_of({name: array for name, array in few.items() if name != "rest"}, is_solid, {}, "")
     wide = widened(surfels.arrays(), len(arrays["positions"]))
-    return (standing_in(valid_surfels(is_solid=is_solid, **wide)[0]),) if len(surfels) else ()
+    return standing_in(valid_surfels(is_solid=is_solid, **wide)[0]) if len(surfels) else None
 
 
 def _copied(followed: tuple) -> tuple:
@@ -182,9 +181,10 @@ def _copied(followed: tuple) -> tuple:
 
 
 def _made(arrays, is_solid: bool, known: dict, name: str, before: list[Surfels]):
-    """The job: what is stored, its portions, the number of the set before that has the same values, and what `known`
-    has of it now."""
+    """The job: what is stored, the number of the set before that has the same values, and what `known` has of it
+    now."""
     stored: Stored = stored_of(arrays, is_solid, known, name)
     same = next((n for n, surfels in enumerate(before) if have_same_values(surfels, stored.surfels)), None)
-    parts = prepared(portions(stored.surfels, LARGEST_SET)) if same is None else ()
-    return stored, parts, same, known.get(name)
+    if same is None:
+        prepared((stored.surfels,))
+    return stored, same, known.get(name)

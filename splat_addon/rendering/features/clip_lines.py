@@ -18,7 +18,7 @@ _MORE_VARYINGS = {
     "blurs_lines": (("flat", "vec3", "from_first"), ("flat", "vec3", "from_second")),
 }
 
-DRAWN = {"clip_lines": lambda tile, placed: tile.resources.clip_lines(placed.instance.surfels)}
+DRAWN = {"clip_lines": lambda tile, placed: tile.resources.clip_lines(placed.instance.surfels, placed.part)}
 ARRIVES = {"clip_lines": lambda instance: instance.surfels.clipped_count > 0}
 
 

@@ -20,6 +20,7 @@ from ..view import DrawItem
 
 if TYPE_CHECKING:
     from ..plan.executor import TileContext
+    from ..upload.cuts import Cut
 
 #: Triangles of a draw call, after which drawing may pause.
 AT_ONCE = 1 << 15
@@ -33,7 +34,7 @@ LIGHTING_HOSTS = (*LIT_HOSTS, "lit_splats.frag")
 
 
 def _stored(tile: TileContext, placed: DrawItem, sampler: str) -> DeviceTexture:
-    return tile.stored(placed.instance).textures[sampler]
+    return tile.stored(placed.instance).parts[placed.part][sampler]
 
 
 #: sampler -> the texture of the object being drawn
@@ -47,13 +48,20 @@ ARRIVES = {name: lambda instance: True for storage in STORAGES.values() for name
 def draw_splats(
     tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None
 ) -> Generator[Pause]:
-    """Draw each instance, its splats with clip lines, which are stored first, apart; pauses after each draw call.
+    """Draw each instance, part by part; pauses after each draw call.
 
     variants: of the pass's programs. viewport: as `Device.draw_triangles` takes it.
     """
+    parts = (part for placed in placed_ones for part in tile.in_parts(placed))
+    yield from draw_parts(tile, p, target, parts, vertex, *variants, viewport=viewport)
+
+
+def draw_parts(
+    tile: TileContext, p: Pass, target, parts: Iterable[tuple[DrawItem, Cut]], vertex, *variants, viewport=None
+) -> Generator[Pause]:
+    """Draw the parts of `TileContext.in_parts`, their splats with clip lines, which are stored first, apart."""
     programs = {}
-    for placed in placed_ones:
-        cut = tile.cut(placed)
+    for placed, cut in parts:
         own = () if cut.numbers is None else ("cut",)
         for more, first, end in ((own, cut.clipped, cut.count), ((*own, "clipped"), 0, cut.clipped)):
             if first < end:

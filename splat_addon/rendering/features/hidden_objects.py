@@ -71,7 +71,7 @@ def front_to_back(tile, p: Pass) -> Iterator[list[DrawItem]]:
     if p.each is None or len(waiting) < LEAST_OBJECTS:
         yield waiting
         return
-    counts = {placed: tile.cut(placed).count for placed in waiting}
+    counts = {placed: tile.drawn_count(placed) for placed in waiting}
     total, drawn = sum(counts.values()), 0
     waiting.sort(key=lambda placed: float((-placed.instance.corners(tile.camera)[:, 2]).min()))
     for share in _SHARES if total >= LEAST_SURFELS else ():

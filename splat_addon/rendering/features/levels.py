@@ -15,7 +15,7 @@ from . import lit_splats
 from .drawing import SPLAT_HOSTS
 
 CONSTANTS = {"NUMBERS_PER_ROW": NUMBERS_PER_ROW}
-DRAWN = {"drawn_splats": lambda tile, placed: tile.cut(placed).numbers}
+DRAWN = {"drawn_splats": lambda tile, placed: tile.cuts(placed)[placed.part].numbers}
 
 
 def merging(planning) -> frozenset:

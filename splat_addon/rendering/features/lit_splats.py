@@ -11,7 +11,8 @@ from __future__ import annotations
 from ..plan.graph import Part, Pass, Texture
 from ..shading_models import ShadingModel, get_shading_model
 from ..upload.packing import SPLATS_PER_ROW, row_count
-from .drawing import LIT_HOSTS, SPLAT_HOSTS, draw_block, draw_splats, storage_samplers
+from ..upload.parts import largest_part
+from .drawing import LIT_HOSTS, SPLAT_HOSTS, draw_block, draw_parts, storage_samplers
 
 
 def _of_splats(plan, pixels: tuple[int, int]) -> tuple[int, int]:
@@ -50,8 +51,8 @@ def each(planning) -> Pass | None:
 
 
 def light(planning, instances) -> Pass:
-    """Light the splats of one instance; the texture has one texel per splat of the largest instance."""
-    rows = max(row_count(len(instance.surfels)) for instance in instances)
+    """Light the splats of one instance, or part of it; the texture has one texel per splat of the largest one."""
+    rows = max(row_count(largest_part(len(instance.surfels))) for instance in instances)
     planning.facts["lit_rows"] = max(rows, planning.facts.get("lit_rows", 0))
     own = Part("lit_splats", inputs=storage_samplers(planning.settings.storage), writes=(LIT,))
     return Pass("light_splats", "each splat is lit by itself", "lit_splats.frag", run, (own,), "rest")
@@ -69,15 +70,15 @@ def parts(planning, p):
 
 
 def run(tile, p: Pass):
-    """Fill the sums, one instance after another; each one's splats are lit first, one fragment each, at the texel of
-    its number."""
+    """Fill the sums, one instance or part of one after another; its splats are lit first, one fragment each, at the
+    texel of its number."""
     target, lit, light = tile.target(p), tile.target(p.each), None
     target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
-    for placed in tile.drawn_by(p):
+    for placed, cut in (part for each in tile.drawn_by(p) for part in tile.in_parts(each)):
         light = light or tile.program(p.each)
         textures = tile.textures(p.each, light, placed)
         blocks = tile.blocks(light, draw_block(tile, placed, tile.settings.epsilon))
-        viewport = 0, 0, SPLATS_PER_ROW, row_count(len(placed.instance.surfels))
+        viewport = 0, 0, SPLATS_PER_ROW, row_count(cut.count)
         tile.resources.device.draw_triangles(light, lit, 1, blocks, textures, viewport)
-        yield from draw_splats(tile, p, target, [placed], p.host.replace(".frag", ".vert"))
+        yield from draw_parts(tile, p, target, [(placed, cut)], p.host.replace(".frag", ".vert"))
     return target

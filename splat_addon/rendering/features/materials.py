@@ -32,7 +32,7 @@ VALUES = {
 def _drawn(tile, placed):
     instance, facts = placed.instance, tile.plan.facts
     return tile.resources.materials(
-        instance, facts["emissions_differ"], facts["summed_finishes"], tile.levels(instance)
+        instance, facts["emissions_differ"], facts["summed_finishes"], tile.levels(instance), placed.part
     )
 
 

@@ -17,7 +17,7 @@ ATLAS = ("texture_atlas", "texture_table")
 
 def _surfel_uvs(tile, placed):
     instance = placed.instance
-    return tile.resources.surfel_uvs(instance.surfels, tile.levels(instance))
+    return tile.resources.surfel_uvs(instance.surfels, tile.levels(instance), placed.part)
 
 
 #: Tables with normal maps have these in a second half.

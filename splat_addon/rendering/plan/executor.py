@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import SimpleNamespace
 
@@ -21,7 +21,7 @@ from ..methods import get_method
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
 from ..settings import Settings
-from ..upload.cuts import Cut
+from ..upload.cuts import Cut, whole_set
 from ..upload.loading import NotYet
 from ..upload.resources import Resources, StoredSurfels, TextureKey
 from ..upload.storages import get_storage
@@ -136,7 +136,7 @@ class TileContext:
             wanted = [name for name, is_needed in ARRIVES.items() if name in read and is_needed(instance)]
             for name in wanted if len(instance.surfels) else ():
                 try:
-                    DRAWN[name](self, SimpleNamespace(instance=instance))
+                    DRAWN[name](self, SimpleNamespace(instance=instance, part=0))
                 except NotYet as reason:
                     # the rest is made when it is known whether the surfels have levels
                     late |= reason.surfels
@@ -144,11 +144,21 @@ class TileContext:
         if late:
             raise NotYet(late)
 
-    def cut(self, placed: DrawItem) -> Cut:
-        """The part of an instance that this view draws."""
+    def drawn_count(self, placed: DrawItem) -> int:
+        """The number of splats of an instance that this view draws."""
+        return sum(cut.count for cut in self.cuts(placed))
+
+    def in_parts(self, placed: DrawItem) -> Iterator[tuple[DrawItem, Cut]]:
+        """An instance as it is drawn, for each part of its storage that has any of it."""
+        for part, cut in enumerate(self.cuts(placed)):
+            if cut.count:
+                yield replace(placed, part=part) if part else placed, cut
+
+    def cuts(self, placed: DrawItem) -> tuple[Cut, ...]:
+        """What this view draws of an instance, in the parts of its storage."""
         instance, levels = placed.instance, self.levels(placed.instance)
         if levels is None:
-            return Cut(len(instance.surfels), instance.surfels.clipped_count, None)
+            return whole_set(len(instance.surfels), instance.surfels.clipped_count)
         split = split_distances(placed, self.view)
         seen = sight(instance, self.camera, placed.hides_backs, self.settings.detail_tolerance, split)
         places = self.stored(instance).places

@@ -10,15 +10,17 @@ import numpy as np
 
 from ..device import Device
 from ..device.interface import Texture
+from .parts import places_in_parts
 
 #: Format of the texture of indices; float32 is exact up to 2^24.
 NUMBERS_PER_ROW = 4096
 
 
 class Cut(NamedTuple):
-    """count: splats that are drawn. clipped: number of them, at the beginning, that end at clip lines.
+    """Of one part of the storage. count: splats that are drawn. clipped: number of them, at the beginning, that end at
+    clip lines.
 
-    numbers: texture of their indices; None: the first `count` in storage order.
+    numbers: texture of their indices in the part; None: its first `count`.
     """
 
     count: int
@@ -35,7 +37,7 @@ class Cuts:
 
     def __init__(self, device: Device):
         self._device = device
-        self._kept: dict[object, tuple[int, Cut]] = {}
+        self._kept: dict[object, tuple[int, tuple[Cut, ...]]] = {}
         self._frame = 0
         self.uploads = 0
 
@@ -46,8 +48,8 @@ class Cuts:
             del self._kept[key]
         self._frame += 1
 
-    def get(self, key: object, numbers: Callable[[], np.ndarray | None], every: int, clipped: int) -> Cut:
-        """The cut of a view and an object, identified by the key.
+    def get(self, key: object, numbers: Callable[[], np.ndarray | None], every: int, clipped: int) -> tuple[Cut, ...]:
+        """The cut of a view and an object, identified by the key, in the parts of its storage.
 
         numbers: storage indices of what it draws; None: the first `every`. clipped: number of clipped surfels, which
             are stored first.
@@ -57,12 +59,21 @@ class Cuts:
         self._kept[key] = self._frame, cut
         return cut
 
-    def _made(self, numbers: np.ndarray | None, every: int, clipped: int) -> Cut:
+    def _made(self, numbers: np.ndarray | None, every: int, clipped: int) -> tuple[Cut, ...]:
         if numbers is None:
-            return Cut(every, clipped, None)
+            return whole_set(every, clipped)
+        parts = list(places_in_parts(int(numbers.max(initial=-1)) + 1))
+        if len(parts) == 1:
+            return (self._part(numbers, clipped),)
+        own = (numbers[(numbers >= places.start) & (numbers < places.stop)] - places.start for places in parts)
+        return tuple(self._part(some, clipped - places.start) for some, places in zip(own, parts, strict=True))
+
+    def _part(self, numbers: np.ndarray, clipped: int) -> Cut:
+        """The cut of one part. clipped: which of its places have clipped surfels, those below this."""
+        is_clipped = numbers < clipped
+        clipped = int(is_clipped.sum())
         if clipped:
-            is_clipped = numbers < clipped
-            numbers, clipped = np.concatenate([numbers[is_clipped], numbers[~is_clipped]]), int(is_clipped.sum())
+            numbers = np.concatenate([numbers[is_clipped], numbers[~is_clipped]])
         rows = max(-(-len(numbers) // NUMBERS_PER_ROW), 1)
         texels = np.zeros((rows, NUMBERS_PER_ROW, 1), np.float32)
         texels.reshape(-1)[: len(numbers)] = numbers
@@ -71,3 +82,9 @@ class Cuts:
 
     def clear(self) -> None:
         self._kept.clear()
+
+
+def whole_set(count: int, clipped: int) -> tuple[Cut, ...]:
+    """Every one of `count` surfels, in the parts of their storage, where the first `clipped` are clipped."""
+    parts = places_in_parts(count)
+    return tuple(Cut(p.stop - p.start, min(max(clipped - p.start, 0), p.stop - p.start), None) for p in parts)

@@ -19,21 +19,13 @@ from .stored_order import SPLATS_PER_ROW
 TEXELS_PER_SPLAT = 4
 #: Steps per radius of a stored blend depth.
 BLEND_STEPS = 256
-#: Rows that all tested backends' textures support.
-MAX_ROWS = 16384
-MAX_SPLATS = SPLATS_PER_ROW * MAX_ROWS
-#: Surfels of one set that leave room for merged ones, of which each replaces two or more.
-LARGEST_SET = MAX_SPLATS // 2
 
 #: Surfels that are packed at a time, few enough for temporaries to stay in the processor's cache.
 _PORTION = 1 << 14
 
 
 def pack_surfels(surfels: Surfels, order: np.ndarray) -> np.ndarray:
-    """(rows, 2048, 4) float32 texels. order: (n,) numbers of the surfels in which they are stored.
-
-    Raises ValueError above `MAX_SPLATS` (8.4 million).
-    """
+    """(rows, 2048, 4) float32 texels. order: (n,) numbers of the surfels in which they are stored."""
     rows = row_count(len(order))
     texels = np.zeros((rows * SPLATS_PER_ROW, TEXELS_PER_SPLAT, 4), np.float32)
     for start in range(0, len(order), _PORTION):
@@ -74,22 +66,18 @@ def pack_uvs(surfels: Surfels, order: np.ndarray) -> np.ndarray:
 
 def pack_clip_lines(surfels: Surfels, order: np.ndarray) -> np.ndarray:
     """(rows, 512, 4) float32 multiples of 1 / 65535: direction and cut of both lines, for clipped surfels only, 8 bytes
-    each. order: storage order of all surfels, clipped ones first."""
-    count = surfels.clipped_count
+    each. order: storage order of the clipped surfels."""
+    count = len(order)
     texels = np.zeros((-(-count // SPLATS_PER_ROW) * SPLATS_PER_ROW, 4), np.float32)
     for number, name in enumerate(CLIP_FIELDS):
         lines = getattr(surfels, name)
         if lines is not None:
-            texels[:count, 2 * number : 2 * number + 2] = lines[order[:count]].astype(np.int64) % TURN
+            texels[:count, 2 * number : 2 * number + 2] = lines[order].astype(np.int64) % TURN
     return (texels / (TURN - 1)).reshape(-1, SPLATS_PER_ROW, 4)
 
 
 def row_count(count: int) -> int:
-    """The number of rows of 512 splats, at least one. Raises ValueError above `MAX_SPLATS` (8.4 million)."""
-    if count > MAX_SPLATS:
-        raise ValueError(
-            f"One object can hold {MAX_SPLATS:,} surfels, not {count:,}; make several, or raise its surfel spacing."
-        )
+    """The number of rows of 512 splats, at least one."""
     return max(-(-count // SPLATS_PER_ROW), 1)
 
 

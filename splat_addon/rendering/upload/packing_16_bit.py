@@ -35,7 +35,7 @@ def pack_16_bit(surfels: Surfels, order: np.ndarray) -> tuple[tuple[np.ndarray, 
     is that much larger than they are (a stray surfel far away widens the block that it falls into).
 
     order: (n,) numbers of the surfels in which they are stored, neighbours together.
-    Raises ValueError above `MAX_SPLATS` surfels and for a material index above 65,535.
+    Raises ValueError for a material index above 65,535.
     """
     rows, count = row_count(len(order)), len(order)
     if len(surfels) and surfels.materials.max() > _STEPS:

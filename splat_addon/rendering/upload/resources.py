@@ -3,17 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from copy import copy
 from functools import partial
-from operator import itemgetter
 from typing import NamedTuple, TypeVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from ...hierarchy import Hierarchy
-from ...surfels import Surfels, concatenate
+from ...surfels import Surfels
 from ..device import Device
 from ..device.interface import Pipeline, PipelineDescription, Texture
 from ..levels import built_hierarchy, hierarchy_before, hierarchy_of, keep_hierarchy, make_hierarchy
@@ -23,6 +22,7 @@ from .atlas import FORMAT, make_atlas
 from .cuts import Cuts
 from .loading import JobShare, Loading, Made, NotYet, Packed
 from .packing import pack_clip_lines, pack_materials, pack_own_materials, pack_uvs
+from .parts import stored_parts
 from .storages import Storage
 from .stored_order import places_of, stored_order
 
@@ -33,13 +33,14 @@ TextureKey = tuple[str, int, int, str, int]
 
 
 class StoredSurfels(NamedTuple):
-    """textures: by sampler. coarse: number of surfels whose position loses visible precision in the storage.
+    """parts: the textures of each part, by sampler. coarse: number of surfels whose position loses visible precision in
+    the storage.
 
     places: storage position of each surfel, then of each merged node, if there are levels. Surfels come first, stored
     as they are without levels.
     """
 
-    textures: dict[str, Texture]
+    parts: tuple[dict[str, Texture], ...]
     coarse: int
     places: np.ndarray | None = None
 
@@ -99,8 +100,10 @@ class Resources:
         with_emission: bool,
         finishes: tuple[Finish, ...],
         levels: Hierarchy | None = None,
+        part: int = 0,
     ) -> Texture:
-        """The materials of an instance's slots; if surfels or corners have their own, one each. Uploaded once.
+        """The materials of an instance's slots; if surfels or corners have their own, one each, of one part of them.
+        Uploaded once.
 
         with_emission, finishes: as in `pack_materials`.
         """
@@ -113,15 +116,15 @@ class Resources:
             own = partial(pack_own_materials, shape, slots, slice(None), with_emission, finishes)
             return self._once(shape, "materials", made_from, lambda: self.data(own()))
         pack = partial(_packed_materials, slots, with_emission, finishes)
-        return self._with_levels(shape, "materials", (slots, with_emission, finishes), levels, pack)
+        return self._with_levels(shape, "materials", (slots, with_emission, finishes), levels, pack)[part]
 
-    def surfel_uvs(self, surfels: Surfels, levels: Hierarchy | None = None) -> Texture:
-        """Their texture coordinates, uploaded once."""
-        return self._with_levels(surfels, "uvs", (), levels, _packed_uvs)
+    def surfel_uvs(self, surfels: Surfels, levels: Hierarchy | None = None, part: int = 0) -> Texture:
+        """The texture coordinates of one part of them, uploaded once."""
+        return self._with_levels(surfels, "uvs", (), levels, _packed_uvs)[part]
 
-    def clip_lines(self, surfels: Surfels) -> Texture:
-        """The lines of those that are clipped, uploaded once; merged ones have none."""
-        return self._with_levels(surfels, "clip_lines", (), None, _packed_clip_lines)
+    def clip_lines(self, surfels: Surfels, part: int = 0) -> Texture:
+        """The lines of those in one part that are clipped, uploaded once; merged ones have none."""
+        return self._with_levels(surfels, "clip_lines", (), None, _packed_clip_lines)[part]
 
     def load_some(self) -> None:
         """For a new picture, go on with what is on its way to the device."""
@@ -139,11 +142,10 @@ class Resources:
         kind: str,
         made_from: tuple,
         levels: Hierarchy | None,
-        pack: Callable[[Surfels, np.ndarray, bool], Packed],
+        pack: Callable[[Surfels, Hierarchy | None, np.ndarray], Packed],
         may_have_levels: bool = False,
     ):
-        """Device data as in `_once`. pack: makes it of surfels, with their nodes, of their order, and of
-        whether they have levels.
+        """Device data as in `_once`. pack: makes it of surfels, their hierarchy, and their order.
 
         Data stored with levels also serves draws without levels, because the surfels come first.
         """
@@ -154,7 +156,7 @@ class Resources:
             raise NotYet([owner])
 
         def uploaded():
-            packed = pack(_with_nodes(owner, levels), self._order(owner, levels), levels is not None)
+            packed = pack(owner, levels, self._order(owner, levels))
             return packed.value([self.data(*texture) for texture in packed.texels])
 
         return self._once(owner, kind, wanted, uploaded)
@@ -239,11 +241,6 @@ class Resources:
         self.textures.clear()
 
 
-def _with_nodes(surfels: Surfels, levels: Hierarchy | None) -> Surfels:
-    """The surfels, then the merged nodes."""
-    return concatenate([surfels, levels.nodes]) if levels else surfels
-
-
 #: The share of a job that building a hierarchy takes, and of what is left, finding the order.
 _BUILDING, _ORDERING = 0.7, 0.3
 
@@ -254,25 +251,38 @@ def _made(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray | None, 
     levels = makes(surfels, told=lambda share: told(built * share)) if makes else levels
     order = stored_order(surfels, levels) if order is None else order
     told(built + (1 - built) * _ORDERING)
-    packed = pack(_with_nodes(surfels, levels), order, levels is not None)
+    packed = pack(surfels, levels, order)
     told(1.0)
     return Made(levels, order, packed)
 
 
-def _packed_surfels(storage: Storage, every: Surfels, order: np.ndarray, has_levels: bool) -> Packed:
-    arrays, coarse = storage.pack(every, order)
-    texels = tuple((array, format) for array, (_, format) in zip(arrays, storage.textures, strict=True))
-    places = places_of(order, len(every)) if has_levels else None
-    return Packed(texels, lambda made: StoredSurfels(dict(zip(storage.samplers, made, strict=True)), coarse, places))
+def _packed_surfels(storage: Storage, surfels: Surfels, levels: Hierarchy | None, order: np.ndarray) -> Packed:
+    arrays, coarse = zip(*(storage.pack(*part) for part in stored_parts(surfels, levels, order)), strict=True)
+    formats = [format for _, format in storage.textures]
+    texels = tuple(of for part in arrays for of in zip(part, formats, strict=True))
+    places = places_of(order, len(surfels) + len(levels)) if levels is not None else None
+
+    def stored(made: list[Texture]) -> StoredSurfels:
+        each = (made[start : start + len(formats)] for start in range(0, len(made), len(formats)))
+        return StoredSurfels(tuple(dict(zip(storage.samplers, own, strict=True)) for own in each), sum(coarse), places)
+
+    return Packed(texels, stored)
 
 
-def _packed_materials(slots, with_emission: bool, finishes, every: Surfels, order: np.ndarray, _) -> Packed:
-    return Packed(((pack_own_materials(every, slots, order, with_emission, finishes), "RGBA32F"),), itemgetter(0))
+def _packed_materials(slots, with_emission: bool, finishes, surfels: Surfels, levels, order: np.ndarray) -> Packed:
+    parts = stored_parts(surfels, levels, order)
+    return _packed((pack_own_materials(some, slots, own, with_emission, finishes) for some, own in parts), "RGBA32F")
 
 
-def _packed_uvs(every: Surfels, order: np.ndarray, _) -> Packed:
-    return Packed(((pack_uvs(every, order), "RGBA32F"),), itemgetter(0))
+def _packed_uvs(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray) -> Packed:
+    return _packed((pack_uvs(some, own) for some, own in stored_parts(surfels, levels, order)), "RGBA32F")
 
 
-def _packed_clip_lines(every: Surfels, order: np.ndarray, _) -> Packed:
-    return Packed(((pack_clip_lines(every, order), "RGBA16"),), itemgetter(0))
+def _packed_clip_lines(surfels: Surfels, _, order: np.ndarray) -> Packed:
+    parts = stored_parts(surfels, None, order[: surfels.clipped_count])
+    return _packed((pack_clip_lines(some, own) for some, own in parts), "RGBA16")
+
+
+def _packed(parts: Iterable[np.ndarray], format: str) -> Packed:
+    """What is kept is the texture of each part."""
+    return Packed(tuple((texels, format) for texels in parts), tuple)

@@ -9,7 +9,6 @@ import pytest
 
 from splat_addon.blender.conversion.automatic_density import LEAST_RESOLUTION
 from splat_addon.blender.engine import final_render
-from splat_addon.blender.export import live_meshes
 from splat_addon.rendering.upload import storages
 
 
@@ -366,17 +365,6 @@ def test_by_itself_the_density_is_a_resolution_where_the_camera_sees_nothing(liv
     live.mesh_density = "AUTOMATIC"
     picture()
     assert counts()["meshes"] == 1 and counts()["surfels"] == 64**2
-
-
-def test_more_surfels_than_the_renderer_holds_in_one_set_look_the_same(live, picture, sampled, monkeypatch):
-    bpy.ops.mesh.primitive_cube_add(size=1, rotation=(0.4, 0.3, 0.2))
-    whole = picture()
-    monkeypatch.setattr(live_meshes, "LARGEST_SET", 2000)
-    sampled.clear()
-    parts = picture()
-    count = counts()["surfels"]
-    assert list(map(len, sampled)) == [2000] * (count // 2000) + [count % 2000] and count > 4000
-    assert whole[..., 3].max() == 1 and np.abs(parts - whole).max() < 1e-5
 
 
 def test_too_many_surfels_are_refused_with_a_sentence(live, picture, said):

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.export import scene, sliced_store
+from splat_addon.blender.export import sliced_store
 from splat_addon.blender.export.live_meshes import LiveMeshes
 from splat_addon.blender.export.scene import SurfelStore, export_scene
 from splat_addon.blender.export.sliced_store import SlicedStore
@@ -18,11 +18,9 @@ COUNT = 30_000
 
 @pytest.fixture
 def cloud(add_surfels, monkeypatch):
-    """Surfels in a box, more than one picture reads at once, in several sets; a few stand for all of them."""
+    """Surfels in a box, more than one picture reads at once; a few stand for all of them."""
     for name, value in {"AT_ONCE": 1000, "STAND_IN": 500}.items():
         monkeypatch.setattr(sliced_store, name, value)
-    for module in (scene, sliced_store):
-        monkeypatch.setattr(module, "LARGEST_SET", 12_000)
     return add_surfels(np.random.default_rng(5).uniform(-1, 1, (COUNT, 3)), size=0.02)
 
 
@@ -65,7 +63,7 @@ def as_rendered():
 def test_the_last_picture_has_what_a_render_reads(cloud):
     seen = pictures(SlicedStore(Clock()))
     whole = as_rendered()
-    assert [len(surfels) for surfels in whole] == [12_000, 12_000, 6000]
+    assert [len(surfels) for surfels in whole] == [COUNT]
     assert all(have_same_values(*pair) for pair in zip(seen[-1], whole, strict=True))
     # nothing is known before the attributes have been copied, one in each picture; then a few stand for all
     assert seen[0] == [] and len(seen) > 6
@@ -108,7 +106,7 @@ def test_a_change_while_it_is_read_starts_anew(cloud):
     cloud.data.attributes["position"].data.foreach_set("vector", np.full(3 * COUNT, 3, np.float32))
     cloud.data.update()
     last = pictures(store, [cloud.data.name_full])[-1]
-    assert all((surfels.positions == 3).all() for surfels in last) and len(last) == 3
+    assert all((surfels.positions == 3).all() for surfels in last) and len(last) == 1
 
 
 @pytest.mark.parametrize("how", ["removed", "hidden", "emptied"])
@@ -142,4 +140,4 @@ def test_a_small_mesh_is_read_at_once(add_surfels):
 def test_a_picture_may_wait_for_everything(cloud):
     store = SlicedStore()
     store.is_sliced = False
-    assert [len(surfels) for surfels in picture(store)] == [12_000, 12_000, 6000] and not store.left[1]
+    assert [len(surfels) for surfels in picture(store)] == [COUNT] and not store.left[1]
