@@ -4,6 +4,7 @@
 One model, lit by a sun, is drawn with more and more surfels in two views: *filling* the picture, and *tiny*, so far
 away that it covers some 60 pixels. Each row compares two kinds of frames. *All* draws every surfel; *cut* draws merged
 surfels where the tolerance allows it. Times are medians of whole frames that are drawn alternately.
+Of sets larger than --every, only the cut is drawn.
 
 drawn: surfels in the cut. cut/all: the time of the cut frame, divided by that of all. bare/cut: the time to draw the
     same splats into nothing but a depth buffer, divided by the cut frame; no frame can be faster.
@@ -49,6 +50,7 @@ def arguments(parser) -> None:
     parser.add_argument("--resolutions", type=int, nargs="+", default=[265, 500, 830, 2030])
     parser.add_argument("--dolly", type=int, default=60, help="pictures of its 300, of the first resolution")
     parser.add_argument("--tolerance", type=float, default=Settings.detail_tolerance, help="pixels")
+    parser.add_argument("--every", type=int, default=20_000_000, help="most surfels of which all are drawn, too")
     parser.set_defaults(turns=3)
 
 
@@ -100,32 +102,37 @@ def measure(device, surfels, view: str, eye, shadow: int, options, passes: list,
     every = replace(every, shadow_resolution=shadow, outputs=("color",))
     lit = replace(scene, lights=tuple(replace(light, casts_shadow=shadow > 0) for light in scene.lights))
     settings = {"all": every, "cut": replace(every, detail_tolerance=options.tolerance)}
+    if len(surfels) > options.every:
+        del settings["all"]
     renderers = {kind: Renderer(device) for kind in settings}
     jobs = {kind: partial(renderers[kind].render, lit, camera, settings[kind]) for kind in settings}
     drawn = in_turn(jobs, options.turns, wall)
-    renderers["all"].release()
+    if "all" in renderers:
+        renderers["all"].release()
     before = renderers["cut"].resources.cuts.uploads
-    held = {"cut": jobs["cut"]().stats["texture_bytes"]}
+    memory = {"cut": f"{jobs['cut']().stats['texture_bytes'] / 2**20:.0f}"}
     uploads = renderers["cut"].resources.cuts.uploads - before
     profiled = renderers["cut"].render(lit, camera, replace(settings["cut"], profile=True))
-    spent, cut, every_one = profiled.stats["passes"], *(drawn.spread(kind).median for kind in ("cut", "all"))
+    spent, took = profiled.stats["passes"], {kind: 1e3 * drawn.spread(kind).median for kind in settings}
+    bare = spent.get("visibility", 0)
     if not shadow:
         counted = renderers["cut"].render(lit, camera, replace(settings["cut"], outputs=("color", "overdraw")))
         over = counted.overdraw[counted.overdraw > 0]
         each = ", ".join(f"{name} {ms:.1f}" for name, ms in spent.items())
         passes.append((f"{len(surfels):,}", view, f"{over.mean() if len(over) else 0:.1f}", each))
-        milliseconds = {"all": 1e3 * every_one, "cut": 1e3 * cut, "bare": spent.get("visibility", 0)}
-        times.append({"surfels": len(surfels), "view": view, **milliseconds})
-    one, other = (drawn.results[kind] for kind in ("cut", "all"))
+        times.append({"surfels": len(surfels), "view": view, "all": np.nan, **took, "bare": bare})
+    one, beside = drawn.results["cut"], ("", "", "")
     renderers["cut"].release()
-    held["all"] = jobs["all"]().stats["texture_bytes"]
-    renderers["all"].release()
+    if other := drawn.results.get("all"):
+        memory["all"] = f"{jobs['all']().stats['texture_bytes'] / 2**20:.0f}"
+        renderers["all"].release()
+        likeness = f"{psnr(one.color, other.color):.1f}", f"{mean_flip(one.color, other.color):.4f}"
+        beside = f"{drawn.ratio('cut', 'all'):.3f}", *likeness
     return (
         f"{len(surfels):,}", view, "sun's" if shadow else "none", f"{one.stats['splats_drawn']:,}",
-        f"{1e3 * every_one:.0f}", f"{1e3 * cut:.0f}", f"{drawn.ratio('cut', 'all'):.3f}",
-        f"{spent.get('visibility', 0) / 1e3 / cut:.2f}", f"{decided(lit, camera, settings['cut']) / cut:.1%}",
-        f"{psnr(one.color, other.color):.1f}", f"{mean_flip(one.color, other.color):.4f}",
-        f"{held['all'] / 2**20:.0f}", f"{held['cut'] / 2**20:.0f}", uploads,
+        f"{took['all']:.0f}" if other else "", f"{took['cut']:.0f}", beside[0],
+        f"{bare / took['cut']:.2f}", f"{1e3 * decided(lit, camera, settings['cut']) / took['cut']:.1%}",
+        *beside[1:], memory.get("all", ""), memory["cut"], uploads,
     )  # fmt: skip
 
 
