@@ -272,13 +272,23 @@ def quaternion_axes(quaternions: np.ndarray, count: int = 3) -> tuple[np.ndarray
     quaternions: (N, 4) w, x, y, z. Returns three (N, 3) arrays of the same dtype; with `count` below 3 the remaining
         ones are None, which saves time.
     """
+    columns = axes_columns(quaternions, *range(count))
+    return tuple(np.ascontiguousarray(columns[k].T) if k < count else None for k in range(3))
+
+
+def axes_columns(quaternions: np.ndarray, *axes: int) -> np.ndarray:
+    """(len(axes), 3, N) of (N, 4) unit quaternions: their local x (0), y (1) or z (2) axes, by component."""
     w, x, y, z = np.ascontiguousarray(quaternions.T)
-    columns = (
+    components = (
         lambda: (1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
         lambda: (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
         lambda: (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)),
     )
-    return tuple(np.stack(columns[k](), axis=1) if k < count else None for k in range(3))
+    columns = np.empty((len(axes), 3, len(quaternions)), quaternions.dtype)
+    for k, axis in enumerate(axes):
+        for j, values in enumerate(components[axis]()):
+            columns[k, j] = values
+    return columns
 
 
 def axes_quaternions(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:

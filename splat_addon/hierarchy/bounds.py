@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .families import dot, for_children, largest
 from .nodes import Nodes
-from .runs import Runs
 
 #: Rounding error of float32 sums of a few terms, as a fraction of the node's size.
 _ROUNDING = np.float32(1e-5)
@@ -26,8 +26,10 @@ _ROUNDING = np.float32(1e-5)
 #: Places on an ellipse, 12 on its rim and 6 halfway: 1, and two coordinates in half-axes. 12 are so close together that
 #: no point of the rim is more than a quarter of a half-axis from the nearest.
 _TURNS = np.linspace(0, 2 * np.pi, 12, endpoint=False)
-_RIM = np.stack([np.cos(_TURNS), np.sin(_TURNS)])
-PLACES = np.vstack([np.ones(18), np.hstack([_RIM, _RIM[:, ::2] / 2])]).astype(np.float32)
+_RIM = np.stack([np.cos(_TURNS), np.sin(_TURNS)], axis=1)
+PLACES = np.column_stack([np.ones(18), np.vstack([_RIM, _RIM[::2] / 2])]).astype(np.float32)
+#: In so many portions they are compared, so that temporaries stay in the processor's cache.
+_PORTIONS = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,66 +42,65 @@ class Frame:
     longest: np.ndarray
     shortest: np.ndarray
 
-    def reach(self, children: Nodes, runs: Runs, offsets: np.ndarray, share: np.float32) -> np.ndarray:
-        """(n,) a lower bound: how many half-axes of the parent's ellipse a given share of each child's ellipse
+    def reach(self, children: Nodes, offsets: np.ndarray, share: np.float32) -> np.ndarray:
+        """(c, m) a lower bound: how many half-axes of the parent's ellipse a given share of each child's ellipse
         reaches.
         """
-        (x, y), (a, b), (c, d) = self.flattened(children, runs, offsets)
+        (x, y), (a, b), (c, d) = self.flattened(children, offsets)
         # the longer half-axis of what the child's circle is mapped to, its matrix's largest singular value
         squares, area = a * a + b * b + c * c + d * d, a * d - b * c
         longest = (squares + np.sqrt(np.maximum(squares * squares - 4 * area * area, 0))) / 2
         return np.sqrt(x * x + y * y) + share * np.sqrt(longest)
 
-    def flattened(self, children: Nodes, runs: Runs, offsets: np.ndarray) -> tuple:
-        """Three pairs of (n,) coordinates in the parent's half-axes, seen along its normal: those of each child's
+    def flattened(self, children: Nodes, offsets: np.ndarray) -> tuple:
+        """Three pairs of (c, m) coordinates in the parent's half-axes, seen along its normal: those of each child's
         centre along both, and of its two half-axis vectors along the first and along the second.
         """
-        first, second = (runs.spread(a / h) for a, h in ((self.first, self.longest), (self.second, self.shortest)))
-        along = [[_dot(axis, half) for half in children.axes] for axis in (first, second)]
-        return (_dot(first, offsets), _dot(second, offsets)), *along
+        first, second = (for_children(a / h) for a, h in ((self.first, self.longest), (self.second, self.shortest)))
+        along = [[dot(axis, half) for half in children.axes] for axis in (first, second)]
+        return (dot(first, offsets), dot(second, offsets)), *along
 
-    def bare(self, children: Nodes, runs: Runs, offsets: np.ndarray) -> np.ndarray:
+    def bare(self, children: Nodes, offsets: np.ndarray) -> np.ndarray:
         """(m,) a bound on the distance of each of `PLACES` on the parent's ellipse from the nearest of its children's.
 
         Outside a child's ellipse, at e times the way to its rim, the distance is at most e - 1 of its longer half-axes.
         """
-        (x, y), (a, b), (c, d) = self.flattened(children, runs, offsets)
-        area = a * d - b * c
-        scale = np.where(area < 0, np.float32(-1), np.float32(1)) / np.maximum(np.abs(area), np.float32(1e-12))
-        # places in the child's half-axes: the inverse of its matrix, applied to their difference from its centre
-        across = np.stack([b * y - d * x, d, -b], axis=1) * scale[:, None] @ PLACES
-        along = np.stack([c * x - a * y, -c, a], axis=1) * scale[:, None] @ PLACES
-        across *= across
-        along *= along
-        across += along
-        beside = np.sqrt(across, out=across)
-        beside -= 1
-        beside *= children["radii"][:, None]
-        return np.maximum(np.minimum.reduceat(beside, runs.starts, axis=0).max(axis=1), 0)
+        (x, y), (a, b), (c, d) = self.flattened(children, offsets)
+        area, radii = a * d - b * c, children["radii"]
+        scale = np.where(area < 0, -radii, radii) / np.maximum(np.abs(area), np.float32(1e-12))
+        # places in the child's longer half-axes: the inverse of its matrix, applied to their difference from its centre
+        across = (np.stack([b * y - d * x, d, -b]) * scale).reshape(3, -1)
+        along = (np.stack([c * x - a * y, -c, a]) * scale).reshape(3, -1)
+        farthest = np.zeros(area.shape[-1], np.float32)
+        for some in np.split(PLACES, _PORTIONS):
+            squares, more = some @ across, some @ along
+            squares *= squares
+            more *= more
+            squares += more
+            beside = np.sqrt(squares, out=squares).reshape(-1, *area.shape)
+            beside -= radii
+            np.maximum(farthest, beside.min(axis=1).max(axis=0), out=farthest)
+        return farthest
 
 
-def bounds(children: Nodes, runs: Runs, offsets: np.ndarray, frame: Frame, shading, colors) -> dict[str, np.ndarray]:
-    """(m,) off, uncovered, overhang and spread of the parents. offsets: (3, n) positions of the children
+def bounds(children: Nodes, offsets: np.ndarray, frame: Frame, shading, colors) -> dict[str, np.ndarray]:
+    """(m,) off, uncovered, overhang and spread of the parents. offsets: (3, c, m) positions of the children
     relative to their parents. shading, colors: (3, m), (4, m) of the parents.
     """
-    normal = runs.spread(frame.normal)
-    tilt = np.sqrt(np.maximum(1 - _dot(normal, children["normals"]) ** 2, 0))
-    height = _dot(normal, offsets)
-    rise = np.sqrt(_dot(normal, children.axes[0]) ** 2 + _dot(normal, children.axes[1]) ** 2)
+    normal = for_children(frame.normal)
+    tilt = np.sqrt(np.maximum(1 - dot(normal, children["normals"]) ** 2, 0))
+    height = dot(normal, offsets)
+    rise = np.sqrt(dot(normal, children.axes[0]) ** 2 + dot(normal, children.axes[1]) ** 2)
     slack = _ROUNDING * frame.longest
-    off = runs.largest(children["off"] + np.abs(height) + rise + children["uncovered"] * tilt) + slack
+    off = largest(children["off"] + np.abs(height) + rise + children["uncovered"] * tilt) + slack
 
     moved = children["off"] * tilt
-    outside = np.maximum(frame.reach(children, runs, offsets, np.float32(1)) - 1, 0) * runs.spread(frame.longest)
-    uncovered = runs.largest(outside + children["uncovered"] + moved) + slack
+    outside = np.maximum(frame.reach(children, offsets, np.float32(1)) - 1, 0) * frame.longest
+    uncovered = largest(outside + children["uncovered"] + moved) + slack
 
-    overhang = frame.bare(children, runs, offsets) + runs.largest(children["overhang"] + moved) + slack
+    overhang = frame.bare(children, offsets) + largest(children["overhang"] + moved) + slack
 
-    turned = np.sqrt(np.maximum(2 - 2 * _dot(runs.spread(shading), children["shading"]), 0)) / 2
-    tinted = np.abs(runs.spread(colors) - children["colors"]).max(axis=0)
-    spread = runs.largest(np.maximum(turned, tinted) + children["spread"])
+    turned = np.sqrt(np.maximum(2 - 2 * dot(for_children(shading), children["shading"]), 0)) / 2
+    tinted = np.abs(for_children(colors) - children["colors"]).max(axis=0)
+    spread = largest(np.maximum(turned, tinted) + children["spread"])
     return {"off": off, "uncovered": uncovered, "overhang": overhang, "spread": spread}
-
-
-def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.einsum("kn,kn->n", a, b)

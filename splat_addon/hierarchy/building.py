@@ -13,6 +13,7 @@ import numpy as np
 from ..surfels import Surfels, concatenate, empty_surfels
 from .blocks import Blocks, Geometry, Level, depth_first, make_blocks
 from .clusters import clustered
+from .families import families
 from .merging import OVERLAP, as_surfels, merged
 from .nodes import PORTION, Leaves, Table
 from .runs import Runs
@@ -100,8 +101,9 @@ def build_levels(surfels: Surfels, told: Told = _untold) -> tuple[Surfels, np.nd
     told: as in `build_hierarchy`.
     """
     current = Leaves(surfels)
-    numbers, worst = np.arange(len(surfels), dtype=np.int32), np.zeros((len(surfels), 3), np.float32)
-    made, errors, levels, places = [empty_surfels(surfels.origin)], [worst[:0]], [], [geometry_of(current)]
+    numbers, worst = np.arange(len(surfels), dtype=np.int32), None
+    made, errors = [empty_surfels(surfels.origin)], [np.zeros((0, 3), np.float32)]
+    levels, places = [], [geometry_of(current)]
     total, left = len(surfels), 1 - _LEAVES
     told(_LEAVES)
     for cell in _cells(surfels):
@@ -118,7 +120,8 @@ def build_levels(surfels: Surfels, told: Told = _untold) -> tuple[Surfels, np.nd
         parents, drawn, own = merged_level(current, worst, rows, runs, cell, told_of_level)
         fresh = np.arange(total, total + len(parents), dtype=np.int32)
         total += len(parents)
-        numbers, worst = np.concatenate([fresh, numbers[waiting]]), np.concatenate([own, worst[waiting]])
+        numbers = np.concatenate([fresh, numbers[waiting]])
+        worst = np.concatenate([own, np.zeros((len(waiting), 3), np.float32) if worst is None else worst[waiting]])
         counts = np.concatenate([runs.counts, np.ones(len(waiting), runs.counts.dtype)]).astype(np.int32)
         levels.append(Level(numbers, np.concatenate([rows, waiting]).astype(np.int32), counts, cell))
         made.append(as_surfels(drawn, surfels))
@@ -131,20 +134,26 @@ def build_levels(surfels: Surfels, told: Told = _untold) -> tuple[Surfels, np.nd
 
 
 def merged_level(
-    current: Table | Leaves, worst: np.ndarray, rows: np.ndarray, runs: Runs, cell: float, told: Told = _untold
+    current: Table | Leaves, worst: np.ndarray | None, rows: np.ndarray, runs: Runs, cell: float, told: Told = _untold
 ) -> tuple[Table, Table, np.ndarray]:
     """The parents of runs of rows of a level, the same as they are drawn, and their (m, 3) errors.
 
-    worst: (n, 3) errors of the level's rows. told: as in `build_hierarchy`, of this level.
+    worst: (n, 3) errors of the level's rows; None for surfels, which have none. told: as in `build_hierarchy`, of this
+        level.
     """
-    parts = []
-    for some, part in runs.portions(PORTION):
-        told(_ORDERED + (_MERGED - _ORDERED) * some.start / len(rows))
-        parts.append(Table.of(merged(current.take(rows[some]), part, cell)))
+    parents, below, done = None, np.zeros((len(runs.starts), 3), np.float32), 0
+    for some in families(runs, PORTION):
+        told(_ORDERED + (_MERGED - _ORDERED) * done / len(below))
+        children = rows[some.children]
+        made = merged(current.take(children.ravel()).in_families(some), cell)
+        parents = Table.like(made, len(below)) if parents is None else parents
+        parents.fill(made, some.parents)
+        if worst is not None:
+            below[some.parents] = worst[children].max(axis=0)
+        done += len(some.parents)
     told(_MERGED)
-    parents = Table(parts[0].widths, np.concatenate([part.rows for part in parts]))
     drawn = as_drawn(parents, cell)
-    return parents, drawn, np.maximum(_errors(drawn), np.maximum.reduceat(worst[rows], runs.starts, axis=0))
+    return parents, drawn, np.maximum(_errors(drawn), below)
 
 
 def _cells(surfels: Surfels) -> Iterator[float]:

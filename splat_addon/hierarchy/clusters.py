@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .blocks import ranges
 from .nodes import PORTION, Leaves, Table
 from .ordering import BITS, sorted_with_order
 
@@ -25,41 +26,45 @@ _STEPS = 16
 def clustered(table: Table | Leaves, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray]:
     """(n,) order that brings the given rows together by cluster, and the (m,) sizes of the clusters in that order."""
     order, is_first, depth = _sorted(table, rows, cell)
-    is_first[1:] |= depth[1:] - depth[:-1] > GAP * _STEPS
+    starts = np.flatnonzero(is_first)
+    deepest = depth[np.append(starts[1:], len(order)) - 1] - depth[starts]
     # a chain of small gaps is cut if it gets too deep
-    starts = np.flatnonzero(is_first)
-    depth = depth - np.repeat(depth[starts], np.diff(np.append(starts, len(order))))
-    layer = depth // int(MOST_DEPTH * _STEPS)
-    is_first[1:] |= layer[1:] != layer[:-1]
-    starts = np.flatnonzero(is_first)
+    most = int(MOST_DEPTH * _STEPS)
+    deep = np.flatnonzero(deepest >= most)
+    if len(deep):
+        counts = np.diff(np.append(starts, len(order)))[deep]
+        chains = ranges(starts[deep], counts)
+        layer = (depth[chains] - np.repeat(depth[starts[deep]], counts)) // most
+        is_first[chains[1:][layer[1:] != layer[:-1]]] = True
+        starts = np.flatnonzero(is_first)
     return order, np.diff(np.append(starts, len(order)))
 
 
 def _sorted(table: Table | Leaves, rows: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(n,) order by place and depth; in this order, (n,) bool that marks each new place, and the (n,) depths in
-    steps.
+    """(n,) order by place and depth; in this order, (n,) bool that marks each new place and each gap, and (n,) depths
+    in steps, of which only differences within a place count.
     """
-    positions, normals = table.column("positions"), table.column("normals")
-    materials = table.column("materials").astype(np.int64)
+    positions, normals, materials = (table.column(name) for name in ("positions", "normals", "materials"))
     low, cells = positions.min(axis=1), int(np.ptp(positions, axis=1).max() / cell) + 2
-    # materials and sides, columns, rows, and depths over a cell, which reach a cell farther at either end
-    bits = [n.bit_length() for n in (6 * int(materials.max()) + 5, cells, cells, (cells + 2) * _STEPS)]
-    fits = sum(bits) <= BITS
-    parts = []
+    # materials and sides, columns, rows, and depths over a cell, which reach a cell farther at either end; one more bit
+    # of depth, so that keys of different places differ more than those beside a gap
+    bits = [n.bit_length() for n in (6 * int(materials.max()) + 5, cells, cells, 2 * (cells + 2) * _STEPS)]
+    fits, gap = sum(bits) <= BITS, GAP * _STEPS
+    keys = np.empty(len(rows) if fits else (4, len(rows)), np.int64)
+    is_everything = len(rows) == len(table)
     for start in range(0, len(rows), PORTION):
-        some = rows[start : start + PORTION]
+        part = slice(start, start + PORTION)
+        some = part if is_everything else rows[part]
         columns = _places(positions[:, some], normals[:, some], materials[some], low, cell)
-        parts.append(_packed(columns, bits) if fits else np.stack(columns))
-    keys = np.concatenate(parts, axis=-1)
+        keys[..., part] = _packed(columns, bits) if fits else columns
     is_first = np.ones(len(rows), bool)
     if fits:
         keys, order = sorted_with_order(keys, sum(bits))
-        place, depth = keys >> bits[-1], keys & ((1 << bits[-1]) - 1)
-        is_first[1:] = place[1:] != place[:-1]
-    else:
-        order = np.lexsort(keys[::-1])
-        place, depth = keys[:-1, order], keys[-1, order]
-        is_first[1:] = (place[:, 1:] != place[:, :-1]).any(axis=0)
+        np.greater(np.diff(keys), gap, out=is_first[1:])
+        return order, is_first, keys
+    order = np.lexsort(keys[::-1])
+    place, depth = keys[:-1, order], keys[-1, order]
+    is_first[1:] = (place[:, 1:] != place[:, :-1]).any(axis=0) | (np.diff(depth) > gap)
     return order, is_first, depth
 
 
@@ -75,12 +80,15 @@ def _places(positions, normals, materials, low: np.ndarray, cell: float) -> list
     """Non-negative integers for each surfel: its material and side, its cell's column and row, and its depth in
     the cell.
     """
-    facing = np.abs(normals).argmax(axis=0)
-    columns = np.empty((4, len(facing)), np.int64)
-    for axis in range(3):
-        at = np.flatnonzero(facing == axis)
+    sizes = np.abs(normals)
+    is_x = (sizes[0] >= sizes[1]) & (sizes[0] >= sizes[2])
+    is_y = ~is_x & (sizes[1] >= sizes[2])
+    columns = np.empty((4, len(is_x)), np.int64)
+    for axis, is_facing in enumerate((is_x, is_y, ~(is_x | is_y))):
+        # samples of a grid come axis by axis
+        at = slice(None) if is_facing.all() else np.flatnonzero(is_facing)
         normal, size = normals[axis, at], np.float32(cell)
-        columns[0, at] = 6 * materials[at] + 2 * axis + (normal < 0)
+        columns[0, at] = np.maximum(6 * materials[at].astype(np.int64) + 2 * axis + (normal < 0), 0)
         depth = (positions[axis, at] - low[axis]) / size
         for k in (1, 2):
             other = (axis + k) % 3
@@ -89,5 +97,5 @@ def _places(positions, normals, materials, low: np.ndarray, cell: float) -> list
             columns[k, at] = whole
             # half a cell along a plane that faces this axis most changes depth by at most half a cell
             depth -= (whole + np.float32(0.5) - along) * (normals[other, at] / normal)
-        columns[3, at] = np.floor((depth + 1) * _STEPS)
-    return list(np.maximum(columns, 0))
+        columns[3, at] = np.maximum(np.floor((depth + 1) * _STEPS), 0)
+    return list(columns)

@@ -14,8 +14,8 @@ import numpy as np
 
 from ..surfels import Surfels, axes_quaternions
 from .bounds import Frame, bounds
+from .families import for_children, largest, total
 from .nodes import MEANS, Nodes, Table
-from .runs import Runs
 from .texture_places import along_axes, merged_places
 
 #: Half-axis of the splat of a square cell, relative to its edge, as conversion makes it.
@@ -34,23 +34,23 @@ _NARROWEST = np.float32(0.02)
 _LEAST_BLENDING = 0.05
 
 
-def merged(children: Nodes, runs: Runs, cell: float) -> Nodes:
-    """The merged parents of runs of children."""
-    areas = runs.sum(children["areas"])
-    shares = children["areas"] / runs.spread(areas)
-    centre = runs.sum(children["positions"] * shares)
-    offsets = children["positions"] - runs.spread(centre)
-    normal = _unit(runs.sum(children["normals"] * shares))
-    frame = _ellipse(children, runs, shares, offsets, normal)
-    shading = runs.sum(children["shading"] * shares)
+def merged(children: Nodes, cell: float) -> Nodes:
+    """The m merged parents of families of c children each, whose arrays are (..., c, m)."""
+    areas = total(children["areas"])
+    shares = children["areas"] / areas
+    centre = total(children["positions"] * shares)
+    offsets = children["positions"] - for_children(centre)
+    normal = _unit(total(children["normals"] * shares))
+    frame = _ellipse(children, shares, offsets, normal)
+    shading = total(children["shading"] * shares)
     length = np.sqrt(np.einsum("kn,kn->n", shading, shading))
     shading = np.where(length > 1e-3, shading / np.maximum(length, 1e-12), normal)
-    colors = _colors(children, runs, shares)
-    values = {name: runs.sum(children[name] * shares) for name in MEANS if name in children}
+    colors = _colors(children, shares)
+    values = {name: total(children[name] * shares) for name in MEANS if name in children}
     if "roughness" in children:
-        values["roughness"] = _roughness(children["roughness"], runs, shares, length)
+        values["roughness"] = _roughness(children["roughness"], shares, length)
     if "uv" in children:
-        values["uv"] = merged_places(children["uv"], shares, offsets, runs, cell)
+        values["uv"] = merged_places(children["uv"], shares, offsets, cell)
     return Nodes(
         {
             "positions": centre,
@@ -59,10 +59,10 @@ def merged(children: Nodes, runs: Runs, cell: float) -> Nodes:
             "second_axis": frame.second * frame.shortest,
             "radii": frame.longest,
             "areas": areas,
-            "materials": children["materials"][runs.starts],
+            "materials": children["materials"][0],
             "shading": shading,
             "colors": colors,
-            **bounds(children, runs, offsets, frame, shading, colors),
+            **bounds(children, offsets, frame, shading, colors),
             **values,
         }
     )
@@ -97,7 +97,7 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.sqrt(np.einsum("kn,kn->n", vectors, vectors))
 
 
-def _ellipse(children: Nodes, runs: Runs, shares: np.ndarray, offsets: np.ndarray, normal: np.ndarray) -> Frame:
+def _ellipse(children: Nodes, shares: np.ndarray, offsets: np.ndarray, normal: np.ndarray) -> Frame:
     """Ellipses from the second moments of the children, on the planes of the normals."""
     (u, v), d = children.axes, offsets
     across, along = _tangents(normal)
@@ -105,7 +105,7 @@ def _ellipse(children: Nodes, runs: Runs, shares: np.ndarray, offsets: np.ndarra
     for i in range(3):
         for k in range(i, 3):
             each = u[i] * u[k] + v[i] * v[k] + _PER_VARIANCE * (d[i] * d[k])
-            moments[i, k] = runs.sum(each * shares)
+            moments[i, k] = total(each * shares)
 
     def quadratic(a, b):
         return sum(a[i] * b[k] * moments[min(i, k), max(i, k)] for i in range(3) for k in range(3))
@@ -118,7 +118,7 @@ def _ellipse(children: Nodes, runs: Runs, shares: np.ndarray, offsets: np.ndarra
     longest = np.sqrt(middle + half)
     shortest = np.maximum(np.sqrt(np.maximum(middle - half, 0)), _NARROWEST * longest)
     frame = Frame(normal, first, second, longest, shortest)
-    wider = np.clip(runs.largest(frame.reach(children, runs, offsets, _CORE)), 1, _MOST_WIDENED)
+    wider = np.clip(largest(frame.reach(children, offsets, _CORE)), 1, _MOST_WIDENED)
     return Frame(normal, first, second, longest * wider, shortest * wider)
 
 
@@ -131,21 +131,21 @@ def _tangents(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.stack([1 + sign * x * x * a, sign * b, -sign * x]), np.stack([b, sign + y * y * a, -y])
 
 
-def _colors(children: Nodes, runs: Runs, shares: np.ndarray) -> np.ndarray:
+def _colors(children: Nodes, shares: np.ndarray) -> np.ndarray:
     """(4, m): the mean opacity, and colours weighted by opacity unless all are fully transparent."""
     if (children["colors"][3] == 1).all():
-        result = np.ones((4, len(runs.starts)), np.float32)
-        result[:3] = runs.sum(children["colors"][:3] * shares)
+        result = np.ones((4, shares.shape[-1]), np.float32)
+        result[:3] = total(children["colors"][:3] * shares)
         return result
     hiding = children["colors"][3] + np.float32(1e-6)
-    result = runs.sum(np.concatenate([children["colors"][:3] * hiding, hiding[None]]) * shares)
+    result = total(np.concatenate([children["colors"][:3] * hiding, hiding[None]]) * shares)
     result[:3] /= result[3]
     result[3] -= np.float32(1e-6)
     return result
 
 
-def _roughness(roughness: np.ndarray, runs: Runs, shares: np.ndarray, length: np.ndarray) -> np.ndarray:
+def _roughness(roughness: np.ndarray, shares: np.ndarray, length: np.ndarray) -> np.ndarray:
     """(1, m): alpha = roughness^2; alpha^2 is twice the variance of the slopes, to which that of the normals adds
     (1 - length) / length (Toksvig 2005)."""
     variance = (1 - np.minimum(length, 1)) / np.maximum(length, 1e-3)
-    return np.minimum((runs.sum(roughness**4 * shares) + 2 * variance) ** 0.25, 1)
+    return np.minimum((total(roughness**4 * shares) + 2 * variance) ** 0.25, 1)

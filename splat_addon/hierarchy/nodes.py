@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from ..clip_lines import CLIP_FIELDS, CUT
-from ..surfels import Surfels, quaternion_axes
+from ..surfels import Surfels, axes_columns
+from .families import Families
 from .texture_places import gradients
 
 #: Fields that are plainly averaged. Colours, normals, roughness and texture coordinates have their own rules.
@@ -23,7 +24,8 @@ _SINGLE = {"radii", "areas", "materials", "off", "uncovered", "overhang", "sprea
 
 
 class Nodes:
-    """n surfels, float32; by name or index each a (n,) or (columns, n) array.
+    """n surfels, float32; by name or index each a (n,) or (columns, n) array. In families of c children, which follow
+    one another place by place, n is (c, m).
 
     positions, normals: (3, n), the latter the planes' and unit. first_axis, second_axis: (3, n) half-axis vectors.
     radii: the longer of their lengths. areas: weights. materials: whole numbers. shading: (3, n) unit. colors: (4, n).
@@ -47,6 +49,14 @@ class Nodes:
     def axes(self) -> tuple[np.ndarray, np.ndarray]:
         return self["first_axis"], self["second_axis"]
 
+    def in_families(self, families: Families) -> Nodes:
+        """The children of these families, one place of all of them after another; fillers have no area."""
+        shape = families.children.shape
+        arrays = {name: array.reshape(*array.shape[:-1], *shape) for name, array in self.arrays.items()}
+        if families.counted is not None:
+            arrays["areas"] = arrays["areas"] * families.counted
+        return Nodes(arrays)
+
 
 class Table:
     """Nodes stored row by row, so that the scattered members of a cluster are gathered with few memory accesses.
@@ -62,15 +72,20 @@ class Table:
 
     @classmethod
     def of(cls, nodes: Nodes) -> Table:
-        widths = {name: len(np.atleast_2d(array)) for name, array in nodes.arrays.items()}
-        table = cls(widths, np.empty((len(nodes), sum(widths.values())), np.float32))
+        table = cls.like(nodes, len(nodes))
         table.fill(nodes, slice(None))
         return table
 
-    def fill(self, nodes: Nodes, rows: slice) -> None:
+    @classmethod
+    def like(cls, nodes: Nodes, count: int) -> Table:
+        """An empty table with the columns of these nodes."""
+        widths = {name: len(np.atleast_2d(array)) for name, array in nodes.arrays.items()}
+        return cls(widths, np.empty((count, sum(widths.values())), np.float32))
+
+    def fill(self, nodes: Nodes, rows: slice | np.ndarray) -> None:
         """Writes nodes to some rows."""
-        for name, array in nodes.arrays.items():
-            self.rows[rows, self._place(name)] = np.atleast_2d(array).T
+        columns = np.concatenate([np.atleast_2d(nodes[name]) for name in self.widths], dtype=np.float32)
+        self.rows[rows] = columns.T
 
     def column(self, name: str) -> np.ndarray:
         """The values of one column, (n,) or (columns, n)."""
@@ -129,44 +144,44 @@ class Leaves:
         surfels, normals = self.surfels, np.empty((3, len(self)), np.float32)
         for start in range(0, len(self), PORTION):
             some = slice(start, start + PORTION)
-            normals[:, some] = quaternion_axes(surfels.rotations[some])[2].T
+            normals[:, some] = axes_columns(surfels.rotations[some], 2)
         columns = {"positions": surfels.positions.T, "normals": normals, "radii": surfels.radius}
         return {name: np.ascontiguousarray(array) for name, array in columns.items()} | {"materials": surfels.materials}
 
 
 def _leaves(surfels: dict[str, np.ndarray]) -> Nodes:
     """Nodes from the fields of surfels."""
-    x, y, z = quaternion_axes(surfels["rotations"])
-    scales, zero = surfels["scales"], np.zeros(len(x), np.float32)
+    x, y, z = axes_columns(surfels["rotations"], 0, 1, 2)
+    scales = np.ascontiguousarray(surfels["scales"].T)
+    zero, radii = np.zeros_like(scales[0]), np.maximum(*scales)
     values = {name: np.atleast_2d(surfels[name].T) for name in (*MEANS, "roughness") if name in surfels}
     if all(name in surfels for name in ("uvs", "uv_along_x", "uv_along_y")):
         values["uv"] = np.concatenate([surfels["uvs"].T, gradients(surfels, x, y)])
     nodes = {
         "positions": surfels["positions"].T,
-        "normals": z.T,
-        "first_axis": (x * scales[:, :1]).T,
-        "second_axis": (y * scales[:, 1:]).T,
-        "radii": np.maximum(scales[:, 0], scales[:, 1]),
-        "areas": scales[:, 0] * scales[:, 1],
+        "normals": z,
+        "first_axis": x * scales[0],
+        "second_axis": y * scales[1],
+        "radii": radii,
+        "areas": scales[0] * scales[1],
         "materials": surfels["materials"],
         "shading": surfels["normals"].T,
         "colors": surfels["colors"].T,
         "off": zero,
         "uncovered": zero,
-        "overhang": _cut_off(surfels),
+        "overhang": _cut_off(surfels, radii),
         "spread": zero,
         **values,
     }
     return Nodes({name: np.ascontiguousarray(array) for name, array in nodes.items()})
 
 
-def _cut_off(surfels: dict[str, np.ndarray]) -> np.ndarray:
+def _cut_off(surfels: dict[str, np.ndarray], radii: np.ndarray) -> np.ndarray:
     """(n,) float32 distance by which ellipses extend beyond what their clip lines keep, object units.
 
     A single line on the far side of the centre removes no more than its depth. With two lines, or a line that removes
     the centre, the kept part may be anywhere in the ellipse.
     """
-    radii = surfels["scales"].max(axis=1)
     cuts = [surfels[name][:, 1] / CUT for name in CLIP_FIELDS if name in surfels]
     if not cuts:
         return np.zeros_like(radii)

@@ -32,7 +32,7 @@ def refit_hierarchy(hierarchy: Hierarchy, surfels: Surfels) -> Hierarchy:
         return hierarchy
     entries, counts = _by_level(hierarchy)
     current, rows = Leaves(surfels), entries[0]
-    worst = np.zeros((len(surfels), 3), np.float32)
+    worst = None
     made, errors, places = [], [], [geometry_of(current)]
     for numbers, own_counts, cell in zip(entries[1:], counts, hierarchy.cells, strict=True):
         several = own_counts > 1
@@ -49,7 +49,8 @@ def refit_hierarchy(hierarchy: Hierarchy, surfels: Surfels) -> Hierarchy:
         order = np.empty(len(numbers), np.int64)
         order[np.concatenate([np.flatnonzero(several), np.flatnonzero(~several)])] = np.arange(len(numbers))
         current, rows = current.joined([parents], waiting).of_rows(order), np.arange(len(numbers))
-        worst = np.concatenate([own, worst[waiting]])[order]
+        kept = np.zeros((len(waiting), 3), np.float32) if worst is None else worst[waiting]
+        worst = np.concatenate([own, kept])[order]
     geometry = Geometry(*(np.concatenate(parts, axis=-1) for parts in zip(*places, strict=True)))
     every = np.concatenate(errors)
     blocks = make_blocks(entries, counts, geometry, every)

@@ -47,7 +47,7 @@ _BITS = 20
 _MOST = 32
 
 #: Surfels per batch, few enough for temporaries to stay in the processor's cache.
-_PORTION = 1 << 12
+_PORTION = 1 << 11
 
 
 def as_drawn(nodes: Table, cell: float) -> Table:
@@ -57,13 +57,15 @@ def as_drawn(nodes: Table, cell: float) -> Table:
     cell: of the level. Where surfels have moved apart since they were built, neighbours are searched farther away.
     """
     keys, order = _voxels(nodes.column("positions"), max(cell, float(np.median(nodes.column("radii")))))
-    some = nodes.take(order)
+    some, near = nodes.take(order), _Near(keys)
     values = np.concatenate([some["shading"], some["colors"][:3]])
+    columns = some["positions"], some["normals"], some["materials"], some["radii"], values
+    candidates = np.ascontiguousarray(np.vstack(columns).T)
     change, is_border = np.empty_like(values), np.empty(len(order), bool)
     for start in range(0, len(order), _PORTION):
         part = slice(start, start + _PORTION)
-        pairs = _Pairs(some, part, keys)
-        change[:, part] = values[:, part] - pairs.blurred(values)
+        pairs = _Pairs(some, part, candidates, *near.rows(part))
+        change[:, part] = values[:, part] - pairs.blurred(values[:, part])
         is_border[part] = pairs.are_at_borders()
     shading, colors = (
         kind + _limited(more) for kind, more in zip((values[:3], values[3:]), (change[:3], change[3:]), strict=True)
@@ -96,24 +98,28 @@ def _voxels(positions: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray]
 
 
 class _Pairs:
-    """m surfels of a level, a part of all in the order of their voxels, and n candidates for their neighbours."""
+    """m surfels of a level, a part of all in the order of their voxels, and n candidates for their neighbours.
 
-    def __init__(self, nodes: Nodes, part: slice, keys: np.ndarray):
-        self.nodes, self.part = nodes, part
-        self.rows, self.counts = _near(part, keys)
-        self.starts = np.cumsum(self.counts) - self.counts
-        self.offsets = nodes["positions"][:, self.rows] - self._own("positions")
-        self.cosines = _dot(nodes["normals"][:, self.rows], self._own("normals"))
-        self.cosines[nodes["materials"][self.rows] != self._own("materials")] = -1
+    candidates: (N, 14) of all surfels: position, normal, material, radius and the values that mix in a picture.
+    rows: (n,) candidates, one surfel's after the other's. counts: (m,) number of each one's.
+    """
 
-    def blurred(self, values: np.ndarray) -> np.ndarray:
+    def __init__(self, nodes: Nodes, part: slice, candidates: np.ndarray, rows: np.ndarray, counts: np.ndarray):
+        self.nodes, self.part, self.counts = nodes, part, counts
+        self.starts = np.cumsum(counts) - counts
+        columns = np.ascontiguousarray(np.take(candidates, rows, axis=0).T)
+        self.offsets, self.radii, self.values = columns[:3], columns[7], columns[8:]
+        self.offsets -= self._own("positions")
+        self.cosines = _dot(columns[3:6], self._own("normals"))
+        self.cosines[columns[6] != self._own("materials")] = -1
+
+    def blurred(self, own: np.ndarray) -> np.ndarray:
         """(6, m) the values that a picture shows at the centres; their own if too many are crowded there to count."""
-        distance = _dot(self.offsets, self.offsets) / self.nodes["radii"][self.rows] ** 2
-        counted = (distance < _END) & (self.cosines > _SAME_SIDE)
-        weights = np.where(counted, np.exp(_SHARPNESS * distance), 0)
+        distance = _dot(self.offsets, self.offsets) / self.radii**2
+        weights = np.exp(_SHARPNESS * distance) * ((distance < _END) & (self.cosines > _SAME_SIDE))
         total = self._sum(weights)
-        means = self._sum(values[:, self.rows] * weights) / np.maximum(total, np.float32(1e-30))
-        return np.where(total > 0, means, values[:, self.part])
+        means = self._sum(self.values * weights) / np.maximum(total, np.float32(1e-30))
+        return np.where(total > 0, means, own)
 
     def are_at_borders(self) -> np.ndarray:
         """(m,) whether neighbours are on one side only, or few."""
@@ -130,13 +136,24 @@ class _Pairs:
         return np.add.reduceat(columns, self.starts, axis=-1)
 
 
-def _near(part: slice, keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) rows in the 27 voxels around those of m surfels, one's after the other's, and the (m,) number of each."""
-    beside = np.array([(a << 2 * _BITS) + (b << _BITS) for a in (-1, 0, 1) for b in (-1, 0, 1)])
-    columns = keys[part] + beside[:, None]
-    first = np.searchsorted(keys, columns - 1)
-    counts = np.minimum(np.searchsorted(keys, columns + 2) - first, _MOST)
-    return ranges(first.T.ravel(), counts.T.ravel()), counts.sum(axis=0)
+class _Near:
+    """Finds what lies in the 27 voxels around a surfel's, in N surfels in the order of their (N,) voxels."""
+
+    def __init__(self, keys: np.ndarray):
+        self.keys = keys
+        self.ends = np.concatenate([np.searchsorted(keys, keys + k) for k in (1, 2, 3)])
+
+    def rows(self, part: slice) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) rows around those of m surfels, one's after the other's, and the (m,) number of each."""
+        beside = np.array([(a << 2 * _BITS) + (b << _BITS) for a in (-1, 0, 1) for b in (-1, 0, 1)])
+        columns = self.keys[part] + beside[:, None]
+        first = np.minimum(np.searchsorted(self.keys, columns - 1), len(self.keys) - 1)
+        # of three voxels in a row, so many follow the first one that is not empty
+        left = columns + 1 - self.keys[first]
+        has_any = (left >= 0) & (left <= 2)
+        ends = self.ends[np.clip(left, 0, 2) * len(self.keys) + first]
+        counts = np.minimum(ends - first, _MOST) * has_any
+        return ranges(first.T.ravel(), counts.T.ravel()), counts.sum(axis=0)
 
 
 def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .runs import Runs
+from .families import dot, for_children, largest, total
 
 #: Maximum deviation, in cells.
 MOST_SLIP = 0.5
@@ -18,25 +18,24 @@ MOST_SLIP = 0.5
 def gradients(surfels: dict[str, np.ndarray], x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """(6, N) gradient of u, then of v, along the three axes of the object.
 
-    surfels: fields of N surfels. x, y: (N, 3) unit axes of the ellipses.
+    surfels: fields of N surfels. x, y: (3, N) unit axes of the ellipses.
     """
-    along = surfels["uv_along_x"] / surfels["scales"][:, :1], surfels["uv_along_y"] / surfels["scales"][:, 1:]
-    rows = [x * along[0][:, k : k + 1] + y * along[1][:, k : k + 1] for k in (0, 1)]
-    return np.concatenate(rows, axis=1).T
+    along = surfels["uv_along_x"].T / surfels["scales"][:, 0], surfels["uv_along_y"].T / surfels["scales"][:, 1]
+    return np.concatenate([x * along[0][k] + y * along[1][k] for k in (0, 1)])
 
 
-def merged_places(children, shares: np.ndarray, offsets: np.ndarray, runs: Runs, cell: float) -> np.ndarray:
-    """(8, m) texture coordinates and gradients of m merged surfels from (8, n) of their children.
+def merged_places(children, shares: np.ndarray, offsets: np.ndarray, cell: float) -> np.ndarray:
+    """(8, m) texture coordinates and gradients of m merged surfels from (8, c, m) of their children.
 
-    shares: (n,) each child's share of its parent's area. offsets: (3, n) positions of the children relative to their
-    parent.
+    shares: (c, m) each child's share of its parent's area. offsets: (3, c, m) positions of the children relative to
+        their parent.
     """
-    mean = runs.sum(children * shares)
-    of_child = runs.spread(mean)
+    mean = total(children * shares)
+    of_child = for_children(mean)
     size = np.sqrt(np.einsum("kn,kn->n", mean[2:], mean[2:]) / 2)
-    off = [children[k] - of_child[k] - np.einsum("an,an->n", of_child[2 + 3 * k : 5 + 3 * k], offsets) for k in (0, 1)]
-    slip = runs.largest(np.hypot(*off))
-    has_texture = runs.least((children[2:] != 0).any(axis=0).astype(np.float32)) > 0
+    off = [children[k] - of_child[k] - dot(of_child[2 + 3 * k : 5 + 3 * k], offsets) for k in (0, 1)]
+    slip = largest(np.hypot(*off))
+    has_texture = (children[2:] != 0).any(axis=0).all(axis=0)
     mean[2:, ~(has_texture & (slip <= MOST_SLIP * cell * size))] = 0
     return mean
 
