@@ -16,16 +16,22 @@ struct Shaded {
   Outputs outputs;
 };
 
+vec3 eye_position(ivec2 texel, float depth) {
+  vec2 place = view.window.xy + (vec2(texel) + 0.5) * view.window.zw;
+  return vec3(view.is_parallel > 0.5 ? place : place * depth, -depth);
+}
+
 #parts
+#include "lib/faces/{faces}.glsl"
+
 // mean: a surface with coverage above 0.
 Shaded shaded_sample(MeanSurface mean, ivec2 texel, int tap) {
-  vec2 place = view.window.xy + (vec2(texel) + 0.5) * view.window.zw;
-  vec3 position = vec3(view.is_parallel > 0.5 ? place : place * mean.depth, -mean.depth);
+  vec3 position = eye_position(texel, mean.depth);
   float size = length(mean.normal);
   vec3 normal = size > CANCELLED ? mean.normal / size : vec3(0.0, 0.0, 1.0);
   Shaded s = Shaded(mean, texel, tap, normal, frame.material.xyz, vec3(0.0), mean.coverage, NO_OUTPUTS);
   #hook prepare(s)
-  s.color = shade(position, normal, mean.color, s.material);
+  s.color = lit(s, position);
   s.outputs.diffuse_color = mean.color;
   #hook outputs(s)
   s.color += s.outputs.emission;

@@ -179,6 +179,7 @@ SCENES = {
     "polygons": lambda: scenes.polygons(size=SIZE),
     "solid_sphere": lambda: solid(*scenes.sphere(size=SIZE)),
     "clip_lines": lambda: clipped_iron(SIZE),
+    "folds": lambda: lit(*clipped_iron(SIZE)),
 }
 
 #: tests/rendering/test_transparency.py compares them with the truth, with all their layers.
@@ -274,6 +275,7 @@ CASES = [
     ("polygons", "mip", {"shading": "flat", "lines": Lines(width=2.0)}),
     *(("clip_lines", method, {"shading": "flat"}) for method in METHODS if method != "quad"),
     *(("clip_lines", method, {"storage": "16-bit"}) for method in ("quad", "mip")),
+    *(("folds", "mip", {"sum_format": sums}) for sums in ("float32", "float16")),
     ("own_materials", "mip", {}),
     *(("finishes", "mip", options) for options in ({}, {"sum_format": "float16"}, {"lights_splats": True})),
     ("holdout", "mip", {}),

@@ -22,7 +22,7 @@ CHOICES = {
     "background",
     "world_light",
 }
-CHOICES |= {"shadow_taps", "polygon_share", "polygon_blend", "sides", "rest_opacity"}
+CHOICES |= {"shadow_taps", "polygon_share", "polygon_blend", "sides", "rest_opacity", "faces"}
 #: Files of shaders/lib that two methods have in common.
 SHARED = "homogeneous", "raycast", "sprites", "surfel_quad"
 GLOBAL = re.compile(r"^(?:const )?(?:struct (\w+)|\w+ (\w+)(?:\[\d*\])?(?:\(| =|;))", re.MULTILINE)

@@ -23,6 +23,7 @@ FILES = {name: name_of(f) for f in FEATURES for name in (name_of(f), *getattr(f,
 #: feature -> ((reason, the files that name it), ...). No other file may name it.
 MEETINGS = {
     "back_culling": (("a frame tells how many splats were left out", "renderer.py"),),
+    "clip_lines": (("creases have two faces where splats end at them", "features/folds.py"),),
     "depth_bounds": (
         ("a level of its depths, coarser", "features/hiz.py hosts/hiz.frag.glsl"),
         ("of layers, whose depths are compared as those of the opaque are", "features/transparency.py"),
@@ -44,7 +45,7 @@ MEETINGS = {
     ),
     "gbuffer": (
         ("the mean of a splat's attributes is what is lit, looked at for lines and occlusion",
-         "hosts/mean_surface.glsl hosts/lines.frag.glsl features/ambient_occlusion.py"),
+         "hosts/mean_surface.glsl hosts/lines.frag.glsl features/ambient_occlusion.py lib/faces/both.glsl"),
         ("layers have sums as the opaque picture has",
          "features/transparency.py features/transparency.glsl features/oit.py hosts/oit_shading.frag.glsl"),
         ("planes that shadows compare depths with lie beside its depths", "features/shadows.py features/shadows.glsl"),

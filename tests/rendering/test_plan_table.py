@@ -208,6 +208,11 @@ TABLE = {
         TRANSPARENT, {"shading": "overdraw"}, PASSES, "gbuffer_overdraw", "-brdf_table", (),
     ),
     "clip lines": (CLIPPED, {}, PASSES, "", "", ("CLIP_LINES",)),
+    "clip lines under a light, by mip": (
+        replace(CLIPPED, lights=(SUN,)), {"method": "mip"},
+        ("visibility", "depth_bounds", "attributes", "deferred_lighting", "resolve"),
+        "row_depth depth_bounds shaded surface", "lights", ("CLIP_LINES", "FOLDS"),
+    ),
     "lines that cut nothing": (Scene([Instance(surfels(clip_line=np.zeros((2, 2))))]), {}, PASSES, "", "", ()),
     "blend depths": (Scene([Instance(surfels(blend_depth=[0.1, 1]))]), {}, PASSES, "", "", ("BLEND_DEPTH",)),
     "holdout": (HOLED, {}, PASSES, "", "", ("HOLDOUT",)),

@@ -48,6 +48,7 @@ DEFAULTS = {
     "polygon_blend": "attributes",
     "sides": "told_apart",
     "rest_opacity": "surfaces",
+    "faces": "one",
 }
 
 

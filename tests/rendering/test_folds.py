@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A crease under a light is as bright as its two faces are; a thin surface that bends smoothly keeps its highlight."""
+
+from dataclasses import replace
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import render_exact, scenes
+from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at, plan
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh, sample_mesh
+from tests.rendering.creased import clipped_iron
+
+SIZE = (96, 96)
+MIP = Settings(method="mip", supersampling=1, transparent_film=True)
+METAL = Material(roughness=0.25, metallic=1.0)
+SUN = Light("sun", energy=3.0, direction=(0, 0, -1))
+CAMERA = Camera.perspective(look_at((0, -3, 3), (0, 0, 0)), 0.5, SIZE, 0.1, 100)
+
+
+def roof(spacing: float):
+    """Two square faces that meet in a right angle; the ridge, not parallel to the picture, is in the middle."""
+    turn = np.array([(0.9, -0.436, 0), (0.436, 0.9, 0), (0, 0, 1)])
+    corners = np.array([(-1, 0, 0), (1, 0, 0), (-1, -1, -1), (1, -1, -1), (-1, 1, -1), (1, 1, -1)], float)
+    mesh = TriangleMesh(corners @ turn.T, np.array([(0, 2, 1), (2, 3, 1), (0, 1, 4), (4, 1, 5)]))
+    return sample_mesh(mesh, spacing=spacing, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
+
+
+def of_metal(surfels, **fields) -> Scene:
+    return Scene((Instance(surfels, materials=(METAL,)),), **{"lights": (SUN,), **fields})
+
+
+@pytest.mark.parametrize("pixels_apart", [0.75, 1.5, 3])
+@pytest.mark.parametrize("shading", ["principled", "phong"])
+def test_a_crease_is_lit_as_its_faces_are(shading, pixels_apart, render):
+    """The picture is compared with the exact one, which lights rays before it filters them.
+
+    Measured: errors of at most 0.001 within the roof. Lit with the mean of both normals, the ridge was up to 15 too
+    bright, and 4 at least.
+    """
+    scene, settings = of_metal(roof(pixels_apart * 1.9 / SIZE[0])), replace(MIP, shading=shading)
+    frame = render(scene, CAMERA, settings)
+    exact = render_exact(scene, CAMERA, settings, pixel_filter="gaussian")
+    inside = exact.coverage > 0.999
+    assert np.count_nonzero(inside) > 1000
+    assert np.abs(frame.color - exact.color)[inside].max() < 0.02
+
+
+def tube(radius: float):
+    """A smooth open tube through the middle, which slants in the picture; its surfels end at its two rims."""
+    turns = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    outward = np.stack([np.zeros(48), np.cos(turns), np.sin(turns)], axis=1)
+    corners = np.concatenate([radius * outward + (x, 0, 0) for x in (-0.8, 0.8)])
+    k, after = np.arange(48), (np.arange(48) + 1) % 48
+    triangles = np.concatenate([np.stack([k, after, 48 + k], 1), np.stack([after, 48 + after, 48 + k], 1)])
+    turn = np.array([(0.9, -0.436, 0), (0.436, 0.9, 0), (0, 0, 1)]).T
+    normals = np.concatenate([outward, outward])[triangles]
+    mesh = TriangleMesh(corners @ turn, triangles, corner_normals=normals @ turn)
+    return sample_mesh(mesh, spacing=0.75 * 1.9 / SIZE[0], crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
+
+
+@pytest.mark.parametrize("pixels", [1.5, 3])
+def test_a_thin_tube_keeps_its_highlight(pixels, render):
+    """Measured: 1.29 and 0.92 of the exact picture's light, but 0.48 and 0.70 if any two normals were two faces'."""
+    scene = of_metal(tube(pixels * 1.9 / SIZE[0]))
+    exact = render_exact(scene, CAMERA, MIP, pixel_filter="gaussian")
+    share = render(scene, CAMERA, MIP).color[..., :3].sum() / exact.color[..., :3].sum()
+    assert 0.85 < share < 1.4
+
+
+@pytest.mark.parametrize(
+    ("changes", "settings", "why"),
+    [
+        ({"lights": ()}, {}, "no light depends on the normal"),
+        ({}, {"shading": "flat"}, "no light depends on the normal"),
+        ({}, {"method": "quad"}, "quad ends splats sharply"),
+        ({}, {"lights_splats": True}, "splats are lit one by one"),
+        ({"surfels": scenes.sphere()[0].surfels}, {}, "no splat ends at a crease"),
+    ],
+)
+def test_only_lit_creases_take_the_time(changes, settings, why):
+    scene = replace(clipped_iron(SIZE)[0], lights=(SUN,))
+    assert "FOLDS" in dict(plan(scene, CAMERA, MIP).features)
+    without = plan(replace(scene, **changes), CAMERA, replace(MIP, **settings))
+    assert why in dict(without.skipped)["folds"] and "FOLDS" not in dict(without.features)
+    assert all(dict(part.choices).get("faces") != "both" for p in without.passes for part in p.parts)
+
+
+def test_tiles_show_what_the_whole_picture_shows(render, monkeypatch):
+    """Normals beside a tile tell which faces meet at its border."""
+    scene = of_metal(roof(0.03))
+    whole = render(scene, CAMERA, MIP).color
+    monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", 64)
+    assert len(plan(scene, CAMERA, MIP).tiles) > 1
+    assert np.abs(render(scene, CAMERA, MIP).color - whole).max() < 1e-3
