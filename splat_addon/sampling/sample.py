@@ -165,12 +165,12 @@ class SamplingRun:
             about = self.grid.spacing, self.options.tolerance
             arrays, error = merge_flat(arrays, _axes_of(images), *about, merging)
             saved = total - len(arrays["positions"])
-        if gaps:
-            arrays = _appended(arrays, gaps)
-        small_parts = int(missed[1].max(initial=-1)) + 1
+        more, small_parts = [gaps] if gaps else [], int(missed[1].max(initial=-1)) + 1
         if small_parts:
             about = self.options.splat_size, self._sampler, self._tangents, bool(self._uv_fields)
-            arrays = _appended(arrays, component_surfels(self.mesh, self._coordinates, self.grid, missed, *about))
+            more.append(component_surfels(self.mesh, self._coordinates, self.grid, missed, *about))
+        if more:
+            arrays = _joined(arrays, *more)
         surfels = Surfels(origin=self.grid.surfel_origin, **arrays)
         keeps_both_sides = self._chosen.merge is None and not small_parts
         report(1.0)
@@ -221,20 +221,20 @@ def _rows_of(images: tuple[Spans, ...]) -> list[tuple[int, slice]]:
     return [(axis, slice(start, end)) for axis, (start, end) in enumerate(zip((0, *ends), ends, strict=False))]
 
 
-def _appended(arrays: dict[str, np.ndarray], more: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Both sets concatenated by field; a field that one of them lacks is filled with its default."""
-    both = {}
-    for name in arrays | more:
+def _joined(*sets: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Sets concatenated by field; a field that one of them lacks is filled with its default."""
+    joined = {}
+    for name in dict.fromkeys(name for one in sets for name in one):
         parts = []
-        for part in (arrays, more):
-            if name in part:
-                parts.append(part[name])
+        for one in sets:
+            if name in one:
+                parts.append(one[name])
             else:
                 columns, dtype, value = OPTIONAL_LAYOUT[name]
-                count = len(part["positions"])
+                count = len(one["positions"])
                 parts.append(np.full((count, columns) if columns > 1 else count, value, dtype))
-        both[name] = np.concatenate(parts)
-    return both
+        joined[name] = np.concatenate(parts)
+    return joined
 
 
 def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[float], None]):

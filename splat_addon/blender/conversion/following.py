@@ -28,7 +28,7 @@ def at_origin_of_source(surfels: Surfels) -> Surfels:
     if not len(surfels):
         return surfels
     farthest = float(np.abs(surfels.origin).max() + np.abs(surfels.positions).max())
-    if farthest * _ROUNDING > _HARMLESS * float(np.median(surfels.scales.min(axis=1))):
+    if farthest * _ROUNDING > _HARMLESS * float(np.median(np.minimum(*surfels.scales.T))):
         return surfels
     return replace(surfels, origin=np.zeros(3), positions=(surfels.positions + surfels.origin).astype(np.float32))
 

@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, CUT, are_reflex, unpack_lines
-from ...surfels import quaternion_axes
+from ...surfels import axes_columns
 from ..attributes.blend_depths import LEAST_BLENDING
 from ..ldc.grid import Grid
 from ..mesh.triangle_mesh import triangle_chunks
@@ -102,7 +102,7 @@ def _places_and_normals(arrays: dict[str, np.ndarray], rows: np.ndarray, spacing
     for part in triangle_chunks(len(rows)):
         some = rows[part]
         np.multiply(arrays["positions"].take(some, axis=0).T, np.float32(1 / spacing), out=places[:, part])
-        normals[:, part] = quaternion_axes(arrays["rotations"].take(some, axis=0))[2].T
+        normals[:, part] = axes_columns(arrays["rotations"].take(some, axis=0), 2)[0]
     return places, normals
 
 
@@ -120,8 +120,8 @@ class _Lines:
         self.clipped[self.at] = np.arange(len(self.at))
         packed, sizes = [values.take(self.at, axis=0) for values in packed], sizes.take(self.at, axis=0)
         self.reflex = are_reflex(*packed)
-        x, y, _ = quaternion_axes(arrays["rotations"].take(rows.take(self.at), axis=0), 2)
-        half_axes = x.T / sizes[:, 0], y.T / sizes[:, 1]
+        x, y = axes_columns(arrays["rotations"].take(rows.take(self.at), axis=0), 0, 1)
+        half_axes = x / sizes[:, 0], y / sizes[:, 1]
         self.covectors = np.empty((2, 4, len(self.at)), np.float32)
         for covector, line in zip(self.covectors, packed, strict=True):
             a, b, c = unpack_lines(line).T
@@ -132,7 +132,7 @@ def _are_kept(covectors: np.ndarray, reflex: np.ndarray, offsets) -> np.ndarray:
     """(m,) bool, by `_Lines` of m surfels. offsets: three of (m,), in cells along x, y and z."""
     x, y, z = offsets
     one, other = (a * x + b * y + c * z + d >= 0 for a, b, c, d in covectors)
-    return np.where(reflex, one | other, one & other)
+    return (one & other) | (reflex & (one | other))
 
 
 class _Fit:
@@ -222,8 +222,8 @@ class _Fit:
 def _move(changed, rows: np.ndarray, normals: list[np.ndarray], offset: np.ndarray, slope: np.ndarray, spacing: float):
     """Give samples with these normals planes that are off theirs by (n,) `offset`, in cells, and have a (3, n) `slope`
     against them."""
-    for column, component in zip(changed["positions"].T, normals, strict=True):
-        column[rows] += component * (offset * np.float32(spacing))
+    offset = offset * np.float32(spacing)
+    changed["positions"][rows] += np.stack([component * offset for component in normals], axis=1)
     # The shortest turn from the normal n to n - slope.
     (sx, sy, sz), (nx, ny, nz) = slope, normals
     x, y, z = sy * nz - sz * ny, sz * nx - sx * nz, sx * ny - sy * nx
@@ -237,8 +237,7 @@ def _move(changed, rows: np.ndarray, normals: list[np.ndarray], offset: np.ndarr
         w * d + x * c - y * b + z * a,
     )
     length = np.sqrt(w * w + x * x + y * y + z * z)
-    for column, values in zip(changed["rotations"].T, turned, strict=True):
-        column[rows] = values / length
+    changed["rotations"][rows] = np.stack([values / length for values in turned], axis=1)
 
 
 def _cut_less(changed: dict[str, np.ndarray], rows: np.ndarray, less: np.ndarray):
