@@ -4,7 +4,8 @@
 
 #part splat_varyings
 void lit_splats_tell(Splat splat, int index) {
-  color_weight.rgb = texelFetch(lit_splats, ivec2(index % SPLATS_PER_ROW, index / SPLATS_PER_ROW), 0).rgb;
+  int place = gl_VertexID / 3;  // among those that are drawn
+  color_weight.rgb = texelFetch(lit_splats, ivec2(place % SPLATS_PER_ROW, place / SPLATS_PER_ROW), 0).rgb;
 }
 
 #part shaded_sample, polygons

@@ -4,7 +4,8 @@
 
 #part splat_varyings
 void oit_tell(Splat splat, int index) {
-  vec3 lit = texelFetch(lit_splats, ivec2(index % SPLATS_PER_ROW, index / SPLATS_PER_ROW), 0).rgb;
+  int place = gl_VertexID / 3;  // among those that are drawn
+  vec3 lit = texelFetch(lit_splats, ivec2(place % SPLATS_PER_ROW, place / SPLATS_PER_ROW), 0).rgb;
   color_weight = vec4(lit, splat.amplitude);  // a back hides as much as a front
   opacity = splat.opacity;
 }

@@ -1,6 +1,6 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 6 (lighting for each splat in the last layer).
-// Summary: lights each splat of an instance at its own position, and writes it to the texel of its number. Hooks:
-//          `prepare` runs before lighting, `emit` after it.
+// Summary: lights each splat of an instance at its own position, and writes it to the texel of its place among those
+//          that are drawn. Hooks: `prepare` runs before lighting, `emit` after it.
 
 vec3 material;
 vec3 emission;
@@ -10,7 +10,7 @@ vec3 emission;
 #parts
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
-  int index = texel.y * SPLATS_PER_ROW + texel.x;
+  int index = drawn_splat(texel.y * SPLATS_PER_ROW + texel.x);
   Splat splat = fetch_splat(index);
   material = frame.material.xyz;
   emission = vec3(0.0);

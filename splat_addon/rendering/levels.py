@@ -98,8 +98,8 @@ def was_drawn(scene: Scene) -> None:
 
 
 def has_levels(instance: Instance) -> bool:
-    """Whether an instance may be drawn as merged surfels: it needs many, opaque surfels, not merged already."""
-    is_excluded = instance.is_cut or instance.is_transparent or instance.surfels in STAND_INS
+    """Whether an instance may be drawn as merged surfels: it needs many surfels, not merged already."""
+    is_excluded = instance.is_cut or instance.surfels in STAND_INS
     return len(instance.surfels) >= LEAST_SURFELS and not is_excluded
 
 

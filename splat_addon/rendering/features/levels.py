@@ -37,9 +37,7 @@ def passes(planning):
             planning.facts["levels"] = found
             planning.has("LEVELS", f"{len(found)} instances may have surfels too small to be seen one by one")
         else:
-            planning.skip(
-                "levels of detail", f"no opaque instance of {levels.LEAST_SURFELS:,} surfels or more is worth it"
-            )
+            planning.skip("levels of detail", f"no instance of {levels.LEAST_SURFELS:,} surfels or more is worth it")
     return ()
 
 
@@ -48,6 +46,6 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    """The part that draws a cut; passes of transparent instances, which have no levels, lack it."""
-    if p.host in (*SPLAT_HOSTS, "visibility.frag") and p.kind not in ("layer", "rest"):
+    """The part that draws a cut, or lights it splat by splat."""
+    if p.host in (*SPLAT_HOSTS, "visibility.frag", "lit_splats.frag"):
         yield Part("levels", inputs=("drawn_splats",), only="cut")

@@ -71,11 +71,12 @@ def parts(planning, p):
 
 def run(tile, p: Pass):
     """Fill the sums, one instance or part of one after another; its splats are lit first, one fragment each, at the
-    texel of its number."""
-    target, lit, light = tile.target(p), tile.target(p.each), None
+    texel of its place among those that are drawn."""
+    target, lit, programs = tile.target(p), tile.target(p.each), {}
     target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
     for placed, cut in (part for each in tile.drawn_by(p) for part in tile.in_parts(each)):
-        light = light or tile.program(p.each)
+        own = () if cut.numbers is None else ("cut",)
+        light = programs[own] = programs.get(own) or tile.program(p.each, "fullscreen.vert", *own)
         textures = tile.textures(p.each, light, placed)
         blocks = tile.blocks(light, draw_block(tile, placed, tile.settings.epsilon))
         viewport = 0, 0, SPLATS_PER_ROW, row_count(cut.count)
