@@ -184,6 +184,12 @@ class Surfels(Shape):
         object.__setattr__(solid, "is_solid", True)
         return solid
 
+    def as_transparent(self) -> Surfels:
+        """The same surfels as part of a surface that lets light through, here or elsewhere; the arrays are shared."""
+        part = copy(self)
+        vars(part)["is_transparent"] = True
+        return part
+
     def geometric_normals(self) -> np.ndarray:
         """(N, 3) float32 unit normals of the ellipses' planes."""
         return quaternion_axes(self.rotations)[2]

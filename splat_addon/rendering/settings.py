@@ -64,7 +64,7 @@ class Settings:
         threshold, section 4.5); 1 is one splat's centre, 0 covers whatever a splat reaches.
     epsilon: how far, in radii of each splat, the visibility pass moves it back along the view ray;
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
-    detail_tolerance: of opaque surfels that are too small to be seen one by one, merged ones are drawn that are off by
+    detail_tolerance: of surfels that are too small to be seen one by one, merged ones are drawn that are off by
         at most this many pixels, in each view (the camera's, and each shadow map's in its texels); 0 draws all.
     shadow_resolution: texels along the side of a shadow map; 0 disables shadows.
     ambient_occlusion: distance, in scene units, up to which visible surfaces block the world's light from one another;

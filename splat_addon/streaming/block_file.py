@@ -50,6 +50,8 @@ class BlockFile:
             raise ValueError(f"{self.path.name} lacks the array {sorted(missing)[0]}; store its surfels again.")
         self.count, self.rows = directory["surfels"], arrays["rows"]["count"]
         self.origin, self.is_solid = np.array(directory["origin"], np.float64), directory["is_solid"]
+        # the first files of this version had opaque surfels only, and did not say so
+        self.is_transparent = directory.get("is_transparent", False)
         self.kind = row_type(directory["fields"])
         self.blocks = Blocks(
             **{name: self._mapped(arrays[name]) for name in COLUMNS}, roots=np.array(directory["roots"])

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ..hierarchy.ordering import morton_codes
-from ..surfels import OPAQUE, Surfels
+from ..surfels import Surfels
 from .layout import as_rows, row_type
 
 #: Every which surfel of the parts is in the sample that tells where to cut.
@@ -32,6 +32,7 @@ class Survey:
     kind: np.dtype
     origin: np.ndarray
     is_solid: bool
+    is_transparent: bool
     low: np.ndarray
     high: np.ndarray
     cuts: np.ndarray
@@ -40,28 +41,22 @@ class Survey:
 def surveyed(parts: Iterable[Surfels], portion: int, told: Callable[[int], None]) -> Survey:
     """Look at all surfels once. told: called with the number seen so far.
 
-    Raises ValueError if there are none, if some are transparent, or if the parts can be read only once.
+    Raises ValueError if there are none, or if the parts can be read only once.
     """
     if iter(parts) is parts:
         raise ValueError("The parts are read twice: pass a list of surfels, or an object that can be iterated again.")
-    count, names, origin, is_solid, sample = 0, set(), None, True, []
+    count, names, origin, is_solid, is_transparent, sample = 0, set(), None, True, False, []
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for part in parts:
         if not len(part):
             continue
-        if part.is_transparent:
-            pale = int((part.colors[:, 3] < OPAQUE).sum())
-            raise ValueError(
-                "Transparent surfels have no levels of detail, so they cannot be stored in a file of blocks, and "
-                f"{pale:,} of the first {count + len(part):,} have an alpha below 1; make them opaque, or keep them in "
-                "an object of their own."
-            )
         origin = part.origin if origin is None else origin
         positions = moved(part, origin)
         low, high = np.minimum(low, positions.min(axis=0)), np.maximum(high, positions.max(axis=0))
         sample.append(positions[-count % _EVERY :: _EVERY].copy())
         names |= part.arrays().keys()
         is_solid &= part.is_solid
+        is_transparent |= part.is_transparent
         count += len(part)
         told(count)
     if not count:
@@ -69,7 +64,7 @@ def surveyed(parts: Iterable[Surfels], portion: int, told: Callable[[int], None]
     codes = np.sort(morton_codes(np.concatenate(sample), low, high))
     runs = -(-count // portion)
     cuts = np.unique(codes[len(codes) * np.arange(1, runs) // runs])
-    return Survey(count, row_type(names), origin, is_solid, low, high, cuts)
+    return Survey(count, row_type(names), origin, is_solid, is_transparent, low, high, cuts)
 
 
 def filled(parts: Iterable[Surfels], survey: Survey, folder: Path, told: Callable[[int], None]) -> list[Path]:

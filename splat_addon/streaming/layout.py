@@ -5,7 +5,8 @@ bytes.
 The first 32 bytes are the *head*: the word SURFELBL, the version (uint32), the CRC-32 of the directory (uint32), and
 the directory's offset and length (uint64 each). The *directory* is at the end of the file and is JSON:
 
-    {"surfels": N, "origin": [x, y, z], "is_solid": false, "roots": R, "fields": {"positions": 3, ...},
+    {"surfels": N, "origin": [x, y, z], "is_solid": false, "is_transparent": false, "roots": R,
+     "fields": {"positions": 3, ...},
      "arrays": {"rows": {"offset": o, "count": E}, "first": {"offset": o, "type": "<i8", "shape": [B]}, ...}}
 
 *rows* are E surfels and merged surfels; a row has the fields of `Surfels` one after another, with as many numbers as

@@ -171,7 +171,13 @@ class Stream:
             drawn = drawn[spatial_order((blocks.low[drawn] + blocks.high[drawn]) / 2)]
             fields = self.pages.gathered(blocks.first[drawn], blocks.last[drawn])
             surfels = Surfels(origin=self.file.origin, is_solid=self.file.is_solid, **fields)
-            gathered = self._same[key] = Gathered(surfels, prepared(portions(surfels, PART)))
+            if self.file.is_transparent:
+                surfels = surfels.as_transparent()
+            parts = prepared(portions(surfels, PART))
+            if self.file.is_transparent:
+                # all of them, because splats blend with those of the same layer only
+                parts = tuple(part.as_transparent() for part in parts)
+            gathered = self._same[key] = Gathered(surfels, parts)
         return gathered
 
     def close(self) -> None:

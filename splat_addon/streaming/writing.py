@@ -95,6 +95,7 @@ def _write(stream: BinaryIO, survey: Survey, portions: Iterable[np.ndarray], fol
             "surfels": survey.count,
             "origin": survey.origin.tolist(),
             "is_solid": survey.is_solid,
+            "is_transparent": survey.is_transparent,
             "roots": tables.roots,
             "fields": {name: int(np.prod(survey.kind[name].shape, initial=1)) for name in survey.kind.names},
             "arrays": arrays,

@@ -29,6 +29,7 @@ from splat_addon.rendering.pace import WIDEST
 from splat_addon.rendering.streamed import Streamed
 from splat_addon.streaming import Stream, write_blocks
 from splat_addon.streaming.stream import PART
+from splat_addon.surfels import OPAQUE
 
 SIZE = (48, 40)
 SETTINGS = Settings(detail_tolerance=1.25, outputs=("color", "depth", "normal", "coverage"))
@@ -65,6 +66,26 @@ def beside(camera):
 
 def same(camera):
     return camera
+
+
+@pytest.mark.parametrize("shadows", [0, 64])
+def test_what_is_transparent_in_places_looks_as_if_it_were_in_memory(shadows, render, tmp_path, monkeypatch):
+    """Parts of it are opaque; in layers of their own they would not blend with those beside them."""
+    monkeypatch.setattr("splat_addon.streaming.stream.PART", 250)
+    scene, camera = torus()
+    solid = scene.surfels[0].surfels
+    colors = solid.colors.copy()
+    colors[:, 3] = np.where(solid.positions[:, 0] < 0, 0.4, 1)
+    glass = replace(solid, colors=colors, is_solid=False)
+    scene = replace(scene, surfels=(replace(scene.surfels[0], shape=glass), *scene.surfels[1:]))
+    write_blocks(tmp_path / "glass.surfelblocks", [glass], portion=20_000)
+    stream = Stream(tmp_path / "glass.surfelblocks", PLENTY)
+    settings = replace(SETTINGS, shadow_resolution=shadows, layers=4, blends_rest=False, outputs=("color",))
+    seen, every = (render(s, camera, settings) for s in (streamed(scene, stream), scene))
+    parts = [i for i in Streamed().resolved(streamed(scene, stream), camera, settings).surfels if i.is_cut]
+    assert any((part.surfels.colors[:, 3] > OPAQUE).all() for part in parts)
+    assert all(part.is_transparent for part in parts)
+    assert psnr(seen.color, every.color) > 42
 
 
 @pytest.mark.parametrize("view", [same, parallel, beside], ids=lambda v: v.__name__)

@@ -66,12 +66,16 @@ def test_many_surfels_at_one_place_are_no_obstacle(tmp_path):
     assert write_blocks(tmp_path / "a.surfelblocks", [heap], portion=1000) == len(stored(tmp_path / "a.surfelblocks"))
 
 
-def test_what_cannot_be_stored_is_refused(tmp_path):
+def test_a_file_tells_whether_any_of_its_surfels_are_transparent(tmp_path):
     colors = np.ones((100, 4))
     colors[:10, 3] = 0.5
     pale = Surfels(**{**ball(100).arrays(), "colors": colors})
-    with pytest.raises(ValueError, match="and 10 of the first 110 have an alpha below 1; make"):
-        write_blocks(tmp_path / "a.surfelblocks", [ball(10), pale])
+    write_blocks(tmp_path / "a.surfelblocks", [ball(10), pale])
+    write_blocks(tmp_path / "b.surfelblocks", [ball(10)])
+    assert [BlockFile(tmp_path / name).is_transparent for name in ("a.surfelblocks", "b.surfelblocks")] == [True, False]
+
+
+def test_what_cannot_be_stored_is_refused(tmp_path):
     with pytest.raises(ValueError, match="no surfels"):
         write_blocks(tmp_path / "a.surfelblocks", [empty_surfels()])
     with pytest.raises(ValueError, match="read twice"):

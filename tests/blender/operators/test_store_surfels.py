@@ -13,7 +13,7 @@ from splat_addon.blender.geometry.attributes import write_surfels
 from splat_addon.blender.operators import import_ply, modal_writing
 from splat_addon.blender.operators.store_surfels import Storing
 from splat_addon.interchange import write_ply
-from splat_addon.streaming import BlockFile, WritingCancelled, write_blocks
+from splat_addon.streaming import BlockFile, Stream, WritingCancelled, write_blocks
 from splat_addon.surfels import Surfels
 
 
@@ -67,11 +67,13 @@ def test_without_a_place_for_the_file_nothing_changes(ball, surfels_of):
     assert len(surfels_of(ball)) == count and not ball.data.surfel_splatting.file
 
 
-def test_transparent_surfels_are_refused(add_object, random_surfels, saved):
-    add_object(write_surfels("pale", random_surfels(200)))
-    with pytest.raises(RuntimeError, match="Transparent surfels"):
-        bpy.ops.object.surfels_to_file()
-    assert [path.name for path in saved.iterdir()] == ["scene.blend"]
+def test_transparent_surfels_stay_transparent(add_object, random_surfels, saved):
+    pale = random_surfels(200)
+    assert pale.is_transparent
+    add_object(write_surfels("pale", pale))
+    bpy.ops.object.surfels_to_file()
+    (path,) = saved.glob("*.surfelblocks")
+    assert BlockFile(path).is_transparent and Stream(path, 0).coarsest.is_transparent
 
 
 def test_converting_again_brings_the_surfels_back(ball, saved, surfels_of, monkeypatch):
