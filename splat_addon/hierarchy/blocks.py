@@ -10,7 +10,6 @@ never contradict those of its children.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -35,14 +34,6 @@ class Level:
     children: np.ndarray
     counts: np.ndarray
     cell: float
-
-
-class Geometry(NamedTuple):
-    """The geometry of all surfels and nodes. positions, normals: (3, N + M) float32. radii: (N + M,)."""
-
-    positions: np.ndarray
-    normals: np.ndarray
-    radii: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +82,12 @@ def depth_first(levels: list[Level], surfels: int) -> tuple[list[np.ndarray], li
     return [*entries, rows][::-1], counts[::-1]
 
 
-def make_blocks(entries: list[np.ndarray], counts: list[np.ndarray], geometry: Geometry, errors: np.ndarray) -> Blocks:
-    """entries, counts: of `depth_first`. errors: (M, 3) of the nodes."""
+def make_blocks(
+    entries: list[np.ndarray], counts: list[np.ndarray], geometry: np.ndarray, errors: np.ndarray
+) -> Blocks:
+    """entries, counts: of `depth_first`. geometry: (N + M, 7) of all surfels and nodes, as of a `Table`. errors: (M, 3)
+    of the nodes.
+    """
     offsets = np.cumsum([0, *map(len, entries)])
     runs = [_between(np.array([0]), np.array([len(entries[-1])]))]
     families = []
@@ -127,7 +122,7 @@ def _between(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return cuts[0], cuts[1], parts
 
 
-def _bounds(entries, starts, geometry: Geometry, errors, below, children):
+def _bounds(entries, starts, geometry: np.ndarray, errors, below, children):
     """low, high, axes, angles and errors of a level's blocks. below: these values for the level below.
     children: the first child of each block.
     """
@@ -149,14 +144,15 @@ def _bounds(entries, starts, geometry: Geometry, errors, below, children):
     )
 
 
-def _own(entries: np.ndarray, runs: Runs, geometry: Geometry, errors: np.ndarray) -> tuple:
+def _own(entries: np.ndarray, runs: Runs, geometry: np.ndarray, errors: np.ndarray) -> tuple:
     """The same for runs of entries, each a block, without what is below them."""
-    positions, normals, radii = (np.take(array, entries, axis=-1) for array in geometry)
+    columns = np.ascontiguousarray(np.take(geometry, entries, axis=0).T)
+    positions, normals, radii = columns[:3], columns[3:6], columns[6]
     sums = runs.sum(normals)
     axes = sums / np.maximum(np.linalg.norm(sums, axis=0), 1e-12)
     dots = np.einsum("kn,kn->n", normals, runs.spread(axes))
     angles = np.arccos(np.clip(runs.least(dots), -1, 1)) + 1e-3
-    nodes, own = entries - (len(geometry.radii) - len(errors)), np.zeros((len(entries), 3), np.float32)
+    nodes, own = entries - (len(geometry) - len(errors)), np.zeros((len(entries), 3), np.float32)
     if nodes.max() >= 0:
         own = np.where(nodes[:, None] >= 0, errors[np.maximum(nodes, 0)], own)
     largest = np.maximum.reduceat(own, runs.starts, axis=0)

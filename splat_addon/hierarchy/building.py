@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from ..surfels import Surfels, concatenate, empty_surfels
-from .blocks import Blocks, Geometry, Level, depth_first, make_blocks
+from .blocks import Blocks, Level, depth_first, make_blocks
 from .clusters import clustered
 from .families import families
 from .merging import OVERLAP, as_surfels, merged
@@ -95,15 +95,15 @@ def _untold(share: float) -> None:
     """Nobody asked for progress."""
 
 
-def build_levels(surfels: Surfels, told: Told = _untold) -> tuple[Surfels, np.ndarray, list[Level], Geometry]:
-    """Merged nodes, their (M, 3) errors, the levels from the bottom up, and the places of surfels and nodes.
+def build_levels(surfels: Surfels, told: Told = _untold) -> tuple[Surfels, np.ndarray, list[Level], np.ndarray]:
+    """Merged nodes, their (M, 3) errors, the levels from the bottom up, and the (N + M, 7) geometry of all.
 
     told: as in `build_hierarchy`.
     """
     current = Leaves(surfels)
     numbers, worst = np.arange(len(surfels), dtype=np.int32), None
     made, errors = [empty_surfels(surfels.origin)], [np.zeros((0, 3), np.float32)]
-    levels, places = [], [geometry_of(current)]
+    levels, places = [], [current.geometry]
     total, left = len(surfels), 1 - _LEAVES
     told(_LEAVES)
     for cell in _cells(surfels):
@@ -126,11 +126,10 @@ def build_levels(surfels: Surfels, told: Told = _untold) -> tuple[Surfels, np.nd
         levels.append(Level(numbers, np.concatenate([rows, waiting]).astype(np.int32), counts, cell))
         made.append(as_surfels(drawn, surfels))
         errors.append(own)
-        places.append(geometry_of(parents))
+        places.append(parents.geometry)
         current = current.joined([parents], waiting)
     nodes = concatenate(made[1:]) if levels else made[0]
-    geometry = Geometry(*(np.concatenate(parts, axis=-1) for parts in zip(*places, strict=True)))
-    return nodes, np.concatenate(errors), levels, geometry
+    return nodes, np.concatenate(errors), levels, np.concatenate(places)
 
 
 def merged_level(
@@ -193,7 +192,3 @@ def _errors(nodes: Table) -> np.ndarray:
     extent = np.maximum(nodes.column("uncovered"), nodes.column("overhang"))
     shown = nodes.column("radii") * np.minimum(nodes.column("spread"), 1)
     return np.stack([nodes.column("off"), extent, shown], axis=1)
-
-
-def geometry_of(nodes: Table | Leaves) -> Geometry:
-    return Geometry(*(nodes.column(name) for name in ("positions", "normals", "radii")))

@@ -44,18 +44,20 @@ def _sorted(table: Table | Leaves, rows: np.ndarray, cell: float) -> tuple[np.nd
     """(n,) order by place and depth; in this order, (n,) bool that marks each new place and each gap, and (n,) depths
     in steps, of which only differences within a place count.
     """
-    positions, normals, materials = (table.column(name) for name in ("positions", "normals", "materials"))
-    low, cells = positions.min(axis=1), int(np.ptp(positions, axis=1).max() / cell) + 2
+    geometry, materials = table.geometry, table.column("materials")
+    low, high = (np.array([end(column) for column in geometry.T[:3]]) for end in (np.min, np.max))
+    cells = int((high - low).max() / cell) + 2
     # materials and sides, columns, rows, and depths over a cell, which reach a cell farther at either end; one more bit
     # of depth, so that keys of different places differ more than those beside a gap
     bits = [n.bit_length() for n in (6 * int(materials.max()) + 5, cells, cells, 2 * (cells + 2) * _STEPS)]
     fits, gap = sum(bits) <= BITS, GAP * _STEPS
     keys = np.empty(len(rows) if fits else (4, len(rows)), np.int64)
-    is_everything = len(rows) == len(table)
+    has_all = len(rows) == len(table)
     for start in range(0, len(rows), PORTION):
         part = slice(start, start + PORTION)
-        some = part if is_everything else rows[part]
-        columns = _places(positions[:, some], normals[:, some], materials[some], low, cell)
+        some = part if has_all else rows[part]
+        columns = np.ascontiguousarray(geometry[some].T)
+        columns = _places(columns[:3], columns[3:6], materials[some], low, cell)
         keys[..., part] = _packed(columns, bits) if fits else columns
     is_first = np.ones(len(rows), bool)
     if fits:

@@ -19,6 +19,9 @@ MEANS = ("metallic", "emission")
 #: Nodes per batch, few enough for temporaries to stay in the processor's cache.
 PORTION = 1 << 14
 
+#: The fields in the columns of `geometry`.
+GEOMETRY = ("positions", "normals", "radii")
+
 #: Fields with one number per node.
 _SINGLE = {"radii", "areas", "materials", "off", "uncovered", "overhang", "spread"}
 
@@ -109,6 +112,11 @@ class Table:
         """Other tables, followed by rows of this one."""
         return Table(self.widths, np.concatenate([*(part.rows for part in parts), self.rows[rows]]))
 
+    @property
+    def geometry(self) -> np.ndarray:
+        """(n, 7) float32: position, normal and radius of each node."""
+        return np.concatenate([self.rows[:, self._place(name)] for name in GEOMETRY], axis=1)
+
     def _place(self, name: str) -> slice:
         names = list(self.widths)
         start = sum(self.widths[n] for n in names[: names.index(name)])
@@ -127,8 +135,8 @@ class Leaves:
         return len(self.surfels)
 
     def column(self, name: str) -> np.ndarray:
-        """As `Table.column`, of the geometry."""
-        return self._geometry[name]
+        """As `Table.column`, of radii and materials."""
+        return self.surfels.radius if name == "radii" else self.surfels.materials
 
     def take(self, rows: np.ndarray) -> Nodes:
         """Some surfels as nodes."""
@@ -140,13 +148,14 @@ class Leaves:
         return Table(parts[0].widths, np.concatenate([*(part.rows for part in parts), Table.of(self.take(rows)).rows]))
 
     @cached_property
-    def _geometry(self) -> dict[str, np.ndarray]:
-        surfels, normals = self.surfels, np.empty((3, len(self)), np.float32)
+    def geometry(self) -> np.ndarray:
+        """(n, 7) float32, as `Table.geometry`: position, normal and radius of each surfel."""
+        surfels, rows = self.surfels, np.empty((len(self), 7), np.float32)
+        rows[:, :3], rows[:, 6] = surfels.positions, surfels.radius
         for start in range(0, len(self), PORTION):
             some = slice(start, start + PORTION)
-            normals[:, some] = axes_columns(surfels.rotations[some], 2)
-        columns = {"positions": surfels.positions.T, "normals": normals, "radii": surfels.radius}
-        return {name: np.ascontiguousarray(array) for name, array in columns.items()} | {"materials": surfels.materials}
+            rows[some, 3:6] = axes_columns(surfels.rotations[some], 2)[0].T
+        return rows
 
 
 def _leaves(surfels: dict[str, np.ndarray]) -> Nodes:

@@ -14,8 +14,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..surfels import Surfels, concatenate
-from .blocks import Geometry, make_blocks
-from .building import Hierarchy, geometry_of, merged_level
+from .blocks import make_blocks
+from .building import Hierarchy, merged_level
 from .merging import as_surfels
 from .nodes import Leaves
 from .runs import Runs
@@ -33,7 +33,7 @@ def refit_hierarchy(hierarchy: Hierarchy, surfels: Surfels) -> Hierarchy:
     entries, counts = _by_level(hierarchy)
     current, rows = Leaves(surfels), entries[0]
     worst = None
-    made, errors, places = [], [], [geometry_of(current)]
+    made, errors, places = [], [], [current.geometry]
     for numbers, own_counts, cell in zip(entries[1:], counts, hierarchy.cells, strict=True):
         several = own_counts > 1
         starts = np.cumsum(own_counts) - own_counts
@@ -44,16 +44,15 @@ def refit_hierarchy(hierarchy: Hierarchy, surfels: Surfels) -> Hierarchy:
         created = np.argsort(numbers[several])
         made.append(as_surfels(drawn.of_rows(created), surfels))
         errors.append(own[created])
-        places.append(geometry_of(parents.of_rows(created)))
+        places.append(parents.of_rows(created).geometry)
         waiting = rows[starts[~several]]
         order = np.empty(len(numbers), np.int64)
         order[np.concatenate([np.flatnonzero(several), np.flatnonzero(~several)])] = np.arange(len(numbers))
         current, rows = current.joined([parents], waiting).of_rows(order), np.arange(len(numbers))
         kept = np.zeros((len(waiting), 3), np.float32) if worst is None else worst[waiting]
         worst = np.concatenate([own, kept])[order]
-    geometry = Geometry(*(np.concatenate(parts, axis=-1) for parts in zip(*places, strict=True)))
     every = np.concatenate(errors)
-    blocks = make_blocks(entries, counts, geometry, every)
+    blocks = make_blocks(entries, counts, np.concatenate(places), every)
     return replace(hierarchy, nodes=concatenate(made), errors=every, blocks=blocks)
 
 
