@@ -39,6 +39,7 @@ OPTIONAL_LAYOUT = {
     "clip_line": (2, np.int16, 0),
     "clip_line_2": (2, np.int16, 0),
     "blend_depth": (1, np.float32, 1.0),
+    "lift": (1, np.float32, 0.0),
 }
 
 #: Minimum alpha of an opaque surfel: filtering an image of ones can leave alpha slightly below 1.
@@ -101,6 +102,8 @@ class Surfels(Shape):
     blend_depth: (N,) float32, 0 to 1, the depth within which the splat blends with others, in units of the longer
         half-axis: how far splats of the same surface lie off its plane. The renderer's epsilon is an upper bound; None:
         the epsilon everywhere.
+    lift: (N,) float32, 0 or more, how high the smooth surface that shading normals describe lies above the splat, in
+        units of the longer half-axis; None: nowhere.
 
     Raises ValueError with one sentence for a wrong shape, a non-finite or an out-of-range value;
     `valid_surfels` drops and counts such rows instead.
@@ -118,6 +121,7 @@ class Surfels(Shape):
     clip_line: np.ndarray | None = None
     clip_line_2: np.ndarray | None = None
     blend_depth: np.ndarray | None = None
+    lift: np.ndarray | None = None
 
     def __post_init__(self):
         arrays = _shaped(self.arrays())
@@ -326,6 +330,7 @@ _DEMANDS = {
     "clip_line": "a direction and a cut of 0 or more",
     "clip_line_2": "a direction and a cut of 0 or more",
     "blend_depth": "0 to 1",
+    "lift": "finite and 0 or more",
 }
 
 
@@ -400,6 +405,7 @@ _CHECKS = {
     "clip_line": lambda rows: rows[:, 1] >= 0,
     "clip_line_2": lambda rows: rows[:, 1] >= 0,
     "blend_depth": lambda rows: (rows >= 0) & (rows <= 1),
+    "lift": lambda rows: (rows >= 0) & (rows < np.inf),
 }
 
 

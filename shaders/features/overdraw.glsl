@@ -8,7 +8,7 @@ void overdraw_add(inout Fragment f) {
 
 #part gbuffer, beside_planes
 void overdraw_add(inout Fragment f) {
-  gbuffer_plane.zw = vec2(1.0, 0.0);
+  gbuffer_plane.zw = vec2(1.0, f.lift * f.weight);
 }
 
 #part shaded_sample, by_itself

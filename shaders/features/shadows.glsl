@@ -22,7 +22,10 @@ void shadows_hide(inout Incident here, LightTexels of, vec3 position, vec3 norma
       half_u = is_flat ? ROUND * turned_to(here.to_light, of.u.xyz) : facing_axis(here.to_light) * caster.z;
       half_v = is_flat ? ROUND * turned_to(here.to_light, side.xyz) : cross(here.to_light, half_u);
     }
-    float lit = lit_share(caster, half_u, half_v, position);
+    float wide = max(length(half_u), length(half_v)) / max(length(here.middle), 1e-30);
+    vec3 plane;
+    vec3 place = smooth_place(position, normal, here.to_light, caster.z > 0.0 ? wide : 0.0, plane);
+    float lit = lit_share(caster, half_u, half_v, place, plane);
     here.irradiance *= lit;
     here.radiance *= lit;
   }
@@ -47,6 +50,22 @@ void shadows_move(Splat splat, float radius, inout float offset) {
 void shadows_tell(Splat splat, int index) {
   vec3 plane = geometric_normal(splat);
   splat_faces = plane.xy / max(1.0 + plane.z, LEAST_FACED);
+}
+
+#part splat_varyings, adds_planes, lifted
+#include "lib/surfel_lift.glsl"
+void shadows_lifted_tell(Splat splat, int index) {
+  splat_lift = surfel_lift(splat, index);
+}
+
+#part gbuffer, lifted
+void shadows_lifted_weigh(inout Fragment f) {
+  f.lift = splat_lift;
+}
+
+#part gbuffer, planes_apart, lifted
+void shadows_lifted_add(inout Fragment f) {
+  gbuffer_plane.zw = vec2(0.0, f.lift * f.weight);
 }
 
 #part gbuffer, planes_apart
@@ -76,9 +95,23 @@ void shadows_planes_beside_depths_prepare(inout Shaded s) {
   shadow_plane = faced_normal(sums.zw / max(sums.y, 1e-37));
 }
 
+#part shaded_sample, planes_apart, lifted
+void shadows_lifted_prepare(inout Shaded s) {
+  shadow_lift = SUM_AT(gbuffer_plane, s.texel, s.tap).w / max(s.mean.weight, 1e-37);
+}
+
+#part shaded_sample, planes_beside_depths, lifted
+void shadows_lifted_prepare(inout Shaded s) {
+  shadow_lift = SUM_AT(gbuffer_normal, s.texel, s.tap).w / max(SUM_AT(gbuffer_depth, s.texel, s.tap).y, 1e-37);
+}
+
 #part shaded_sample, polygons
 void shadows_polygons_prepare(inout Shaded s) {
-  if (s.mean.polygon > 0.5) shadow_plane = SUM_AT(polygon_plane, s.texel, s.tap).xyz;
+  if (s.mean.polygon > 0.5) {
+    vec4 plane = SUM_AT(polygon_plane, s.texel, s.tap);
+    shadow_plane = plane.xyz;
+    shadow_lift = plane.w / s.mean.sees;
+  }
 }
 
 #part lit_splats.frag
@@ -86,4 +119,10 @@ void shadows_polygons_prepare(inout Shaded s) {
 void shadows_prepare(Splat splat, int index) {
   shadow_turn = fract(frame.shadow_turn + 0.25 * float(index & 3));
   shadow_plane = geometric_normal(splat);
+}
+
+#part lit_splats.frag, lifted
+#include "lib/surfel_lift.glsl"
+void shadows_lifted_prepare(Splat splat, int index) {
+  shadow_lift = surfel_lift(splat, index);
 }

@@ -8,11 +8,12 @@ struct Fragment {
   float weight;
   float depth;
   float opacity;  // weight factor of colours
+  float lift;     // of the smooth surface above it, where shadows ask for it
 };
 
 #parts
 void add_to_sums(vec3 color, float weight, float depth) {
-  Fragment f = Fragment(color, weight, depth, 1.0);
+  Fragment f = Fragment(color, weight, depth, 1.0, 0.0);
   #hook weigh(f)
   #hook add(f)
 }

@@ -11,8 +11,23 @@ const int SOFT_SAMPLES = 32;
 float shadow_turn;
 // Normal of the lit plane: the geometric normal, which differs from the shading normal on smooth-shaded surfaces.
 vec3 shadow_plane;
+// How far the smooth surface that shading normals describe lies above the lit point.
+float shadow_lift = 0.0;
 const float GOLDEN_ANGLE = 2.39996323;
 const float GRAZING = 0.02;  // minimum cosine for following a surface's plane
+
+// Facets of a smooth-shaded mesh that face the light by less than this cosine are lit as the smooth surface is: there
+// they would otherwise lie in the shadow of their neighbours, triangle by triangle.
+const float TERMINATOR = 0.1;
+
+// The point of the smooth surface that is lit, and its plane. wide: the lamp's half-axis over its distance.
+vec3 smooth_place(vec3 position, vec3 normal, vec3 to_light, float wide, out vec3 plane) {
+  float turned = clamp(1.0 - (dot(shadow_plane, to_light) - wide) / TERMINATOR, 0.0, 1.0);
+  plane = shadow_plane;
+  if (!(turned > 0.0 && shadow_lift > 0.0)) return position;
+  plane = mix(shadow_plane, normal, turned);
+  return position + turned * shadow_lift * normal;
+}
 
 struct ShadowPlace {
   int map;
@@ -170,10 +185,10 @@ float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lam
 
 // caster: first map of the light, number of its maps, and its size in units of the shaded view (for a sun unchanged).
 // half_u, half_v: half-axes of a lamp with a size, in the shaded view.
-float lit_share(vec4 caster, vec3 half_u, vec3 half_v, vec3 position) {
+float lit_share(vec4 caster, vec3 half_u, vec3 half_v, vec3 position, vec3 plane) {
   for (int i = 0; i < int(caster.y); i++) {
     ShadowPlace here;
-    if (!shadow_place(int(caster.x) + i, position, shadow_plane, here)) continue;
+    if (!shadow_place(int(caster.x) + i, position, plane, here)) continue;
     bool is_parallel = here.atlas.w > 0.5;
     float bias = 0.5 * here.depths.z * (is_parallel ? 1.0 : here.depth);
     if (caster.z == 0.0) return hard_share(here, bias);

@@ -91,6 +91,7 @@ POINT_ATTRIBUTES = {
     "clip_line": PointAttribute("clip_line", "INT16_2D", "value", 2),
     "clip_line_2": PointAttribute("clip_line_2", "INT16_2D", "value", 2),
     "blend_depth": PointAttribute("blend_depth", "FLOAT", "value", 1),
+    "lift": PointAttribute("lift", "FLOAT", "value", 1),
 }
 
 #: The position that belongs to each surfel's frame. Blender's edit mode, Apply, Mirror and Join move positions alone;

@@ -46,7 +46,7 @@ def merged(children: Nodes, cell: float) -> Nodes:
     length = np.sqrt(np.einsum("kn,kn->n", shading, shading))
     shading = np.where(length > 1e-3, shading / np.maximum(length, 1e-12), normal)
     colors = _colors(children, shares)
-    values = {name: total(children[name] * shares) for name in MEANS if name in children}
+    values = {name: total(children[name] * shares) for name in (*MEANS, "lift") if name in children}
     if "roughness" in children:
         values["roughness"] = _roughness(children["roughness"], shares, length)
     if "uv" in children:
@@ -77,6 +77,8 @@ def as_surfels(nodes: Table, like: Surfels) -> Surfels:
     fields = {name: columns[0] if len(columns) == 1 else columns.T for name, columns in fields.items()}
     if "uv" in nodes.widths:
         fields |= along_axes(nodes.column("uv"), np.stack(axes))
+    if "lift" in nodes.widths:
+        fields["lift"] = nodes.column("lift")[0] / lengths.max(axis=0)
     if like.blend_depth is not None:
         fields["blend_depth"] = np.minimum(_LEAST_BLENDING + 2 * nodes.column("off") / lengths[0], 1)
     return Surfels(

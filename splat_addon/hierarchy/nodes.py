@@ -33,7 +33,8 @@ class Nodes:
     positions, normals: (3, n), the latter the planes' and unit. first_axis, second_axis: (3, n) half-axis vectors.
     radii: the longer of their lengths. areas: weights. materials: whole numbers. shading: (3, n) unit. colors: (4, n).
     off, uncovered, overhang, spread: bounds, see `bounds`. And of the optional fields that are there: `MEANS`,
-    "roughness", and "uv": (8, n), the coordinates and their two gradients per object unit.
+    "roughness", "lift": (1, n), object units, and "uv": (8, n), the coordinates and their two gradients per object
+    unit.
     """
 
     def __init__(self, arrays: dict[str, np.ndarray]):
@@ -164,6 +165,8 @@ def _leaves(surfels: dict[str, np.ndarray]) -> Nodes:
     scales = np.ascontiguousarray(surfels["scales"].T)
     zero, radii = np.zeros_like(scales[0]), np.maximum(*scales)
     values = {name: np.atleast_2d(surfels[name].T) for name in (*MEANS, "roughness") if name in surfels}
+    if "lift" in surfels:
+        values["lift"] = np.atleast_2d(surfels["lift"] * radii)
     if all(name in surfels for name in ("uvs", "uv_along_x", "uv_along_y")):
         values["uv"] = np.concatenate([surfels["uvs"].T, gradients(surfels, x, y)])
     nodes = {

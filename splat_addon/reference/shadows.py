@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shadows by definition: a ray from every visible point to its light is tested against every splat, in float64."""
+"""Shadows by definition: a ray from every visible point to its light is tested against every splat, in float64.
+
+Points are lit where they are: lifts (`Surfels.lift`), which the renderer adds at terminators, are ignored.
+"""
 
 from __future__ import annotations
 

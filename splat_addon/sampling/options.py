@@ -65,6 +65,8 @@ class SamplingOptions(Density):
         None: no clip lines. fits_blending: each surfel gets its own blend depth from the surface
         (`attributes.blend_depths`). fits_planes: surfels lie in planes that fit the samples around them instead of
         their triangles' (`refine.fitted_planes`); requires fits_blending; reductions that merge samples leave it out.
+    lifts: surfels store how high the smooth surface of the corners' normals lies above them (`attributes.lifts`), if it
+        does so anywhere.
 
     Raises ValueError with one sentence for an unusable option.
     """
@@ -75,6 +77,7 @@ class SamplingOptions(Density):
     crease_angle: float | None = None
     fits_blending: bool = False
     fits_planes: bool = False
+    lifts: bool = False
 
     def __post_init__(self):
         super().__post_init__()

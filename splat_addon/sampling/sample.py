@@ -16,6 +16,7 @@ import numpy as np
 
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
 from .attributes.blend_depths import blend_depths
+from .attributes.lifts import edge_bulges, lifts
 from .attributes.material_sampler import MaterialSampler
 from .attributes.sample_attributes import SampleFiller
 from .attributes.tangents import layered_tangents
@@ -24,7 +25,7 @@ from .attributes.texture_seams import seam_edges
 from .density import spacing_of
 from .edges.borders import DEFAULT_CREASE_ANGLE, survey_edges
 from .edges.clipping import clip_fields, clippings
-from .edges.gaps import BorderPlaces, gap_surfels
+from .edges.gaps import BorderPlaces, barycentric, gap_surfels
 from .edges.meetings import by_facing
 from .ldc.depth_cube import depth_cube
 from .ldc.grid import make_grid
@@ -117,6 +118,7 @@ class SamplingRun:
         reach = options.splat_size * self.grid.spacing if clips else math.inf
         self._edges = survey_edges(mesh, angle, reach) if clips or options.fits_blending else None
         self._bends = (self._edges.bends, self._edges.sizes) if options.fits_blending else None
+        self._bulges = edge_bulges(mesh, self.grid.spacing) if options.lifts else None
 
     @property
     def is_empty(self) -> bool:
@@ -141,8 +143,10 @@ class SamplingRun:
         arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
         if self._bends is not None:
             arrays["blend_depth"] = np.empty(total, np.float32)
+        if self._bulges is not None:
+            arrays["lift"] = np.empty(total, np.float32)  # object units until all half-axes are final
         half_size = self.options.splat_size * self.grid.spacing
-        of_mesh = self._sampler, self._tangents, self._seams, self._bends
+        of_mesh = self._sampler, self._tangents, self._seams, self._bends, self._bulges
         _fill(SampleFiller(self.mesh, self._coordinates, self.grid, half_size, *of_mesh, arrays), images, report)
         return arrays
 
@@ -171,6 +175,8 @@ class SamplingRun:
             more.append(component_surfels(self.mesh, self._coordinates, self.grid, missed, *about))
         if more:
             arrays = _joined(arrays, *more)
+        if "lift" in arrays:
+            arrays["lift"] /= np.maximum(*arrays["scales"].T)
         surfels = Surfels(origin=self.grid.surfel_origin, **arrays)
         keeps_both_sides = self._chosen.merge is None and not small_parts
         report(1.0)
@@ -206,6 +212,9 @@ class SamplingRun:
         gaps, triangles = gap_surfels(self.mesh, borders, places, *about)
         if bends is not None and gaps:
             gaps["blend_depth"] = blend_depths(*(of[triangles] for of in bends), gaps["scales"].max(axis=1))
+        if self._bulges is not None and gaps:
+            places = gaps["positions"] + self.grid.surfel_origin
+            gaps["lift"] = lifts(barycentric(self.mesh, triangles, places).T, self._bulges[:, triangles])
         report(1.0)
         return arrays | fields, gaps, triangles
 

@@ -218,6 +218,7 @@ def sampling_options(conversion: Conversion) -> dict:
         "crease_angle": choices.crease_angle,
         "fits_blending": choices.crease_angle is not None,
         "fits_planes": choices.crease_angle is not None,
+        "lifts": True,
     }
 
 

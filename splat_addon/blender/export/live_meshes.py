@@ -301,7 +301,7 @@ def _deforming(
     polygons. fits: False for a mesh that bends, because planes that fit it now would not then.
     """
     edges = {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True, "fits_planes": fits} if ends_at_edges else {}
-    return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped, **edges)
+    return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped, lifts=True, **edges)
 
 
 def _stretch(matrix: np.ndarray) -> float:

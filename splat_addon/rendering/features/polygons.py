@@ -84,7 +84,8 @@ def _drawn(planning):
     if finish.summed(planning):
         yield Part("finish", writes=(FINISH,), varyings=(("smooth", "vec4", "finish"),), **drawn)
     if planning.find(shadows.maps):
-        varyings = (("flat", "vec3", "triangle_plane"),)
+        names = ("flat", "triangle_plane"), ("flat", "triangle_bulge"), ("smooth", "triangle_place")
+        varyings = tuple((how, "vec3", name) for how, name in names)
         yield Part("polygon_plane", ("writes_polygon_plane",), writes=(PLANE,), varyings=varyings)
 
 

@@ -32,8 +32,8 @@ def _of_atlas(plan, pixels: tuple[int, int]) -> tuple[int, int]:
 DEPTH = Texture("shadow_depth", "DEPTH32F", _of_atlas)
 #: Sum of the splats' geometric normals: depths are compared with their plane.
 PLANE = Texture("gbuffer_plane", "RG32F", is_multisampled=True)
-#: With room for the number of splats, if requested, because targets have no room for another texture.
-PLANE_COUNT = Texture("gbuffer_plane", "RGBA32F", is_multisampled=True)
+#: With room for the number of splats and for lifts, because targets have no room for another texture.
+PLANE_MORE = Texture("gbuffer_plane", "RGBA32F", is_multisampled=True)
 
 
 def maps(planning):
@@ -61,6 +61,15 @@ INPUTS = {
 }
 
 
+def _surfel_lifts(tile, placed):
+    instance = placed.instance
+    return tile.resources.surfel_lifts(instance.surfels, tile.levels(instance), placed.part)
+
+
+DRAWN = {"surfel_lifts": _surfel_lifts}
+ARRIVES = {"surfel_lifts": lambda instance: instance.surfels.lift is not None}
+
+
 def passes(planning):
     made = planning.facts["shadow_maps"] = planning.find(maps) if planning.shown else ()
     if made:
@@ -82,22 +91,31 @@ def plane_sum(planning, kind: str) -> Texture | None:
     is_lit = planning.find(maps) and lit_splats.lights_samples(planning, kind)
     if not is_lit or gbuffer.depths_are_apart(planning, kind):
         return None
-    return PLANE_COUNT if kind == "opaque" and outputs.counts_splats(planning) else PLANE
+    counts = kind == "opaque" and outputs.counts_splats(planning)
+    return PLANE_MORE if counts or planning.find(_lifted) else PLANE
+
+
+def _lifted(planning) -> bool:
+    """Whether any surfels lie below the smooth surface of their shading normals."""
+    return any(instance.surfels.lift is not None for instance in planning.scene.surfels)
 
 
 def parts(planning, p):
     apart = plane_sum(planning, p.kind)
     words, planes = (("planes_apart",), (apart,)) if apart else (("planes_beside_depths",), ())
+    lifted = planning.find(_lifted)
+    inputs, words = (("surfel_lifts",), (*words, "lifted")) if lifted else ((), words)
     if p.host == "visibility.frag" and p.kind == "shadow":
         yield Part("shadows", only="splats")
     if not planning.model.is_lit:
         return
     if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer"):
-        yield Part("shadows", ("adds_planes", *words), writes=planes, varyings=(("flat", "vec2", "splat_faces"),))
+        varyings = ("flat", "vec2", "splat_faces"), *((("flat", "float", "splat_lift"),) if lifted else ())
+        yield Part("shadows", ("adds_planes", *words), inputs=inputs, writes=planes, varyings=varyings)
     if p.host in LIT_HOSTS:
         yield Part("shadows", words, reads=(DEPTH, *planes), inputs=("shadow_maps",))
     if p.host == "lit_splats.frag":
-        yield Part("shadows", reads=(DEPTH,), inputs=("shadow_maps",))
+        yield Part("shadows", words, reads=(DEPTH,), inputs=("shadow_maps", *inputs))
 
 
 def run(tile, p: Pass):

@@ -76,6 +76,18 @@ def pack_clip_lines(surfels: Surfels, order: np.ndarray) -> np.ndarray:
     return (texels / (TURN - 1)).reshape(-1, SPLATS_PER_ROW, 4)
 
 
+def pack_lifts(surfels: Surfels, order: np.ndarray) -> np.ndarray:
+    """(rows, 128, 4) float32, four splats' lifts a texel; a single row of zeros where they have none.
+
+    order: storage order of the surfels.
+    """
+    rows = 1 if surfels.lift is None else row_count(len(order))
+    texels = np.zeros(rows * SPLATS_PER_ROW, np.float32)
+    if surfels.lift is not None:
+        texels[: len(order)] = surfels.lift[order]
+    return texels.reshape(rows, SPLATS_PER_ROW // 4, 4)
+
+
 def row_count(count: int) -> int:
     """The number of rows of 512 splats, at least one."""
     return max(-(-count // SPLATS_PER_ROW), 1)

@@ -21,7 +21,7 @@ from ..scene.polygons import Polygons, pack_polygon_bumps, pack_polygon_uvs, pac
 from .atlas import FORMAT, make_atlas
 from .cuts import Cuts
 from .loading import JobShare, Loading, Made, NotYet, Packed
-from .packing import pack_clip_lines, pack_materials, pack_own_materials, pack_uvs
+from .packing import pack_clip_lines, pack_lifts, pack_materials, pack_own_materials, pack_uvs
 from .parts import stored_parts
 from .storages import Storage
 from .stored_order import places_of, stored_order
@@ -121,6 +121,10 @@ class Resources:
     def surfel_uvs(self, surfels: Surfels, levels: Hierarchy | None = None, part: int = 0) -> Texture:
         """The texture coordinates of one part of them, uploaded once."""
         return self._with_levels(surfels, "uvs", (), levels, _packed_uvs)[part]
+
+    def surfel_lifts(self, surfels: Surfels, levels: Hierarchy | None = None, part: int = 0) -> Texture:
+        """How high the smooth surface lies above one part of them, uploaded once."""
+        return self._with_levels(surfels, "lifts", (), levels, _packed_lifts)[part]
 
     def clip_lines(self, surfels: Surfels, part: int = 0) -> Texture:
         """The lines of those in one part that are clipped, uploaded once; merged ones have none."""
@@ -276,6 +280,10 @@ def _packed_materials(slots, with_emission: bool, finishes, surfels: Surfels, le
 
 def _packed_uvs(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray) -> Packed:
     return _packed((pack_uvs(some, own) for some, own in stored_parts(surfels, levels, order)), "RGBA32F")
+
+
+def _packed_lifts(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray) -> Packed:
+    return _packed((pack_lifts(some, own) for some, own in stored_parts(surfels, levels, order)), "RGBA32F")
 
 
 def _packed_clip_lines(surfels: Surfels, _, order: np.ndarray) -> Packed:

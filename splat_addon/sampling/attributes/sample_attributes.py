@@ -15,6 +15,7 @@ from ..ldc.scan_conversion import Spans, expand
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, crossed, doubled_areas
 from .blend_depths import blend_depths
 from .ellipses import MAX_STRETCH, ellipse_rotations, ellipse_scales
+from .lifts import lifts
 from .material_sampler import MaterialSampler, Samples
 from .texture_mapping import BORDER, axis_steps, fill_uvs
 from .texture_seams import border_lines
@@ -39,7 +40,8 @@ class SampleFiller:
 
     mesh: usable triangles. coordinates: (3, V) float64 grid coordinates of its vertices. half_size: of a splat, object
         units.
-    sampler: evaluates the mesh's materials. bends: two (T,) arrays for `blend_depths`, or None.
+    sampler: evaluates the mesh's materials. bends: two (T,) arrays for `blend_depths`, or None. bulges: of `lifts`, or
+        None.
     tangents: (T, 3, 4 layers) at its corners, in the layout of `Samples`, or None.
     arrays: field of `Surfels` -> array to fill.
     """
@@ -54,11 +56,12 @@ class SampleFiller:
         tangents: np.ndarray | None,
         seams: np.ndarray | None,
         bends: tuple[np.ndarray, np.ndarray] | None,
+        bulges: np.ndarray | None,
         arrays: dict[str, np.ndarray],
     ):
         self._mesh, self._coordinates, self._grid = mesh, coordinates, grid
         self._half_size, self._sampler, self._tangents, self._arrays = half_size, sampler, tangents, arrays
-        self._seams, self._bends = seams, bends
+        self._seams, self._bends, self._bulges = seams, bends, bulges
         self._centres = [grid.centres(axis) for axis in range(3)]
 
     def fill(self, spans: Spans, axis: int, rows: slice):
@@ -93,6 +96,9 @@ class SampleFiller:
         else:
             vectors = self._samples(self._mesh.corner_normals, triangles, weights, line)
             _write_unit(vectors, normals, triangle, out["normals"])
+        if self._bulges is not None:
+            of_triangles = self._bulges.take(triangles, axis=1).take(triangle, axis=1)
+            out["lift"][...] = lifts(weights.at_samples(line), of_triangles)
         samples = self._paint(out, triangles, triangle, weights, line)
         if "uvs" in out:
             steps = axis_steps(out, axis, spacing)

@@ -40,7 +40,7 @@ class Binding:
         self._middle = mesh.positions.mean(axis=0)
         # Sample once more with triangle numbers as materials: the order of samples depends on the shape alone.
         named = TriangleMesh(mesh.positions, mesh.triangles, materials=np.arange(len(mesh), dtype=np.int32))
-        later = "crease_angle", "fits_blending", "fits_planes"
+        later = "crease_angle", "fits_blending", "fits_planes", "lifts"
         alike = {name: value for name, value in options.items() if name not in later}
         triangles = sample_surface(named, **alike).surfels.materials
         before = len(triangles) - sampling.small_parts

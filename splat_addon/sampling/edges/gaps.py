@@ -144,7 +144,7 @@ def _kept_stretch(line: np.ndarray, start: np.ndarray, way: np.ndarray) -> tuple
 def _surfels(mesh, triangles, places, normals, grid: Grid, splat_size, sampler: MaterialSampler, tangents):
     """The arrays of `Surfels` at (k, 3) places in k triangles with (k, 3) unit normals."""
     count = len(triangles)
-    shares = _shares(mesh.positions[mesh.triangles[triangles]], places)
+    shares = barycentric(mesh, triangles, places)
     axes = np.abs(normals).argmax(axis=1)
     rotations, scales = np.empty((count, 4), np.float32), np.empty((count, 2), np.float32)
     for axis in range(3):
@@ -167,8 +167,9 @@ def _surfels(mesh, triangles, places, normals, grid: Grid, splat_size, sampler: 
     return {name: arrays[name] for name in (*LAYOUT, *sampler.optional)}
 
 
-def _shares(corners: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """(k, 3) barycentric coordinates of (k, 3) places in the planes of (k, 3, 3) corners, clamped to the triangles."""
+def barycentric(mesh: TriangleMesh, triangles: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """(k, 3) barycentric coordinates of (k, 3) places in the planes of (k,) triangles, clamped to them."""
+    corners = mesh.positions[mesh.triangles[triangles]]
     first, second, offset = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], places - corners[:, 0]
     normal = np.cross(first, second)
     square = np.maximum(np.einsum("ij,ij->i", normal, normal), 1e-300)

@@ -40,6 +40,9 @@ _SPREAD = 2 * math.sqrt(3)
 #: Rounding error of texture coordinates in float32, in cells.
 _ROUNDING = 1e-3
 
+#: Lifts are scaled by this where values are compared, so that they do not count.
+_LIFTS_COUNT = np.float32(2.0**-60)
+
 #: Maximum number of surface layers over one block that a search considers.
 _LAYERS = 4
 
@@ -157,9 +160,10 @@ def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
 
 
 def _averaged(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The optional fields that merged discs average."""
+    """The optional fields that merged discs average; any lifts are alike, because normals are compared."""
     others = (*LAYOUT, *UV_FIELDS, BORDER, *CLIP_FIELDS, "blend_depth")
-    return {name: array for name, array in arrays.items() if name not in others}
+    averaged = {name: array for name, array in arrays.items() if name not in others}
+    return averaged | {"lift": averaged["lift"] * _LIFTS_COUNT} if "lift" in averaged else averaged
 
 
 def _edge_fields(arrays, made, tolerance: Tolerance) -> dict[str, np.ndarray]:
@@ -321,7 +325,8 @@ def _unstacked(columns: np.ndarray, like: dict[str, np.ndarray]) -> dict[str, np
     made, start = {}, 0
     for name, array in like.items():
         width = math.prod(array.shape[1:])
-        made[name] = columns[:, start : start + width].reshape(len(columns), *array.shape[1:]).astype(array.dtype)
+        values = columns[:, start : start + width] / (_LIFTS_COUNT if name == "lift" else 1)
+        made[name] = values.reshape(len(columns), *array.shape[1:]).astype(array.dtype)
         start += width
     return made
 
