@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels come to a view in slices, and whatever happens meanwhile does not harm Blender, which ends as it should."""
+"""Surfels come to a view in slices, and it draws its pictures in slices; whatever happens meanwhile does not harm
+Blender, which ends as it should."""
 
 from splat_addon.rendering.upload import loading
 
@@ -11,3 +12,20 @@ def test_blender_survives_whatever_happens_while_surfels_are_loaded(in_a_window)
     texts = [text for _, text, _ in report["draws"] if text]
     assert texts and all(text.startswith("Preparing surfels: ") for text in texts)
     assert report["removed"] == [0, ""] and report["reopened"] == [1, ""]
+
+
+def test_pictures_are_drawn_in_slices_and_shown_when_they_are_whole(in_a_window):
+    report, _ = in_a_window("draw_in_slices.py", 240, "--window-geometry", "0", "0", "640", "480")
+    for name, calls in report.items():
+        if name != "apart":
+            shown = [call for call in calls if call["covered"] < 0.5]  # before, there was nothing to show
+            assert shown[-1]["samples"] == 2 and not shown[-1]["is_unfinished"], name
+            # no part of the object is missing while the next picture is drawn
+            assert all(0.07 < call["covered"] < 0.12 for call in shown), name
+    for name in ("rest", "turning"):
+        unfinished = [call for call in report[name] if call["is_unfinished"]]
+        kept = [call for call in unfinished if call["change"] == 0]
+        assert len(kept) > 10 and len(unfinished) - len(kept) <= 6, name
+    # nothing but the pictures of the two samples, and the one that was begun before
+    assert len(report["at_once"]) <= 5
+    assert report["apart"] < 0.01
