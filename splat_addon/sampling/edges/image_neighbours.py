@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 
 from ..ldc.grid import BLOCK, Grid
-from ..ldc.scan_conversion import batches, expand
+from ..ldc.scan_conversion import batches, expand, steps
 from .ordering import order_of, runs_of_equal
 
 #: Around the image, in cells: samples lie in it, other surfels and edges at most this far outside.
@@ -137,16 +137,17 @@ def _near_planes(place, firsts: np.ndarray, counts: np.ndarray, side: np.ndarray
     parts = [(np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0, np.float32))]
     for part in batches(counts, _PAIRS):
         # The surfels of a run are consecutive, so the values of each pair are read in order.
-        run, number = expand(counts[part])
-        surfel, at_side = firsts[part].take(run) + number, side[part].take(run)
+        lengths, sides = counts[part], side[part]
+        surfel = steps(lengths)
+        surfel += np.repeat(firsts[part], lengths)
+        across, up, height = (np.repeat(of.take(sides), lengths) for of in planes)
         above = place[2].take(surfel)
-        above -= planes[2].take(at_side)
-        for rise, values in zip(planes, place[:2], strict=False):
-            step = rise.take(at_side)
-            step *= values.take(surfel)
-            above -= step
+        above -= height
+        for rise, values in ((across, place[0]), (up, place[1])):
+            rise *= values.take(surfel)
+            above -= rise
         at = np.flatnonzero(np.abs(above) <= depth)
-        parts.append((surfel.take(at), at_side.take(at), above.take(at)))
+        parts.append((surfel.take(at), np.repeat(sides, lengths).take(at), above.take(at)))
     return tuple(np.concatenate(found) for found in zip(*parts, strict=True))
 
 
