@@ -12,6 +12,7 @@ import trimesh
 from splat_addon.hierarchy import build_hierarchy
 from splat_addon.rendering import Camera, Instance, PolygonInstance, Scene, Settings, look_at, make_polygons
 from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh, sample_mesh
+from splat_addon.sampling.attributes.lifts import lifts
 from tests.rendering.test_own_shadows import CHALK, LIGHTS, SIZE, uv_sphere
 
 #: Lights at the side, so that the terminator is in the middle of the picture.
@@ -105,6 +106,11 @@ def test_a_lift_is_the_distance_to_the_smooth_surface():
     middle = np.abs(surfels.positions[:, 0] + surfels.origin[0]) < 0.02
     lift = surfels.lift[middle] * surfels.scales[middle].max(axis=1)
     assert np.allclose(lift, x * math.sin(angle), rtol=0.02)
+
+
+def test_weights_that_are_rounded_below_nothing_lift_nothing():
+    shares = np.array([(1.0,), (-1e-8,), (1e-8,)], np.float32)
+    assert lifts(shares, np.array([(1.0,), (1.0,), (0.0,)], np.float32)) == 0
 
 
 def test_merged_surfels_keep_the_mean_lift():

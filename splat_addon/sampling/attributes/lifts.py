@@ -41,5 +41,9 @@ def edge_bulges(mesh: TriangleMesh, spacing: float) -> np.ndarray | None:
 
 
 def lifts(shares: np.ndarray, bulges: np.ndarray) -> np.ndarray:
-    """(n,) object units, at (3, n) barycentric weights in triangles with (3, n) bulges of their edges."""
-    return sum(shares[k] * shares[(k + 1) % 3] * bulges[k] for k in range(3))
+    """(n,) object units, 0 or more, at (3, n) barycentric weights in triangles with (3, n) bulges of their edges."""
+    lifted = shares[0] * shares[1] * bulges[0]
+    for k in (1, 2):
+        lifted += shares[k] * shares[(k + 1) % 3] * bulges[k]
+    # weights on an edge are rounded to either side of 0
+    return np.maximum(lifted, 0, out=lifted)
