@@ -18,8 +18,11 @@ from .drawing import LIT_HOSTS, SPLAT_HOSTS
 #: Offset of polygons, in texels of a map: a filter reaches two texels, over which planes at 45 degrees differ by this.
 SETBACK = 2.0
 
-#: Where at least 8 texels are along a pixel, merged surfels may be so many times larger in texels: they are still three
-#: times smaller than those of the picture.
+#: Merged surfels may be off by half as many texels as pixels, which is how much nearer than a lit surface blockers must
+#: be: otherwise those of a narrow groove's edges would cast dashes into it.
+FINER = 0.5
+#: Where at least 8 texels are along a pixel, they may be off by more: they are still three times smaller than those of
+#: the picture.
 COARSER = 2.0
 
 CONSTANTS = {"NEAREST_SHARE": NEAREST_SHARE}
@@ -129,9 +132,8 @@ def run(tile, p: Pass):
             multisamples=0, sample_shading=False,
         )  # fmt: skip
         view = _as_cast(view, made.camera)
-        settings = tile.settings
-        if made.is_smaller:
-            settings = replace(settings, detail_tolerance=COARSER * settings.detail_tolerance)
+        share = COARSER if made.is_smaller else FINER
+        settings = replace(tile.settings, detail_tolerance=share * tile.settings.detail_tolerance)
         from_light = replace(tile, plan=seen, camera=made.drawn, settings=settings, view=view, shadow_views=())
         drawn = p._replace(state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
         yield from visibility.draw(from_light, drawn, target, view.placed, view.polygons, made.viewport)
