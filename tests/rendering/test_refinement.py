@@ -12,6 +12,7 @@ from splat_addon.reference import scenes
 from splat_addon.rendering import Environment, Lens, Light, Pace, Refinement, Renderer, Scene, Settings, plan
 from splat_addon.rendering.features import drawing
 from splat_addon.rendering.plan import executor
+from splat_addon.rendering.plan.graph import Pause
 
 SETTINGS = Settings(method="quad", samples=4, outputs=("color",))
 
@@ -263,3 +264,28 @@ def test_only_a_view_that_refines_keeps_a_sum():
     assert refined.passes[:-1] == plain.passes
     assert set(refined.textures) - set(plain.textures) == {"sample_sum"}
     assert refined.size(refined.filled["sample_sum"], (7, 7)) == camera.size and "refines" in str(refined)
+
+
+def test_a_call_may_end_between_compiling_a_program_and_drawing_splats_with_it(on_device):
+    scene, camera = torus()
+
+    def job(device):
+        renderer, events, pipeline, draw = Renderer(device), [], device.pipeline, device.draw_triangles
+        device.pipeline = lambda description: events.append("program") or pipeline(description)
+
+        def drawn(program, target, triangles, *others, **named):
+            if triangles > 1:  # one fills a picture
+                events.append("draw")
+            draw(program, target, triangles, *others, **named)
+
+        device.draw_triangles = drawn
+        try:
+            for part in renderer.draw(scene, camera, Settings(), in_slices=True):
+                events.append("pause" if isinstance(part, Pause) else "picture")
+        finally:
+            del device.pipeline, device.draw_triangles
+        return events
+
+    events = on_device(job)
+    after = [events[k + 1] for k, event in enumerate(events[:-1]) if event == "program"]
+    assert "draw" in events and "pause" in after and "draw" not in after

@@ -65,8 +65,12 @@ def draw_parts(
         own = () if cut.numbers is None else ("cut",)
         for more, first, end in ((own, cut.clipped, cut.count), ((*own, "clipped"), 0, cut.clipped)):
             if first < end:
-                program = programs[more] = programs.get(more) or tile.program(p, vertex, *variants, *more)
-                yield from _draw(tile, p, target, placed, tile.settings.epsilon, program, range(first, end), viewport)
+                if more not in programs:
+                    programs[more] = tile.program(p, vertex, *variants, *more)
+                    # compiling it may have taken this call's time
+                    yield Pause()
+                which = range(first, end)
+                yield from _draw(tile, p, target, placed, tile.settings.epsilon, programs[more], which, viewport)
 
 
 def draw_polygons(
