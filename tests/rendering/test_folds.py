@@ -11,12 +11,17 @@ from splat_addon.reference import render_exact, scenes
 from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at, plan
 from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh, sample_mesh
 from tests.rendering.creased import clipped_iron
+from tests.rendering.test_own_shadows import CAMERA as BESIDE_A_BALL
+from tests.rendering.test_own_shadows import LIGHTS, instance, uv_sphere
 
 SIZE = (96, 96)
 MIP = Settings(method="mip", supersampling=1, transparent_film=True)
 METAL = Material(roughness=0.25, metallic=1.0)
 SUN = Light("sun", energy=3.0, direction=(0, 0, -1))
-CAMERA = Camera.perspective(look_at((0, -3, 3), (0, 0, 0)), 0.5, SIZE, 0.1, 100)
+CAMERA = Camera.perspective(look_at((0, -1.2, 4), (0, 0, 0)), 0.5, SIZE, 0.1, 100)
+SLANTING = Camera.perspective(look_at((0, -3, 3), (0, 0, 0)), 0.5, SIZE, 0.1, 100)
+#: Pixels from the background within which a face may be too narrow to be told from a limb.
+RIM = 6
 
 
 def roof(spacing: float):
@@ -36,15 +41,15 @@ def of_metal(surfels, **fields) -> Scene:
 def test_a_crease_is_lit_as_its_faces_are(shading, pixels_apart, render):
     """The picture is compared with the exact one, which lights rays before it filters them.
 
-    Measured: errors of at most 0.001 within the roof. Lit with the mean of both normals, the ridge was up to 15 too
-    bright, and 4 at least.
+    Measured: errors of at most 0.27. Lit with the mean of both normals, the ridge was 19 to 28 too bright.
     """
     scene, settings = of_metal(roof(pixels_apart * 1.9 / SIZE[0])), replace(MIP, shading=shading)
     frame = render(scene, CAMERA, settings)
     exact = render_exact(scene, CAMERA, settings, pixel_filter="gaussian")
-    inside = exact.coverage > 0.999
+    windows = np.lib.stride_tricks.sliding_window_view(np.pad(exact.coverage, RIM), (2 * RIM + 1, 2 * RIM + 1))
+    inside = windows.min(axis=(2, 3)) > 0.999
     assert np.count_nonzero(inside) > 1000
-    assert np.abs(frame.color - exact.color)[inside].max() < 0.02
+    assert np.abs(frame.color - exact.color)[inside].max() < 0.5
 
 
 def tube(radius: float):
@@ -64,9 +69,20 @@ def tube(radius: float):
 def test_a_thin_tube_keeps_its_highlight(pixels, render):
     """Measured: 1.29 and 0.92 of the exact picture's light, but 0.48 and 0.70 if any two normals were two faces'."""
     scene = of_metal(tube(pixels * 1.9 / SIZE[0]))
-    exact = render_exact(scene, CAMERA, MIP, pixel_filter="gaussian")
-    share = render(scene, CAMERA, MIP).color[..., :3].sum() / exact.color[..., :3].sum()
+    exact = render_exact(scene, SLANTING, MIP, pixel_filter="gaussian")
+    share = render(scene, SLANTING, MIP).color[..., :3].sum() / exact.color[..., :3].sum()
     assert 0.85 < share < 1.4
+
+
+def test_backs_at_a_limb_are_no_other_face(render):
+    """Measured: 10 pixels of the dark limb of a ball that is not solid are too bright, and 8 where no creases are lit
+    by faces; 57 if a back counted as the other face.
+    """
+    ball = instance(uv_sphere(12, 6), 256, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
+    scene, settings = Scene((ball,), (LIGHTS["sun from the side"],)), replace(MIP, transparent_film=False)
+    exact = render_exact(scene, BESIDE_A_BALL, settings, pixel_filter="gaussian").color
+    shown = render(scene, BESIDE_A_BALL, settings).color
+    assert np.count_nonzero((exact[..., 0] < 0.02) & (shown[..., 0] > exact[..., 0] + 0.02)) < 16
 
 
 @pytest.mark.parametrize(

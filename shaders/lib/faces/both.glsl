@@ -2,12 +2,14 @@
 // Summary: where a crease runs through a sample, each of its two faces is lit with its own normal. The mean of their
 //          normals lies on the line between them, and so do those of neighbouring samples, in which the faces have other
 //          shares. This line meets the sphere of unit vectors in the two normals. Where the normal across the crease is
-//          neither of the two, the surface bends smoothly, and is lit with the mean.
+//          neither of the two, the surface bends smoothly, and is lit with the mean. So is a limb, where the surface
+//          ends on one side, or turns away, and its back is mixed in.
 
 const vec2 FOLDED = vec2(0.95, 0.98);  // squared length of a mean normal: of two faces, of one
 const float NEAREST = 1.5;     // samples across the crease, at least
 const float FACES_AWAY = 2.0;  // way across it, in half the way over which shares change
 const vec2 MISSED = vec2(0.35, 0.7);  // distance from the normal found there, in half-chords: of a crease, of a bend
+const float AWAY = -0.1;       // cosine to the viewer of a face that cannot be seen: a limb, where backs are mixed in
 const float OFF_PLANE = 0.3;   // sine of the angle at which a way leaves the plane of the face that it leads to
 
 struct Faces {
@@ -35,12 +37,12 @@ vec3 change_of_normals(Shaded s, out vec2 way) {
   return along;
 }
 
-// Whether this is the normal at the end of a way, 0 to 1; 0 if another surface is there.
+// Whether this is the normal at the end of a way, 0 to 1; -1 if another surface or nothing is there.
 float is_found(vec3 normal, float half_chord, Shaded s, vec3 position, vec2 way) {
   ivec2 there = s.texel + ivec2(round(way));
   MeanSurface other = surface_beside(there, s.tap);
   vec3 gone = eye_position(there, other.depth) - position;
-  if (other.coverage == 0.0 || abs(dot(gone, other.normal)) > OFF_PLANE * length(gone)) return 0.0;
+  if (other.coverage == 0.0 || abs(dot(gone, other.normal)) > OFF_PLANE * length(gone)) return -1.0;
   return 1.0 - smoothstep(MISSED.x, MISSED.y, length(other.normal - normal) / half_chord);
 }
 
@@ -55,7 +57,11 @@ Faces faces_of(Shaded s, vec3 position) {
   if (!(change > CANCELLED)) return single;
   way *= clamp(FACES_AWAY * half_chord / change, NEAREST, float(FOLD_REACH)) / change;
   vec3 one = mean + (middle + half_chord) * along, other = mean + (middle - half_chord) * along;
-  float found = max(is_found(one, half_chord, s, position, way), is_found(other, half_chord, s, position, -way));
+  float found = is_found(one, half_chord, s, position, way), found_other = is_found(other, half_chord, s, position, -way);
+  if (min(found, found_other) < 0.0) return single;
+  found = max(found, found_other);
+  vec3 to_viewer = view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
+  found *= smoothstep(AWAY, 0.0, min(dot(one, to_viewer), dot(other, to_viewer)));
   found *= 1.0 - smoothstep(FOLDED.x, FOLDED.y, square);
   if (!(found > 0.0)) return single;
   one = normalize(mix(s.normal, one, found));
