@@ -1,7 +1,7 @@
 // References: Toksvig, "Mipmapping Normal Maps", 2005 (the length of a mean of normals tells how much they differ).
 // Summary: where a crease runs through a sample, each of its two faces is lit with its own normal. The mean of their
 //          normals lies on the line between them, and so do those of neighbouring samples, in which the faces have other
-//          shares. This line meets the sphere of unit vectors in the two normals. Where the normal across the crease is
+//          shares. This line meets the sphere of unit vectors in the two normals. Where a normal beside the crease is
 //          neither of the two, the surface bends smoothly, and is lit with the mean. So is a limb, where the surface
 //          ends on one side, or turns away, and its back is mixed in.
 
@@ -37,12 +37,12 @@ vec3 change_of_normals(Shaded s, out vec2 way) {
   return along;
 }
 
-// Whether this is the normal at the end of a way, 0 to 1; -1 if another surface or nothing is there.
+// Whether this is the normal at the end of a way, 0 to 1; 0 if another surface or nothing is there.
 float is_found(vec3 normal, float half_chord, Shaded s, vec3 position, vec2 way) {
   ivec2 there = s.texel + ivec2(round(way));
   MeanSurface other = surface_beside(there, s.tap);
   vec3 gone = eye_position(there, other.depth) - position;
-  if (other.coverage == 0.0 || abs(dot(gone, other.normal)) > OFF_PLANE * length(gone)) return -1.0;
+  if (other.coverage == 0.0 || abs(dot(gone, other.normal)) > OFF_PLANE * length(gone)) return 0.0;
   return 1.0 - smoothstep(MISSED.x, MISSED.y, length(other.normal - normal) / half_chord);
 }
 
@@ -57,9 +57,7 @@ Faces faces_of(Shaded s, vec3 position) {
   if (!(change > CANCELLED)) return single;
   way *= clamp(FACES_AWAY * half_chord / change, NEAREST, float(FOLD_REACH)) / change;
   vec3 one = mean + (middle + half_chord) * along, other = mean + (middle - half_chord) * along;
-  float found = is_found(one, half_chord, s, position, way), found_other = is_found(other, half_chord, s, position, -way);
-  if (min(found, found_other) < 0.0) return single;
-  found = max(found, found_other);
+  float found = min(is_found(one, half_chord, s, position, way), is_found(other, half_chord, s, position, -way));
   vec3 to_viewer = view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
   found *= smoothstep(AWAY, 0.0, min(dot(one, to_viewer), dot(other, to_viewer)));
   found *= 1.0 - smoothstep(FOLDED.x, FOLDED.y, square);
