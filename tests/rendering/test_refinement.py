@@ -4,6 +4,7 @@
 from dataclasses import replace
 from importlib import import_module
 from itertools import pairwise
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -271,19 +272,19 @@ def test_a_call_may_end_between_compiling_a_program_and_drawing_splats_with_it(o
 
     def job(device):
         renderer, events, pipeline, draw = Renderer(device), [], device.pipeline, device.draw_triangles
-        device.pipeline = lambda description: events.append("program") or pipeline(description)
+
+        def compiled(description):
+            events.append("program")
+            return pipeline(description)
 
         def drawn(program, target, triangles, *others, **named):
             if triangles > 1:  # one fills a picture
                 events.append("draw")
             draw(program, target, triangles, *others, **named)
 
-        device.draw_triangles = drawn
-        try:
+        with patch.object(device, "pipeline", compiled), patch.object(device, "draw_triangles", drawn):
             for part in renderer.draw(scene, camera, Settings(), in_slices=True):
                 events.append("pause" if isinstance(part, Pause) else "picture")
-        finally:
-            del device.pipeline, device.draw_triangles
         return events
 
     events = on_device(job)
