@@ -33,7 +33,7 @@ float alpha_at(SurfaceTexture t, vec2 uv, mat2 change) {
 // thresholds of each sample are spread evenly.
 float cut_threshold(vec2 texel) {
   vec2 corner = view.window.xy / view.window.zw, whole = floor(corner + 0.5);
-  float number = dot(whole + texel, SPREAD) + dot(corner - whole, vec2(2.0, 5.0));
+  float number = dot(whole + texel, SPREAD) + dot(corner - whole, vec2(8.0, -6.0));
   return mix(2.0 * ROUNDING_OF_ALPHA, 1.0, fract(number));
 }
 

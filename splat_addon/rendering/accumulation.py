@@ -24,16 +24,20 @@ from .settings import NEAREST, OUTPUTS
 #: Arrays of a frame that are means over its samples.
 _MEANS = tuple(name for name in OUTPUTS if name not in (*NEAREST, "cryptomatte"))
 
-#: The root above 1 of x^5 = x + 1. Its first two powers suit pixels better than those of x^3 = x + 1: with 16 samples
-#: the error along random edges is a third smaller.
-_RATIO = 1.1673039782614187
+#: The root above 1 of x^3 = x + 1, the generalised golden ratio of two dimensions.
+_RATIO = 1.3247179572447460
 
 
 def sample_points(count: int, first: int = 0) -> np.ndarray:
     """(count, 4) float64 in [0, 1): two coordinates in the pixel and two on the lens, for samples starting at number
-    `first`. Sample 0 is the middle of both."""
+    `first`. Sample 0 is the middle of both.
+
+    In the pixel, the others are pairs about the middle: the recurrence runs forwards and backwards. It is as even as
+    forwards alone, which displaces the mean picture, by 0.1 pixels with 16 samples.
+    """
     number = np.arange(first, first + count)
-    in_pixel = number[:, None] * _RATIO ** -np.array((1.0, 2.0))
+    steps = np.where(number % 2, number // 2 + 1, -(number // 2))
+    in_pixel = steps[:, None] * _RATIO ** -np.array((1.0, 2.0))
     on_lens = np.stack([_mirrored(number, base) for base in (2, 3)], axis=1)
     return (0.5 + np.concatenate([in_pixel, on_lens], axis=1)) % 1
 

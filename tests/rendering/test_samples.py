@@ -52,6 +52,13 @@ def test_any_first_points_are_spread_evenly():
         assert np.abs(counts - 4).max() <= 2
 
 
+@pytest.mark.parametrize("count", [2, 3, 4, 7, 16, 63])
+def test_no_number_of_samples_displaces_the_picture(count):
+    """The mean of an odd number of points is the pixel's middle; of an even one it is off by one point's share."""
+    off = np.abs(sample_points(count)[:, :2].mean(axis=0) - 0.5).max()
+    assert off < 1e-9 if count % 2 else off <= 0.5 / count
+
+
 def test_only_wanted_arrays_are_kept(checker, render):
     frame = render(*checker, Settings(samples=2, outputs=("color",), profile=True, **FLAT))
     assert frame.depth is None and frame.normal is None and frame.coverage is None
