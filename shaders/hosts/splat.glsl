@@ -46,9 +46,9 @@ Splat fetch_splat(int index) {
   splat.color = stored.color.rgb;
   splat.side_weight = cosine < 0.0 ? BACK_WEIGHT : 1.0;
   splat.amplitude = 1.0;
-  splat.normal = normalize(mat3(draw.normal_matrix) * stored.normal);
-  float side = cosine < 0.0 ? -draw.orientation : draw.orientation;
-  if (dot(splat.normal, cross(splat.axis_u, splat.axis_v)) * side < 0.0) splat.normal = -splat.normal;
+  // A shading normal belongs to the side that it is on in the object: stretching may carry it across the plane.
+  bool is_inward = dot(stored.normal, cross(stored.axis_u, stored.axis_v)) < 0.0;
+  splat.normal = normalize(mat3(draw.normal_matrix) * stored.normal) * (is_inward != cosine < 0.0 ? -1.0 : 1.0);
   splat.opacity = clamp(stored.color.a, 0.0, 1.0);
   splat.is_back = cosine < 0.0;
   splat.is_hidden = cosine < 0.0 && draw.hides_backs > 0.5;

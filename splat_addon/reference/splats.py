@@ -15,6 +15,7 @@ from ..rendering.scene.camera import Camera
 from ..rendering.scene.finish import PLAIN
 from ..rendering.scene.light import MAX_LIGHT_SETS
 from ..rendering.settings import Settings
+from ..surfels import Surfels
 from .textures import surfel_textures
 
 #: Weight of a back relative to a front, and how much farther it is moved away: shaders/lib/sides.glsl.
@@ -124,9 +125,10 @@ def _instance_splats(instance: Instance, camera: Camera, with_finish: bool) -> S
     u, v = (axis.astype(np.float64) @ linear.T for axis in surfels.half_axes())
     plane = np.cross(u, v)
     # Mirrored objects turn u x v inside out.
-    cosine = _outward_cosine(-plane if np.linalg.det(linear) < 0 else plane, center, camera)
-    seen = np.where((cosine < 0) == (np.linalg.det(linear) < 0), 1, -1)[:, None] * plane
-    normal = _turned(surfels.normals.astype(np.float64) @ _cofactors(linear).T, seen)
+    orientation = -1 if np.linalg.det(linear) < 0 else 1
+    cosine = _outward_cosine(orientation * plane, center, camera)
+    outward = orientation * _outward_normals(surfels) @ _cofactors(linear).T
+    normal = _unit(np.where(cosine < 0, -1, 1)[:, None] * outward)
     color = surfels.colors[:, :3].astype(np.float64)
     uvs = _no_uvs(len(surfels))
     if instance.is_textured:
@@ -152,7 +154,7 @@ def _no_uvs(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def _cofactors(linear: np.ndarray) -> np.ndarray:
     """The cofactor matrix: det(linear) times the inverse transpose, and defined for singular maps too.
 
-    It carries normals just as well, because the factor's sign is undone by turning them to the viewer.
+    It carries normals just as well, but for the sign of the factor.
     """
     x, y, z = linear.T
     return np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
@@ -166,11 +168,20 @@ def _outward_cosine(outward: np.ndarray, center: np.ndarray, camera: Camera) -> 
     return np.divide(dot, lengths, out=np.zeros_like(dot), where=lengths > 0)
 
 
-def _turned(normal: np.ndarray, side: np.ndarray) -> np.ndarray:
-    """(N, 3) unit shading normals on the given sides of the splats' planes."""
-    length = np.linalg.norm(normal, axis=1, keepdims=True)
-    normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
-    return np.where(np.einsum("ij,ij->i", normal, side)[:, None] < 0, -normal, normal)
+def _outward_normals(surfels: Surfels) -> np.ndarray:
+    """(N, 3) shading normals on the outward side of the splats' planes, object space.
+
+    They are turned before the object is placed, as stretching may carry a normal across its plane.
+    """
+    u, v = (axis.astype(np.float64) for axis in surfels.half_axes())
+    normals = surfels.normals.astype(np.float64)
+    return np.where(np.einsum("ij,ij->i", normals, np.cross(u, v))[:, None] < 0, -normals, normals)
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    """(N, 3) vectors of length 1; zero where they have none."""
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
 
 
 def has_finish(scene: Scene) -> bool:

@@ -176,6 +176,29 @@ def test_a_surface_of_both_looks_like_one_of_polygons(method, render):
     assert psnr(both.color[inside][None], one.color[inside][None]) > 45
 
 
+@pytest.mark.parametrize("above", [True, False])
+def test_stretching_turns_normals_of_both_forms_alike(above, render):
+    """Here it carries the shading normal across the plane, which no longer tells the side that it belongs to."""
+    tilt = np.array([(1, 0, 1), (0, math.sqrt(2), 0), (-1, 0, 1)]) / math.sqrt(2)
+    normals = np.tile((1.0, 0.0, -0.8), (2, 3, 1)) / math.sqrt(1.64)
+    mesh = TriangleMesh(SQUARE @ tilt.T, HALVES, normals)
+    camera = Camera.perspective(look_at((0, -1, 6 if above else -6), (0, 0, 0)), 0.5, SIZE)
+    matrix = np.diag((3.0, 1, 1, 1))
+    polygons = make_polygons(mesh.positions, mesh.triangles, corner_normals=normals)
+    forms = (
+        Scene((Instance(sample_mesh(mesh, spacing=0.02), matrix),)),
+        Scene(polygons=(PolygonInstance(polygons, matrix),)),
+    )
+    surfels, polygons = (
+        render(scene, camera, Settings(outputs=("normal", "coverage"), shading="flat")) for scene in forms
+    )
+    inside = (surfels.coverage == 1) & (polygons.coverage == 1)
+    assert inside.sum() > 1000
+    assert np.abs(surfels.normal - polygons.normal)[inside].max() < 1e-3
+    exact = render_exact(forms[0], camera)
+    assert np.abs(surfels.normal - exact.normal)[inside].max() < 1e-3
+
+
 def painted(directions):
     """(n, 4) colours that vary smoothly over a ball."""
     x, y, z = np.asarray(directions, np.float64).T
