@@ -52,7 +52,10 @@ MEETINGS = {
         ("sums of float16 are scaled", "sum_formats/float16.glsl"),
         ("its sums leave room for those of finishes, or do not", "features/finish.py"),
     ),
-    "hidden_objects": (("they are found while visibility draws", "features/visibility.py"),),
+    "hidden_objects": (
+        ("they are found while visibility draws, in a picture and in shadow maps",
+         "features/visibility.py features/shadows.py"),
+    ),
     "levels": (("each view draws its own cut", "plan/executor.py"),),
     "lighting": (
         ("a layer is lit as the opaque picture is, and its lit samples put into pixels",

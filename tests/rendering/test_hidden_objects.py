@@ -23,7 +23,7 @@ from splat_addon.rendering import (
     make_polygons,
     plan,
 )
-from splat_addon.rendering.features import hidden_objects
+from splat_addon.rendering.features import hidden_objects, visibility
 from splat_addon.rendering.methods import METHODS
 
 SIZE = (64, 48)
@@ -127,6 +127,34 @@ def test_hidden_objects_cast_shadows_and_transparent_ones_hide_nothing(render, m
     assert one.stats["instances_hidden"] and are_equal(one, every)
     alone = render(replace(lit, polygons=()), perspective(), Settings(outputs=ALL))
     assert not are_equal(alone, every)
+
+
+LIGHTS = {
+    "sun": Light("sun", energy=3, direction=(0.1, 1, -0.2), casts_shadow=True),
+    "sized sun": Light("sun", energy=3, direction=(0.1, 1, -0.2), size=0.1, casts_shadow=True),
+    "point": Light("point", energy=900, position=(0.3, -2, 0.5), size=0.1, casts_shadow=True),
+}
+
+
+@pytest.mark.parametrize("kind", LIGHTS)
+def test_casters_behind_others_are_not_drawn_into_shadow_maps(kind, render, monkeypatch):
+    """Lit through a gap in a wall, and seen from behind it; the lights have maps side by side."""
+    counts, draw_splats = [], visibility.draw_splats
+
+    def counted(tile, p, target, splats, *more, **named):
+        splats = list(splats)
+        counts[-1] += len(splats) if p.kind == "shadow" else 0
+        yield from draw_splats(tile, p, target, splats, *more, **named)
+
+    monkeypatch.setattr(visibility, "draw_splats", counted)
+    scene, found = replace(crowd(gap=0.2), lights=(LIGHTS[kind], LIGHTS["point"])), []
+    back = perspective(matrix_world=look_at((1.5, 9, 3), (0, 2, 0)))
+    for least in (1000, math.inf):
+        monkeypatch.setattr(hidden_objects, "LEAST_SURFELS", least)
+        counts.append(0)
+        found.append(render(scene, back, Settings(outputs=ALL, shadow_resolution=256)))
+    assert are_equal(*found) and np.ptp(found[0].color[..., 0]) > 0.1
+    assert 20 < counts[0] < 0.8 * counts[1]
 
 
 def test_a_panorama_and_a_lens_draw_the_same_picture(render, monkeypatch):

@@ -12,7 +12,7 @@ from ..scene.light import pack_lights
 from ..shadow import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps, same_maps, shadow_maps
 from ..shadow_receivers import NEAREST_SHARE
 from ..view import View
-from . import lit_splats, visibility
+from . import hidden_objects, lit_splats, visibility
 from .drawing import LIT_HOSTS, SPLAT_HOSTS
 
 #: Offset of polygons, in texels of a map: a filter reaches two texels, over which planes at 45 degrees differ by this.
@@ -33,6 +33,8 @@ def _of_atlas(plan, pixels: tuple[int, int]) -> tuple[int, int]:
 
 
 DEPTH = Texture("shadow_depth", "DEPTH32F", _of_atlas)
+#: How far cells of a map see, of one after the other.
+FARTHEST = Texture("farthest_lit", "R32F", lambda plan, pixels: hidden_objects.of_cells(*_of_atlas(plan, pixels)))
 #: Sum of the splats' geometric normals: depths are compared with their plane.
 PLANE = Texture("gbuffer_plane", "RG32F", is_multisampled=True)
 #: With room for the number of splats and for lifts, because targets have no room for another texture.
@@ -80,7 +82,9 @@ def passes(planning):
         why = f"{casting} of {len(planning.scene.lights)} lights cast shadows, through {len(made)} maps"
         own = visibility.own_parts(planning, DEPTH)
         drawn = visibility.drawn("shadow_maps", why, own, planning, "shadow")
-        yield drawn._replace(run=run, once=made, is_same=same_maps)
+        opaque = [i for i in planning.scene.surfels if i.casts_shadow and not i.is_transparent]
+        each = hidden_objects.looking("hidden_casters", FARTHEST) if hidden_objects.may_hide(opaque) else None
+        yield drawn._replace(run=run, once=made, is_same=same_maps, each=each)
 
 
 def is_present(planning) -> bool:
@@ -129,14 +133,14 @@ def run(tile, p: Pass):
         is_linear = not made.camera.is_orthographic
         seen = replace(
             tile.plan, linear_depth=is_linear, variants=frozenset(["linear"] if is_linear else []), samples=1,
-            multisamples=0, sample_shading=False,
+            multisamples=0, sample_shading=False, facts={**tile.plan.facts, "covering_depth": DEPTH},
         )  # fmt: skip
         view = _as_cast(view, made.camera)
         share = COARSER if made.is_smaller else FINER
         settings = replace(tile.settings, detail_tolerance=share * tile.settings.detail_tolerance)
         from_light = replace(tile, plan=seen, camera=made.drawn, settings=settings, view=view, shadow_views=())
         drawn = p._replace(state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
-        yield from visibility.draw(from_light, drawn, target, view.placed, view.polygons, made.viewport)
+        yield from visibility.run_in(from_light, drawn, target, made.viewport)
     return target
 
 

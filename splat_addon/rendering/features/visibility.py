@@ -69,10 +69,18 @@ def run(tile, p: Pass):
     if silhouettes.rows_of(p.depth) > 1:
         by_rows = replace(tile, view=_seen_by_rows(tile.view, target.size[1]))
     polygons = tile.view.polygons if p.kind != "layer" else ()
-    for splats in hidden_objects.front_to_back(tile, p):
+    for splats in hidden_objects.front_to_back(tile, p, tile.drawn_by(p)):
         yield from draw(by_rows, p, target, splats, polygons)
         polygons = ()
     return target
+
+
+def run_in(tile, p: Pass, target, viewport: tuple[int, int, int, int]) -> Generator[Pause]:
+    """Draw all that a view shows into a part of the depth texture."""
+    polygons = tile.view.polygons
+    for splats in hidden_objects.front_to_back(tile, p, tile.view.placed, viewport):
+        yield from draw(tile, p, target, splats, polygons, viewport)
+        polygons = ()
 
 
 def draw(tile, p: Pass, target, splats, polygons, viewport=None) -> Generator[Pause]:
