@@ -16,6 +16,10 @@ import numpy as np
 
 from .clip_lines import CLIP_FIELDS, are_reflex, unpack_lines
 
+#: Cells along each edge of the lattice of `Surfels.local_hull`, and surfels that are put into it at a time.
+_HULL_CELLS = 16
+_HULL_AT_ONCE = 1 << 18
+
 #: field -> (columns, dtype); one column is stored flat.
 LAYOUT = {
     "positions": (3, np.float32),
@@ -217,6 +221,29 @@ class Surfels(Shape):
         columns = self.positions.T
         low, high = (np.array([end(column) for column in columns], np.float64) for end in (np.min, np.max))
         return low - margin, high + margin
+
+    @cached_property
+    def local_hull(self) -> np.ndarray:
+        """(n, 3) float64 positions relative to `origin` whose convex hull holds all ellipses, tighter than the box.
+
+        They are corners of boxes, one around the centres in each row of a lattice, enlarged by the longest half-axis.
+        """
+        low, high = self.local_bounds
+        if not len(self):
+            return np.empty((0, 3))
+        low, high = low + self.largest, high - self.largest
+        cell = np.maximum(high - low, 1e-30) / _HULL_CELLS
+        is_full = np.zeros((_HULL_CELLS,) * 3, bool)
+        for start in range(0, len(self), _HULL_AT_ONCE):
+            places = (self.positions[start : start + _HULL_AT_ONCE] - np.float32(low)) * np.float32(1 / cell)
+            is_full[tuple(np.clip(places.astype(np.int32), 0, _HULL_CELLS - 1).T)] = True
+        y, z = np.nonzero(is_full.any(axis=0))
+        rows = is_full[:, y, z]
+        first = np.stack([rows.argmax(axis=0), y, z], axis=1)
+        last = np.stack([_HULL_CELLS - rows[::-1].argmax(axis=0), y + 1, z + 1], axis=1)
+        ends = low + first * cell - self.largest, low + last * cell + self.largest
+        corners = [np.stack([ends[k >> axis & 1][:, axis] for axis in range(3)], axis=1) for k in range(8)]
+        return np.concatenate(corners)
 
 
 def valid_surfels(origin=(0.0, 0.0, 0.0), is_solid=False, **arrays) -> tuple[Surfels, int]:

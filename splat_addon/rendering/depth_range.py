@@ -120,10 +120,10 @@ def picture_bounds(seen, camera: Camera) -> tuple[float, float, float, float] | 
     front of the camera, or there is nothing."""
     if not seen:
         return None
-    corners = np.concatenate([instance.corners(camera) for instance, *_ in seen])
-    if not (-corners[:, 2] >= camera.near).all():
+    places = np.concatenate([instance.hull(camera) for instance, *_ in seen])
+    if not (-places[:, 2] >= camera.near).all():
         return None
-    pixels = camera.pixels_of(corners)
+    pixels = camera.pixels_of(places)
     return (*pixels.min(axis=0).tolist(), *pixels.max(axis=0).tolist())
 
 

@@ -138,6 +138,10 @@ class Placed:
         model_view = self.model_view(camera)
         return self._local_corners @ model_view[:3, :3].T + model_view[:3, 3]
 
+    def hull(self, camera: Camera) -> np.ndarray:
+        """(n, 3) float64 positions in the camera's view space whose convex hull holds all of it."""
+        return self.corners(camera)
+
     def distances(self, camera: Camera) -> tuple[float, float]:
         """Bounds on the distances of its points from the camera, along the view of a parallel one; world units."""
         corners = self.corners(camera)
@@ -191,6 +195,10 @@ class Instance(Placed):
     def radius(self) -> float:
         """The largest surfel's radius in world units."""
         return self.surfels.largest * float(self.stretches[0])
+
+    def hull(self, camera: Camera) -> np.ndarray:
+        model_view = self.model_view(camera)
+        return self.surfels.local_hull @ model_view[:3, :3].T + model_view[:3, 3]
 
     def shows_backs(self, camera: Camera) -> bool:
         """Whether some surfels face away from the camera and are drawn, judged from a sample.
