@@ -294,7 +294,7 @@ def portions(surfels: Surfels, size: int) -> tuple[Surfels, ...]:
 def prepared(parts: tuple[Surfels, ...]) -> tuple[Surfels, ...]:
     """The same sets, with what every picture asks for found already; a thread may do that."""
     for part in parts:
-        _ = part.is_transparent, part.local_bounds, part.largest, part.clipped_count, part.brightest
+        _ = part.is_transparent, part.local_bounds, part.local_hull, part.largest, part.clipped_count, part.brightest
     return parts
 
 

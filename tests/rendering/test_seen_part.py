@@ -11,6 +11,7 @@ from splat_addon.rendering import Renderer, Scene, Settings, look_at
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan.executor import TileContext
 from splat_addon.rendering.scene.lines import Lines
+from splat_addon.surfels import valid_surfels
 
 SIZE = (200, 160)
 EVERYTHING = ("color", "depth", "normal", "coverage", "shadow", "overdraw")
@@ -50,12 +51,34 @@ def test_the_picture_is_the_same(name, on_device, monkeypatch):
         return [renderer.render(scene, camera, settings) for camera in cameras]
 
     parts = on_device(drawn)
-    monkeypatch.setattr(TileContext, "seen_part", lambda tile, p: None)
+    monkeypatch.setattr(TileContext, "seen_part", lambda tile, p, beside=0: None)
     for frame, whole in zip(parts, on_device(drawn), strict=True):
         share = (np.abs(whole.color - whole.color[0, 0]).max(axis=2) > 0.01).mean()
         assert 0.001 < share < 0.06
         for output in settings.outputs:
             np.testing.assert_allclose(getattr(frame, output), getattr(whole, output), rtol=3e-7, err_msg=output)
+
+
+def test_of_a_thin_diagonal_shape_less_is_drawn_than_its_box_covers():
+    """All ellipses lie in the hull's box in any direction, and along the diagonal it is hardly wider than they are."""
+    along = np.linspace(-1, 1, 500)[:, None] * np.ones(3)
+    size = 0.01
+    shape, _ = valid_surfels(
+        (5.0, 0.0, 0.0),
+        positions=along.astype(np.float32),
+        rotations=np.tile(np.float32((1, 0, 0, 0)), (500, 1)),
+        scales=np.full((500, 2), size, np.float32),
+        normals=np.tile(np.float32((0, 0, 1)), (500, 1)),
+        colors=np.ones((500, 4), np.float32),
+        materials=np.zeros(500, np.int32),
+    )
+    axes = np.array(((1, 1, 1), (1, -1, 0), (1, 0, 0), (0, -1, 2)), float)
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    hull, held = shape.local_hull @ axes.T, shape.positions @ axes.T
+    reach = 0.999 * size  # rounded to float32
+    assert (hull.min(axis=0) <= held.min(axis=0) - reach).all()
+    assert (hull.max(axis=0) >= held.max(axis=0) + reach).all()
+    assert np.ptp(hull[:, 1]) < 0.25
 
 
 def test_little_of_the_picture_is_drawn(on_device, monkeypatch):

@@ -133,7 +133,7 @@ def test_the_reader_finds_what_every_picture_asks_for(many_portions, monkeypatch
     seen = Stream(many_portions, PLENTY).ahead(sight((0, 0, 2), 0.3), None, 10.0).result()
     parts = seen.gathered.parts
     assert len(parts) > 4 and sum(map(len, parts)) == len(seen.surfels) and max(map(len, parts)) == 1000
-    asked = {"is_transparent", "local_bounds", "largest", "clipped_count", "brightest"}
+    asked = {"is_transparent", "local_bounds", "local_hull", "largest", "clipped_count", "brightest"}
     assert all(asked <= vars(part).keys() for part in parts)
 
 

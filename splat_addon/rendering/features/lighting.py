@@ -4,7 +4,7 @@ stored for a later filter."""
 
 from __future__ import annotations
 
-from ..plan.graph import Part, Pass, Texture, fill
+from ..plan.graph import Part, Pass, Texture
 from ..read_back import background_texels
 from . import depth_bounds, outputs, silhouettes, visibility
 from .drawing import LIGHTING_HOSTS
@@ -12,6 +12,9 @@ from .drawing import LIGHTING_HOSTS
 NAMES = ("lighting", "picture")
 SHADED = Texture("shaded")
 SURFACE = Texture("surface")
+
+#: Methods that do not widen splats in space draw less than this many pixels beyond their ellipses.
+_BESIDE = 8
 
 
 def _samples(planning) -> tuple[tuple[str, int], ...]:
@@ -21,19 +24,24 @@ def _samples(planning) -> tuple[tuple[str, int], ...]:
     return ("SAMPLES", settings.supersampling), ("TAPS", taps), ("MEAN_OF", settings.multisampling)
 
 
+def fill_lit(tile, p: Pass):
+    """Draw where anything is lit. Elsewhere the contents are undefined."""
+    return tile.fill(p, tile.seen_part(p, _BESIDE))
+
+
 def fill_pixels(tile, p: Pass):
     """Fill the picture: with the background, where nothing is seen."""
-    if tile.seen_part(p):
+    if tile.seen_part(p, _BESIDE):
         pixels = background_texels(tile.scene, tile.settings)
         for texture in p.fills:
             tile.resources.device.target([tile.texture(texture)]).clear(color=pixels[texture.name])
-    return fill(tile, p)
+    return fill_lit(tile, p)
 
 
 def deferred(planning, reason: str, kind: str = "opaque") -> Pass:
     """The pass that shades and stores every sample."""
     own = Part("lighting", writes=(SHADED, SURFACE), constants=_samples(planning))
-    return Pass("deferred_lighting", reason, "deferred_lighting.frag", fill, (own,), kind)
+    return Pass("deferred_lighting", reason, "deferred_lighting.frag", fill_lit, (own,), kind)
 
 
 def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque", state=None) -> Pass:
@@ -45,7 +53,7 @@ def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque"
         called=((seen, "seen_depth"),),
         constants=(("SAMPLES", planning.settings.supersampling), ("ROWS", silhouettes.rows_of(seen))),
     )
-    run = fill if state else fill_pixels
+    run = fill_lit if state else fill_pixels
     return Pass("resolve", reason, "resolve.frag", run, (own,), kind, state or {}, adds=bool(state))
 
 
@@ -60,7 +68,7 @@ def layer_pixels(planning, depth: Texture, writes: tuple[Texture, ...]) -> Pass:
         writes=writes,
         constants=(("SAMPLES", planning.settings.supersampling),),
     )
-    return Pass("layer", "nearer layers cover it", "layer.frag", fill, (own,), "layer", add, adds=True)
+    return Pass("layer", "nearer layers cover it", "layer.frag", fill_lit, (own,), "layer", add, adds=True)
 
 
 def passes(planning):

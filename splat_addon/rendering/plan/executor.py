@@ -31,8 +31,7 @@ from .graph import Loop, Pass, Pause, Step, Texture, of_pixels
 from .programs import describe, frame_value
 from .uniforms import DRAW, VIEW, Block, std140
 
-#: Methods that do not widen splats in space draw less than this many pixels beyond their ellipses, and what rejects
-#: hidden splats reads less.
+#: What rejects hidden splats reads less than this many pixels beyond their ellipses.
 _BESIDE = 24
 
 
@@ -202,8 +201,9 @@ class TileContext:
         """The program of a pass. variants: of its parts, beside those in all programs."""
         return self.resources.pipeline(describe(self.plan, p, vertex, *variants))
 
-    def seen_part(self, p: Pass) -> tuple[int, int, int, int] | None:
+    def seen_part(self, p: Pass, beside: int = _BESIDE) -> tuple[int, int, int, int] | None:
         """x, y, width, height of the part of a pass's target outside of which nothing is seen; None for all of it.
+        beside: pixels beyond ellipses that count as seen.
 
         Of textures with samples it includes what filters read beside the pixels that they write.
         """
@@ -211,7 +211,7 @@ class TileContext:
         if is_everywhere or self.view.bounds is None:
             return None
         writes_pixels = all(texture.per is of_pixels for texture in p.fills)
-        reach, size = _BESIDE + self.plan.margin * (1 if writes_pixels else 2), np.array(self.camera.size)
+        reach, size = beside + self.plan.margin * (1 if writes_pixels else 2), np.array(self.camera.size)
         bounds = np.reshape(self.view.bounds, (2, 2))
         first, last = np.clip(bounds[0] - reach, 0, size), np.clip(bounds[1] + reach, 0, size)
         scale = np.array(self.plan.size(p.fills[0], self.camera.size)) / size
