@@ -2,7 +2,8 @@
 """Reads large meshes of surfels over several pictures of a view, so that none waits long.
 
 A picture copies an attribute or two into arrays that a thread made room for, and which that thread then checks. Until
-that is done, the view shows what the mesh was before, or a few of its surfels.
+that is done, the view shows what the mesh was before, or some of its surfels: very few, read one by one, in the first
+picture, and more of them once the attributes are there.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...clip_lines import CLIP_FIELDS
 from ...rendering.background import in_background
 from ...rendering.stand_in import STAND_IN, spread, standing_in, widened
 from ...surfels import Surfels, prepared, valid_surfels
@@ -27,6 +29,7 @@ from ..geometry.attributes import (
     has_loose_points_only,
     have_same_values,
     read_field,
+    read_rows,
     room_for,
     stored_fields,
     stored_of,
@@ -37,6 +40,8 @@ from .scene import Kept, SurfelStore, tell_replaced
 AT_ONCE = 1 << 18
 #: Seconds after which a picture copies no further attribute.
 _SECONDS = 0.05
+#: Surfels of a mesh that are read one by one, to be shown at once. They take about as long as a picture may.
+FIRST = 1 << 11
 
 
 class SlicedStore(SurfelStore):
@@ -117,7 +122,7 @@ class _Reading:
         self.name, self.count, self._before, self._followed = name, count_of(points), before, followed
         self._is_solid = is_solid or bool(points.get(SOLID))
         self._fields = stored_fields(points, name)
-        self._rooms = {f: in_background(partial(_room, of, self.count)) for f, of in self._fields.items()}
+        self._rooms: dict[str, Future] = {}
         self._arrays: dict[str, np.ndarray] = {}
         self._made: Future | None = None
         self.meanwhile: Surfels | None = before[0].surfels if before else None
@@ -136,18 +141,28 @@ class _Reading:
     def has_news(self) -> bool:
         if self._made is not None:
             return self._made.done()
+        if not self._rooms:
+            return True
         return any(room.done() for field, room in self._rooms.items() if field not in self._arrays)
 
     def advance(self, points: Points, until: float, clock: Callable[[], float]) -> _Read | None:
         """Go on until that time; the result when it is complete. Raises ValueError as `attributes.read_stored`."""
+        if not self._rooms:
+            if clock() > until:
+                return None
+            if not self._before:
+                self.meanwhile = self._first(points)
+            self._rooms = {f: in_background(partial(_room, of, self.count)) for f, of in self._fields.items()}
         for field, room in self._rooms.items():
             if field not in self._arrays:
                 if not room.done() or clock() > until:
                     return None
                 self._arrays[field] = read_field(points, self._fields[field], self.name, room.result())
         if self._made is None:
-            if self.meanwhile is None:
-                self.meanwhile = _few(self._arrays, self._is_solid)
+            if not self._before:
+                rows = spread(self.count, STAND_IN)
+                more = {field: values[rows] for field, values in self._arrays.items()}
+                self.meanwhile = _few(more, self.count, self._is_solid)
             # copies, because an object that the thread frees would free its textures there
             known = {} if self._followed is None else {self.name: _copied(self._followed)}
             before = [copy(kept.surfels) for kept in self._before]
@@ -158,6 +173,12 @@ class _Reading:
         kept = Kept(self.name, stored.surfels, 0, 0) if same is None else self._before[same]
         return _Read(kept._replace(skipped=stored.skipped, strayed=stored.strayed), followed)
 
+    def _first(self, points: Points) -> Surfels | None:
+        """The set to show before the attributes have been read."""
+        rows, seen = spread(self.count, FIRST), self._fields.keys() - {"rest", *CLIP_FIELDS}
+        arrays = {field: read_rows(points, self._fields[field], self.name, rows) for field in seen}
+        return _few(arrays, self.count, self._is_solid)
+
 
 def _room(layout, count: int) -> np.ndarray:
     """An array whose memory is there, so that copying into it takes no longer than that."""
@@ -166,12 +187,11 @@ def _room(layout, count: int) -> np.ndarray:
     return values
 
 
-def _few(arrays: dict[str, np.ndarray], is_solid: bool) -> Surfels | None:
-    """The stand-in of surfels that have not been checked, if any of them are usable."""
-    rows = spread(len(arrays["positions"]), STAND_IN)
-    few = {name: array[rows] for name, array in arrays.items()}
-    surfels, _, _ = stored_of({name: array for name, array in few.items() if name != "rest"}, is_solid, {}, "")
-    wide = widened(surfels.arrays(), len(arrays["positions"]))
+def _few(arrays: dict[str, np.ndarray], count: int, is_solid: bool) -> Surfels | None:
+    """The stand-in of `count` surfels, made of some that have not been checked, if any of them are usable."""
+    known = {field: values for field, values in arrays.items() if field != "rest"}
+    surfels, _, _ = stored_of(known, is_solid, {}, "")
+    wide = widened(surfels.arrays(), count)
     return standing_in(valid_surfels(is_solid=is_solid, **wide)[0]) if len(surfels) else None
 
 

@@ -149,6 +149,15 @@ def read_field(mesh: Points, layout: PointAttribute, name: str, values: np.ndarr
     return values
 
 
+def read_rows(mesh: Points, layout: PointAttribute, name: str, rows: np.ndarray) -> np.ndarray:
+    """(n,) or (n, columns) values of one attribute at a few points. Each takes 2 to 6 microseconds, a thousand times as
+    long as `read_field` takes for one of many."""
+    data, values = _find(mesh, layout, name).data, room_for(layout, len(rows))
+    for value, row in enumerate(rows.tolist()):
+        values[value] = getattr(data[row], layout.property)
+    return values
+
+
 def room_for(layout: PointAttribute, count: int) -> np.ndarray:
     """An array for the values of one attribute."""
     shape = (count, layout.columns) if layout.columns > 1 else count

@@ -19,7 +19,7 @@ COUNT = 30_000
 @pytest.fixture
 def cloud(add_surfels, monkeypatch):
     """Surfels in a box, more than one picture reads at once; a few stand for all of them."""
-    for name, value in {"AT_ONCE": 1000, "STAND_IN": 500}.items():
+    for name, value in {"AT_ONCE": 1000, "STAND_IN": 500, "FIRST": 40}.items():
         monkeypatch.setattr(sliced_store, name, value)
     return add_surfels(np.random.default_rng(5).uniform(-1, 1, (COUNT, 3)), size=0.02)
 
@@ -65,10 +65,24 @@ def test_the_last_picture_has_what_a_render_reads(cloud):
     whole = as_rendered()
     assert [len(surfels) for surfels in whole] == [COUNT]
     assert all(have_same_values(*pair) for pair in zip(seen[-1], whole, strict=True))
-    # nothing is known before the attributes have been copied, one in each picture; then a few stand for all
-    assert seen[0] == [] and len(seen) > 6
-    assert [len(surfels) for surfels in seen[-2]] == [500]
-    assert np.isin(seen[-2][0].positions, np.concatenate([s.positions for s in whole])).all()
+    # very few stand for all from the first picture on, and more once all attributes have been copied, one in each
+    counts = [len(surfels) for picture in seen for surfels in picture]
+    assert len(seen) > 6 and counts == [40] * (len(seen) - 2) + [500, COUNT]
+    rows = {tuple(row) for row in np.hstack([whole[0].positions, whole[0].colors]).tolist()}
+    for surfels in (seen[0][0], seen[-2][0]):
+        assert {tuple(row) for row in np.hstack([surfels.positions, surfels.colors]).tolist()} <= rows
+        # as wide as if they were spread evenly over what they stand for
+        wide = 1.3 * (COUNT / len(surfels)) ** 0.5
+        np.testing.assert_allclose(surfels.scales, wide * whole[0].scales[: len(surfels)], rtol=1e-5)
+
+
+def test_meshes_are_looked_at_in_one_picture_after_another(cloud, add_surfels):
+    """Reading points one by one takes long, so that many meshes would hold the first picture."""
+    for _ in range(3):
+        add_surfels(np.random.default_rng(6).uniform(-1, 1, (COUNT, 3)))
+    seen = pictures(SlicedStore(Clock()))
+    counts = [len(picture) for picture in seen]
+    assert counts[0] == 1 and counts == sorted(counts) and counts[-1] == 4
 
 
 def test_a_picture_without_changes_keeps_the_sets(cloud):
