@@ -16,6 +16,9 @@ STAND_IN = 1 << 16
 #: Factor by which they are wider than those that they replace would be, were they evenly spread.
 _WIDER = 1.3
 
+#: Fields that they do not have: they are whole.
+LEFT_OUT = CLIP_FIELDS
+
 #: Fields that change over a half-axis, or are divided by it.
 _PER_AXIS = ("uv_along_x", "uv_along_y", "uv_border")
 
@@ -37,7 +40,7 @@ def widened(arrays: dict[str, np.ndarray], count: int) -> dict[str, np.ndarray]:
     """The fields of n surfels that stand for `count`: as much wider as these would leave bare, and whole."""
     chosen = len(arrays["positions"])
     factor = np.float32(_WIDER * np.sqrt(count / chosen) if chosen < count else 1)
-    arrays = {name: array for name, array in arrays.items() if name not in CLIP_FIELDS}
+    arrays = {name: array for name, array in arrays.items() if name not in LEFT_OUT}
     return {name: array * factor if name in ("scales", *_PER_AXIS) else array for name, array in arrays.items()}
 
 

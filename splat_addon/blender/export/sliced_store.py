@@ -17,9 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...clip_lines import CLIP_FIELDS
 from ...rendering.background import in_background
-from ...rendering.stand_in import STAND_IN, spread, standing_in, widened
+from ...rendering.stand_in import LEFT_OUT, STAND_IN, spread, standing_in, widened
 from ...surfels import Surfels, prepared, valid_surfels
 from ..geometry.attributes import (
     SOLID,
@@ -175,7 +174,7 @@ class _Reading:
 
     def _first(self, points: Points) -> Surfels | None:
         """The set to show before the attributes have been read."""
-        rows, seen = spread(self.count, FIRST), self._fields.keys() - {"rest", *CLIP_FIELDS}
+        rows, seen = spread(self.count, FIRST), self._fields.keys() - {"rest", *LEFT_OUT}
         arrays = {field: read_rows(points, self._fields[field], self.name, rows) for field in seen}
         return _few(arrays, self.count, self._is_solid)
 
