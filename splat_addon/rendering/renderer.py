@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import contextmanager
 from time import perf_counter
 from typing import NamedTuple
 
@@ -189,7 +190,7 @@ class Renderer:
             pixel = np.array(background_pixel(scene, settings), np.float32).reshape(1, 1, 4)
             yield Shown((0, 0, *camera.size), self.device.texture((1, 1), "RGBA32F", pixel), (0, 0, 1, 1))
             return
-        try:
+        with _restored(self.device):
             for drawn in self._slices(scene, camera, settings, frame_plan, self._new_stats(frame_plan), None):
                 if isinstance(drawn, Pause):
                     if in_slices:
@@ -202,8 +203,6 @@ class Renderer:
                 )
                 yield Shown(tile, texture, (frame_plan.margin, frame_plan.margin, *tile[2:]))
             was_drawn(scene)
-        finally:
-            self.device.restore()
 
     def add_sample(
         self, scene: Scene, moved: Camera, of: Viewers, settings: Settings, is_first: bool, maps
@@ -217,7 +216,7 @@ class Renderer:
         frame_plan = plan(scene, moved, settings, viewers=of, is_added_up=True)
         if not frame_plan.passes:
             return None
-        try:
+        with _restored(self.device):
             if is_first:
                 self.device.target([self._sum(moved.size)]).clear(color=0.0)
             are_shared_done = maps is not None and same_maps(maps, frame_plan.facts["shadow_maps"])
@@ -226,8 +225,6 @@ class Renderer:
                 if isinstance(drawn, Pause) and len(frame_plan.tiles) == 1:
                     yield drawn
             was_drawn(scene)
-        finally:
-            self.device.restore()
         return frame_plan.facts["shadow_maps"]
 
     def shown_sum(self, size: tuple[int, int], samples: int) -> Shown:
@@ -339,6 +336,20 @@ class Renderer:
                 stats["passes"][p.name] = stats["passes"].get(p.name, 0.0) + elapsed
 
         return told, done
+
+
+@contextmanager
+def _restored(device: Device) -> Iterator[None]:
+    """Restores the device's state after drawing, except where a picture is given up at a pause: there, whoever pauses
+    has restored it, and when Blender ends, the device is gone before the pictures that were begun."""
+    try:
+        yield
+    except GeneratorExit:
+        raise
+    except BaseException:
+        device.restore()
+        raise
+    device.restore()
 
 
 def _seen_by_light(casters: Scene, made: ShadowMap, settings: Settings) -> View:

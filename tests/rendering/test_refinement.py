@@ -14,6 +14,7 @@ from splat_addon.rendering import Environment, Lens, Light, Pace, Refinement, Re
 from splat_addon.rendering.features import drawing
 from splat_addon.rendering.plan import executor
 from splat_addon.rendering.plan.graph import Pause
+from splat_addon.rendering.shadow_receivers import viewers
 
 SETTINGS = Settings(method="quad", samples=4, outputs=("color",))
 
@@ -290,3 +291,23 @@ def test_a_call_may_end_between_compiling_a_program_and_drawing_splats_with_it(o
     events = on_device(job)
     after = [events[k + 1] for k, event in enumerate(events[:-1]) if event == "program"]
     assert "draw" in events and "pause" in after and "draw" not in after
+
+
+@pytest.mark.parametrize("kind", ["draw", "add_sample"])
+def test_a_picture_given_up_at_a_pause_leaves_the_device_alone(kind, on_device):
+    """When Blender ends, the device is gone before the pictures that were begun."""
+    scene, camera = scenes.torus(3000, (32, 24))
+
+    def job(device):
+        renderer = Renderer(device)
+        if kind == "draw":
+            parts = renderer.draw(scene, camera, SETTINGS, in_slices=True)
+        else:
+            parts = renderer.add_sample(scene, camera, viewers(camera, camera), SETTINGS, True, None)
+        assert isinstance(next(parts), Pause)
+        device.restore()
+        with patch.object(device, "restore") as restore:
+            parts.close()
+        return restore.call_count
+
+    assert on_device(job) == 0
