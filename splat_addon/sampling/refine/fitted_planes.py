@@ -67,6 +67,10 @@ def fit_planes(
     places, normals = _places_and_normals(arrays, bent, grid.spacing)
     spans = [(axis, slice(*np.searchsorted(bent, (rows.start, rows.stop)).tolist())) for axis, rows in images]
     spans = [(axis, rows) for axis, rows in spans if rows.stop > rows.start]
+    is_cut = np.zeros(len(arrays["positions"]), bool)
+    for name in CLIP_FIELDS:
+        if name in arrays:
+            is_cut |= arrays[name][:, 1] > 0
     seen, done = [], 0
     for image in in_order(partial(ImageSamples, places, normals, *span) for span in spans):
         seen.append(image)
@@ -76,17 +80,21 @@ def fit_planes(
     def fit(image: ImageSamples, part: slice) -> int:
         """Fit the planes of these samples, in place; returns how many there are."""
         rows = bent.take(image.rows[part])
-        scales = arrays["scales"].take(rows, axis=0)
-        sums = _Fit(image, part, _Lines(changed, rows, scales / np.float32(grid.spacing)))
+        at = np.flatnonzero(is_cut.take(rows))
+        cut = rows.take(at)
+        scales = arrays["scales"].take(cut, axis=0)
+        lines = _Lines(changed, rows, at, scales / np.float32(grid.spacing))
+        sums = _Fit(image, part, lines)
         for another in seen:
             if another is not image:
                 sums.add_from(another)
         offset, slope = sums.solve()
         _move(changed, rows, [n[part] for n in image.along_axes(*image.normals)], offset, slope, grid.spacing)
+        offset, slope = offset.take(at), slope.take(at, axis=1)
         moved = np.abs(offset) + np.sqrt((slope * slope).sum(axis=0))
-        less = (sums.goes_on | is_closed) * (_KEPT * moved * grid.spacing)
+        less = (sums.goes_on.take(at) | is_closed) * (_KEPT * moved * grid.spacing)
         # The first half-axis is the larger one (`ellipse_scales`).
-        _cut_less(changed, rows, less / scales[:, 0])
+        _cut_less(changed, cut, less / scales[:, 0])
         return len(rows)
 
     size, done = min(max(len(bent) // _BATCHES, _LEAST), _MOST), 0
@@ -107,20 +115,19 @@ def _places_and_normals(arrays: dict[str, np.ndarray], rows: np.ndarray, spacing
 
 
 class _Lines:
-    """Which offsets from n samples their lines keep. clipped: (n,) index among the c samples with lines, or -1.
-    covectors: (2, 4, c), above 0 at offsets in cells, and 1, on the kept side. reflex: (c,) whether one line's side is
-    enough."""
+    """Which offsets from n samples the lines of c of them keep. at: (c,) which have lines. clipped: (n,) index among
+    these, or -1. covectors: (2, 4, c), above 0 at offsets in cells, and 1, on the kept side. reflex: (c,) whether one
+    line's side is enough."""
 
-    def __init__(self, arrays: dict[str, np.ndarray], rows: np.ndarray, sizes: np.ndarray):
-        """sizes: (n, 2) half-axes, in cells."""
-        none = np.zeros((len(rows), 2), np.int16)
-        packed = [arrays[name].take(rows, axis=0) if name in arrays else none for name in CLIP_FIELDS]
-        self.at = np.flatnonzero((packed[0][:, 1] > 0) | (packed[1][:, 1] > 0))
+    def __init__(self, arrays: dict[str, np.ndarray], rows: np.ndarray, at: np.ndarray, sizes: np.ndarray):
+        """sizes: (c, 2) half-axes, in cells."""
+        self.at, cut = at, rows.take(at)
         self.clipped = np.full(len(rows), -1, np.intp)
-        self.clipped[self.at] = np.arange(len(self.at))
-        packed, sizes = [values.take(self.at, axis=0) for values in packed], sizes.take(self.at, axis=0)
+        self.clipped[at] = np.arange(len(at))
+        none = np.zeros((len(at), 2), np.int16)
+        packed = [arrays[name].take(cut, axis=0) if name in arrays else none for name in CLIP_FIELDS]
         self.reflex = are_reflex(*packed)
-        x, y = axes_columns(arrays["rotations"].take(rows.take(self.at), axis=0), 0, 1)
+        x, y = axes_columns(arrays["rotations"].take(cut, axis=0), 0, 1)
         half_axes = x / sizes[:, 0], y / sizes[:, 1]
         self.covectors = np.empty((2, 4, len(self.at)), np.float32)
         for covector, line in zip(self.covectors, packed, strict=True):
@@ -223,13 +230,16 @@ def _move(changed, rows: np.ndarray, normals: list[np.ndarray], offset: np.ndarr
     """Give samples with these normals planes that are off theirs by (n,) `offset`, in cells, and have a (3, n) `slope`
     against them."""
     offset = offset * np.float32(spacing)
-    changed["positions"][rows] += np.stack([component * offset for component in normals], axis=1)
+    positions = changed["positions"].take(rows, axis=0)
+    for column, component in zip(positions.T, normals, strict=True):
+        column += component * offset
+    changed["positions"][rows] = positions
     # The shortest turn from the normal n to n - slope.
     (sx, sy, sz), (nx, ny, nz) = slope, normals
     x, y, z = sy * nz - sz * ny, sz * nx - sx * nz, sx * ny - sy * nx
     steepness = sx * sx + sy * sy + sz * sz
     w = 1 + np.sqrt(1 + steepness)
-    a, b, c, d = changed["rotations"].take(rows, axis=0).T
+    a, b, c, d = np.ascontiguousarray(changed["rotations"].take(rows, axis=0).T)
     turned = (
         w * a - x * b - y * c - z * d,
         w * b + x * a + y * d - z * c,
@@ -237,11 +247,14 @@ def _move(changed, rows: np.ndarray, normals: list[np.ndarray], offset: np.ndarr
         w * d + x * c - y * b + z * a,
     )
     length = np.sqrt(w * w + x * x + y * y + z * z)
-    changed["rotations"][rows] = np.stack([values / length for values in turned], axis=1)
+    rotations = np.empty((len(rows), 4), np.float32)
+    for column, values in zip(rotations.T, turned, strict=True):
+        np.divide(values, length, out=column)
+    changed["rotations"][rows] = rotations
 
 
 def _cut_less(changed: dict[str, np.ndarray], rows: np.ndarray, less: np.ndarray):
-    """Let the lines of (n,) surfels cut less, by (n,) half-axes; none goes."""
+    """Let the lines of (n,) cut surfels cut less, by (n,) half-axes; none goes."""
     for name in CLIP_FIELDS:
         if name in changed:
             cut = changed[name].take(rows, axis=0)[:, 1]

@@ -95,7 +95,10 @@ class ImageSamples:
         return np.clip((depth - self._lowest[2]) * _PARTS, 0, self._size[2] * _PARTS - 1).astype(np.int64)
 
     def _nearest(self, keys: np.ndarray, depth: np.ndarray) -> np.ndarray:
-        after = np.searchsorted(self._sorted, keys)
+        # Only between the least and the greatest: of samples that follow each other, few others then stay in the cache.
+        first, last = np.searchsorted(self._sorted, (keys.min(initial=0), keys.max(initial=0)))
+        after = np.searchsorted(self._sorted[first:last], keys)
+        after += first
         keys >>= self._bits
         found, gap = np.full(len(keys), -1, np.intp), np.full(len(keys), _FARTHEST, np.float32)
         for number in (after - 1, after):
