@@ -38,6 +38,7 @@ from .progress import Progress, stage
 from .refine.adaptive import merge_flat
 from .refine.component_surfels import component_surfels
 from .refine.fitted_planes import fit_planes
+from .refine.image_samples import inside_triangles
 from .refine.missed_components import SampledSurface, missed_components
 from .workers import in_order
 
@@ -162,7 +163,7 @@ class SamplingRun:
         if self.options.crease_angle is not None:
             arrays, gaps, gap_triangles = self._clipped(arrays, images, clipping)
         if self._fits_planes:
-            about = self.grid, self._edges.borders.are_closed()
+            about = inside_triangles(images), self.grid, self._edges.borders.are_closed()
             arrays = arrays | fit_planes(arrays, _rows_of(images), *about, fitting)
         saved, error = 0, 0.0
         if self.options.tolerance is not None:

@@ -67,6 +67,24 @@ def test_flat_surfaces_stay_as_they_are(cube):
         assert fitted[name].tobytes() == values.tobytes(), name
 
 
+def test_samples_with_all_neighbours_in_their_triangle_keep_its_plane_exactly():
+    """The faces of a coarse ball are far larger than splats, so only those near edges move."""
+    import trimesh
+
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    mesh = TriangleMesh(ball.vertices, ball.faces)
+    options = {"spacing": 0.02, "crease_angle": np.pi, "fits_blending": True}
+    plain, fitted = (sample_mesh(mesh, **options, fits_planes=fits) for fits in (False, True))
+    assert (plain.blend_depth > 0.02).all()
+    heights = (plain.positions + plain.origin) @ ball.face_normals.T - (ball.triangles[:, 0] * ball.face_normals).sum(1)
+    # How far below the plane of another face: three spacings from the edge or farther.
+    is_inside = np.sort(heights, axis=1)[:, -2] < -0.02
+    assert 0.2 < is_inside.mean() < 0.8
+    for one, other in ((plain.positions, fitted.positions), (plain.rotations, fitted.rotations)):
+        assert one[is_inside].tobytes() == other[is_inside].tobytes()
+        assert one[~is_inside].tobytes() != other[~is_inside].tobytes()
+
+
 def folded(angle: float) -> TriangleMesh:
     """Two rectangles of 2 x 1 that meet along the y axis and turn by an angle, in radians."""
     half = angle / 2

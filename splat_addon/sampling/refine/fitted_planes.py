@@ -49,6 +49,7 @@ _KEPT = 0.5
 def fit_planes(
     arrays: dict[str, np.ndarray],
     images: list[tuple[int, slice]],
+    inside: np.ndarray,
     grid: Grid,
     is_closed: bool,
     report: Callable[[float], None] = lambda share: None,
@@ -56,11 +57,13 @@ def fit_planes(
     """The fields of `Surfels` that change: positions, rotations and clip lines.
 
     arrays: samples with blend depths, which tell where the surface bends; positions relative to the grid's middle.
-    images: the samples of each image. is_closed: whether the mesh has no open border; where it has, a line may be one,
-    beyond which nothing could hide what sticks out. report: called between steps with the finished share, 0 to 1.
+    images: the samples of each image. inside: (N,) from `inside_triangles`: samples that have all their neighbours in
+    their own triangle lie in the plane that fits these, and keep it. is_closed: whether the mesh has no open border;
+    where it has, a line may be one, beyond which nothing could hide what sticks out. report: called between steps with
+    the finished share, 0 to 1.
     """
     # Where a triangle bends, those that its surface goes on in do, too.
-    bent = np.flatnonzero(arrays["blend_depth"] > LEAST_BLENDING)
+    bent = np.flatnonzero((arrays["blend_depth"] > LEAST_BLENDING) & (inside < 2))
     if not len(bent):
         return {}
     changed = {name: arrays[name].copy() for name in ("positions", "rotations", *CLIP_FIELDS) if name in arrays}
@@ -77,7 +80,7 @@ def fit_planes(
         done += len(image)
         report(_FINDING * done / len(bent))
 
-    def fit(image: ImageSamples, part: slice) -> int:
+    def fit(image: ImageSamples, part: np.ndarray) -> int:
         """Fit the planes of these samples, in place; returns how many there are."""
         rows = bent.take(image.rows[part])
         at = np.flatnonzero(is_cut.take(rows))
@@ -97,10 +100,17 @@ def fit_planes(
         _cut_less(changed, cut, less / scales[:, 0])
         return len(rows)
 
-    size, done = min(max(len(bent) // _BATCHES, _LEAST), _MOST), 0
-    for count in in_order(partial(fit, image, part) for image in seen for part in triangle_chunks(len(image), size)):
+    to_fit = [np.flatnonzero(inside.take(bent.take(image.rows)) == 0) for image in seen]
+    total, done = max(sum(map(len, to_fit)), 1), 0
+    size = min(max(total // _BATCHES, _LEAST), _MOST)
+    parts = (
+        (image, some[part])
+        for image, some in zip(seen, to_fit, strict=True)
+        for part in triangle_chunks(len(some), size)
+    )
+    for count in in_order(partial(fit, *part) for part in parts):
         done += count
-        report(_FINDING + (1 - _FINDING) * done / len(bent))
+        report(_FINDING + (1 - _FINDING) * done / total)
     return changed
 
 
@@ -143,10 +153,10 @@ def _are_kept(covectors: np.ndarray, reflex: np.ndarray, offsets) -> np.ndarray:
 
 
 class _Fit:
-    """Sums over the neighbours of n samples, a part of an image. goes_on: (n,) whether there are any beyond a line,
-    which then is no open border."""
+    """Sums over the neighbours of n samples of an image, given by number. goes_on: (n,) whether there are any beyond a
+    line, which then is no open border."""
 
-    def __init__(self, image: ImageSamples, part: slice, lines: _Lines):
+    def __init__(self, image: ImageSamples, part: np.ndarray, lines: _Lines):
         self._image, self._lines, self._next_axes = image, lines, image.next_axes(part)
         self._places, self._normals = ([row[part] for row in rows] for rows in (image.places, image.normals))
         self._depth = image.depth[part]

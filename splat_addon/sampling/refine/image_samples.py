@@ -8,6 +8,7 @@ from itertools import product
 import numpy as np
 
 from ..edges.ordering import order_of
+from ..ldc.scan_conversion import Spans
 from ..mesh.triangle_mesh import triangle_chunks
 
 #: Samples of one cell are ordered by depth in these parts of a cell.
@@ -47,15 +48,16 @@ class ImageSamples:
     def __len__(self) -> int:
         return len(self.rows)
 
-    def neighbours(self, part: slice) -> dict[tuple[int, int], np.ndarray]:
-        """Step in columns and rows -> (p,) number of the sample there, or -1, for the p samples of a part."""
+    def neighbours(self, part: np.ndarray) -> dict[tuple[int, int], np.ndarray]:
+        """Step in columns and rows -> (p,) number of the sample there, or -1, for the p samples with
+        these numbers."""
         found = {step: there[part] for step, there in self._next.items()}
         for u, v in product((-1, 1), repeat=2):
             corner = self._next[0, v].take(found[u, 0])
             found[u, v] = np.where(corner >= 0, corner, self._next[u, 0].take(found[0, v]))
         return found
 
-    def next_axes(self, part: slice) -> np.ndarray:
+    def next_axes(self, part: np.ndarray) -> np.ndarray:
         """(p,) axis of the image that the surface would be seen in if it were steeper."""
         u, v, _ = (n[part] for n in self.normals)
         return np.where(np.abs(u) >= np.abs(v), self._order[0], self._order[1])
@@ -126,3 +128,39 @@ class ImageSamples:
             back[-1] = -1
             found[step], found[-step[0], -step[1]] = ahead, back
         return found
+
+
+def inside_triangles(images: tuple[Spans, ...]) -> np.ndarray:
+    """(N,) int8 of all samples: 2 for those with 5 x 5 samples of their own triangle around them, 1 for those with
+    3 x 3, otherwise 0.
+    """
+    return np.concatenate([_inside_triangles(spans) for spans in images])
+
+
+def _inside_triangles(spans: Spans) -> np.ndarray:
+    ends = np.cumsum(spans.counts, dtype=np.int64)
+    first, stop = np.zeros(len(spans), np.int64), spans.counts.astype(np.int64)
+    changes = np.zeros(int(ends[-1]) + 1 if len(ends) else 1, np.int8)
+    # A triangle has one span in each of consecutive rows.
+    follows = (spans.triangles[1:] == spans.triangles[:-1]) & (spans.rows[1:] == spans.rows[:-1] + 1)
+    column, offset = spans.columns.astype(np.int64), ends - spans.counts
+    for _ in range(2):
+        first, stop = _eroded(first + column, stop + column, follows)
+        first, stop = first - column, np.maximum(stop, first) - column
+        some = np.flatnonzero(stop > first)
+        changes[(offset + first).take(some)] += 1
+        changes[(offset + stop).take(some)] -= 1
+    return np.cumsum(changes[:-1], dtype=np.int8)
+
+
+def _eroded(first: np.ndarray, stop: np.ndarray, follows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The columns of (n,) half-open runs that have columns of runs on all eight sides. follows: (n - 1,) whether a run
+    lies in the row after that of the run before it, in the same triangle."""
+    left, right = first.copy(), stop.copy()
+    np.maximum(left[1:], first[:-1], out=left[1:], where=follows)
+    np.maximum(left[:-1], first[1:], out=left[:-1], where=follows)
+    np.minimum(right[1:], stop[:-1], out=right[1:], where=follows)
+    np.minimum(right[:-1], stop[1:], out=right[:-1], where=follows)
+    is_between = np.zeros(len(first), bool)
+    is_between[1:-1] = follows[1:] & follows[:-1]
+    return left + 1, np.where(is_between, right - 1, left + 1)
