@@ -15,8 +15,10 @@ import numpy as np
 
 from .runs import Runs
 
-#: Maximum number of entries in a block.
-BLOCK = 32
+#: Maximum number of entries in a block above the surfels' level, and of surfels in one. A block is as coarse as the
+#: worst of its entries, so that among few a rough place makes few others finer. Surfels have no error, and most blocks
+#: are theirs.
+BLOCK, BLOCK_OF_SURFELS = 8, 32
 
 #: Entries per batch, few enough for temporaries to stay in the processor's cache.
 _PORTION = 1 << 14
@@ -89,12 +91,13 @@ def make_blocks(
     of the nodes.
     """
     offsets = np.cumsum([0, *map(len, entries)])
-    runs = [_between(np.array([0]), np.array([len(entries[-1])]))]
+    most = [BLOCK_OF_SURFELS] + [BLOCK] * len(counts)
+    runs = [_between(np.array([0]), np.array([len(entries[-1])]), most[-1])]
     families = []
-    for own in counts[::-1]:
+    for own, size in zip(counts[::-1], most[-2::-1], strict=True):
         first, last, _ = runs[-1]
         ends = np.concatenate([[0], np.cumsum(own)])
-        runs.append(_between(ends[first], ends[last]))
+        runs.append(_between(ends[first], ends[last], size))
         families.append(runs[-1][2])
     families.append(np.zeros(len(runs[-1][0]), int))  # the surfels are the last
     numbers = np.cumsum([0, *(len(first) for first, _, _ in runs)])
@@ -112,10 +115,10 @@ def make_blocks(
     return Blocks(*arrays, roots=np.array(len(runs[0][0])))
 
 
-def _between(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Runs cut into equal pieces of at most `BLOCK`: starts, ends, and the number of pieces of each run."""
+def _between(first: np.ndarray, last: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Runs cut into equal pieces of at most `most`: starts, ends, and the number of pieces of each run."""
     size = last - first
-    parts = -(-size // BLOCK)
+    parts = -(-size // most)
     owner = np.repeat(np.arange(len(first)), parts)
     number = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
     cuts = [first[owner] + size[owner] * (number + k) // parts[owner] for k in (0, 1)]

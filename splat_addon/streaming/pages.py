@@ -6,12 +6,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..hierarchy.blocks import BLOCK, ranges
+from ..hierarchy.blocks import BLOCK_OF_SURFELS, ranges
 from .block_file import BlockFile
 
 #: Rows of a page: some 70 kB. A block spans at most two pages.
 PAGE = 1024
-assert BLOCK <= PAGE
+assert BLOCK_OF_SURFELS <= PAGE
 
 #: Pages besides the roots' that any budget has, so that something can be read.
 _FEWEST = 16

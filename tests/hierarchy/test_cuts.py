@@ -9,8 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from splat_addon.hierarchy import Sight, Split, build_hierarchy, cut_entries
+from splat_addon.hierarchy.blocks import depth_first, make_blocks, ranges
+from splat_addon.hierarchy.building import build_levels
+from splat_addon.hierarchy.cuts import cut_blocks
 
-from .conftest import ball, leaves_of, make_surfels
+from .conftest import ball, leaves_of, make_surfels, sheet
 
 COUNT = 8000
 HALF = 1.25 * (4 * np.pi / COUNT) ** 0.5
@@ -117,6 +120,21 @@ def test_no_error_that_is_drawn_is_above_the_tolerance():
     nodes = entries[entries >= COUNT] - COUNT
     depth = 9 - HIERARCHY.nodes.positions[nodes, 2]
     assert len(nodes) and (HIERARCHY.errors[nodes].max(axis=1) * view.pixels / depth <= view.tolerance).all()
+
+
+def test_a_rough_place_makes_few_others_finer():
+    """Of the first level's nodes, which stand for nine surfels each, 12 are too coarse: at most 7 more go with each."""
+    surfels = make_surfels(*sheet(180))
+    _, errors, levels, geometry = build_levels(surfels)
+    first = len(levels[0].numbers)
+    errors[:first], errors[first:] = 1, 3
+    errors[np.linspace(0, first - 1, 12).astype(int)] = 3
+    entries, counts = depth_first(levels, len(surfels))
+    blocks = make_blocks(entries, counts, geometry, errors)
+    view = Sight(np.zeros((0, 4)), np.array([0, 0, -1.0, 5]), 1.0, 0.0, np.array([0, 0, 1.0, 0]), False, 2.0)
+    drawn = cut_blocks(blocks, view)
+    merged = ranges(blocks.first[drawn], (blocks.last - blocks.first)[drawn]) >= len(surfels)
+    assert first == 3600 and first - 8 * 12 <= merged.sum() <= first - 12
 
 
 @pytest.mark.parametrize(("distance", "most"), [(1e3, 60), (1e4, 6), (1e6, 6)])

@@ -35,5 +35,5 @@ def test_a_groove_is_shadowed_as_without_merged_surfels(texels, render):
         settings = Settings(detail_tolerance=tolerance, shadow_resolution=TEXELS, outputs=("color", "shadow"))
         return render(scene, CAMERA, settings).shadow[:, 50:78, 0].astype(float)
 
-    off = shadow(1.0) - shadow(0.0)
+    off = shadow(Settings.detail_tolerance) - shadow(0.0)
     assert np.sqrt((off**2).mean()) < 0.036

@@ -18,12 +18,12 @@ from .drawing import LIT_HOSTS, SPLAT_HOSTS
 #: Offset of polygons, in texels of a map: a filter reaches two texels, over which planes at 45 degrees differ by this.
 SETBACK = 2.0
 
-#: Merged surfels may be off by half as many texels as pixels, which is how much nearer than a lit surface blockers must
-#: be: otherwise those of a narrow groove's edges would cast dashes into it.
-FINER = 0.5
+#: Merged surfels may be off by two thirds as many texels as pixels, half a texel by default: that is how much nearer
+#: than a lit surface blockers must be, or those of a narrow groove's edges would cast dashes into it.
+FINER = 2 / 3
 #: Where at least 8 texels are along a pixel, they may be off by more: they are still three times smaller than those of
 #: the picture.
-COARSER = 2.0
+COARSER = 8 / 3
 
 CONSTANTS = {"NEAREST_SHARE": NEAREST_SHARE}
 
