@@ -27,7 +27,7 @@ LEAST_SURFELS = 4096
 _BESIDE = 8.0
 
 #: Size of the merged surfels of a cut: their spacing where the tolerance is a pixel, in pixels.
-_CUT_SPACING = 1.2
+_CUT_SPACING = 0.9
 
 #: The share that merged surfels are of those that they stand for, at most: the finest of them stand for three.
 _FIRST_MERGED = 0.35
