@@ -14,6 +14,7 @@ from ..device.interface import Texture as DeviceTexture
 from ..methods.method import RASTERIZERS
 from ..plan.graph import Pass, Pause
 from ..plan.uniforms import DRAW, std140
+from ..polygon_runs import triangle_runs
 from ..scene.light import MAX_LIGHT_SETS
 from ..upload.storages import STORAGES, get_storage
 from ..view import DrawItem
@@ -82,8 +83,8 @@ def draw_polygons(
         kinds = {"cut_out": placed.instance.is_cut_out, "bumped": placed.instance.is_bumped}
         more = tuple(kind for kind, is_so in kinds.items() if is_so)
         program = programs[more] = programs.get(more) or tile.program(p, vertex, *variants, *more)
-        which = range(placed.instance.polygons.triangles)
-        yield from _draw(tile, p, target, placed, placed.overlap, program, which, viewport)
+        for which in triangle_runs(placed, tile.camera, tile.view):
+            yield from _draw(tile, p, target, placed, placed.overlap, program, which, viewport)
 
 
 def _draw(

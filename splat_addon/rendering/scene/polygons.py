@@ -18,6 +18,8 @@ CORNERS_PER_ROW = 512
 MAX_ROWS = 16384
 MAX_TRIANGLES = CORNERS_PER_ROW * MAX_ROWS // 3
 TEXELS_PER_CORNER = 3
+#: Triangles, one after the other, that are left out of a picture together.
+BLOCK = 1024
 
 #: field -> (columns, dtype) of one corner; one column is stored flat. The last five fields are optional.
 _LAYOUT = {
@@ -96,6 +98,12 @@ class Polygons(Shape):
             return np.full(3, np.nan), np.full(3, np.nan)
         columns = self.positions.T
         return tuple(np.array([end(column) for column in columns], np.float64) for end in (np.min, np.max))
+
+    @cached_property
+    def block_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Two (3, n) float64 corners, relative to `origin`, of a box around each block of triangles."""
+        starts = np.arange(0, len(self), 3 * BLOCK)
+        return tuple(end.reduceat(self.positions, starts).T.astype(np.float64) for end in (np.minimum, np.maximum))
 
 
 def make_polygons(
