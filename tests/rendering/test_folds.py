@@ -24,10 +24,11 @@ SLANTING = Camera.perspective(look_at((0, -3, 3), (0, 0, 0)), 0.5, SIZE, 0.1, 10
 RIM = 6
 
 
-def roof(spacing: float):
-    """Two square faces that meet in a right angle; the ridge, not parallel to the picture, is in the middle."""
+def roof(spacing: float, angle: float = 90):
+    """Two faces that meet in a ridge through the middle, not parallel to the picture. angle: between their normals."""
     turn = np.array([(0.9, -0.436, 0), (0.436, 0.9, 0), (0, 0, 1)])
-    corners = np.array([(-1, 0, 0), (1, 0, 0), (-1, -1, -1), (1, -1, -1), (-1, 1, -1), (1, 1, -1)], float)
+    z = -np.tan(np.radians(angle / 2))
+    corners = np.array([(-1, 0, 0), (1, 0, 0), (-1, -1, z), (1, -1, z), (-1, 1, z), (1, 1, z)], float)
     mesh = TriangleMesh(corners @ turn.T, np.array([(0, 2, 1), (2, 3, 1), (0, 1, 4), (4, 1, 5)]))
     return sample_mesh(mesh, spacing=spacing, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
 
@@ -36,20 +37,21 @@ def of_metal(surfels, **fields) -> Scene:
     return Scene((Instance(surfels, materials=(METAL,)),), **{"lights": (SUN,), **fields})
 
 
-@pytest.mark.parametrize("pixels_apart", [0.75, 1.5, 3])
+@pytest.mark.parametrize(("angle", "pixels_apart"), [(90, 0.75), (90, 1.5), (90, 3), (45, 1.5)])
 @pytest.mark.parametrize("shading", ["principled", "phong"])
-def test_a_crease_is_lit_as_its_faces_are(shading, pixels_apart, render):
+def test_a_crease_is_lit_as_its_faces_are(shading, angle, pixels_apart, render):
     """The picture is compared with the exact one, which lights rays before it filters them.
 
-    Measured: errors of at most 0.27. Lit with the mean of both normals, the ridge was 19 to 28 too bright.
+    Measured: errors of at most 0.014 at a right angle and 0.026 at half of it. Lit with the mean of both normals, the
+    ridge was 19 to 28 too bright.
     """
-    scene, settings = of_metal(roof(pixels_apart * 1.9 / SIZE[0])), replace(MIP, shading=shading)
+    scene, settings = of_metal(roof(pixels_apart * 1.9 / SIZE[0], angle)), replace(MIP, shading=shading)
     frame = render(scene, CAMERA, settings)
     exact = render_exact(scene, CAMERA, settings, pixel_filter="gaussian")
     windows = np.lib.stride_tricks.sliding_window_view(np.pad(exact.coverage, RIM), (2 * RIM + 1, 2 * RIM + 1))
     inside = windows.min(axis=(2, 3)) > 0.999
     assert np.count_nonzero(inside) > 1000
-    assert np.abs(frame.color - exact.color)[inside].max() < 0.5
+    assert np.abs(frame.color - exact.color)[inside].max() < 0.05
 
 
 def tube(radius: float):
@@ -67,7 +69,7 @@ def tube(radius: float):
 
 @pytest.mark.parametrize("pixels", [1.5, 3])
 def test_a_thin_tube_keeps_its_highlight(pixels, render):
-    """Measured: 1.29 and 0.92 of the exact picture's light, but 0.48 and 0.70 if any two normals were two faces'."""
+    """Measured: 1.32 and 0.92 of the exact picture's light, but 1.30 and 0.67 if any two normals were two faces'."""
     scene = of_metal(tube(pixels * 1.9 / SIZE[0]))
     exact = render_exact(scene, SLANTING, MIP, pixel_filter="gaussian")
     share = render(scene, SLANTING, MIP).color[..., :3].sum() / exact.color[..., :3].sum()
@@ -75,14 +77,14 @@ def test_a_thin_tube_keeps_its_highlight(pixels, render):
 
 
 def test_backs_at_a_limb_are_no_other_face(render):
-    """Measured: 10 pixels of the dark limb of a ball that is not solid are too bright, and 8 where no creases are lit
-    by faces; 57 if a back counted as the other face.
+    """Measured: 8 pixels of the dark limb of a ball that is not solid are too bright, as where no creases are lit by
+    faces; 14 if any two normals were two faces'.
     """
     ball = instance(uv_sphere(12, 6), 256, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
     scene, settings = Scene((ball,), (LIGHTS["sun from the side"],)), replace(MIP, transparent_film=False)
     exact = render_exact(scene, BESIDE_A_BALL, settings, pixel_filter="gaussian").color
     shown = render(scene, BESIDE_A_BALL, settings).color
-    assert np.count_nonzero((exact[..., 0] < 0.02) & (shown[..., 0] > exact[..., 0] + 0.02)) < 16
+    assert np.count_nonzero((exact[..., 0] < 0.02) & (shown[..., 0] > exact[..., 0] + 0.02)) < 12
 
 
 @pytest.mark.parametrize(

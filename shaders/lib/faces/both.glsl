@@ -5,11 +5,10 @@
 //          neither of the two, the surface bends smoothly, and is lit with the mean. So is a limb, where the surface
 //          ends on one side, or turns away, and its back is mixed in.
 
-const vec2 FOLDED = vec2(0.95, 0.98);  // squared length of a mean normal: of two faces, of one
+const float ONE_FACE = 0.99;   // squared length of a mean normal, at least, of a single face
 const float NEAREST = 1.5;     // samples across the crease, at least
 const float FACES_AWAY = 2.0;  // way across it, in half the way over which shares change
 const vec2 MISSED = vec2(0.35, 0.7);  // distance from the normal found there, in half-chords: of a crease, of a bend
-const float AWAY = -0.1;       // cosine to the viewer of a face that cannot be seen: a limb, where backs are mixed in
 const float OFF_PLANE = 0.3;   // sine of the angle at which a way leaves the plane of the face that it leads to
 
 struct Faces {
@@ -50,7 +49,7 @@ Faces faces_of(Shaded s, vec3 position) {
   Faces single = Faces(s.normal, s.normal, 1.0);
   vec3 mean = s.mean.normal;
   float square = dot(mean, mean);
-  if (square > FOLDED.y || square < CANCELLED * CANCELLED) return single;
+  if (square > ONE_FACE || square < CANCELLED * CANCELLED) return single;
   vec2 way;
   vec3 along = change_of_normals(s, way);
   float change = length(way), middle = -dot(mean, along), half_chord = sqrt(middle * middle + 1.0 - square);
@@ -58,9 +57,6 @@ Faces faces_of(Shaded s, vec3 position) {
   way *= clamp(FACES_AWAY * half_chord / change, NEAREST, float(FOLD_REACH)) / change;
   vec3 one = mean + (middle + half_chord) * along, other = mean + (middle - half_chord) * along;
   float found = min(is_found(one, half_chord, s, position, way), is_found(other, half_chord, s, position, -way));
-  vec3 to_viewer = view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
-  found *= smoothstep(AWAY, 0.0, min(dot(one, to_viewer), dot(other, to_viewer)));
-  found *= 1.0 - smoothstep(FOLDED.x, FOLDED.y, square);
   if (!(found > 0.0)) return single;
   one = normalize(mix(s.normal, one, found));
   other = normalize(mix(s.normal, other, found));
