@@ -30,7 +30,8 @@ float alpha_at(SurfaceTexture t, vec2 uv, mat2 change) {
 }
 
 // Between 2 ROUNDING_OF_ALPHA and 1. The cameras of frames that are averaged differ by parts of a sample, by which the
-// thresholds of each sample are spread evenly.
+// thresholds of each sample are spread evenly. The factors are whole, so that it does not matter which corner is nearest;
+// at one sample a pixel, cameras differ by multiples of SPREAD, and numbers by those of 2.62, about the golden ratio.
 float cut_threshold(vec2 texel) {
   vec2 corner = view.window.xy / view.window.zw, whole = floor(corner + 0.5);
   float number = dot(whole + texel, SPREAD) + dot(corner - whole, vec2(8.0, -6.0));

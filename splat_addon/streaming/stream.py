@@ -171,13 +171,11 @@ class Stream:
             drawn = drawn[spatial_order((blocks.low[drawn] + blocks.high[drawn]) / 2)]
             fields = self.pages.gathered(blocks.first[drawn], blocks.last[drawn])
             surfels = Surfels(origin=self.file.origin, is_solid=self.file.is_solid, **fields)
-            if self.file.is_transparent:
-                surfels = surfels.as_transparent()
             parts = prepared(portions(surfels, PART))
             if self.file.is_transparent:
                 # all of them, because splats blend with those of the same layer only
-                parts = tuple(part.as_transparent() for part in parts)
-            gathered = self._same[key] = Gathered(surfels, parts)
+                surfels, *parts = (some.as_transparent() for some in (surfels, *parts))
+            gathered = self._same[key] = Gathered(surfels, tuple(parts))
         return gathered
 
     def close(self) -> None:

@@ -267,8 +267,7 @@ def _instances(
 ) -> list[Instance]:
     """The instance of an object that has surfels; none while the surfel store, whose result `kept` is, reads them.
 
-    Raises ValueError for broken attributes or an
-    unusable matrix.
+    Raises ValueError for broken attributes or an unusable matrix.
     """
     surfels, skipped, strayed = kept
     if surfels is None:

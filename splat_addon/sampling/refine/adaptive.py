@@ -40,8 +40,8 @@ _SPREAD = 2 * math.sqrt(3)
 #: Rounding error of texture coordinates in float32, in cells.
 _ROUNDING = 1e-3
 
-#: Lifts are scaled by this where values are compared, so that they do not count.
-_LIFTS_COUNT = np.float32(2.0**-60)
+#: Factor of lifts where values are compared: they do not decide what merges.
+_LIFT_SCALE = np.float32(2.0**-60)
 
 #: Maximum number of surface layers over one block that a search considers.
 _LAYERS = 4
@@ -163,7 +163,7 @@ def _averaged(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The optional fields that merged discs average; any lifts are alike, because normals are compared."""
     others = (*LAYOUT, *UV_FIELDS, BORDER, *CLIP_FIELDS, "blend_depth")
     averaged = {name: array for name, array in arrays.items() if name not in others}
-    return averaged | {"lift": averaged["lift"] * _LIFTS_COUNT} if "lift" in averaged else averaged
+    return averaged | {"lift": averaged["lift"] * _LIFT_SCALE} if "lift" in averaged else averaged
 
 
 def _edge_fields(arrays, made, tolerance: Tolerance) -> dict[str, np.ndarray]:
@@ -325,7 +325,7 @@ def _unstacked(columns: np.ndarray, like: dict[str, np.ndarray]) -> dict[str, np
     made, start = {}, 0
     for name, array in like.items():
         width = math.prod(array.shape[1:])
-        values = columns[:, start : start + width] / (_LIFTS_COUNT if name == "lift" else 1)
+        values = columns[:, start : start + width] / (_LIFT_SCALE if name == "lift" else 1)
         made[name] = values.reshape(len(columns), *array.shape[1:]).astype(array.dtype)
         start += width
     return made
