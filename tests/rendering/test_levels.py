@@ -80,8 +80,10 @@ def test_fewer_splats_draw_the_same_picture(shot, render):
     every, some = (render(scene, camera, settings) for settings in (EVERY, SOME))
     assert every.stats["splats_drawn"] == every.stats["splats"] == some.stats["splats"]
     assert some.stats["splats_drawn"] < 0.3 * every.stats["splats"]
-    # with a roughness per surfel, the length that mean normals lose adds to it
-    assert psnr(some.color, every.color) > (35 if shot is rough else 37)
+    # With a roughness per surfel, the length that mean normals lose adds to it. With clip lines, three pixels of the
+    # hole's highlight, up to 8 times white, count as creases and are lit by two faces: 30.4 dB from the supersampled
+    # picture with all surfels, 29.8 with these.
+    assert psnr(some.color, every.color) > {rough: 35, clipped: 34}.get(shot, 37)
     inside = every.coverage > 0.999
     assert inside.sum() > 200 and some.coverage[inside].min() > 0.99
 
