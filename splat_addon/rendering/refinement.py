@@ -13,7 +13,6 @@ from .renderer import Renderer, Shown, Tile
 from .scene import Scene
 from .scene.camera import Camera
 from .settings import Settings
-from .shadow import ShadowMap
 from .shadow_receivers import viewers
 
 #: Seconds that a picture waits for streamed surfels; what is missing then comes later.
@@ -34,7 +33,6 @@ class Refinement:
         self.pace = pace or Pace(None)
         self.samples = 0
         self._of: tuple[Scene, Camera, Settings] | None = None
-        self._maps: tuple[ShadowMap, ...] | None = None
         self._drawn: Scene | None = None
         self._refines = self._is_coarse = False
         self._last: Shown | None = None
@@ -119,8 +117,7 @@ class Refinement:
         if not waits and self._refines and self.samples < settings.samples:
             moved = sample_camera(camera, self.samples)
             of, is_first = viewers(camera, moved), not self.samples
-            self._maps = yield from self.renderer.add_sample(scene, moved, of, settings, is_first, self._maps)
-            self._refines = self._maps is not None
+            self._refines = yield from self.renderer.add_sample(scene, moved, of, settings, is_first)
             self.samples += 1
         self._is_coarse = False
         if self._refines and self.samples:
@@ -147,7 +144,7 @@ class Refinement:
         return waits or (self._refines and self.samples < self._of[2].samples)
 
     def _begin(self, settings: Settings) -> None:
-        self.samples, self._maps, self._refines = 0, None, settings.samples > 1
+        self.samples, self._refines = 0, settings.samples > 1
         self._begun = None
 
     def _read(self, scene: Scene, camera: Camera, settings: Settings, most: int | None = None) -> Scene:

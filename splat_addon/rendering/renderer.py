@@ -30,7 +30,7 @@ from .scene import Scene
 from .scene.camera import Camera
 from .scene.panorama import Panorama
 from .settings import Settings
-from .shadow import ShadowMap, among, casting, same_maps
+from .shadow import ShadowMap, among, casting
 from .shadow_receivers import Viewers, viewers
 from .streamed import Streamed
 from .upload.resources import Resources
@@ -124,15 +124,11 @@ class Renderer:
     def _samples(
         self, scene, camera, settings, numbers: list[int], turns: Iterator, part: Tile | None, is_only: bool
     ) -> Iterator[Frame]:
-        """The pictures of these samples; samples that would draw the same shadow maps share them."""
-        maps = None
+        """The pictures of these samples."""
 
         def draw(moved: Camera, of: Viewers, settings: Settings, told: Progress | None, part=None) -> Frame:
-            nonlocal maps
             frame_plan = plan(scene, moved, settings, viewers=of, part=part, samples=len(numbers), is_only=is_only)
-            are_shared_done = maps is not None and same_maps(maps, frame_plan.facts["shadow_maps"])
-            maps = frame_plan.facts["shadow_maps"]
-            return self._frame(scene, moved, settings, told, frame_plan, are_shared_done, part)
+            return self._frame(scene, moved, settings, told, frame_plan, part)
 
         for number in numbers:
             if isinstance(camera, Panorama):
@@ -145,17 +141,14 @@ class Renderer:
                 was_drawn(scene)
             yield frame
 
-    def _frame(
-        self, scene, camera: Camera, settings, progress, frame_plan: FramePlan, are_shared_done: bool, part: Tile | None
-    ) -> Frame:
-        """The picture of one sample. are_shared_done: whether results shared by all tiles are left from the previous
-        sample."""
+    def _frame(self, scene, camera: Camera, settings, progress, frame_plan: FramePlan, part: Tile | None) -> Frame:
+        """The picture of one sample."""
         left, bottom, *size = part or (0, 0, *camera.size)
         stats = self._new_stats(frame_plan)
         started = perf_counter()
         try:
             tiles, identified = [], Identified(scene, tuple(size), settings.outputs)
-            for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress, are_shared_done):
+            for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress):
                 place = (tile[0] - left, tile[1] - bottom, *tile[2:])
                 tiles.append((place, read_tile(target, frame_plan, settings.outputs)))
                 if seen := [self._read_whole(t, tile, frame_plan) for t in frame_plan.facts.get("identity", ())]:
@@ -205,27 +198,25 @@ class Renderer:
             was_drawn(scene)
 
     def add_sample(
-        self, scene: Scene, moved: Camera, of: Viewers, settings: Settings, is_first: bool, maps
-    ) -> Generator[Pause, None, tuple[ShadowMap, ...] | None]:
-        """Add the picture of one sample to the sum of the previous ones, whose shadow maps were `maps`; None for none.
-        It pauses as long as the sum is that of the previous ones.
+        self, scene: Scene, moved: Camera, of: Viewers, settings: Settings, is_first: bool
+    ) -> Generator[Pause, None, bool]:
+        """Add the picture of one sample to the sum of the previous ones. It pauses as long as the sum is that of the
+        previous ones.
 
-        moved: the sample's camera. of: the cameras that shadow maps serve. Returns this sample's maps, or
-            None if the picture is only background and there is nothing to add.
+        moved: the sample's camera. of: the cameras that shadow maps serve. Returns False if the picture is only
+            background and there is nothing to add.
         """
         frame_plan = plan(scene, moved, settings, viewers=of, is_added_up=True)
         if not frame_plan.passes:
-            return None
+            return False
         with _restored(self.device):
             if is_first:
                 self.device.target([self._sum(moved.size)]).clear(color=0.0)
-            are_shared_done = maps is not None and same_maps(maps, frame_plan.facts["shadow_maps"])
-            stats = self._new_stats(frame_plan)
-            for drawn in self._slices(scene, moved, settings, frame_plan, stats, None, are_shared_done):
+            for drawn in self._slices(scene, moved, settings, frame_plan, self._new_stats(frame_plan), None):
                 if isinstance(drawn, Pause) and len(frame_plan.tiles) == 1:
                     yield drawn
             was_drawn(scene)
-        return frame_plan.facts["shadow_maps"]
+        return True
 
     def shown_sum(self, size: tuple[int, int], samples: int) -> Shown:
         """The mean of the samples added so far."""
@@ -270,9 +261,7 @@ class Renderer:
         """As `_slices`, without pauses."""
         return (drawn for drawn in self._slices(*of) if not isinstance(drawn, Pause))
 
-    def _slices(
-        self, scene, camera, settings, frame_plan, stats, progress, are_shared_done=False
-    ) -> Iterator[tuple[Tile, Target] | Pause]:
+    def _slices(self, scene, camera, settings, frame_plan, stats, progress) -> Iterator[tuple[Tile, Target] | Pause]:
         """Draw a plan's tiles. Nothing else may be drawn with these resources during a pause."""
         if not frame_plan.passes:
             return
@@ -294,7 +283,7 @@ class Renderer:
         if frame_plan.tiles != ((0, 0, *camera.size),):
             drawn = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan))
             whole = clip_range(scene, drawn, settings.epsilon)
-        execution = Execution(are_shared_done, *self._watching(settings, frame_plan, stats, progress))
+        execution = Execution(*self._watching(settings, frame_plan, stats, progress))
         for number, tile in enumerate(frame_plan.tiles):
             stats["tile"] = number
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))

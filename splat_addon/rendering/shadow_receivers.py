@@ -23,6 +23,9 @@ from .scene.light import MAX_SUN_HALF_ANGLE, Light
 #: its size changes, shadows move by parts of a texel, an eighth of a pixel, which cannot be seen.
 TEXELS_PER_PIXEL = 8
 
+#: The part of a map that is drawn ends at multiples of this share of it, so that it stays while a camera moves.
+_STEP = 1 / 16
+
 #: Texels that filters read on each side of a lookup (shaders/lib/shadow_taps).
 FILTER_REACH = 4
 
@@ -138,13 +141,14 @@ def together(some: list[LookedUp | None]) -> LookedUp | None:
 
 
 def used_texels(camera: Camera, looks: LookedUp) -> tuple[int, int, int, int]:
-    """x, y, width and height of the texels of a map that lookups read, filters included."""
+    """x, y, width and height of the texels of a map that lookups read, filters included, and few more."""
     left, right, bottom, top = camera.window
     start, size = np.array((left, bottom)), np.array(camera.size)
     density = size / (right - left, top - bottom)
-    first = np.floor((looks.low - start) * density).astype(int) - FILTER_REACH
-    last = np.ceil((looks.high - start) * density).astype(int) + FILTER_REACH
-    first, last = np.clip(first, 0, size), np.clip(last, 0, size)
+    step = np.maximum(size * _STEP, 1)
+    first = np.floor(((looks.low - start) * density - FILTER_REACH) / step) * step
+    last = np.ceil(((looks.high - start) * density + FILTER_REACH) / step) * step
+    first, last = np.clip(first.astype(int), 0, size), np.clip(np.ceil(last).astype(int), 0, size)
     return (*first.tolist(), *(last - first).tolist())
 
 

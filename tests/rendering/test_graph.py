@@ -74,32 +74,38 @@ def test_every_pass_can_be_changed():
 def test_a_loop_ends_where_nothing_is_left(surfaces, turns, ends):
     """turns: the expected number, including the last one, which finds nothing left."""
     tile = Tile(surfaces)
-    execution = Execution(False, lambda p, number: None, lambda p, target: None)
+    execution = Execution(lambda p, number: None, lambda p, target: None)
     list(execution.run((LOOP,), tile))
     assert execution.turns == turns and ("rest" in tile.ran) is ends
     assert tile.ran.count("put") == min(surfaces, 3) == tile.swapped
 
 
 def test_what_is_made_once_is_made_with_the_first_tile():
-    maps, tiles = VISIBLE._replace(once="key"), [Tile(0), Tile(0)]
-    execution = Execution(False, lambda p, number: None, lambda p, target: None)
+    maps, tiles = VISIBLE._replace(once=lambda tile, p: "key"), [Tile(0), Tile(0)]
+    execution = Execution(lambda p, number: None, lambda p, target: None)
     for tile in tiles:
         list(execution.run((maps, SHADE), tile))
     assert [tile.ran for tile in tiles] == [["visible", "shade"], ["shade"]]
-    again = Tile(0)
-    list(Execution(True, lambda p, number: None, lambda p, target: None).run((maps, SHADE), again))
-    assert again.ran == ["shade"]
+    for tile in tiles:
+        list(Execution(lambda p, number: None, lambda p, target: None).run((maps, SHADE), tile))
+    assert tiles[0].ran[2:] == ["shade"] and tiles[1].ran[1:] == ["visible", "shade"]
 
 
 class Tile:
     """A stand-in that draws nothing; each turn of the loop peels one of its surfaces."""
 
     def __init__(self, surfaces):
-        self.surfaces, self.ran, self.swapped = surfaces, [], 0
+        self.surfaces, self.ran, self.swapped, self.shared = surfaces, [], 0, set()
 
     def run(self, p):
         self.ran.append(p.name)
         return self
+
+    def shares(self, p):
+        return p.name in self.shared
+
+    def share(self, p):
+        self.shared.add(p.name)
 
     def read(self, slot):
         return self

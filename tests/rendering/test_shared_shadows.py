@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""All samples of a picture share their shadow maps, unless a lens changes the region that a sun's map must cover."""
+"""All samples of a picture share their shadow maps, unless a lens changes the region that a sun's map must cover; and
+so do following pictures, until anything changes that is in them."""
 
 from dataclasses import replace
 
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
-from splat_addon.rendering import Lens, Light, Settings, renderer
+from splat_addon.rendering import Lens, Light, Renderer, Settings
 from splat_addon.rendering.plan import executor
 
 SETTINGS = Settings(method="quad", samples=4, shadow_resolution=128)
@@ -37,7 +38,7 @@ def under(*lights):
 def test_maps_are_drawn_once_and_the_picture_is_as_with_each_its_own(drawn, render, monkeypatch):
     shared = render(*under(SUN, LAMP), SETTINGS)
     assert len(drawn) == 1
-    monkeypatch.setattr(renderer, "same_maps", lambda *_: False)
+    monkeypatch.setattr(executor.TileContext, "shares", lambda *_: False)
     own = render(*under(SUN, LAMP), SETTINGS)
     assert len(drawn) == 5
     np.testing.assert_array_equal(shared.color, own.color)
@@ -49,3 +50,65 @@ def test_through_a_lens_maps_of_lamps_are_shared(lights, times, drawn, render):
     scene, camera = under(*lights)
     render(scene, replace(camera.cropped(20, 20, 8, 8), lens=Lens(0.1, 4.0)), SETTINGS)
     assert len(drawn) == times
+
+
+def turned(camera, angle: float):
+    """A camera that looks at the origin, on its way around it."""
+    turn = np.eye(4)
+    turn[:2, :2] = (np.cos(angle), -np.sin(angle)), (np.sin(angle), np.cos(angle))
+    return replace(camera, matrix_world=turn @ camera.matrix_world)
+
+
+def test_following_pictures_share_maps_until_their_contents_change(drawn, render, on_device):
+    """A final render exports each frame's scene anew."""
+    (scene, camera), settings = under(SUN), replace(SETTINGS, samples=1)
+    outer, inner = scene.surfels
+    ball = replace(outer, matrix_world=np.diag((0.2, 0.2, 0.2, 1)))
+    both = replace(scene, surfels=(outer, inner, ball))
+    exported = replace(both, surfels=tuple(replace(one) for one in both.surfels))
+    moved = replace(both, surfels=(outer, inner, replace(ball, matrix_world=np.diag((0.3, 0.2, 0.2, 1)))))
+    low = replace(both, lights=(replace(SUN, direction=(1, -0.5, -0.7)),))
+    flat = replace(settings, shadow_resolution=0)
+    frames = [
+        (both, camera, settings, 1),
+        (both, turned(camera, 0.05), settings, 0),
+        (exported, camera, settings, 0),
+        (moved, camera, settings, 1),
+        (both, camera, settings, 1),
+        (low, camera, settings, 1),
+        (low, camera, replace(settings, method="raycast"), 1),
+        (low, camera, flat, 0),
+        (low, camera, settings, 1),
+        (replace(low, surfels=(outer, inner, replace(ball, casts_shadow=False))), camera, settings, 1),
+    ]
+
+    def rendered(device):
+        renderer, colors, counts = Renderer(device), [], []
+        for *frame, _ in frames:
+            before = len(drawn)
+            colors.append(renderer.render(*frame).color)
+            counts.append(len(drawn) - before)
+        return colors, counts
+
+    colors, counts = on_device(rendered)
+    assert counts == [count for *_, count in frames]
+    for (*frame, _), color in zip(frames, colors, strict=True):
+        np.testing.assert_array_equal(color, render(*frame).color)
+
+
+def test_maps_that_were_given_up_are_drawn_again(drawn, render, on_device):
+    (scene, camera), settings = under(SUN), replace(SETTINGS, samples=1)
+    other = replace(scene, lights=(replace(SUN, direction=(-1, -0.5, -1)),))
+
+    def rendered(device):
+        renderer = Renderer(device)
+        renderer.render(scene, camera, settings)
+        parts = renderer.draw(other, camera, settings, in_slices=True)
+        while len(drawn) < 2:
+            next(parts)
+        parts.close()
+        device.restore()
+        return renderer.render(scene, camera, settings).color
+
+    np.testing.assert_array_equal(on_device(rendered), render(scene, camera, settings).color)
+    assert len(drawn) == 4

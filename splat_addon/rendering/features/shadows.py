@@ -9,7 +9,8 @@ from dataclasses import replace
 from ..plan.graph import Part, Pass, Texture
 from ..scene.camera import Camera
 from ..scene.light import pack_lights
-from ..shadow import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps, same_maps, shadow_maps
+from ..shadow import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps, shadow_maps
+from ..shadow_contents import contents
 from ..shadow_receivers import NEAREST_SHARE
 from ..view import View
 from . import hidden_objects, lit_splats, visibility
@@ -84,7 +85,7 @@ def passes(planning):
         drawn = visibility.drawn("shadow_maps", why, own, planning, "shadow")
         opaque = [i for i in planning.scene.surfels if i.casts_shadow and not i.is_transparent]
         each = hidden_objects.looking("hidden_casters", FARTHEST) if hidden_objects.may_hide(opaque) else None
-        yield drawn._replace(run=run, once=made, is_same=same_maps, each=each)
+        yield drawn._replace(run=run, once=contents, each=each)
 
 
 def is_present(planning) -> bool:

@@ -56,6 +56,22 @@ class TileContext:
         """A texture of the plan; is_next: the second one of a texture that is updated."""
         return self.resources.texture(texture_key(texture, self.camera.size, self.plan, is_next))
 
+    def shares(self, p: Pass) -> bool:
+        """Whether the result of a pass for all tiles is there already, from an earlier sample or frame. If not, nothing
+        is there any more, because it is drawn over."""
+        key, made_from = self._shared(p), self.resources.made_from
+        if key in made_from and made_from[key] == p.once(self, p):
+            return True
+        made_from.pop(key, None)
+        return False
+
+    def share(self, p: Pass) -> None:
+        """The result of a pass for all tiles is complete."""
+        self.resources.made_from[self._shared(p)] = p.once(self, p)
+
+    def _shared(self, p: Pass) -> TextureKey:
+        return texture_key(p.fills[0], self.camera.size, self.plan)
+
     def swap(self, texture: Texture) -> None:
         """Swap the two textures of one that was updated."""
         keys = (texture_key(texture, self.camera.size, self.plan, is_next) for is_next in (False, True))
@@ -249,8 +265,8 @@ class Execution:
     """One frame's steps, tile by tile. told: called before each pass with its name. done: called after it, with its
     target."""
 
-    def __init__(self, is_shared_done: bool, told: Callable[[Pass, int], None], done: Callable[[Pass, Target], None]):
-        self._is_shared_done, self._told, self._done = is_shared_done, told, done
+    def __init__(self, told: Callable[[Pass, int], None], done: Callable[[Pass, Target], None]):
+        self._is_shared_done, self._told, self._done = False, told, done
         self.turns = 0
 
     def run(self, steps: tuple[Step, ...], tile: TileContext) -> Generator[Pause, None, Target | None]:
@@ -266,13 +282,15 @@ class Execution:
 
     def _pass(self, p: Pass, tile: TileContext) -> Generator[Pause, None, Target | None]:
         self._number += 1
-        if p.once is not None and self._is_shared_done:
+        if p.once is not None and (self._is_shared_done or tile.shares(p)):
             return None
         self._told(p, self._number - 1)
         target = run_pass(tile, p)
         if isinstance(target, Generator):
             target = yield from target
         self._done(p, target)
+        if p.once is not None:
+            tile.share(p)
         for texture in p.all("updates"):
             tile.swap(texture)
         return target

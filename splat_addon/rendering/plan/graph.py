@@ -119,8 +119,9 @@ class Pass(NamedTuple):
     run: run(tile, pass) -> the target that was drawn into, or a generator that yields `Pause` and returns it. kind:
     "opaque", "layer", "rest", ..., for features. state: of its pipelines, fields of `PipelineDescription`. adds: draws
     onto existing contents without clearing.
-    once: for a pass that runs once for all tiles, the value that its result depends on; it runs again if `is_same` with
-        the last frame's value is False. each: a pass that it runs itself for each instance.
+    once: once(tile, pass), for a pass that runs once for all tiles, gives a value that its result depends on; as long
+        as values are equal, following samples and frames share the result. each: a pass that it runs itself for each
+        instance.
     """
 
     name: str
@@ -131,8 +132,7 @@ class Pass(NamedTuple):
     kind: str = "opaque"
     state: Mapping[str, Any] = MappingProxyType({})
     adds: bool = False
-    once: object = None
-    is_same: Callable[[Any, Any], bool] | None = None
+    once: Callable[[Any, Pass], object] | None = None
     each: Pass | None = None
 
     def all(self, *fields: str) -> tuple:

@@ -47,8 +47,8 @@ class StoredSurfels(NamedTuple):
 
 class Resources:
     """Surfels are freed with their last Python reference, textures with the first frame that does not use them, and
-    everything by `release`. textures: those that passes wrote last, by key. arrivals: how often what was on its way has
-    come.
+    everything by `release`. textures: those that passes wrote last, by key. made_from: of those that following frames
+    may share, what they were made from. arrivals: how often what was on its way has come.
 
     loading: brings large sets to the device in slices; a request for one that is on its way then raises `NotYet`. None:
     everything is made when it is first needed.
@@ -61,6 +61,7 @@ class Resources:
         self._held = WeakKeyDictionary()
         self._atlases = {}
         self.textures = {}
+        self.made_from = {}
         self.arrivals = 0
 
     def surfels(
@@ -230,6 +231,7 @@ class Resources:
     def forget_textures_but(self, wanted: set[TextureKey]) -> None:
         """Free textures of a size or kind that this frame does not use."""
         self.textures = {key: texture for key, texture in self.textures.items() if key in wanted}
+        self.made_from = {key: value for key, value in self.made_from.items() if key in wanted}
 
     def pipeline(self, description: PipelineDescription) -> Pipeline:
         """The device's pipeline, which all renderers share. Raises as `Loading.program`."""
@@ -243,6 +245,7 @@ class Resources:
         self.cuts.clear()
         self._atlases.clear()
         self.textures.clear()
+        self.made_from.clear()
 
 
 #: The share of a job that building a hierarchy takes, and of what is left, finding the order.
