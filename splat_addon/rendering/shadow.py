@@ -166,16 +166,6 @@ def sees(camera: Camera, corners: np.ndarray) -> np.ndarray:
     return ~beyond(view.reshape(-1, 3), camera).reshape(6, *corners.shape[:2]).all(axis=2).any(axis=0)
 
 
-def same_maps(some: tuple[ShadowMap, ...], others: tuple[ShadowMap, ...]) -> bool:
-    """Whether two sets of maps have the same contents, for the same scene."""
-    return len(some) == len(others) and all(
-        a.light == b.light
-        and (a.place, a.used, a.casters) == (b.place, b.used, b.casters)
-        and a.camera.is_same(b.camera)
-        for a, b in zip(some, others, strict=True)
-    )
-
-
 def atlas_columns(maps: int) -> int:
     """Maps side by side in the atlas."""
     return max(math.ceil(math.sqrt(maps)), 1)

@@ -8,44 +8,45 @@ exports another one for each frame.
 from __future__ import annotations
 
 from dataclasses import fields
+from operator import attrgetter
 from typing import TYPE_CHECKING
 from weakref import ref
 
-import numpy as np
-
-from ..streaming import Stream
-from ..surfels import Shape
-from .plan.graph import Pass
-from .scene import Instance
-from .shadow import ShadowMap, casting
+from .scene import Instance, PolygonInstance
+from .scene.camera import Camera
+from .shadow import casting
 
 if TYPE_CHECKING:
     from .plan.executor import TileContext
+    from .plan.graph import Pass
+
+#: Fields of instances that are compared in another way, or change nothing in a map.
+_APART = {"shape", "matrix_world", "stream", "materials", "light_set", "name", "index"}
+_OF = {
+    kind: attrgetter(*(field.name for field in fields(kind) if field.name not in _APART))
+    for kind in (Instance, PolygonInstance, Camera)
+}
 
 
 def contents(tile: TileContext, p: Pass) -> tuple:
     """All that the pass that draws a frame's shadow maps depends on, but for the camera of the picture."""
-    casters = casting(tile.scene).shown
-    levels = (tile.levels(placed) if isinstance(placed, Instance) else None for placed in casters)
-    each = [
-        (_values(placed), tile.identities.slots(placed), own and ref(own))
-        for placed, own in zip(casters, levels, strict=True)
-    ]
+    casters, slots = casting(tile.scene).shown, tile.identities.slots
+    each = [(ref(c.shape), c.matrix_world.tobytes(), _OF[type(c)](c), slots(c), _levels(tile, c)) for c in casters]
     numbers = {placed: number for number, placed in enumerate(casters)}
-    maps = [_of_map(made, numbers) for made in tile.plan.facts["shadow_maps"]]
+    maps = [
+        (
+            m.camera.matrix_world.tobytes(),
+            _OF[Camera](m.camera),
+            m.place,
+            m.used,
+            m.is_smaller,
+            *map(numbers.get, m.casters),
+        )
+        for m in tile.plan.facts["shadow_maps"]
+    ]
     return p._replace(once=None, reason=""), tile.plan.choices, tile.settings, each, maps
 
 
-def _of_map(made: ShadowMap, numbers: dict) -> tuple:
-    return _values(made.camera), made.place, made.used, made.is_smaller, [numbers[placed] for placed in made.casters]
-
-
-def _values(of: object) -> list:
-    """The fields of a camera or an instance."""
-    return [_value(getattr(of, field.name)) for field in fields(of)]
-
-
-def _value(value: object) -> object:
-    if isinstance(value, np.ndarray):
-        return value.tobytes()
-    return ref(value) if isinstance(value, Shape | Stream) else value
+def _levels(tile: TileContext, placed: Instance | PolygonInstance) -> ref | None:
+    own = tile.levels(placed) if isinstance(placed, Instance) else None
+    return None if own is None else ref(own)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Passes over typed textures: unread ones are trimmed, loops end early, and updated textures are swapped."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from splat_addon.rendering.plan.executor import Execution
@@ -95,17 +97,15 @@ class Tile:
     """A stand-in that draws nothing; each turn of the loop peels one of its surfaces."""
 
     def __init__(self, surfaces):
-        self.surfaces, self.ran, self.swapped, self.shared = surfaces, [], 0, set()
+        self.surfaces, self.ran, self.swapped = surfaces, [], 0
+        self.resources = SimpleNamespace(made_from={})
 
     def run(self, p):
         self.ran.append(p.name)
         return self
 
-    def shares(self, p):
-        return p.name in self.shared
-
-    def share(self, p):
-        self.shared.add(p.name)
+    def key(self, texture):
+        return texture.name
 
     def read(self, slot):
         return self

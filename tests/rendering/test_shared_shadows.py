@@ -9,6 +9,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.rendering import Lens, Light, Renderer, Settings
+from splat_addon.rendering.features import shadows
 from splat_addon.rendering.plan import executor
 
 SETTINGS = Settings(method="quad", samples=4, shadow_resolution=128)
@@ -38,7 +39,7 @@ def under(*lights):
 def test_maps_are_drawn_once_and_the_picture_is_as_with_each_its_own(drawn, render, monkeypatch):
     shared = render(*under(SUN, LAMP), SETTINGS)
     assert len(drawn) == 1
-    monkeypatch.setattr(executor.TileContext, "shares", lambda *_: False)
+    monkeypatch.setattr(shadows, "contents", lambda *_: object())
     own = render(*under(SUN, LAMP), SETTINGS)
     assert len(drawn) == 5
     np.testing.assert_array_equal(shared.color, own.color)

@@ -52,30 +52,17 @@ class TileContext:
     shadow_views: tuple[View, ...] = ()
     rectangle: tuple[int, int, int, int] = (0, 0, 0, 0)
 
+    def key(self, texture: Texture, is_next: bool = False) -> TextureKey:
+        """The key of a texture of the plan; is_next: the second one of a texture that is updated."""
+        return texture_key(texture, self.camera.size, self.plan, is_next)
+
     def texture(self, texture: Texture, is_next: bool = False) -> DeviceTexture:
-        """A texture of the plan; is_next: the second one of a texture that is updated."""
-        return self.resources.texture(texture_key(texture, self.camera.size, self.plan, is_next))
-
-    def shares(self, p: Pass) -> bool:
-        """Whether the result of a pass for all tiles is there already, from an earlier sample or frame. If not, nothing
-        is there any more, because it is drawn over."""
-        key, made_from = self._shared(p), self.resources.made_from
-        if key in made_from and made_from[key] == p.once(self, p):
-            return True
-        made_from.pop(key, None)
-        return False
-
-    def share(self, p: Pass) -> None:
-        """The result of a pass for all tiles is complete."""
-        self.resources.made_from[self._shared(p)] = p.once(self, p)
-
-    def _shared(self, p: Pass) -> TextureKey:
-        return texture_key(p.fills[0], self.camera.size, self.plan)
+        """A texture of the plan; is_next: as in `key`."""
+        return self.resources.texture(self.key(texture, is_next))
 
     def swap(self, texture: Texture) -> None:
         """Swap the two textures of one that was updated."""
-        keys = (texture_key(texture, self.camera.size, self.plan, is_next) for is_next in (False, True))
-        self.resources.swap(*keys)
+        self.resources.swap(self.key(texture), self.key(texture, is_next=True))
 
     def target(self, p: Pass) -> Target:
         """The target that a pass draws into."""
@@ -282,15 +269,22 @@ class Execution:
 
     def _pass(self, p: Pass, tile: TileContext) -> Generator[Pause, None, Target | None]:
         self._number += 1
-        if p.once is not None and (self._is_shared_done or tile.shares(p)):
-            return None
+        if p.once is None:
+            return (yield from self._drawn(p, tile))
+        if not self._is_shared_done:
+            key, value, made_from = tile.key(p.fills[0]), p.once(tile, p), tile.resources.made_from
+            # none while it is drawn over, which may be given up
+            if made_from.pop(key, None) != value:
+                yield from self._drawn(p, tile)
+            made_from[key] = value
+        return None
+
+    def _drawn(self, p: Pass, tile: TileContext) -> Generator[Pause, None, Target | None]:
         self._told(p, self._number - 1)
         target = run_pass(tile, p)
         if isinstance(target, Generator):
             target = yield from target
         self._done(p, target)
-        if p.once is not None:
-            tile.share(p)
         for texture in p.all("updates"):
             tile.swap(texture)
         return target
