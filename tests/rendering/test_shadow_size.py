@@ -26,7 +26,7 @@ from splat_addon.rendering import (
     plan,
     shadow_receivers,
 )
-from splat_addon.rendering.shadow import LEAST_SIDE, enough, same_maps
+from splat_addon.rendering.shadow import LEAST_SIDE, enough
 from splat_addon.sampling import TriangleMesh, sample_mesh
 
 SETTINGS = Settings(outputs=("color",))
@@ -142,6 +142,14 @@ def test_a_dolly_does_not_flicker_where_sizes_change(name, scene_of, render, ful
     steps = [[flip(before, after) for before, after in pairwise(colors)] for colors in (small, large)]
     pops = np.abs(np.subtract(*steps))
     assert pops.max() < 0.0002 and pops.mean() < 0.00008, (pops.max(), pops.mean())
+
+
+def same_maps(some, others):
+    """Whether two sets of maps of a scene have the same contents."""
+    return len(some) == len(others) and all(
+        (a.light, a.place, a.used, a.casters) == (b.light, b.place, b.used, b.casters) and a.camera.is_same(b.camera)
+        for a, b in zip(some, others, strict=True)
+    )
 
 
 @pytest.mark.parametrize("name", LIGHTS)

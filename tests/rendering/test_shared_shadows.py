@@ -61,7 +61,7 @@ def turned(camera, angle: float):
 
 
 def test_following_pictures_share_maps_until_their_contents_change(drawn, render, on_device):
-    """A final render exports each frame's scene anew."""
+    """They are shared by another scene with the same contents, too: a final render exports one for each frame."""
     (scene, camera), settings = under(SUN), replace(SETTINGS, samples=1)
     outer, inner = scene.surfels
     ball = replace(outer, matrix_world=np.diag((0.2, 0.2, 0.2, 1)))
