@@ -6,7 +6,8 @@ away that it covers some 60 pixels. Each row compares two kinds of frames. *All*
 surfels where the tolerance allows it. Times are medians of whole frames that are drawn alternately.
 Of sets larger than --every, only the cut is drawn.
 
-drawn: surfels in the cut. cut/all: the time of the cut frame, divided by that of all. bare/cut: the time to draw the
+drawn: surfels in the cut. cut/all: the time of the cut frame, divided by that of all. following: the time of a cut frame
+    that shares the shadow maps of the frame before; the others draw theirs. bare/cut: the time to draw the
     same splats into nothing but a depth buffer, divided by the cut frame; no frame can be faster.
 decided: the share of the cut frame's time that goes into planning and choosing surfels while the camera moves.
 PSNR, FLIP: the cut compared with all. uploads: of a second frame of the same view.
@@ -38,9 +39,7 @@ DEVICES = ("standalone",)
 QUICK = {"size": 64, "resolutions": [60], "model": "bunny.obj.gz", "dolly": 3}
 #: name -> the eye in half diagonals of the model's box
 VIEWS = {"filling": (1.2, 0.7, 2.6), "tiny": (76.0, 44.0, 165.0)}
-COLUMNS = (
-    "surfels view shadow drawn all,_ms cut,_ms cut/all bare/cut decided PSNR FLIP MiB,_all MiB,_cut uploads".split()
-)
+COLUMNS = "surfels view shadow drawn all,_ms cut,_ms following,_ms cut/all bare/cut decided PSNR FLIP MiB,_all MiB,_cut uploads".split()
 PASSES = "surfels", "view", "splats over a pixel", "milliseconds of each pass"
 
 
@@ -65,7 +64,7 @@ def run(options, report) -> None:
             started = perf_counter()
             levels = hierarchy_of(surfels)
             seconds, own = perf_counter() - started, sum(a.nbytes for a in surfels.arrays().values())
-            yield f"{len(surfels):,}", f"built in {seconds:.2f} s", f"{levels.nbytes / own:.0%} more memory", *[""] * 11
+            yield f"{len(surfels):,}", f"built in {seconds:.2f} s", f"{levels.nbytes / own:.0%} more memory", *[""] * 12
             for view, eye in VIEWS.items():
                 for shadow in (0, 1024):
                     yield measure(device, surfels, view, eye, shadow, options, passes, times)
@@ -105,15 +104,17 @@ def measure(device, surfels, view: str, eye, shadow: int, options, passes: list,
     if len(surfels) > options.every:
         del settings["all"]
     renderers = {kind: Renderer(device) for kind in settings}
-    jobs = {kind: partial(renderers[kind].render, lit, camera, settings[kind]) for kind in settings}
+    jobs = {kind: partial(render_with_maps, renderers[kind], lit, camera, settings[kind]) for kind in settings}
+    if shadow:
+        jobs["following"] = partial(renderers["cut"].render, lit, camera, settings["cut"])
     drawn = in_turn(jobs, options.turns, wall)
     if "all" in renderers:
         renderers["all"].release()
     before = renderers["cut"].resources.cuts.uploads
     memory = {"cut": f"{jobs['cut']().stats['texture_bytes'] / 2**20:.0f}"}
     uploads = renderers["cut"].resources.cuts.uploads - before
-    profiled = renderers["cut"].render(lit, camera, replace(settings["cut"], profile=True))
-    spent, took = profiled.stats["passes"], {kind: 1e3 * drawn.spread(kind).median for kind in settings}
+    profiled = render_with_maps(renderers["cut"], lit, camera, replace(settings["cut"], profile=True))
+    spent, took = profiled.stats["passes"], {kind: 1e3 * drawn.spread(kind).median for kind in jobs}
     bare = spent.get("visibility", 0)
     if not shadow:
         counted = renderers["cut"].render(lit, camera, replace(settings["cut"], outputs=("color", "overdraw")))
@@ -130,10 +131,17 @@ def measure(device, surfels, view: str, eye, shadow: int, options, passes: list,
         beside = f"{drawn.ratio('cut', 'all'):.3f}", *likeness
     return (
         f"{len(surfels):,}", view, "sun's" if shadow else "none", f"{one.stats['splats_drawn']:,}",
-        f"{took['all']:.0f}" if other else "", f"{took['cut']:.0f}", beside[0],
+        f"{took['all']:.0f}" if other else "", f"{took['cut']:.0f}",
+        f"{took['following']:.0f}" if shadow else "", beside[0],
         f"{bare / took['cut']:.2f}", f"{1e3 * decided(lit, camera, settings['cut']) / took['cut']:.1%}",
         *beside[1:], memory.get("all", ""), memory["cut"], uploads,
     )  # fmt: skip
+
+
+def render_with_maps(renderer: Renderer, scene, camera, settings):
+    """A frame that draws its shadow maps, whatever its renderer drew before."""
+    renderer.resources.made_from.clear()
+    return renderer.render(scene, camera, settings)
 
 
 def decided(scene, camera, settings) -> float:
