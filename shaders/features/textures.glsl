@@ -57,19 +57,73 @@ void textures_color(inout Candidate c) {
 void textures_plane(int corner, float slot, vec3 first, vec3 outward, bool is_back) {
   texture_slot = texture_slot_of(slot);
   texture_uv = corner_uv(corner);
-  uv_gradient(corner / 3 * 3, first, gradient_u, gradient_v);
+  int start = corner / 3 * 3;
+  vec2 seams = corner_uv_texel(start).zw + corner_uv_texel(start + 1).zw + corner_uv_texel(start + 2).zw;
+  texture_triangle = seams != vec2(0.0) ? float(corner / 3) : -1.0;
+  uv_gradient(start, first, gradient_u, gradient_v);
 }
 
 #part polygons.frag
+#include "lib/corner_uv.glsl"
 #include "lib/texture_lookup.glsl"
 #include "lib/uv_change.glsl"
+
+const float DEVIATIONS = 2.0;  // of a footprint, that count
+const float TINY = 1e-6;       // texels, or their square
 
 // Change of the texture coordinates per sample along x and y.
 mat2 sample_uv_change() {
   return uv_change(gradient_u, gradient_v, view.window.xy + gl_FragCoord.xy * view.window.zw, depth_at);
 }
 
+// Takes from a footprint what lies beyond a line. middle, variances: of the footprint, in texels. inside: distance of the
+// middle from the line, inward: unit. height: of the chart from there, as far as it is known.
+void end_footprint(inout vec2 middle, inout vec3 variances, float inside, vec2 inward, float height) {
+  vec2 change = vec2(dot(variances.xz, inward), dot(variances.zy, inward));
+  float variance = max(dot(inward, change), TINY), reach = DEVIATIONS * sqrt(variance);
+  if (!(inside < reach)) return;
+  float most = max(min(inside + reach, height), TINY), kept = 0.5 * most / reach;
+  middle += change * ((0.5 * most - inside) / variance);
+  variances -= vec3(change * change, change.x * change.y) * ((1.0 - kept * kept) / variance);
+}
+
+// The footprint without what lies beyond the seams of the triangle's chart, where the image shows other surfaces.
+void end_at_seams(SurfaceTexture t, inout vec2 uv, inout vec3 variances) {
+  if (texture_triangle < 0.0) return;
+  int start = 3 * int(texture_triangle);
+  vec2 middle = uv * t.size;
+  vec3 scale = vec3(t.size * t.size, t.size.x * t.size.y), spread = variances * scale;
+  for (int k = 0; k < 3; k++) {
+    vec4 corner = corner_uv_texel(start + k);
+    vec2 place = corner.xy * t.size, first = corner_uv(start + (k + 1) % 3) * t.size;
+    vec2 second = corner_uv(start + (k + 2) % 3) * t.size;
+    if (corner.z > 0.0) {
+      vec2 along = second - first, inward = place - first;
+      inward -= along * (dot(along, inward) / max(dot(along, along), TINY));
+      float height = max(length(inward), TINY);
+      inward /= height;
+      end_footprint(middle, spread, dot(middle - first, inward), inward, height);
+    }
+    if (corner.w > 0.0) {
+      // Only a footprint that covers the corner reaches over it.
+      vec2 inward = 0.5 * (first + second) - place, offset = middle - place;
+      float height = max(length(inward), TINY);
+      inward /= height;
+      vec3 conic = vec3(spread.y, spread.x, -spread.z) / max(spread.x * spread.y - spread.z * spread.z, TINY * TINY);
+      float deviations2 = dot(conic, vec3(offset * offset, 2.0 * offset.x * offset.y));
+      float variance = dot(spread, vec3(inward * inward, 2.0 * inward.x * inward.y));
+      end_footprint(middle, spread, sqrt(max(deviations2 * variance, 0.0)), inward, height);
+    }
+  }
+  uv = middle / t.size;
+  variances = spread / scale;
+}
+
 void textures_color(inout vec3 color) {
   if (texture_slot < 0.0) return;
-  color = texture_color(surface_texture(int(texture_slot)), texture_uv, uv_variances(PIXEL_VARIANCE, sample_uv_change()));
+  SurfaceTexture t = surface_texture(int(texture_slot));
+  vec2 uv = texture_uv;
+  vec3 variances = uv_variances(PIXEL_VARIANCE, sample_uv_change());
+  end_at_seams(t, uv, variances);
+  color = texture_color(t, uv, variances);
 }

@@ -1,11 +1,8 @@
 // References: none needed.
 // Summary: texture coordinates of polygons' corners, and their change in a triangle's plane.
 
+#include "lib/corner_uv.glsl"
 #include "lib/gradient.glsl"
-
-vec2 corner_uv(int corner) {
-  return texelFetch(polygon_uvs, ivec2(corner % CORNERS_PER_ROW, corner / CORNERS_PER_ROW), 0).xy;
-}
 
 // Row of a material slot in the table of textures; -1 without a texture.
 float texture_slot_of(float slot) {

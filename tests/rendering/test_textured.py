@@ -11,9 +11,11 @@ from splat_addon.images import EXTENSIONS, Image
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.reference.seen_texture import seen_texture
-from splat_addon.rendering import Camera, Renderer, Scene, Settings, look_at
+from splat_addon.rendering import Camera, PolygonInstance, Renderer, Scene, Settings, look_at, make_polygons
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.scene import SurfaceTexture
+from splat_addon.sampling import TriangleMesh
+from splat_addon.sampling.attributes.texture_seams import corner_seams
 from splat_addon.surfels import Surfels, concatenate
 
 SIZE = 96
@@ -194,3 +196,30 @@ def test_a_splat_over_a_seam_shows_nothing_of_the_next_chart(method, render):
         red.append(np.count_nonzero(color[..., 0] > 0.2 * color[..., 3]))
     # what is left lies within half a texel of the line, where any renderer looks up both sides
     assert red[1] > 200 and red[0] < 0.25 * red[1], red
+
+
+@pytest.mark.parametrize("method", ["quad", "mip"])
+@pytest.mark.parametrize("is_parallel", [False, True])
+def test_a_polygon_shows_nothing_beyond_the_end_of_its_chart(is_parallel, method, render):
+    """The chart is the red half of an image that is green beside it."""
+    pixels = np.tile((1.0, 0.0, 0.0, 1.0), (64, 64, 1))
+    pixels[:, 32:, :2] = 0, 1
+    x, y = (a.ravel() for a in np.meshgrid(np.linspace(-1, 1, 5), np.linspace(-1, 1, 5)))
+    first = (np.arange(4)[:, None] * 5 + np.arange(4)).ravel()
+    quads = np.stack([first, first + 1, first + 6, first + 5], axis=1)
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    uvs = np.stack([x / 4 + 0.25, y / 2 + 0.5], axis=1)[triangles]
+    sheet = TriangleMesh(np.stack([x, y, 0 * x], axis=1), triangles, corner_uvs=uvs)
+    pose = look_at((0.6, -1.5, 2.5), (0, 0, 0))
+    camera = Camera.orthographic(pose, 5, (40, 40)) if is_parallel else Camera.perspective(pose, 1.2, (40, 40))
+
+    def seen(seams):
+        shape = make_polygons(sheet.positions, triangles, uvs=uvs.reshape(-1, 2), seams=seams)
+        polygons = PolygonInstance(shape, textures=(SurfaceTexture(Image(pixels, "EXTEND")),))
+        settings = Settings(method=method, shading="flat", supersampling=1)
+        return render(Scene(polygons=(polygons,)), camera, settings).color
+
+    seams = corner_seams(sheet)
+    found = [seen(s)[..., 1].max() for s in (None, seams & 1, seams)]
+    assert (seen(seams)[..., 0] > 0.9).sum() > 100
+    assert found[0] > found[1] >= found[2] and found[2] < 0.7 * found[0], found

@@ -1,11 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every point of a texture-mapped splat has the texture coordinate of the surface below it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from splat_addon.images import Image
-from splat_addon.sampling import Channel, Surface, Texture, Tolerance, TriangleMesh, VertexColors, sample_surface
+from splat_addon.sampling import (
+    Channel,
+    Surface,
+    Texture,
+    Tolerance,
+    TriangleMesh,
+    VertexColors,
+    corner_values,
+    sample_surface,
+)
 from splat_addon.sampling.attributes.texture_mapping import UV_FIELDS
 
 IMAGE = Image(np.dstack([np.random.default_rng(1).uniform(0, 1, (32, 32, 3)), np.ones((32, 32))]))
@@ -167,3 +178,16 @@ def test_a_map_without_seams_has_no_borders_but_the_meshes_own(square):
     x, y = (surfels.origin + surfels.positions)[:, :2].T
     far = np.minimum(np.minimum(x, 3 - x), np.minimum(y, 3 - y)) > 1.5 * surfels.radius
     assert (surfels.uv_border[far] == 0).all() and (surfels.uv_border[~far] != 0).any()
+
+
+def test_corners_tell_where_a_chart_ends(sphere):
+    """One triangle's coordinates are moved away; the others of a closed surface share all their edges."""
+    mesh = textured(sphere)
+    assert not corner_values(mesh)["seams"].any()
+    uvs = mesh.corner_uvs.copy()
+    uvs[0] += 3
+    seams = corner_values(replace(mesh, corner_uvs=uvs))["seams"].reshape(-1, 3)
+    is_at = np.isin(mesh.triangles, mesh.triangles[0])
+    assert (seams[0] == 1).all()
+    assert ((seams & 1).sum(axis=1)[1:] == (is_at.sum(axis=1) == 2)[1:]).all()
+    assert ((seams[1:] >> 1) == (is_at & (is_at.sum(axis=1) == 1)[:, None])[1:]).all()

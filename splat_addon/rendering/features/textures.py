@@ -57,5 +57,5 @@ def parts(planning, p):
         yield Part("textures", inputs=("surfel_uvs", *ATLAS), varyings=varyings, **shared)
     if p.host == "polygons.frag" and planning.find(_are_textured)[1]:
         yield Part("polygon_plane", varyings=PLANE, only="textured")
-        varyings = (("smooth", "vec2", "texture_uv"), *_OF_PLANES)
+        varyings = (("smooth", "vec2", "texture_uv"), ("flat", "float", "texture_triangle"), *_OF_PLANES)
         yield Part("textures", inputs=("polygon_uvs", *ATLAS), varyings=varyings, **shared)

@@ -21,7 +21,7 @@ TEXELS_PER_CORNER = 3
 #: Triangles, one after the other, that are left out of a picture together.
 BLOCK = 1024
 
-#: field -> (columns, dtype) of one corner; one column is stored flat. The last five fields are optional.
+#: field -> (columns, dtype) of one corner; one column is stored flat. The last six fields are optional.
 _LAYOUT = {
     "positions": (3, np.float32),
     "normals": (3, np.float32),
@@ -31,9 +31,10 @@ _LAYOUT = {
     "metallic": (1, np.float32),
     "emission": (3, np.float32),
     "uvs": (2, np.float32),
+    "seams": (1, np.uint8),
     "bumps": (6, np.float32),
 }
-_OPTIONAL = ("roughness", "metallic", "emission", "uvs", "bumps")
+_OPTIONAL = ("roughness", "metallic", "emission", "uvs", "seams", "bumps")
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +44,8 @@ class Polygons(Shape):
     positions: (3 T, 3) float32, object units, relative to `origin`. normals: (3 T, 3), for shading, of any length; zero
         means the triangle's own normal. colors: (3 T, 4) scene-linear; alpha is ignored.
     materials: (3 T,) index of the instance's slot, the same at the three corners.
+    seams: (3 T,) 1 where a chart of `uvs` ends at the edge opposite the corner, plus 2 where one ends at the corner but
+        at neither of the triangle's edges there; textures are not looked up beyond. None: 0 everywhere.
     bumps: (3 T, 6) u and v in the instance's normal maps, the unit tangent, and the sign of the bitangent
         cross(normal, tangent); a tangent of zero leaves the normal as it is. None: no normal maps.
 
@@ -53,6 +56,7 @@ class Polygons(Shape):
     normals: np.ndarray
     colors: np.ndarray
     materials: np.ndarray
+    seams: np.ndarray | None = None
     bumps: np.ndarray | None = None
 
     def __post_init__(self):
@@ -129,9 +133,11 @@ def pack_polygons(shape: Polygons) -> np.ndarray:
 
 
 def pack_polygon_uvs(shape: Polygons) -> np.ndarray:
-    """(rows, 512, 4) float32: uv, 0, 0 of each corner."""
+    """(rows, 512, 4) float32: uv, seam of the opposite edge, seam of each corner."""
     texels = np.zeros((_rows(shape) * CORNERS_PER_ROW, 4), np.float32)
     texels[: len(shape), :2] = shape.uvs
+    if shape.seams is not None:
+        texels[: len(shape), 2], texels[: len(shape), 3] = shape.seams & 1, shape.seams >> 1
     return texels.reshape(-1, CORNERS_PER_ROW, 4)
 
 

@@ -21,13 +21,31 @@ _NEAREST = 1e-3
 def seam_edges(mesh: TriangleMesh) -> np.ndarray:
     """(T, 3) bool: whether the edge opposite each corner is a seam, which no triangle of the same material shares with
     the same texture coordinates."""
+    return _seams(_corners(mesh))
+
+
+def corner_seams(mesh: TriangleMesh) -> np.ndarray:
+    """(3 T,) uint8: 1 where the edge opposite the corner is a seam, plus 2 where the triangle touches a seam with the
+    corner alone (`Polygons`)."""
+    corners = _corners(mesh)
+    seams = _seams(corners)
+    touches = np.isin(corners, np.concatenate([corners[:, others][seams] for others in ([1, 2, 0], [2, 0, 1])]))
+    return (seams + 2 * (touches & ~seams[:, [1, 2, 0]] & ~seams[:, [2, 0, 1]])).astype(np.uint8).ravel()
+
+
+def _corners(mesh: TriangleMesh) -> np.ndarray:
+    """(T, 3) uint64, equal for corners of one material at one place with the same texture coordinates."""
     places = mesh.places[mesh.triangles]
     uvs = np.asarray(mesh.corner_uvs, np.float32)
     corners = places ^ vertex_hashes(uvs.reshape(-1, uvs.shape[2]).astype(np.float64)).reshape(places.shape)
+    if mesh.materials is not None:
+        corners = corners ^ (mesh.materials.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15))[:, None]
+    return corners
+
+
+def _seams(corners: np.ndarray) -> np.ndarray:
     # a sum identifies an edge from either side
     edges = corners[:, [1, 2, 0]] + corners[:, [2, 0, 1]]
-    if mesh.materials is not None:
-        edges = edges ^ (mesh.materials.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15))[:, None]
     _, inverse, counts = np.unique(edges, return_inverse=True, return_counts=True)
     return (counts[inverse] == 1).reshape(edges.shape)
 

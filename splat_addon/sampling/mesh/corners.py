@@ -11,6 +11,7 @@ from ...surfels import OPTIONAL_LAYOUT
 from ..attributes.material_sampler import MaterialSampler, Samples, placed
 from ..attributes.surfaces import Channel, Surface, Texture
 from ..attributes.tangents import layered_tangents
+from ..attributes.texture_seams import corner_seams
 from .triangle_mesh import TriangleMesh
 
 
@@ -18,8 +19,8 @@ def corner_values(mesh: TriangleMesh) -> dict[str, np.ndarray]:
     """field -> (3 T, columns) or (3 T,) float32: colors, and roughness, metallic and emission where they vary.
 
     Textures are averaged over about the area of the triangle. If a surface's color is a single image, colors hold only
-    its constant, and "uvs", (3 T, 2), are the coordinates at which to look up the image; likewise "bumps",
-    (3 T, 6), for a normal map that is a single image (`Polygons`).
+    its constant, "uvs", (3 T, 2), are the coordinates at which to look up the image, and "seams", (3 T,) uint8, tell
+    where their charts end; likewise "bumps", (3 T, 6), for a normal map that is a single image (`Polygons`).
     """
     count = 3 * len(mesh)
     materials = np.zeros(count, int) if mesh.materials is None else np.repeat(mesh.materials, 3)
@@ -33,6 +34,8 @@ def corner_values(mesh: TriangleMesh) -> dict[str, np.ndarray]:
     sampler.fill(values, samples)
     if any(surface.color_texture is not None for surface in mesh.surfaces):
         values["uvs"] = _texture_coordinates([surface.color_texture for surface in mesh.surfaces], samples)
+        if uvs is not None:
+            values["seams"] = corner_seams(mesh)
     maps = [normal_map_texture(surface) for surface in mesh.surfaces]
     if uvs is not None and any(maps):
         values["bumps"] = _bumps(mesh, maps, samples)
