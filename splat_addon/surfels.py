@@ -235,8 +235,10 @@ class Surfels(Shape):
         cell = np.maximum(high - low, 1e-30) / _HULL_CELLS
         is_full = np.zeros((_HULL_CELLS,) * 3, bool)
         for start in range(0, len(self), _HULL_AT_ONCE):
-            places = (self.positions[start : start + _HULL_AT_ONCE] - np.float32(low)) * np.float32(1 / cell)
-            is_full[tuple(np.clip(places.astype(np.int32), 0, _HULL_CELLS - 1).T)] = True
+            # What overflows in a lattice of huge extent is in its first or last cells.
+            with np.errstate(over="ignore", invalid="ignore"):
+                places = (self.positions[start : start + _HULL_AT_ONCE] - np.float32(low)) * np.float32(1 / cell)
+            is_full[tuple(np.clip(np.nan_to_num(places), 0, _HULL_CELLS - 1).astype(np.int32).T)] = True
         y, z = np.nonzero(is_full.any(axis=0))
         rows = is_full[:, y, z]
         first = np.stack([rows.argmax(axis=0), y, z], axis=1)

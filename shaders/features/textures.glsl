@@ -70,18 +70,19 @@ void textures_plane(int corner, float slot, vec3 first, vec3 outward, bool is_ba
 
 const float DEVIATIONS = 2.0;  // of a footprint, that count
 const float TINY = 1e-6;       // texels, or their square
+const float WIDEST = 1e6;      // footprint that is looked at, in texels
 
 // Change of the texture coordinates per sample along x and y.
 mat2 sample_uv_change() {
   return uv_change(gradient_u, gradient_v, view.window.xy + gl_FragCoord.xy * view.window.zw, depth_at);
 }
 
-// Takes from a footprint what lies beyond a line. middle, variances: of the footprint, in texels. inside: distance of the
-// middle from the line, inward: unit. height: of the chart from there, as far as it is known.
+// Leaves out what of a footprint lies beyond a line. middle, variances: of the footprint, in texels. inside: distance of
+// the middle from the line. inward: unit. height: of the triangle above the line.
 void end_footprint(inout vec2 middle, inout vec3 variances, float inside, vec2 inward, float height) {
   vec2 change = vec2(dot(variances.xz, inward), dot(variances.zy, inward));
   float variance = max(dot(inward, change), TINY), reach = DEVIATIONS * sqrt(variance);
-  if (!(inside < reach)) return;
+  if (!(inside < reach && reach < WIDEST)) return;
   float most = max(min(inside + reach, height), TINY), kept = 0.5 * most / reach;
   middle += change * ((0.5 * most - inside) / variance);
   variances -= vec3(change * change, change.x * change.y) * ((1.0 - kept * kept) / variance);
