@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from .settings import Settings
 
 
@@ -30,7 +32,12 @@ class Preset:
 
     def is_in(self, settings) -> bool:
         """Whether an object with the attributes of `Settings` has this preset's values."""
-        return all(getattr(settings, name) == value for name, value in self.render_values.items())
+        return all(_are_equal(getattr(settings, name), value) for name, value in self.render_values.items())
+
+
+def _are_equal(one, other) -> bool:
+    """Whether two values of a setting are the same. Blender stores its properties' numbers in single precision."""
+    return np.float32(one) == np.float32(other) if isinstance(other, float) else one == other
 
 
 PRESETS = {
