@@ -9,7 +9,6 @@ const float ONE_FACE = 0.99;   // squared length of a mean normal, at least, of 
 const float NEAREST = 1.5;     // samples across the crease, at least
 const float FACES_AWAY = 2.0;  // way across it, in half the way over which shares change
 const vec2 MISSED = vec2(0.35, 0.7);  // distance from the normal found there, in half-chords: of a crease, of a bend
-const float OFF_PLANE = 0.3;   // sine of the angle at which a way leaves the plane of the face that it leads to
 
 struct Faces {
   vec3 one;  // normals
@@ -36,16 +35,15 @@ vec3 change_of_normals(Shaded s, out vec2 way) {
   return along;
 }
 
-// Whether this is the normal at the end of a way, 0 to 1; 0 if another surface or nothing is there.
-float is_found(vec3 normal, float half_chord, Shaded s, vec3 position, vec2 way) {
-  ivec2 there = s.texel + ivec2(round(way));
-  MeanSurface other = surface_beside(there, s.tap);
-  vec3 gone = eye_position(there, other.depth) - position;
-  if (other.coverage == 0.0 || abs(dot(gone, other.normal)) > OFF_PLANE * length(gone)) return 0.0;
-  return 1.0 - smoothstep(MISSED.x, MISSED.y, length(other.normal - normal) / half_chord);
+// Whether this is the normal at the end of a way, 0 to 1; 0 if nothing is there. Depths do not tell: at a crease with a
+// face at grazing incidence, the mean depth lies in neither face.
+float is_found(vec3 normal, float half_chord, Shaded s, vec2 way) {
+  MeanSurface other = surface_beside(s.texel + ivec2(round(way)), s.tap);
+  float missed = length(other.normal - normal) / half_chord;
+  return other.coverage > 0.0 ? 1.0 - smoothstep(MISSED.x, MISSED.y, missed) : 0.0;
 }
 
-Faces faces_of(Shaded s, vec3 position) {
+Faces faces_of(Shaded s) {
   Faces single = Faces(s.normal, s.normal, 1.0);
   vec3 mean = s.mean.normal;
   float square = dot(mean, mean);
@@ -56,7 +54,7 @@ Faces faces_of(Shaded s, vec3 position) {
   if (!(change > CANCELLED)) return single;
   way *= clamp(FACES_AWAY * half_chord / change, NEAREST, float(FOLD_REACH)) / change;
   vec3 one = mean + (middle + half_chord) * along, other = mean + (middle - half_chord) * along;
-  float found = min(is_found(one, half_chord, s, position, way), is_found(other, half_chord, s, position, -way));
+  float found = min(is_found(one, half_chord, s, way), is_found(other, half_chord, s, -way));
   if (!(found > 0.0)) return single;
   one = normalize(mix(s.normal, one, found));
   other = normalize(mix(s.normal, other, found));
@@ -65,7 +63,7 @@ Faces faces_of(Shaded s, vec3 position) {
 
 // In a loop, which is skipped where a branch may not be.
 vec3 lit(Shaded s, vec3 position) {
-  Faces faces = faces_of(s, position);
+  Faces faces = faces_of(s);
   vec3 radiance = vec3(0.0);
   for (int i = 0; i < (faces.share < 1.0 ? 2 : 1); i++) {
     vec3 normal = i == 0 ? faces.one : faces.other;
