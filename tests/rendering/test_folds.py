@@ -82,8 +82,8 @@ def can():
 def test_a_rim_does_not_sparkle_beside_a_grazing_face(render):
     """The lid is seen at 9 degrees, and the light's highlight lies between the normals of wall and lid.
 
-    Measured: errors of at most 0.003. When each face had to go on in its plane from the mean depth at the rim, which lies
-    in neither, 16 pixels were lit with the mean normal, up to 18 too bright.
+    Measured: errors of at most 0.003. When each face had to go on in its plane from the mean depth at the rim, which
+    lies in neither, 16 pixels were lit with the mean normal, up to 18 too bright.
     """
     whole = Camera.perspective(look_at((0, -7, 3), (0, 0, 0.7), (0, 0, 1)), 0.4427, (960, 540), 0.1, 100)
     camera = whole.cropped(420, 460, 64, 20)
