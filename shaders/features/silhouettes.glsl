@@ -55,7 +55,7 @@ void silhouettes_filter(ivec2 texel, vec4 own, inout vec4 seen) {
   for (int y = -FILTER_REACH; y <= FILTER_REACH; y++) {
     for (int x = -COLUMN_REACH; x <= COLUMN_REACH; x++) {
       ivec2 at = clamp(texel + ivec2(x, y), ivec2(0), last);
-      float weight = exp(-0.5 * float(y * y) / SILHOUETTE_VARIANCE) * (x == 0 ? 1.0 : COLUMN_RATIO);
+      float weight = exp(-0.5 * float(y * y) / view.filter_variance) * (x == 0 ? 1.0 : column_ratio());
       vec4 here = texelFetch(shaded, at, 0);
       if (own.w > 0.0) here = own * (here.w / own.w);
       color += weight * let_through(at) * here;

@@ -12,11 +12,7 @@
 
 #include "lib/farthest.glsl"
 
-// The Gaussian by forward differences: first value, first ratio of neighbours, and change of the ratio.
-const float FIRST_WEIGHT = exp(-0.5 * float(FILTER_REACH * FILTER_REACH) / SILHOUETTE_VARIANCE);
 const float STEP = 1.0 / float(ROWS);
-const float FIRST_RATIO = exp((float(FILTER_REACH) - 0.5 * STEP) * STEP / SILHOUETTE_VARIANCE);
-const float RATIO_RATIO = exp(-STEP * STEP / SILHOUETTE_VARIANCE);
 
 // Minimum cosine between normals of the same surface: across a sharper crease, surfels of either side protrude from the
 // other. The value avoids angles of common solids, such as 60 or 63 degrees, where rounding would decide.
@@ -209,9 +205,13 @@ Resolved resolve_sample(ivec2 texel) {
       sum.outputs = sample_outputs(texel);
     }
   }
+  // The Gaussian by forward differences: first value, first ratio of neighbours, and change of the ratio.
+  float first_weight = exp(-0.5 * float(FILTER_REACH * FILTER_REACH) / view.filter_variance);
+  float first_ratio = exp((float(FILTER_REACH) - 0.5 * STEP) * STEP / view.filter_variance);
+  float ratio_ratio = exp(-STEP * STEP / view.filter_variance);
   int columns = is_even ? 0 : 2 * COLUMN_REACH + 1;
   for (int x = 0; x < columns; x++) {
-    float weight = FIRST_WEIGHT * (x == COLUMN_REACH ? 1.0 : COLUMN_RATIO), ratio = FIRST_RATIO, below = 1.0;
+    float weight = first_weight * (x == COLUMN_REACH ? 1.0 : column_ratio()), ratio = first_ratio, below = 1.0;
     ivec2 before = texel;
     vec4 shaded_before = vec4(0.0);
     bool is_smooth_before = true;
@@ -231,12 +231,12 @@ Resolved resolve_sample(ivec2 texel) {
                  background);
         total += weight;
         weight *= ratio;
-        ratio *= RATIO_RATIO;
+        ratio *= ratio_ratio;
       }
       add_seen(sum, own, seen, at, there, is_smooth, false, away, weight, background);
       total += weight;
       weight *= ratio;
-      ratio *= RATIO_RATIO;
+      ratio *= ratio_ratio;
       below = seen;
       before = at;
       shaded_before = there;

@@ -45,7 +45,7 @@ float clipped_share(Plane plane, Place place) {
   mat2 seen;
   // Beyond the plane's horizon only the splat itself is meaningful.
   vec2 q = place.k > 0.0 ? place.uv : vec2(LARGEST_PIXEL);
-  kernel_under_pixel(q, place.scale * place_turn(plane, place), FILTER_VARIANCE, middle, seen);
+  kernel_under_pixel(q, place.scale * place_turn(plane, place), view.filter_variance, middle, seen);
   vec2 across = seen * clip_first.xy;
   vec2 deviation = sqrt(max(vec2(dot(clip_first.xy, across), dot(clip_second.xy, seen * clip_second.xy)), 1e-20));
   vec2 inside = vec2(dot(clip_first.xy, middle) + clip_first.z, dot(clip_second.xy, middle) + clip_second.z) / deviation;

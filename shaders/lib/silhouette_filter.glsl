@@ -1,7 +1,8 @@
 // References: resolve.frag.glsl.
-// Summary: width of the silhouette filter.
+// Summary: the columns of the silhouette filter, whose rows are weighted by its Gaussian.
 
-const float SILHOUETTE_VARIANCE = 0.5;  // of its Gaussian, in samples
-// Across, 1 2 1: the same variance from fewer columns.
+// Of the three columns, the outer ones count by this much of the middle one, which gives them the Gaussian's variance.
 const int COLUMN_REACH = 1;
-const float COLUMN_RATIO = 0.5;
+float column_ratio() {
+  return 0.5 * view.filter_variance / (1.0 - view.filter_variance);
+}

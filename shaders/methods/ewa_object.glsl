@@ -12,7 +12,6 @@
 #include "lib/reaches_near.glsl"
 
 const float KERNEL_VARIANCE = 0.25;
-const float FILTER_VARIANCE = 0.5;   // square pixels
 const float LEAST_FLATNESS2 = 0.004;  // flatter than 1 : 16, splats are not widened further, or quads would have no end
 const float ANY = 3e38;
 const float LEAST_DEPTH = 1e-3;       // relative to the splat's: quads are not drawn nearer to the eye's plane
@@ -25,10 +24,10 @@ mat2 widen(inout Splat splat) {
   depth_reach.yz = vec2(plane.reach, length(plane.slope));
   vec2 lengths2;
   mat2 along = principal_places(plane.a, plane.b, plane.det.z, lengths2);
-  vec2 both = KERNEL_VARIANCE * lengths2 + FILTER_VARIANCE;
+  vec2 both = KERNEL_VARIANCE * lengths2 + view.filter_variance;
   splat.amplitude = KERNEL_VARIANCE * abs(plane.det.z) * inversesqrt(both.x * both.y);
   lengths2.y = max(lengths2.y, LEAST_FLATNESS2 * lengths2.x);
-  vec2 half_axes = 2.0 * sqrt(KERNEL_VARIANCE + FILTER_VARIANCE / max(lengths2, vec2(1e-30)));
+  vec2 half_axes = 2.0 * sqrt(KERNEL_VARIANCE + view.filter_variance / max(lengths2, vec2(1e-30)));
   mat2 joined = mat2(along[0] * half_axes.x, along[1] * half_axes.y);
   vec3 axis_u = splat.axis_u, axis_v = splat.axis_v;
   splat.axis_u = axis_u * joined[0].x + axis_v * joined[0].y;

@@ -5,7 +5,6 @@
 //          pixel's Gaussian; splats larger than pixels are blurred nowhere else. The twin of reference/methods/mip.py.
 
 const float KERNEL_VARIANCE = 0.25;
-const float FILTER_VARIANCE = 0.5;  // square pixels
 const float RIM_END = 1.4;  // standard deviations beyond the rim at which the weight becomes 0
 
 // The triangle around the footprint is drawn in any case; pixels within this multiple of the ellipse count, and its
@@ -27,10 +26,10 @@ vec2 splat_sample(Plane plane, vec2 pixel) {
   Place place = place_at(plane, pixel);
   mat2 turn = place_turn(plane, place);
   vec2 q = place.uv, across_rim = q * turn;
-  // The pixel's variance in the plane, along both axes and across: FILTER_VARIANCE J J^T with J = scale turn. det J and
+  // The pixel's variance in the plane, along both axes and across: filter_variance J J^T with J = scale turn. det J and
   // q x J are multiplied out, because edge-on their differences lose all precision in float32.
-  float variance = FILTER_VARIANCE * place.scale * place.scale;
-  float spread = FILTER_VARIANCE * place.k * place.scale;
+  float variance = view.filter_variance * place.scale * place.scale;
+  float spread = view.filter_variance * place.k * place.scale;
   float det = spread * spread
       + KERNEL_VARIANCE * (variance * (dot(turn[0], turn[0]) + dot(turn[1], turn[1])) + KERNEL_VARIANCE);
   float amplitude = inversesqrt(det), reach2 = max(dot(q, q), 1e-30);

@@ -3,9 +3,10 @@
 
 The camera offsets follow low-discrepancy sequences that may stop anywhere, so more samples always improve the mean.
 Positions in the pixel: additive recurrence with the generalised golden ratio (Roberts, "The unreasonable effectiveness
-of quasirandom sequences", 2018), in pairs about the middle: forwards alone, it displaces the mean picture, by 0.1
-pixels with 16 samples. Positions on the lens: Halton 1960, bases 2 and 3, because two more of Roberts' dimensions
-nearly repeat every 13 samples. Times of an open shutter: a third recurrence, in the same pairs.
+of quasirandom sequences", 2018), in pairs about the middle: forwards alone, 16 of them displace the picture by 0.1
+pixels. All are moved by their mean, because a point without its pair would displace it by 0.03. Positions on the lens:
+Halton 1960, bases 2 and 3, because two more of Roberts' dimensions nearly repeat every 13 samples. Times of an open
+shutter: a third recurrence, in the same pairs.
 """
 
 from __future__ import annotations
@@ -23,6 +24,9 @@ from .settings import NEAREST, OUTPUTS
 #: Arrays of a frame that are means over its samples.
 _MEANS = tuple(name for name in OUTPUTS if name not in (*NEAREST, "cryptomatte"))
 
+#: Variance of a box one pixel wide, in square pixels.
+_BOX_VARIANCE = 1 / 12
+
 #: The root above 1 of x^3 = x + 1, the generalised golden ratio of two dimensions.
 _RATIO = 1.3247179572447460
 #: Found by a search over edges that move by 0.5 to 45 pixels, with 8 to 256 samples, for those that are blurred evenly.
@@ -37,6 +41,13 @@ def sample_points(count: int, first: int = 0) -> np.ndarray:
     in_pixel = _steps(number)[:, None] * _RATIO ** -np.array((1.0, 2.0))
     on_lens = np.stack([_mirrored(number, base) for base in (2, 3)], axis=1)
     return (0.5 + np.concatenate([in_pixel, on_lens], axis=1)) % 1
+
+
+def pixel_offset(number: int, samples: int) -> np.ndarray:
+    """(2,) float64 pixels from the pixel's middle: where sample `number` of a picture of so many samples lies. Their
+    mean is the middle."""
+    points = sample_points(samples)[:, :2]
+    return points[number] - points.mean(axis=0)
 
 
 def _steps(number: np.ndarray) -> np.ndarray:
@@ -54,14 +65,16 @@ def _mirrored(number: np.ndarray, base: int) -> np.ndarray:
     return value
 
 
-def sample_camera(camera: Camera, number: int) -> Camera:
-    """The camera of one sample: a pinhole at the sample's point on the lens of `camera`, with pixel centres at the
-    sample's point in each pixel.
+def sample_camera(camera: Camera, number: int, samples: int) -> Camera:
+    """The camera of one of a picture's samples: a pinhole at the sample's point on the lens of `camera`, with pixel
+    centres at the sample's point in each pixel.
 
-    Offsets are uniform over the pixel, so the mean has a box filter one pixel wide.
+    Offsets are uniform over the pixel, so the mean of several has a box filter one pixel wide. Their own filters are
+    narrower by that, so that a picture is as sharp whatever the number of its samples.
     """
-    ((x, y, *on_lens),) = sample_points(1, number)
-    moved = replace(_moved(camera, x - 0.5, y - 0.5), sample=number)
+    ((_, _, *on_lens),) = sample_points(1, number)
+    variance = camera.pixel_variance - (_BOX_VARIANCE if samples > 1 else 0.0)
+    moved = replace(_moved(camera, *pixel_offset(number, samples)), sample=number, pixel_variance=variance)
     return _through(moved, camera.lens.points(np.array(on_lens))) if camera.lens else moved
 
 

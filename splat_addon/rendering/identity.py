@@ -22,10 +22,6 @@ INDICES = ("object_index", "material_index")
 #: The arrays of a frame that need these numbers.
 NUMBERED = (*INDICES, "cryptomatte")
 
-#: Sigma of the Gaussian in shaders/hosts/resolve.frag.glsl, in samples; and the weights of columns.
-_FILTER_VARIANCE = 0.5
-_COLUMN_WEIGHTS = np.array([1.0, 2.0, 1.0])
-
 #: Pixels at silhouettes that are processed at once.
 _CHUNK = 50_000
 
@@ -123,8 +119,10 @@ def tile_matte(seen: np.ndarray, tile, size: tuple[int, int], plan: FramePlan, i
     x, y, width, height = tile
     between = plan.facts["identity_rows"]
     away = np.arange(-FILTER_MARGIN * between, FILTER_MARGIN * between + 1) / between
-    up = _Axis.of(plan, height, between, np.exp(-0.5 * away**2 / _FILTER_VARIANCE))
-    axes = [up, _Axis.of(plan, width, 1, _COLUMN_WEIGHTS)]
+    # the weights of the silhouette filter, in shaders/hosts/resolve.frag.glsl
+    variance = plan.filter_variance
+    up = _Axis.of(plan, height, between, np.exp(-0.5 * away**2 / variance))
+    axes = [up, _Axis.of(plan, width, 1, np.array([variance / 2, 1 - variance, variance / 2]))]
     hashes = identities.hashes[seen[..., 0].astype(np.int64)][axes[0].reached, axes[1].reached]
     low, high = (_window_extreme(hashes, axes, extreme) for extreme in (np.minimum, np.maximum))
     rows, columns = np.nonzero((low == high) & (low > 0))

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .accumulation import sample_camera, sample_points
+from .accumulation import pixel_offset, sample_camera, sample_points
 from .frame import EMPTY_DEPTH, Frame
 from .scene.camera import Camera
 from .scene.panorama import Panorama
@@ -62,18 +62,18 @@ def panorama_frame(panorama: Panorama, number: int, settings: Settings, draw: Dr
     come from the nearest pixel of the face. Everything else is interpolated: bilinearly if there is only one sample,
     which smooths by about a pixel.
     """
-    x, y, *place = sample_points(1, number)[0]
+    offset, place = pixel_offset(number, settings.samples), sample_points(1, number)[0, 2:]
     faces, around = _faces(panorama, place), tuple(cube_views(panorama, DENSITY))
     interpolated = _cubic if settings.samples > 1 else _bilinear
     look_up = {**dict.fromkeys(NEAREST, _nearest), "depth": _distance}
     pixels, stats = {}, {}
     for turn, face in enumerate(faces):
-        camera = sample_camera(face.camera, number)
+        camera = sample_camera(face.camera, number, settings.samples)
         frame = draw(
             camera, Viewers(face.camera, around), _in_pixels_of_faces(settings), _share(progress, turn, len(faces))
         )
         stats = _added(stats, frame.stats)
-        looks = face.looks - (x - 0.5, y - 0.5)
+        looks = face.looks - offset
         for name in held_arrays(settings.outputs):
             if name == "cryptomatte":
                 matte = frame.cryptomatte.looked_up(panorama.size, face.pixels, _pixel_numbers(camera, looks))

@@ -115,7 +115,7 @@ class Refinement:
         """The picture with one more sample, and pauses."""
         waits = self.renderer.streamed.is_waiting
         if not waits and self._refines and self.samples < settings.samples:
-            moved = sample_camera(camera, self.samples)
+            moved = sample_camera(camera, self.samples, settings.samples)
             of, is_first = viewers(camera, moved), not self.samples
             self._refines = yield from self.renderer.add_sample(scene, moved, of, settings, is_first)
             self.samples += 1

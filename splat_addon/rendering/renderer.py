@@ -135,7 +135,7 @@ class Renderer:
                 seen = camera.cropped(*part) if part else camera
                 frame = panorama_frame(seen, number, settings, draw, next(turns))
             else:
-                moved = sample_camera(camera, number)
+                moved = sample_camera(camera, number, settings.samples)
                 frame = draw(moved, viewers(camera, moved), settings, next(turns), part)
             if number == numbers[-1]:
                 was_drawn(scene)

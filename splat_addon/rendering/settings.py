@@ -55,8 +55,9 @@ class Settings:
     matcap: what that model looks up. ramp: the same for that model; three even greys unless another is given.
     lines: drawn along silhouettes and creases, with any shading; None for none.
     supersampling: N for N x N samples per pixel, averaged with a box filter.
-    samples: number of pictures that are averaged, each with a different offset in the pixel (a box filter one pixel
-        wide on top of the method's own filter) and a different point on the camera's lens, if it has one.
+    samples: number of pictures that are averaged, each with a different offset in the pixel and a different point on
+        the camera's lens, if it has one. Offsets are a box filter one pixel wide on top of the method's own filter;
+        Mip Filter and EWA make theirs narrower by that.
     multisampling: samples that the hardware tests for depth in each of those, for methods that work in space; a device
         has what its `multisample_counts` name, and Blender's has none.
     sample_shading: of multisampling, evaluate splats and light at every sample, not once a pixel.

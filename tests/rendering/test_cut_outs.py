@@ -58,7 +58,7 @@ def floor(color=(*RED, 1.0)) -> PolygonInstance:
 
 
 def averaged(render, scene, settings, count, camera=CAMERA):
-    frames = (render(scene, accumulation.sample_camera(camera, number), settings) for number in range(count))
+    frames = (render(scene, accumulation.sample_camera(camera, number, count), settings) for number in range(count))
     return accumulation.mean_frame(frames)
 
 

@@ -7,7 +7,7 @@ import pytest
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import RenderCancelled, Settings
-from splat_addon.rendering.accumulation import sample_points
+from splat_addon.rendering.accumulation import pixel_offset, sample_points
 
 FLAT = {"method": "quad", "shading": "flat"}
 
@@ -54,9 +54,21 @@ def test_any_first_points_are_spread_evenly():
 
 @pytest.mark.parametrize("count", [2, 3, 4, 7, 16, 63])
 def test_no_number_of_samples_displaces_the_picture(count):
-    """The mean of an odd number of points is the pixel's middle; of an even one it is off by one point's share."""
-    off = np.abs(sample_points(count)[:, :2].mean(axis=0) - 0.5).max()
-    assert off < 1e-9 if count % 2 else off <= 0.5 / count
+    """The mean of all offsets is the pixel's middle, and none leaves the pixel's surroundings."""
+    offsets = np.array([pixel_offset(number, count) for number in range(count)])
+    assert np.abs(offsets.mean(axis=0)).max() < 1e-9 and np.abs(offsets).max() < 0.75
+
+
+@pytest.mark.parametrize(("samples", "least"), [(2, 44), (16, 51)])
+def test_the_mean_of_samples_is_under_the_filter_of_one(samples, least, render):
+    """A picture is as sharp with many samples as with one: the filter of each leaves room for the box of their offsets.
+
+    Measured: 47.1 and 53.7 dB. With the filter of a single sample, the means had 39.3 and 48.5 dB.
+    """
+    scene, camera = scenes.sphere()
+    truth = render_exact(scene, camera, Settings(shading="flat"), samples=8, pixel_filter="gaussian")
+    shown = render(scene, camera, Settings(method="mip", shading="flat", samples=samples))
+    assert psnr(shown.color, truth.color) > least
 
 
 def test_only_wanted_arrays_are_kept(checker, render):

@@ -14,6 +14,7 @@ and by the clock. Frame: median ratio of the processor time of a frame to that o
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 from bench.representation import points
@@ -48,6 +49,7 @@ def arguments(parser) -> None:
     parser.add_argument("--pixels", type=float, nargs="*", default=[], help="between surfels in the nearest view, too")
     parser.add_argument("--model", nargs="+", default=MODELS, help='files among the models, or "plate"')
     parser.add_argument("--views", type=int, default=3, choices=(1, 2, 3))
+    parser.add_argument("--samples", type=int, default=1, help="pictures whose mean the engine shows; F12 has 16")
     parser.add_argument("--exact", type=int, default=0, help="samples along a pixel of exact pictures; 0 for none")
     parser.add_argument("--points", type=int, default=0, help="measure random points of this number instead")
     parser.add_argument("--noise", type=float, nargs="+", default=[0.0], help="of points, in spacings")
@@ -96,7 +98,8 @@ def rows(meshes, renderer, options, report):
         for resolution, density in densities(mesh, cameras, options).items():
             drawn = {"engine": "fit", "whole": "now"}
             scenes = {shown: Scene((converted(mesh, density, kind),)) for shown, kind in drawn.items()}
-            draw = dict.fromkeys(drawn, partial(renderer.render, settings=SETTINGS))
+            settings = replace(SETTINGS, samples=options.samples)
+            draw = dict.fromkeys(drawn, partial(renderer.render, settings=settings))
             for kind in options.kind if options.exact else ():
                 scenes[kind] = Scene((converted(mesh, density, kind),))
                 how = {"settings": SETTINGS, "samples": options.exact, "pixel_filter": "gaussian"}

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 
 from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK, depth_format, lit_splats
 from ..scene import Scene
-from ..scene.camera import Camera
+from ..scene.camera import PIXEL_VARIANCE, Camera
 from ..settings import Settings
 from ..shadow_receivers import Viewers
 from ..upload.storages import get_storage
@@ -64,6 +64,8 @@ def plan(
         samples=settings.supersampling,
         multisamples=settings.multisampling,
         sample_shading=bool(settings.multisampling and settings.sample_shading),
+        # the box that several samples add to a pixel is wider than the Gaussian of more than 2 x 2 of its own
+        filter_variance=camera.pixel_variance if settings.supersampling == 1 else PIXEL_VARIANCE,
         method=settings.method,
         storage=storage,
         sum_format=settings.sum_format,

@@ -113,7 +113,8 @@ class TileContext:
         to_world = np.eye(4)
         to_world[:3, :3] = self.camera.matrix_world[:3, :3]
         view, is_parallel = self.view, self.camera.is_orthographic
-        return view.projection, to_world, self.window, view.near, is_parallel, self.depth_unit, 1.0 / view.scale
+        lengths = self.depth_unit, 1.0 / view.scale
+        return view.projection, to_world, self.window, view.near, is_parallel, *lengths, self.plan.filter_variance
 
     def levels(self, instance: Instance) -> Hierarchy | None:
         """The hierarchy of an object's surfels, if the plan has levels of detail for it and it is there."""

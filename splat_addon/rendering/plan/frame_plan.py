@@ -21,6 +21,7 @@ class FramePlan:
     """tiles: (x, y, width, height) in pixels, each rendered with all passes and a margin for filters and lines.
     samples: N for N x N samples per pixel. multisamples: hardware samples for each of them, or 0.
     sample_shading: they are evaluated and lit one by one. method, storage, sum_format: as in the settings.
+    filter_variance: of the Gaussian that filters a sample, in square samples.
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
     steps: passes and loops, in order. variants: those whose parts are in every program.
     choices: (name in paths of shaders, file). margin: pixels drawn around a tile and not kept.
@@ -32,6 +33,7 @@ class FramePlan:
     samples: int
     multisamples: int
     sample_shading: bool
+    filter_variance: float
     method: str
     storage: str
     sum_format: str

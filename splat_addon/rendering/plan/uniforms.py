@@ -15,6 +15,7 @@ Block = tuple[str, str, tuple[tuple[str, str], ...]]
 
 #: window: left, bottom and step of one sample, on the plane at depth 1 or (parallel cameras) in scaled units. near: the
 #: camera's, in view units. depth_unit: 1 / far where depths are stored linearly. world_length: of one view unit.
+#: filter_variance: of a sample's Gaussian, in square samples.
 VIEW: Block = (
     "View",
     "view",
@@ -26,6 +27,7 @@ VIEW: Block = (
         ("float", "is_parallel"),
         ("float", "depth_unit"),
         ("float", "world_length"),
+        ("float", "filter_variance"),
     ),
 )
 

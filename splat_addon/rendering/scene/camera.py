@@ -13,6 +13,9 @@ import numpy as np
 
 from .lens import Lens
 
+#: Variance of the Gaussian that filters a pixel, in square pixels.
+PIXEL_VARIANCE = 0.5
+
 
 @dataclass(frozen=True, eq=False)
 class Camera:
@@ -22,6 +25,7 @@ class Camera:
     size: width, height in pixels. near, far: clip distances along -Z, world units.
     lens: used by renders with several samples, for perspective cameras; None is a pinhole.
     sample: the number of the picture's sample that this camera takes; noise differs from sample to sample.
+    pixel_variance: of the Gaussian that filters a pixel, in square pixels.
     """
 
     matrix_world: np.ndarray
@@ -32,6 +36,7 @@ class Camera:
     is_orthographic: bool = False
     lens: Lens | None = None
     sample: int = 0
+    pixel_variance: float = PIXEL_VARIANCE
 
     def __post_init__(self):
         matrix = np.array(self.matrix_world, np.float64)
