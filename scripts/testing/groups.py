@@ -74,7 +74,10 @@ def paths_by_group(paths: list[str], only_pictures: bool = False) -> dict[str, l
             groups[BLENDER].append(path)
         else:
             groups[BLENDER] += [f for f in (*ON_ANY_DEVICE, *_existing(ONLY_IN_BLENDER)) if _is_within(f, (path,))]
-        if not _is_within(path, ONLY_IN_BLENDER):
+        if only_pictures:
+            is_one = _is_within(path, LEAVES_PICTURES)
+            groups[PLAIN] += [path] if is_one else [f for f in LEAVES_PICTURES if _is_within(f, (path,))]
+        elif not _is_within(path, ONLY_IN_BLENDER):
             groups[PLAIN].append(path)
     if groups[PLAIN] and not any(_is_within(path, ONLY_IN_A_WINDOW) for path in paths):
         groups[PLAIN] += _ignored()

@@ -7,7 +7,7 @@ import pytest
 from splat_addon.reference.extremes import discs
 from splat_addon.rendering import Camera, Scene, Settings
 from splat_addon.rendering.methods import METHODS
-from tests.rendering.methods import test_twins
+from tests.reference.methods import test_twins
 
 SIZE = 48
 #: method -> why it has no threshold

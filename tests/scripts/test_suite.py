@@ -7,7 +7,16 @@ from pathlib import Path
 import pytest
 
 from environment import ROOT
-from testing.groups import BLENDER, FILES, PLAIN, QUICK, by_process, paths_by_group, split_arguments
+from testing.groups import (
+    BLENDER,
+    FILES,
+    LEAVES_PICTURES,
+    PLAIN,
+    QUICK,
+    by_process,
+    paths_by_group,
+    split_arguments,
+)
 
 
 @pytest.fixture(scope="module")
@@ -55,6 +64,20 @@ def test_a_program_is_compared_with_the_plain_groups_pictures_only():
 def test_a_path_runs_in_the_groups_it_belongs_to(path, groups):
     chosen = paths_by_group([path])
     assert {group for group in chosen if path in chosen[group]} == groups
+
+
+@pytest.mark.parametrize(
+    ("path", "plain"),
+    [
+        ("tests/rendering", set(LEAVES_PICTURES)),
+        ("tests/rendering/test_agreement.py::test_it", {"tests/rendering/test_agreement.py::test_it"}),
+        ("tests/blender", set()),
+        ("tests/extremes", set()),
+    ],
+)
+def test_of_the_plain_group_a_program_needs_only_the_pictures(path, plain):
+    groups = paths_by_group([path], only_pictures=True)
+    assert set(named(groups[PLAIN])) == plain and groups[BLENDER] == [path]
 
 
 def test_the_whole_folder_runs_in_both_groups():

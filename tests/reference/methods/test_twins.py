@@ -3,7 +3,8 @@
 
 The splats are sub-pixel to giant, round to a million times longer than wide, facing the viewer to edge-on, and before,
 across and behind the near plane. float32 cannot be more precise than its inputs: a weight may lie anywhere between the
-twin's weights of splats that differ by a few roundings, and rims may be off by a fraction of a pixel.
+twin's weights of splats that differ by a few roundings, and rims may be off by a fraction of a pixel. All this is drawn
+on the standalone device, and tests/rendering/test_agreement.py holds the others to it.
 """
 
 from dataclasses import dataclass, replace
