@@ -44,8 +44,8 @@ def sample_points(count: int, first: int = 0) -> np.ndarray:
 
 
 def pixel_offset(number: int, samples: int) -> np.ndarray:
-    """(2,) float64 pixels from the pixel's middle: where sample `number` of a picture of so many samples lies. Their
-    mean is the middle."""
+    """(2,) float64, in pixels: the offset of a sample from the pixel's middle. The offsets of all `samples` of a
+    picture have the mean 0."""
     points = sample_points(samples)[:, :2]
     return points[number] - points.mean(axis=0)
 
