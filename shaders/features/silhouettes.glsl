@@ -12,13 +12,13 @@ void silhouettes_keep(inout Candidate c) {
 }
 
 #part screen_space.frag, opaque
-const float WITHIN_RIM = 0.75;    // pixels, so that a sample there sees the splat
-const float SEES_NOTHING = 1e38;  // nearer than what an empty sample sees
+const float WITHIN_RIM = 0.75;  // pixels, so that a sample there sees the splat
+const float IN_FRONT = 0.1;     // radii, by which the splat's plane is nearer than what the sample sees
 
-// Into an empty sample a splat reaches only if it is seen within its rim: the lining of a sheet, which is hidden there,
-// does not show past the sheet.
+// Into an empty sample, or one that sees a surface behind its plane, a splat reaches only if it is seen within its rim:
+// the lining of a sheet, which is hidden there, shows neither past the sheet nor past the edge at which both meet.
 void silhouettes_bound(inout Candidate c) {
-  if (c.seen.z > SEES_NOTHING && !c.in_space) {
+  if (c.seen.z - c.depth > IN_FRONT * c.plane.radius && !c.in_space) {
     Place place = place_at(c.plane, gl_FragCoord.xy);
     float to_rim = inversesqrt(max(dot(place.uv, place.uv), 1.0));
     float share = max(to_rim - WITHIN_RIM * inversesqrt(max(dot(place.d, place.d), 1e-20)), 0.0);
