@@ -12,20 +12,30 @@ void silhouettes_keep(inout Candidate c) {
 }
 
 #part screen_space.frag, opaque
-const float WITHIN_RIM = 0.75;  // pixels, so that a sample there sees the splat
-const float IN_FRONT = 0.1;     // radii, by which the splat's plane is nearer than what the sample sees
+const float WITHIN_RIM = 0.75;    // pixels, so that a sample there sees the splat
+const float SEES_NOTHING = 1e38;  // nearer than what an empty sample sees
 
-// Into an empty sample, or one that sees a surface behind its plane, a splat reaches only if it is seen within its rim:
-// the lining of a sheet, which is hidden there, shows neither past the sheet nor past the edge at which both meet.
+bool is_seen_within_rim(Plane plane) {
+  Place place = place_at(plane, gl_FragCoord.xy);
+  float to_rim = inversesqrt(max(dot(place.uv, place.uv), 1.0));
+  float share = max(to_rim - WITHIN_RIM * inversesqrt(max(dot(place.d, place.d), 1e-20)), 0.0);
+  ivec2 at = clamp(ivec2(plane.center + place.d * share), ivec2(0), textureSize(depth_bounds, 0) - 1);
+  return plane_depth(plane, place_at(plane, vec2(at) + 0.5)) <= texelFetch(depth_bounds, at, 0).z;
+}
+
+// Into an empty sample a splat reaches only if it is seen within its rim: the lining of a sheet, which is hidden there,
+// does not show past the sheet.
 void silhouettes_bound(inout Candidate c) {
-  if (c.seen.z - c.depth > IN_FRONT * c.plane.radius && !c.in_space) {
-    Place place = place_at(c.plane, gl_FragCoord.xy);
-    float to_rim = inversesqrt(max(dot(place.uv, place.uv), 1.0));
-    float share = max(to_rim - WITHIN_RIM * inversesqrt(max(dot(place.d, place.d), 1e-20)), 0.0);
-    ivec2 at = clamp(ivec2(c.plane.center + place.d * share), ivec2(0), textureSize(depth_bounds, 0) - 1);
-    float before = plane_depth(c.plane, place_at(c.plane, vec2(at) + 0.5));
-    if (before > texelFetch(depth_bounds, at, 0).z) discard;
-  }
+  if (c.seen.z > SEES_NOTHING && !c.in_space && !is_seen_within_rim(c.plane)) discard;
+}
+
+#part screen_space.frag, opaque, blend_depth
+const float IN_FRONT = 0.1;  // radii by which a plane is nearer than what is seen; blend depths of flat surfaces are less
+
+// Nor does it show past the edge at which it joins the sheet, beyond which its plane is nearer than the sheet.
+void silhouettes_joined_bound(inout Candidate c) {
+  bool is_in_front = c.seen.z < SEES_NOTHING && c.seen.z - c.depth > IN_FRONT * c.plane.radius;
+  if (is_in_front && !c.in_space && !is_seen_within_rim(c.plane)) discard;
 }
 
 #part depth_bounds.frag
