@@ -15,6 +15,7 @@ from functools import partial
 from time import perf_counter
 from typing import NamedTuple
 
+import bpy
 import numpy as np
 
 from ...rendering.background import in_background
@@ -45,6 +46,8 @@ FIRST = 1 << 11
 
 class SlicedStore(SurfelStore):
     """A `SurfelStore` for a view: `get` may return what was there before, a stand-in or nothing, while it reads.
+
+    What is hidden is kept, so that it is there at once when it is shown again; what is removed is not.
 
     is_sliced: whether it may; otherwise pictures wait for everything.
     """
@@ -78,18 +81,22 @@ class SlicedStore(SurfelStore):
     def forget_unused(self):
         self._readings = {key: r for key, r in self._readings.items() if key in self._requested}
         before = {key: self._kept[key] for key in self._readings if key in self._kept}
+        if unseen := self._kept.keys() - self._requested:
+            data = (*bpy.data.meshes, *bpy.data.pointclouds, *bpy.data.objects)
+            there = {each.name_full for each in data if each.users}
+            self._current -= {key for key in unseen if self._kept[key].name not in there}
         super().forget_unused()
         self._kept |= before
 
     def get(self, points: Points, key: int, name: str, is_solid: bool = False):
         """The result of `SurfelStore.get`, or what is known meanwhile, which may be nothing."""
+        self._requested.add(key)
         count = count_of(points)
         is_at_once = count <= self._at_once or not self.is_sliced or not has_loose_points_only(points)
         if key in self._current or is_at_once:
             self._at_once -= 0 if key in self._current else count
             self._readings.pop(key, None)
             return super().get(points, key, name, is_solid)
-        self._requested.add(key)
         reading, before = self._readings.get(key), [kept for kept in self._kept.values() if kept.name == name]
         if reading is None or reading.count != count:
             reading = self._readings[key] = _Reading(points, name, is_solid, before, self._followed.get(name))

@@ -161,8 +161,9 @@ class Loading:
 
     @property
     def left(self) -> tuple[float, int]:
-        """Surfels that have not arrived, and those that were requested since nothing was on its way."""
-        return sum(task.left for task in self._tasks.values()), self._total
+        """Surfels that have not arrived and that somebody still has, and all that were requested since nothing was on
+        its way."""
+        return sum(task.left for (owner, _), task in self._tasks.items() if owner() is not None), self._total
 
     @property
     def has_news(self) -> bool:

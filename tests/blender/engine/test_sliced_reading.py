@@ -2,6 +2,7 @@
 """A view reads large meshes of surfels over several pictures, and ends with what a render reads."""
 
 from time import monotonic, sleep
+from weakref import ref
 
 import bpy
 import numpy as np
@@ -135,6 +136,17 @@ def test_what_is_gone_while_it_is_read_is_dropped(cloud, how):
     else:
         cloud.data.clear_geometry()
     assert picture(store) == [] and store.left == (0, 0)
+
+
+def test_what_is_hidden_is_kept_and_what_is_removed_is_not(cloud):
+    store = SlicedStore()
+    before = ref(pictures(store)[-1][0])
+    cloud.hide_set(True)
+    assert picture(store) == []
+    cloud.hide_set(False)
+    assert picture(store)[0] is before()
+    bpy.data.objects.remove(cloud)
+    assert picture(store) == [] and before() is None
 
 
 def test_unusable_points_are_counted(cloud):
