@@ -23,24 +23,26 @@ from .ldc.scan_conversion import Spans, expand
 from .mesh.triangle_mesh import TriangleMesh
 from .options import SamplingOptions
 from .progress import Progress, stage
+from .refine.flat_triangles import Large
 from .refine.missed_components import SampledSurface, missed_components
 from .sample import Sampling, SamplingRun
 
-_VERSION = 2
+_VERSION = 3
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
     """The samples of block `number` of `count`, from 0.
 
-    made_from: hex digest of mesh and options. images: the spans in each of the three images.
-    arrays: field of `Surfels` -> values of the samples, in span order.
+    made_from: hex digest of mesh and options. images: the spans in each of the three images. large: those of large
+    samples. arrays: field of `Surfels` -> values of the images' samples, in span order.
     """
 
     number: int
     count: int
     made_from: str
     images: tuple[Spans, Spans, Spans]
+    large: Large
     arrays: dict[str, np.ndarray]
 
 
@@ -53,9 +55,9 @@ def sample_block(mesh: TriangleMesh, number: int, count: int, progress: Progress
         raise ValueError(f"There is no block {number + 1} of {count}.")
     run = SamplingRun(mesh, SamplingOptions(**options))
     if run.is_empty:
-        return Block(number, count, _digest(run), (Spans.joined([]),) * 3, {})
-    images = run.images(SampledSurface(len(run.mesh.positions)), stage(progress, 0.0, 0.5), (number, count))
-    return Block(number, count, _digest(run), images, run.filled(images, stage(progress, 0.5, 1.0)))
+        return Block(number, count, _digest(run), (Spans.joined([]),) * 3, {}, {})
+    images, large = run.images(SampledSurface(len(run.mesh.positions)), stage(progress, 0.0, 0.5), (number, count))
+    return Block(number, count, _digest(run), images, large, run.filled(images, stage(progress, 0.5, 1.0)))
 
 
 def joined_blocks(mesh: TriangleMesh, blocks: Iterable[Block], progress: Progress | None = None, **options) -> Sampling:
@@ -81,9 +83,20 @@ def joined_blocks(mesh: TriangleMesh, blocks: Iterable[Block], progress: Progres
     arrays = {}
     for name in blocks[0].arrays:
         arrays[name] = np.concatenate([block.arrays[name] for block in blocks])[order]
+    large = {edge: _joined([block.large[edge] for block in blocks]) for edge in blocks[0].large}
     surface = surface_of(run.mesh.triangles, images, len(run.mesh.positions))
     missed = missed_components(run.mesh, surface)
-    return run.finished(arrays, images, missed, stage(progress, 0.0, 1.0))
+    return run.finished(arrays, images, large, missed, stage(progress, 0.0, 1.0))
+
+
+def _joined(parts: list[tuple[Spans, ...]]) -> tuple[Spans, ...]:
+    """The spans of each image in a single machine's order."""
+    images = (Spans.joined(list(of_image)) for of_image in zip(*parts, strict=True))
+    return tuple(spans[_order(spans)] for spans in images)
+
+
+def _order(spans: Spans) -> np.ndarray:
+    return np.lexsort((spans.columns, spans.rows, spans.triangles))
 
 
 def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], np.ndarray]:
@@ -98,8 +111,8 @@ def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], np.ndarray]:
             start + np.cumsum(block.images[axis].counts, dtype=np.int64) - block.images[axis].counts
             for start, block in zip(starts[:, axis], blocks, strict=True)
         ]
-        order = np.lexsort((spans.rows, spans.triangles))
-        spans = Spans(*(getattr(spans, f.name)[order] for f in fields(Spans)))
+        order = _order(spans)
+        spans = spans[order]
         owner, step = expand(spans.counts)
         images.append(spans)
         orders.append(np.concatenate(firsts)[order].take(owner) + step)
@@ -129,8 +142,9 @@ def write_blocks(path: str | os.PathLike, blocks: list[Block]) -> None:
     for turn, block in enumerate(blocks):
         arrays[f"{turn}.about"] = np.array([block.number, block.count])
         arrays[f"{turn}.made_from"] = np.frombuffer(bytes.fromhex(block.made_from), np.uint8)
-        for axis, spans in enumerate(block.images):
-            arrays |= {f"{turn}.{axis}.{f.name}": getattr(spans, f.name) for f in fields(Spans)}
+        for edge, images in {1: block.images, **block.large}.items():
+            for axis, spans in enumerate(images):
+                arrays |= {f"{turn}.{edge}.{axis}.{f.name}": getattr(spans, f.name) for f in fields(Spans)}
         arrays |= {f"{turn}.surfels.{name}": values for name, values in block.arrays.items()}
     with open(path, "wb") as stream:
         np.savez(stream, **arrays)
@@ -147,7 +161,12 @@ def read_blocks(path: str | os.PathLike) -> list[Block]:
 
 def _read(arrays, turn: int) -> Block:
     number, count = arrays[f"{turn}.about"].tolist()
-    images = tuple(Spans(*(arrays[f"{turn}.{axis}.{f.name}"] for f in fields(Spans))) for axis in range(3))
+    edges = {int(name.split(".")[1]) for name in arrays.files if name.endswith(".0.rows") and name.startswith(f"{turn}.")}
+    large = {
+        edge: tuple(Spans(*(arrays[f"{turn}.{edge}.{axis}.{f.name}"] for f in fields(Spans))) for axis in range(3))
+        for edge in sorted(edges, reverse=True)
+    }
+    images = large.pop(1)
     prefix = f"{turn}.surfels."
     surfels = {name.removeprefix(prefix): arrays[name] for name in arrays.files if name.startswith(prefix)}
-    return Block(number, count, bytes(arrays[f"{turn}.made_from"]).hex(), images, surfels)
+    return Block(number, count, bytes(arrays[f"{turn}.made_from"]).hex(), images, large, surfels)

@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
-from .attributes.blend_depths import blend_depths
+from .attributes.blend_depths import LEAST_BLENDING, blend_depths
 from .attributes.lifts import edge_bulges, lifts
 from .attributes.material_sampler import MaterialSampler
 from .attributes.sample_attributes import SampleFiller
@@ -27,7 +27,7 @@ from .edges.borders import DEFAULT_CREASE_ANGLE, survey_edges
 from .edges.clipping import clip_fields, clippings
 from .edges.gaps import BorderPlaces, barycentric, gap_surfels
 from .edges.meetings import by_facing
-from .ldc.depth_cube import depth_cube
+from .ldc.depth_cube import depth_cube, in_bands, row_bands
 from .ldc.grid import make_grid
 from .ldc.reductions import find_reduction
 from .ldc.scan_conversion import BATCH, Spans, batches
@@ -35,9 +35,10 @@ from .mesh.cleaning import drop_unusable
 from .mesh.triangle_mesh import TriangleMesh
 from .options import SamplingOptions
 from .progress import Progress, stage
-from .refine.adaptive import merge_flat
+from .refine.adaptive import MERGED_SIZE, merge_flat
 from .refine.component_surfels import component_surfels
 from .refine.fitted_planes import fit_planes
+from .refine.flat_triangles import LARGEST, RING, Large, divided, evenness
 from .refine.image_samples import inside_triangles
 from .refine.missed_components import SampledSurface, missed_components
 from .workers import in_order
@@ -73,7 +74,8 @@ def sample_mesh(mesh: TriangleMesh, **options) -> Surfels:
 
 
 def sample_surface(mesh: TriangleMesh, *, progress: Progress | None = None, **options) -> Sampling:
-    """Sample a mesh on a grid of exact rays; surfels are ordered by axis, triangle, row, column.
+    """Sample a mesh on a grid of exact rays; surfels are ordered by axis, triangle, row, column. Those that cover several
+    cells come after the others.
 
     options: the fields of `SamplingOptions`; exactly one of spacing, resolution and count is required.
     progress: called between chunks with the finished share, 0 to 1; if it returns False, `SamplingCancelled` is raised.
@@ -88,10 +90,10 @@ def sample_surface(mesh: TriangleMesh, *, progress: Progress | None = None, **op
     surface = SampledSurface(len(run.mesh.positions))
     # the steps that need neighbours take most of the time, where there are any
     found, filled = (0.5, 1.0) if run.finishes_at_once else (0.2, 0.35)
-    images = run.images(surface, stage(progress, 0.0, found))
+    images, large = run.images(surface, stage(progress, 0.0, found))
     missed = missed_components(run.mesh, surface)
     arrays = run.filled(images, stage(progress, found, filled))
-    return run.finished(arrays, images, missed, stage(progress, filled, 1.0))
+    return run.finished(arrays, images, large, missed, stage(progress, filled, 1.0))
 
 
 class SamplingRun:
@@ -128,17 +130,37 @@ class SamplingRun:
     @property
     def finishes_at_once(self) -> bool:
         """Whether no step needs neighbouring samples."""
-        return self.options.crease_angle is None and self.options.tolerance is None
+        return self.options.crease_angle is None and not self._merges_flat
 
-    def images(self, surface: SampledSurface, report: Callable, share: tuple[int, int] = (0, 1)) -> tuple[Spans, ...]:
-        """The spans of all samples, or of one block: share is the block's number, from 0, and the number of blocks.
+    def images(
+        self, surface: SampledSurface, report: Callable, share: tuple[int, int] = (0, 1)
+    ) -> tuple[tuple[Spans, ...], Large]:
+        """The spans of all samples, or of one block, and those of large samples, which replace others.
 
-        surface: is told which triangles are sampled.
+        share: number of the block, from 0, and the number of blocks. surface: is told which triangles are sampled.
         """
-        return depth_cube(self._coordinates, self.mesh.triangles, self.grid, self._keeps, surface, report, share)
+        bands = row_bands(self._coordinates, self.grid, *share, LARGEST) if share[1] > 1 else None
+        about = self._coordinates, self.mesh.triangles, self.grid, self._keeps, surface, report
+        if not self._enlarges:
+            return depth_cube(*about, bands), {}
+        # a block's outermost rows depend on those beside them
+        around = None if bands is None else bands + [[-RING], [RING]]
+        are_even = evenness(self.mesh, bool(self._uv_fields), self._bulges, self.grid.spacing)
+        images, large = divided(depth_cube(*about, around), are_even)
+        if bands is not None:
+            images, large = in_bands(images, bands), {edge: in_bands(of, bands) for edge, of in large.items()}
+        return images, large
 
-    def filled(self, images: tuple[Spans, ...], report: Callable[[float], None]) -> dict[str, np.ndarray]:
-        """Field of `Surfels` -> values at the samples of these spans, as plain sampling gives them."""
+    @property
+    def _enlarges(self) -> bool:
+        options = self.options
+        return options.tolerance is not None and options.fits_blending and self._chosen.merge is None
+
+    def filled(
+        self, images: tuple[Spans, ...], report: Callable[[float], None], edge: int = 1
+    ) -> dict[str, np.ndarray]:
+        """Field of `Surfels` -> values at the samples of these spans, as plain sampling gives them. edge: of the block
+        that each sample covers, in cells."""
         total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
         layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in (*self._sampler.optional, *self._uv_fields)}
         arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
@@ -146,15 +168,23 @@ class SamplingRun:
             arrays["blend_depth"] = np.empty(total, np.float32)
         if self._bulges is not None:
             arrays["lift"] = np.empty(total, np.float32)  # object units until all half-axes are final
-        half_size = self.options.splat_size * self.grid.spacing
+        half_size = (self.options.splat_size if edge == 1 else MERGED_SIZE * edge) * self.grid.spacing
         of_mesh = self._sampler, self._tangents, self._seams, self._bends, self._bulges
         _fill(SampleFiller(self.mesh, self._coordinates, self.grid, half_size, *of_mesh, arrays), images, report)
+        if edge > 1:
+            arrays["blend_depth"][...] = LEAST_BLENDING  # no edge of the triangle is near
         return arrays
 
     def finished(
-        self, arrays: dict[str, np.ndarray], images: tuple[Spans, ...], missed: tuple, report: Callable[[float], None]
+        self,
+        arrays: dict[str, np.ndarray],
+        images: tuple[Spans, ...],
+        large: Large,
+        missed: tuple,
+        report: Callable[[float], None],
     ) -> Sampling:
-        """The result after the steps that need neighbouring samples. missed: result of `missed_components`."""
+        """The result after the steps that need neighbouring samples. arrays: of the images' samples. missed: result of
+        `missed_components`."""
         total = len(arrays["positions"])
         clipping, fitting, merging = self._stages(report)
         if self._chosen.merge is not None:
@@ -166,11 +196,14 @@ class SamplingRun:
             about = inside_triangles(images), self.grid, self._edges.borders.are_closed()
             arrays = arrays | fit_planes(arrays, _rows_of(images), *about, fitting)
         saved, error = 0, 0.0
-        if self.options.tolerance is not None:
+        if self._merges_flat:
             about = self.grid.spacing, self.options.tolerance
             arrays, error = merge_flat(arrays, _axes_of(images), *about, merging)
             saved = total - len(arrays["positions"])
         more, small_parts = [gaps] if gaps else [], int(missed[1].max(initial=-1)) + 1
+        for edge, of_edge in sorted(large.items()):
+            more.append(self.filled(of_edge, lambda share: None, edge))
+            saved += (edge**2 - 1) * len(more[-1]["positions"])
         if small_parts:
             about = self.options.splat_size, self._sampler, self._tangents, bool(self._uv_fields)
             more.append(component_surfels(self.mesh, self._coordinates, self.grid, missed, *about))
@@ -187,9 +220,13 @@ class SamplingRun:
     def _fits_planes(self) -> bool:
         return self.options.fits_planes and self._chosen.merge is None
 
+    @property
+    def _merges_flat(self) -> bool:
+        return self.options.tolerance is not None and self.options.tolerance.distance > 0
+
     def _stages(self, report: Callable[[float], None]) -> list[Callable[[float], None]]:
         """Reports for the steps that `_TIMES` lists, of which only some are taken."""
-        taken = self.options.crease_angle is not None, self._fits_planes, self.options.tolerance is not None
+        taken = self.options.crease_angle is not None, self._fits_planes, self._merges_flat
         ends = np.cumsum([0.0, *np.multiply(_TIMES, taken)])
         ends /= ends[-1] or 1.0
         return [stage(report, first, last) for first, last in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)]

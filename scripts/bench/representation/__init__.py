@@ -25,7 +25,7 @@ from measuring.timing import Spread, both, in_turn, processor
 from splat_addon.reference import render_exact
 from splat_addon.reference.triangles import render_triangles
 from splat_addon.rendering import Renderer, Scene, Settings, open_device
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, camera_spacing, is_solid, outline, sample_surface
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Tolerance, camera_spacing, is_solid, outline, sample_surface
 
 DEVICES = ("standalone",)
 QUICK = {"size": 48, "resolution": [24], "model": ["plate"], "views": 1, "exact": 2}
@@ -40,6 +40,7 @@ KINDS = {
     "both": {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True},
     "fit": {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True, "fits_planes": True},
 }
+KINDS["flat"] = KINDS["fit"] | {"tolerance": Tolerance(0.0)}
 COLUMNS = "model resolution view picture PSNR FLIP FLIP_99_% largest_blob wrong bare spilled".replace("_", " ").split()
 
 
@@ -96,7 +97,7 @@ def rows(meshes, renderer, options, report):
         corners, colors = mesh.positions[mesh.triangles], mesh.corner_colors[..., :3]
         truths = [render_triangles(corners, colors, camera) for camera in cameras]
         for resolution, density in densities(mesh, cameras, options).items():
-            drawn = {"engine": "fit", "whole": "now"}
+            drawn = {"engine": "flat", "whole": "now"}
             scenes = {shown: Scene((converted(mesh, density, kind),)) for shown, kind in drawn.items()}
             settings = replace(SETTINGS, samples=options.samples)
             draw = dict.fromkeys(drawn, partial(renderer.render, settings=settings))

@@ -84,17 +84,18 @@ class ConversionProperties:
     use_adaptive: BoolProperty(
         name="Adaptive",
         description=(
-            "Use larger surfels where the surface is flat and its colour even. This helps buildings and machines,"
-            " but conversion takes longer"
+            "Use larger surfels inside faces that are flat and look the same everywhere, as those of buildings and"
+            " machines. Turn it off to paint or sculpt surfels"
         ),
-        default=False,
+        default=True,
     )
     tolerance: FloatProperty(
         name="Tolerance",
         description=(
-            "How far a larger surfel may be from the surface that it covers, in the units of the chosen space"
+            "How far a larger surfel may be from the surface that it covers, in the units of the chosen space. Above 0,"
+            " surfels also become larger across nearly flat faces, but conversion takes longer"
         ),
-        default=0.001,
+        default=0.0,
         min=0.0,
         soft_max=1.0,
         precision=5,

@@ -18,7 +18,7 @@ from ..mesh.triangle_mesh import TriangleMesh, triangle_chunks
 LEAST_LIFT = 0.1
 
 #: The largest product of two of three barycentric weights, summed over the edges.
-_MOST = 1 / 3
+MOST_LIFT = 1 / 3
 
 
 def edge_bulges(mesh: TriangleMesh, spacing: float) -> np.ndarray | None:
@@ -37,7 +37,7 @@ def edge_bulges(mesh: TriangleMesh, spacing: float) -> np.ndarray | None:
                 edge = corners[:, end] - corners[:, start]
                 ends = (np.einsum("ij,ij->i", sign * edge, normals[:, k]) for sign, k in ((-1, start), (1, end)))
                 row[some] = np.nan_to_num(sum(np.maximum(below, 0) for below in ends), posinf=0)
-    return bulges if _MOST * bulges.max(initial=0) > LEAST_LIFT * spacing else None
+    return bulges if MOST_LIFT * bulges.max(initial=0) > LEAST_LIFT * spacing else None
 
 
 def lifts(shares: np.ndarray, bulges: np.ndarray) -> np.ndarray:

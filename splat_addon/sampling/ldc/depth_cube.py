@@ -33,14 +33,14 @@ def depth_cube(
     keeps: Callable[[np.ndarray], np.ndarray],
     surface: SampledSurface,
     report: Callable[[float], None],
-    share: tuple[int, int] = (0, 1),
+    bands: np.ndarray | None = None,
 ) -> tuple[Spans, Spans, Spans]:
     """One `Spans` for the image along each of x, y, z.
 
     coordinates: (3, V) float64 grid coordinates of the vertices. triangles: (T, 3).
     keeps: (3, t) absolute normal components -> the (3, t) images that sample a triangle.
     surface: is told which triangles are sampled; has the same vertices.
-    share: number of one block of rows, from 0, and the number of blocks, to sample that block only.
+    bands: (2, 3) float64, the half-open range of rows wanted of each image; None: all.
     report: called with the finished share, 0 to 1. The axis is chosen from the snapped corners, whose normal is exact.
         Raises ValueError with one sentence if there would be more than `MAX_SAMPLES` samples.
     """
@@ -48,7 +48,6 @@ def depth_cube(
     for chunk in triangle_chunks(len(cells)):
         grid.snapped(coordinates[:, chunk], out=snapped[:, chunk])
         cells[chunk] = _packed_cells(snapped[:, chunk], grid.subcells)
-    bands = _bands(snapped, grid, *share) if share[1] > 1 else None
     images: tuple[list, list, list] = ([], [], [])
     total = 0
     for chunk in triangle_chunks(len(triangles), _CHUNK):
@@ -95,10 +94,20 @@ def surface_of(triangles: np.ndarray, images: tuple[Spans, ...], vertices: int) 
     return surface
 
 
-def _bands(snapped: np.ndarray, grid: Grid, number: int, blocks: int) -> np.ndarray:
-    """(2, 3) float64: the first row of this block in each image, and the first row of the next block."""
-    ends = np.ceil(snapped.max(axis=1) / grid.subcells)[[2, 0, 1]].astype(np.int64)
-    return np.stack([ends * number // blocks, ends * (number + 1) // blocks]).astype(np.float64)
+def row_bands(coordinates: np.ndarray, grid: Grid, number: int, blocks: int, step: int = 1) -> np.ndarray:
+    """(2, 3) float64: the first row of this block in each image, and the first row of the next block; whole steps."""
+    ends = np.ceil(grid.snapped(coordinates.max(axis=1)) / grid.subcells)[[2, 0, 1]].astype(np.int64)
+    ends = -(-ends // step)
+    return step * np.stack([ends * number // blocks, ends * (number + 1) // blocks]).astype(np.float64)
+
+
+def in_bands(images: tuple[Spans, ...], bands: np.ndarray) -> tuple[Spans, ...]:
+    """The spans that lie in these rows. bands: of `row_bands`."""
+    kept = (
+        np.flatnonzero((spans.rows >= first) & (spans.rows < last))
+        for spans, first, last in zip(images, *bands, strict=True)
+    )
+    return tuple(spans[some] for spans, some in zip(images, kept, strict=True))
 
 
 def _reaches(corners: np.ndarray, bands: np.ndarray) -> np.ndarray:

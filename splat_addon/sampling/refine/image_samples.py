@@ -138,24 +138,33 @@ def inside_triangles(images: tuple[Spans, ...]) -> np.ndarray:
 
 
 def _inside_triangles(spans: Spans) -> np.ndarray:
-    ends = np.cumsum(spans.counts, dtype=np.int64)
-    first, stop = np.zeros(len(spans), np.int64), spans.counts.astype(np.int64)
+    # In a row, a triangle has one span, or one on either side of its large samples (`flat_triangles`).
+    is_first = np.ones(len(spans), bool)
+    is_first[1:] = (spans.triangles[1:] != spans.triangles[:-1]) | (spans.rows[1:] != spans.rows[:-1])
+    starts, row = np.flatnonzero(is_first), np.cumsum(is_first) - 1
+    column, ends = spans.columns.astype(np.int64), np.cumsum(spans.counts, dtype=np.int64)
+    first, stop = column[starts], (column + spans.counts)[np.append(starts[1:], len(spans)) - 1] if len(spans) else ends
+    follows = in_next_row(spans[starts])
     changes = np.zeros(int(ends[-1]) + 1 if len(ends) else 1, np.int8)
-    # A triangle has one span in each of consecutive rows.
-    follows = (spans.triangles[1:] == spans.triangles[:-1]) & (spans.rows[1:] == spans.rows[:-1] + 1)
-    column, offset = spans.columns.astype(np.int64), ends - spans.counts
+    offset = ends - spans.counts - column
     for _ in range(2):
-        first, stop = _eroded(first + column, stop + column, follows)
-        first, stop = first - column, np.maximum(stop, first) - column
-        some = np.flatnonzero(stop > first)
-        changes[(offset + first).take(some)] += 1
-        changes[(offset + stop).take(some)] -= 1
+        first, stop = eroded(first, stop, follows)
+        left, right = np.maximum(first.take(row), column), np.minimum(stop.take(row), column + spans.counts)
+        some = np.flatnonzero(right > left)
+        # no two spans share an end
+        changes[(offset + left).take(some)] += 1
+        changes[(offset + right).take(some)] -= 1
     return np.cumsum(changes[:-1], dtype=np.int8)
 
 
-def _eroded(first: np.ndarray, stop: np.ndarray, follows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The columns of (n,) half-open runs that have columns of runs on all eight sides. follows: (n - 1,) whether a run
-    lies in the row after that of the run before it, in the same triangle."""
+def in_next_row(spans: Spans) -> np.ndarray:
+    """(n - 1,) bool: whether a span lies in the row after that of the span before it, in the same triangle."""
+    return (spans.triangles[1:] == spans.triangles[:-1]) & (spans.rows[1:] == spans.rows[:-1] + 1)
+
+
+def eroded(first: np.ndarray, stop: np.ndarray, follows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The columns of (n,) half-open runs that have columns of runs on all eight sides. follows: (n - 1,), from
+    `in_next_row`."""
     left, right = first.copy(), stop.copy()
     np.maximum(left[1:], first[:-1], out=left[1:], where=follows)
     np.maximum(left[:-1], first[1:], out=left[:-1], where=follows)
