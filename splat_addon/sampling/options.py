@@ -57,7 +57,8 @@ class SamplingOptions(Density):
 
     splat_size: smaller half-axis of a splat, in H.
     tolerance: how far from flat the surface may be where a larger surfel replaces several; None: all have the same
-        size.
+        size. With a distance of 0, larger ones are only inside triangles that look the same everywhere
+        (`refine.flat_triangles`), which requires fits_blending; reductions that merge samples leave them out.
     texture_mapped: surfels whose colour is a single image also store their texture coordinates, so that the image is
         looked up at render time.
     crease_angle: radians; splats end at clip lines (`edges.clipping`) where the surface turns by more than this (less
@@ -86,7 +87,7 @@ class SamplingOptions(Density):
             raise ValueError("Planes are fitted where blend depths tell that the surface bends; fit blending too.")
         if not (math.isfinite(self.splat_size) and self.splat_size > 0):
             raise ValueError(f"The splat size must be a finite number above 0, not {self.splat_size}.")
-        if self.tolerance is not None and find_reduction(self.reduction).merge is not None:
+        if self.tolerance and self.tolerance.distance and find_reduction(self.reduction).merge is not None:
             raise ValueError(
                 f"Surfels of the reduction {self.reduction!r} cannot be merged on flat areas; choose another, or "
                 "no tolerance."

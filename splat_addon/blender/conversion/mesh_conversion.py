@@ -55,7 +55,8 @@ class Choices:
         in the scene's camera; or "automatic", the same pixels within limits (`automatic_density`).
     reduction, grazing_angle: as in sampling.
     splat_size: half-axis of a splat, in spacings.
-    tolerance: how far from flat, in object units, the surface may be where surfels become larger, or None.
+    tolerance: how far from flat, in object units, the surface may be where surfels become larger; 0: only inside flat
+        triangles; None: all have the same size. With a count, 0 is the same as None.
     texture_mapped: whether colours that are a single image are looked up at render time.
     crease_angle: radians, beyond which splats end at edges, get their own blend depth and fit the surface, or None.
     space: "object" or "world": the space whose units lengths are in and in which surfels are evenly spaced.
@@ -122,8 +123,9 @@ class Conversion:
         objects = f"{len(self.sources)} objects, " if len(self.sources) > 1 else ""
         why = f" ({self.reason})" if self.reason else ""
         details = [f"{parts:,} small part{'s' * (parts > 1)} got one surfel each"] if parts else []
-        if self.choices.tolerance is not None:
-            details.append(f"flat places saved {saved:,} surfels and are off by {self.sampling.error:.2g} at most")
+        if self.choices.tolerance is not None and (saved or self.choices.tolerance):
+            off = f" and are off by {self.sampling.error:.2g} at most" if self.choices.tolerance else ""
+            details.append(f"flat places saved {saved:,} surfels{off}")
         return "; ".join(
             [
                 f"{objects}{self.triangles:,} triangles -> {len(self.surfels):,} surfels "
@@ -166,9 +168,10 @@ def prepare(
     unread = gathered.unread if choices.bake else ()
     if not choices.bake:
         notes += unread_sentences(gathered.unread)
-    if unread and choices.tolerance is not None:
-        choices = replace(choices, tolerance=None)
+    if unread and choices.tolerance:
         notes.append("Adaptive is left off: what is baked is known only once the surfels are there")
+    if unread or ("count" in choices.density and not choices.tolerance):
+        choices = replace(choices, tolerance=None)
     seconds = time.perf_counter() - start
     return Conversion(
         sources,

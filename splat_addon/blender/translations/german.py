@@ -329,9 +329,13 @@ GERMAN = {
         "Wie weit hinter dem nächsten Splat andere sich noch mit ihm mischen, in Splatradien. Kleinere Werte "
         "trennen dünne Schichten; unter 0,2 bricht die Fläche auf"
     ),
-    "How far a larger surfel may be from the surface that it covers, in the units of the chosen space": (
+    (
+        "How far a larger surfel may be from the surface that it covers, in the units of the chosen space. Above 0,"
+        " surfels also become larger across nearly flat faces, but conversion takes longer"
+    ): (
         "Wie weit ein größeres Surfel von der Fläche entfernt sein darf, die es bedeckt, in den Einheiten des "
-        "gewählten Raums"
+        "gewählten Raums. Über 0 werden Surfels auch über beinahe ebene Flächen hinweg größer, aber die Umwandlung "
+        "dauert länger"
     ),
     ("Number of splats blended in each sample: 1 blue, 4 cyan, 16 green, 64 yellow, 256 and more red"): (
         "Anzahl der Splats, die in jedem Sample gemischt werden: 1 blau, 4 türkis, 16 grün, 64 gelb, 256 und mehr rot"
@@ -783,11 +787,11 @@ GERMAN = {
     "Update Surfels from Source": "Surfels aus Quelle aktualisieren",
     "Use": "Verwenden",
     (
-        "Use larger surfels where the surface is flat and its colour even. This helps buildings and machines,"
-        " but conversion takes longer"
+        "Use larger surfels inside faces that are flat and look the same everywhere, as those of buildings and"
+        " machines. Turn it off to paint or sculpt surfels"
     ): (
-        "Größere Surfels verwenden, wo die Fläche eben und ihre Farbe gleichmäßig ist. Das hilft bei Gebäuden"
-        " und Maschinen, aber die Umwandlung dauert länger"
+        "Größere Surfels innerhalb von Flächen verwenden, die eben sind und überall gleich aussehen, wie die von"
+        " Gebäuden und Maschinen. Zum Malen oder Modellieren mit Surfels abschalten"
     ),
     "Vertex Group": "Vertexgruppe",
     "Viewport": "Ansichtsfenster",

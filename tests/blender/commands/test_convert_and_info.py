@@ -100,5 +100,5 @@ def test_blocks_are_the_file_that_one_machine_makes(animation, surfels_command, 
         bpy.ops.wm.open_mainfile(filepath=str(tmp_path / f"{name}.blend"))
         stored.append([surfels_of(bpy.data.objects[f"{each} surfels"]).arrays() for each in ("ball", "floor")])
     for whole, joined in zip(*stored, strict=True):
-        assert len(whole["positions"]) > 1000 and whole.keys() == joined.keys()
+        assert len(whole["positions"]) > 900 and whole.keys() == joined.keys()
         assert all(whole[field].tobytes() == joined[field].tobytes() for field in whole)

@@ -15,7 +15,7 @@ TRIANGLE = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
         ({"density": "SPACING", "spacing": 0.0}, "spacing must be a finite number above 0, not 0"),
         ({"density": "COUNT", "count": 0}, "count must be a finite number above 0, not 0"),
         ({"density": "CAMERA"}, "has no camera"),
-        ({"reduction": "THREE_TO_ONE", "use_adaptive": True}, "choose another, or no tolerance"),
+        ({"reduction": "THREE_TO_ONE", "tolerance": 0.1}, "choose another, or no tolerance"),
         ({"splat_size": 0.0}, "splat size must be a finite number above 0, not 0"),
         ({"resolution": 2_000_000}, "surfels and the limit is"),
     ],

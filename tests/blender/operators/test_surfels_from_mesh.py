@@ -17,12 +17,12 @@ def cube():
 
 
 def test_a_cube_becomes_exactly_its_faces_cells(cube, convert, surfels_of):
-    assert len(surfels_of(convert(resolution=16)[0])) == 6 * 16 * 16
+    assert len(surfels_of(convert(resolution=16, use_adaptive=False)[0])) == 6 * 16 * 16
 
 
 def test_a_spacing_in_object_units_gives_the_same_as_its_resolution(cube, convert, surfels_of):
     cube.scale = (5, 5, 5)
-    by_spacing = convert(density="SPACING", spacing=2 / 16)[0]
+    by_spacing = convert(density="SPACING", spacing=2 / 16, use_adaptive=False)[0]
     assert len(surfels_of(by_spacing)) == 6 * 16 * 16
 
 
@@ -76,6 +76,15 @@ def test_small_parts_get_a_surfel_and_are_counted(add_mesh, convert, capfd):
     assert "; 2 small parts got one surfel each" in capfd.readouterr().out
 
 
+def test_large_surfels_lie_inside_flat_faces_unless_it_is_turned_off(cube, convert, surfels_of, capfd):
+    surfels = surfels_of(convert(resolution=64)[0])
+    assert len(surfels) < 6 * 64 * 64 / 3 and surfels.is_solid
+    assert f"; flat places saved {6 * 64 * 64 - len(surfels):,} surfels\n" in capfd.readouterr().out
+    cube.select_set(True)
+    bpy.context.view_layer.objects.active = cube
+    assert len(surfels_of(convert(resolution=64, use_adaptive=False)[0])) == 6 * 64 * 64
+
+
 def test_adaptive_surfels_are_fewer_and_the_report_says_how_far_off(cube, convert, surfels_of, capfd):
     surfels = surfels_of(convert(resolution=64, use_adaptive=True, tolerance=1e-4)[0])
     assert len(surfels) < 6 * 64 * 64 / 3
@@ -84,7 +93,7 @@ def test_adaptive_surfels_are_fewer_and_the_report_says_how_far_off(cube, conver
 
 
 def test_the_splat_size_is_in_spacings(cube, convert, surfels_of):
-    assert np.allclose(surfels_of(convert(resolution=16, splat_size=1.5)[0]).scales, 1.5 * 2 / 16)
+    assert np.allclose(surfels_of(convert(resolution=16, splat_size=1.5, use_adaptive=False)[0]).scales, 1.5 * 2 / 16)
 
 
 def test_the_result_is_named_after_its_source_and_alone_selected(cube, convert):
@@ -143,7 +152,7 @@ def test_each_object_has_its_own_detail(convert, add_square, surfels_of, density
     squares[1].surfel_splatting.detail = 2
     for square in squares:
         square.select_set(True)
-    made = convert(**density)
+    made = convert(**density, use_adaptive=False)
     assert [len(surfels_of(one)) for one in made] == [8**2, 16**2]
 
 
@@ -161,9 +170,9 @@ def test_surfels_are_not_converted_again(cube, convert):
 
 
 def test_the_report_counts_triangles_and_surfels(cube, convert, capfd):
-    convert(resolution=16)
+    convert(resolution=16, use_adaptive=False)
     report = capfd.readouterr().out
-    assert "Box: 12 triangles -> 1,536 surfels in" in report and "spacing 0.125" in report
+    assert "Box: 12 triangles -> 1,536 surfels in" in report and "spacing 0.125" in report and "flat" not in report
 
 
 def test_undo_takes_the_surfels_back(cube):

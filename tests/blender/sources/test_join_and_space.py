@@ -46,7 +46,7 @@ def test_joined_objects_are_one_with_the_materials_of_both(red_and_mirrored_blue
 
 
 def test_joined_objects_have_one_density_in_the_world(red_and_mirrored_blue, convert, world_surfels):
-    [made] = convert(join=True, density="SPACING", spacing=0.125)
+    [made] = convert(join=True, density="SPACING", spacing=0.125, use_adaptive=False)
     positions, _, _, sizes = world_surfels(made)
     is_red = np.abs(positions[:, 0]) < 2
     assert is_red.sum() == 6 * 16**2
@@ -94,7 +94,7 @@ def test_joined_sources_are_all_hidden(red_and_mirrored_blue, convert):
 @pytest.mark.parametrize("scale", [(1, 2, 3), (-1, 2, 3), (-1, -2, -3)])
 def test_world_spacing_is_the_same_for_a_scaled_object(select, convert, world_surfels, scale):
     select(add_cube("cube", (1, 2, 3), scale, (0.1, 0.2, 0.3)))
-    [made] = convert(density="SPACING", spacing=0.25, space="WORLD")
+    [made] = convert(density="SPACING", spacing=0.25, space="WORLD", use_adaptive=False)
     positions, normals, _, sizes = world_surfels(made)
     assert len(positions) == 2 * 16**2 * (1 * 2 + 2 * 3 + 3 * 1) / 4
     assert np.allclose(sizes, 1.25 * 0.25, rtol=1e-4)
@@ -128,7 +128,7 @@ def test_the_count_before_is_the_count_after(red_and_mirrored_blue, convert, cho
     ((kind, value),) = density.items()
     settings = {name: value.upper() if name == "space" else value for name, value in choices.items()}
     before = predicted(sources, Choices(density, **choices))
-    made = convert(density=kind.upper(), **{kind: value}, **settings)
+    made = convert(density=kind.upper(), **{kind: value}, **settings, use_adaptive=False)
     assert sum(len(m.data.vertices) for m in made) == pytest.approx(before, rel=0.02)
 
 
