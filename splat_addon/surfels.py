@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from .clip_lines import CLIP_FIELDS, are_reflex, unpack_lines
+from .large_surfels import grains
 
 #: Cells along each edge of the lattice of `Surfels.local_hull`, and surfels that are put into it at a time.
 _HULL_CELLS = 16
@@ -213,6 +214,12 @@ class Surfels(Shape):
         return float(self.scales.max(initial=0.0))
 
     @cached_property
+    def largest_grain(self) -> float:
+        """The longest half-axis, but of the samples that large surfels replace, object units (0 when empty)."""
+        share = 1.0 if self.blend_depth is None else grains(self.blend_depth)
+        return float((self.radius * share).max(initial=0.0))
+
+    @cached_property
     def local_bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Two (3,) float64 corners, relative to `origin`, of a box around all ellipses (NaN when empty)."""
         if not len(self):
@@ -296,7 +303,15 @@ def portions(surfels: Surfels, size: int) -> tuple[Surfels, ...]:
 def prepared(parts: tuple[Surfels, ...]) -> tuple[Surfels, ...]:
     """The same sets, with what every picture asks for found already; a thread may do that."""
     for part in parts:
-        _ = part.is_transparent, part.local_bounds, part.local_hull, part.largest, part.clipped_count, part.brightest
+        _ = (
+            part.is_transparent,
+            part.local_bounds,
+            part.local_hull,
+            part.largest,
+            part.largest_grain,
+            part.clipped_count,
+            part.brightest,
+        )
     return parts
 
 

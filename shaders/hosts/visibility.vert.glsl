@@ -18,7 +18,7 @@ void main() {
   vec3 eye = footprint_corner(splat.position, splat.axis_u, splat.axis_v, corner);
   place_depth = vec3(corner, -eye.z);
   hand_on(splat, index);
-  float radius = sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
+  float radius = splat.grain * sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
   float offset = draw.epsilon * radius;
   if (splat.is_back) offset *= BACK_EPSILON;
   #hook blend(splat, eye, offset)

@@ -15,13 +15,11 @@ import numpy as np
 from ..surfels import Surfels, axes_quaternions
 from .bounds import Frame, bounds
 from .families import for_children, largest, total
-from .nodes import MEANS, Nodes, Table
+from .nodes import MEANS, MERGED_OVERLAP, Nodes, Table
 from .texture_places import along_axes, merged_places
 
 #: Half-axis of the splat of a square cell, relative to its edge, as conversion makes it.
 OVERLAP = 1.25
-#: The same for merged surfels, whose cells are rounder and overlap more at seams: less protrudes at silhouettes.
-MERGED_OVERLAP = 0.9
 #: Squared half-axis per variance of position: the variance of a cell is 1 / 12 of its squared edge.
 _PER_VARIANCE = np.float32(12 * MERGED_OVERLAP**2)
 #: The ellipse around a child's own cell, relative to its half-axes; the parent must cover it.

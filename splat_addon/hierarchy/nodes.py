@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ..clip_lines import CLIP_FIELDS, CUT
+from ..large_surfels import LARGE_SIZE, LARGE_WEIGHT, are_large
 from ..surfels import Surfels, axes_columns
 from .families import Families
 from .texture_places import gradients
@@ -15,6 +16,10 @@ from .texture_places import gradients
 #: Fields that are plainly averaged. Colours, normals, roughness and texture coordinates have their own rules.
 MEANS = ("metallic", "emission")
 
+
+#: Half-axis of a merged surfel relative to the edge of its cell. It is less than that of a sample, because these cells
+#: are rounder and overlap more at seams: less protrudes at silhouettes.
+MERGED_OVERLAP = 0.9
 
 #: Nodes per batch, few enough for temporaries to stay in the processor's cache.
 PORTION = 1 << 14
@@ -169,13 +174,18 @@ def _leaves(surfels: dict[str, np.ndarray]) -> Nodes:
         values["lift"] = np.atleast_2d(surfels["lift"] * radii)
     if all(name in surfels for name in ("uvs", "uv_along_x", "uv_along_y")):
         values["uv"] = np.concatenate([surfels["uvs"].T, gradients(surfels, x, y)])
+    areas = scales[0] * scales[1]
+    if "blend_depth" in surfels and (large := are_large(surfels["blend_depth"])).any():
+        # as far as the axes of merged surfels reach, relative to the cells
+        scales = scales * np.where(large, np.float32(MERGED_OVERLAP / LARGE_SIZE), np.float32(1))
+        areas = areas * np.where(large, np.float32(LARGE_WEIGHT), np.float32(1))
     nodes = {
         "positions": surfels["positions"].T,
         "normals": z,
         "first_axis": x * scales[0],
         "second_axis": y * scales[1],
         "radii": radii,
-        "areas": scales[0] * scales[1],
+        "areas": areas,
         "materials": surfels["materials"],
         "shading": surfels["normals"].T,
         "colors": surfels["colors"].T,

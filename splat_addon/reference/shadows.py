@@ -66,7 +66,7 @@ def _moved(splats: Splats, lamp: np.ndarray) -> np.ndarray:
         cosine /= np.linalg.norm(splats.plane, axis=1) * np.linalg.norm(way, axis=1)
     facing = np.nan_to_num(np.minimum(cosine, 1.0))
     turned = np.cos(np.arccos(facing) + BEND)
-    return splats.radius() / np.maximum(turned, 1 / FARTHEST_BACK)
+    return splats.grain() / np.maximum(turned, 1 / FARTHEST_BACK)
 
 
 def _without_solids(scene: Scene) -> Scene:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from ..large_surfels import LARGE_WEIGHT, are_large, grains
 from ..rendering.scene import Instance, Placed, Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.scene.finish import PLAIN
@@ -69,8 +70,12 @@ class Splats:
     def __len__(self) -> int:
         return len(self.center)
 
+    def grain(self) -> np.ndarray:
+        """(N,) what a splat's epsilon is measured in, world units: the radius, but for large surfels."""
+        return self.radius() * grains(np.minimum(self.blend, 1))
+
     def radius(self) -> np.ndarray:
-        """(N,) the longer half-diameter, world units: what a splat's epsilon is measured in."""
+        """(N,) the longer half-diameter, world units."""
         return np.sqrt(np.maximum(np.einsum("ij,ij->i", self.u, self.u), np.einsum("ij,ij->i", self.v, self.v)))
 
     @property
@@ -79,12 +84,14 @@ class Splats:
         return bool((self.clip[:, :, 2] < 1).any())
 
     def side_weight(self) -> np.ndarray:
-        """(N,) weight of the visible side: small for a back, unless the surfels have blend depths."""
-        return np.where(self.is_back & (self.blend > FITTED_BLENDING), BACK_WEIGHT, 1.0)
+        """(N,) weight of the visible side: small for a back, unless the surfels have blend depths; large surfels have
+        more."""
+        large = np.where(are_large(np.minimum(self.blend, 1)), LARGE_WEIGHT, 1.0)
+        return np.where(self.is_back & (self.blend > FITTED_BLENDING), BACK_WEIGHT, large)
 
     def push(self, epsilon: float) -> np.ndarray:
         """(N,) distance by which each splat is moved back to find what hides it, world units. epsilon: in radii."""
-        return epsilon * self.radius() * np.where(self.is_back, BACK_EPSILON, 1.0)
+        return epsilon * self.grain() * np.where(self.is_back, BACK_EPSILON, 1.0)
 
     def blend_depth(self) -> np.ndarray:
         """(N,) distance from its plane up to which each splat blends with others, world units."""

@@ -21,6 +21,7 @@ from .shadow_receivers import (
     FILTER_REACH,
     Receivers,
     Viewers,
+    are_larger_than_pixels,
     looked_up,
     receivers,
     spread_of,
@@ -38,6 +39,9 @@ FACE_WINDOW = 1.05
 MAX_SPOT_WINDOW = 2.5
 #: Smaller maps than this are not cheaper.
 LEAST_SIDE = 32
+#: The map of a sun covers all that is visible, so where its texels would be larger than pixels, it has up to this many
+#: times as many along its side; of several suns, fewer. No map grows beyond the larger of this side and the settings'.
+FINER_SUN, LARGEST_SIDE = 4, 4096
 #: fields of `Scene` that contain shadow casters
 _KINDS = ("surfels", "polygons")
 #: The nearest distance of a caster, as a fraction of the farthest one's; closer casters cast no shadow.
@@ -49,7 +53,7 @@ class ShadowMap:
     """light: number in the scene. camera: the light's view. place: (x, y) of the map in the atlas, in texels.
 
     is_face: whether it is one face of a cube around a light, and continues in the adjacent faces.
-    is_smaller: whether it has fewer texels than the settings allow, because these are far smaller than pixels.
+    is_smaller: whether it has fewer texels than the settings say, because these are far smaller than pixels.
     used: x, y, width and height of the part that is drawn, which holds all that the picture looks up.
     casters: the instances that may block the light on its way to what is seen.
     """
@@ -76,8 +80,10 @@ class ShadowMap:
 def shadow_maps(
     scene: Scene, viewers: Viewers, resolution: int, lights_splats: bool = False
 ) -> tuple[tuple[ShadowMap, ...], int]:
-    """The maps that a picture needs, and the number of lights left without. resolution: texels along a map's side, or
-    fewer where the picture's pixels are so large that these suffice. lights_splats: as in `receivers`.
+    """The maps that a picture needs, and the number of lights left without. lights_splats: as in `receivers`.
+
+    resolution: texels along a map's side; fewer where the picture's pixels are so large that these suffice, and more
+    for suns (`FINER_SUN`).
 
     How many lights there is room for does not depend on the camera, so that none loses its shadow while it moves.
     """
@@ -89,6 +95,8 @@ def shadow_maps(
     corners = np.stack([instance.world_corners() for instance in casters])
     for_sun = receivers(scene, replace(viewers.sun, lens=None), lights_splats)
     for_lamps = [receivers(scene, camera, lights_splats) for camera in viewers.lamps]
+    suns = sum(light.casts_shadow and light.kind == "sun" for light in scene.lights)
+    finest = {"sun": min(resolution * (FINER_SUN // atlas_columns(suns)), LARGEST_SIDE)}
     made, without, count = [], 0, 0
     for number, light in enumerate(scene.lights):
         if light.casts_shadow:
@@ -99,29 +107,33 @@ def shadow_maps(
                 continue
             count += len(own)
             seen = [one and one.of(light) for one in ([for_sun] if light.kind == "sun" else for_lamps)]
-            made += _needed(number, light, own, [one for one in seen if one], casters, corners, len(whole) > 1)
+            most = max(finest.get(light.kind, 0), resolution)
+            made += _needed(number, light, own, most, [one for one in seen if one], casters, corners, len(whole) > 1)
     return _placed(made), without
 
 
 def _needed(
-    number, light, cameras: list[Camera], seen: list[Receivers], casters, corners, are_faces
+    number, light, cameras: list[Camera], most: int, seen: list[Receivers], casters, corners, are_faces
 ) -> list[ShadowMap]:
-    """The maps of a light that a picture looks up, with as many texels as it needs. seen: by each camera of the
-    picture. casters, corners: as in `shadow_maps`."""
+    """The maps of a light that a picture looks up, with as many texels as it needs, at most so many along a side. seen:
+    by each camera of the picture. casters, corners: as in `shadow_maps`."""
     looks = [together([looked_up(c, one, spread_of(light, c)) for one in seen]) for c in cameras]
     if not any(looks):
         return []
     # the next face of a cube has the same texels
-    side = enough(max(one.side for one in looks if one), cameras[0].size[0])
+    resolution, needed = cameras[0].size[0], max(one.side for one in looks if one)
+    side = enough(needed, resolution)
+    while 2 * side <= most and are_larger_than_pixels(side, needed):
+        side *= 2
     found = []
-    for camera in (smaller(c, side) for c in cameras):
+    for camera in (resized(c, side) for c in cameras):
         spread = spread_of(light, camera)
         if one := together([looked_up(camera, one, spread) for one in seen]):
             block = sees(camera, corners) & in_the_way(light, texel_of(camera), seen, spread, corners)
             own = tuple(caster for caster, may in zip(casters, block.tolist(), strict=True) if may)
             if own:
-                is_smaller = side < cameras[0].size[0]
-                found.append(ShadowMap(number, camera, (0, 0), are_faces, is_smaller, used_texels(camera, one), own))
+                about = are_faces, side < resolution, used_texels(camera, one), own
+                found.append(ShadowMap(number, camera, (0, 0), *about))
     return found
 
 
@@ -138,18 +150,20 @@ def enough(needed: float, resolution: int) -> int:
     return less if side % 16 == 0 and less >= max(needed, LEAST_SIDE) else side
 
 
-def smaller(camera: Camera, side: int) -> Camera:
-    """A light's view with fewer texels, and with so much more around its window as filters read there."""
-    if side == camera.size[0]:
-        return camera
+def resized(camera: Camera, side: int) -> Camera:
+    """A light's view with other texels; if there are fewer, with so much more around its window as filters read."""
+    if side >= camera.size[0]:
+        return replace(camera, size=(side, side))
     wider = side / (side - 2 * FILTER_REACH)
     return replace(camera, window=tuple(edge * wider for edge in camera.window), size=(side, side))
 
 
 def _placed(maps: list[ShadowMap]) -> tuple[ShadowMap, ...]:
     """The maps at their places in the atlas: in rows, the largest first."""
-    order = sorted(range(len(maps)), key=lambda k: -maps[k].camera.size[0])
-    across = atlas_columns(len(maps)) * max((made.camera.size[0] for made in maps), default=0)
+    sides = [made.camera.size[0] for made in maps]
+    order = sorted(range(len(maps)), key=lambda k: -sides[k])
+    least, most = min(sides, default=1), max(sides, default=0)
+    across = max(atlas_columns(sum(side * side for side in sides) / least**2) * least, most)
     places, x, y, height = {}, 0, 0, 0
     for k in order:
         side = maps[k].camera.size[0]
@@ -166,8 +180,8 @@ def sees(camera: Camera, corners: np.ndarray) -> np.ndarray:
     return ~beyond(view.reshape(-1, 3), camera).reshape(6, *corners.shape[:2]).all(axis=2).any(axis=0)
 
 
-def atlas_columns(maps: int) -> int:
-    """Maps side by side in the atlas."""
+def atlas_columns(maps: float) -> int:
+    """Maps of one size side by side in the atlas."""
     return max(math.ceil(math.sqrt(maps)), 1)
 
 

@@ -131,6 +131,12 @@ def looked_up(light_camera: Camera, seen: Receivers, spread: float) -> LookedUp 
     return LookedUp(low[is_inside].min(axis=0), high[is_inside].max(axis=0), float(side) + 2 * FILTER_REACH)
 
 
+def are_larger_than_pixels(side: int, needed: float) -> bool:
+    """Whether the texels of a map with this side are larger than the smallest pixel that looks them up. needed: of
+    `LookedUp`."""
+    return side * TEXELS_PER_PIXEL < needed
+
+
 def together(some: list[LookedUp | None]) -> LookedUp | None:
     """What several pictures look up."""
     some = [one for one in some if one is not None]

@@ -139,10 +139,10 @@ def split_distances(placed: DrawItem, view: View) -> tuple[float, float] | None:
 
 
 def overlapping_radii(scene: Scene) -> dict[PolygonInstance, float]:
-    """For polygons whose box touches that of surfels: the largest radius of these surfels, in world units."""
+    """For polygons whose box touches that of surfels: the largest grain of these surfels, in world units."""
     if not scene.polygons or not scene.surfels:
         return {}
-    splats = [(*_world_box(instance), instance.radius) for instance in scene.surfels if len(instance.surfels)]
+    splats = [(*_world_box(instance), instance.grain) for instance in scene.surfels if len(instance.surfels)]
     radii = {}
     for instance in scene.polygons:
         if len(instance.polygons):

@@ -161,7 +161,9 @@ def read_blocks(path: str | os.PathLike) -> list[Block]:
 
 def _read(arrays, turn: int) -> Block:
     number, count = arrays[f"{turn}.about"].tolist()
-    edges = {int(name.split(".")[1]) for name in arrays.files if name.endswith(".0.rows") and name.startswith(f"{turn}.")}
+    edges = {
+        int(name.split(".")[1]) for name in arrays.files if name.endswith(".0.rows") and name.startswith(f"{turn}.")
+    }
     large = {
         edge: tuple(Spans(*(arrays[f"{turn}.{edge}.{axis}.{f.name}"] for f in fields(Spans))) for axis in range(3))
         for edge in sorted(edges, reverse=True)

@@ -14,8 +14,9 @@ from functools import partial
 
 import numpy as np
 
+from ..large_surfels import BLEND_STEPS, LARGE_SIZE, STEPS_OF_LARGE
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
-from .attributes.blend_depths import LEAST_BLENDING, blend_depths
+from .attributes.blend_depths import blend_depths
 from .attributes.lifts import edge_bulges, lifts
 from .attributes.material_sampler import MaterialSampler
 from .attributes.sample_attributes import SampleFiller
@@ -35,7 +36,7 @@ from .mesh.cleaning import drop_unusable
 from .mesh.triangle_mesh import TriangleMesh
 from .options import SamplingOptions
 from .progress import Progress, stage
-from .refine.adaptive import MERGED_SIZE, merge_flat
+from .refine.adaptive import merge_flat
 from .refine.component_surfels import component_surfels
 from .refine.fitted_planes import fit_planes
 from .refine.flat_triangles import LARGEST, RING, Large, divided, evenness
@@ -74,8 +75,8 @@ def sample_mesh(mesh: TriangleMesh, **options) -> Surfels:
 
 
 def sample_surface(mesh: TriangleMesh, *, progress: Progress | None = None, **options) -> Sampling:
-    """Sample a mesh on a grid of exact rays; surfels are ordered by axis, triangle, row, column. Those that cover several
-    cells come after the others.
+    """Sample a mesh on a grid of exact rays; surfels are ordered by axis, triangle, row, column. Larger ones come after
+    the others.
 
     options: the fields of `SamplingOptions`; exactly one of spacing, resolution and count is required.
     progress: called between chunks with the finished share, 0 to 1; if it returns False, `SamplingCancelled` is raised.
@@ -144,7 +145,7 @@ class SamplingRun:
         if not self._enlarges:
             return depth_cube(*about, bands), {}
         # a block's outermost rows depend on those beside them
-        around = None if bands is None else bands + [[-RING], [RING]]
+        around = None if bands is None else bands + np.array([[-RING], [RING]])
         are_even = evenness(self.mesh, bool(self._uv_fields), self._bulges, self.grid.spacing)
         images, large = divided(depth_cube(*about, around), are_even)
         if bands is not None:
@@ -168,11 +169,11 @@ class SamplingRun:
             arrays["blend_depth"] = np.empty(total, np.float32)
         if self._bulges is not None:
             arrays["lift"] = np.empty(total, np.float32)  # object units until all half-axes are final
-        half_size = (self.options.splat_size if edge == 1 else MERGED_SIZE * edge) * self.grid.spacing
+        half_size = (self.options.splat_size if edge == 1 else LARGE_SIZE * edge) * self.grid.spacing
         of_mesh = self._sampler, self._tangents, self._seams, self._bends, self._bulges
         _fill(SampleFiller(self.mesh, self._coordinates, self.grid, half_size, *of_mesh, arrays), images, report)
         if edge > 1:
-            arrays["blend_depth"][...] = LEAST_BLENDING  # no edge of the triangle is near
+            arrays["blend_depth"][...] = STEPS_OF_LARGE[edge] / BLEND_STEPS
         return arrays
 
     def finished(

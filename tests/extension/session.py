@@ -24,7 +24,7 @@ def main(package: str, report: Path) -> dict:
     facts["files"] = [m.__file__ for name, m in sys.modules.items() if "splat_addon" in name and m.__file__]
     bpy.ops.mesh.primitive_cube_add(size=2)
     cube = bpy.context.object
-    bpy.ops.object.surfels_from_mesh(resolution=32)
+    bpy.ops.object.surfels_from_mesh(resolution=32, use_adaptive=False)
     facts["surfels"] = [len(o.data.vertices) for o in bpy.data.objects if o.type == "MESH" and o is not cube]
     facts["pixels"] = picture(report.with_name("picture.exr")).tolist()
     facts["once"] = handlers()

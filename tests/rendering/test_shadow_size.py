@@ -204,3 +204,50 @@ def test_a_panorama_and_a_lens_have_one_size_of_a_lamp_s_maps(name, scene_of, re
         frames = [render(scene, camera, replace(SETTINGS, samples=samples)) for samples in (1, 3)]
         one, other = (frame.stats["plan"].facts["shadow_maps"] for frame in frames)
         assert same_maps(one, other) and one[0].camera.size[0] < SETTINGS.shadow_resolution
+
+
+def on_a_plain(kind: str, lights) -> Scene:
+    """A pole on a floor of 60 x 60, of which the picture shows all."""
+    made = [
+        (trimesh.creation.box((0.04, 0.04, 1.6)).apply_translation((0, 0, 0.8)), 160),
+        (trimesh.creation.box((60, 60, 0.2)).apply_translation((0, 0, -0.1)), 400),
+    ]
+    if kind == "polygons":
+        polygons = [PolygonInstance(make_polygons(mesh.vertices, mesh.faces), materials=CHALK) for mesh, _ in made]
+        return Scene((), lights, (0.05, 0.05, 0.05), polygons=polygons)
+    return Scene([surfels(*one) for one in made], lights, (0.05, 0.05, 0.05))
+
+
+#: Its horizon is in the picture.
+OVER_THE_PLAIN = Camera.perspective(look_at((0, -4, 2), (0, 0, 0.6)), 0.9, (320, 240), near=0.1, far=1000)
+
+
+@pytest.mark.parametrize(("suns", "finer"), [(1, 4), (2, 2), (4, 2), (5, 1)])
+def test_the_map_of_a_sun_is_finer_where_its_texels_exceed_pixels(suns, finer):
+    scene = on_a_plain("polygons", (LIGHTS["sun"],) * suns)
+    for resolution in (256, 1024):
+        settings = replace(SETTINGS, shadow_resolution=resolution)
+        assert sides(scene, OVER_THE_PLAIN, settings) == {finer * resolution}
+    assert max(sides(scene, OVER_THE_PLAIN, replace(SETTINGS, shadow_resolution=2048))) == max(
+        2048, min(4096, 2048 * finer)
+    )
+    lamps = on_a_plain("polygons", (LIGHTS["sun"], LIGHTS["point"]))
+    assert sides(lamps, OVER_THE_PLAIN) == {4096, 1024}
+
+
+@pytest.mark.parametrize("kind", ["splats", "polygons"])
+def test_a_thin_pole_on_a_wide_plain_has_a_dark_shadow(kind, render):
+    """The shadow, which is two pixels wide, falls to the left and away from the eye."""
+    sun = replace(LIGHTS["sun"], direction=(-1, 1, -1))
+    scene = on_a_plain(kind, (sun,))
+    with_shadow = render(scene, OVER_THE_PLAIN, SETTINGS).color[..., 0]
+    without = render(replace(scene, lights=(replace(sun, casts_shadow=False),)), OVER_THE_PLAIN, SETTINGS).color[..., 0]
+    share = with_shadow / without
+    view, darkest = OVER_THE_PLAIN.world_to_view(), []
+    for along in (0.4, 0.8, 1.2):
+        x, y, depth, _ = view @ (-along, along, 0, 1)
+        left, right, bottom, top = OVER_THE_PLAIN.window
+        column = (x / -depth - left) / (right - left) * 320
+        row = int((y / -depth - bottom) / (top - bottom) * 240)
+        darkest.append(share[row, int(column) - 2 : int(column) + 3].min())
+    assert max(darkest) < 0.45, darkest

@@ -4,10 +4,17 @@ less."""
 
 from __future__ import annotations
 
+from ...large_surfels import BLEND_STEPS, LARGE_WEIGHT, STEPS_OF_SAMPLES
 from ..plan.graph import Part
 from .drawing import SPLAT_HOSTS
 
 _HOSTS = (*SPLAT_HOSTS, "visibility.frag")
+
+CONSTANTS = {
+    "BLEND_STEPS": BLEND_STEPS,
+    "STEPS_OF_SAMPLES": STEPS_OF_SAMPLES,
+    "LARGE_WEIGHT": LARGE_WEIGHT,
+}
 
 
 def _count(planning) -> int:
@@ -26,7 +33,9 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    # A shadow map is compared with points that the camera sees; if casters moved by less, surfaces would shadow
-    # themselves. Whose a rim is does not depend on how deep it blends.
-    if p.host in _HOSTS and p.kind not in ("shadow", "edge_ids"):
-        yield Part("blend_depth", only="splats" if p.host == "visibility.frag" else "")
+    # Whose a rim is does not depend on how deep it blends.
+    if p.host in _HOSTS and p.kind != "edge_ids":
+        # A shadow map is compared with points that the camera sees; if casters moved by less, surfaces would shadow
+        # themselves.
+        words = () if p.kind == "shadow" else ("moves_less",)
+        yield Part("blend_depth", words, only="splats" if p.host == "visibility.frag" else "")

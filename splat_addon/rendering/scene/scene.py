@@ -196,6 +196,11 @@ class Instance(Placed):
         """The largest surfel's radius in world units."""
         return self.surfels.largest * float(self.stretches[0])
 
+    @property
+    def grain(self) -> float:
+        """The same without large surfels, which count as the samples that they replace."""
+        return self.surfels.largest_grain * float(self.stretches[0])
+
     def hull(self, camera: Camera) -> np.ndarray:
         model_view = self.model_view(camera)
         return self.surfels.local_hull @ model_view[:3, :3].T + model_view[:3, 3]

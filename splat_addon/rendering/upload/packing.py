@@ -12,14 +12,12 @@ from __future__ import annotations
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, TURN
+from ...large_surfels import BLEND_STEPS, steps_of
 from ...surfels import Surfels, quaternion_axes
 from ..scene import Finish, Material, Placed
 from .stored_order import SPLATS_PER_ROW
 
 TEXELS_PER_SPLAT = 4
-#: Steps per radius of a stored blend depth.
-BLEND_STEPS = 256
-
 #: Surfels that are packed at a time, few enough for temporaries to stay in the processor's cache.
 _PORTION = 1 << 14
 
@@ -46,7 +44,7 @@ def pack_surfels(surfels: Surfels, order: np.ndarray) -> np.ndarray:
 def not_blended(blend_depth: np.ndarray) -> np.ndarray:
     """(n,) float64 integers from 0 to 255: the part of the radius over which a splat does not blend, in 256ths, rounded
     towards more blending. This fits into the fraction beside a material's number; 0 means no blend depth."""
-    return np.minimum(np.floor((1 - blend_depth.astype(np.float64)) * BLEND_STEPS), BLEND_STEPS - 1)
+    return BLEND_STEPS - steps_of(blend_depth)
 
 
 def pack_uvs(surfels: Surfels, order: np.ndarray) -> np.ndarray:

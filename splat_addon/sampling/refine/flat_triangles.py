@@ -22,7 +22,7 @@ from .image_samples import eroded, in_next_row
 
 #: Edge of a block in cells, an odd number -> cells around it that must lie in the same triangle. Its splat reaches
 #: beyond it by less, and `fitted_planes` tilts only samples that are nearer to the triangle's edges.
-BLOCKS = {3: 2, 9: 3}
+BLOCKS = {3: 2, 9: 4}
 #: Edge of the largest block, and how many rows around it decide whether there is one.
 LARGEST, RING = max(BLOCKS), max(BLOCKS.values())
 

@@ -78,7 +78,7 @@ def test_small_parts_get_a_surfel_and_are_counted(add_mesh, convert, capfd):
 
 def test_large_surfels_lie_inside_flat_faces_unless_it_is_turned_off(cube, convert, surfels_of, capfd):
     surfels = surfels_of(convert(resolution=64)[0])
-    assert len(surfels) < 6 * 64 * 64 / 3 and surfels.is_solid
+    assert len(surfels) < 6 * 64 * 64 / 2 and surfels.is_solid
     assert f"; flat places saved {6 * 64 * 64 - len(surfels):,} surfels\n" in capfd.readouterr().out
     cube.select_set(True)
     bpy.context.view_layer.objects.active = cube
