@@ -42,7 +42,7 @@ def our_operator(mesh, resolution, count):
         bpy.context.view_layer.objects.active = source
 
     def job():
-        bpy.ops.object.surfels_from_mesh(resolution=resolution)
+        bpy.ops.object.surfels_from_mesh(resolution=resolution, use_adaptive=False)
         return len(bpy.context.active_object.data.vertices)
 
     def after():
