@@ -13,14 +13,15 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 #: layer -> the layers that it may import
 MAY_IMPORT = {
     "clip_lines": set(),
-    "surfels": {"clip_lines"},
+    "large_surfels": set(),
+    "surfels": {"clip_lines", "large_surfels"},
     "images": set(),
-    "sampling": {"clip_lines", "surfels", "images"},
-    "hierarchy": {"clip_lines", "surfels"},
-    "rendering": {"clip_lines", "surfels", "images", "hierarchy", "streaming"},
+    "sampling": {"clip_lines", "large_surfels", "surfels", "images"},
+    "hierarchy": {"clip_lines", "large_surfels", "surfels"},
+    "rendering": {"clip_lines", "large_surfels", "surfels", "images", "hierarchy", "streaming"},
     "interchange": {"clip_lines", "surfels"},
     "streaming": {"clip_lines", "surfels", "hierarchy", "interchange"},
-    "reference": {"clip_lines", "surfels", "images", "rendering"},
+    "reference": {"clip_lines", "large_surfels", "surfels", "images", "rendering"},
     "blender": {"surfels", "sampling", "rendering", "interchange", "streaming"},
 }
 #: `reference` reads rendering's data, never its passes.

@@ -20,7 +20,7 @@ Each module decides from a `Planning` whether the frame needs it, and records th
 
 from ..scene.polygons import CORNERS_PER_ROW, TEXELS_PER_CORNER
 from ..shading_models import SHADING_MODELS
-from ..upload.packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT
+from ..upload.packing import BLEND_STEPS, SPLATS_PER_ROW, TEXELS_PER_SPLAT
 from . import (
     ambient_occlusion,
     back_culling,
@@ -131,6 +131,7 @@ ARRIVES = drawing.ARRIVES | _joined("ARRIVES")
 CONSTANTS = _joined("CONSTANTS") | {
     "SPLATS_PER_ROW": SPLATS_PER_ROW,
     "TEXELS_PER_SPLAT": TEXELS_PER_SPLAT,
+    "BLEND_STEPS": BLEND_STEPS,
     "CORNERS_PER_ROW": CORNERS_PER_ROW,
     "TEXELS_PER_CORNER": TEXELS_PER_CORNER,
 }

@@ -4,17 +4,13 @@ less."""
 
 from __future__ import annotations
 
-from ...large_surfels import BLEND_STEPS, LARGE_WEIGHT, STEPS_OF_SAMPLES
+from ...large_surfels import LARGE_WEIGHT, STEPS_OF_SAMPLES
 from ..plan.graph import Part
 from .drawing import SPLAT_HOSTS
 
 _HOSTS = (*SPLAT_HOSTS, "visibility.frag")
 
-CONSTANTS = {
-    "BLEND_STEPS": BLEND_STEPS,
-    "STEPS_OF_SAMPLES": STEPS_OF_SAMPLES,
-    "LARGE_WEIGHT": LARGE_WEIGHT,
-}
+CONSTANTS = {"STEPS_OF_SAMPLES": STEPS_OF_SAMPLES, "LARGE_WEIGHT": LARGE_WEIGHT}
 
 
 def _count(planning) -> int:
@@ -33,7 +29,7 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    # Whose a rim is does not depend on how deep it blends.
+    # A rim belongs to its object, however deep its splats blend.
     if p.host in _HOSTS and p.kind != "edge_ids":
         # A shadow map is compared with points that the camera sees; if casters moved by less, surfaces would shadow
         # themselves.
