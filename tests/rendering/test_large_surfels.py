@@ -89,7 +89,7 @@ def test_the_shadow_of_a_thin_wall_begins_at_its_foot(render):
 
 
 def test_merged_large_surfels_leave_no_holes(render):
-    """The hierarchy merges surfels of three sizes, seen from afar and at a slant."""
+    """The hierarchy contains surfels of three sizes, which are seen from afar and at a slant."""
     scene = still_life(Tolerance(0.0))
     for instance in scene.surfels:
         levels.hierarchy_of(instance.surfels)
