@@ -15,7 +15,7 @@ from measuring.registry import modules, summary
 SCRIPT = Path(package.__file__).resolve().parents[1] / "bench.py"
 
 #: Modules that need no Blender and take about a second with --quick.
-SWIFT = ("passes", "representation", "textured")
+SWIFT = ("flat", "passes", "representation", "textured")
 
 
 def start(*arguments):
