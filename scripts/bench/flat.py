@@ -2,7 +2,8 @@
 """What large surfels inside flat triangles save: a box and a ball on a wide floor, each with and without.
 
 Times are ratios of processor time to that of surfels of the same size, of conversion and of frames with a sun and
-shadows. PSNR is measured in sRGB against the same engine's polygons.
+shadows. PSNR is measured in sRGB against the same engine's polygons. The pictures: polygons, surfels of the same size,
+and with large ones.
 """
 
 from __future__ import annotations
@@ -44,10 +45,10 @@ def arguments(parser) -> None:
 def run(options, report) -> None:
     renderer = Renderer(open_device(options.device))
     report.header(renderer.device, f"{options.size} x {options.size} pixels, medians of {options.turns} turns")
-    report.table(COLUMNS, rows(renderer, options))
+    report.table(COLUMNS, rows(renderer, options, report))
 
 
-def rows(renderer: Renderer, options):
+def rows(renderer: Renderer, options, report):
     camera = Camera.perspective(look_at((0, -8, 3.2), (0, 0, 1)), 0.7, (options.size, options.size), near=0.1, far=100)
     settings = Settings(outputs=("color",))
     polygons = [
@@ -63,6 +64,7 @@ def rows(renderer: Renderer, options):
         )
         counts = (f"{sum(map(len, made.results[kind])):,}" for kind in KINDS)
         times = (f"{Spread.of(turns.ratios('large', 'same')).median:.2f}" for turns in (made, drawn))
+        report.picture(f"flat_{cells}", [truth, *(drawn.results[kind].color for kind in KINDS)])
         yield cells, *counts, *times, *(f"{psnr(drawn.results[kind].color, truth):.1f}" for kind in KINDS)
 
 
