@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 import trimesh
 
+from bench.representation import KINDS as CONVERSIONS
 from measuring.timing import Spread, in_turn, processor
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import (
@@ -28,11 +29,12 @@ from splat_addon.rendering import (
     make_polygons,
     open_device,
 )
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Tolerance, TriangleMesh, sample_surface
+from splat_addon.sampling import TriangleMesh, sample_surface
 
 DEVICES = ("standalone",)
 QUICK = {"size": 48, "cells": [40]}
-KINDS = {"same": None, "large": Tolerance(0.0)}
+#: name -> options of `sample_surface`, as the operator gives them
+KINDS = {"same": CONVERSIONS["fit"] | {"lifts": True}, "large": CONVERSIONS["flat"] | {"lifts": True}}
 CHALK = (Material(roughness=1.0, ior=1.0),)
 COLUMNS = "cells", "surfels", "surfels, large", "conversion", "frame", "dB", "dB, large"
 
@@ -56,7 +58,7 @@ def rows(renderer: Renderer, options, report):
     ]
     truth = renderer.render(lit(polygons=polygons), camera, settings).color
     for cells in options.cells:
-        jobs = {kind: partial(converted, 20 / cells, tolerance) for kind, tolerance in KINDS.items()}
+        jobs = {kind: partial(converted, 20 / cells, how) for kind, how in KINDS.items()}
         made = in_turn(jobs, options.turns, processor)
         scenes = {kind: lit(surfels=[Instance(s, materials=CHALK) for s in made.results[kind]]) for kind in KINDS}
         drawn = in_turn(
@@ -79,10 +81,9 @@ def meshes() -> list[TriangleMesh]:
     ]
 
 
-def converted(spacing: float, tolerance: Tolerance | None) -> list:
-    """The surfels of all meshes, as the operator makes them."""
-    options = {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True, "fits_planes": True, "lifts": True}
-    made = [sample_surface(mesh, spacing=spacing, tolerance=tolerance, **options).surfels for mesh in meshes()]
+def converted(spacing: float, how: dict) -> list:
+    """The surfels of all meshes. how: one of `KINDS`."""
+    made = [sample_surface(mesh, spacing=spacing, **how).surfels for mesh in meshes()]
     return [made[0], *(surfels.as_solid() for surfels in made[1:])]
 
 

@@ -96,7 +96,7 @@ def shadow_maps(
     for_sun = receivers(scene, replace(viewers.sun, lens=None), lights_splats)
     for_lamps = [receivers(scene, camera, lights_splats) for camera in viewers.lamps]
     suns = sum(light.casts_shadow and light.kind == "sun" for light in scene.lights)
-    finest = {"sun": min(resolution * (FINER_SUN // atlas_columns(suns)), LARGEST_SIDE)}
+    finest = max(min(resolution * (FINER_SUN // atlas_columns(suns)), LARGEST_SIDE), resolution)
     made, without, count = [], 0, 0
     for number, light in enumerate(scene.lights):
         if light.casts_shadow:
@@ -107,7 +107,7 @@ def shadow_maps(
                 continue
             count += len(own)
             seen = [one and one.of(light) for one in ([for_sun] if light.kind == "sun" else for_lamps)]
-            most = max(finest.get(light.kind, 0), resolution)
+            most = finest if light.kind == "sun" else resolution
             made += _needed(number, light, own, most, [one for one in seen if one], casters, corners, len(whole) > 1)
     return _placed(made), without
 

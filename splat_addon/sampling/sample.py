@@ -201,10 +201,12 @@ class SamplingRun:
             about = self.grid.spacing, self.options.tolerance
             arrays, error = merge_flat(arrays, _axes_of(images), *about, merging)
             saved = total - len(arrays["positions"])
-        more, small_parts = [gaps] if gaps else [], int(missed[1].max(initial=-1)) + 1
+        more, small_parts = [], int(missed[1].max(initial=-1)) + 1
         for edge, of_edge in sorted(large.items()):
             more.append(self.filled(of_edge, lambda share: None, edge))
             saved += (edge**2 - 1) * len(more[-1]["positions"])
+        if gaps:
+            more.append(gaps)
         if small_parts:
             about = self.options.splat_size, self._sampler, self._tangents, bool(self._uv_fields)
             more.append(component_surfels(self.mesh, self._coordinates, self.grid, missed, *about))

@@ -7,6 +7,8 @@ import pytest
 from splat_addon.blender.conversion import prediction
 from splat_addon.blender.conversion.gathering import gather
 from splat_addon.blender.conversion.mesh_conversion import Choices
+from splat_addon.blender.conversion.mesh_settings import choices
+from splat_addon.blender.ids import CONVERSION_SETTINGS
 from splat_addon.blender.ui.sidebar import prediction as sidebar_text
 from splat_addon.blender.ui.sidebar import prediction_text
 from splat_addon.sampling import REDUCTIONS, predict_count
@@ -126,3 +128,24 @@ def test_for_a_camera_that_sees_nothing_the_text_says_so(cube, camera):
     sidebar_text(bpy.context, [cube], Choices({"pixels": 1.0}))
     prediction._measure_wanted()
     assert "does not see the object" in sidebar_text(bpy.context, [cube], Choices({"pixels": 1.0}))
+
+
+def test_the_text_says_less_where_flat_only_if_large_surfels_can_replace_others(cube):
+    settings = getattr(bpy.context.scene, CONVERSION_SETTINGS)
+    settings.density = "RESOLUTION"
+    assert choices(settings).tolerance == 0
+    for name, value in {
+        "density": "COUNT",
+        "clips_edges": False,
+        "reduction": "THREE_TO_ONE",
+        "use_adaptive": False,
+    }.items():
+        before = getattr(settings, name)
+        setattr(settings, name, value)
+        assert choices(settings).tolerance is None, name
+        setattr(settings, name, before)
+    sidebar_text(bpy.context, [cube], choices(settings))
+    prediction._measure_wanted()
+    assert "less where flat" in sidebar_text(bpy.context, [cube], choices(settings))
+    settings.use_adaptive = False
+    assert "less where flat" not in sidebar_text(bpy.context, [cube], choices(settings))

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Large surfels inside flat triangles: they cover what they replace, stay away from edges, and look like it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -130,6 +132,17 @@ def test_an_image_that_is_looked_up_may_vary(square):
     np.testing.assert_allclose(surfels.uvs, places[:, :2], atol=1e-6)
     for along, half_axis in zip((surfels.uv_along_x, surfels.uv_along_y), half_axes, strict=True):
         np.testing.assert_allclose(along, half_axis[:, :2], atol=1e-6)
+
+
+def test_an_image_with_mirrored_coordinates_stays_in_small_surfels(square):
+    """Along a disc, its coordinates would go on where they turn back."""
+    plain = square()
+    fields = painted(plain)
+    (texture,) = fields["surfaces"][0].color.factors
+    mirrored = Surface(Channel((1, 1, 1, 1), replace(texture, wraps=("MIRROR", "REPEAT"))))
+    mesh = TriangleMesh(plain.positions, plain.triangles, **fields | {"surfaces": (mirrored,)})
+    sampling = made(mesh, texture_mapped=True)
+    assert sampling.surfels.has_uvs and sampling.saved == 0
 
 
 def test_large_surfels_blend_with_none_but_their_own_plane(square):

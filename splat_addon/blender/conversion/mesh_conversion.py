@@ -56,7 +56,7 @@ class Choices:
     reduction, grazing_angle: as in sampling.
     splat_size: half-axis of a splat, in spacings.
     tolerance: how far from flat, in object units, the surface may be where surfels become larger; 0: only inside flat
-        triangles; None: all have the same size. With a count, 0 is the same as None.
+        triangles; None: all have the same size.
     texture_mapped: whether colours that are a single image are looked up at render time.
     crease_angle: radians, beyond which splats end at edges, get their own blend depth and fit the surface, or None.
     space: "object" or "world": the space whose units lengths are in and in which surfels are evenly spaced.
@@ -168,9 +168,9 @@ def prepare(
     unread = gathered.unread if choices.bake else ()
     if not choices.bake:
         notes += unread_sentences(gathered.unread)
-    if unread and choices.tolerance:
-        notes.append("Adaptive is left off: what is baked is known only once the surfels are there")
-    if unread or ("count" in choices.density and not choices.tolerance):
+    if unread and choices.tolerance is not None:
+        if choices.tolerance:
+            notes.append("Adaptive is left off: what is baked is known only once the surfels are there")
         choices = replace(choices, tolerance=None)
     seconds = time.perf_counter() - start
     return Conversion(

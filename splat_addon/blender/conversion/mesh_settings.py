@@ -152,18 +152,27 @@ PROPERTY_NAMES = tuple(ConversionProperties.__annotations__)
 
 def choices(properties: ConversionProperties) -> Choices:
     """The properties as `Choices`."""
+    density = _density(properties)
     return Choices(
-        density=_density(properties),
+        density=density,
         splat_size=properties.splat_size,
         reduction=properties.reduction.lower(),
         grazing_angle=properties.grazing_angle,
-        tolerance=properties.tolerance if properties.use_adaptive else None,
+        tolerance=_tolerance(properties, density),
         texture_mapped=properties.texture_mapped,
         crease_angle=properties.crease_angle if properties.clips_edges else None,
         space=properties.space.lower(),
         join=properties.join,
         bake=properties.bake_materials,
     )
+
+
+def _tolerance(properties: ConversionProperties, density: dict[str, float]) -> float | None:
+    """The tolerance for larger surfels, or None if all have the same size. Those inside flat triangles alone, which a
+    tolerance of 0 asks for, need blend depths; where samples are merged or counted, none replaces others."""
+    are_possible = properties.clips_edges and REDUCTIONS[properties.reduction.lower()].merge is None
+    is_wanted = properties.tolerance > 0 or (are_possible and "count" not in density)
+    return properties.tolerance if properties.use_adaptive and is_wanted else None
 
 
 def _density(properties: ConversionProperties) -> dict[str, float]:

@@ -9,20 +9,22 @@ which is a sample of the grid as well. They show and bend exactly as the triangl
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
+from ...large_surfels import LARGE_SIZE, STEPS_OF_LARGE
 from ..attributes.lifts import LEAST_LIFT, MOST_LIFT
 from ..attributes.surfaces import Surface, Texture, VertexColors
 from ..ldc.scan_conversion import Spans, steps
 from ..mesh.triangle_mesh import TriangleMesh
 from .image_samples import eroded, in_next_row
 
-#: Edge of a block in cells, an odd number -> cells around it that must lie in the same triangle. Its splat reaches
-#: beyond it by less, and `fitted_planes` tilts only samples that are nearer to the triangle's edges.
-BLOCKS = {3: 2, 9: 4}
+#: Edge of a block in cells, an odd number -> cells around it that must lie in the same triangle, because its splat
+#: reaches over them. `fitted_planes` tilts only samples that are nearer to the triangle's edges.
+BLOCKS = {edge: math.ceil((LARGE_SIZE - 0.5) * edge) for edge in STEPS_OF_LARGE}
 #: Edge of the largest block, and how many rows around it decide whether there is one.
 LARGEST, RING = max(BLOCKS), max(BLOCKS.values())
 
@@ -78,9 +80,10 @@ def evenness(
 
 
 def _is_plain(surface: Surface, is_mapped: bool) -> bool:
-    """Whether a surface looks the same everywhere in a triangle whose corners look alike."""
+    """Whether a surface looks the same everywhere in a triangle whose corners look alike, or has an image that is
+    looked up there. Coordinates that are wrapped or mirrored for it do not change evenly."""
     textures = [f for channel in surface.channels().values() for f in channel.factors if isinstance(f, Texture)]
-    return not textures or (is_mapped and textures == [surface.color_texture])
+    return not textures or (is_mapped and textures == [surface.color_texture] and textures[0].wraps is None)
 
 
 def _are_alike(corners: np.ndarray) -> np.ndarray:
