@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from splat_addon.large_surfels import LARGE_WEIGHT, are_large, grains
+from splat_addon.hierarchy.nodes import MERGED_OVERLAP, Leaves
+from splat_addon.large_surfels import LARGE_SIZE, LARGE_WEIGHT, are_large, grains
 from splat_addon.rendering import (
     Camera,
     Instance,
@@ -64,7 +65,7 @@ def test_large_surfels_are_known_by_their_blend_depths():
         assert np.abs(sizes[is_large] / (1.25 * SPACING) - 1).max() < 0.25
         assert instance.grain < 1.3 * other.radius < 0.5 * instance.radius
     # so do the shares of their area in sums of weights
-    assert LARGE_WEIGHT * 0.85**2 == pytest.approx(1.25**2)
+    assert LARGE_WEIGHT * LARGE_SIZE**2 == pytest.approx(1.25**2)
 
 
 @pytest.mark.parametrize("method", ["mip", "quad", "ewa"])
@@ -101,3 +102,13 @@ def test_merged_large_surfels_leave_no_holes(render):
         whole = every.color[..., 3] > 0.999
         assert whole.sum() > 100 and merged.color[..., 3][whole].min() > 0.98
         assert np.sqrt(((merged.color - every.color) ** 2).mean()) < 0.02
+
+
+def test_a_hierarchy_knows_how_large_their_blocks_are():
+    """Its nodes reach 0.9 edges of what they stand for, and weigh as much as the samples that were there."""
+    surfels = still_life(Tolerance(0.0)).surfels[0].surfels
+    nodes, large = Leaves(surfels).take(np.arange(len(surfels))), are_large(surfels.blend_depth)
+    edges = surfels.scales[large, 1] / LARGE_SIZE
+    np.testing.assert_allclose(np.linalg.norm(nodes["second_axis"], axis=0)[large], MERGED_OVERLAP * edges, rtol=1e-5)
+    samples = nodes["areas"][~large].max()
+    np.testing.assert_allclose(nodes["areas"][large] / samples, (edges / SPACING) ** 2, rtol=1e-4)
