@@ -48,7 +48,7 @@ MEETINGS = {
     ),
     "gbuffer": (
         ("the mean of a splat's attributes is what is lit, looked at for lines and occlusion",
-         "hosts/mean_surface.glsl hosts/lines.frag.glsl features/ambient_occlusion.py lib/faces/both.glsl"),
+         "hosts/mean_surface.glsl hosts/lines.frag.glsl features/ambient_occlusion.py lib/faces/several.glsl"),
         ("layers have sums as the opaque picture has",
          "features/transparency.py features/transparency.glsl features/oit.py hosts/oit_shading.frag.glsl"),
         ("planes that shadows compare depths with lie beside its depths", "features/shadows.py features/shadows.glsl"),

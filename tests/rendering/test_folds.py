@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A crease under a light is as bright as its two faces are; a thin surface that bends smoothly keeps its highlight."""
+"""A crease or corner under a light is as bright as its faces are; a thin surface that bends smoothly keeps its highlight."""
 
 from dataclasses import replace
 from importlib import import_module
@@ -52,6 +52,34 @@ def test_a_crease_is_lit_as_its_faces_are(shading, angle, pixels_apart, render):
     inside = windows.min(axis=(2, 3)) > 0.999
     assert np.count_nonzero(inside) > 1000
     assert np.abs(frame.color - exact.color)[inside].max() < 0.05
+
+
+def box_corner():
+    """A box's corner, seen from outside, with surfels 1.2 pixels apart."""
+    corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    triangles = [triangle for a, b, c, d in faces for triangle in ((a, b, c), (a, c, d))]
+    mesh = TriangleMesh(corners, np.array(triangles))
+    return sample_mesh(mesh, spacing=0.05, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True).as_solid()
+
+
+@pytest.mark.parametrize("place", [(5.0, 4.5, 4.0), (4.0, 3.5, 4.5), (5.5, 3.0, 3.2)])
+def test_where_three_faces_meet_no_pixel_shines(place, render):
+    """Each light is reflected to the viewer by a mean of the three normals, and by no face.
+
+    Measured: errors of at most 0.004. Lit with two normals, or the mean of three, pixels were 0.017 to 4.4 too bright.
+    """
+    camera = Camera.perspective(look_at(place, (1, 1, 1), (0, 0, 1)), 0.35, (48, 48), 0.1, 100)
+    view = np.array(place) - 1
+    view /= np.linalg.norm(view)
+    lights = []
+    for shares in [(1, 1, 1), (1, 2, 2), (2, 1, 2), (2, 2, 1), (2, 3, 3), (3, 2, 3), (3, 3, 2)]:
+        normal = np.array(shares) / np.linalg.norm(shares)
+        lights.append(Light("sun", energy=3.0, direction=tuple(view - 2 * (view @ normal) * normal)))
+    scene = of_metal(box_corner(), lights=tuple(lights))
+    exact = render_exact(scene, camera, MIP, pixel_filter="gaussian")
+    difference = np.abs(render(scene, camera, MIP).color - exact.color)
+    assert difference[16:32, 16:32].max() < 0.01
 
 
 def tube(radius: float):
@@ -129,7 +157,7 @@ def test_only_lit_creases_take_the_time(changes, settings, why):
     assert "FOLDS" in dict(plan(scene, CAMERA, MIP).features)
     without = plan(replace(scene, **changes), CAMERA, replace(MIP, **settings))
     assert why in dict(without.skipped)["folds"] and "FOLDS" not in dict(without.features)
-    assert all(dict(part.choices).get("faces") != "both" for p in without.passes for part in p.parts)
+    assert all(dict(part.choices).get("faces") != "several" for p in without.passes for part in p.parts)
 
 
 def test_tiles_show_what_the_whole_picture_shows(render, monkeypatch):

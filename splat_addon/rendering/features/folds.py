@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Folds: where the pixel's filter mixes the faces of a crease, each face is lit with its own normal.
+"""Folds: where the pixel's filter mixes the faces of a crease or corner, each face is lit with its own normal.
 
-The mean of two normals belongs to neither face: lit as one surface, a crease shines where no face does. Lighting is not
+The mean of normals belongs to no face: lit as one surface, a crease shines where none of its faces does. Lighting is not
 linear in the normal, so it comes before the mean, as in the exact picture, which filters lit rays.
 """
 
@@ -31,7 +31,7 @@ def missing(planning) -> str:
 
 def passes(planning):
     """No passes; records whether creases are lit by faces."""
-    why = "creases are lit with the normals of both faces"
+    why = "creases and corners are lit with the normals of their faces"
     if planning.shown and (other := planning.find(missing)):
         planning.skip("folds", other)
     elif planning.shown:
@@ -51,4 +51,4 @@ def margin(planning) -> int:
 
 def parts(planning, p):
     if p.host in LIT_HOSTS:
-        yield Part("folds", choices=(("faces", "both"),))
+        yield Part("folds", choices=(("faces", "several"),))
