@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A crease or corner under a light is as bright as its faces are; a thin surface that bends smoothly keeps its highlight."""
+"""A crease or corner under a light is as bright as its faces are; a thin tube keeps its highlight."""
 
 from dataclasses import replace
 from importlib import import_module

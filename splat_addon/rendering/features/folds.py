@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Folds: where the pixel's filter mixes the faces of a crease or corner, each face is lit with its own normal.
 
-The mean of normals belongs to no face: lit as one surface, a crease shines where none of its faces does. Lighting is not
-linear in the normal, so it comes before the mean, as in the exact picture, which filters lit rays.
+The mean of normals belongs to no face: lit as one surface, a crease shines where none of its faces does. Lighting is
+not linear in the normal, so it comes before the mean, as in the exact picture, which filters lit rays.
 """
 
 from __future__ import annotations
