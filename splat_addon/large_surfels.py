@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Large surfels: each replaces a block of samples inside a flat triangle (`sampling/refine/flat_triangles.py`).
+"""Large surfels: each replaces a block of samples inside a flat face (`sampling/refine/flat_blocks.py`).
 
 They are known by their blend depths, which are smaller than those of all others. In all that depends on a splat's
 radius beside its extent, they are treated as the samples that they replace. They overlap less than these, and therefore

@@ -23,11 +23,11 @@ from .ldc.scan_conversion import Spans, expand
 from .mesh.triangle_mesh import TriangleMesh
 from .options import SamplingOptions
 from .progress import Progress, stage
-from .refine.flat_triangles import Large
+from .refine.flat_blocks import Large
 from .refine.missed_components import SampledSurface, missed_components
 from .sample import Sampling, SamplingRun
 
-_VERSION = 3
+_VERSION = 4
 
 
 @dataclass(frozen=True, eq=False)

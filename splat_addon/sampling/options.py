@@ -57,8 +57,10 @@ class SamplingOptions(Density):
 
     splat_size: smaller half-axis of a splat, in H.
     tolerance: how far from flat the surface may be where a larger surfel replaces several; None: all have the same
-        size. With a distance of 0, larger ones are only inside triangles that look the same everywhere
-        (`refine.flat_triangles`), which requires fits_blending; reductions that merge samples leave them out.
+        size. With a distance of 0, larger ones are only inside flat faces that look the same everywhere
+        (`refine.flat_blocks`), which requires fits_blending; reductions that merge samples leave them out.
+    deforms: whether the surfels will follow a deformation of the mesh; then larger ones are inside single triangles,
+        which stay flat.
     texture_mapped: surfels whose colour is a single image also store their texture coordinates, so that the image is
         looked up at render time.
     crease_angle: radians; splats end at clip lines (`edges.clipping`) where the surface turns by more than this (less
@@ -74,6 +76,7 @@ class SamplingOptions(Density):
 
     splat_size: float = DEFAULT_SPLAT_SIZE
     tolerance: Tolerance | None = None
+    deforms: bool = False
     texture_mapped: bool = False
     crease_angle: float | None = None
     fits_blending: bool = False

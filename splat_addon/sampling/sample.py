@@ -39,7 +39,8 @@ from .progress import Progress, stage
 from .refine.adaptive import merge_flat
 from .refine.component_surfels import component_surfels
 from .refine.fitted_planes import fit_planes
-from .refine.flat_triangles import LARGEST, RING, Large, divided, evenness
+from .refine.flat_blocks import LARGEST, LEAST_AREA, RING, Large, divided
+from .refine.flat_faces import flat_faces
 from .refine.image_samples import inside_triangles
 from .refine.missed_components import SampledSurface, missed_components
 from .workers import in_order
@@ -146,11 +147,15 @@ class SamplingRun:
             return depth_cube(*about, bands), {}
         # a block's outermost rows depend on those beside them
         around = None if bands is None else bands + np.array([[-RING], [RING]])
-        are_even = evenness(self.mesh, bool(self._uv_fields), self._bulges, self.grid.spacing)
-        images, large = divided(depth_cube(*about, around), are_even)
+        images, large = divided(depth_cube(*about, around), self._flat_faces())
         if bands is not None:
             images, large = in_bands(images, bands), {edge: in_bands(of, bands) for edge, of in large.items()}
         return images, large
+
+    def _flat_faces(self) -> np.ndarray:
+        size = LEAST_AREA, self.grid.spacing
+        how = {"is_mapped": bool(self._uv_fields), "deforms": self.options.deforms}
+        return flat_faces(self.mesh, self._edges.borders, *size, bulges=self._bulges, **how)
 
     @property
     def _enlarges(self) -> bool:

@@ -37,6 +37,7 @@ from ..materials.material_surfaces import Unread
 from .automatic_density import automatic_spacing
 from .camera_density import without_camera
 from .gathering import gather
+from .shape_following import is_deformed
 from .surfel_objects import add_surfel_object, collections_of
 
 #: How far the surface may be above or below its surfel, in spacings: because of curvature within the cell, or a move to
@@ -56,7 +57,7 @@ class Choices:
     reduction, grazing_angle: as in sampling.
     splat_size: half-axis of a splat, in spacings.
     tolerance: how far from flat, in object units, the surface may be where surfels become larger; 0: only inside flat
-        triangles; None: all have the same size.
+        faces; None: all have the same size.
     texture_mapped: whether colours that are a single image are looked up at render time.
     crease_angle: radians, beyond which splats end at edges, get their own blend depth and fit the surface, or None.
     space: "object" or "world": the space whose units lengths are in and in which surfels are evenly spaced.
@@ -91,6 +92,7 @@ class Conversion:
     sources: the first one determines the place.
     whole: the mesh as it was read. mesh: without unusable triangles.
     unread: inputs of materials that need to be baked.
+    deforms: whether the surfels will follow a deformation.
     reason: explanation of an automatic density.
     """
 
@@ -105,6 +107,7 @@ class Conversion:
     triangles: int
     notes: list[str]
     seconds: float
+    deforms: bool = False
     reason: str = ""
     surfels: Surfels | None = None
     sampling: Sampling | None = None
@@ -185,6 +188,7 @@ def prepare(
         len(whole),
         [*notes, *gathered.notes],
         seconds,
+        len(sources) == 1 and is_deformed(sources[0]),
         reason,
     )
 
@@ -217,6 +221,7 @@ def sampling_options(conversion: Conversion) -> dict:
         "grazing_angle": choices.grazing_angle,
         "splat_size": choices.splat_size,
         "tolerance": None if choices.tolerance is None else Tolerance(choices.tolerance),
+        "deforms": conversion.deforms,
         "texture_mapped": choices.texture_mapped,
         "crease_angle": choices.crease_angle,
         "fits_blending": choices.crease_angle is not None,

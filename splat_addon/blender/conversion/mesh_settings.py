@@ -168,7 +168,7 @@ def choices(properties: ConversionProperties) -> Choices:
 
 
 def _tolerance(properties: ConversionProperties, density: dict[str, float]) -> float | None:
-    """The tolerance for larger surfels, or None if all have the same size. Those inside flat triangles alone, which a
+    """The tolerance for larger surfels, or None if all have the same size. Those inside flat faces alone, which a
     tolerance of 0 asks for, need blend depths; where samples are merged or counted, none replaces others."""
     are_possible = properties.clips_edges and REDUCTIONS[properties.reduction.lower()].merge is None
     is_wanted = properties.tolerance > 0 or (are_possible and "count" not in density)

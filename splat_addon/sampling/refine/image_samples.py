@@ -138,7 +138,7 @@ def inside_triangles(images: tuple[Spans, ...]) -> np.ndarray:
 
 
 def _inside_triangles(spans: Spans) -> np.ndarray:
-    # In a row, a triangle has one span, or one on either side of its large samples (`flat_triangles`).
+    # In a row, a triangle has one span, or one on either side of its large samples (`flat_blocks`).
     is_first = np.ones(len(spans), bool)
     is_first[1:] = (spans.triangles[1:] != spans.triangles[:-1]) | (spans.rows[1:] != spans.rows[:-1])
     starts, row = np.flatnonzero(is_first), np.cumsum(is_first) - 1
