@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A view whose surfels come in slices: what is not on the device yet is shown by a few surfels that stand for all."""
+"""A view whose surfels come in slices: what is not on the device yet is shown by a few surfels that stand for all, and
+until all programs are compiled there is a draft."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ from dataclasses import replace
 from weakref import WeakKeyDictionary, WeakSet
 
 from ..surfels import Surfels
+from .draft import Draft
 from .refinement import Refinement
 from .renderer import Shown
 from .scene import Scene
@@ -16,15 +18,15 @@ from .settings import Settings
 from .stand_in import STAND_IN, stand_in
 from .upload.loading import Loading, NotYet, ProgramsNotYet
 
-#: Least surfels that stand for a set.
-_LEAST = 64
+#: Least surfels that stand for a set, and for one of few sets.
+_LEAST, _LEAST_OF_FEW = 1 << 6, 1 << 11
 
 
 class Arrival:
     """Draws what a refinement draws, without waiting: `loading` says what is on its way, for as long as it is.
 
-    is_compiling: whether the last picture was left out, because its time went into compiling programs. Only before the
-        first one that is shown.
+    is_compiling: whether the last picture was a draft, or left out, because its time went into compiling programs. Only
+        before the first other one.
     """
 
     def __init__(self, refinement: Refinement, loading: Loading | None = None):
@@ -32,10 +34,12 @@ class Arrival:
         self.refinement = refinement
         self.loading = resources.loading = loading or Loading(resources.device)
         self.is_compiling = False
+        self._draft = Draft(refinement.renderer)
         self._late: WeakSet[Surfels] = WeakSet()
         self._stand_ins: WeakKeyDictionary[Surfels, Surfels] = WeakKeyDictionary()
         self._last: tuple[Scene, Camera, Settings, Shown] | None = None
         self._shown: tuple[Scene, frozenset[Surfels], Scene] | None = None
+        self._draft_of: tuple[Scene, Scene] | None = None
 
     @property
     def is_late(self) -> bool:
@@ -51,7 +55,7 @@ class Arrival:
             self.refinement.pace.begin_coarsely()
         self.refinement.renderer.resources.load_some()
         # what has just arrived is drawn in about the time of the stand-ins first
-        hurries, self.is_compiling = hurries or self.is_late, False
+        hurries |= self.is_late
         while True:
             shown = self._with_stand_ins(scene)
             if self.loading.bytes_written and self._is_same(shown, camera, settings):
@@ -59,18 +63,27 @@ class Arrival:
                 yield self._last[-1]
                 return
             try:
-                yield from self._noted(shown, camera, settings, hurries or shown is not scene)
+                yield from self._tried(scene, shown, camera, settings, hurries or shown is not scene)
             except NotYet as reason:
                 if reason.surfels <= set(self._late):
                     raise
                 self._late |= reason.surfels
                 self.refinement.pace.begin_coarsely()
+            else:
+                return
+
+    def _tried(self, scene: Scene, shown: Scene, camera: Camera, settings: Settings, hurries) -> Iterator[Shown]:
+        """What the refinement draws; while programs of that are missing a draft, of which the programs come first."""
+        if not self.is_compiling or self._draft.is_there:
+            try:
+                yield from self._noted(shown, camera, settings, hurries)
             except ProgramsNotYet:
                 self.is_compiling = True
-                return
             else:
+                self.is_compiling = False
                 self.loading.compiles_in_slices &= not shown.shown
                 return
+        yield from self._draft.draw(self._drafted(scene), camera, settings)
 
     def _noted(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool) -> Iterator[Shown]:
         """What the refinement draws, and what it was if that is a single texture, which then stays as it is."""
@@ -97,17 +110,28 @@ class Arrival:
             self._shown = None
             return scene
         if self._shown is None or self._shown[0] is not scene or self._shown[1] != late:
-            every = sum(map(len, late))
-            instances = (
-                replace(i, shape=self._of(i.surfels, every)) if i.surfels in late else i for i in scene.surfels
-            )
-            self._shown = scene, late, replace(scene, surfels=tuple(instances))
+            self._shown = scene, late, self._replaced(scene, late)
         return self._shown[2]
 
-    def _of(self, surfels: Surfels, every: int) -> Surfels:
-        """The stand-in of a set, whose number is its share of all that are late."""
+    def _drafted(self, scene: Scene) -> Scene:
+        """The scene with stand-ins for all surfels, which need fewer programs; the same object for the same scene."""
+        if self._draft_of is None or self._draft_of[0] is not scene:
+            there = frozenset(i.surfels for i in scene.surfels if i.stream is None)
+            self._draft_of = scene, self._replaced(scene, there)
+        return self._draft_of[1]
+
+    def _replaced(self, scene: Scene, late: frozenset[Surfels]) -> Scene:
+        every, least = max(sum(map(len, late)), 1), max(min(STAND_IN // max(len(late), 1), _LEAST_OF_FEW), _LEAST)
+
+        def shape(surfels: Surfels) -> Surfels:
+            return self._of(surfels, max(STAND_IN * len(surfels) // every, least)) if surfels in late else surfels
+
+        return replace(scene, surfels=tuple(replace(i, shape=shape(i.surfels)) for i in scene.surfels))
+
+    def _of(self, surfels: Surfels, wanted: int) -> Surfels:
+        """The stand-in of a set."""
         if surfels not in self._stand_ins:
-            made = stand_in(surfels, max(STAND_IN * len(surfels) // every, _LEAST))
+            made = stand_in(surfels, wanted)
             self.loading.exempt.add(made)
             self._stand_ins[surfels] = made
         return self._stand_ins[surfels]

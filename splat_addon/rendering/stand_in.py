@@ -8,6 +8,7 @@ from weakref import WeakSet
 import numpy as np
 
 from ..clip_lines import CLIP_FIELDS
+from ..large_surfels import LARGE_WEIGHT, are_large
 from ..surfels import Surfels
 
 #: Surfels of all stand-ins of a view together.
@@ -15,6 +16,9 @@ STAND_IN = 1 << 16
 
 #: Factor by which they are wider than those that they replace would be, were they evenly spread.
 _WIDER = 1.3
+
+#: Places in each part of the area, one of which is taken.
+_PLACES = 1 << 10
 
 #: Fields that they do not have: they are whole.
 LEFT_OUT = CLIP_FIELDS
@@ -36,18 +40,31 @@ def spread(count: int, wanted: int) -> np.ndarray:
     return ends[:-1] + (np.diff(ends) * (chosen.astype(np.float64) / 2**32)).astype(np.int64)
 
 
-def widened(arrays: dict[str, np.ndarray], count: int) -> dict[str, np.ndarray]:
-    """The fields of n surfels that stand for `count`: as much wider as these would leave bare, and whole."""
-    chosen = len(arrays["positions"])
-    factor = np.float32(_WIDER * np.sqrt(count / chosen) if chosen < count else 1)
+def widened(arrays: dict[str, np.ndarray], areas: float | np.ndarray) -> dict[str, np.ndarray]:
+    """The fields of n surfels that stand for others: as much wider as these would leave bare, and whole.
+
+    areas: of what they stand for, relative to their own; one number, or (n,). 1 or less: they stand for themselves."""
+    factor = np.where(np.less_equal(areas, 1), 1, _WIDER * np.sqrt(areas)).astype(np.float32)
     arrays = {name: array for name, array in arrays.items() if name not in LEFT_OUT}
-    return {name: array * factor if name in ("scales", *_PER_AXIS) else array for name, array in arrays.items()}
+    return {
+        name: array * factor.reshape(-1, *[1] * (array.ndim - 1)) if name in ("scales", *_PER_AXIS) else array
+        for name, array in arrays.items()
+    }
 
 
 def stand_in(surfels: Surfels, wanted: int) -> Surfels:
-    """At most `wanted` surfels in place of a set."""
-    rows = spread(len(surfels), wanted)
-    arrays = widened({name: array[rows] for name, array in surfels.arrays().items()}, len(surfels))
+    """At most `wanted` surfels in place of a set: one for each part of about the same area."""
+    rows, areas = np.arange(len(surfels)), 1.0
+    if wanted < len(surfels):
+        own = np.maximum(surfels.scales.prod(axis=1, dtype=np.float64), 1e-300)
+        # Large ones overlap less, and stand for as much more.
+        is_large = np.zeros(len(own), bool) if surfels.blend_depth is None else are_large(surfels.blend_depth)
+        ends = np.cumsum(own * np.where(is_large, LARGE_WEIGHT, 1))
+        # the places at which even parts of the whole area begin, moved as rows are
+        places = (spread(_PLACES * wanted, wanted) + 0.5) * (ends[-1] / (_PLACES * wanted))
+        rows = np.unique(np.searchsorted(ends, places))
+        areas = ends[-1] / wanted / own[rows]
+    arrays = widened({name: array[rows] for name, array in surfels.arrays().items()}, areas)
     return standing_in(Surfels(origin=surfels.origin, is_solid=surfels.is_solid, **arrays))
 
 

@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
-from splat_addon.rendering import Arrival, Refinement, Renderer, Settings, arrival, levels
+from splat_addon.rendering import Arrival, Refinement, Renderer, Settings, arrival, levels, look_at
 from splat_addon.rendering.levels import built_hierarchy
 from splat_addon.rendering.stand_in import spread, stand_in
 from splat_addon.rendering.upload import loading
 from splat_addon.rendering.upload.loading import Loading
+from splat_addon.surfels import Surfels
 
 SIZE = (64, 48)
 SETTINGS = Settings(outputs=("color",), detail_tolerance=1.5, shadow_resolution=256)
@@ -66,6 +67,10 @@ def small_steps(monkeypatch):
 def shown(device, view, scene, camera, settings):
     """(h, w, 4) of what a view shows at its next redraw."""
     (part,) = view.draw(scene, camera, settings)
+    return shown_texels(device, part)
+
+
+def shown_texels(device, part):
     texels, (left, bottom, width, height) = device.target([part.texture]).read(0), part.part
     return texels[bottom : bottom + height, left : left + width] * part.scale
 
@@ -211,24 +216,57 @@ def test_a_picture_stops_writing_when_its_time_is_up(small_steps, on_device):
     assert on_device(draw) == 2 * loading.SLICE_BYTES
 
 
-def test_before_anything_is_shown_programs_are_compiled_over_several_pictures(small_steps, on_device):
+def test_a_draft_is_there_long_before_the_programs_of_the_picture(small_steps, on_device):
     scene, camera = torus(4000)
+    from_above = replace(camera, matrix_world=look_at((0, 0, 12), (0, 0, 0)))
 
     def draw(device):
-        (view, _), pictures = begun(device, Clock(0.06)), 1
+        (view, _), pictures = begun(device, Clock(0.06)), []
         # an empty scene shows nothing that could vanish again
         list(view.draw(replace(scene, surfels=()), camera, SETTINGS))
-        while not list(view.draw(scene, camera, SETTINGS)):
-            assert view.is_compiling and pictures < 50
-            pictures += 1
+        while True:
+            parts = view.draw(scene, camera, SETTINGS)
+            pictures.append([shown_texels(device, part) for part in parts])
+            if not view.is_compiling:
+                break
+            assert len(pictures) < 50
         last = shown(device, view, scene, camera, SETTINGS)
         view.loading._programs.clear()
-        list(view.draw(scene, camera, replace(SETTINGS, shading="flat")))
+        assert list(view.draw(scene, from_above, replace(SETTINGS, shading="flat")))
         return pictures, view.is_compiling, last, Renderer(device).render(scene, camera, SETTINGS).color
 
     pictures, is_compiling, last, whole = on_device(draw)
-    assert pictures > 4 and not is_compiling
+    first = next(number for number, seen in enumerate(pictures) if seen)
+    assert 1 < first < 5 and len(pictures) > first + 4 and not is_compiling
+    assert all(pictures[first:])
+    (draft,) = pictures[first]
+    # it shows the object where it is, lit, without shadows
+    is_seen = np.abs(whole - whole[0, 0]).max(axis=2) > 0.02
+    is_drafted = np.abs(draft - draft[0, 0]).max(axis=2) > 0.02
+    assert (is_seen & is_drafted).sum() > 0.8 * is_seen.sum() and is_drafted.sum() < 1.3 * is_seen.sum()
     np.testing.assert_array_equal(last, whole)
+
+
+def test_a_draft_follows_the_camera_and_is_drawn_once_for_each(small_steps, on_device, monkeypatch):
+    scene, camera = torus(4000)
+    turned = replace(camera, matrix_world=look_at((0, 0, 12), (0, 0, 0)))
+
+    def draw(device):
+        view, drawn = begun(device, Clock(0.06))[0], []
+        while not (parts := list(view.draw(scene, camera, SETTINGS))):
+            pass
+        monkeypatch.setattr(
+            view.refinement.renderer,
+            "draw",
+            lambda *args, draw_all=view.refinement.renderer.draw, **how: drawn.append(args) or draw_all(*args, **how),
+        )
+        again, moved = list(view.draw(scene, camera, SETTINGS)), list(view.draw(scene, turned, SETTINGS))
+        drafts = [args for args in drawn if args[2].method == "quad"]
+        return view.is_compiling, parts, again, moved, drafts
+
+    is_compiling, parts, again, moved, drafts = on_device(draw)
+    assert is_compiling and len(moved) == 1 and again[0] is parts[0]
+    assert len(drafts) == 1 and drafts[0][1] is turned
 
 
 def test_stand_ins_are_drawn_once_while_slices_are_written(small_steps, on_device, monkeypatch):
@@ -461,3 +499,24 @@ def test_tiles_are_whole_while_surfels_arrive(small_steps, on_device, monkeypatc
         return sum(part.place[2] * part.place[3] for part in view.draw(scene, camera, SETTINGS))
 
     assert on_device(draw) == SIZE[0] * SIZE[1]
+
+
+def test_a_stand_in_has_surfels_where_the_area_is():
+    """Of a floor with a border of small surfels, few are chosen at the border, and all of it is covered."""
+    middles = np.stack(np.meshgrid(np.arange(0.5, 40), np.arange(0.5, 40), [0.0]), axis=-1).reshape(-1, 3)
+    border = np.stack([np.linspace(0, 40, 8000), np.full(8000, 40.0), np.zeros(8000)], axis=1)
+    places = np.concatenate([border, middles]).astype(np.float32)
+    size = np.repeat([0.005, 0.85], [8000, 1600]).astype(np.float32)
+    surfels = Surfels(
+        positions=places,
+        rotations=np.tile(np.float32((1, 0, 0, 0)), (len(places), 1)),
+        scales=np.stack([size, size], axis=1),
+        normals=np.tile(np.float32((0, 0, 1)), (len(places), 1)),
+        colors=np.ones((len(places), 4), np.float32),
+        materials=np.zeros(len(places), np.int32),
+        blend_depth=np.repeat(np.float32((0.5, 1 / 256)), [8000, 1600]),
+    )
+    few = stand_in(surfels, 400)
+    assert (few.scales[:, 0] > 0.5).all() and 300 < len(few) <= 400
+    off = np.linalg.norm(middles[:, None] - few.positions[None], axis=2) / few.scales[:, 0]
+    assert (off.min(axis=1) < 1).mean() > 0.99

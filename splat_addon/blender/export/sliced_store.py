@@ -197,7 +197,7 @@ def _few(arrays: dict[str, np.ndarray], count: int, is_solid: bool) -> Surfels |
     """The stand-in of `count` surfels, made of some that have not been checked, if any of them are usable."""
     known = {field: values for field, values in arrays.items() if field != "rest"}
     surfels, _, _ = stored_of(known, is_solid, {}, "")
-    wide = widened(surfels.arrays(), count)
+    wide = widened(surfels.arrays(), count / max(len(surfels), 1))
     return standing_in(valid_surfels(is_solid=is_solid, **wide)[0]) if len(surfels) else None
 
 
