@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A view whose surfels come in slices: what is not on the device yet is shown by a few surfels that stand for all, and
-until all programs are compiled there is a draft."""
+until programs are compiled there is the last picture, or a draft."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ _LEAST, _LEAST_OF_FEW = 1 << 6, 1 << 11
 class Arrival:
     """Draws what a refinement draws, without waiting: `loading` says what is on its way, for as long as it is.
 
-    is_compiling: whether the last picture was a draft, or left out, because its time went into compiling programs. Only
-        before the first other one.
+    is_compiling: whether the last picture was the one before, a draft or left out, because its time went into compiling
+        programs.
     """
 
     def __init__(self, refinement: Refinement, loading: Loading | None = None):
@@ -73,17 +73,22 @@ class Arrival:
                 return
 
     def _tried(self, scene: Scene, shown: Scene, camera: Camera, settings: Settings, hurries) -> Iterator[Shown]:
-        """What the refinement draws; while programs of that are missing a draft, of which the programs come first."""
-        if not self.is_compiling or self._draft.is_there:
+        """What the refinement draws. While programs of that are missing, the last picture, or before there is one a
+        draft, of which the programs come first."""
+        # of a scene without anything, one would say that there is nothing
+        before = self._last if self._last and self._last[0].shown else None
+        if not self.is_compiling or self._draft.is_there or before:
             try:
                 yield from self._noted(shown, camera, settings, hurries)
             except ProgramsNotYet:
-                self.is_compiling = True
+                self.is_compiling, self._last = True, before
             else:
                 self.is_compiling = False
-                self.loading.compiles_in_slices &= not shown.shown
                 return
-        yield from self._draft.draw(self._drafted(scene), camera, settings)
+        if before and before[1].size == camera.size:
+            yield before[-1]
+        else:
+            yield from self._draft.draw(self._drafted(scene), camera, settings)
 
     def _noted(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool) -> Iterator[Shown]:
         """What the refinement draws, and what it was if that is a single texture, which then stays as it is."""

@@ -64,7 +64,8 @@ def _say(engine: bpy.types.RenderEngine, state: _State) -> None:
     (loading, loaded), (reading, read) = state.arrival.loading.left, state.store.left
     # what is being read will be loaded, which takes longer
     share = 1 - (_LOADING * (loading + read) + (1 - _LOADING) * reading) / max(loaded + read, 1)
-    text = f"{said('Preparing surfels')}: {share:.0%}" if loading + read else ""
+    compiling = said("Compiling shaders") if state.arrival.is_compiling else ""
+    text = f"{said('Preparing surfels')}: {share:.0%}" if loading + read else compiling
     engine.update_stats("", "; ".join([text, *last_notes] if text else last_notes))
     state.says = text
 
@@ -93,7 +94,7 @@ def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: 
             engine.tag_redraw()
         else:
             state.redraw_when_at_rest(engine)
-    if state.is_waiting or state.says:
+    if state.is_waiting or state.arrival.is_compiling or state.says:
         _say(engine, state)
         state.redraw_when_more_is_there(engine)
 

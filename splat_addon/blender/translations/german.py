@@ -541,6 +541,7 @@ GERMAN = {
     "Polygons": "Polygone",
     "Position": "Position",
     "Preparing surfels": "Surfels werden vorbereitet",
+    "Compiling shaders": "Shader werden kompiliert",
     "Preset": "Voreinstellung",
     "Preview": "Vorschau",
     "Principled": "Principled",

@@ -112,7 +112,7 @@ class Loading:
 
     run: starts a job in the background. bytes_written: by the last picture. is_in_background: whether large sets are
     made there; otherwise pictures wait for them. exempt: sets that are made at once in any case. compiles_in_slices:
-    whether a picture ends where compiling programs has taken its time, because none has been shown yet.
+    whether a picture ends where compiling programs has taken its time.
     """
 
     def __init__(self, device: Device, run=in_background, clock: Callable[[], float] = perf_counter):
