@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What large surfels inside flat triangles save: a box and a ball on a wide floor, each with and without.
+"""What large surfels inside flat faces save: a box and a ball on a wide floor, each with and without.
 
 Times are ratios of processor time to that of surfels of the same size, of conversion and of frames with a sun and
 shadows. PSNR is measured in sRGB against the same engine's polygons. The pictures: polygons, surfels of the same size,

@@ -220,6 +220,20 @@ def test_a_face_ends_where_its_look_changes(fields):
     assert ended.saved == made(plain, 100, deforms=True).saved < made(plain, 100).saved
 
 
+def test_of_a_mapped_mesh_faces_without_an_image_go_on():
+    """Two squares side by side, of two triangles each; the second one has an image."""
+    corners = np.array([(x + dx, y, 0) for dx in (0, 2) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], float)
+    triangles = np.array([(0, 1, 2), (0, 2, 3), (4, 5, 6), (4, 6, 7)])
+    fields = painted(TriangleMesh(corners, triangles))
+    surfaces = (Surface(), *fields.pop("surfaces"))
+    mesh = TriangleMesh(corners, triangles, materials=np.array([0, 0, 1, 1]), surfaces=surfaces, **fields)
+    surfels, spacing = made(mesh, 300, texture_mapped=True).surfels, 3 / 300
+    large = are_large(surfels, spacing)
+    x, y, _ = (surfels.origin + surfels.positions)[large].T
+    off = np.abs(x % 2 - y) / np.sqrt(2) - surfels.scales[large, 0]
+    assert off[x < 1].min() < 0 < off[x > 2].min()
+
+
 def test_a_wall_ends_the_floor_that_it_stands_on():
     """The surfels of either half of the floor end at the edge that they share with the wall."""
     corners = np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 1, 0), (1, 1, 0), (2, 1, 0), (1, 0, 1), (1, 1, 1)], float)

@@ -6,7 +6,7 @@ sigma 0.7071 pixels; it shares no code with surfels. Meshes are coloured by thei
 degrees, unlit, on a grey background of 0.05, and seen from three directions at 1.4 diagonals of their boxes. "engine":
 surfels as the operator makes them, drawn by the device; "whole": the same without clip lines, blend depths and fitted
 planes. The others are exact pictures (--exact): "now" of whole splats; "clip" with clip lines; "blend" with a blend
-depth per surfel; "both"; "fit" in fitted planes, too; "flat" with large surfels inside flat triangles, as "engine" has.
+depth per surfel; "both"; "fit" in fitted planes, too; "flat" with large surfels inside flat faces, as "engine" has.
 PSNR is measured in sRGB. A pixel is wrong if a component differs by more than 0.15; bare if the mesh covers it fully
 and the surfels less than 0.98; spilled if the surfels cover more than 0.02 of it and the mesh nothing. Conversion:
 median ratios of its time to that without edges, by the processor's and by the clock. Frame: median ratio of the

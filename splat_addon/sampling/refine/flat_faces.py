@@ -41,8 +41,8 @@ def flat_faces(
     """(T,) int32: the number of each triangle's flat face, or -1 if it is in none.
 
     borders: edges across which no face goes on. least: area of a face, in cells. bulges: of `lifts`, or None.
-    is_mapped: whether images are looked up at render time: then each triangle is a face of its own, because coordinates
-    may turn at its edges. deforms: whether the triangles will be moved relative to each other: likewise.
+    is_mapped: whether images are looked up at render time: a triangle that has one is a face of its own, because
+    coordinates may turn at its edges. deforms: whether triangles will move relative to each other: then each is.
     """
     faces = np.full(len(mesh), -1, np.int32)
     normals, areas = _planes(mesh)
@@ -51,7 +51,7 @@ def flat_faces(
     if not len(some):
         return faces
     labels = np.arange(len(some))
-    if not (deforms or is_mapped):
+    if not deforms:
         pairs = _neighbours(mesh, some, borders)
         pairs = pairs[_look_alike(mesh, normals, *some.take(pairs.T))]
         if len(pairs):
@@ -87,9 +87,7 @@ def _sieved(normals: np.ndarray, areas: np.ndarray, least: float) -> np.ndarray:
 
 def _are_even(mesh: TriangleMesh, triangles: np.ndarray, is_mapped: bool, bulges, spacing: float) -> np.ndarray:
     """(t,) bool: whether each of (t,) triangles looks the same everywhere."""
-    are_plain = np.array([_is_plain(surface, is_mapped) for surface in mesh.surfaces])
-    materials = 0 if mesh.materials is None else mesh.materials.take(triangles)
-    result = np.broadcast_to(are_plain[np.minimum(materials, len(are_plain) - 1)], len(triangles)).copy()
+    result = _of_surfaces(mesh, triangles, [_is_plain(surface, is_mapped) for surface in mesh.surfaces])
     if bulges is not None:
         result &= MOST_LIFT * bulges.take(triangles, axis=1).max(axis=0) <= LEAST_LIFT * spacing
     if mesh.corner_normals is not None:
@@ -99,10 +97,21 @@ def _are_even(mesh: TriangleMesh, triangles: np.ndarray, is_mapped: bool, bulges
     return result
 
 
+def _of_surfaces(mesh: TriangleMesh, triangles: np.ndarray, values: list[bool]) -> np.ndarray:
+    """(t,) bool: the value of each triangle's surface."""
+    if mesh.materials is None:
+        return np.full(len(triangles), values[0])
+    return np.array(values)[np.minimum(mesh.materials.take(triangles), len(values) - 1)]
+
+
+def _textures(surface: Surface) -> list[Texture]:
+    return [f for channel in surface.channels().values() for f in channel.factors if isinstance(f, Texture)]
+
+
 def _is_plain(surface: Surface, is_mapped: bool) -> bool:
     """Whether a surface looks the same everywhere in a triangle whose corners look alike, or has an image that is
     looked up there. Coordinates that are wrapped or mirrored for it do not change evenly."""
-    textures = [f for channel in surface.channels().values() for f in channel.factors if isinstance(f, Texture)]
+    textures = _textures(surface)
     return not textures or (is_mapped and textures == [surface.color_texture] and textures[0].wraps is None)
 
 
@@ -148,6 +157,7 @@ def _look_alike(mesh: TriangleMesh, normals: np.ndarray, one: np.ndarray, other:
     """(p,) bool: whether even triangles lie in one plane and look the same. normals: (3, T). one, other: (p,)."""
     off = normals.take(one, axis=1) - normals.take(other, axis=1)
     result = (off * off).sum(axis=0) < _ONE_PLANE**2
+    result &= _of_surfaces(mesh, one, [not _textures(surface) for surface in mesh.surfaces])
     if mesh.materials is not None:
         result &= mesh.materials.take(one) == mesh.materials.take(other)
     if mesh.corner_normals is not None:
