@@ -11,8 +11,8 @@ const float NEAREST = 1.5;     // samples across the crease, at least
 const float FACES_AWAY = 2.0;  // way across it, in half the way over which shares change
 const vec2 MISSED = vec2(0.35, 0.7);  // distance from the normal found there, in half-chords: of a crease, of a bend
 const int DIRECTIONS = 8;     // in which faces are looked for around a corner
-const float APART = 0.05;      // volume of three faces' normals, at least, in which shares are sure
-const vec2 FULL_SHARES = vec2(0.05, 0.15);  // difference of the sum of three shares from 1: of a corner, of anything else
+const float APART = 0.3;       // volume of three faces' normals, at least, in which shares are sure
+const vec2 OFF = vec2(0.07, 0.2);  // distance from the plane through them, in heights of the cap: of a corner, of a bend
 
 struct Faces {
   mat3 normals;
@@ -85,11 +85,14 @@ float three_faces(Shaded s, out Faces faces) {
     faces.normals[k] = chosen;
   }
   if (!(abs(determinant(faces.normals)) > APART)) return 0.0;
-  vec3 shares = inverse(faces.normals) * s.mean.normal;
-  float missed = abs(shares.x + shares.y + shares.z - 1.0) + dot(max(-shares, 0.0), vec3(1.0));
+  mat3 reciprocal = inverse(faces.normals);
+  vec3 shares = reciprocal * s.mean.normal;
+  // The sum of shares is 1 on the plane through the three normals, above which there is a cap of the sphere.
+  float height = length(vec3(1.0) * reciprocal) - 1.0;
+  float off = abs(shares.x + shares.y + shares.z - 1.0) + dot(max(-shares, 0.0), vec3(1.0));
   faces.shares = max(shares, 0.0);
   faces.shares /= faces.shares.x + faces.shares.y + faces.shares.z;
-  return 1.0 - smoothstep(FULL_SHARES.x, FULL_SHARES.y, missed);
+  return 1.0 - smoothstep(OFF.x, OFF.y, off / height);
 }
 
 Faces faces_of(Shaded s) {
