@@ -45,6 +45,17 @@ def add_keys(sheet):
     return key
 
 
+def test_no_large_surfel_lies_across_an_edge_that_may_bend(sheet, convert, bent_surfels):
+    """Faces of 8 x 8 cells have no room for large surfels, but the whole sheet has."""
+    (made,) = convert(density="RESOLUTION", resolution=64)
+    assert (bent_surfels(made).scales > 2 / 64).any()
+    add_keys(sheet).value = 0.0
+    sheet.select_set(True)
+    bpy.context.view_layer.objects.active = sheet
+    (made,) = convert(density="RESOLUTION", resolution=64)
+    assert not (bent_surfels(made).scales > 2 / 64).any()
+
+
 @pytest.mark.parametrize("clips_edges", [False, True])
 def test_shape_keys_bend_surfels(clips_edges, sheet, convert, bent_surfels):
     key = add_keys(sheet)
