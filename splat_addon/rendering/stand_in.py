@@ -20,6 +20,9 @@ _WIDER = 1.3
 #: Places in each part of the area, one of which is taken.
 _PLACES = 1 << 10
 
+#: Adding up the areas of more surfels takes longer than a picture may.
+_MOST_BY_AREA = 1 << 18
+
 #: Fields that they do not have: they are whole.
 LEFT_OUT = CLIP_FIELDS
 
@@ -53,12 +56,13 @@ def widened(arrays: dict[str, np.ndarray], areas: float | np.ndarray) -> dict[st
 
 
 def stand_in(surfels: Surfels, wanted: int) -> Surfels:
-    """At most `wanted` surfels in place of a set: one for each part of about the same area."""
-    rows, areas = np.arange(len(surfels)), 1.0
-    if wanted < len(surfels):
+    """At most `wanted` surfels in place of a set: one for each part of about the same area, or number in large sets."""
+    count = len(surfels)
+    rows, areas = spread(count, wanted), count / max(min(wanted, count), 1)
+    if wanted < count <= _MOST_BY_AREA:
         own = np.maximum(surfels.scales.prod(axis=1, dtype=np.float64), 1e-300)
         # Large ones overlap less, and stand for as much more.
-        is_large = np.zeros(len(own), bool) if surfels.blend_depth is None else are_large(surfels.blend_depth)
+        is_large = np.zeros(count, bool) if surfels.blend_depth is None else are_large(surfels.blend_depth)
         ends = np.cumsum(own * np.where(is_large, LARGE_WEIGHT, 1))
         # the places at which even parts of the whole area begin, moved as rows are
         places = (spread(_PLACES * wanted, wanted) + 0.5) * (ends[-1] / (_PLACES * wanted))
