@@ -36,7 +36,7 @@ def drafted(scene: Scene, settings: Settings) -> tuple[Scene, Settings]:
 
 
 class Draft:
-    """The draft of one view. is_there: whether one of a scene that shows anything has been drawn."""
+    """The draft of one view. is_there: whether one has been drawn."""
 
     def __init__(self, renderer: Renderer):
         self._renderer, self.is_there = renderer, False
@@ -58,5 +58,4 @@ class Draft:
             if self._last is not None:
                 yield self._last[-1]
             return
-        self._last = (scene, camera, part) if parts == 1 else None
-        self.is_there = bool(scene.shown)
+        self._last, self.is_there = (scene, camera, part) if parts == 1 else None, True

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
-from splat_addon.rendering import Arrival, Refinement, Renderer, Settings, arrival, levels, look_at
+from splat_addon.rendering import Arrival, Environment, Refinement, Renderer, Settings, arrival, levels, look_at
 from splat_addon.rendering.levels import built_hierarchy
 from splat_addon.rendering.stand_in import spread, stand_in
 from splat_addon.rendering.upload import loading
@@ -266,6 +266,23 @@ def test_the_last_picture_stays_while_programs_of_the_next_are_compiled(small_st
     assert len(pictures) > 2
     assert all((picture == before).all() for picture in pictures[:-1])
     np.testing.assert_array_equal(pictures[-1], whole)
+
+
+def test_a_scene_with_nothing_but_a_world_is_drawn_in_the_end(small_steps, on_device):
+    """Its draft shows no more than it does."""
+    scene, camera = torus(4000)
+    sky = Environment(np.random.default_rng(1).random((8, 16, 3), np.float32))
+    empty = replace(scene, surfels=(), environment=sky, world=(1, 1, 1))
+
+    def draw(device):
+        view, calls = begun(device, Clock(0.06))[0], 0
+        while view.is_compiling or not calls:
+            list(view.draw(empty, camera, SETTINGS))
+            calls += 1
+            assert calls < 20
+        return shown(device, view, empty, camera, SETTINGS), Renderer(device).render(empty, camera, SETTINGS).color
+
+    np.testing.assert_array_equal(*on_device(draw))
 
 
 def test_a_draft_follows_the_camera_and_is_drawn_once_for_each(small_steps, on_device, monkeypatch):
