@@ -121,8 +121,7 @@ class Arrival:
     def _drafted(self, scene: Scene) -> Scene:
         """The scene with stand-ins for all surfels, which need fewer programs; the same object for the same scene."""
         if self._draft_of is None or self._draft_of[0] is not scene:
-            there = frozenset(i.surfels for i in scene.surfels if i.stream is None)
-            self._draft_of = scene, self._replaced(scene, there)
+            self._draft_of = scene, self._replaced(scene, frozenset(i.surfels for i in scene.surfels))
         return self._draft_of[1]
 
     def _replaced(self, scene: Scene, late: frozenset[Surfels]) -> Scene:
