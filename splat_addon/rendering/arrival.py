@@ -83,6 +83,8 @@ class Arrival:
             except ProgramsNotYet:
                 self.is_compiling, self._last = True, before
             else:
+                if self._draft_of is not None:
+                    self._forget_draft()
                 self.is_compiling = False
                 return
         if before and before[1].size == camera.size:
@@ -124,13 +126,21 @@ class Arrival:
             self._draft_of = scene, self._replaced(scene, frozenset(i.surfels for i in scene.surfels))
         return self._draft_of[1]
 
+    def _forget_draft(self) -> None:
+        """Free what only drafts have."""
+        self._draft_of = None
+        self._draft.forget()
+        for surfels in [surfels for surfels in self._stand_ins if surfels not in self._late]:
+            del self._stand_ins[surfels]
+
     def _replaced(self, scene: Scene, late: frozenset[Surfels]) -> Scene:
         every, least = max(sum(map(len, late)), 1), max(min(STAND_IN // max(len(late), 1), _LEAST_OF_FEW), _LEAST)
 
-        def shape(surfels: Surfels) -> Surfels:
-            return self._of(surfels, max(STAND_IN * len(surfels) // every, least)) if surfels in late else surfels
+        def few(surfels: Surfels) -> Surfels:
+            return self._of(surfels, max(STAND_IN * len(surfels) // every, least))
 
-        return replace(scene, surfels=tuple(replace(i, shape=shape(i.surfels)) for i in scene.surfels))
+        instances = (replace(i, shape=few(i.surfels)) if i.surfels in late else i for i in scene.surfels)
+        return replace(scene, surfels=tuple(instances))
 
     def _of(self, surfels: Surfels, wanted: int) -> Surfels:
         """The stand-in of a set."""

@@ -59,3 +59,7 @@ class Draft:
                 yield self._last[-1]
             return
         self._last, self.is_there = (scene, camera, part) if parts == 1 else None, True
+
+    def forget(self) -> None:
+        """Let go of the last draft."""
+        self._last = None

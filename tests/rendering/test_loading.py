@@ -230,9 +230,10 @@ def test_a_draft_is_there_long_before_the_programs_of_the_picture(small_steps, o
                 break
             assert len(pictures) < 50
         last = shown(device, view, scene, camera, SETTINGS)
-        return pictures, last, Renderer(device).render(scene, camera, SETTINGS).color
+        return pictures, len(view._stand_ins), last, Renderer(device).render(scene, camera, SETTINGS).color
 
-    pictures, last, whole = on_device(draw)
+    pictures, kept, last, whole = on_device(draw)
+    assert not kept
     first = next(number for number, seen in enumerate(pictures) if seen)
     assert 1 < first < 5 and len(pictures) > first + 4
     assert all(pictures[first:])
