@@ -13,7 +13,8 @@ def test_converted_objects_are_in_a_new_file(animation, surfels_command, tmp_pat
     code, said = surfels_command("convert", "--objects", "floor", "--resolution", 10, "--out", tmp_path / "out.blend")
     assert code == 0 and f"wrote {tmp_path / 'out.blend'}" in said
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "out.blend"))
-    assert len(bpy.data.objects["floor surfels"].data.vertices) == 100
+    # one large surfel replaces 9
+    assert len(bpy.data.objects["floor surfels"].data.vertices) == 100 - 8
     assert bpy.data.objects["floor"].hide_render
     assert "there already" in surfels_command("convert", "--out", tmp_path / "out.blend")[1]
 
@@ -100,5 +101,5 @@ def test_blocks_are_the_file_that_one_machine_makes(animation, surfels_command, 
         bpy.ops.wm.open_mainfile(filepath=str(tmp_path / f"{name}.blend"))
         stored.append([surfels_of(bpy.data.objects[f"{each} surfels"]).arrays() for each in ("ball", "floor")])
     for whole, joined in zip(*stored, strict=True):
-        assert len(whole["positions"]) > 900 and whole.keys() == joined.keys()
+        assert len(whole["positions"]) > 500 and whole.keys() == joined.keys()
         assert all(whole[field].tobytes() == joined[field].tobytes() for field in whole)

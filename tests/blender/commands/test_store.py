@@ -42,7 +42,7 @@ def test_objects_are_stored_in_world_space_and_converted_if_they_are_no_surfels(
     made = bpy.data.objects[name if name.endswith("surfels") else f"{name} surfels"]
     (whole,), _ = world_surfels([made], bpy.context.evaluated_depsgraph_get())
     found = every_surfel(out)
-    assert f"{len(found):,} surfels" in said and len(found) == len(whole) > 900
+    assert f"{len(found):,} surfels" in said and len(found) == len(whole) > 500
     assert found.positions[:, 2].max() + found.origin[2] >= 3 and sorted(tmp_path.iterdir())[-1] == out
     np.testing.assert_allclose(sorted_places(found), sorted_places(whole), atol=1e-5)
     assert "there already" in surfels_command("store", "--objects", name, "--out", out)[1]

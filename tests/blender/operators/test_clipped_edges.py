@@ -25,7 +25,7 @@ def test_nothing_is_kept_where_it_is_switched_off(add_cube, convert):
 
 def test_lines_and_depths_are_point_attributes(add_cube, convert, surfels_of):
     add_cube()
-    (made,) = convert(resolution=9, clips_edges=True)
+    (made,) = convert(resolution=9, clips_edges=True, use_adaptive=False)
     attributes = made.data.attributes
     assert attributes["clip_line"].data_type == attributes["clip_line_2"].data_type == SHORT
     assert attributes["blend_depth"].data_type == "FLOAT"

@@ -81,7 +81,7 @@ def test_a_material_that_both_have_gets_one_slot(select, convert):
 def test_a_joined_object_without_a_surface_is_left_out_and_said(select, add_mesh, convert, capfd):
     points, cube = add_mesh("points", [(0, 0, 0)], []), add_cube("cube")
     select(points, cube)
-    [made] = convert(join=True, density="SPACING", spacing=0.25)
+    [made] = convert(join=True, density="SPACING", spacing=0.25, use_adaptive=False)
     assert len(made.data.vertices) == 6 * 8**2
     assert "cube: 'points' is left out: The mesh has no faces" in capfd.readouterr().out
 
@@ -103,7 +103,9 @@ def test_world_spacing_is_the_same_for_a_scaled_object(select, convert, world_su
 
 def test_object_spacing_is_stretched_by_the_scale(select, convert, world_surfels):
     select(add_cube("cube", scale=(1, 2, 3)))
-    positions, _, _, sizes = world_surfels(convert(density="SPACING", spacing=0.25, space="OBJECT")[0])
+    positions, _, _, sizes = world_surfels(
+        convert(density="SPACING", spacing=0.25, space="OBJECT", use_adaptive=False)[0]
+    )
     assert len(positions) == 6 * 8**2
     assert sizes.max() == pytest.approx(3 * 1.25 * 0.25, rel=1e-4)
 
@@ -112,7 +114,9 @@ def test_object_spacing_is_stretched_by_the_scale(select, convert, world_surfels
 def test_a_resolution_is_each_objects_own(select, convert, space):
     """Each object gets the same number of surfels, whatever its size."""
     select(add_cube("small"), add_cube("large", (9, 0, 0), (5, 5, 5)))
-    assert [len(made.data.vertices) for made in convert(resolution=8, space=space)] == [6 * 8**2] * 2
+    assert [len(made.data.vertices) for made in convert(resolution=8, space=space, use_adaptive=False)] == [
+        6 * 8**2
+    ] * 2
 
 
 def predicted(sources, asked):
