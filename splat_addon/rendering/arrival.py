@@ -77,7 +77,8 @@ class Arrival:
         draft, of which the programs come first."""
         # of a scene without anything, one would say that there is nothing
         before = self._last if self._last and self._last[0].shown else None
-        if not self.is_compiling or self._draft.is_there or before:
+        tries = not self.is_compiling or self._draft.is_there or before is not None
+        if tries:
             try:
                 yield from self._noted(shown, camera, settings, hurries)
             except ProgramsNotYet:
@@ -89,7 +90,7 @@ class Arrival:
                 return
         if before and before[1].size == camera.size:
             yield before[-1]
-        else:
+        elif self._draft.is_there or not tries:
             yield from self._draft.draw(self._drafted(scene), camera, settings)
 
     def _noted(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool) -> Iterator[Shown]:
