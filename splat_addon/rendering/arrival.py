@@ -82,7 +82,7 @@ class Arrival:
             try:
                 yield from self._noted(shown, camera, settings, hurries)
             except ProgramsNotYet:
-                self.is_compiling, self._last = True, before
+                self.is_compiling = True
             else:
                 if self._draft_of is not None:
                     self._forget_draft()
@@ -95,9 +95,9 @@ class Arrival:
 
     def _noted(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool) -> Iterator[Shown]:
         """What the refinement draws, and what it was if that is a single texture, which then stays as it is."""
-        parts, self._last = 0, None
+        parts = 0
         for part in self.refinement.draw(scene, camera, settings, hurries=hurries):
-            parts += 1
+            parts, self._last = parts + 1, None
             yield part
         if parts == 1:
             self._last = scene, camera, settings, part

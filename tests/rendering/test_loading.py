@@ -269,6 +269,26 @@ def test_the_last_picture_stays_while_programs_of_the_next_are_compiled(small_st
     np.testing.assert_array_equal(pictures[-1], whole)
 
 
+def test_the_last_picture_stays_where_a_new_set_is_late_and_needs_programs(small_steps, on_device):
+    (few, camera), (both, _) = torus(4000), two()
+    more = replace(both, surfels=(*few.surfels, both.surfels[1]))
+
+    def draw(device):
+        view, thread = begun(device, Clock(0.0))
+        before, pictures = shown(device, view, few, camera, SETTINGS), []
+        view.loading._clock.step = 0.02
+        view.loading._programs.clear()
+        while not pictures or view.is_compiling or view.is_late:
+            pictures.append(shown(device, view, more, camera, SETTINGS))
+            thread.work(1)
+            assert len(pictures) < 80
+        return before, pictures, Renderer(device).render(more, camera, SETTINGS).color
+
+    before, pictures, whole = on_device(draw)
+    assert (pictures[0] == before).all() and len(pictures) > 3
+    np.testing.assert_array_equal(pictures[-1], whole)
+
+
 def test_a_scene_with_nothing_but_a_world_is_drawn_in_the_end(small_steps, on_device):
     """Its draft shows no more than it does."""
     scene, camera = torus(4000)
