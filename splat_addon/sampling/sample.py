@@ -155,7 +155,7 @@ class SamplingRun:
     def _flat_faces(self) -> np.ndarray:
         size = LEAST_AREA, self.grid.spacing
         how = {"is_mapped": bool(self._uv_fields), "deforms": self.options.deforms}
-        return flat_faces(self.mesh, self._edges.borders, *size, bulges=self._bulges, **how)
+        return flat_faces(self.mesh, self._edges, *size, bulges=self._bulges, **how)
 
     @property
     def _enlarges(self) -> bool:

@@ -18,7 +18,7 @@ from ..mesh.joining import have_same_values
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_areas, triangle_chunks
 from ..workers import run_all
 from .calm_vertices import calm_vertices
-from .ordering import runs_of_equal
+from .ordering import grouped
 
 #: Radians; planes that differ by more make a crease.
 DEFAULT_CREASE_ANGLE = math.radians(20)
@@ -78,11 +78,12 @@ class Borders:
 
 @dataclass(frozen=True, eq=False)
 class EdgeSurvey:
-    """borders: where the surface breaks off. bends: (T,) float32 radians, by how much each triangle's plane differs
-    from those that it goes on in, at most, or from the directions of its calm vertices (`calm_vertices`). sizes: (T,)
-    float32, the root of twice each one's area, object units."""
+    """borders: where the surface breaks off. normals: (3, T) float32, unit, of the triangles. bends: (T,) float32
+    radians, by how much each triangle's plane differs from those that it goes on in, at most, or from the directions of
+    its calm vertices (`calm_vertices`). sizes: (T,) float32, the root of twice each one's area, object units."""
 
     borders: Borders
+    normals: np.ndarray
     bends: np.ndarray
     sizes: np.ndarray
 
@@ -123,7 +124,7 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE, reach:
         colors = sum(rows.take(3 * triangles + end, axis=0)[:, :4] for end in ends.T) / 2
     materials = np.zeros(len(triangles), int) if mesh.materials is None else mesh.materials[triangles]
     borders = Borders(start, end, inward, planes, edge, shading, colors, materials, triangles)
-    return EdgeSurvey(borders, bends, sizes)
+    return EdgeSurvey(borders, normals, bends, sizes)
 
 
 def _have_planes(corners: np.ndarray, doubled: np.ndarray) -> np.ndarray:
@@ -148,7 +149,7 @@ def _breaking(mesh: TriangleMesh, normals: np.ndarray, angles: np.ndarray):
     calm = calm_vertices(mesh, places, normals, angles, looks)
     bends = _BEND * np.arccos(np.clip(calm.cosines, -1, 1))
     triangle, number, ends = _restless_edges(places, ~calm.is_calm)
-    order, starts, counts = _grouped(mesh.places.take(ends[0]) + mesh.places.take(ends[1]))
+    order, starts, counts = grouped(mesh.places.take(ends[0]) + mesh.places.take(ends[1]))
     pairs = np.flatnonzero(counts == 2)
     sides = [order.take(starts.take(pairs) + side) for side in (0, 1)]
     one, other = (_Corners(triangle.take(side), number.take(side), ends[0].take(side)) for side in sides)
@@ -177,27 +178,6 @@ def _restless_edges(places: np.ndarray, is_restless: np.ndarray):
     ends = [np.concatenate([places[(k + step) % 3].take(rows[k]) for k in range(3)]) for step in (0, 1)]
     number = np.repeat(np.arange(3), [len(row) for row in rows])
     return np.concatenate(rows), number, ends
-
-
-def _grouped(keys: np.ndarray):
-    """(e,) order that brings equal keys together, and the start and count of each group. keys: (e,) uint64.
-
-    Keys are sorted with their indices in the lowest bits, which is several times as fast as computing an order; groups
-    other than pairs are then compared with all bits.
-    """
-    bits = np.uint64(max(len(keys) - 1, 1).bit_length())
-    number = np.arange(len(keys), dtype=np.uint64)
-    ordered = (keys >> bits << bits) | number
-    ordered.sort()
-    order = (ordered & ((np.uint64(1) << bits) - np.uint64(1))).astype(np.intp)
-    ordered >>= bits
-    starts, counts = runs_of_equal(ordered)
-    if (counts > 2).any():
-        at = np.flatnonzero((counts > 2)[np.repeat(np.arange(len(counts)), counts)])
-        rows = order.take(at)
-        order[at] = rows.take(np.lexsort((rows, keys.take(rows), ordered.take(at))))
-        starts, counts = runs_of_equal(keys.take(order))
-    return order, starts, counts
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,3 +29,24 @@ def runs_of_equal(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     np.not_equal(ordered[1:], ordered[:-1], out=is_first[1:-1])
     starts = np.flatnonzero(is_first)
     return starts[:-1], np.diff(starts)
+
+
+def grouped(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(e,) order that brings equal keys together, and the start and count of each group. keys: (e,) uint64.
+
+    Keys are sorted with their indices in the lowest bits, which is several times as fast as computing an order; groups
+    other than pairs are then compared with all bits.
+    """
+    bits = np.uint64(max(len(keys) - 1, 1).bit_length())
+    number = np.arange(len(keys), dtype=np.uint64)
+    ordered = (keys >> bits << bits) | number
+    ordered.sort()
+    order = (ordered & ((np.uint64(1) << bits) - np.uint64(1))).astype(np.intp)
+    ordered >>= bits
+    starts, counts = runs_of_equal(ordered)
+    if (counts > 2).any():
+        at = np.flatnonzero((counts > 2)[np.repeat(np.arange(len(counts)), counts)])
+        rows = order.take(at)
+        order[at] = rows.take(np.lexsort((rows, keys.take(rows), ordered.take(at))))
+        starts, counts = runs_of_equal(keys.take(order))
+    return order, starts, counts

@@ -54,7 +54,8 @@ class _Runs(NamedTuple):
 
 def _divided(spans: Spans, faces: np.ndarray) -> tuple[Spans, dict[int, Spans]]:
     cells = _Cells(spans, faces.take(spans.triangles))
-    blocks = {edge: _blocks(cells.joined(), edge, ring) for edge, ring in sorted(BLOCKS.items())}
+    joined = cells.joined()
+    blocks = {edge: _blocks(joined, edge, ring) for edge, ring in sorted(BLOCKS.items())}
     if not any(len(runs.rows) for runs in blocks.values()):
         return spans, {edge: Spans.joined([]) for edge in BLOCKS}
     levels = {1: cells.runs, **blocks}

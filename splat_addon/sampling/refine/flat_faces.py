@@ -6,17 +6,14 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from ..attributes.lifts import LEAST_LIFT, MOST_LIFT
 from ..attributes.surfaces import Surface, Texture, VertexColors
-from ..edges.borders import Borders
-from ..edges.ordering import runs_of_equal
+from ..edges.borders import Borders, EdgeSurvey
+from ..edges.ordering import grouped
 from ..mesh.connectivity import part_labels
-from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_areas, triangle_chunks
-from ..workers import run_all
+from ..mesh.triangle_mesh import TriangleMesh, corner_indices
 
 #: Normals, and colours, that differ by less than this are alike.
 _ALIKE = 1e-3
@@ -30,7 +27,7 @@ _SIEVE_BITS = 20
 
 def flat_faces(
     mesh: TriangleMesh,
-    borders: Borders,
+    survey: EdgeSurvey,
     least: float,
     spacing: float,
     *,
@@ -40,39 +37,26 @@ def flat_faces(
 ) -> np.ndarray:
     """(T,) int32: the number of each triangle's flat face, or -1 if it is in none.
 
-    borders: edges across which no face goes on. least: area of a face, in cells. bulges: of `lifts`, or None.
+    survey: of the mesh; no face goes on across its borders. least: area of a face, in cells. bulges: of `lifts`, or
+    None.
     is_mapped: whether images are looked up at render time: a triangle that has one is a face of its own, because
     coordinates may turn at its edges. deforms: whether triangles will move relative to each other: then each is.
     """
     faces = np.full(len(mesh), -1, np.int32)
-    normals, areas = _planes(mesh)
-    some = _sieved(normals, areas, least * spacing**2)
+    areas = 0.5 * survey.sizes.astype(np.float64) ** 2
+    some = _sieved(survey.normals, areas, least * spacing**2)
     some = some[_are_even(mesh, some, is_mapped, bulges, spacing)]
     if not len(some):
         return faces
     labels = np.arange(len(some))
     if not deforms:
-        pairs = _neighbours(mesh, some, borders)
-        pairs = pairs[_look_alike(mesh, normals, *some.take(pairs.T))]
+        pairs = _neighbours(mesh, some, survey.borders)
+        pairs = pairs[_look_alike(mesh, survey.normals, *some.take(pairs.T))]
         if len(pairs):
             labels = part_labels(pairs.take([0, 1, 1], axis=1), labels)
     is_wide = np.bincount(labels, areas.take(some)).take(labels) >= least * spacing**2
     faces[some] = np.where(is_wide, labels, -1)
     return faces
-
-
-def _planes(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
-    """(3, T) float64 unit normals of usable triangles, and (T,) areas."""
-    normals, areas = np.empty((3, len(mesh))), np.empty(len(mesh))
-
-    def fill(chunk: slice):
-        doubled = doubled_areas(corners_at(mesh.positions.T, corner_indices(mesh.triangles[chunk])))
-        length = np.sqrt(doubled[0] ** 2 + doubled[1] ** 2 + doubled[2] ** 2)
-        np.divide(doubled, np.maximum(length, 1e-300), out=normals[:, chunk])
-        np.multiply(length, 0.5, out=areas[chunk])
-
-    run_all(partial(fill, chunk) for chunk in triangle_chunks(len(mesh)))
-    return normals, areas
 
 
 def _sieved(normals: np.ndarray, areas: np.ndarray, least: float) -> np.ndarray:
@@ -140,8 +124,7 @@ def _neighbours(mesh: TriangleMesh, some: np.ndarray, borders: Borders) -> np.nd
     corners = corner_indices(mesh.triangles.take(some, axis=0))
     places = mesh.places.take(corners)
     keys = (places + places[[1, 2, 0]]).ravel()
-    order = np.argsort(keys, kind="stable")
-    starts, counts = runs_of_equal(keys.take(order))
+    order, starts, counts = grouped(keys)
     starts = starts[counts == 2]
     pairs = np.stack([order.take(starts), order.take(starts + 1)], axis=1) % len(some)
     ends = np.flatnonzero(borders.edges[1:] == borders.edges[:-1])
