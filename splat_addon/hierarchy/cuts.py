@@ -81,10 +81,14 @@ class Boxes(NamedTuple):
 
 
 def cut_entries(hierarchy: Hierarchy, sight: Sight) -> np.ndarray | None:
-    """(n,) int32 indices of the surfels and nodes to draw, neighbours together; None: all surfels, in any order."""
-    blocks = hierarchy.blocks
-    drawn = cut_blocks(blocks, sight)
-    first, last = blocks.first[drawn], blocks.last[drawn]
+    """The entries of the blocks that are drawn, as `entries_of` returns them."""
+    return entries_of(hierarchy, cut_blocks(hierarchy.blocks, sight))
+
+
+def entries_of(hierarchy: Hierarchy, rows: np.ndarray) -> np.ndarray | None:
+    """(n,) int32 indices of the surfels and nodes of some blocks, neighbours together; None: all surfels, in any
+    order."""
+    first, last = hierarchy.blocks.first[rows], hierarchy.blocks.last[rows]
     if (last <= hierarchy.surfels).all() and int((last - first).sum()) == hierarchy.surfels:
         return None
     return hierarchy.entries[ranges(first, last - first)]
@@ -138,8 +142,7 @@ def may_be_seen(blocks: Blocks, rows: np.ndarray, boxes: Boxes, sight: Sight) ->
     planes, offsets = sight.planes[:, :3], sight.planes[:, 3:]
     seen = (planes @ middle + offsets + np.abs(planes) @ half >= 0).all(axis=0)
     if sight.hides_backs:
-        eye = sight.eye[:3, None]
-        away = -np.broadcast_to(eye, middle.shape) if sight.is_parallel else middle - eye
+        away = _away(middle, sight)
         distance = np.maximum(np.linalg.norm(away, axis=0), 1e-300)
         radius = 0.0 if sight.is_parallel else np.linalg.norm(half, axis=0)
         angle = np.arccos(np.clip(np.einsum("kn,nk->n", away, blocks.axes[rows]) / distance, -1, 1))
@@ -147,3 +150,15 @@ def may_be_seen(blocks: Blocks, rows: np.ndarray, boxes: Boxes, sight: Sight) ->
         angle = angle + blocks.angles[rows]
         seen &= ~((angle < np.pi / 2) & (distance * np.cos(angle) > radius))
     return seen
+
+
+def are_facing(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
+    """(n,) bool: whether the middle of a block's normals faces the eye from the middle of its box."""
+    away = _away(Boxes.of(blocks, rows).middle, sight)
+    return np.einsum("kn,nk->n", away, blocks.axes[rows]) < 0
+
+
+def _away(middle: np.ndarray, sight: Sight) -> np.ndarray:
+    """(3, n) directions from the eye."""
+    eye = sight.eye[:3, None]
+    return -np.broadcast_to(eye, middle.shape) if sight.is_parallel else middle - eye

@@ -296,14 +296,14 @@ class Renderer:
             stats["instances_degenerate"] = view.degenerate
             coarse = 0
             for p in view.placed:
-                stats["splats_drawn"] += context.drawn_count(p)
+                context.drawn_count(p)  # chooses them
                 coarse += context.stored(p.instance).coarse
                 yield Pause()
             stats["surfels_coarse"] = max(stats["surfels_coarse"], coarse)
             target = yield from execution.run(frame_plan.steps, context)
             stats["layers"] = execution.turns
             stats["instances_hidden"] += len(context.hidden)
-            stats["splats_drawn"] -= sum(context.drawn_count(p) for p in context.hidden)
+            stats["splats_drawn"] += sum(context.drawn_count(p) for p in view.placed if p not in context.hidden)
             yield tile, target
         del stats["tile"]
 

@@ -59,7 +59,10 @@ MEETINGS = {
         ("they are found while visibility draws, in a picture and in shadow maps",
          "features/visibility.py features/shadows.py"),
     ),
-    "levels": (("each view draws its own cut", "plan/executor.py"),),
+    "levels": (
+        ("each view draws its own cut", "plan/executor.py"),
+        ("single blocks of an object with levels may be hidden", "features/hidden_objects.py"),
+    ),
     "lighting": (
         ("a layer is lit as the opaque picture is, and its lit samples put into pixels",
          "features/transparency.py features/oit.py hosts/oit_layer.frag.glsl hosts/peel_oit.frag.glsl "

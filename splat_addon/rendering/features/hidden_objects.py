@@ -12,18 +12,23 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from ..cover import COVER_CELL, Cover
+from ..hidden_blocks import HidingBlocks
+from ..methods import get_method
 from ..plan.graph import Part, Pass, Texture, of_samples
 from ..scene import Instance
-from ..scene.camera import Camera
 from ..view import DrawItem
+from . import levels
 
-#: Samples along each side of a cell.
-COVER_CELL = 8
 CONSTANTS = {"COVER_CELL": COVER_CELL}
 INPUTS = {"covering_depth": lambda tile: tile.texture(tile.plan.facts["covering_depth"])}
 
 #: For fewer objects or surfels than this, looking costs more than it may save.
 LEAST_OBJECTS, LEAST_SURFELS = 8, 200_000
+
+#: For fewer splats of one object than so many times the picture's samples, looking for hidden blocks costs more than it
+#: saves: so many show a single surface.
+LEAST_PER_SAMPLE = 3
 
 #: The shares of the splats after which it looks, as long as it finds any.
 _SHARES = (1 / 8, 1 / 4, 1 / 2)
@@ -49,20 +54,27 @@ def search(planning, seen: Texture, rows: int) -> Pass | None:
     """The pass that finds how far each cell of the picture sees, if it may pay. seen: the depth that visibility writes,
     with so many rows per row of samples."""
     opaque = [instance for instance in planning.scene.surfels if not instance.is_transparent]
-    if not may_hide(opaque):
-        planning.skip("hidden objects", f"fewer than {LEAST_OBJECTS} objects, or {LEAST_SURFELS:,} surfels, are opaque")
+    if not may_hide(planning, opaque):
+        planning.skip(
+            "hidden objects",
+            f"fewer than {LEAST_OBJECTS} objects are opaque and none has levels of detail, "
+            f"or they have fewer than {LEAST_SURFELS:,} surfels",
+        )
         return None
     if planning.method.sprites_hide or planning.settings.multisampling:
         planning.skip("hidden objects", "several depths in a sample, or colours with them, depend on all objects")
         return None
-    planning.has("HIDDEN_OBJECTS", f"some of {len(opaque)} objects may be behind others")
+    planning.has("HIDDEN_OBJECTS", f"some of {len(opaque)} objects, or parts of them, may be behind others")
     planning.facts["covering_depth"] = seen
     return looking("hidden_objects", FARTHEST, rows)
 
 
-def may_hide(opaque: list[Instance]) -> bool:
-    """Whether these objects are so many that some of them may be behind others."""
-    return len(opaque) >= LEAST_OBJECTS and sum(len(instance.surfels) for instance in opaque) >= LEAST_SURFELS
+def may_hide(planning, opaque: list[Instance]) -> bool:
+    """Whether these objects are so many that some of them may be behind others, or so large that parts may be."""
+    with_levels = planning.find(levels.merging)
+    is_large = any(instance in with_levels and len(instance.surfels) >= LEAST_SURFELS for instance in opaque)
+    is_many = len(opaque) >= LEAST_OBJECTS and sum(len(instance.surfels) for instance in opaque) >= LEAST_SURFELS
+    return is_many or is_large
 
 
 def looking(name: str, farthest: Texture, rows: int = 1) -> Pass:
@@ -82,11 +94,31 @@ def _run_by_visibility(tile, p: Pass):
 
 
 def front_to_back(tile, p: Pass, splats: Iterable[DrawItem], viewport=None) -> Iterator[list[DrawItem]]:
-    """The splats that a pass draws, in groups that must be drawn before the next is requested. Objects behind those
-    that were drawn are left out, and added to `tile.hidden`. viewport: the part of the depth that is drawn into; None
-    for all of it."""
+    """The splats that a pass draws, in groups that must be drawn before the next is requested. What is behind what was
+    drawn is left out: objects are added to `tile.hidden`, and of large ones `tile.shown_blocks` keeps what is seen.
+
+    viewport: the part of the depth that is drawn into; None for all of it.
+    """
     waiting = list(splats)
-    if p.each is None or len(waiting) < LEAST_OBJECTS:
+    if p.each is None:
+        yield waiting
+        return
+    large = [HidingBlocks(tile, placed) for placed in waiting if _is_large(tile, placed)]
+    for each in large:
+        each.show_next(_samples(tile))
+    yield from _objects_front_to_back(tile, p, waiting, viewport)
+    while large := [each for each in large if each.placed not in tile.hidden and each.are_waiting.any()]:
+        cover = _cover(tile, p.each, viewport)
+        for each in large:
+            each.hide_behind(cover)
+            each.show_next(_samples(tile))
+        yield [each.placed for each in large]
+        for each in large:
+            each.show_all()
+
+
+def _objects_front_to_back(tile, p: Pass, waiting: list[DrawItem], viewport) -> Iterator[list[DrawItem]]:
+    if len(waiting) < LEAST_OBJECTS:
         yield waiting
         return
     counts = {placed: tile.drawn_count(placed) for placed in waiting}
@@ -98,8 +130,8 @@ def front_to_back(tile, p: Pass, splats: Iterable[DrawItem], viewport=None) -> I
             group.append(waiting.pop(0))
             drawn += counts[group[-1]]
         yield group
-        farthest, first = _farthest(tile, p.each, viewport)
-        hidden = [placed for placed in waiting if is_hidden(placed, farthest, tile, first)]
+        cover = _cover(tile, p.each, viewport)
+        hidden = [placed for placed in waiting if _is_hidden(placed, cover, tile)]
         if not hidden:
             break
         tile.hidden.update(hidden)
@@ -107,32 +139,36 @@ def front_to_back(tile, p: Pass, splats: Iterable[DrawItem], viewport=None) -> I
     yield waiting
 
 
-def _farthest(tile, p: Pass, viewport) -> tuple[np.ndarray, np.ndarray]:
-    """How far each cell sees that has any of a viewport, and where in the first of them that begins, in samples."""
+def _cover(tile, p: Pass, viewport) -> Cover:
+    """How far each cell sees that has any of a viewport."""
     if viewport is None:
-        return tile.fill(p).read(0)[..., 0], np.zeros(2)
-    low = np.array(viewport[:2])
-    first, last = low // COVER_CELL, -(-(low + viewport[2:]) // COVER_CELL)
-    # cells on the border also see what is beside it, and so no less far
-    cells = tile.fill(p, (*first.tolist(), *(last - first).tolist())).read(0)[..., 0]
-    return cells[first[1] : last[1], first[0] : last[0]], low - first * COVER_CELL
+        cells, begin = tile.fill(p).read(0)[..., 0], np.zeros(2)
+    else:
+        low = np.array(viewport[:2])
+        first, last = low // COVER_CELL, -(-(low + viewport[2:]) // COVER_CELL)
+        # cells on the border also see what is beside it, and so no less far
+        cells = tile.fill(p, (*first.tolist(), *(last - first).tolist())).read(0)[..., 0]
+        cells, begin = cells[first[1] : last[1], first[0] : last[0]], low - first * COVER_CELL
+    return Cover(cells, tile.camera, tile.view.scale, tile.plan.samples, begin)
 
 
-def is_hidden(placed: DrawItem, farthest: np.ndarray, tile, begin) -> bool:
-    """Whether an object's box is beyond what every cell under it sees. farthest: (rows, columns), view units. begin: x
-    and y of the view in the first of these cells, samples."""
-    camera: Camera = tile.camera
-    corners = placed.instance.corners(camera)
-    nearest = float(-corners[:, 2].max()) - _NEARER * placed.instance.radius
+def _is_hidden(placed: DrawItem, cover: Cover, tile) -> bool:
+    """Whether an object's box is beyond what every cell under it sees."""
+    corners = placed.instance.corners(tile.camera)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    nearer = _NEARER * placed.instance.radius
     if tile.levels(placed.instance) is not None:
         # what merged surfels may be off by
-        off = tile.settings.detail_tolerance / camera.pixels_per_unit()
-        nearest -= off if camera.is_orthographic else off * max(nearest, 0.0)
-    if not camera.is_orthographic and nearest <= camera.near:
-        return False
-    pixels, samples = camera.pixels_of(corners), tile.plan.samples
-    low, high = (pixels.min(axis=0) - _BESIDE) * samples + begin, (pixels.max(axis=0) + _BESIDE) * samples + begin
-    first, last = np.floor(low / COVER_CELL).astype(int), np.floor(high / COVER_CELL).astype(int) + 1
-    (x, y), (right, top) = np.clip(first, 0, np.array(farthest.shape[::-1]) - 1), np.maximum(last, 1)
-    under = farthest[y:top, x:right]
-    return nearest * tile.view.scale > float(under.max()) * (1 + 1e-6)
+        off = tile.settings.detail_tolerance / tile.camera.pixels_per_unit()
+        nearer += off if tile.camera.is_orthographic else off * max(-high[2], 0.0)
+    return bool(cover.hides(((low + high) / 2)[:, None], ((high - low) / 2)[:, None], nearer, _BESIDE)[0])
+
+
+def _is_large(tile, placed: DrawItem) -> bool:
+    """Whether blocks of an object are looked for, too. The method must not show splats far beside their ellipses."""
+    has_blocks = tile.levels(placed.instance) is not None and not get_method(tile.plan.method).widens
+    return has_blocks and tile.drawn_count(placed) >= max(LEAST_SURFELS, LEAST_PER_SAMPLE * _samples(tile))
+
+
+def _samples(tile) -> int:
+    return int(np.prod(tile.camera.size)) * tile.plan.samples**2

@@ -84,7 +84,7 @@ def passes(planning):
         own = visibility.own_parts(planning, DEPTH)
         drawn = visibility.drawn("shadow_maps", why, own, planning, "shadow")
         opaque = [i for i in planning.scene.surfels if i.casts_shadow and not i.is_transparent]
-        each = hidden_objects.looking("hidden_casters", FARTHEST) if hidden_objects.may_hide(opaque) else None
+        each = hidden_objects.looking("hidden_casters", FARTHEST) if hidden_objects.may_hide(planning, opaque) else None
         yield drawn._replace(run=run, once=contents, each=each)
 
 
@@ -139,7 +139,9 @@ def run(tile, p: Pass):
         view = _as_cast(view, made.camera)
         share = COARSER if made.is_smaller else FINER
         settings = replace(tile.settings, detail_tolerance=share * tile.settings.detail_tolerance)
-        from_light = replace(tile, plan=seen, camera=made.drawn, settings=settings, view=view, shadow_views=())
+        from_light = replace(
+            tile, plan=seen, camera=made.drawn, settings=settings, view=view, shadow_views=(), shown_blocks={}
+        )
         drawn = p._replace(state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
         yield from visibility.run_in(from_light, drawn, target, made.viewport)
     return target

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
 
-from ...hierarchy import Hierarchy, cut_entries
+from ...hierarchy import Hierarchy, Sight
+from ...hierarchy.cuts import cut_blocks, entries_of
 from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
 from ..features import ARRIVES, DRAWN, DRAWS, INPUTS
@@ -41,6 +42,7 @@ class TileContext:
 
     shadow_views: the shadow casters as seen by the camera of each shadow map.
     rectangle: x, y, width, height in pixels of the tile without its margin, in the picture.
+    shown_blocks: of objects of which parts were found to be hidden, the blocks that passes draw from now on.
     """
 
     resources: Resources
@@ -51,6 +53,7 @@ class TileContext:
     view: View
     shadow_views: tuple[View, ...] = ()
     rectangle: tuple[int, int, int, int] = (0, 0, 0, 0)
+    shown_blocks: dict[Instance, np.ndarray] = field(default_factory=dict)
 
     def key(self, texture: Texture, is_next: bool = False) -> TextureKey:
         """The key of a texture of the plan; is_next: the second one of a texture that is updated."""
@@ -149,7 +152,11 @@ class TileContext:
 
     def drawn_count(self, placed: DrawItem) -> int:
         """The number of splats of an instance that this view draws."""
-        return sum(cut.count for cut in self.cuts(placed))
+        levels = self.levels(placed.instance)
+        if levels is None:
+            return len(placed.instance.surfels)
+        rows = self.shown_blocks_of(placed)
+        return int((levels.blocks.last[rows] - levels.blocks.first[rows]).sum())
 
     def in_parts(self, placed: DrawItem) -> Iterator[tuple[DrawItem, Cut]]:
         """An instance as it is drawn, for each part of its storage that has any of it."""
@@ -162,15 +169,25 @@ class TileContext:
         instance, levels = placed.instance, self.levels(placed.instance)
         if levels is None:
             return whole_set(len(instance.surfels), instance.surfels.clipped_count)
-        split = split_distances(placed, self.view)
-        seen = sight(instance, self.camera, placed.hides_backs, self.settings.detail_tolerance, split)
-        places = self.stored(instance).places
+        rows, places = self.shown_blocks_of(placed), self.stored(instance).places
         return self.resources.cuts.get(
-            (levels, seen.key),
-            lambda: _stored(cut_entries(levels, seen), places),
+            (levels, rows.tobytes()),
+            lambda: _stored(entries_of(levels, rows), places),
             levels.surfels,
             instance.surfels.clipped_count,
         )
+
+    def shown_blocks_of(self, placed: DrawItem) -> np.ndarray:
+        """(n,) int32, the blocks of an instance with levels that this view draws."""
+        if placed.instance in self.shown_blocks:
+            return self.shown_blocks[placed.instance]
+        levels, seen = self.levels(placed.instance), self.sight(placed)
+        return self.resources.cuts.blocks((levels, seen.key), lambda: cut_blocks(levels.blocks, seen).astype(np.int32))
+
+    def sight(self, placed: DrawItem) -> Sight:
+        """This view of an instance, as its hierarchy is given it."""
+        split, tolerance = split_distances(placed, self.view), self.settings.detail_tolerance
+        return sight(placed.instance, self.camera, placed.hides_backs, tolerance, split)
 
     @cached_property
     def identities(self) -> Identities:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -28,16 +28,17 @@ class Cut(NamedTuple):
     numbers: Texture | None
 
 
-#: Number of cuts kept that the previous frame did not use: of panorama faces, and of shadow maps that samples share.
-_SPARE = 12
+#: Number of cuts and lists of blocks kept that the previous frame did not use: of panorama faces, and of shadow maps
+#: that samples share.
+_SPARE = 24
 
 
 class Cuts:
-    """The cuts of the last frames. uploads: number of uploads."""
+    """The cuts of the last frames, and the blocks that views were found to draw. uploads: number of uploads."""
 
     def __init__(self, device: Device):
         self._device = device
-        self._kept: dict[object, tuple[int, tuple[Cut, ...]]] = {}
+        self._kept: dict[object, tuple[int, Any]] = {}
         self._frame = 0
         self.uploads = 0
 
@@ -48,16 +49,23 @@ class Cuts:
             del self._kept[key]
         self._frame += 1
 
+    def blocks(self, key: object, found: Callable[[], np.ndarray]) -> np.ndarray:
+        """The blocks of a view and an object, identified by the key."""
+        return self._once(key, found)
+
     def get(self, key: object, numbers: Callable[[], np.ndarray | None], every: int, clipped: int) -> tuple[Cut, ...]:
-        """The cut of a view and an object, identified by the key, in the parts of its storage.
+        """The cut of some blocks of an object, identified by the key, in the parts of its storage.
 
         numbers: storage indices of what it draws; None: the first `every`. clipped: number of clipped surfels, which
             are stored first.
         """
+        return self._once(key, lambda: self._made(numbers(), every, clipped))
+
+    def _once(self, key: object, make: Callable[[], Any]) -> Any:
         known = self._kept.get(key)
-        cut = known[1] if known else self._made(numbers(), every, clipped)
-        self._kept[key] = self._frame, cut
-        return cut
+        value = known[1] if known else make()
+        self._kept[key] = self._frame, value
+        return value
 
     def _made(self, numbers: np.ndarray | None, every: int, clipped: int) -> tuple[Cut, ...]:
         if numbers is None:
