@@ -50,6 +50,10 @@ OPTIONAL_LAYOUT = {
 #: Minimum alpha of an opaque surfel: filtering an image of ones can leave alpha slightly below 1.
 OPAQUE = 0.999
 
+#: A surface whose opacity differs by less than this from 0 or 1 is clear or opaque in shadows (lib/screen_door.glsl). Of
+#: the opaque area of a cut-out, this share may be neither: the blurred edges of a leaf's image.
+_CLEAR, _BLURRED = 1 / 32, 0.75
+
 #: How far a quaternion or normal may deviate from unit length before it is rejected (float32 rounding is 1e-7).
 UNIT_TOLERANCE = 1e-3
 
@@ -207,6 +211,15 @@ class Surfels(Shape):
     def is_transparent(self) -> bool:
         """Whether any surfel lets light through."""
         return bool((self.colors[:, 3] < OPAQUE).any())
+
+    @cached_property
+    def is_cut_out(self) -> bool:
+        """Whether nearly all of the surface is either clear or opaque, as where an image cuts leaves out of cards."""
+        opacity, areas = self.colors[:, 3], self.scales.prod(axis=1)
+        partly, wholly = (
+            float(areas[which].sum()) for which in ((opacity > _CLEAR) & (opacity < 1 - _CLEAR), opacity >= 1 - _CLEAR)
+        )
+        return partly <= _BLURRED * wholly
 
     @cached_property
     def largest(self) -> float:

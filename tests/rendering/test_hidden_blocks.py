@@ -211,7 +211,7 @@ def test_what_a_filter_shows_of_plates_edge_on_behind_a_wall_is_drawn(method, re
     wall = sheet(300, 4.0, (0, 0, 0), (1, 0, 0), (0, 0, 1))
     plates = [
         sheet(90, 1.0, (x, 0.5 + gap, 0), (0, 0, 1), (0, 1, 0))
-        for x, gap in zip(np.linspace(-1.5, 1.5, 8), np.linspace(0.0, 0.1, 8))
+        for x, gap in zip(np.linspace(-1.5, 1.5, 8), np.linspace(0.0, 0.1, 8), strict=True)
     ]
     made = scene_of(concatenate([wall, *plates]))
     camera = replace(CAMERA, matrix_world=look_at((0, -4, 0), (0, 0, 0)))

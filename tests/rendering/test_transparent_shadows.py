@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at
-from splat_addon.surfels import Surfels
+from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at, plan
+from splat_addon.surfels import Surfels, concatenate
 
 SETTINGS = Settings(method="quad", supersampling=1, shadow_resolution=512, blends_rest=False, layers=1)
 SIZE, WIDTH = 64, 0.7
@@ -126,3 +126,26 @@ def test_a_part_of_the_picture_has_the_shadows_of_the_whole(opacity, darkness):
     for x, y, side in ((0, 10, 40), (12, 20, 40)):
         part = darkness(sheet, sun, CAMERA.cropped(x, y, side, side))
         assert np.abs(part - whole[y : y + side, x : x + side]).mean() < 0.012 * opacity
+
+
+def cut_out(blurred: float) -> Instance:
+    """A sheet that is opaque, but half as opaque in the given share of it at its edge; and clear discs in its box."""
+    sheet = casters(1.0, 0, 0.0)[0]
+    opaque, count = sheet.surfels, len(sheet.surfels)
+    colors = np.tile(np.float32((0, 0, 0, 1)), (count, 1))
+    colors[np.argsort(-opaque.positions[:, 0])[: round(blurred * count)], 3] = 0.5
+    low, high = opaque.positions.min(axis=0), opaque.positions.max(axis=0)
+    clear = replace(opaque, positions=low + high - opaque.positions, colors=colors * np.float32((1, 1, 1, 0)))
+    return replace(sheet, shape=concatenate([replace(opaque, colors=colors), clear]))
+
+
+@pytest.mark.parametrize(("blurred", "is_averaged"), [(0.0, False), (0.2, False), (0.9, True)])
+def test_only_what_is_neither_clear_nor_opaque_needs_many_taps(blurred, is_averaged):
+    made = plan(Scene([cut_out(blurred), FLOOR], [wide_sun(0.1)]), CAMERA, SETTINGS)
+    choices = [choice for p in made.passes for part in p.parts for choice in part.choices]
+    assert made.has("SCREEN_DOOR") and (("shadow_taps", "masked") in choices) == is_averaged
+
+
+def test_a_cut_out_has_the_shadow_of_its_opaque_part(darkness):
+    """It is lit by the same taps, to the bit, whatever is clear around it."""
+    assert np.array_equal(darkness([cut_out(0.0)], wide_sun(0.1)), darkness(casters(1.0, 0, 0.0), wide_sun(0.1)))
