@@ -50,7 +50,7 @@ OPTIONAL_LAYOUT = {
 #: Minimum alpha of an opaque surfel: filtering an image of ones can leave alpha slightly below 1.
 OPAQUE = 0.999
 
-#: A surface whose opacity differs by less than this from 0 or 1 is clear or opaque in shadows (lib/screen_door.glsl). Of
+#: A surface whose opacity is less than this from 0 or 1 is clear or opaque in shadows (lib/screen_door.glsl). Of
 #: the opaque area of a cut-out, this share may be neither: the blurred edges of a leaf's image.
 _CLEAR, _BLURRED = 1 / 32, 0.75
 

@@ -129,13 +129,12 @@ def test_a_part_of_the_picture_has_the_shadows_of_the_whole(opacity, darkness):
 
 
 def cut_out(blurred: float) -> Instance:
-    """A sheet that is opaque, but half as opaque in the given share of it at its edge; and clear discs in its box."""
+    """A sheet that is opaque, but half as opaque in the given share of it at its edge; and a clear one there."""
     sheet = casters(1.0, 0, 0.0)[0]
     opaque, count = sheet.surfels, len(sheet.surfels)
     colors = np.tile(np.float32((0, 0, 0, 1)), (count, 1))
     colors[np.argsort(-opaque.positions[:, 0])[: round(blurred * count)], 3] = 0.5
-    low, high = opaque.positions.min(axis=0), opaque.positions.max(axis=0)
-    clear = replace(opaque, positions=low + high - opaque.positions, colors=colors * np.float32((1, 1, 1, 0)))
+    clear = replace(opaque, positions=opaque.positions[::-1], colors=colors * np.float32((1, 1, 1, 0)))
     return replace(sheet, shape=concatenate([replace(opaque, colors=colors), clear]))
 
 
@@ -147,5 +146,5 @@ def test_only_what_is_neither_clear_nor_opaque_needs_many_taps(blurred, is_avera
 
 
 def test_a_cut_out_has_the_shadow_of_its_opaque_part(darkness):
-    """It is lit by the same taps, to the bit, whatever is clear around it."""
+    """It is lit by the same taps, to the bit, whatever is clear beside it."""
     assert np.array_equal(darkness([cut_out(0.0)], wide_sun(0.1)), darkness(casters(1.0, 0, 0.0), wide_sun(0.1)))
