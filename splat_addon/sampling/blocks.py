@@ -27,7 +27,7 @@ from .refine.flat_blocks import Large
 from .refine.missed_components import SampledSurface, missed_components
 from .sample import Sampling, SamplingRun
 
-_VERSION = 4
+_VERSION = 5
 
 
 @dataclass(frozen=True, eq=False)

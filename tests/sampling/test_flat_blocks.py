@@ -105,8 +105,10 @@ def fading(mesh):
     return {"corner_colors": colors, "surfaces": (Surface(Channel((1, 1, 1, 1), VertexColors())),)}
 
 
-def painted(mesh):
-    image = Image(np.random.default_rng(3).uniform(size=(16, 16, 4)).astype(np.float32))
+def painted(mesh, channels: int = 3):
+    pixels = np.ones((16, 16, 4), np.float32)
+    pixels[..., :channels] = np.random.default_rng(3).uniform(size=(16, 16, channels))
+    image = Image(pixels)
     uvs = mesh.positions[mesh.triangles][..., :2]
     return {"corner_uvs": uvs, "surfaces": (Surface(Channel((1, 1, 1, 1), Texture(image))),)}
 
@@ -130,6 +132,14 @@ def test_an_image_that_is_looked_up_may_vary(square):
     np.testing.assert_allclose(surfels.uvs, places[:, :2], atol=1e-6)
     for along, half_axis in zip((surfels.uv_along_x, surfels.uv_along_y), half_axes, strict=True):
         np.testing.assert_allclose(along, half_axis[:, :2], atol=1e-6)
+
+
+def test_what_an_image_cuts_out_stays_in_small_surfels(square):
+    """Its alpha is not looked up."""
+    plain = square()
+    cut_out = TriangleMesh(plain.positions, plain.triangles, **painted(plain, channels=4))
+    sampling = made(cut_out, texture_mapped=True)
+    assert sampling.surfels.has_uvs and sampling.saved == 0
 
 
 def test_an_image_with_mirrored_coordinates_stays_in_small_surfels(square):

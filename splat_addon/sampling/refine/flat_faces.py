@@ -94,9 +94,13 @@ def _textures(surface: Surface) -> list[Texture]:
 
 def _is_plain(surface: Surface, is_mapped: bool) -> bool:
     """Whether a surface looks the same everywhere in a triangle whose corners look alike, or has an image that is
-    looked up there. Coordinates that are wrapped or mirrored for it do not change evenly."""
+    looked up there. Coordinates that are wrapped or mirrored for it do not change evenly, and its alpha is not looked
+    up."""
     textures = _textures(surface)
-    return not textures or (is_mapped and textures == [surface.color_texture] and textures[0].wraps is None)
+    if not (is_mapped and textures == [surface.color_texture]):
+        return not textures
+    (texture,) = textures
+    return texture.wraps is None and (texture.image.is_opaque or not texture.uses_alpha)
 
 
 def _reads_colors(mesh: TriangleMesh) -> bool:
