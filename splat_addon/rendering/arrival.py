@@ -34,12 +34,11 @@ class Arrival:
         self.refinement = refinement
         self.loading = resources.loading = loading or Loading(resources.device)
         self.is_compiling = False
-        self._draft = Draft(refinement.renderer)
+        self._draft = Draft(refinement.renderer, self._with_few)
         self._late: WeakSet[Surfels] = WeakSet()
         self._stand_ins: WeakKeyDictionary[Surfels, Surfels] = WeakKeyDictionary()
         self._last: tuple[Scene, Camera, Settings, Shown] | None = None
         self._shown: tuple[Scene, frozenset[Surfels], Scene] | None = None
-        self._draft_of: tuple[Scene, Scene] | None = None
 
     @property
     def is_late(self) -> bool:
@@ -84,14 +83,14 @@ class Arrival:
             except ProgramsNotYet:
                 self.is_compiling = True
             else:
-                if self._draft_of is not None:
+                if self.is_compiling:
                     self._forget_draft()
                 self.is_compiling = False
                 return
         if before and before[1].size == camera.size:
             yield before[-1]
         elif self._draft.is_there or not tries:
-            yield from self._draft.draw(self._drafted(scene), camera, settings)
+            yield from self._draft.draw(scene, camera, settings)
 
     def _noted(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool) -> Iterator[Shown]:
         """What the refinement draws, and what it was if that is a single texture, which then stays as it is."""
@@ -121,15 +120,12 @@ class Arrival:
             self._shown = scene, late, self._replaced(scene, late)
         return self._shown[2]
 
-    def _drafted(self, scene: Scene) -> Scene:
-        """The scene with stand-ins for all surfels, which need fewer programs; the same object for the same scene."""
-        if self._draft_of is None or self._draft_of[0] is not scene:
-            self._draft_of = scene, self._replaced(scene, frozenset(i.surfels for i in scene.surfels))
-        return self._draft_of[1]
+    def _with_few(self, scene: Scene) -> Scene:
+        """The scene with stand-ins for all surfels."""
+        return self._replaced(scene, frozenset(i.surfels for i in scene.surfels))
 
     def _forget_draft(self) -> None:
-        """Free what only drafts have."""
-        self._draft_of = None
+        """Free the draft, and the stand-ins that only it had."""
         self._draft.forget()
         for surfels in [surfels for surfels in self._stand_ins if surfels not in self._late]:
             del self._stand_ins[surfels]

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from .renderer import Renderer, Shown
@@ -36,10 +36,15 @@ def drafted(scene: Scene, settings: Settings) -> tuple[Scene, Settings]:
 
 
 class Draft:
-    """The draft of one view. is_there: whether one has been drawn."""
+    """The draft of one view.
 
-    def __init__(self, renderer: Renderer):
-        self._renderer, self.is_there = renderer, False
+    few: gives a scene with a few surfels instead of all, which need fewer programs. is_there: whether one has been
+    drawn.
+    """
+
+    def __init__(self, renderer: Renderer, few: Callable[[Scene], Scene]):
+        self._renderer, self._few, self.is_there = renderer, few, False
+        self._of: tuple[Scene, Scene] | None = None
         self._last: tuple[Scene, Camera, Shown] | None = None
 
     def draw(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown]:
@@ -48,9 +53,11 @@ class Draft:
         if self._last is not None and self._last[0] is scene and self._last[1].is_same(camera):
             yield self._last[-1]
             return
+        if self._of is None or self._of[0] is not scene:
+            self._of = scene, self._few(scene)
         parts = 0
         try:
-            plain, settings = drafted(scene, settings)
+            plain, settings = drafted(self._of[1], settings)
             for part in self._renderer.draw(plain, camera, settings):
                 parts += 1
                 yield part
@@ -61,5 +68,5 @@ class Draft:
         self._last, self.is_there = (scene, camera, part) if parts == 1 else None, True
 
     def forget(self) -> None:
-        """Let go of the last draft."""
-        self._last = None
+        """Free what only drafts have."""
+        self._of = self._last = None

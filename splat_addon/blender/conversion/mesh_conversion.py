@@ -47,6 +47,9 @@ _REACH, _LATTICE_REACH = 0.25, 1.0
 #: About 20 GB during conversion; a typo in the resolution must not freeze the machine.
 MAX_SURFELS = 100_000_000
 
+#: Surfels, and surfels a triangle, from which texture mapping is recommended for an image on flat faces.
+_MANY, _MANY_OF_A_TRIANGLE = 500_000, 1000
+
 
 @dataclass(frozen=True)
 class Choices:
@@ -120,6 +123,13 @@ class Conversion:
         """Whether something is not as requested."""
         return True
 
+    @property
+    def _repeats_an_image(self) -> bool:
+        """Whether so many surfels are in so few triangles only because each has a colour of an image."""
+        needs_none = self.choices.texture_mapped or self.choices.tolerance is None
+        are_many = len(self.surfels) >= max(_MANY, _MANY_OF_A_TRIANGLE * self.triangles)
+        return not needs_none and are_many and any(surface.color_texture for surface in self.mesh.surfaces)
+
     def summary(self) -> str:
         """A one-line summary of what was made."""
         parts, saved = self.sampling.small_parts, self.sampling.saved
@@ -129,6 +139,8 @@ class Conversion:
         if self.choices.tolerance is not None and (saved or self.choices.tolerance):
             off = f" and are off by {self.sampling.error:.2g} at most" if self.choices.tolerance else ""
             details.append(f"flat places saved {saved:,} surfels{off}")
+        if self._repeats_an_image:
+            details.append("Texture-Mapped needs far fewer where faces with an image are flat")
         return "; ".join(
             [
                 f"{objects}{self.triangles:,} triangles -> {len(self.surfels):,} surfels "

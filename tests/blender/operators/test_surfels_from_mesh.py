@@ -92,6 +92,22 @@ def test_adaptive_surfels_are_fewer_and_the_report_says_how_far_off(cube, conver
     assert f"; flat places saved {saved:,} surfels and are off by 0 at most" in capfd.readouterr().out
 
 
+@pytest.mark.parametrize(("options", "is_told"), [({}, True), ({"texture_mapped": True}, False)])
+def test_for_an_image_on_large_faces_texture_mapping_is_recommended(options, is_told, convert, capfd, monkeypatch):
+    monkeypatch.setattr("splat_addon.blender.conversion.mesh_conversion._MANY", 5000)
+    bpy.ops.mesh.primitive_plane_add()
+    material = bpy.data.materials.new("tiles")
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    picture = nodes.new("ShaderNodeTexImage")
+    picture.image = bpy.data.images.new("tiles", 8, 8)
+    links.new(picture.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
+    bpy.context.object.data.materials.append(material)
+    convert(resolution=100, **options)
+    hint = "; Texture-Mapped needs far fewer where faces with an image are flat\n"
+    assert (hint in capfd.readouterr().out) == is_told
+
+
 def test_the_splat_size_is_in_spacings(cube, convert, surfels_of):
     assert np.allclose(surfels_of(convert(resolution=16, splat_size=1.5, use_adaptive=False)[0]).scales, 1.5 * 2 / 16)
 
