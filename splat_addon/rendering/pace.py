@@ -20,8 +20,9 @@ _SPARE = 0.6
 _STEP = 2.0
 
 
-#: The share of a picture's time after which a call of the view ends: the last step may take as long again.
-SLICE = 0.4
+#: The share of a picture's time after which a call of the view ends: the last step may take as long again. If what is
+#: between two calls takes longer, such as redrawing the window, so may they, up to the second share.
+SLICE, LONGEST_SLICE = 0.4, 0.8
 
 #: Surfels of files that a moving view may draw in any case, and in its first picture.
 LEAST_STREAMED = 1 << 15
@@ -47,7 +48,11 @@ class Pace:
 
     def slice_end(self) -> float | None:
         """The time at which a call of the view that begins now should end; None: once it has a picture."""
-        return None if self.rate is None else self._clock() + SLICE / self.rate
+        if self.rate is None:
+            return None
+        now = self._clock()
+        between = 0.0 if self._paused is None else now - self._paused
+        return now + min(max(between, SLICE / self.rate), LONGEST_SLICE / self.rate)
 
     def pause(self) -> None:
         """The time until `go_on` is not the picture's."""

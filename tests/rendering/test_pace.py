@@ -9,7 +9,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.rendering import Pace, Refinement, Renderer, Settings
-from splat_addon.rendering.pace import COARSEST, LEAST_STREAMED, WIDEST
+from splat_addon.rendering.pace import COARSEST, LEAST_STREAMED, LONGEST_SLICE, SLICE, WIDEST
 
 SIZE = (240, 160)
 CAMERA = scenes.torus(100, SIZE)[1]
@@ -45,6 +45,20 @@ def test_a_slow_view_becomes_coarser_until_it_holds_the_rate():
 
 def test_a_fast_view_stays_as_fine_as_the_settings_say():
     assert (choices(lambda *_: 0.01) == [[1.25], [1]]).all()
+
+
+@pytest.mark.parametrize(
+    ("between", "wanted"), [(0.0, SLICE / 10), (0.03, SLICE / 10), (0.06, 0.06), (5.0, LONGEST_SLICE / 10)]
+)
+def test_a_slice_takes_as_long_as_what_comes_between_slices_within_limits(between, wanted):
+    clock = Clock()
+    pace = Pace(10.0, clock)
+    assert pace.slice_end() == pytest.approx(SLICE / 10)
+    pace.pause()
+    clock.now += between
+    assert pace.slice_end() - clock.now == pytest.approx(wanted)
+    pace.go_on()
+    assert pace.slice_end() - clock.now == pytest.approx(SLICE / 10)
 
 
 def test_it_is_never_coarser_than_the_limits():
