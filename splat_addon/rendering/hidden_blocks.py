@@ -16,7 +16,7 @@ _BESIDE = 3
 _NEARER = 4
 
 
-class HidingBlocks:
+class BlocksFrontToBack:
     """Blocks that face the viewer are drawn first, the nearest of them before others: those that face away lie behind
     them, unless a surface is open.
 
@@ -34,7 +34,7 @@ class HidingBlocks:
         self.are_waiting = np.ones(len(self._rows), bool)
 
     def show_next(self, count: int) -> None:
-        """Draw at least so many splats of the blocks that wait, or all of them that face the viewer."""
+        """Draw the nearest of the blocks that wait, up to so many splats; those that face the viewer before others."""
         are_next = self.are_waiting & self._are_facing
         if not are_next.any():
             are_next = self.are_waiting.copy()

@@ -20,8 +20,8 @@ _SPARE = 0.6
 _STEP = 2.0
 
 
-#: The share of a picture's time after which a call of the view ends: the last step may take as long again. If what is
-#: between two calls takes longer, such as redrawing the window, so may they, up to the second share.
+#: The share of a picture's time after which a call of the view ends: the last step may take as long again. A call may
+#: take as long as what comes between two, such as redrawing the window, up to the second share.
 SLICE, LONGEST_SLICE = 0.4, 0.8
 
 #: Surfels of files that a moving view may draw in any case, and in its first picture.

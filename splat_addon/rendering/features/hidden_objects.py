@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from ..cover import COVER_CELL, Cover
-from ..hidden_blocks import HidingBlocks
+from ..hidden_blocks import BlocksFrontToBack
 from ..methods import get_method
 from ..plan.graph import Part, Pass, Texture, of_samples
 from ..scene import Instance
@@ -103,7 +103,7 @@ def front_to_back(tile, p: Pass, splats: Iterable[DrawItem], viewport=None) -> I
     if p.each is None:
         yield waiting
         return
-    large = [HidingBlocks(tile, placed) for placed in waiting if _is_large(tile, placed)]
+    large = [BlocksFrontToBack(tile, placed) for placed in waiting if _is_large(tile, placed)]
     for each in large:
         each.show_next(_samples(tile))
     yield from _objects_front_to_back(tile, p, waiting, viewport)

@@ -169,7 +169,19 @@ class TileContext:
         instance, levels = placed.instance, self.levels(placed.instance)
         if levels is None:
             return whole_set(len(instance.surfels), instance.surfels.clipped_count)
-        rows, places = self.shown_blocks_of(placed), self.stored(instance).places
+        rows = self.shown_blocks_of(placed)
+        # asked for in each draw call
+        if instance not in self._cuts or self._cuts[instance][0] is not rows:
+            self._cuts[instance] = rows, self._cut(instance, levels, rows)
+        return self._cuts[instance][1]
+
+    @cached_property
+    def _cuts(self) -> dict[Instance, tuple[np.ndarray, tuple[Cut, ...]]]:
+        return {}
+
+    def _cut(self, instance: Instance, levels: Hierarchy, rows: np.ndarray) -> tuple[Cut, ...]:
+        """The cut that consists of some blocks."""
+        places = self.stored(instance).places
         return self.resources.cuts.get(
             (levels, rows.tobytes()),
             lambda: _stored(entries_of(levels, rows), places),
