@@ -35,13 +35,12 @@ class Cover:
         nearer, (n,) or for all. beside: pixels beside them in which their contents may be seen.
         """
         nearest, farthest = -middle[2] - half[2], -middle[2] + half[2]
-        is_before = np.ones(len(nearest), bool)
         if not self.camera.is_orthographic:
-            is_before = nearest > self.camera.near
+            # what reaches nearer is before all that is seen
             nearest, farthest = (np.maximum(depth, self.camera.near) for depth in (nearest, farthest))
         first, last = self._cells(middle, half, nearest, farthest, beside)
         seen = self._farthest_under(first, last)
-        return is_before & ((nearest - nearer) * self.scale > seen * (1 + 1e-6))
+        return (nearest - nearer) * self.scale > seen * (1 + 1e-6)
 
     def _cells(self, middle, half, nearest, farthest, beside: float) -> tuple[np.ndarray, np.ndarray]:
         """(2, n) first and last column and row of the cells under boxes."""
