@@ -8,7 +8,17 @@ from which a view selects (`cuts`). When surfels move, the tree stays and is fit
 """
 
 from .building import Hierarchy, Told, build_hierarchy
-from .cuts import Sight, Split, cut_entries
+from .cuts import Sight, Split, are_facing, cut_blocks, entries_of
 from .refitting import refit_hierarchy
 
-__all__ = ["Hierarchy", "Sight", "Split", "Told", "build_hierarchy", "cut_entries", "refit_hierarchy"]
+__all__ = [
+    "Hierarchy",
+    "Sight",
+    "Split",
+    "Told",
+    "are_facing",
+    "build_hierarchy",
+    "cut_blocks",
+    "entries_of",
+    "refit_hierarchy",
+]

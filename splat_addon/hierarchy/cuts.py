@@ -80,11 +80,6 @@ class Boxes(NamedTuple):
         return Boxes(self.middle[:, are], self.half[:, are])
 
 
-def cut_entries(hierarchy: Hierarchy, sight: Sight) -> np.ndarray | None:
-    """The entries of the blocks that are drawn, as `entries_of` returns them."""
-    return entries_of(hierarchy, cut_blocks(hierarchy.blocks, sight))
-
-
 def entries_of(hierarchy: Hierarchy, rows: np.ndarray) -> np.ndarray | None:
     """(n,) int32 indices of the surfels and nodes of some blocks, neighbours together; None: all surfels, in any
     order."""
@@ -95,7 +90,7 @@ def entries_of(hierarchy: Hierarchy, rows: np.ndarray) -> np.ndarray | None:
 
 
 def cut_blocks(blocks: Blocks, sight: Sight) -> np.ndarray:
-    """The indices of the blocks that are drawn."""
+    """(n,) int32, the indices of the blocks that are drawn."""
     front, drawn = np.arange(int(blocks.roots)), []
     while len(front):
         boxes = Boxes.of(blocks, front)
@@ -110,7 +105,7 @@ def cut_blocks(blocks: Blocks, sight: Sight) -> np.ndarray:
         drawn.append(front[is_fine])
         coarse = front[~is_fine]
         front = ranges(blocks.first_child[coarse], blocks.last_child[coarse] - blocks.first_child[coarse])
-    return np.concatenate(drawn) if drawn else np.zeros(0, int)
+    return np.concatenate(drawn).astype(np.int32) if drawn else np.zeros(0, np.int32)
 
 
 def pixels_of_errors(blocks: Blocks, rows: np.ndarray, boxes: Boxes, sight: Sight) -> np.ndarray:

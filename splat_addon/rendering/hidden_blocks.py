@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..hierarchy.cuts import Boxes, are_facing
+from ..hierarchy import are_facing
+from ..hierarchy.cuts import Boxes
 from .cover import Cover
 from .view import DrawItem
 

@@ -25,6 +25,7 @@ from .options import DEFAULT_SPLAT_SIZE, SamplingOptions
 from .points import PointsReport, surfels_from_points
 from .progress import SamplingCancelled
 from .refine.adaptive import Tolerance
+from .refine.flat_faces import is_plain
 from .sample import Sampling, sample_mesh, sample_surface
 
 __all__ = [
@@ -56,6 +57,7 @@ __all__ = [
     "edge_samples",
     "grid_spacing",
     "have_same_values",
+    "is_plain",
     "is_solid",
     "joined",
     "joined_at_edges",

@@ -8,10 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from splat_addon.hierarchy import Sight, Split, build_hierarchy, cut_entries
+from splat_addon.hierarchy import Sight, Split, build_hierarchy, cut_blocks, entries_of
 from splat_addon.hierarchy.blocks import depth_first, make_blocks, ranges
 from splat_addon.hierarchy.building import build_levels
-from splat_addon.hierarchy.cuts import cut_blocks
 
 from .conftest import ball, leaves_of, make_surfels, sheet
 
@@ -29,6 +28,10 @@ def sight(eye, tolerance=1.0, pixels=500.0, hides_backs=False, planes=((0, 0, 0,
     forward = -eye / np.linalg.norm(eye)
     depth = np.append(forward, -forward @ eye)
     return Sight(np.array(planes, float), depth, pixels, 1e-3, np.append(eye, 1), hides_backs, tolerance)
+
+
+def cut_entries(hierarchy, view):
+    return entries_of(hierarchy, cut_blocks(hierarchy.blocks, view))
 
 
 def drawn(view):

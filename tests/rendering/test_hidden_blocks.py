@@ -24,13 +24,14 @@ from splat_addon.rendering import (
     make_polygons,
 )
 from splat_addon.rendering.cover import COVER_CELL, Cover
-from splat_addon.rendering.features import hidden_objects
+from splat_addon.rendering.features import hidden_objects, visibility
+from splat_addon.rendering.hidden_blocks import BlocksFrontToBack
 from splat_addon.rendering.levels import hierarchy_of
 from splat_addon.rendering.methods import METHODS
 from splat_addon.surfels import Surfels, axes_quaternions, concatenate
+from tests.rendering.left_out import ALL, are_equal, pictures
 
 SIZE = (264, 176)
-ALL = "color", "depth", "normal", "coverage", "object_index"
 EYE = look_at((0.3, -4.5, 0.8), (0, 3, 0))
 CAMERA = Camera.perspective(EYE, 0.9, SIZE, 0.1, 100)
 SUN = Light("sun", energy=3, direction=(0.4, 1, -0.7), casts_shadow=True)
@@ -65,17 +66,6 @@ def few_suffice(monkeypatch):
     monkeypatch.setattr(hidden_objects, "LEAST_PER_SAMPLE", 0)
 
 
-def pictures(scene, camera, settings, render, monkeypatch):
-    """The picture with hidden blocks left out, and with all of them."""
-    left_out = render(scene, camera, settings)
-    monkeypatch.setattr(hidden_objects, "LEAST_SURFELS", math.inf)
-    return left_out, render(scene, camera, settings)
-
-
-def are_equal(one, other) -> bool:
-    return all(np.array_equal(getattr(one, name), getattr(other, name), equal_nan=True) for name in ALL)
-
-
 def drawn(frame) -> int:
     return frame.stats["splats_drawn"]
 
@@ -105,9 +95,17 @@ def test_no_setting_draws_another_picture(settings, camera, render, monkeypatch)
 
 
 def test_a_panorama_and_tiles_draw_the_same_picture(render, monkeypatch):
+    hidden, hide_behind = [], BlocksFrontToBack.hide_behind
+
+    def noted(blocks, cover):
+        before = blocks.are_waiting.sum()
+        hide_behind(blocks, cover)
+        hidden.append(before - blocks.are_waiting.sum())
+
+    monkeypatch.setattr(BlocksFrontToBack, "hide_behind", noted)
     view = Panorama(EYE, Equirectangular(), (288, 144))
     one, every = pictures(scene_of(), view, SOME, render, monkeypatch)
-    assert are_equal(one, every)
+    assert are_equal(one, every) and sum(hidden) > 0
     monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", 160)
     monkeypatch.setattr(hidden_objects, "LEAST_SURFELS", 1000)
     one, every = pictures(scene_of(), CAMERA, SOME, render, monkeypatch)
@@ -130,6 +128,24 @@ def test_hidden_blocks_cast_shadows(render, monkeypatch):
     assert are_equal(one, every) and drawn(one) < 0.85 * drawn(every)
     unshadowed = render(replace(lit, lights=(replace(back, casts_shadow=False),)), CAMERA, SOME)
     assert not are_equal(unshadowed, every)
+
+
+def test_hidden_blocks_are_not_drawn_into_shadow_maps(render, monkeypatch):
+    counts, draw_splats = [], visibility.draw_splats
+
+    def counted(tile, p, target, splats, *more, **named):
+        splats = list(splats)
+        counts[-1] += sum(map(tile.drawn_count, splats)) if p.kind == "shadow" else 0
+        yield from draw_splats(tile, p, target, splats, *more, **named)
+
+    monkeypatch.setattr(visibility, "draw_splats", counted)
+    along = replace(scene_of(), lights=(replace(SUN, direction=(0, 1, -0.1)),))
+    found = []
+    for least in (1000, math.inf):
+        monkeypatch.setattr(hidden_objects, "LEAST_SURFELS", least)
+        counts.append(0)
+        found.append(render(along, CAMERA, replace(SOME, shadow_resolution=256)))
+    assert are_equal(*found) and 0 < counts[0] < 0.9 * counts[1]
 
 
 def test_surfels_in_several_parts_of_their_storage(render, monkeypatch):

@@ -25,9 +25,9 @@ from splat_addon.rendering import (
 )
 from splat_addon.rendering.features import hidden_objects, visibility
 from splat_addon.rendering.methods import METHODS
+from tests.rendering.left_out import ALL, are_equal, pictures
 
 SIZE = (64, 48)
-ALL = "color", "depth", "normal", "coverage", "object_index"
 WALL = make_polygons([(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)], [(0, 1, 2), (0, 2, 3)])
 EYE = look_at((0.2, -4, 0.4), (0, 4, 0))
 BALL = scenes.sphere(3000, SIZE)[0].surfels[0].surfels
@@ -59,17 +59,6 @@ def perspective(**fields) -> Camera:
 @pytest.fixture(autouse=True)
 def few_suffice(monkeypatch):
     monkeypatch.setattr(hidden_objects, "LEAST_SURFELS", 1000)
-
-
-def pictures(scene, camera, settings, render, monkeypatch):
-    """The picture with hidden objects left out, and with all of them."""
-    left_out = render(scene, camera, settings)
-    monkeypatch.setattr(hidden_objects, "LEAST_SURFELS", math.inf)
-    return left_out, render(scene, camera, settings)
-
-
-def are_equal(one, other) -> bool:
-    return all(np.array_equal(getattr(one, name), getattr(other, name), equal_nan=True) for name in ALL)
 
 
 @pytest.mark.parametrize("method", METHODS)

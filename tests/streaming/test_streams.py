@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from splat_addon.hierarchy import build_hierarchy, cut_entries
+from splat_addon.hierarchy import build_hierarchy, cut_blocks, entries_of
 from splat_addon.streaming import BlockFile, Stream, write_blocks
 from splat_addon.streaming.pages import PAGE, Pages
 from splat_addon.surfels import concatenate
@@ -36,7 +36,7 @@ def levels(whole):
 def test_it_is_the_cut_of_the_hierarchy_in_memory(stream, levels, whole, eye, tolerance, plane, hides_backs):
     view = sight(eye, tolerance, planes=(plane,), hides_backs=hides_backs)
     hierarchy, every = levels
-    entries = cut_entries(hierarchy, view)
+    entries = entries_of(hierarchy, cut_blocks(hierarchy.blocks, view))
     entries = np.arange(len(whole)) if entries is None else entries
     found = stream.seen(view).surfels
     assert len(found) == len(entries)

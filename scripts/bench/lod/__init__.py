@@ -29,7 +29,7 @@ import numpy as np
 from bench.lod.plots import plot_times
 from measuring.models import in_view, load
 from measuring.timing import in_turn, wall
-from splat_addon.hierarchy import cut_entries
+from splat_addon.hierarchy import cut_blocks, entries_of
 from splat_addon.reference.metrics import mean_flip, psnr
 from splat_addon.rendering import Renderer, Settings, open_device, plan
 from splat_addon.rendering.levels import hierarchy_of, sight
@@ -153,5 +153,6 @@ def decided(scene, camera, settings) -> float:
     made = plan(scene, camera, settings)
     for instance in made.facts.get("levels", ()):
         for seen in (camera, *(m.drawn for m in made.facts["shadow_maps"])):
-            cut_entries(hierarchy_of(instance.surfels), sight(instance, seen, False, settings.detail_tolerance))
+            levels = hierarchy_of(instance.surfels)
+            entries_of(levels, cut_blocks(levels.blocks, sight(instance, seen, False, settings.detail_tolerance)))
     return perf_counter() - started

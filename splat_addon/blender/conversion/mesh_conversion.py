@@ -23,6 +23,7 @@ from ...sampling import (
     TriangleMesh,
     drop_unusable,
     grid_spacing,
+    is_plain,
     is_solid,
     outline,
     predict_count,
@@ -128,7 +129,8 @@ class Conversion:
         """Whether so many surfels are in so few triangles only because each has a colour of an image."""
         needs_none = self.choices.texture_mapped or self.choices.tolerance is None
         are_many = len(self.surfels) >= max(_MANY, _MANY_OF_A_TRIANGLE * self.triangles)
-        return not needs_none and are_many and any(surface.color_texture for surface in self.mesh.surfaces)
+        helps = (is_plain(s, is_mapped=True) and not is_plain(s, is_mapped=False) for s in self.mesh.surfaces)
+        return not needs_none and are_many and any(helps)
 
     def summary(self) -> str:
         """A one-line summary of what was made."""

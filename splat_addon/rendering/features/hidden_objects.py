@@ -3,7 +3,8 @@
 
 A pass that finds the nearest surface, of a picture or of a shadow map, draws from front to back, and stops a few times
 to look how far each cell of its own depth sees. An object whose box is farther everywhere changes no sample, so that no
-picture differs. As the depth is of the same picture, nothing can be missing in it.
+picture differs. As the depth is of the same picture, nothing can be missing in it. Of a large object with levels of
+detail, single blocks are left out in the same way (`hidden_blocks`).
 """
 
 from __future__ import annotations

@@ -11,8 +11,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from ...hierarchy import Hierarchy, Sight
-from ...hierarchy.cuts import cut_blocks, entries_of
+from ...hierarchy import Hierarchy, Sight, cut_blocks, entries_of
 from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
 from ..features import ARRIVES, DRAWN, DRAWS, INPUTS
@@ -194,7 +193,7 @@ class TileContext:
         if placed.instance in self.shown_blocks:
             return self.shown_blocks[placed.instance]
         levels, seen = self.levels(placed.instance), self.sight(placed)
-        return self.resources.cuts.blocks((levels, seen.key), lambda: cut_blocks(levels.blocks, seen).astype(np.int32))
+        return self.resources.cuts.kept((levels, seen.key), lambda: cut_blocks(levels.blocks, seen))
 
     def sight(self, placed: DrawItem) -> Sight:
         """This view of an instance, as its hierarchy is given it."""

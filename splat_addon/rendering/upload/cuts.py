@@ -49,19 +49,16 @@ class Cuts:
             del self._kept[key]
         self._frame += 1
 
-    def blocks(self, key: object, found: Callable[[], np.ndarray]) -> np.ndarray:
-        """The blocks of a view and an object, identified by the key."""
-        return self._once(key, found)
-
     def get(self, key: object, numbers: Callable[[], np.ndarray | None], every: int, clipped: int) -> tuple[Cut, ...]:
         """The cut of some blocks of an object, identified by the key, in the parts of its storage.
 
         numbers: storage indices of what it draws; None: the first `every`. clipped: number of clipped surfels, which
             are stored first.
         """
-        return self._once(key, lambda: self._made(numbers(), every, clipped))
+        return self.kept(key, lambda: self._made(numbers(), every, clipped))
 
-    def _once(self, key: object, make: Callable[[], Any]) -> Any:
+    def kept(self, key: object, make: Callable[[], Any]) -> Any:
+        """What was made for this key, such as the blocks of a view and an object; made if it is not there."""
         known = self._kept.get(key)
         value = known[1] if known else make()
         self._kept[key] = self._frame, value

@@ -71,7 +71,7 @@ def _sieved(normals: np.ndarray, areas: np.ndarray, least: float) -> np.ndarray:
 
 def _are_even(mesh: TriangleMesh, triangles: np.ndarray, is_mapped: bool, bulges, spacing: float) -> np.ndarray:
     """(t,) bool: whether each of (t,) triangles looks the same everywhere."""
-    result = _of_surfaces(mesh, triangles, [_is_plain(surface, is_mapped) for surface in mesh.surfaces])
+    result = _of_surfaces(mesh, triangles, [is_plain(surface, is_mapped) for surface in mesh.surfaces])
     if bulges is not None:
         result &= MOST_LIFT * bulges.take(triangles, axis=1).max(axis=0) <= LEAST_LIFT * spacing
     if mesh.corner_normals is not None:
@@ -92,7 +92,7 @@ def _textures(surface: Surface) -> list[Texture]:
     return [f for channel in surface.channels().values() for f in channel.factors if isinstance(f, Texture)]
 
 
-def _is_plain(surface: Surface, is_mapped: bool) -> bool:
+def is_plain(surface: Surface, is_mapped: bool) -> bool:
     """Whether a surface looks the same everywhere in a triangle whose corners look alike, or has an image that is
     looked up there. Coordinates that are wrapped or mirrored for it do not change evenly, and its alpha is not looked
     up."""

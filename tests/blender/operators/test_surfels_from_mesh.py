@@ -92,16 +92,27 @@ def test_adaptive_surfels_are_fewer_and_the_report_says_how_far_off(cube, conver
     assert f"; flat places saved {saved:,} surfels and are off by 0 at most" in capfd.readouterr().out
 
 
-@pytest.mark.parametrize(("options", "is_told"), [({}, True), ({"texture_mapped": True}, False)])
-def test_for_an_image_on_large_faces_texture_mapping_is_recommended(options, is_told, convert, capfd, monkeypatch):
+@pytest.mark.parametrize(
+    ("options", "has_holes", "is_told"),
+    [
+        ({}, False, True),
+        ({"texture_mapped": True}, False, False),
+        ({}, True, False),
+        ({"clips_edges": False}, False, False),
+    ],
+)
+def test_texture_mapping_is_recommended_where_it_needs_fewer(options, has_holes, is_told, convert, capfd, monkeypatch):
     monkeypatch.setattr("splat_addon.blender.conversion.mesh_conversion._MANY", 5000)
     bpy.ops.mesh.primitive_plane_add()
     material = bpy.data.materials.new("tiles")
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     picture = nodes.new("ShaderNodeTexImage")
-    picture.image = bpy.data.images.new("tiles", 8, 8)
+    picture.image = bpy.data.images.new("tiles", 8, 8, alpha=True)
     links.new(picture.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
+    if has_holes:
+        picture.image.pixels[3] = 0.0
+        links.new(picture.outputs["Alpha"], nodes["Principled BSDF"].inputs["Alpha"])
     bpy.context.object.data.materials.append(material)
     convert(resolution=100, **options)
     hint = "; Texture-Mapped needs far fewer where faces with an image are flat\n"
