@@ -1,6 +1,6 @@
 // References: Botsch et al. 2005, section 4 (what a splat blends).
 // Summary: reads a stored splat as the attributes that every method accumulates. Hooks: `choose` the splat of a
-//          triangle, `unpack` further values, `hide` splats that are not drawn.
+//          triangle, `unpack` further values, `hide` splats that are not drawn, `resize` others.
 
 #include "lib/sides.glsl"
 #include "lib/stored_splat.glsl"
@@ -54,5 +54,6 @@ Splat fetch_splat(int index) {
   splat.is_back = cosine < 0.0;
   splat.is_hidden = cosine < 0.0 && draw.hides_backs > 0.5;
   #hook hide(splat)
+  #hook resize(splat)
   return splat;
 }

@@ -47,7 +47,7 @@ PRESETS = {
             "preview",
             "Preview",
             "The fastest picture without holes: unfiltered, so edges and textures are jagged",
-            {"method": "quad", "supersampling": 1, "detail_tolerance": 0.7},
+            {"method": "quad", "supersampling": 1, "detail_tolerance": 1.0},
         ),
         Preset(
             "balanced",
@@ -56,7 +56,7 @@ PRESETS = {
                 "Filtered, so that animations and fine textures are smooth and do not flicker. A sample takes longer "
                 "than one of Preview; 16 samples smooth creases and polygons"
             ),
-            {"method": "mip", "supersampling": 1, "detail_tolerance": 0.7},
+            {"method": "mip", "supersampling": 1, "detail_tolerance": 1.0},
             samples=16,
         ),
         Preset(

@@ -99,7 +99,7 @@ class Settings:
     sample_shading: bool = False
     edge_threshold: float = 0.0
     epsilon: float = 0.5
-    detail_tolerance: float = 0.7
+    detail_tolerance: float = 1.0
     shadow_resolution: int = 1024
     ambient_occlusion: float = 0.0
     layers: int = 3

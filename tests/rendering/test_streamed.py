@@ -70,7 +70,9 @@ def same(camera):
 
 @pytest.mark.parametrize("shadows", [0, 64])
 def test_what_is_transparent_in_places_looks_as_if_it_were_in_memory(shadows, render, tmp_path, monkeypatch):
-    """Parts of it are opaque; in layers of their own they would not blend with those beside them."""
+    """Parts of it are opaque; in layers of their own they would not blend with those beside them. Merged surfels of a
+    file are drawn in full size, those in memory smaller where the pixel's filter blends them.
+    """
     monkeypatch.setattr("splat_addon.streaming.stream.PART", 250)
     scene, camera = torus()
     solid = scene.surfels[0].surfels
@@ -85,7 +87,7 @@ def test_what_is_transparent_in_places_looks_as_if_it_were_in_memory(shadows, re
     parts = [i for i in Streamed().resolved(streamed(scene, stream), camera, settings).surfels if i.is_cut]
     assert any((part.surfels.colors[:, 3] > OPAQUE).all() for part in parts)
     assert all(part.is_transparent for part in parts)
-    assert psnr(seen.color, every.color) > 42
+    assert psnr(seen.color, every.color) > 41
 
 
 @pytest.mark.parametrize("view", [same, parallel, beside], ids=lambda v: v.__name__)
