@@ -11,7 +11,8 @@ from splat_addon.rendering import Finish, Instance, Light, Material, PolygonInst
 from splat_addon.rendering.upload.packing import MAX_FINISHES, finish_shares
 from splat_addon.surfels import LAYOUT, Surfels
 
-SETTINGS = Settings(method="quad", supersampling=1)
+#: Merging widens surfels' own roughness, but not that of a material.
+SETTINGS = Settings(method="quad", supersampling=1, detail_tolerance=0.0)
 
 
 def sphere(**options):
