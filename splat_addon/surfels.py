@@ -298,11 +298,14 @@ def concatenate(parts: list[Surfels]) -> Surfels:
     return Surfels(origin=parts[0].origin, is_solid=all(p.is_solid for p in parts), **joined)
 
 
-def portions(surfels: Surfels, size: int) -> tuple[Surfels, ...]:
-    """Consecutive runs of at most `size` surfels that share the arrays; the set itself if it is small enough."""
-    if len(surfels) <= size:
-        return (surfels,)
-    runs = (slice(start, start + size) for start in range(0, len(surfels), size))
+def portions(surfels: Surfels, size: int, run: range | None = None) -> tuple[Surfels, ...]:
+    """Consecutive runs of at most `size` surfels that share the arrays; the set itself if it is small enough. run: of
+    these surfels only, without steps; nothing if it is empty."""
+    if run is None:
+        run = range(len(surfels))
+        if len(surfels) <= size:
+            return (surfels,)
+    runs = (slice(start, min(start + size, run.stop)) for start in range(run.start, run.stop, size))
     return tuple(
         Surfels(
             origin=surfels.origin,

@@ -54,6 +54,6 @@ Splat fetch_splat(int index) {
   splat.is_back = cosine < 0.0;
   splat.is_hidden = cosine < 0.0 && draw.hides_backs > 0.5;
   #hook hide(splat)
-  #hook resize(splat)
+  #hook resize(splat, index)
   return splat;
 }

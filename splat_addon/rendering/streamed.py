@@ -137,7 +137,8 @@ class _Coming:
 
 def _instances(instance: Instance, gathered: Gathered) -> tuple[Instance, ...]:
     """Ordinary instances of surfels that are a cut already."""
-    return tuple(replace(instance, shape=part, stream=None, is_cut=True) for part in gathered.parts)
+    given = replace(instance, stream=None, is_cut=True)
+    return tuple(replace(given, shape=p, is_merged=k >= gathered.unmerged) for k, p in enumerate(gathered.parts))
 
 
 def _view(

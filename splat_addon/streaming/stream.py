@@ -36,10 +36,15 @@ PART = 1 << 16
 
 @dataclass(frozen=True, eq=False)
 class Gathered:
-    """The surfels of some blocks, and the same in parts of at most `PART`, which share their arrays."""
+    """The surfels of some blocks, and the same in parts of at most `PART`, which share their arrays.
+
+    unmerged: number of parts without merged surfels, which are the first. Those that wait for larger cells are in the
+        others.
+    """
 
     surfels: Surfels
     parts: tuple[Surfels, ...]
+    unmerged: int
 
 
 class Seen(NamedTuple):
@@ -167,15 +172,20 @@ class Stream:
         gathered = self._same.get(key)
         if gathered is None:
             blocks = self.file.blocks
-            # any run of them is then close together
+            # any run of either kind is then close together
             drawn = drawn[spatial_order((blocks.low[drawn] + blocks.high[drawn]) / 2)]
+            is_merged = blocks.first_child[drawn] < blocks.last_child[drawn]
+            drawn = drawn[np.argsort(is_merged, kind="stable")]
+            counts = blocks.last[drawn] - blocks.first[drawn]
+            own = int(counts[: np.count_nonzero(~is_merged)].sum())
             fields = self.pages.gathered(blocks.first[drawn], blocks.last[drawn])
             surfels = Surfels(origin=self.file.origin, is_solid=self.file.is_solid, **fields)
-            parts = prepared(portions(surfels, PART))
+            finest, others = (portions(surfels, PART, run) for run in (range(own), range(own, len(surfels))))
+            parts = prepared(finest + others)
             if self.file.is_transparent:
                 # all of them, because splats blend with those of the same layer only
                 surfels, *parts = (some.as_transparent() for some in (surfels, *parts))
-            gathered = self._same[key] = Gathered(surfels, tuple(parts))
+            gathered = self._same[key] = Gathered(surfels, tuple(parts), len(finest))
         return gathered
 
     def close(self) -> None:

@@ -62,6 +62,7 @@ MEETINGS = {
     "levels": (
         ("each view draws its own cut", "plan/executor.py"),
         ("single blocks of an object with levels may be hidden", "features/hidden_objects.py"),
+        ("levels have merged surfels, which have a size of their own", "features/merged_size.py"),
     ),
     "lighting": (
         ("a layer is lit as the opaque picture is, and its lit samples put into pixels",

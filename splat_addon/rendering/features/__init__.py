@@ -43,6 +43,7 @@ from . import (
     lines,
     lit_splats,
     materials,
+    merged_size,
     near_clipped,
     normal_maps,
     object_id,
@@ -63,6 +64,7 @@ from . import (
 FEATURES = (
     world,
     levels,
+    merged_size,
     depth_format,
     near_clipped,
     split,

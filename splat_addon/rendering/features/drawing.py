@@ -113,6 +113,7 @@ def draw_block(tile: TileContext, placed: DrawItem, epsilon: float) -> np.ndarra
         max(tile.view.least_offset(tile.plan.linear_depth), placed.setback),
         *tile.identities.slots(placed.instance),
         placed.split_distance,
+        tile.first_merged(placed),
     )
     return std140(DRAW, values)
 

@@ -23,6 +23,7 @@ from ..scene.camera import Camera
 from ..settings import Settings
 from ..upload.cuts import Cut, whole_set
 from ..upload.loading import NotYet
+from ..upload.parts import place_in_part
 from ..upload.resources import Resources, StoredSurfels, TextureKey
 from ..upload.storages import get_storage
 from ..view import DrawItem, View, split_distances
@@ -129,6 +130,13 @@ class TileContext:
         may_have_levels = bool(self.settings.detail_tolerance) and is_worth_preparing(instance)
         storage, levels = get_storage(self.plan.storage), self.levels(instance)
         return self.resources.surfels(instance.surfels, storage, levels, may_have_levels)
+
+    def first_merged(self, placed: DrawItem) -> float:
+        """Index of the first merged splat in a part of the storage; one that no part has if there is none."""
+        levels = self.levels(placed.instance)
+        if levels is not None:
+            return place_in_part(levels.surfels, placed.part)
+        return 0.0 if placed.instance.is_merged else float(np.finfo(np.float32).max)
 
     def check_arrived(self) -> None:
         """Request everything of the scene's surfels that passes read; raises `NotYet` for what is on its way."""

@@ -34,7 +34,7 @@ VIEW: Block = (
 #: light_set: 1 in the channel of the instance's set. orientation: -1 for a mirrored object. epsilon: how far visibility
 #: moves splats back, in radii, or polygons, in view units. least_offset: of both, as a share of the distance; of an
 #: orthographic camera a length. first_slot, more_slots: number of its first material slot, and of those after it.
-#: split_distance: as of `DrawItem`.
+#: split_distance: as of `DrawItem`. first_merged: index of the first stored splat that is a merged one.
 DRAW: Block = (
     "Draw",
     "draw",
@@ -49,6 +49,7 @@ DRAW: Block = (
         ("float", "first_slot"),
         ("float", "more_slots"),
         ("float", "split_distance"),
+        ("float", "first_merged"),
     ),
 )
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -61,6 +62,8 @@ class Placed:
     split_distance: float | None = None
     split_length: float | None = None
     is_holdout: bool = False
+    #: polygons never are
+    is_merged: ClassVar[bool] = False
 
     def __post_init__(self):
         if not 0 <= self.light_set < MAX_LIGHT_SETS:
@@ -181,11 +184,13 @@ class Instance(Placed):
     """Surfels placed in the world.
 
     stream: the file that finer surfels are read from, as each view needs them; the shape has the coarsest ones.
-    is_cut: whether the shape is what a view draws of that, so that no view merges it further.
+    is_cut: whether the shape is what a view draws of that, so that no view merges it further. is_merged: whether all of
+        it are merged surfels.
     """
 
     stream: Stream | None = None
     is_cut: bool = False
+    is_merged: bool = False
 
     @property
     def surfels(self) -> Surfels:

@@ -20,7 +20,7 @@ class Cut(NamedTuple):
     """Of one part of the storage. count: splats that are drawn. clipped: number of them, at the beginning, that end at
     clip lines.
 
-    numbers: texture of their indices in the part, as -1 - index those of merged surfels; None: its first `count`.
+    numbers: texture of their indices in the part; None: its first `count`.
     """
 
     count: int
@@ -69,23 +69,19 @@ class Cuts:
             return whole_set(every, clipped)
         parts = list(places_in_parts(int(numbers.max(initial=-1)) + 1))
         if len(parts) == 1:
-            return (self._part(numbers, clipped, every),)
+            return (self._part(numbers, clipped),)
         own = (numbers[(numbers >= places.start) & (numbers < places.stop)] - places.start for places in parts)
-        return tuple(
-            self._part(some, clipped - places.start, every - places.start)
-            for some, places in zip(own, parts, strict=True)
-        )
+        return tuple(self._part(some, clipped - places.start) for some, places in zip(own, parts, strict=True))
 
-    def _part(self, numbers: np.ndarray, clipped: int, every: int) -> Cut:
-        """The cut of one part. clipped, every: which of its places have clipped surfels, and which any surfels, those
-        below this."""
+    def _part(self, numbers: np.ndarray, clipped: int) -> Cut:
+        """The cut of one part. clipped: which of its places have clipped surfels, those below this."""
         is_clipped = numbers < clipped
         clipped = int(is_clipped.sum())
         if clipped:
             numbers = np.concatenate([numbers[is_clipped], numbers[~is_clipped]])
         rows = max(-(-len(numbers) // NUMBERS_PER_ROW), 1)
         texels = np.zeros((rows, NUMBERS_PER_ROW, 1), np.float32)
-        texels.reshape(-1)[: len(numbers)] = np.where(numbers < every, numbers, -1 - numbers)
+        texels.reshape(-1)[: len(numbers)] = numbers
         self.uploads += 1
         return Cut(len(numbers), clipped, self._device.texture((NUMBERS_PER_ROW, rows), "R32F", texels))
 

@@ -25,6 +25,11 @@ def places_in_parts(count: int) -> Iterator[slice]:
     return (slice(start, min(start + PART, count)) for start in range(0, max(count, 1), PART))
 
 
+def place_in_part(place: int, part: int) -> int:
+    """A place of the storage, counted from where a part begins."""
+    return place - part * PART
+
+
 def largest_part(count: int) -> int:
     """The number of places in the largest part of `count` of them."""
     return min(count, PART)

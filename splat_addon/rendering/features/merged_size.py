@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The size of merged surfels: they are drawn smaller where the pixel's filter blends them."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part
+from . import levels
+from .drawing import SPLAT_HOSTS
+
+
+def is_present(planning) -> bool:
+    return levels.is_present(planning) or any(instance.is_merged for instance in planning.scene.surfels)
+
+
+def parts(planning, p):
+    if p.host in (*SPLAT_HOSTS, "visibility.frag", "lit_splats.frag"):
+        yield Part("merged_size", only="splats" if p.host == "visibility.frag" else "")
