@@ -39,7 +39,8 @@ class Sight:
     units. pixels: the most pixels that an object unit covers, at distance 1 of a perspective view or anywhere in a
     parallel one. near: the smallest distance that counts, world units. eye: (4,) homogeneous; w = 0 for the direction
     towards the eye of a parallel view. hides_backs: whether backs are invisible. tolerance: in pixels; 0 draws the
-    surfels themselves. split: None for an object that is surfels everywhere.
+    surfels themselves. is_depth_only: colours and normals are not seen, so that their errors do not count. split: None
+    for an object that is surfels everywhere.
     """
 
     planes: np.ndarray
@@ -49,12 +50,14 @@ class Sight:
     eye: np.ndarray
     hides_backs: bool
     tolerance: float
+    is_depth_only: bool = False
     split: Split | None = None
 
     @property
     def key(self) -> bytes:
         """A key that is equal for equal views."""
-        numbers = (self.planes, self.depth, self.eye, (self.pixels, self.near, self.hides_backs, self.tolerance))
+        single = self.pixels, self.near, self.hides_backs, self.tolerance, self.is_depth_only
+        numbers = (self.planes, self.depth, self.eye, single)
         if self.split:
             numbers += self.split.model_view, (self.split.begin, self.split.end)
         return b"".join(np.asarray(n, np.float64).tobytes() for n in numbers)
@@ -111,7 +114,10 @@ def cut_blocks(blocks: Blocks, sight: Sight) -> np.ndarray:
 def pixels_of_errors(blocks: Blocks, rows: np.ndarray, boxes: Boxes, sight: Sight) -> np.ndarray:
     """(n,) largest error of each block in pixels, at its nearest point."""
     off, extent, shown = blocks.errors[rows].T
-    error = np.maximum(np.maximum(off, extent), shown).astype(np.float64) * sight.pixels
+    error = np.maximum(off, extent)
+    if not sight.is_depth_only:
+        error = np.maximum(error, shown)
+    error = error.astype(np.float64) * sight.pixels
     if sight.is_parallel:
         return error
     nearest = sight.depth[:3] @ boxes.middle + sight.depth[3] - np.abs(sight.depth[:3]) @ boxes.half

@@ -8,7 +8,6 @@ of surfels first and then of merged nodes, in storage order.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from weakref import WeakKeyDictionary, WeakSet
 
 import numpy as np
@@ -164,9 +163,10 @@ def sight(
     hides_backs: bool,
     tolerance: float,
     split_distances: tuple[float, float] | None = None,
+    is_depth_only: bool = False,
 ) -> Sight:
     """A camera's view of an instance. tolerance: in pixels of the camera's picture. split_distances: where the surfels
-    of a split object begin, and where its polygons end, world units."""
+    of a split object begin, and where its polygons end, world units. is_depth_only: as in `Sight`."""
     matrix = instance.model_view(camera)
     x, y, depth = matrix[0], matrix[1], -matrix[2]
     left, right, bottom, top = camera.whole_pixels()
@@ -187,5 +187,5 @@ def sight(
     else:
         eye = np.append(-inverse @ matrix[:3, 3], 1.0)
     pixels = camera.pixels_per_unit() * float(np.linalg.norm(matrix[:3, :3], 2))
-    seen = Sight(np.array(planes), depth, pixels, camera.near, eye, hides_backs, tolerance)
-    return replace(seen, split=Split(matrix[:3], *split_distances)) if split_distances else seen
+    split = Split(matrix[:3], *split_distances) if split_distances else None
+    return Sight(np.array(planes), depth, pixels, camera.near, eye, hides_backs, tolerance, is_depth_only, split)

@@ -125,6 +125,17 @@ def test_no_error_that_is_drawn_is_above_the_tolerance():
     assert len(nodes) and (HIERARCHY.errors[nodes].max(axis=1) * view.pixels / depth <= view.tolerance).all()
 
 
+def test_colors_count_only_where_they_are_seen():
+    colors = np.ones((COUNT, 4), np.float32)
+    colors[:, :3] = np.random.default_rng(0).uniform(0, 1, (COUNT, 3))
+    colored = build_hierarchy(replace(SURFELS, colors=colors))
+    view = sight((0, 0, 9), 12.0)
+    depth_only = replace(view, is_depth_only=True)
+    shapes = cut_entries(HIERARCHY, depth_only)
+    assert np.array_equal(cut_entries(colored, depth_only), shapes)
+    assert len(shapes) < len(cut_entries(colored, view))
+
+
 def test_a_rough_place_makes_few_others_finer():
     """Of the first level's nodes, which stand for nine surfels each, 12 are too coarse: at most 7 more go with each."""
     surfels = make_surfels(*sheet(180))

@@ -11,9 +11,21 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import Camera, Equirectangular, Light, Panorama, Renderer, Settings, plan
+from splat_addon.rendering import (
+    Camera,
+    Equirectangular,
+    Instance,
+    Light,
+    Panorama,
+    Renderer,
+    Scene,
+    Settings,
+    look_at,
+    plan,
+)
 from splat_addon.rendering.levels import LEAST_SURFELS, hierarchy_of, replaced
 from splat_addon.rendering.methods import METHODS
+from splat_addon.sampling import TriangleMesh, sample_mesh
 
 SIZE = (48, 40)
 EVERY = Settings(detail_tolerance=0.0, outputs=("color", "depth", "normal", "coverage"))
@@ -218,6 +230,26 @@ def test_what_is_merged_casts_no_shadow_on_itself(tolerance, resolution, render)
     assert some.stats["splats_drawn"] < 0.5 * truth.stats["splats_drawn"] and inside.sum() > 200
     # a shadow's edge may move by the tolerance
     assert not falsely.any() and lost.sum() <= 0.02 * inside.sum()
+
+
+def test_colors_make_no_shadow_map_finer(render):
+    """A ball beside the picture casts the same shadow, to the bit, whatever its surfels' colours are."""
+    ball = scenes.sphere(80_000, SIZE)[0].surfels[0].surfels
+    colors = np.array(ball.colors)
+    colors[:, :3] = np.random.default_rng(0).uniform(0, 1, (len(ball), 3))
+    plane = TriangleMesh([(0, -3, 0), (6, -3, 0), (6, 3, 0), (0, 3, 0)], [(0, 1, 2), (0, 2, 3)])
+    above = np.eye(4)
+    above[2, 3] = 2.0
+    floor = Instance(sample_mesh(plane, resolution=40), np.eye(4))
+    sun = Light("sun", energy=3, direction=(1, 0, -0.7), casts_shadow=True)
+    camera = Camera.orthographic(look_at((3, 0, 9), (3, 0, 0), (0, 1, 0)), 4.0, SIZE, 0.1, 20)
+    settings = replace(SOME, shadow_resolution=64, outputs=("shadow",))
+    grey, colored = (
+        render(Scene((floor, Instance(caster, above)), (sun,)), camera, settings).shadow
+        for caster in (ball, replace(ball, colors=colors))
+    )
+    assert 0.1 < grey.mean() < 0.9
+    assert np.array_equal(grey, colored)
 
 
 def test_parts_of_a_picture_are_drawn_with_the_whole_s_levels(render, monkeypatch):

@@ -19,11 +19,8 @@ from .drawing import LIT_HOSTS, SPLAT_HOSTS
 #: Offset of polygons, in texels of a map: a filter reaches two texels, over which planes at 45 degrees differ by this.
 SETBACK = 2.0
 
-#: Merged surfels may be off by two thirds as many texels as pixels, half a texel by default: that is how much nearer
-#: than a lit surface blockers must be, or those of a narrow groove's edges would cast dashes into it.
-FINER = 2 / 3
-#: Where at least 8 texels are along a pixel, they may be off by more: they are still three times smaller than those of
-#: the picture.
+#: Merged surfels may be off by as many texels as pixels; where at least 8 texels are along a pixel, by so many times
+#: more: they are still three times smaller than those of the picture.
 COARSER = 8 / 3
 
 CONSTANTS = {"NEAREST_SHARE": NEAREST_SHARE}
@@ -137,11 +134,13 @@ def run(tile, p: Pass):
             multisamples=0, sample_shading=False, facts={**tile.plan.facts, "covering_depth": DEPTH},
         )  # fmt: skip
         view = _as_cast(view, made.camera)
-        share = COARSER if made.is_smaller else FINER
-        settings = replace(tile.settings, detail_tolerance=share * tile.settings.detail_tolerance)
+        settings = tile.settings
+        if made.is_smaller:
+            settings = replace(settings, detail_tolerance=COARSER * settings.detail_tolerance)
         from_light = replace(
-            tile, plan=seen, camera=made.drawn, settings=settings, view=view, shadow_views=(), shown_blocks={}
-        )
+            tile, plan=seen, camera=made.drawn, settings=settings, view=view, shadow_views=(), shown_blocks={},
+            is_depth_only=True,
+        )  # fmt: skip
         drawn = p._replace(state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
         yield from visibility.run_in(from_light, drawn, target, made.viewport)
     return target

@@ -43,6 +43,7 @@ class TileContext:
     shadow_views: the shadow casters as seen by the camera of each shadow map.
     rectangle: x, y, width, height in pixels of the tile without its margin, in the picture.
     shown_blocks: of objects of which parts were found to be hidden, the blocks that passes draw from now on.
+    is_depth_only: the depth of opaque surfels is all that is seen, as in a shadow map.
     """
 
     resources: Resources
@@ -54,6 +55,7 @@ class TileContext:
     shadow_views: tuple[View, ...] = ()
     rectangle: tuple[int, int, int, int] = (0, 0, 0, 0)
     shown_blocks: dict[Instance, np.ndarray] = field(default_factory=dict)
+    is_depth_only: bool = False
 
     def key(self, texture: Texture, is_next: bool = False) -> TextureKey:
         """The key of a texture of the plan; is_next: the second one of a texture that is updated."""
@@ -206,7 +208,8 @@ class TileContext:
     def sight(self, placed: DrawItem) -> Sight:
         """This view of an instance, as its hierarchy is given it."""
         split, tolerance = split_distances(placed, self.view), self.settings.detail_tolerance
-        return sight(placed.instance, self.camera, placed.hides_backs, tolerance, split)
+        is_depth_only = self.is_depth_only and not placed.instance.is_transparent
+        return sight(placed.instance, self.camera, placed.hides_backs, tolerance, split, is_depth_only)
 
     @cached_property
     def identities(self) -> Identities:
