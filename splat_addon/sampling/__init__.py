@@ -25,6 +25,7 @@ from .options import DEFAULT_SPLAT_SIZE, SamplingOptions
 from .points import PointsReport, surfels_from_points
 from .progress import SamplingCancelled
 from .refine.adaptive import Tolerance
+from .refine.flat_extents import NO_FLAT_EXTENTS, UNKNOWN_FLAT_EXTENTS, FlatExtents, flat_extents
 from .refine.flat_faces import is_plain
 from .sample import Sampling, sample_mesh, sample_surface
 
@@ -33,11 +34,14 @@ __all__ = [
     "DEFAULT_GRAZING_ANGLE",
     "DEFAULT_SPLAT_SIZE",
     "LEAST_GRAZING_ANGLE",
+    "NO_FLAT_EXTENTS",
     "REDUCTIONS",
     "STRETCHED_SHARE",
+    "UNKNOWN_FLAT_EXTENTS",
     "Block",
     "Channel",
     "DeformingSurfels",
+    "FlatExtents",
     "Image",
     "NormalMap",
     "NotSeenError",
@@ -55,6 +59,7 @@ __all__ = [
     "corner_values",
     "drop_unusable",
     "edge_samples",
+    "flat_extents",
     "grid_spacing",
     "have_same_values",
     "is_plain",

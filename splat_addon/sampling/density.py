@@ -43,7 +43,8 @@ def predict_count(mesh: TriangleMesh, **density) -> int:
     """The number of surfels that `sample_mesh` will make, computed from areas alone; 0 for a mesh without usable
     triangles. density: the fields of `Density`.
 
-    3-to-1 makes fewer where sheets lie closer than a cell. Each part that no ray hits adds one surfel.
+    3-to-1 makes fewer where sheets lie closer than a cell. Each part that no ray hits adds one surfel. A tolerance
+    makes fewer: `flat_extents` tells how many fewer inside flat faces.
     """
     given = Density(**density)
     mesh, _ = drop_unusable(mesh)

@@ -5,7 +5,7 @@ import bpy
 import pytest
 
 from splat_addon.blender.conversion import automatic_density, prediction
-from splat_addon.blender.conversion.mesh_conversion import Choices, prepare
+from splat_addon.blender.conversion.mesh_conversion import Choices, prepare, sample
 from splat_addon.blender.conversion.mesh_settings import choices
 from splat_addon.blender.ids import CONVERSION_SETTINGS
 from splat_addon.blender.ui.sidebar import prediction as sidebar_text
@@ -71,6 +71,18 @@ def test_the_ceiling_is_named_when_it_applies(cube, camera, monkeypatch):
     assert found.spacing == pytest.approx((24 / 1500) ** 0.5)
     times = f"{found.spacing / asked.spacing:.1f} times coarser"
     assert found.reason == f"at most 1,500 surfels, {times} than 1 pixels where the camera is nearest"
+
+
+def test_the_ceiling_counts_large_surfels_as_one(cube, camera, monkeypatch):
+    asked = Choices({"automatic": 1.0}, tolerance=0.0, crease_angle=0.3)
+    wanted = prepared(cube, asked).spacing
+    monkeypatch.setattr(automatic_density, "MOST_SURFELS", int(12 / wanted**2))
+    assert prepared(cube, asked).spacing == wanted
+    monkeypatch.setattr(automatic_density, "MOST_SURFELS", 1500)
+    found = prepared(cube, asked)
+    sample(found)
+    assert wanted < found.spacing < (24 / 1500) ** 0.5 and "at most 1,500 surfels" in found.reason
+    assert len(found.surfels) == pytest.approx(1500, rel=0.2)
 
 
 def test_an_objects_own_detail_counts(cube, camera):

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.geometry.mesh_extraction import evaluated_mesh, read_mesh, read_triangles
+from splat_addon.blender.geometry.mesh_extraction import evaluated_mesh, read_mesh, read_without_pixels
 
 
 def extract(source, read=read_mesh):
@@ -105,7 +105,19 @@ def test_an_empty_mesh_gives_no_triangles(add_mesh):
     assert len(extract(add_mesh("empty", [], [])).triangles) == 0
 
 
-def test_the_short_way_gives_the_same_triangles():
+def test_all_but_the_pixels_is_read_without_them(monkeypatch):
     bpy.ops.mesh.primitive_torus_add()
-    full, short = (extract(bpy.context.object, read).triangles for read in (read_mesh, read_triangles))
-    assert np.array_equal(full.positions[full.triangles], short.positions[short.triangles])
+    material = bpy.data.materials.new("look")
+    material.use_nodes = True
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = bpy.data.images.new("noise", 8, 8)
+    tree.links.new(node.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+    bpy.context.object.data.materials.append(material)
+    full = extract(bpy.context.object).triangles
+    monkeypatch.setattr("splat_addon.blender.materials.material_surfaces.linear_pixels", None)
+    short = extract(bpy.context.object, read_without_pixels).triangles
+    for name, array in full.per_triangle().items():
+        assert np.array_equal(array, getattr(short, name)), name
+    assert full.surfaces[0].color_texture.image.pixels.shape == (8, 8, 4)
+    assert short.surfaces[0].color_texture.image.pixels.shape == (1, 1, 4)

@@ -130,7 +130,7 @@ def test_for_a_camera_that_sees_nothing_the_text_says_so(cube, camera):
     assert "does not see the object" in sidebar_text(bpy.context, [cube], Choices({"pixels": 1.0}))
 
 
-def test_the_text_says_less_where_flat_only_if_large_surfels_can_replace_others(cube):
+def test_the_text_says_less_where_flat_only_if_a_tolerance_may_merge_what_is_not(cube):
     settings = getattr(bpy.context.scene, CONVERSION_SETTINGS)
     settings.density = "RESOLUTION"
     assert choices(settings).tolerance == 0
@@ -146,6 +146,33 @@ def test_the_text_says_less_where_flat_only_if_large_surfels_can_replace_others(
         setattr(settings, name, before)
     sidebar_text(bpy.context, [cube], choices(settings))
     prediction._measure_wanted()
+    assert "less where flat" not in sidebar_text(bpy.context, [cube], choices(settings))
+    settings.tolerance = 0.01
     assert "less where flat" in sidebar_text(bpy.context, [cube], choices(settings))
     settings.use_adaptive = False
     assert "less where flat" not in sidebar_text(bpy.context, [cube], choices(settings))
+
+
+@pytest.mark.parametrize("has_image", [False, True])
+def test_large_surfels_are_predicted_where_faces_are_flat_and_have_no_image(has_image, cube, convert):
+    material = bpy.data.materials.new("look")
+    material.use_nodes = True
+    cube.data.materials.append(material)
+    asked = Choices({"resolution": 100}, tolerance=0.0, crease_angle=0.3)
+
+    def predicted():
+        bpy.context.view_layer.update()
+        sidebar_text(bpy.context, [cube], asked)
+        prediction._measure_wanted()
+        return int(sidebar_text(bpy.context, [cube], asked).split()[1].replace(",", ""))
+
+    before = predicted()
+    if has_image:
+        tree = material.node_tree
+        image = tree.nodes.new("ShaderNodeTexImage")
+        image.image = bpy.data.images.new("noise", 8, 8)
+        tree.links.new(image.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+    made = convert(density="RESOLUTION", resolution=100)[0]
+    assert before < 12_000
+    assert predicted() == pytest.approx(len(made.data.vertices), rel=0.15)
+    assert (predicted() > 50_000) == has_image

@@ -43,6 +43,7 @@ def automatic_spacing(
     depsgraph: bpy.types.Depsgraph,
     sources: Iterable[bpy.types.Object] = (),
     detail: float = 1.0,
+    saved: Callable[[float], float] = lambda spacing: 0.0,
 ) -> Automatic:
     """pixels: desired distance between surfels where the object is closest to the camera. `detail` divides it.
 
@@ -50,6 +51,7 @@ def automatic_spacing(
     area: its projected area.
     longest_edge: of its box. All in the units of the result.
     sources: the objects that it is made from; if one of them or the camera moves, the margin applies.
+    saved: how many surfels large ones spare at a spacing.
     """
     if not (area > 0 and longest_edge > 0 and pixels > 0):
         return Automatic(0.0, "")
@@ -66,13 +68,30 @@ def automatic_spacing(
         is_there = depsgraph.scene.camera is not None
         why = str(error).rstrip(".") if is_there else "the scene has no camera"
         spacing, reason = _by_resolution(longest_edge, detail, why)
-    coarsest, finest = longest_edge / LEAST_RESOLUTION, math.sqrt(area / MOST_SURFELS)
+    coarsest = longest_edge / LEAST_RESOLUTION
     if spacing > coarsest:
         spacing, reason = coarsest, f"resolution {LEAST_RESOLUTION}, the least, as the camera is far away"
+    finest = _finest(spacing, area, saved)
     if spacing < finest:
         reason = f"at most {MOST_SURFELS:,} surfels, {finest / spacing:.1f} times coarser than {reason}"
         spacing = finest
     return Automatic(spacing, reason)
+
+
+def _finest(wanted: float, area: float, saved: Callable[[float], float]) -> float:
+    """The smallest spacing, from the wanted one on, at which there are not too many surfels."""
+
+    def are_too_many(spacing: float) -> bool:
+        plain = area / spacing**2
+        return plain > MOST_SURFELS and plain - saved(spacing) > MOST_SURFELS
+
+    low, high = wanted, max(math.sqrt(area / MOST_SURFELS), wanted)
+    if not are_too_many(low):
+        return low
+    while high > low * (1 + 1e-6):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if are_too_many(middle) else (low, middle)
+    return high
 
 
 def is_moving(source: bpy.types.Object | None) -> bool:

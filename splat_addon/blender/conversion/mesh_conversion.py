@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 
 import bpy
 from mathutils import Matrix
@@ -17,11 +17,14 @@ from mathutils import Matrix
 from ...sampling import (
     DEFAULT_GRAZING_ANGLE,
     DEFAULT_SPLAT_SIZE,
+    NO_FLAT_EXTENTS,
     REDUCTIONS,
+    FlatExtents,
     Sampling,
     Tolerance,
     TriangleMesh,
     drop_unusable,
+    flat_extents,
     grid_spacing,
     is_plain,
     is_solid,
@@ -171,14 +174,18 @@ def prepare(
         raise ValueError(f"The mesh has no usable faces, only {', '.join(skipped)}; repair it first.")
     how = {"reduction": choices.reduction, "grazing_angle": choices.grazing_angle}
     detail, reason = detail_of(sources[0]), ""
+    flat = cache(lambda: flat_places(mesh, choices, sources, gathered.unread))
     if "automatic" in choices.density:
         area, longest_edge = projected_area(mesh, **how), grid_spacing(mesh, resolution=1)
         what = choices.density["automatic"], lambda: outline(mesh), area, longest_edge
-        spacing, reason = automatic_spacing(*what, matrix_world, depsgraph, sources, detail)
+        about = matrix_world, depsgraph, sources, detail, lambda spacing: flat().saved(spacing)
+        spacing, reason = automatic_spacing(*what, *about)
     else:
         density = without_camera(finer(choices.density, detail), lambda: outline(mesh), matrix_world, depsgraph)
         spacing = grid_spacing(mesh, **density, **how)
     predicted = predict_count(mesh, spacing=spacing, **how)
+    if predicted > MAX_SURFELS:
+        predicted -= round(flat().saved(spacing))
     if predicted > MAX_SURFELS:
         raise ValueError(f"It would become {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
     notes = [f"Skipped {', '.join(skipped)}"] if skipped else []
@@ -202,9 +209,32 @@ def prepare(
         len(whole),
         [*notes, *gathered.notes],
         seconds,
-        len(sources) == 1 and is_deformed(sources[0]),
+        _deforms(sources),
         reason,
     )
+
+
+def flat_places(
+    mesh: TriangleMesh,
+    choices: Choices,
+    sources: list[bpy.types.Object],
+    unread: tuple[tuple[bpy.types.Material, Unread], ...],
+) -> FlatExtents:
+    """The flat faces of a usable mesh in which a conversion makes large surfels."""
+    if choices.tolerance is None or (choices.bake and unread):
+        return NO_FLAT_EXTENTS
+    return flat_extents(
+        mesh,
+        reduction=choices.reduction,
+        grazing_angle=choices.grazing_angle,
+        texture_mapped=choices.texture_mapped,
+        deforms=_deforms(sources),
+    )
+
+
+def _deforms(sources: list[bpy.types.Object]) -> bool:
+    """Whether the surfels will follow a deformation."""
+    return len(sources) == 1 and is_deformed(sources[0])
 
 
 def sample(

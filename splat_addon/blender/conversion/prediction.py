@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Predicts how many surfels a conversion will make, cheaply enough for the sidebar.
 
-The count is a projected area over the spacing squared, so only the area and the longest edge of each evaluated mesh are
-kept, and a coarse outline if a camera decides the density. A timer measures them shortly after they are first needed,
-never while drawing, and they are forgotten when the depsgraph reports a change of geometry.
+The count is a projected area over the spacing squared, less what large surfels spare. Of each evaluated mesh, only the
+area, the longest edge and the extents of its flat faces are kept, and a coarse outline if a camera decides the density.
+A timer measures them shortly after they are first needed, never while drawing, and they are forgotten when the
+depsgraph reports a change of geometry.
 """
 
 from __future__ import annotations
@@ -15,11 +16,19 @@ import bpy
 import numpy as np
 from bpy.app.handlers import persistent
 
-from ...sampling import Outline, drop_unusable, grid_spacing, outline, projected_area
-from ..geometry.mesh_extraction import read_triangles
+from ...sampling import (
+    NO_FLAT_EXTENTS,
+    FlatExtents,
+    Outline,
+    drop_unusable,
+    grid_spacing,
+    outline,
+    projected_area,
+)
+from ..geometry.mesh_extraction import read_without_pixels
 from ..geometry.sources import has_surfaces
 from .gathering import frame_of, gather
-from .mesh_conversion import Choices
+from .mesh_conversion import Choices, flat_places
 from .placement import relative
 
 #: Delay that combines the changes of a stroke or a drag into one measurement.
@@ -31,19 +40,21 @@ class Extent:
     """area: projected area.
     longest_edge: of the bounding box. Both are in units of the result, and 0 if nothing is usable.
     surface: its outline, if the settings need it.
+    flat: its flat faces, in which large surfels replace others.
     others: session_uids of further objects that are part of it.
     """
 
     area: float
     longest_edge: float
     surface: Outline | None = None
+    flat: FlatExtents = NO_FLAT_EXTENTS
     others: frozenset[int] = frozenset()
 
     def predict(self, density: dict[str, float]) -> tuple[int, float]:
         """(surfels, spacing) for a resolution, spacing or count; both 0 if that is 0 or nothing is usable."""
         ((kind, value),) = density.items()
         spacing = _SPACINGS[kind](self, value) if value > 0 else 0.0
-        return (round(self.area / spacing**2), spacing) if spacing > 0 else (0, 0.0)
+        return (round(self.area / spacing**2 - self.flat.saved(spacing)), spacing) if spacing > 0 else (0, 0.0)
 
 
 #: The extent of an object that cannot be converted.
@@ -60,7 +71,7 @@ _SPACINGS = {
 def measure(sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, choices: Choices) -> Extent:
     """The extent of all sources together; this is slow: 0.3 s for a million triangles."""
     try:
-        gathered = gather(sources, depsgraph, choices.in_world_units, read_triangles)
+        gathered = gather(sources, depsgraph, choices.in_world_units, read_without_pixels)
     except ValueError:
         return NOTHING
     mesh, _ = drop_unusable(gathered.mesh)
@@ -68,7 +79,8 @@ def measure(sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, cho
         return NOTHING
     surface = outline(mesh) if choices.asks_camera else None
     area = projected_area(mesh, choices.reduction, choices.grazing_angle)
-    return Extent(area, grid_spacing(mesh, resolution=1), surface, gathered.others)
+    flat = flat_places(mesh, choices, sources, gathered.unread)
+    return Extent(area, grid_spacing(mesh, resolution=1), surface, flat, gathered.others)
 
 
 def known_extents(groups: list[list[bpy.types.Object]], choices: Choices) -> list[Extent] | None:
@@ -84,7 +96,7 @@ def known_extents(groups: list[list[bpy.types.Object]], choices: Choices) -> lis
 
 
 def _key(sources: list[bpy.types.Object], choices: Choices) -> tuple:
-    """The sources' session_uids, and those parts of their transforms and settings that affect the extent."""
+    """The sources' session_uids, and those parts of their transforms, materials and settings that affect the extent."""
     try:
         frame = frame_of(sources[0], choices.in_world_units)
         maps = (relative(np.array(source.matrix_world, np.float64), frame) for source in sources)
@@ -93,7 +105,18 @@ def _key(sources: list[bpy.types.Object], choices: Choices) -> tuple:
         places = ()
     uids = tuple(source.session_uid for source in sources)
     how = choices.reduction, choices.grazing_angle, choices.asks_camera, choices.in_world_units
-    return uids, places, *how
+    if choices.tolerance is None:
+        return uids, places, *how
+    looks = tuple(_look(slot.material) for source in sources for slot in source.material_slots)
+    return uids, places, *how, looks, choices.texture_mapped, choices.bake
+
+
+def _look(material: bpy.types.Material | None) -> tuple:
+    """What changes if an image comes into a material."""
+    if material is None:
+        return ()
+    tree = material.node_tree
+    return material.session_uid, *((len(tree.nodes), len(tree.links)) if tree else ())
 
 
 #: key of sources and settings -> their extent, until it becomes outdated

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ...sampling import Surface, TriangleMesh
+from ...sampling import Image, Surface, TriangleMesh
 from ..materials.material_surfaces import ATTRIBUTE_TYPES, MeshLayers, Unread, material_surface
 
 
@@ -115,10 +115,19 @@ def read_mesh(
     return ExtractedMesh(triangles, tuple(m and m.original for m in slots), tuple(unread))
 
 
-def read_triangles(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> ExtractedMesh:
-    """Only positions and triangles, for predictions."""
-    topology = read_topology(mesh)
-    return ExtractedMesh(TriangleMesh(_positions(mesh), topology.at_corners(topology.corner_vertices)), ())
+class _NoPixels(dict):
+    """White in place of every image."""
+
+    def __contains__(self, key) -> bool:
+        return True
+
+    def __missing__(self, key) -> Image:
+        return Image(np.ones((1, 1, 4), np.float32))
+
+
+def read_without_pixels(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> ExtractedMesh:
+    """Everything but the pixels of textures, for predictions."""
+    return read_mesh(evaluated, mesh, images=_NoPixels())
 
 
 @contextmanager

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 
+from ...sampling import UNKNOWN_FLAT_EXTENTS
 from ..conversion.automatic_density import automatic_spacing
 from ..conversion.camera_density import without_camera
 from ..conversion.gathering import frame_of, groups
@@ -97,7 +98,8 @@ def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], aske
     except ValueError as error:
         return str(error)
     text = prediction_text([extent.predict(f) for extent, (f, _) in zip(extents, found, strict=True)])
-    text = text if asked.tolerance is None else said("{count}, less where flat", count=text)
+    if asked.tolerance or any(extent.flat is UNKNOWN_FLAT_EXTENTS for extent in extents):
+        text = said("{count}, less where flat", count=text)
     return "\n".join([text, *dict.fromkeys(reason for _, reason in found if reason)])
 
 
@@ -107,7 +109,7 @@ def _density_of(sources, extent: Extent, asked: Choices, depsgraph) -> tuple[dic
     if "automatic" not in asked.density:
         return without_camera(finer(asked.density, detail), lambda: extent.surface, frame, depsgraph), ""
     what = asked.density["automatic"], lambda: extent.surface, extent.area, extent.longest_edge
-    spacing, reason = automatic_spacing(*what, frame, depsgraph, sources, detail)
+    spacing, reason = automatic_spacing(*what, frame, depsgraph, sources, detail, extent.flat.saved)
     return {"spacing": spacing}, reason
 
 

@@ -96,7 +96,7 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE, reach:
     units. Vertices at the same position count as one. An edge with one face, or with more than two, is a border of each
     of them. Faces with opposite winding are compared as if it were the same.
     """
-    normals, sizes, lengths = _unit_normals(mesh)
+    normals, sizes, lengths = unit_normals(mesh)
     # Twice the area by the length is the height.
     extents = np.minimum(sizes * (sizes / lengths), lengths * _OF_LENGTH)
     angles, large = np.full(len(mesh), float(angle)), np.flatnonzero(extents > reach)
@@ -229,7 +229,7 @@ def _looks(mesh: TriangleMesh) -> np.ndarray | None:
     return names.take(np.minimum(mesh.materials, len(names) - 1)) if names.any() else None
 
 
-def _unit_normals(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def unit_normals(mesh: TriangleMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(3, T) float32 unit normals of the triangles; (T,) float32 root of twice their areas; (T,) float32 longest
     edges.
     """

@@ -54,10 +54,7 @@ def _without(bad: dict[str, np.ndarray], mesh: TriangleMesh, dropped: dict[str, 
         return mesh
     is_kept = np.ones(len(mesh), bool)
     is_kept[rows] = False
-    kept = np.flatnonzero(is_kept)
-    left = replace(mesh, **{name: array.take(kept, axis=0) for name, array in mesh.per_triangle().items()})
-    left.share_places_with(mesh)
-    return left
+    return mesh.with_triangles(np.flatnonzero(is_kept))
 
 
 def _repeats_index(triangles: np.ndarray) -> np.ndarray:

@@ -5,7 +5,7 @@ surfels."""
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -96,6 +96,12 @@ class TriangleMesh:
     def places(self) -> np.ndarray:
         """(V,) uint64: `vertex_hashes`, equal for coincident vertices."""
         return vertex_hashes(self.positions)
+
+    def with_triangles(self, rows: np.ndarray) -> TriangleMesh:
+        """The mesh with some of its triangles, over the same vertices."""
+        some = replace(self, **{name: array.take(rows, axis=0) for name, array in self.per_triangle().items()})
+        some.share_places_with(self)
+        return some
 
     def share_places_with(self, other: TriangleMesh):
         """Share cached hashes with a mesh over the same vertices."""

@@ -44,7 +44,7 @@ def flat_faces(
     """
     faces = np.full(len(mesh), -1, np.int32)
     areas = 0.5 * survey.sizes.astype(np.float64) ** 2
-    some = _sieved(survey.normals, areas, least * spacing**2)
+    some = may_be_wide(survey.normals, areas, least * spacing**2)
     some = some[_are_even(mesh, some, is_mapped, bulges, spacing)]
     if not len(some):
         return faces
@@ -59,8 +59,8 @@ def flat_faces(
     return faces
 
 
-def _sieved(normals: np.ndarray, areas: np.ndarray, least: float) -> np.ndarray:
-    """The triangles whose planes may have so much area together."""
+def may_be_wide(normals: np.ndarray, areas: np.ndarray, least: float) -> np.ndarray:
+    """The triangles whose planes may have so much area together. normals: (3, T) unit. areas: (T,)."""
     key = np.zeros(len(areas), np.int64)
     for component in normals:
         key *= 73_856_093
