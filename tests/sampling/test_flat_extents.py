@@ -55,6 +55,14 @@ def test_a_bent_surface_has_no_flat_faces():
     assert flat_extents(TriangleMesh(ball.vertices, ball.faces)).saved(0.02) == 0
 
 
+def test_flat_faces_are_found_beside_bent_ones():
+    ball, box = trimesh.creation.icosphere(subdivisions=6, radius=0.2), trimesh.creation.box((0.4, 0.9, 1))
+    box.apply_transform(TURN)
+    both = trimesh.util.concatenate(ball, box)
+    alone, beside = (flat_extents(TriangleMesh(m.vertices, m.faces)).saved(0.01) for m in (box, both))
+    assert beside == pytest.approx(alone) and alone > 1000
+
+
 def test_faces_that_shading_rounds_are_flat_only_at_coarse_spacings():
     ball = trimesh.creation.icosphere(subdivisions=1)
     normals = np.asarray(ball.face_normals)

@@ -78,19 +78,19 @@ def flat_extents(
         return NO_FLAT_EXTENTS
     if len(some) > _MOST_TRIANGLES:
         return UNKNOWN_FLAT_EXTENTS
-    mesh = mesh.with_triangles(some)
+    mesh, normals = mesh.with_triangles(some), np.abs(normals.take(some, axis=1))
     is_mapped = texture_mapped and is_texture_mapped(mesh.surfaces)
     faces = flat_faces(mesh, survey_edges(mesh), LEAST_AREA, spacing, is_mapped=is_mapped, deforms=deforms)
     some = np.flatnonzero(faces >= 0)
     labels, faces = np.unique(faces.take(some), return_inverse=True)
     first = np.full(len(labels), len(some))
     np.minimum.at(first, faces, np.arange(len(some)))
-    mesh, normals = mesh.with_triangles(some), np.abs(normals.take(some, axis=1))
+    mesh, normals = mesh.with_triangles(some), normals.take(some.take(first), axis=1)
     corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles))
     outer, bulges, made = _outer_edges(mesh, faces), np.zeros(len(labels)), []
     if (of_edges := edge_bulges(mesh, 0.0)) is not None:
         np.maximum.at(bulges, faces, of_edges.max(axis=0))
-    for axis, is_seen in enumerate(chosen.keeps(normals.take(first, axis=1), grazing_angle)):
+    for axis, is_seen in enumerate(chosen.keeps(normals, grazing_angle)):
         seen = _projected(np.delete(corners, axis, axis=0), faces, outer, len(labels))
         made.append([of[is_seen] for of in (*seen, bulges)])
     return FlatExtents(*map(np.concatenate, zip(*made, strict=True)))
