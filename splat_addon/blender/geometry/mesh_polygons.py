@@ -5,7 +5,6 @@ support."""
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
@@ -21,14 +20,11 @@ def mesh_polygons(mesh: TriangleMesh) -> tuple[Polygons, ...]:
     """The mesh's triangles, in portions that the renderer can hold; triangles with non-finite values are dropped."""
     good = np.isfinite(mesh.positions).all(axis=1)[mesh.triangles].all(axis=1)
     if not good.all():
-        mesh = taken(mesh, np.flatnonzero(good))
-    runs = (slice(start, start + MAX_TRIANGLES) for start in range(0, len(mesh), MAX_TRIANGLES))
-    return tuple(_part(taken(mesh, run) if len(mesh) > MAX_TRIANGLES else mesh) for run in runs)
-
-
-def taken(mesh: TriangleMesh, rows) -> TriangleMesh:
-    """A subset of the triangles, over the same vertices."""
-    return replace(mesh, **{name: values[rows] for name, values in mesh.per_triangle().items()})
+        mesh = mesh.with_triangles(np.flatnonzero(good))
+    if len(mesh) <= MAX_TRIANGLES:
+        return (_part(mesh),) if len(mesh) else ()
+    starts = np.arange(MAX_TRIANGLES, len(mesh), MAX_TRIANGLES)
+    return tuple(_part(mesh.with_triangles(run)) for run in np.split(np.arange(len(mesh)), starts))
 
 
 def _part(mesh: TriangleMesh) -> Polygons:

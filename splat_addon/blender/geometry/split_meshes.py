@@ -9,7 +9,6 @@ import bpy
 import numpy as np
 
 from ...sampling import TriangleMesh
-from .mesh_polygons import taken
 
 
 class MeshParts(NamedTuple):
@@ -28,7 +27,7 @@ def parts_by_group(evaluated: bpy.types.Object, mesh: bpy.types.Mesh, triangles:
     if found is None:
         raise ValueError(f"It is split by the vertex group {group!r}, which it does not have; choose one that it has.")
     weights = _weights(mesh, found.index)[triangles.triangles].mean(axis=1)
-    return MeshParts(*(taken(triangles, np.flatnonzero(at)) for at in (weights >= 0.5, weights < 0.5)))
+    return MeshParts(*(triangles.with_triangles(np.flatnonzero(at)) for at in (weights >= 0.5, weights < 0.5)))
 
 
 def _weights(mesh: bpy.types.Mesh, index: int) -> np.ndarray:

@@ -98,15 +98,11 @@ class TriangleMesh:
         return vertex_hashes(self.positions)
 
     def with_triangles(self, rows: np.ndarray) -> TriangleMesh:
-        """The mesh with some of its triangles, over the same vertices."""
+        """The mesh with some of its triangles, over the same vertices, of which it shares what is cached."""
         some = replace(self, **{name: array.take(rows, axis=0) for name, array in self.per_triangle().items()})
-        some.share_places_with(self)
+        for name in {"_bounds", "places"} & vars(self).keys():
+            object.__setattr__(some, name, getattr(self, name))
         return some
-
-    def share_places_with(self, other: TriangleMesh):
-        """Share cached hashes with a mesh over the same vertices."""
-        for name in ("_bounds", "places"):
-            object.__setattr__(self, name, getattr(other, name))
 
     def per_triangle(self) -> dict[str, np.ndarray]:
         """The arrays that hold one entry per triangle, by field name."""
