@@ -4,7 +4,8 @@
 The splats are those that a cut of one model draws, most of them below two pixels. One compute pass finds the nearest
 depth by atomicMin, another adds weighted attributes in fixed point by atomicAdd. They do less than the engine's passes:
 no clip lines, no silhouettes, no textures, and a kernel that is affine in the picture. *vertices* is the share of a
-bare pass of triangles that is left if nothing of it is rasterised: it draws the same triangles into one pixel.
+bare pass of triangles that is left if nothing of it is rasterised: it draws the same triangles into one pixel. Times
+are those of a graphics card's timer queries; with software OpenGL, whose queries leave vertices out, the clock's.
 """
 
 from __future__ import annotations
@@ -16,16 +17,24 @@ import moderngl
 import numpy as np
 
 from measuring.models import in_view, load
+from measuring.timer_queries import has_timer_queries, timed_draws
 from measuring.timing import in_turn
 from splat_addon.hierarchy import cut_blocks, entries_of
 from splat_addon.rendering import Renderer, Settings, open_device, plan
+from splat_addon.rendering.device import Device
 from splat_addon.rendering.levels import hierarchy_of, sight
 from splat_addon.sampling import sample_mesh
 from splat_addon.surfels import axes_columns
 
 DEVICES = ("standalone",)
 QUICK = {"size": 64, "resolution": 300, "model": "bunny.obj.gz"}
-COLUMNS = "surfels", "drawn", "visibility, compute/triangles", "attributes, compute/triangles", "vertices"
+PASSES = "visibility", "attributes"
+COLUMNS = (
+    "surfels",
+    "drawn",
+    *(f"{name}, {what}" for name in PASSES for what in ("ms", "compute/triangles")),
+    "vertices",
+)
 FIELD_OF_VIEW = 0.66
 GROUP = 64
 
@@ -124,18 +133,20 @@ def run(options, report) -> None:
     (instance,) = plan(scene, camera, settings).facts["levels"]
     levels, seen = hierarchy_of(surfels), sight(instance, camera, False, settings.detail_tolerance)
     splats = packed(surfels, levels.nodes, entries_of(levels, cut_blocks(levels.blocks, seen)))
-    trial = Trial(device._context, splats, instance.model_view(camera), options.size)
-    frames = partial(Renderer(device).render, scene, camera, settings)
-    jobs = {"frame": frames, **{name: partial(trial.run, name) for name in trial.jobs}}
-    taken = in_turn(jobs, options.turns, passes_or_wall)
+    trial = Trial(device, splats, instance.model_view(camera), options.size)
+    frame = partial(passes_of_frame, device, partial(Renderer(device).render, scene, camera, settings))
+    jobs = {"frame": frame, **{name: partial(trial.run, name) for name in trial.jobs}}
+    taken = in_turn(jobs, options.turns, lambda job: (job(), None))
 
-    def ratio(name: str, unit) -> str:
-        return f"{np.median([own / unit(k) for k, own in enumerate(taken.values[name])]):.2f}"
+    def ratio(name: str, units: list[float]) -> str:
+        return f"{np.median(np.divide(taken.values[name], units)):.2f}"
 
-    engine = taken.values["frame"]
-    compute = (ratio(name, lambda k, name=name: engine[k][name]) for name in ("visibility", "attributes"))
-    vertices = ratio("one pixel", lambda k: taken.values["triangles"][k])
-    report.table(COLUMNS, [(f"{len(surfels):,}", f"{len(splats):,}", *compute, vertices)])
+    cells = []
+    for name in PASSES:
+        engine = [passes[name] for passes in taken.values["frame"]]
+        cells += f"{np.median(engine):.2f}", ratio(name, engine)
+    vertices = ratio("one pixel", taken.values["triangles"])
+    report.table(COLUMNS, [(f"{len(surfels):,}", f"{len(splats):,}", *cells, vertices)])
 
 
 def packed(surfels, nodes, entries: np.ndarray) -> np.ndarray:
@@ -156,8 +167,9 @@ def packed(surfels, nodes, entries: np.ndarray) -> np.ndarray:
 class Trial:
     """The passes of the trial. model_view: 4 x 4."""
 
-    def __init__(self, context: moderngl.Context, splats: np.ndarray, model_view: np.ndarray, size: int):
-        self._context, self._count, self._size = context, len(splats), size
+    def __init__(self, device: Device, splats: np.ndarray, model_view: np.ndarray, size: int):
+        self._context, self._count, self._size = device._context, len(splats), size
+        self._has_queries, context = has_timer_queries(device), device._context
         self._splats = context.buffer(splats.tobytes())
         self._sums = context.buffer(reserve=8 * 4 * size**2)
         self._depth = context.texture((size, size), 1, dtype="u4")
@@ -189,10 +201,11 @@ class Trial:
             self._depth.write(np.full((self._size, self._size), np.float32(3.4e38)).tobytes())
         self._sums.clear()
         self._context.finish()
-        started = perf_counter()
-        self.jobs[name]()
+        started, query = perf_counter(), self._context.query(time=True)
+        with query:
+            self.jobs[name]()
         self._context.finish()
-        return 1e3 * (perf_counter() - started)
+        return query.elapsed / 1e6 if self._has_queries else 1e3 * (perf_counter() - started)
 
     def _compute(self, program) -> None:
         program.run(-(-self._count // GROUP))
@@ -205,7 +218,10 @@ class Trial:
         self._triangles.render(vertices=3 * self._count)
 
 
-def passes_or_wall(job):
-    """Milliseconds of a frame's passes, or of a pass of the trial, and nothing."""
-    result = job()
-    return (result if isinstance(result, float) else result.stats["passes"]), None
+def passes_of_frame(device: Device, render) -> dict[str, float]:
+    """Milliseconds of the engine's passes."""
+    if not has_timer_queries(device):
+        return render().stats["passes"]
+    with timed_draws(device) as spent:
+        render()
+    return {name: sum(ms for pipeline, ms in spent.items() if pipeline.startswith(name)) for name in PASSES}

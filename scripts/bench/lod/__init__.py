@@ -15,6 +15,9 @@ PSNR, FLIP: the cut compared with all. uploads: of a second frame of the same vi
 A dolly moves the camera away to four times the distance in 300 pictures, of which some in the middle are drawn. Its
 *pop* is the FLIP difference between successive pictures, less the same difference with all surfels.
 
+Of a graphics card, another table has the time that the card itself spends on draw calls, from its timer queries; those
+of software OpenGL leave vertices out.
+
 The plot has the frames without shadow, and lines for other programs at the rates that were measured with them.
 """
 
@@ -28,7 +31,8 @@ import numpy as np
 
 from bench.lod.plots import plot_times
 from measuring.models import in_view, load
-from measuring.timing import in_turn, wall
+from measuring.timer_queries import has_timer_queries, timed_draws
+from measuring.timing import Spread, in_turn, wall
 from splat_addon.hierarchy import cut_blocks, entries_of
 from splat_addon.reference.metrics import mean_flip, psnr
 from splat_addon.rendering import Renderer, Settings, open_device, plan
@@ -43,6 +47,7 @@ COLUMNS = (
     *"surfels view shadow drawn all,_ms cut,_ms following,_ms cut/all bare/cut".split(),
     *"decided PSNR FLIP MiB,_all MiB,_cut uploads".split(),
 )
+ON_DEVICE = "surfels", "view", "shadow", "all, ms", "cut, ms", "cut/all", "passes of a cut frame, ms"
 PASSES = "surfels", "view", "splats over a pixel", "milliseconds of each pass"
 
 
@@ -57,7 +62,7 @@ def arguments(parser) -> None:
 
 
 def run(options, report) -> None:
-    device, passes, times = open_device(options.device), [], []
+    device, passes, on_device, times = open_device(options.device), [], [], []
     report.header(device, f"{options.model}, {options.size} x {options.size} pixels, tolerance {options.tolerance}")
     mesh = load(options.models / options.model)
 
@@ -70,10 +75,12 @@ def run(options, report) -> None:
             yield f"{len(surfels):,}", f"built in {seconds:.2f} s", f"{levels.nbytes / own:.0%} more memory", *[""] * 12
             for view, eye in VIEWS.items():
                 for shadow in (0, 1024):
-                    yield measure(device, surfels, view, eye, shadow, options, passes, times)
+                    yield measure(device, surfels, view, eye, shadow, options, passes, on_device, times)
 
     report.table([name.replace("_", " ") for name in COLUMNS], rows())
     report.table(PASSES, passes, "Where the time of a cut frame goes, sun without shadow.")
+    if on_device:
+        report.table(ON_DEVICE, on_device, "What the graphics card itself spends, by its timer queries.")
     report.plot("times", plot_times(times))
     if options.dolly > 1:
         pops = dolly(Renderer(device), sample_mesh(mesh, resolution=options.resolutions[0]), options)
@@ -96,9 +103,9 @@ def dolly(renderer: Renderer, surfels, options) -> list[float]:
     return pops
 
 
-def measure(device, surfels, view: str, eye, shadow: int, options, passes: list, times: list) -> tuple:
-    """One row of the table of frames; without shadow also one of the table of passes and one of the plot. Each kind of
-    frame has its own renderer."""
+def measure(device, surfels, view: str, eye, shadow: int, options, passes: list, on_device: list, times: list) -> tuple:
+    """One row of the table of frames, and one of the graphics card's; without shadow also one of the table of passes
+    and one of the plot. Each kind of frame has its own renderer."""
     (scene, camera), every = in_view(surfels, options.size, eye), Settings(detail_tolerance=0.0)
     camera = replace(camera, far=camera.far * 100)
     every = replace(every, shadow_resolution=shadow, outputs=("color",))
@@ -111,6 +118,8 @@ def measure(device, surfels, view: str, eye, shadow: int, options, passes: list,
     if shadow:
         jobs["following"] = partial(renderers["cut"].render, lit, camera, settings["cut"])
     drawn = in_turn(jobs, options.turns, wall)
+    if has_timer_queries(device):
+        on_device.append((f"{len(surfels):,}", view, "sun's" if shadow else "none", *by_queries(device, jobs, options)))
     if "all" in renderers:
         renderers["all"].release()
     before = renderers["cut"].resources.cuts.uploads
@@ -139,6 +148,27 @@ def measure(device, surfels, view: str, eye, shadow: int, options, passes: list,
         f"{bare / took['cut']:.2f}", f"{1e3 * decided(lit, camera, settings['cut']) / took['cut']:.1%}",
         *beside[1:], memory.get("all", ""), memory["cut"], uploads,
     )  # fmt: skip
+
+
+def by_queries(device, jobs: dict, options) -> tuple:
+    """A row of what the card spends, after its first three columns."""
+    taken = in_turn(jobs, options.turns, partial(drawn_in, device))
+    sums = taken.part(lambda passes: sum(passes.values()))
+    spent = taken.values["cut"]
+    medians = {name: Spread.of(each.get(name, 0.0) for each in spent).median for name in spent[0]}
+    beside = (f"{sums.spread('all').median:.2f}", sums.ratio("cut", "all")) if "all" in jobs else ("", "")
+    return (
+        beside[0],
+        f"{sums.spread('cut').median:.2f}",
+        f"{beside[1]:.3f}" if beside[1] else "",
+        ", ".join(f"{name} {ms:.2f}" for name, ms in medians.items()),
+    )
+
+
+def drawn_in(device, job) -> tuple[dict[str, float], object]:
+    with timed_draws(device) as passes:
+        result = job()
+    return passes, result
 
 
 def render_with_maps(renderer: Renderer, scene, camera, settings):
