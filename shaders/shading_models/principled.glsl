@@ -7,6 +7,7 @@
 //          reflects, under lights and the world. The twin of reference/shading.py.
 
 #include "lib/brdf.glsl"
+#include "lib/tangent_frame.glsl"
 #include "hosts/world_light.glsl"
 
 const float PI = 3.14159265358979;
@@ -28,12 +29,6 @@ struct Lobe {
   vec3 scattered;  // factor for multiple scattering
   vec3 edge;  // what a metal's tint takes off its reflectance, times c (1 - c)^6
 };
-
-// Rows: the view's direction along the surface, across it, the normal.
-mat3 tangent_frame(Lobe lobe) {
-  vec3 across = normalize(lobe.to_viewer - lobe.normal * dot(lobe.to_viewer, lobe.normal) + vec3(1e-7, 2e-7, 0.0));
-  return transpose(mat3(across, cross(lobe.normal, across), lobe.normal));
-}
 
 #parts
 // material: roughness, metallic, reflectance at normal incidence
@@ -114,7 +109,7 @@ float sheen_scale;
 void sheen_cover(inout Lobe lobe) {
   vec4 color_roughness = finish_numbers(3);
   float roughness = clamp(color_roughness.a, 0.01, 1.0);
-  mat3 to_tangent = tangent_frame(lobe);
+  mat3 to_tangent = tangent_frame(lobe.normal, lobe.to_viewer);
   vec2 bend = sheen_transform(lobe.nv, roughness);
   sheen_scale = bend.x;
   sheen_to_cosine = mat3(bend.x, 0.0, 0.0, 0.0, bend.x, 0.0, bend.y, 0.0, 1.0) * to_tangent;
@@ -179,7 +174,7 @@ vec3 from_point(Lobe lobe, vec3 to_light, vec3 irradiance) {
 
 #part lights, sized_lights
 vec3 from_quad(Lobe lobe, Incident light) {
-  mat3 to_tangent = tangent_frame(lobe);
+  mat3 to_tangent = tangent_frame(lobe.normal, lobe.to_viewer);
   vec3 middle = to_tangent * light.middle, u = to_tangent * light.half_u, v = to_tangent * light.half_v;
   vec4 m = table_at(lobe.roughness, lobe.nv, 0);
   mat3 to_cosine = mat3(m.x, 0.0, m.z, 0.0, 1.0, 0.0, m.y, 0.0, m.w);

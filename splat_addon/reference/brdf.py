@@ -88,13 +88,22 @@ def quad_form_factors(corners, normal, view, roughness, nv) -> tuple[np.ndarray,
 
     corners: (n, 4, 3) from the place to the corners, in order around the quad. normal, view: (n, 3) unit.
     """
-    across = unit(view - normal * dot(view, normal)[:, None] + np.array((1e-7, 2e-7, 0)))
-    frame = np.stack([across, np.cross(normal, across), normal], axis=1)
-    local = np.einsum("nij,nkj->nki", frame, corners)
+    local = np.einsum("nij,nkj->nki", tangent_frame(normal, view), corners)
     xx, xz, zx, zz = table_at(roughness, nv)[:, :4].T
     x, y, z = np.moveaxis(local, 2, 0)
     bent = np.stack([xx[:, None] * x + xz[:, None] * z, y, zx[:, None] * x + zz[:, None] * z], axis=2)
     return form_factor(local), form_factor(bent)
+
+
+def tangent_frame(normal, view) -> np.ndarray:
+    """(n, 3, 3) rows: the view's direction along the surface, across it, the normal; of unit vectors (n, 3).
+
+    Seen along the normal, where the lobe is round, any direction in the surface serves.
+    """
+    beside = np.eye(3)[np.abs(normal).argmin(axis=1)]
+    along = view - normal * dot(view, normal)[:, None] + 1e-6 * beside
+    along = unit(along - normal * dot(along, normal)[:, None])
+    return np.stack([along, np.cross(normal, along), normal], axis=1)
 
 
 def form_factor(corners: np.ndarray) -> np.ndarray:

@@ -19,6 +19,7 @@ from .brdf import (
     quad_form_factors,
     specular_albedo,
     specular_term,
+    tangent_frame,
     unit,
 )
 from .lights import Incident
@@ -137,9 +138,8 @@ class _Sheen:
 
     def radiance(self, normal, view, lights: list[Incident], world: WorldLight) -> np.ndarray:
         """(n, 3) what it reflects. For the world, of its light around the lobe's mean direction."""
-        across = unit(view - normal * dot(view, normal)[:, None] + np.array((1e-7, 2e-7, 0)))
-        frame = np.stack([across, np.cross(normal, across), normal], axis=1)
-        mean = unit(normal - across * (self.b / self.a)[:, None])
+        frame = tangent_frame(normal, view)
+        mean = unit(normal - frame[:, 0] * (self.b / self.a)[:, None])
         radiance = self.albedo * world.irradiance(mean)
         for light in lights:
             local = np.einsum("nij,nj->ni", frame, light.to_light)

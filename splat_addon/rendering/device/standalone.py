@@ -39,8 +39,7 @@ class StandaloneDevice:
                 "The standalone device takes Blender's graphics context away; open it in a process without bpy."
             )
         try:
-            options = {"backend": "egl"} if sys.platform.startswith("linux") else {}
-            self._context = moderngl.create_context(standalone=True, require=330, **options)
+            self._context = _context(moderngl)
         except Exception as error:
             raise RuntimeError(f"No OpenGL 3.3 context could be made without a window: {error}") from error
         self._context.gc_mode = "auto"
@@ -108,6 +107,15 @@ class StandaloneDevice:
             buffer.write(data)
             self._uniforms[slot, len(data)] = buffer, data
         return buffer
+
+
+def _context(moderngl):
+    """A context of OpenGL 4.3, as Blender's, or of 3.3: some drivers give exactly the version that is asked for."""
+    options = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+    try:
+        return moderngl.create_context(standalone=True, require=430, **options)
+    except Exception:
+        return moderngl.create_context(standalone=True, require=330, **options)
 
 
 class _Texture:
