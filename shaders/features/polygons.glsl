@@ -4,14 +4,15 @@
 //          they blend into it; elsewhere the nearer of the two is visible.
 
 #part polygons.frag, depth_bounds
-// Visibility has additional rows, and a triangle that is clipped far outside the picture is rounded differently there:
-// by 5e-6 for a floor of 10,000 eye heights.
-const float ROUNDING = 3e-5;
+// Visibility has additional rows, and a triangle that is clipped far outside the picture is rounded differently there.
+// Hardware also moves corners to a grid of 1/256 pixel and interpolates between the moved ones, which shifts depths by up
+// to as much of a pixel; four times that is left for it.
+const float ROUNDING = 3e-5, GRID = 1.0 / 64.0;
 
 // Where no splat hides it.
 void polygons_keep() {
   float seen = texelFetch(depth_bounds, ivec2(gl_FragCoord.xy), 0).z;
-  if (depth_at > seen + ROUNDING * abs(seen)) discard;
+  if (depth_at > seen + ROUNDING * abs(seen) + GRID * fwidth(depth_at)) discard;
 }
 
 #part mean_surface

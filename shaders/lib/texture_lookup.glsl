@@ -124,7 +124,7 @@ vec4 texture_sum(SurfaceTexture t, vec2 uv, vec3 variances, out float weights) {
   float tilt = 0.5 * (xx - yy), root = sqrt(tilt * tilt + xy * xy);
   float along = 0.5 * (xx + yy) + root;
   float largest = LARGEST * exp2(2.0 * float(t.levels - 1));
-  if (!(along < largest)) {  // nor NaN
+  if (isnan(along) || along >= largest) {  // some drivers take NaN for smaller in !(along < largest)
     xx = yy = along = largest;
     xy = tilt = root = 0.0;
   }

@@ -287,6 +287,21 @@ def test_a_floor_reaches_from_behind_the_eye_to_the_horizon(method, render):
     assert np.allclose(frame.depth[sure], expected[sure], rtol=1e-3)
 
 
+@pytest.mark.parametrize("seed", [2, 11, 25, 29])
+def test_a_floor_of_100_000_eye_heights_has_no_gaps(seed, render):
+    """Visibility and attributes of such a triangle are rounded differently, by more than 3e-5 of its depth."""
+    random = np.random.default_rng(seed)
+    height = 10 ** random.uniform(-0.5, 0.7)
+    eye = (*random.uniform(-5e4, 5e4, 2), height)
+    target = np.array((random.uniform(-1, 1), 10, random.uniform(0, 0.9))) * height
+    floor = PolygonInstance(square((0.2, 0.7, 0.2, 1)), np.diag((1e5, 1e5, 1.0, 1.0)))
+    camera = Camera.perspective(look_at(eye, target), 1.0, SIZE, near=0.1, far=1e7)
+    frame = render(Scene(polygons=(floor,)), camera, Settings(method="mip", shading="flat"))
+    down = (camera.points_at(np.ones(SIZE[::-1])) - camera.matrix_world[:3, 3])[..., 2]
+    assert np.count_nonzero(down < -0.03) > 3000
+    assert (frame.depth[down < -0.03] < EMPTY_DEPTH).all()
+
+
 def test_shadows_of_polygons_fall_on_splats_and_back(render):
     """One square shadows another; whether either is polygons or splats, the shadow is the same."""
     matrix = np.diag((0.4, 0.4, 1.0, 1.0))

@@ -55,6 +55,7 @@ def arguments(parser) -> None:
     parser.add_argument("--size", type=int, default=512, help="pixels along each side")
     parser.add_argument("--model", default="dragon_vrip.ply.gz")
     parser.add_argument("--resolutions", type=int, nargs="+", default=[265, 500, 830, 2030])
+    parser.add_argument("--shadows", type=int, nargs="+", default=[0, 1024], help="texels along shadow maps; 0: none")
     parser.add_argument("--dolly", type=int, default=60, help="pictures of its 300, of the first resolution")
     parser.add_argument("--tolerance", type=float, default=Settings.detail_tolerance, help="pixels")
     parser.add_argument("--every", type=int, default=20_000_000, help="most surfels of which all are drawn, too")
@@ -74,7 +75,7 @@ def run(options, report) -> None:
             seconds, own = perf_counter() - started, sum(a.nbytes for a in surfels.arrays().values())
             yield f"{len(surfels):,}", f"built in {seconds:.2f} s", f"{levels.nbytes / own:.0%} more memory", *[""] * 12
             for view, eye in VIEWS.items():
-                for shadow in (0, 1024):
+                for shadow in options.shadows:
                     yield measure(device, surfels, view, eye, shadow, options, passes, on_device, times)
 
     report.table([name.replace("_", " ") for name in COLUMNS], rows())
