@@ -97,17 +97,18 @@ def cut_blocks(blocks: Blocks, sight: Sight) -> np.ndarray:
     front, drawn = np.arange(int(blocks.roots)), []
     while len(front):
         boxes = Boxes.of(blocks, front)
+        # errors of unseen blocks, too: leaving their boxes out would take longer
         is_seen = may_be_seen(blocks, front, boxes, sight)
-        front, boxes = front[is_seen], boxes.some(is_seen)
         is_fine = pixels_of_errors(blocks, front, boxes, sight) <= sight.tolerance
         if sight.split:
             near, far = distances(boxes, sight)
-            is_kept = far >= sight.split.begin
-            front, is_fine = front[is_kept], (is_fine & (near > sight.split.end))[is_kept]
-        is_fine |= blocks.first_child[front] == blocks.last_child[front]
-        drawn.append(front[is_fine])
-        coarse = front[~is_fine]
-        front = ranges(blocks.first_child[coarse], blocks.last_child[coarse] - blocks.first_child[coarse])
+            is_seen &= far >= sight.split.begin
+            is_fine &= near > sight.split.end
+        first, last = blocks.first_child[front], blocks.last_child[front]
+        is_fine |= first == last
+        drawn.append(front[is_seen & is_fine])
+        is_coarse = is_seen & ~is_fine
+        front = ranges(first[is_coarse], (last - first)[is_coarse])
     return np.concatenate(drawn).astype(np.int32) if drawn else np.zeros(0, np.int32)
 
 
