@@ -13,7 +13,7 @@ import numpy as np
 #: Steps per radius in which renderers store blend depths.
 BLEND_STEPS = 256
 #: The blend depth of large surfels, in steps, by the edge of their block in cells; and that of samples, at least.
-STEPS_OF_LARGE, STEPS_OF_SAMPLES = {3: 3, 9: 2, 27: 1}, 4
+STEPS_OF_LARGE, STEPS_OF_SAMPLES = {3: 2, 9: 1}, 3
 
 #: Half-axis of the splat of a block, and of a sample, relative to the edge of the block or cell. At 0.85 the sum of the
 #: weights of blocks varies by 5 % from place to place; at 0.75 and 1.0 by 20 %.
@@ -29,7 +29,7 @@ def are_large(blend_depths: np.ndarray) -> np.ndarray:
 
 def grains(blend_depths: np.ndarray) -> np.ndarray:
     """(n,) about the radii of the samples that surfels replace, relative to their own; 1 for all but large surfels."""
-    return np.minimum(0.6 * 3.0 ** (steps_of(blend_depths) - (STEPS_OF_SAMPLES - 1)), 1.0)
+    return np.minimum((steps_of(blend_depths) - 0.5) / (STEPS_OF_SAMPLES - 0.5), 1.0)
 
 
 def steps_of(blend_depths: np.ndarray) -> np.ndarray:

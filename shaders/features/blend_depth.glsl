@@ -14,7 +14,7 @@ void blend_depth_unpack(inout StoredSplat stored, int index) {
 // Backs with a blend depth do not occupy the place of fronts, so fronts need no precedence.
 void blend_depth_hide(inout Splat splat) {
   if (blended < 1.0) splat.side_weight = 1.0;
-  splat.grain = min(0.6 * pow(3.0, blended * float(BLEND_STEPS) - float(STEPS_OF_SAMPLES - 1)), 1.0);
+  splat.grain = min((blended * float(BLEND_STEPS) - 0.5) / (float(STEPS_OF_SAMPLES) - 0.5), 1.0);
   if (splat.grain < 0.9) splat.side_weight *= LARGE_WEIGHT;
 }
 

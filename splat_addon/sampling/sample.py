@@ -141,8 +141,7 @@ class SamplingRun:
 
         share: number of the block, from 0, and the number of blocks. surface: is told which triangles are sampled.
         """
-        step = LARGEST if self._enlarges else 1
-        bands = row_bands(self._coordinates, self.grid, *share, step) if share[1] > 1 else None
+        bands = row_bands(self._coordinates, self.grid, *share, LARGEST) if share[1] > 1 else None
         about = self._coordinates, self.mesh.triangles, self.grid, self._keeps, surface, report
         if not self._enlarges:
             return depth_cube(*about, bands), {}

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 #: In radii: with less than this, rounding would decide which of two coplanar splats is visible.
-LEAST_BLENDING = 0.013
+LEAST_BLENDING = 0.01
 
 #: The least blend depth, in radii, of splats on a triangle that bends by more than `BENT` radians: splats beside them
 #: may bend more.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Inside flat faces, one large surfel replaces 9, 81 or 729 samples.
+"""Inside flat faces, one large surfel replaces 9 or 81 samples.
 
 Model only what a scene requires: a floor needs small surfels at its border, not inside. Blocks of an image's grid whose
 samples, and those in a ring around them, all lie in one flat face (`flat_faces`) become one sample at their middle,
