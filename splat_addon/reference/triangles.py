@@ -17,6 +17,9 @@ from .filters import filter_weights, resample
 #: Triangle-sample pairs per batch: about 100 bytes each.
 CHUNK_PAIRS = 1_000_000
 
+#: Where depths differ by less than this share, the triangle that faces the viewer is seen.
+SAME_DEPTH = 1e-6
+
 #: Samples of a strip of the picture.
 STRIP_SAMPLES = 2_000_000
 
@@ -36,7 +39,8 @@ def render_triangles(
 ) -> TrianglePicture:
     """The picture of triangles by definition.
 
-    corners: (T, 3, 3) world space. colors: (T, 3, 3) scene-linear, at the corners. Both sides are seen.
+    corners: (T, 3, 3) world space. colors: (T, 3, 3) scene-linear, at the corners. Both sides are seen; of the two sides
+        of a card, which are in the same place, the one that faces the viewer.
     samples: samples x samples rays a pixel, at (i + 0.5) / samples. pixel_filter: a name in `filters.PIXEL_FILTERS`.
 
     A sample is inside where the three barycentric coordinates of the projected triangle are 0 or more (Pineda, "A
@@ -84,6 +88,8 @@ def _samples(places: np.ndarray, over_depth: np.ndarray, colors: np.ndarray, sha
     """(rows, columns, 4) colour and 1 of the nearest triangle at each sample, 0 where there is none."""
     shares = _share_planes(places)
     depths = np.einsum("tkc,tk->tc", shares, over_depth)
+    (x1, y1), (x2, y2) = ((places[:, k] - places[:, 0]).T for k in (1, 2))
+    depths += (x1 * y2 > x2 * y1)[:, None] * SAME_DEPTH * np.abs(depths)
     nearest, owner = np.full(shape[0] * shape[1], -np.inf), np.full(shape[0] * shape[1], -1)
     for triangle, row, first, count in _spans(places, shares, shape):
         span = np.repeat(np.arange(len(count)), count)

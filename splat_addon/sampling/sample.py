@@ -43,6 +43,7 @@ from .refine.flat_blocks import LARGEST, LEAST_AREA, RING, Large, divided
 from .refine.flat_faces import flat_faces
 from .refine.image_samples import inside_triangles
 from .refine.missed_components import SampledSurface, missed_components
+from .refine.two_sided import have_other_sides, move_apart, runs_of
 from .workers import in_order
 
 #: Times of the steps that need neighbouring samples, relative to one another: clipping, fitting planes, merging.
@@ -195,21 +196,25 @@ class SamplingRun:
         clipping, fitting, merging = self._stages(report)
         if self._chosen.merge is not None:
             arrays = self._chosen.merge(arrays, _axes_of(images), self.grid.spacing)
+        of_large = {edge: self.filled(large[edge], lambda share: None, edge) for edge in sorted(large)}
+        cards = self._cards({1: images, **large}, {1: arrays, **of_large})
         gaps, gap_triangles = {}, np.empty(0, np.intp)
         if self.options.crease_angle is not None:
             arrays, gaps, gap_triangles = self._clipped(arrays, images, clipping)
         if self._fits_planes:
             about = inside_triangles(images), self.grid, self._edges.borders.are_closed()
             arrays = arrays | fit_planes(arrays, _rows_of(images), *about, fitting)
+        for edge, are_cards in cards.items():
+            move_apart(of_large.get(edge, arrays), are_cards, self.grid.spacing)
         saved, error = 0, 0.0
         if self._merges_flat:
             about = self.grid.spacing, self.options.tolerance
             arrays, error = merge_flat(arrays, _axes_of(images), *about, merging)
             saved = total - len(arrays["positions"])
         more, small_parts = [], int(missed[1].max(initial=-1)) + 1
-        for edge, of_edge in sorted(large.items()):
-            more.append(self.filled(of_edge, lambda share: None, edge))
-            saved += (edge**2 - 1) * len(more[-1]["positions"])
+        for edge, of_edge in of_large.items():
+            more.append(of_edge)
+            saved += (edge**2 - 1) * len(of_edge["positions"])
         if gaps:
             more.append(gaps)
         if small_parts:
@@ -223,6 +228,22 @@ class SamplingRun:
         keeps_both_sides = self._chosen.merge is None and not small_parts
         report(1.0)
         return Sampling(surfels, small_parts, keeps_both_sides, saved, error, gap_triangles)
+
+    def _cards(
+        self, images: dict[int, tuple[Spans, ...]], arrays: dict[int, dict[str, np.ndarray]]
+    ) -> dict[int, np.ndarray]:
+        """Edge of blocks -> `have_other_sides` of their samples; {} where splats have no depths of their own. images,
+        arrays: by the same edges."""
+        if self._bends is None or self._chosen.merge is not None:
+            return {}
+        runs, ends = ([], [], []), [0]
+        for edge, of_edge in images.items():
+            for axis, rows in _rows_of(of_edge):
+                values = {name: arrays[edge][name][rows] for name in ("positions", "rotations")}
+                runs[axis].append(runs_of(of_edge[axis], axis, edge, values, ends[-1] + rows.start, self.grid.spacing))
+            ends.append(ends[-1] + len(arrays[edge]["positions"]))
+        are_cards = have_other_sides(runs, self.mesh, ends[-1])
+        return dict(zip(images, np.split(are_cards, ends[1:-1]), strict=True))
 
     @property
     def _fits_planes(self) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, turned
 from ...surfels import Surfels, axes_quaternions
+from ..mesh.cleaning import usable_triangles
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners, triangle_chunks
 from ..sample import Sampling, sample_surface
 
@@ -39,7 +40,8 @@ class Binding:
         surfels = sampling.surfels
         self._middle = mesh.positions.mean(axis=0)
         # Sample once more with triangle numbers as materials: the order of samples depends on the shape alone.
-        named = TriangleMesh(mesh.positions, mesh.triangles, materials=np.arange(len(mesh), dtype=np.int32))
+        kept = usable_triangles(mesh)
+        named = TriangleMesh(mesh.positions, mesh.triangles[kept], materials=kept.astype(np.int32))
         later = "crease_angle", "fits_blending", "fits_planes", "lifts"
         alike = {name: value for name, value in options.items() if name not in later}
         triangles = sample_surface(named, **alike).surfels.materials

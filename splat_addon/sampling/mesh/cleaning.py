@@ -18,23 +18,34 @@ def drop_unusable(mesh: TriangleMesh) -> tuple[TriangleMesh, dict[str, int]]:
     """The mesh without its unusable triangles and unused vertices, and how many triangles were dropped, by reason.
 
     Each triangle is counted once, under the first reason that applies. Triangles that share the positions of all three
-    corners with an earlier one, in either orientation, are dropped: they would double every sample. A mesh without
-    unusable triangles is returned unchanged.
+    corners with an earlier one are dropped, because they would double every sample; but a card's back that does not
+    look like its front stays. A mesh without unusable triangles is returned unchanged.
     """
+    mesh, _, dropped = _usable(mesh)
+    return mesh, dropped
+
+
+def usable_triangles(mesh: TriangleMesh) -> np.ndarray:
+    """(t,) ascending indices of the triangles that `drop_unusable` keeps."""
+    return _usable(mesh)[1]
+
+
+def _usable(mesh: TriangleMesh) -> tuple[TriangleMesh, np.ndarray, dict[str, int]]:
+    """The result of `drop_unusable`, and between its parts the indices of the triangles."""
+    rows, dropped = np.arange(len(mesh)), {}
     if mesh.known_usable:
-        return mesh, {}
-    dropped: dict[str, int] = {}
+        return mesh, rows, dropped
     low, high = mesh.bounds() if len(mesh) else (0, 0)
     if not (np.all(low >= -MAX_COORDINATE) and np.all(high <= MAX_COORDINATE)):
         for reason, is_bad_value in _BAD_VERTICES.items():
             is_bad = is_bad_value(mesh.positions).any(axis=1)
-            mesh = _without({reason: np.flatnonzero(is_bad[mesh.triangles].any(axis=1))}, mesh, dropped)
+            mesh, rows = _without({reason: np.flatnonzero(is_bad[mesh.triangles].any(axis=1))}, mesh, rows, dropped)
     found = survey(mesh)
     pinched = found.flat[_repeats_index(mesh.triangles.take(found.flat, axis=0))]
     repeating = _repeating(mesh, np.setdiff1d(found.suspects, pinched))
     collinear = np.setdiff1d(found.flat, np.concatenate([pinched, repeating]))
     bad = {"with a repeated vertex": pinched, "that repeat another": repeating, "of zero area": collinear}
-    mesh = _without(bad, mesh, dropped)
+    mesh, rows = _without(bad, mesh, rows, dropped)
     if len(np.setdiff1d(repeating, found.flat)):
         found = survey(mesh)
     if not found.is_used.all():
@@ -42,19 +53,20 @@ def drop_unusable(mesh: TriangleMesh) -> tuple[TriangleMesh, dict[str, int]]:
         mesh = replace(mesh, positions=mesh.positions[found.is_used], triangles=new_index[mesh.triangles])
     object.__setattr__(mesh, "known_usable", True)
     object.__setattr__(mesh, "facing_area", found.facing_area)
-    return mesh, dropped
+    return mesh, rows, dropped
 
 
-def _without(bad: dict[str, np.ndarray], mesh: TriangleMesh, dropped: dict[str, int]) -> TriangleMesh:
-    """The mesh without the triangles of each reason, which are counted in `dropped`; the same mesh if there are
-    none."""
-    dropped |= {reason: len(rows) for reason, rows in bad.items() if len(rows)}
-    rows = np.concatenate(list(bad.values()))
-    if not len(rows):
-        return mesh
-    is_kept = np.ones(len(mesh), bool)
-    is_kept[rows] = False
-    return mesh.with_triangles(np.flatnonzero(is_kept))
+def _without(
+    bad: dict[str, np.ndarray], mesh: TriangleMesh, rows: np.ndarray, dropped: dict[str, int]
+) -> tuple[TriangleMesh, np.ndarray]:
+    """The mesh and the rows without the triangles of each reason, which are counted in `dropped`; the same mesh if
+    there are none."""
+    dropped |= {reason: len(those) for reason, those in bad.items() if len(those)}
+    those = np.concatenate(list(bad.values()))
+    if not len(those):
+        return mesh, rows
+    kept = np.delete(np.arange(len(mesh)), those)
+    return mesh.with_triangles(kept), rows[kept]
 
 
 def _repeats_index(triangles: np.ndarray) -> np.ndarray:
@@ -63,15 +75,21 @@ def _repeats_index(triangles: np.ndarray) -> np.ndarray:
 
 
 def _repeating(mesh: TriangleMesh, suspects: np.ndarray) -> np.ndarray:
-    """All but the first of the triangles that have the same three corner positions, in any order.
+    """The triangles that have the same three corner positions as an earlier one and face the same way or look alike.
 
     suspects: (k,) the triangles to compare, ascending.
     """
     vertices, corners = np.unique(mesh.triangles[suspects], return_inverse=True)
-    place = _equal_rows(mesh.positions[vertices])
-    corners = np.sort(place[corners.reshape(-1, 3)], axis=1)
-    _, first = np.unique(_equal_rows(corners), return_index=True)
-    return np.delete(suspects, first)
+    corners = _equal_rows(mesh.positions[vertices])[corners.reshape(-1, 3)]
+    order = np.argsort(corners, axis=1, kind="stable")
+    place = _equal_rows(np.take_along_axis(corners, order, axis=1))
+    is_odd = (order[:, 0] > order[:, 1]) ^ (order[:, 0] > order[:, 2]) ^ (order[:, 1] > order[:, 2])
+    look = [place if mesh.materials is None else mesh.materials[suspects]]
+    for values in (mesh.corner_colors, mesh.corner_uvs):
+        if values is not None:
+            look += [*np.take_along_axis(values[suspects], order[..., None], axis=1).reshape(-1, 3 * values.shape[2]).T]
+    firsts = [np.unique(_equal_rows(np.column_stack([place, *of])), return_index=True)[1] for of in ([is_odd], look)]
+    return np.delete(suspects, np.intersect1d(*firsts))
 
 
 def _equal_rows(rows: np.ndarray) -> np.ndarray:

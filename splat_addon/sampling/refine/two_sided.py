@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Moves the two sides of cards apart.
+
+Leaves, feathers and flags are often modelled as two sheets in the same place that face opposite ways. A splat blends
+with what lies within its blend depth behind it, so both sides would be seen at once. Both therefore move outwards by
+their blend depth, which is some hundredths of a cell where they are flat.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from ...large_surfels import BLEND_STEPS, steps_of
+from ...surfels import axes_columns
+from ..attributes.ellipses import MAX_STRETCH
+from ..edges.ordering import order_of
+from ..ldc.scan_conversion import Spans, batches, expand
+from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
+
+#: Sheets that are closer than this, in cells, with a cosine between their normals below this, are a card's sides. They
+#: may cross, because a bent card's sides may be divided into different triangles.
+_REACH, _OPPOSITE = 0.2, -0.9
+
+#: Samples on one ray are ordered by depth in these parts of a cell.
+_PARTS = 64
+
+#: Samples that are ordered at a time.
+_BATCH = 1 << 20
+
+
+class Runs(NamedTuple):
+    """n runs of samples, each in a row of an image and in one triangle.
+
+    depths: (n,) of the first samples along the image's axis, in cells. slopes: (n,) their change from sample to sample.
+    numbers: (n,) of the first samples. strides: (n,) change of the number from sample to sample.
+    """
+
+    spans: Spans
+    depths: np.ndarray
+    slopes: np.ndarray
+    numbers: np.ndarray
+    strides: np.ndarray
+
+    def those(self, some) -> Runs:
+        return Runs(*(values[some] for values in self))
+
+
+def runs_of(spans: Spans, axis: int, edge: int, arrays: dict[str, np.ndarray], first: int, spacing: float) -> Runs:
+    """The samples of an image; of blocks with this edge, all cells, each with the number of its block.
+
+    arrays: field of `Surfels` -> values at the spans' samples. first: number of the first sample.
+    """
+    depths = arrays["positions"][:, axis] / np.float64(spacing)
+    starts = np.cumsum(spans.counts, dtype=np.int64) - spans.counts
+    if edge == 1:
+        slopes = (depths[starts + spans.counts - 1] - depths[starts]) / np.maximum(spans.counts - 1, 1)
+        return Runs(spans, depths[starts], slopes, first + starts, np.ones(len(spans), np.int64))
+    (normals,) = axes_columns(arrays["rotations"], 2)
+    across, up = (-normals[(axis + k) % 3] / normals[axis] for k in (1, 2))
+    step = np.arange(edge) - edge // 2
+    triangles, columns, counts, slopes, numbers = (
+        np.repeat(values, edge)
+        for values in (spans.triangles, spans.columns - edge // 2, edge * spans.counts, across, first + starts)
+    )
+    rows = (spans.rows[:, None] + step).ravel()
+    depths = (depths[:, None] + up[:, None] * step - (edge // 2) * across[:, None]).ravel()
+    return Runs(Spans(triangles, rows, columns, counts), depths, slopes, numbers, np.zeros(len(rows), np.int64))
+
+
+def have_other_sides(images: list[list[Runs]], mesh: TriangleMesh, count: int) -> np.ndarray:
+    """(count,) bool: whether the samples with these numbers are on a card.
+
+    images: for each axis, the runs of all samples. Samples that follow each other on a ray are compared.
+    """
+    are_cards, components = np.zeros(count, bool), np.ascontiguousarray(mesh.positions.T)
+    for axis, parts in enumerate(images):
+        spans, *others = zip(*parts, strict=True)
+        runs = Runs(Spans.joined(list(spans)), *map(np.concatenate, others))
+        runs = runs.those(order_of(runs.spans.rows - runs.spans.rows.min(initial=0)))
+        for band in _bands(runs.spans):
+            numbers, triangles, distances = _neighbours(runs.those(band))
+            corners = (gather_corners(components, mesh.triangles[of]) for of in triangles)
+            below, above = (_unit(doubled_areas(of)) for of in corners)
+            are_close = distances * np.abs(below[axis]) < _REACH
+            are_cards[numbers[:, are_close & ((below * above).sum(axis=0) < _OPPOSITE)]] = True
+    return are_cards
+
+
+def move_apart(arrays: dict[str, np.ndarray], are_cards: np.ndarray, spacing: float):
+    """Move surfels along their normals, in place. arrays: field of `Surfels` -> n values. are_cards: (n,) bool."""
+    rows = np.flatnonzero(are_cards)
+    depths = steps_of(arrays["blend_depth"][rows]) / BLEND_STEPS * arrays["scales"][rows].max(axis=1)
+    (normals,) = axes_columns(arrays["rotations"][rows], 2)
+    arrays["positions"][rows] += (normals * np.minimum(depths, _REACH * spacing)).T.astype(np.float32)
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.sqrt((vectors * vectors).sum(axis=0))
+
+
+def _bands(spans: Spans) -> Iterator[slice]:
+    """Slices of spans that are ordered by row; none cuts a row."""
+    if not len(spans):
+        return
+    rows = spans.rows - spans.rows[0]
+    ends = np.cumsum(np.bincount(rows))
+    for part in batches(np.bincount(rows, spans.counts).astype(np.int64), _BATCH):
+        yield slice(int(ends[part.start - 1]) if part.start else 0, int(ends[part.stop - 1]))
+
+
+def _neighbours(runs: Runs) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of p pairs of samples that follow each other on a ray and are close: their numbers and triangles, (2, p) each,
+    and their (p,) distances along the axis."""
+    spans = runs.spans
+    owner, step = expand(spans.counts)
+    depths = runs.depths.take(owner) + runs.slopes.take(owner) * step
+    columns = spans.columns.astype(np.int64) - spans.columns.min(initial=0)
+    width = int((columns + spans.counts).max(initial=0))
+    rays = ((spans.rows - spans.rows.min(initial=0)).astype(np.int64) * width + columns).take(owner) + step
+    parts = ((depths - depths.min(initial=0)) * _PARTS).astype(np.int64)
+    bits = int(parts.max(initial=0)).bit_length()
+    parts += rays << bits
+    order = order_of(parts)
+    rays, depths = rays.take(order), depths.take(order)
+    distances = np.abs(np.diff(depths))
+    first = np.flatnonzero((rays[1:] == rays[:-1]) & (distances < _REACH * MAX_STRETCH))
+    pairs = order.take(np.stack([first, first + 1]))
+    of = owner.take(pairs)
+    return runs.numbers.take(of) + runs.strides.take(of) * step.take(pairs), spans.triangles.take(of), distances[first]
