@@ -45,10 +45,14 @@ OPTIONAL_LAYOUT = {
     "clip_line_2": (2, np.int16, 0),
     "blend_depth": (1, np.float32, 1.0),
     "lift": (1, np.float32, 0.0),
+    "hidden_back": (1, np.float32, 0.0),
 }
 
 #: Minimum alpha of an opaque surfel: filtering an image of ones can leave alpha slightly below 1.
 OPAQUE = 0.999
+
+#: Minimum of `Surfels.hidden_back` of a surfel that is not drawn from behind; a mean of ones can be slightly below 1.
+HIDDEN = 0.999
 
 #: A surface whose opacity is less than this from 0 or 1 is clear or opaque in shadows (lib/screen_door.glsl). Of
 #: the opaque area of a cut-out, this share may be neither: the blurred edges of a leaf's image.
@@ -113,6 +117,8 @@ class Surfels(Shape):
         the epsilon everywhere.
     lift: (N,) float32, 0 or more, how high the smooth surface that shading normals describe lies above the splat, in
         units of the longer half-axis; None: nowhere.
+    hidden_back: (N,) float32, 0 to 1, the share of the splat's back that is the other side of a card, which has surfels
+        of its own: an opaque splat whose back is all hidden is not drawn from behind; None: 0.
 
     Raises ValueError with one sentence for a wrong shape, a non-finite or an out-of-range value;
     `valid_surfels` drops and counts such rows instead.
@@ -131,6 +137,7 @@ class Surfels(Shape):
     clip_line_2: np.ndarray | None = None
     blend_depth: np.ndarray | None = None
     lift: np.ndarray | None = None
+    hidden_back: np.ndarray | None = None
 
     def __post_init__(self):
         arrays = _shaped(self.arrays())
@@ -391,6 +398,7 @@ _DEMANDS = {
     "clip_line_2": "a direction and a cut of 0 or more",
     "blend_depth": "0 to 1",
     "lift": "finite and 0 or more",
+    "hidden_back": "0 to 1",
 }
 
 
@@ -466,6 +474,7 @@ _CHECKS = {
     "clip_line_2": lambda rows: rows[:, 1] >= 0,
     "blend_depth": lambda rows: (rows >= 0) & (rows <= 1),
     "lift": lambda rows: (rows >= 0) & (rows < np.inf),
+    "hidden_back": lambda rows: (rows >= 0) & (rows <= 1),
 }
 
 

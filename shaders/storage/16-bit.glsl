@@ -33,9 +33,16 @@ StoredSplat stored_splat(int index) {
                      floor(shape.z * 65535.0 + 0.5), vec4(root * root * root * brightest, tint.a));
 }
 
+#part hidden_backs
+bool take_hidden_back(inout StoredSplat stored, int index) {
+  ivec2 texel = ivec2((index % SPLATS_PER_ROW) * TEXELS_PER_SPLAT + 2, index / SPLATS_PER_ROW);
+  return texelFetch(surfels, texel, 0).w * 65535.0 > float(BLEND_STEPS) - 0.5;
+}
+
 #part blend_depth
-// The share of the radius over which a splat blends.
+// The share of the radius over which a splat blends; a whole 1 is added where the back is hidden.
 float take_blend_depth(inout StoredSplat stored, int index) {
   ivec2 texel = ivec2((index % SPLATS_PER_ROW) * TEXELS_PER_SPLAT + 2, index / SPLATS_PER_ROW);
-  return 1.0 - texelFetch(surfels, texel, 0).w * (65535.0 / float(BLEND_STEPS));
+  float left_out = floor(texelFetch(surfels, texel, 0).w * 65535.0 + 0.5) / float(BLEND_STEPS);
+  return 1.0 - fract(left_out);
 }

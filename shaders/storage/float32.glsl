@@ -13,6 +13,13 @@ StoredSplat stored_splat(int index) {
   return StoredSplat(position_data.xyz, u_data.xyz, v_data.xyz, normal, v_data.w, color);
 }
 
+#part hidden_backs
+bool take_hidden_back(inout StoredSplat stored, int index) {
+  bool is_hidden = stored.color.a > 1.5;
+  if (is_hidden) stored.color.a -= 2.0;
+  return is_hidden;
+}
+
 #part blend_depth
 // The share of the radius over which a splat blends; the integer part is the material's number.
 float take_blend_depth(inout StoredSplat stored, int index) {

@@ -92,6 +92,7 @@ POINT_ATTRIBUTES = {
     "clip_line_2": PointAttribute("clip_line_2", "INT16_2D", "value", 2),
     "blend_depth": PointAttribute("blend_depth", "FLOAT", "value", 1),
     "lift": PointAttribute("lift", "FLOAT", "value", 1),
+    "hidden_back": PointAttribute("hidden_back", "FLOAT", "value", 1),
 }
 
 #: The position that belongs to each surfel's frame. Blender's edit mode, Apply, Mirror and Join move positions alone;

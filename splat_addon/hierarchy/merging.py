@@ -73,6 +73,8 @@ def as_surfels(nodes: Table, like: Surfels) -> Surfels:
     x, y = (axis / length for axis, length in zip(axes, lengths, strict=True))
     fields = {name: nodes.column(name) for name in (*MEANS, "roughness") if name in nodes.widths}
     fields = {name: columns[0] if len(columns) == 1 else columns.T for name, columns in fields.items()}
+    if "hidden_back" in fields:
+        fields["hidden_back"] = np.minimum(fields["hidden_back"], 1)
     if "uv" in nodes.widths:
         fields |= along_axes(nodes.column("uv"), np.stack(axes))
     if "lift" in nodes.widths:

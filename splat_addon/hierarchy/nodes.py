@@ -14,7 +14,7 @@ from .families import Families
 from .texture_places import gradients
 
 #: Fields that are plainly averaged. Colours, normals, roughness and texture coordinates have their own rules.
-MEANS = ("metallic", "emission")
+MEANS = ("metallic", "emission", "hidden_back")
 
 
 #: Half-axis of a merged surfel relative to the edge of its cell. It is less than that of a sample, because these cells

@@ -70,7 +70,7 @@ def _moved(splats: Splats, lamp: np.ndarray) -> np.ndarray:
 
 
 def _without_solids(scene: Scene) -> Scene:
-    loose = (replace(i, shape=replace(i.surfels, is_solid=False)) for i in scene.surfels)
+    loose = (replace(i, shape=replace(i.surfels, is_solid=False, hidden_back=None)) for i in scene.surfels)
     return replace(scene, surfels=tuple(loose))
 
 

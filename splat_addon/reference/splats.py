@@ -16,7 +16,7 @@ from ..rendering.scene.camera import Camera
 from ..rendering.scene.finish import PLAIN
 from ..rendering.scene.light import MAX_LIGHT_SETS
 from ..rendering.settings import Settings
-from ..surfels import Surfels
+from ..surfels import HIDDEN, Surfels, field_values
 from .textures import surfel_textures
 
 #: Weight of a back relative to a front, and how much farther it is moved away: shaders/lib/sides.glsl.
@@ -151,7 +151,10 @@ def _instance_splats(instance: Instance, camera: Camera, with_finish: bool) -> S
     splats = Splats(
         center, u, v, plane, normal, color, _surface(instance, with_finish), cosine < 0, textures, *uvs, *rest
     )
-    return splats.take(np.flatnonzero(cosine >= 0)) if instance.hides_backs(camera) else splats
+    is_seen = cosine >= 0
+    if not instance.hides_backs(camera):
+        is_seen |= instance.is_transparent or field_values(surfels, "hidden_back") < HIDDEN
+    return splats if is_seen.all() else splats.take(np.flatnonzero(is_seen))
 
 
 def _no_uvs(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

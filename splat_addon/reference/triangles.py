@@ -39,8 +39,8 @@ def render_triangles(
 ) -> TrianglePicture:
     """The picture of triangles by definition.
 
-    corners: (T, 3, 3) world space. colors: (T, 3, 3) scene-linear, at the corners. Both sides are seen; of the two sides
-        of a card, which are in the same place, the one that faces the viewer.
+    corners: (T, 3, 3) world space. colors: (T, 3, 3) scene-linear, at the corners. Both sides are seen; of the two
+        sides of a card, which are in the same place, the one that faces the viewer.
     samples: samples x samples rays a pixel, at (i + 0.5) / samples. pixel_filter: a name in `filters.PIXEL_FILTERS`.
 
     A sample is inside where the three barycentric coordinates of the projected triangle are 0 or more (Pineda, "A

@@ -43,7 +43,7 @@ from .refine.flat_blocks import LARGEST, LEAST_AREA, RING, Large, divided
 from .refine.flat_faces import flat_faces
 from .refine.image_samples import inside_triangles
 from .refine.missed_components import SampledSurface, missed_components
-from .refine.two_sided import have_other_sides, move_apart, runs_of
+from .refine.two_sided import have_other_sides, part_sides, runs_of
 from .workers import in_order
 
 #: Times of the steps that need neighbouring samples, relative to one another: clipping, fitting planes, merging.
@@ -205,7 +205,9 @@ class SamplingRun:
             about = inside_triangles(images), self.grid, self._edges.borders.are_closed()
             arrays = arrays | fit_planes(arrays, _rows_of(images), *about, fitting)
         for edge, are_cards in cards.items():
-            move_apart(of_large.get(edge, arrays), are_cards, self.grid.spacing)
+            part_sides(of_large.get(edge, arrays), are_cards, self.grid.spacing)
+        if gaps and cards:
+            part_sides(gaps, self._mostly(cards[1], images)[gap_triangles], self.grid.spacing)
         saved, error = 0, 0.0
         if self._merges_flat:
             about = self.grid.spacing, self.options.tolerance
@@ -243,7 +245,12 @@ class SamplingRun:
                 runs[axis].append(runs_of(of_edge[axis], axis, edge, values, ends[-1] + rows.start, self.grid.spacing))
             ends.append(ends[-1] + len(arrays[edge]["positions"]))
         are_cards = have_other_sides(runs, self.mesh, ends[-1])
-        return dict(zip(images, np.split(are_cards, ends[1:-1]), strict=True))
+        return dict(zip(images, np.split(are_cards, ends[1:-1]), strict=True)) if are_cards.any() else {}
+
+    def _mostly(self, chosen: np.ndarray, images: tuple[Spans, ...]) -> np.ndarray:
+        """(T,) bool: whether most of the samples of a triangle are chosen."""
+        triangles = np.concatenate([np.repeat(spans.triangles, spans.counts) for spans in images])
+        return np.bincount(triangles, chosen - 0.5, len(self.mesh)) > 0
 
     @property
     def _fits_planes(self) -> bool:

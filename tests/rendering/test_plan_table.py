@@ -215,6 +215,7 @@ TABLE = {
     ),
     "lines that cut nothing": (Scene([Instance(surfels(clip_line=np.zeros((2, 2))))]), {}, PASSES, "", "", ()),
     "blend depths": (Scene([Instance(surfels(blend_depth=[0.1, 1]))]), {}, PASSES, "", "", ("BLEND_DEPTH",)),
+    "cards": (Scene([Instance(surfels(hidden_back=[0, 1]))]), {}, PASSES, "", "", ("HIDDEN_BACKS",)),
     "holdout": (HOLED, {}, PASSES, "", "", ("HOLDOUT",)),
     "holdout, by mip": (
         HOLED, {"method": "mip"},

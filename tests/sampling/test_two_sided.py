@@ -86,8 +86,9 @@ def test_they_move_by_some_hundredths_of_a_cell(apart):
     surfels = sample_surface(mesh, resolution=40, **OPTIONS).surfels
     heights = (surfels.positions[:, 2] + surfels.origin[2]) * 40
     is_front = surfels.colors[:, 0] > 0.5
-    assert 0.01 < heights[is_front].min() and heights[is_front].max() < 0.08
-    assert 0.01 < -(heights[~is_front] + apart).max() and -(heights[~is_front] + apart).min() < 0.08
+    assert 0.005 < heights[is_front].min() and heights[is_front].max() < 0.05
+    assert 0.005 < -(heights[~is_front] + apart).max() and -(heights[~is_front] + apart).min() < 0.05
+    assert (surfels.hidden_back == 1).all()
 
 
 @pytest.mark.parametrize("name", ["cube", "sphere", "sheet", "parallel sheets"])
@@ -101,6 +102,7 @@ def test_nothing_else_moves(name, cube, sphere, monkeypatch):
         "parallel sheets": lower,
     }[name]
     moved = sample_surface(mesh, resolution=60, **OPTIONS).surfels
+    assert moved.hidden_back is None
     monkeypatch.setattr(two_sided, "_REACH", 0.0)
     assert np.array_equal(moved.positions, sample_surface(mesh, resolution=60, **OPTIONS).surfels.positions)
 

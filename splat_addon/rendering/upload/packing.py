@@ -4,7 +4,7 @@
 A splat is four RGBA32F texels, 512 splats a row:
     position.xyz, normal.x   |   axis u.xyz, normal.y   |   axis v.xyz, material   |   color.rgba
 where normal.xy is the octahedral form of the shading normal and the axes carry the half-axes' lengths. Blend depths are
-stored in the fractional part of the material.
+stored in the fractional part of the material. 2 is added to the opacity of an opaque surfel whose back is hidden.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, TURN
 from ...large_surfels import BLEND_STEPS, steps_of
-from ...surfels import Surfels, quaternion_axes
+from ...surfels import HIDDEN, OPAQUE, Surfels, quaternion_axes
 from ..scene import Finish, Material, Placed
 from .stored_order import SPLATS_PER_ROW
 
@@ -38,6 +38,8 @@ def pack_surfels(surfels: Surfels, order: np.ndarray) -> np.ndarray:
         if surfels.blend_depth is not None:
             filled[:, 2, 3] += not_blended(surfels.blend_depth[some]) / BLEND_STEPS
         filled[:, 3] = surfels.colors[some]
+        if surfels.hidden_back is not None:
+            filled[:, 3, 3] += 2 * ((surfels.hidden_back[some] >= HIDDEN) & (filled[:, 3, 3] >= OPAQUE))
     return texels.reshape(rows, SPLATS_PER_ROW * TEXELS_PER_SPLAT, 4)
 
 

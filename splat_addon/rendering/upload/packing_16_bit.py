@@ -11,14 +11,16 @@ Maximum error of each value: position: 2^-17 of the block's box, along each axis
 shortest of the block) octaves, below 2^-10 of themselves while that ratio is below 2^180; equal lengths are exact. The
 axes turn by 2e-4 radians at most. normal: 5e-5 radians. colour: cube root of the share of the block's brightest in
 steps of 2^-15, so 5e-5 of the brightest and 1e-3 of a colour a thousandth as bright. 0 is exact. opacity: 2^-17 within
-0 to 1. material: none up to 65,535, beyond which it is refused. blend depth: what `not_blended` rounds.
+0 to 1. material: none up to 65,535, beyond which it is refused. blend depth: what `not_blended` rounds, below
+`BLEND_STEPS`, which is added for a surfel whose back is hidden.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ...surfels import Surfels
+from ...large_surfels import BLEND_STEPS
+from ...surfels import HIDDEN, Surfels
 from .packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT, not_blended, octahedral, row_count
 
 #: An error of this share of a splat's shorter half-axis is visible.
@@ -70,6 +72,8 @@ def pack_16_bit(surfels: Surfels, order: np.ndarray) -> tuple[tuple[np.ndarray, 
     texels[:, :, 2, 2] = blocks(surfels.materials) / _STEPS
     if surfels.blend_depth is not None:
         texels[:, :, 2, 3] = blocks(not_blended(surfels.blend_depth)) / _STEPS
+    if surfels.hidden_back is not None:
+        texels[:, :, 2, 3] += blocks(surfels.hidden_back >= HIDDEN) * (BLEND_STEPS / _STEPS)
 
     colors = blocks(surfels.colors)
     brightest = np.abs(colors[..., :3]).max(axis=(1, 2))

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Moves the two sides of cards apart.
+"""Parts the two sides of cards.
 
 Leaves, feathers and flags are often modelled as two sheets in the same place that face opposite ways. A splat blends
-with what lies within its blend depth behind it, so both sides would be seen at once. Both therefore move outwards by
-their blend depth, which is some hundredths of a cell where they are flat.
+with what lies within its blend depth behind it, so both sides would be seen at once. Their surfels are therefore marked
+(`Surfels.hidden_back`), and opaque ones are not drawn from behind. Transparent ones are, as two layers: both sides move
+outwards until they are farther apart than they blend, which is some hundredths of a cell where they are flat.
 """
 
 from __future__ import annotations
@@ -19,10 +20,14 @@ from ..attributes.ellipses import MAX_STRETCH
 from ..edges.ordering import order_of
 from ..ldc.scan_conversion import Spans, batches, expand
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
+from .fitted_planes import cut_less
 
 #: Sheets that are closer than this, in cells, with a cosine between their normals below this, are a card's sides. They
 #: may cross, because a bent card's sides may be divided into different triangles.
 _REACH, _OPPOSITE = 0.2, -0.9
+
+#: How far each side moves, in blend depths: both together by a fifth more than one.
+_MOVED = 0.6
 
 #: Samples on one ray are ordered by depth in these parts of a cell.
 _PARTS = 64
@@ -89,12 +94,20 @@ def have_other_sides(images: list[list[Runs]], mesh: TriangleMesh, count: int) -
     return are_cards
 
 
-def move_apart(arrays: dict[str, np.ndarray], are_cards: np.ndarray, spacing: float):
-    """Move surfels along their normals, in place. arrays: field of `Surfels` -> n values. are_cards: (n,) bool."""
+def part_sides(arrays: dict[str, np.ndarray], are_cards: np.ndarray, spacing: float):
+    """Move some surfels along their normals, in place, and add the field that marks them.
+
+    arrays: field of `Surfels` -> n values. are_cards: (n,) bool, which ones.
+    """
+    arrays["hidden_back"] = are_cards.astype(np.float32)
     rows = np.flatnonzero(are_cards)
-    depths = steps_of(arrays["blend_depth"][rows]) / BLEND_STEPS * arrays["scales"][rows].max(axis=1)
+    depths = steps_of(arrays["blend_depth"][rows]) / BLEND_STEPS
+    radii = arrays["scales"][rows].max(axis=1)
+    distances = np.minimum(_MOVED * depths * radii, _REACH * spacing)
     (normals,) = axes_columns(arrays["rotations"][rows], 2)
-    arrays["positions"][rows] += (normals * np.minimum(depths, _REACH * spacing)).T.astype(np.float32)
+    arrays["positions"][rows] += (normals * distances).T.astype(np.float32)
+    # A fold stays closed, although its faces move apart.
+    cut_less(arrays, rows, distances / radii)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Skips opaque splats from behind where the other side of their card hides them. Transparent cards show both sides."""
+
+from __future__ import annotations
+
+from ..plan.graph import Part
+from .drawing import SPLAT_HOSTS
+
+
+def _count(planning) -> int:
+    return sum(i.surfels.hidden_back is not None and not i.is_transparent for i in planning.scene.surfels)
+
+
+def passes(planning):
+    """No passes; records whether there are such splats."""
+    count = planning.find(_count)
+    return planning.counts(
+        "HIDDEN_BACKS", count, "{count} instances have cards with two sides", "backs of cards", "none"
+    )
+
+
+def is_present(planning) -> bool:
+    return bool(planning.find(_count))
+
+
+def parts(planning, p):
+    if p.host in (*SPLAT_HOSTS, "visibility.frag") and p.kind == "opaque":
+        yield Part("hidden_backs", only="splats" if p.host == "visibility.frag" else "")
