@@ -22,9 +22,12 @@ from ..ldc.scan_conversion import Spans, batches, expand
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
 from .fitted_planes import cut_less
 
-#: Sheets that are closer than this, in cells, with a cosine between their normals below this, are a card's sides. They
-#: may cross, because a bent card's sides may be divided into different triangles.
+#: Sheets are a card's sides if they are less than this far behind one another, in cells, and the cosine between their
+#: normals is below this.
 _REACH, _OPPOSITE = 0.2, -0.9
+
+#: Sides may be this far before one another, in cells: a bent card's may be divided into different triangles.
+_CROSSED = 0.02
 
 #: How far each side moves, in blend depths: both together by a fifth more than one.
 _MOVED = 0.6
@@ -89,8 +92,9 @@ def have_other_sides(images: list[list[Runs]], mesh: TriangleMesh, count: int) -
             numbers, triangles, distances = _neighbours(runs.those(band))
             corners = (gather_corners(components, mesh.triangles[of]) for of in triangles)
             below, above = (_unit(doubled_areas(of)) for of in corners)
-            are_close = distances * np.abs(below[axis]) < _REACH
-            are_cards[numbers[:, are_close & ((below * above).sum(axis=0) < _OPPOSITE)]] = True
+            behind = -distances * below[axis]
+            are_close = (behind > -_CROSSED) & (behind < _REACH) & ((below * above).sum(axis=0) < _OPPOSITE)
+            are_cards[numbers[:, are_close]] = True
     return are_cards
 
 
@@ -138,8 +142,8 @@ def _neighbours(runs: Runs) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     parts += rays << bits
     order = order_of(parts)
     rays, depths = rays.take(order), depths.take(order)
-    distances = np.abs(np.diff(depths))
-    first = np.flatnonzero((rays[1:] == rays[:-1]) & (distances < _REACH * MAX_STRETCH))
+    distances = np.diff(depths)
+    first = np.flatnonzero((rays[1:] == rays[:-1]) & (np.abs(distances) < _REACH * MAX_STRETCH))
     pairs = order.take(np.stack([first, first + 1]))
     of = owner.take(pairs)
     return runs.numbers.take(of) + runs.strides.take(of) * step.take(pairs), spans.triangles.take(of), distances[first]
