@@ -110,10 +110,11 @@ void clip_lines_bound(inout Candidate c) {
 #part screen_space.frag, blurs_lines, depth_bounds
 const float TO_WITHIN = 0.75;  // pixels past the line, up to which a sample's area is at most partly beyond it
 const float TO_LINE = 0.25;    // pixels by which the distance to the line may be wrong
+const float TO_NARROW = 0.1;   // the same for what is narrower than a pixel, where both lines are near
 
 // Distance in pixels past the nearest line to a kept point, at most 0 for kept points. way: the unit vector back.
-float past_line(out vec2 way) {
-  float one = dot(from_first, vec3(gl_FragCoord.xy, 1.0)), other = dot(from_second, vec3(gl_FragCoord.xy, 1.0));
+float past_line(vec2 from, out vec2 way) {
+  float one = dot(from_first, vec3(from, 1.0)), other = dot(from_second, vec3(from, 1.0));
   bool is_first = clip_is_reflex > 0.5 ? one > other : one < other;
   way = is_first ? from_first.xy : from_second.xy;
   return is_first ? -one : -other;
@@ -121,28 +122,34 @@ float past_line(out vec2 way) {
 
 // By how much per pixel the depth from the splat's plane to the visible surface grows, from `gap` here to the next sample
 // away from the line. It is endless if that sample is empty.
-float growth_of(float gap, Plane plane, vec2 way) {
-  ivec2 next = ivec2(floor(gl_FragCoord.xy - way)), last = textureSize(depth_bounds, 0) - 1;
+float growth_of(vec2 from, float gap, Plane plane, vec2 way) {
+  ivec2 next = ivec2(floor(from - way)), last = textureSize(depth_bounds, 0) - 1;
   float seen = texelFetch(depth_bounds, clamp(next, ivec2(0), last), 0).z;
   float depth = plane.depth + dot(plane.slope, place_at(plane, vec2(next) + 0.5).uv);
-  return (seen - depth - gap) / dot(gl_FragCoord.xy - vec2(next) - 0.5, way);
+  return (seen - depth - gap) / dot(from - vec2(next) - 0.5, way);
 }
 
 // Beyond the line the adjacent face is visible, and may hide the splat's plane, while the pixel's filter reaches over
 // the crease. There the splat counts as much as it is visible before the line. The adjacent face meets the splat's
 // plane at the line, so the gap between both grows from there to the next pixel. A visible surface that is nearer by a
-// larger gap is another one, and hides the splat. The twin: seen_past_lines in reference/clipped_kernels.py.
+// larger gap is another one, and hides the splat. If the splat is so narrow that the sample before the line is past
+// another line, the same must hold there. The twin: seen_past_lines in reference/clipped_kernels.py.
 void blurs_lines_bound(inout Candidate c) {
-  vec2 way;
-  float past = past_line(way), nearer = c.depth - c.seen.z, growth = growth_of(-nearer, c.plane, way);
+  vec2 way, other_way;
+  float past = past_line(gl_FragCoord.xy, way), nearer = c.depth - c.seen.z;
+  float growth = growth_of(gl_FragCoord.xy, -nearer, c.plane, way);
   if (c.in_space || past <= 0.0) return;
   vec2 before_line = gl_FragCoord.xy + (TO_WITHIN + past) * way;
   ivec2 at = clamp(ivec2(floor(before_line)), ivec2(0), textureSize(depth_bounds, 0) - 1);
-  float before = plane_depth(c.plane, place_at(c.plane, vec2(at) + 0.5));
-  bool is_seen = before <= texelFetch(depth_bounds, at, 0).z;
-  if (!is_seen) discard;
-  if (nearer > (1.0 + 4.0 * draw.epsilon) * c.plane.radius &&
-      (nearer > most_nearer(c.plane) || nearer > -growth * (past + TO_LINE))) discard;
+  vec2 before = vec2(at) + 0.5;
+  float nearer_before = plane_depth(c.plane, place_at(c.plane, before)) - texelFetch(depth_bounds, at, 0).z;
+  float past_other = past_line(before, other_way), most_before = 0.0;
+  bool is_narrow = past_other > 0.0;
+  if (is_narrow) most_before = -growth_of(before, -nearer_before, c.plane, other_way) * (past_other + TO_NARROW);
+  if (nearer_before > max(most_before, 0.0)) discard;
+  float room = is_narrow ? 0.0 : (1.0 + 4.0 * draw.epsilon) * c.plane.radius;
+  float most = min(most_nearer(c.plane), -growth * (past + (is_narrow ? TO_NARROW : TO_LINE)));
+  if (nearer > max(room, most)) discard;
   c.compared = min(c.compared, c.seen.z);
 }
 
@@ -154,7 +161,8 @@ const float STEEPEST = 8.0;       // pixels of depth per pixel; steeper, the sil
 // silhouette filter blurs that end.
 void blurs_lines_ends_bound(inout Candidate c) {
   vec2 way;
-  float past = past_line(way), gap = c.seen.w - c.depth, growth = max(growth_of(gap, c.plane, way), 0.0);
+  float past = past_line(gl_FragCoord.xy, way), gap = c.seen.w - c.depth;
+  float growth = max(growth_of(gl_FragCoord.xy, gap, c.plane, way), 0.0);
   if (c.in_space || past <= 0.0 || gap <= OTHER_SURFACE * c.plane.radius) return;
   if (gap > OTHER_SURFACE * c.plane.radius + growth * (past + TO_LINE)) discard;
   if (growth < STEEPEST * pixel_length(c.plane)) c.compared = c.seen.z;

@@ -17,8 +17,8 @@ from .splats import Splats
 #: Pixels past a line, up to which a sample's area is at most partly beyond it.
 TO_WITHIN = 0.75
 
-#: Pixels by which the distance to a line may be wrong.
-TO_LINE = 0.25
+#: Pixels by which the distance to a line may be wrong; and where a splat is narrower than a pixel.
+TO_LINE, TO_NARROW = 0.25, 0.1
 
 #: Pixels, as a length at the splat, by which a face beyond a concave crease may be nearer than the radius allows.
 NEARER_PIXELS = 4.0
@@ -55,34 +55,42 @@ def seen_past_lines(
 ) -> np.ndarray:  # fmt: skip
     """(M,) bool: whether splats are seen on rays that have passed one of their lines.
 
-    They are if they are seen before the line and only the face beyond it hides them, which meets their plane there.
+    They are if they are seen before the line and only the face beyond it hides them, which meets their plane there. If
+    the ray before the line is past another one, because the splat is narrow, the same must hold there.
     ray, splat: (M,) numbers. back: (M, 2) of `kernel_ends`, none (0, 0). visibility: (count,) depth up to which each
     ray sees. depth_on(splat, ray): (M,) depths of planes on rays, held near the splats. epsilon: in radii.
     """
     before = grid.numbers(*np.floor(grid.columns_rows(ray) + 0.5 + back.T))
-    is_seen = depth_on(splat, before) <= visibility[before]
+    nearer_before = depth_on(splat, before) - visibility[before]
+    other_back = kernel_ends(splats, grid, before, splat)[1]
+    is_narrow, most_before = other_back.any(axis=1), np.zeros(len(ray))
+    some = np.flatnonzero(is_narrow)
+    of = before[some], splat[some], other_back[some], visibility, nearer_before[some], TO_NARROW
     nearer, apart = depth_on(splat, ray) - visibility[ray], (1 + 4 * epsilon) * splats.radius()[splat]
     depth = np.ones(len(splat)) if grid.camera.is_orthographic else -splats.center[splat, 2]
     with np.errstate(divide="ignore", invalid="ignore"):
-        allowed = np.minimum(
+        most_before[some] = _growth(splats, grid, *of)
+        slack = np.where(is_narrow, TO_NARROW, TO_LINE)
+        most = np.minimum(
             apart + NEARER_PIXELS * depth * grid.steps()[0],
-            _growth(splats, grid, ray, splat, back, visibility, nearer),
+            _growth(splats, grid, ray, splat, back, visibility, nearer, slack),
         )
-    return is_seen & ((nearer <= apart) | (nearer <= allowed))
+    is_seen = nearer_before <= np.maximum(most_before, 0)
+    return is_seen & (nearer <= np.maximum(np.where(is_narrow, 0, apart), most))
 
 
-def _growth(splats: Splats, grid: RayGrid, ray, splat, back: np.ndarray, visibility, nearer) -> np.ndarray:
+def _growth(splats: Splats, grid: RayGrid, ray, splat, back: np.ndarray, visibility, nearer, slack) -> np.ndarray:
     """(M,) by how much the visible surface may have come nearer than the plane since the line, if from there on it
     comes nearer as it does from the ray to the next; -inf if that ray sees nothing.
 
-    nearer: (M,) by how much it is nearer on the ray.
+    nearer: (M,) by how much it is nearer on the ray. slack: pixels by which the distance to the line may be wrong.
     """
     length = np.linalg.norm(back, axis=1)
     way, at = back / length[:, None], grid.columns_rows(ray)
     beyond = np.floor(at + 0.5 - way.T)
     origin, direction = grid.through(*beyond)
     further = _depth(splats, splat, origin, direction) - visibility[grid.numbers(*beyond)]
-    return (further - nearer) / np.einsum("in,ni->n", at - beyond, way) * (length - TO_WITHIN + TO_LINE)
+    return (further - nearer) / np.einsum("in,ni->n", at - beyond, way) * (length - TO_WITHIN + slack)
 
 
 def _places(splats: Splats, grid: RayGrid, ray: np.ndarray, splat: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
