@@ -150,6 +150,21 @@ def test_a_face_narrower_than_a_cell_is_covered_by_surfels_of_its_own():
     assert len(sampling.gap_triangles) < len(sampling.surfels) / 4
 
 
+@pytest.mark.parametrize("thickness", [0.2, 0.4])
+def test_a_long_narrow_face_is_covered_up_to_its_ends(thickness):
+    """No ray hits the sides of a thin plate, each of which is two long triangles."""
+    plate = trimesh.creation.box(bounds=[(2.7, 1.3, 0.6), (37.7, 11.3, 0.6 + thickness)])
+    # a triangle at the origin, where the grid begins
+    corner = trimesh.Trimesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+    both = trimesh.util.concatenate([plate, corner])
+    mesh = TriangleMesh(both.vertices, both.faces)
+    surfels = sample_surface(mesh, spacing=1.0, crease_angle=np.radians(20)).surfels
+    points, normals = on_surface(mesh, 40_000)
+    narrow = np.flatnonzero(np.abs(normals[:, 1]) > 0.9)
+    assert len(narrow) > 500
+    assert bare_share(surfels, points[narrow], normals[narrow]) < 0.005
+
+
 @pytest.mark.parametrize("turn", [1, -1])
 def test_beside_a_narrow_face_splats_end_at_their_own_crease(turn):
     """A narrow chamfer is between two faces, at 25 degrees to either, so surfels meet both of its creases."""

@@ -28,8 +28,8 @@ _CELL = 0.6
 #: Numbers the cells of a grid: more of them along an edge than a grid has.
 _CELL_NUMBER = np.array((1, 1 << 20, 1 << 40))
 
-#: Inside of a triangle, no farther on the way to its middle than this.
-_TO_MIDDLE = 0.3
+#: Inside of a triangle, no farther on the way to its opposite corner than this.
+_TO_CORNER = 0.3
 
 #: A place is covered this far into an ellipse, squared.
 _COVERED = 0.8
@@ -70,13 +70,13 @@ class BorderPlaces:
         along = borders.end - borders.start
         self._counts = np.ceil(np.linalg.norm(along, axis=1) / (_STEP * grid.spacing)).astype(np.int64) + 1
         self._offsets = np.cumsum(self._counts) - self._counts
-        # All are moved by the same share towards the middle.
+        # All are moved by the same share towards the opposite corner, so that a row stays as long as its triangle is.
         corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles.take(borders.triangles, axis=0)))
-        middle = (corners[:, 0] + corners[:, 1] + corners[:, 2]).T / 3
-        depth = np.einsum("ij,ij->i", middle - borders.start, borders.inward)
-        part = np.minimum(_INSIDE * grid.spacing / np.maximum(depth, 1e-300), _TO_MIDDLE)[:, None]
+        corner = (corners[:, 0] + corners[:, 1] + corners[:, 2]).T - borders.start - borders.end
+        height = np.einsum("ij,ij->i", corner - borders.start, borders.inward)
+        part = np.minimum(_INSIDE * grid.spacing / np.maximum(height, 1e-300), _TO_CORNER)[:, None]
         ends = (borders.start + along * share for share in (_ENDS, 1 - _ENDS))
-        self._ends = [place + (middle - place) * part for place in ends]
+        self._ends = [place + (corner - place) * part for place in ends]
         seen = ((end - grid.surfel_origin).T / grid.spacing for end in self._ends)
         self._seen = [np.ascontiguousarray(end, np.float32) for end in seen]
         self._changes = np.zeros(int(self._counts.sum()) + 1, np.int64)
