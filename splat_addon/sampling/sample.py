@@ -33,6 +33,7 @@ from .ldc.grid import make_grid
 from .ldc.reductions import find_reduction
 from .ldc.scan_conversion import BATCH, Spans, batches
 from .mesh.cleaning import drop_unusable
+from .mesh.solid import is_solid
 from .mesh.triangle_mesh import TriangleMesh
 from .options import SamplingOptions
 from .progress import Progress, stage
@@ -234,9 +235,11 @@ class SamplingRun:
     def _cards(
         self, images: dict[int, tuple[Spans, ...]], arrays: dict[int, dict[str, np.ndarray]]
     ) -> dict[int, np.ndarray]:
-        """Edge of blocks -> `have_other_sides` of their samples; {} where splats have no depths of their own. images,
-        arrays: by the same edges."""
-        if self._bends is None or self._chosen.merge is not None:
+        """Edge of blocks -> `have_other_sides` of their samples, {} if none has. images, arrays: by the same edges.
+
+        Without blend depths, fronts hide backs. Of a solid, no back is seen.
+        """
+        if self._bends is None or self._chosen.merge is not None or is_solid(self.mesh):
             return {}
         runs, ends = ([], [], []), [0]
         for edge, of_edge in images.items():

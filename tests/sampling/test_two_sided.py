@@ -16,6 +16,7 @@ from splat_addon.sampling import (
     VertexColors,
     drop_unusable,
     grid_spacing,
+    is_solid,
     joined_blocks,
     sample_block,
     sample_surface,
@@ -47,7 +48,7 @@ def card(turn=None, bend=0.0, other_diagonal=False, apart=0.0):
 
 def seen(surfels, direction):
     """(n, 3) colours where places are seen from this direction: those of the nearest splats, or means of all splats
-    within their blend depth."""
+    within their blend depth. Backs of solids are not seen."""
     x, y, z = quaternion_axes(surfels.rotations.astype(np.float64))
     places = surfels.positions.astype(np.float64)
     depth = surfels.blend_depth * surfels.radius
@@ -57,6 +58,7 @@ def seen(surfels, direction):
         hit = place - places + way[:, None] * direction
         inside = (np.einsum("ij,ij->i", hit, x) / surfels.scales[:, 0]) ** 2
         inside += (np.einsum("ij,ij->i", hit, y) / surfels.scales[:, 1]) ** 2
+        inside[surfels.is_solid & (z @ direction < 0)] = 2
         height, blends = way[inside < 1], (depth / np.abs(z @ direction))[inside < 1]
         colors.append(surfels.colors[inside < 1, :3][height >= (height - blends).max()].mean(axis=0))
     return np.array(colors)
@@ -74,7 +76,10 @@ angles = st.tuples(*[st.floats(-3, 3)] * 3)
 )
 def test_each_side_of_a_card_has_its_own_colour(angles, resolution, other_diagonal, bend):
     turn = Rotation.from_euler("xyz", angles)
-    surfels = sample_surface(card(turn, bend, other_diagonal), resolution=resolution, **OPTIONS).surfels
+    mesh = card(turn, bend, other_diagonal)
+    surfels = sample_surface(mesh, resolution=resolution, **OPTIONS).surfels
+    # bent apart, the two sheets bound a solid
+    surfels = surfels.as_solid() if is_solid(mesh) else surfels
     up = turn.apply((0.1, 0.2, 1.0))
     for direction, color in ((up, FRONT), (-up, BACK)):
         assert np.abs(seen(surfels, direction) - color[:3]).max() < 1e-6
