@@ -44,7 +44,7 @@ from .refine.flat_blocks import LARGEST, LEAST_AREA, RING, Large, divided
 from .refine.flat_faces import flat_faces
 from .refine.image_samples import inside_triangles
 from .refine.missed_components import SampledSurface, missed_components
-from .refine.two_sided import have_other_sides, part_sides, runs_of
+from .refine.two_sided import have_other_sides, runs_of
 from .workers import in_order
 
 #: Times of the steps that need neighbouring samples, relative to one another: clipping, fitting planes, merging.
@@ -206,9 +206,9 @@ class SamplingRun:
             about = inside_triangles(images), self.grid, self._edges.borders.are_closed()
             arrays = arrays | fit_planes(arrays, _rows_of(images), *about, fitting)
         for edge, are_cards in cards.items():
-            part_sides(of_large.get(edge, arrays), are_cards, self.grid.spacing)
+            of_large.get(edge, arrays)["hidden_back"] = are_cards.astype(np.float32)
         if gaps and cards:
-            part_sides(gaps, self._mostly(cards[1], images)[gap_triangles], self.grid.spacing)
+            gaps["hidden_back"] = self._mostly(cards[1], images)[gap_triangles].astype(np.float32)
         saved, error = 0, 0.0
         if self._merges_flat:
             about = self.grid.spacing, self.options.tolerance

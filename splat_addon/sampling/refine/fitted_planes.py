@@ -97,7 +97,7 @@ def fit_planes(
         moved = np.abs(offset) + np.sqrt((slope * slope).sum(axis=0))
         less = (sums.goes_on.take(at) | is_closed) * (_KEPT * moved * grid.spacing)
         # The first half-axis is the larger one (`ellipse_scales`).
-        cut_less(changed, cut, less / scales[:, 0])
+        _cut_less(changed, cut, less / scales[:, 0])
         return len(rows)
 
     to_fit = [np.flatnonzero(inside.take(bent.take(image.rows)) == 0) for image in seen]
@@ -263,7 +263,7 @@ def _move(changed, rows: np.ndarray, normals: list[np.ndarray], offset: np.ndarr
     changed["rotations"][rows] = rotations
 
 
-def cut_less(changed: dict[str, np.ndarray], rows: np.ndarray, less: np.ndarray):
+def _cut_less(changed: dict[str, np.ndarray], rows: np.ndarray, less: np.ndarray):
     """Let the lines of (n,) cut surfels cut less, by (n,) half-axes; none goes."""
     for name in CLIP_FIELDS:
         if name in changed:

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Parts the two sides of cards.
+"""Finds cards: two sheets in the same place that face opposite ways, as leaves, feathers and flags are often modelled.
 
-Leaves, feathers and flags are often modelled as two sheets in the same place that face opposite ways. A splat blends
-with what lies within its blend depth behind it, so both sides would be seen at once. Their surfels are therefore marked
-(`Surfels.hidden_back`), and opaque ones are not drawn from behind. Transparent ones are, as two layers: both sides move
-outwards until they are farther apart than they blend, which is some hundredths of a cell where they are flat.
+A splat blends with what lies within its blend depth behind it, so both sides would be seen at once. Their surfels are
+marked (`Surfels.hidden_back`), and opaque ones are not drawn from behind. Transparent sides are one layer, because most
+are leaves with the same image: two layers of its filtered alpha would hide too much at its edges.
 """
 
 from __future__ import annotations
@@ -14,13 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...large_surfels import BLEND_STEPS, steps_of
 from ...surfels import axes_columns
 from ..attributes.ellipses import MAX_STRETCH
 from ..edges.ordering import order_of
 from ..ldc.scan_conversion import Spans, batches, expand
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
-from .fitted_planes import cut_less
 
 #: Sheets are a card's sides if they are less than this far behind one another, in cells, and the cosine between their
 #: normals is below this.
@@ -28,9 +25,6 @@ _REACH, _OPPOSITE = 0.2, -0.9
 
 #: Sides may be this far before one another, in cells: a bent card's may be divided into different triangles.
 _CROSSED = 0.02
-
-#: How far each side moves, in blend depths: both together by a fifth more than one.
-_MOVED = 0.6
 
 #: Samples on one ray are ordered by depth in these parts of a cell.
 _PARTS = 64
@@ -96,22 +90,6 @@ def have_other_sides(images: list[list[Runs]], mesh: TriangleMesh, count: int) -
             are_close = (behind > -_CROSSED) & (behind < _REACH) & ((below * above).sum(axis=0) < _OPPOSITE)
             are_cards[numbers[:, are_close]] = True
     return are_cards
-
-
-def part_sides(arrays: dict[str, np.ndarray], are_cards: np.ndarray, spacing: float):
-    """Move some surfels along their normals, in place, and add the field that marks them.
-
-    arrays: field of `Surfels` -> n values. are_cards: (n,) bool, which ones.
-    """
-    arrays["hidden_back"] = are_cards.astype(np.float32)
-    rows = np.flatnonzero(are_cards)
-    depths = steps_of(arrays["blend_depth"][rows]) / BLEND_STEPS
-    radii = arrays["scales"][rows].max(axis=1)
-    distances = np.minimum(_MOVED * depths * radii, _REACH * spacing)
-    (normals,) = axes_columns(arrays["rotations"][rows], 2)
-    arrays["positions"][rows] += (normals * distances).T.astype(np.float32)
-    # A fold stays closed, although its faces move apart.
-    cut_less(arrays, rows, distances / radii)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
