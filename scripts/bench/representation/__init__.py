@@ -52,6 +52,7 @@ def arguments(parser) -> None:
     parser.add_argument("--model", nargs="+", default=MODELS, help='files among the models, or "plate"')
     parser.add_argument("--views", type=int, default=3, choices=(1, 2, 3))
     parser.add_argument("--samples", type=int, default=1, help="pictures whose mean the engine shows; F12 has 16")
+    parser.add_argument("--tolerance", type=float, default=1.0, help="Detail Tolerance, in pixels")
     parser.add_argument("--exact", type=int, default=0, help="samples along a pixel of exact pictures; 0 for none")
     parser.add_argument("--points", type=int, default=0, help="measure random points of this number instead")
     parser.add_argument("--noise", type=float, nargs="+", default=[0.0], help="of points, in spacings")
@@ -100,7 +101,7 @@ def rows(meshes, renderer, options, report):
         for resolution, density in densities(mesh, cameras, options).items():
             drawn = {"engine": "flat", "whole": "now"}
             scenes = {shown: Scene((converted(mesh, density, kind),)) for shown, kind in drawn.items()}
-            settings = replace(SETTINGS, samples=options.samples)
+            settings = replace(SETTINGS, samples=options.samples, detail_tolerance=options.tolerance)
             draw = dict.fromkeys(drawn, partial(renderer.render, settings=settings))
             for kind in options.kind if options.exact else ():
                 scenes[kind] = Scene((converted(mesh, density, kind),))
