@@ -99,15 +99,15 @@ def test_past_the_edge_at_which_it_joins_a_sheet_a_lining_does_not_show(slope, r
 
 @pytest.mark.parametrize("from_behind", [False, True])
 def test_a_card_shows_the_side_that_faces_the_viewer(from_behind, render):
-    """A red sheet and a green one in the same place face opposite ways. Both end in the middle of one pixel.
+    """A red sheet and a green one in the same place face opposite ways.
 
-    Measured: that pixel is wrong, by 0.25; all pixels of the card were when the sheets stayed where they were.
+    Measured: an error of 0.09, as of one sheet alone; it is 0.45 if their backs are drawn.
     """
     front = np.array([(-1, -0.7, 0), (1, -0.6, 0), (0.9, 0.8, 0), (-1, 0.9, 0)])
     mesh = sheets(((1, 0.1, 0.1), front), ((0.1, 1, 0.1), front[[1, 0, 3, 2]]))
     eye = np.array((0.6, 1.5, -6 if from_behind else 6))
     camera = Camera.perspective(look_at(eye, (0, 0, 0)), 0.5, (64, 64), 0.1, 100)
-    assert np.count_nonzero(apart(mesh, camera, 0.02, render) > 0.12) <= 1
+    assert apart(mesh, camera, 0.02, render).max() < 0.12
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.4, 2.0])

@@ -109,8 +109,8 @@ def test_transparent_ones_and_mirrored_ones_have_backs(storage, render):
 
 
 def test_hidden_backs_cast_shadows(render):
-    """A floor under a sheet whose lower side is hidden, seen from between them."""
-    roof, floor = sheet(24, 1.5, 0, 0), sheet(24, 3, 0, 0)
+    """A floor under a sheet whose upper side, which the sun sees, is a hidden back; the eye is between them."""
+    roof, floor = turned_over(sheet(24, 1.5, 0, 0)), sheet(24, 3, 0, 0)
     moved = np.eye(4)
     moved[2, 3] = -1
     sun = Light("sun", energy=3, direction=(0, 0, -1), casts_shadow=True)
