@@ -15,9 +15,13 @@ vec3 unpacked_line(vec2 stored) {
 }
 
 void clip_lines_tell(Splat splat, int index) {
-  vec4 stored = floor(texelFetch(clip_lines, ivec2(index % SPLATS_PER_ROW, index / SPLATS_PER_ROW), 0) * 65535.0 + 0.5);
+  int row = index / SPLATS_PER_ROW - (float(index) < draw.first_merged ? 0 : int(draw.rows_without_lines));
+  vec4 stored = floor(texelFetch(clip_lines, ivec2(index % SPLATS_PER_ROW, row), 0) * 65535.0 + 0.5);
   clip_first = unpacked_line(stored.xy);
   clip_second = unpacked_line(stored.zw);
+  // the axes of merged splats may have been shortened
+  clip_first.xy *= splat.shortened;
+  clip_second.xy *= splat.shortened;
   bool are_there = stored.y > 0.0 && stored.w > 0.0;
   clip_is_reflex = are_there && mod(stored.z - stored.x + 65536.0, 65536.0) > 32768.0 ? 1.0 : 0.0;
 }

@@ -1,7 +1,7 @@
 // References: Zwicker, Pfister, van Baar, Gross, "EWA Splatting", 2002 (a kernel's and a filter's variances add up).
 // Summary: merged splats overlap by so much that coarse levels have no holes. Where they are about as small as a pixel,
 //          its filter blends them, too, and the same overlap would blur the picture and protrude at silhouettes. They
-//          are narrower there by what the filter adds.
+//          are narrower there by what the filter adds. They overlap less than samples, and therefore weigh more.
 
 #part splat
 const float LEAST_SQUARE = 0.66;  // of the scale: smaller splats would leave gaps at the corners of their cells
@@ -14,4 +14,6 @@ void merged_size_resize(inout Splat splat, int index) {
   float scale = sqrt(max(1.0 - filter_square / max(square, 1e-37), LEAST_SQUARE));
   splat.axis_u *= scale;
   splat.axis_v *= scale;
+  splat.shortened = scale;
+  splat.side_weight *= MERGED_WEIGHT;
 }

@@ -12,6 +12,7 @@ struct Splat {
   vec3 color;
   float side_weight;  // weight of the visible side
   float amplitude;    // of a widened kernel
+  float shortened;    // factor of the axes of merged splats; 1 for others
   float grain;        // radius of the samples that a large surfel replaces, relative to its own; 1 for others
   vec3 normal;  // shading normal on the visible side, view space
   float material;     // index
@@ -46,7 +47,7 @@ Splat fetch_splat(int index) {
   float cosine = outward_cosine(splat.position, splat.axis_u, splat.axis_v, draw.orientation, view.is_parallel > 0.5);
   splat.color = stored.color.rgb;
   splat.side_weight = cosine < 0.0 ? BACK_WEIGHT : 1.0;
-  splat.amplitude = splat.grain = 1.0;
+  splat.amplitude = splat.shortened = splat.grain = 1.0;
   // A shading normal belongs to the side that it is on in the object: stretching may carry it across the plane.
   bool is_inward = dot(stored.normal, cross(stored.axis_u, stored.axis_v)) < 0.0;
   splat.normal = normalize(mat3(draw.normal_matrix) * stored.normal) * (is_inward != cosine < 0.0 ? -1.0 : 1.0);

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .families import dot, for_children, largest
+from .merged_lines import Lines
 from .nodes import Nodes
 
 #: Rounding error of float32 sums of a few terms, as a fraction of the node's size.
@@ -82,10 +83,36 @@ class Frame:
             np.maximum(farthest, beside.min(axis=1).max(axis=0), out=farthest)
         return farthest
 
+    def bare_within(self, lines: np.ndarray, children: Nodes, offsets: np.ndarray) -> np.ndarray:
+        """(m,) the same where parents end at lines, (k, 4, m): places beyond a line move back to it."""
+        (x, y), (a, b), (c, d) = self.flattened(children, offsets)
+        area, radii = a * d - b * c, children["radii"]
+        scale = np.where(area < 0, -radii, radii) / np.maximum(np.abs(area), np.float32(1e-12))
+        axes = np.stack([self.first * self.longest, self.second * self.shortest])
+        along, distance = np.einsum("kam,iam->ikm", lines[:, :3], axes), lines[:, 3]
+        farthest = np.zeros(area.shape[-1], np.float32)
+        for _, *place in PLACES:
+            place = np.array(place, np.float32)[:, None]
+            # twice, because the second line may lead back over the first
+            for to, at in (*zip(along.swapaxes(0, 1), distance, strict=True),) * 2:
+                past = np.minimum((to * place).sum(axis=0) + at, 0)
+                place = place - past * to / np.maximum((to * to).sum(axis=0), np.float32(1e-12))
+            u, v = place[0] - x, place[1] - y
+            beside = np.hypot((d * u - b * v) * scale, (a * v - c * u) * scale) - radii
+            np.maximum(farthest, beside.min(axis=0), out=farthest)
+        return farthest
 
-def bounds(children: Nodes, offsets: np.ndarray, frame: Frame, shading, colors) -> dict[str, np.ndarray]:
+    def some(self, rows: np.ndarray) -> Frame:
+        """The ellipses of some parents."""
+        return Frame(*(values[..., rows] for values in vars(self).values()))
+
+
+def bounds(
+    children: Nodes, offsets: np.ndarray, frame: Frame, shading, colors, lines: Lines | None
+) -> dict[str, np.ndarray]:
     """(m,) off, uncovered, overhang and spread of the parents. offsets: (3, c, m) positions of the children
-    relative to their parents. shading, colors: (3, m), (4, m) of the parents.
+    relative to their parents. shading, colors: (3, m), (4, m) of the parents. lines: the parents'; None where no surfel
+    has any.
     """
     normal = for_children(frame.normal)
     tilt = np.sqrt(np.maximum(1 - dot(normal, children["normals"]) ** 2, 0))
@@ -98,7 +125,15 @@ def bounds(children: Nodes, offsets: np.ndarray, frame: Frame, shading, colors) 
     outside = np.maximum(frame.reach(children, offsets, np.float32(1)) - 1, 0) * frame.longest
     uncovered = largest(outside + children["uncovered"] + moved) + slack
 
-    overhang = frame.bare(children, offsets) + largest(children["overhang"] + moved) + slack
+    bare, beside = frame.bare(children, offsets), children["overhang"] + moved
+    if lines is not None:
+        uncovered += lines.bend
+        beside = beside + np.where(lines.are_kept, 0, children["cut_off"])
+        some = np.flatnonzero(lines.planes.any(axis=(0, 1)))
+        if len(some):
+            bare[some] = frame.some(some).bare_within(lines.planes[..., some], children.some(some), offsets[..., some])
+            bare += lines.bend
+    overhang = bare + largest(beside) + slack
 
     turned = np.sqrt(np.maximum(2 - 2 * dot(for_children(shading), children["shading"]), 0)) / 2
     tinted = np.abs(for_children(colors) - children["colors"]).max(axis=0)

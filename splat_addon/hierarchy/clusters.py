@@ -16,7 +16,7 @@ from .nodes import PORTION, Leaves, Table
 from .ordering import BITS, sorted_with_order
 
 #: In cells: the gap in depth after which another sheet begins, and the maximum extent of a sheet.
-GAP = 0.5
+GAP = 0.25
 MOST_DEPTH = 1.5
 
 #: Steps of depth per cell, by which the surfels of a cell are ordered.

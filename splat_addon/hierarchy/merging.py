@@ -12,9 +12,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..large_surfels import BLEND_STEPS, STEPS_OF_SAMPLES
 from ..surfels import Surfels, axes_quaternions
 from .bounds import Frame, bounds
 from .families import for_children, largest, total
+from .merged_lines import clip_fields, cut_off, merged_lines
 from .nodes import MEANS, MERGED_OVERLAP, Nodes, Table
 from .texture_places import along_axes, merged_places
 
@@ -28,8 +30,8 @@ _CORE = np.float32(np.sqrt(0.5) / MERGED_OVERLAP)
 _MOST_WIDENED = np.float32(1.5)
 #: Minimum ratio of the shorter to the longer half-axis.
 _NARROWEST = np.float32(0.02)
-#: The limit is that of `sampling.blending` for single samples.
-_LEAST_BLENDING = 0.05
+#: The smallest blend depth: what lies behind a ridge must not show beside it from afar.
+_LEAST_BLENDING = STEPS_OF_SAMPLES / BLEND_STEPS
 
 
 def merged(children: Nodes, cell: float) -> Nodes:
@@ -49,6 +51,11 @@ def merged(children: Nodes, cell: float) -> Nodes:
         values["roughness"] = _roughness(children["roughness"], shares, length)
     if "uv" in children:
         values["uv"] = merged_places(children["uv"], shares, offsets, cell)
+    lines = None
+    if "lines" in children:
+        lines = merged_lines(children, offsets, normal, cell)
+        values["lines"] = lines.planes.reshape(-1, lines.planes.shape[-1])
+        values["cut_off"] = cut_off(lines.planes, frame.first * frame.longest, frame.second * frame.shortest)
     return Nodes(
         {
             "positions": centre,
@@ -60,7 +67,7 @@ def merged(children: Nodes, cell: float) -> Nodes:
             "materials": children["materials"][0],
             "shading": shading,
             "colors": colors,
-            **bounds(children, offsets, frame, shading, colors),
+            **bounds(children, offsets, frame, shading, colors, lines),
             **values,
         }
     )
@@ -77,6 +84,8 @@ def as_surfels(nodes: Table, like: Surfels) -> Surfels:
         fields["hidden_back"] = np.minimum(fields["hidden_back"], 1)
     if "uv" in nodes.widths:
         fields |= along_axes(nodes.column("uv"), np.stack(axes))
+    if "lines" in nodes.widths:
+        fields |= clip_fields(nodes.column("lines"), np.stack(axes))
     if "lift" in nodes.widths:
         fields["lift"] = nodes.column("lift")[0] / lengths.max(axis=0)
     if like.blend_depth is not None:

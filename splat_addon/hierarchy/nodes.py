@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..clip_lines import CLIP_FIELDS, CUT
-from ..large_surfels import LARGE_SIZE, LARGE_WEIGHT, are_large
+from ..clip_lines import CLIP_FIELDS, CUT, are_reflex, unpack_lines
+from ..large_surfels import LARGE_SIZE, LARGE_WEIGHT, SAMPLE_SIZE, are_large
 from ..surfels import Surfels, axes_columns
 from .families import Families
 from .texture_places import gradients
@@ -20,6 +20,9 @@ MEANS = ("metallic", "emission", "hidden_back")
 #: Half-axis of a merged surfel relative to the edge of its cell. It is less than that of a sample, because these cells
 #: are rounder and overlap more at seams: less protrudes at silhouettes.
 MERGED_OVERLAP = 0.9
+#: Factor of its weights. It overlaps less than samples do; where both meet in a pixel, their shares are as if all were
+#: samples. 0.945: the half-axis of nine samples in a square, which also have extents of their own.
+MERGED_WEIGHT = (SAMPLE_SIZE / 0.945) ** 2
 
 #: Nodes per batch, few enough for temporaries to stay in the processor's cache.
 PORTION = 1 << 14
@@ -28,7 +31,7 @@ PORTION = 1 << 14
 GEOMETRY = ("positions", "normals", "radii")
 
 #: Fields with one number per node.
-_SINGLE = {"radii", "areas", "materials", "off", "uncovered", "overhang", "spread"}
+_SINGLE = {"radii", "areas", "materials", "off", "uncovered", "overhang", "spread", "cut_off"}
 
 
 class Nodes:
@@ -39,7 +42,7 @@ class Nodes:
     radii: the longer of their lengths. areas: weights. materials: whole numbers. shading: (3, n) unit. colors: (4, n).
     off, uncovered, overhang, spread: bounds, see `bounds`. And of the optional fields that are there: `MEANS`,
     "roughness", "lift": (1, n), object units, and "uv": (8, n), the coordinates and their two gradients per object
-    unit.
+    unit; "lines" and "cut_off": see `merged_lines`.
     """
 
     def __init__(self, arrays: dict[str, np.ndarray]):
@@ -57,6 +60,10 @@ class Nodes:
     @property
     def axes(self) -> tuple[np.ndarray, np.ndarray]:
         return self["first_axis"], self["second_axis"]
+
+    def some(self, rows: np.ndarray) -> Nodes:
+        """Some nodes, chosen along the last axis."""
+        return Nodes({name: array[..., rows] for name, array in self.arrays.items()})
 
     def in_families(self, families: Families) -> Nodes:
         """The children of these families, one place of all of them after another; fillers have no area."""
@@ -191,21 +198,42 @@ def _leaves(surfels: dict[str, np.ndarray]) -> Nodes:
         "colors": surfels["colors"].T,
         "off": zero,
         "uncovered": zero,
-        "overhang": _cut_off(surfels, radii),
+        "overhang": zero,
         "spread": zero,
         **values,
     }
+    if any(name in surfels for name in CLIP_FIELDS):
+        nodes |= _lines(surfels, (x / scales[0], y / scales[1]), radii)
     return Nodes({name: np.ascontiguousarray(array) for name, array in nodes.items()})
 
 
-def _cut_off(surfels: dict[str, np.ndarray], radii: np.ndarray) -> np.ndarray:
+def _lines(surfels: dict[str, np.ndarray], inverse: tuple[np.ndarray, np.ndarray], radii: np.ndarray) -> dict:
+    """The lines, cut-off and overhang of surfels. inverse: two (3, n) axes divided by their half-axes.
+
+    A reflex corner cannot be merged: what it cuts off counts as overhang at once.
+    """
+    packed = [surfels[name] for name in CLIP_FIELDS if name in surfels]
+    reflex = are_reflex(*packed) if len(packed) == 2 else np.zeros(len(radii), bool)
+    lines = []
+    for one in packed:
+        a, b, c = unpack_lines(one).T.astype(np.float32)
+        plane = np.concatenate([a * inverse[0] + b * inverse[1], c[None]])
+        plane /= np.sqrt(np.einsum("kn,kn->n", plane[:3], plane[:3]))
+        lines.append(np.where((one[:, 1] > 0) & ~reflex, plane, 0))
+    cut_off = _cut_off(packed, radii)
+    return {
+        "lines": np.concatenate(lines),
+        "cut_off": np.where(reflex, 0, cut_off),
+        "overhang": np.where(reflex, cut_off, 0),
+    }
+
+
+def _cut_off(packed: list[np.ndarray], radii: np.ndarray) -> np.ndarray:
     """(n,) float32 distance by which ellipses extend beyond what their clip lines keep, object units.
 
     A single line on the far side of the centre removes no more than its depth. With two lines, or a line that removes
     the centre, the kept part may be anywhere in the ellipse.
     """
-    cuts = [surfels[name][:, 1] / CUT for name in CLIP_FIELDS if name in surfels]
-    if not cuts:
-        return np.zeros_like(radii)
+    cuts = [lines[:, 1] / CUT for lines in packed]
     deepest, both = np.max(cuts, axis=0), np.sum([cut > 0 for cut in cuts], axis=0) > 1
     return (np.where(both | (deepest > 1), 2.0, deepest) * radii).astype(np.float32)

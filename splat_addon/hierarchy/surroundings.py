@@ -78,6 +78,9 @@ def as_drawn(nodes: Table, cell: float) -> Table:
     result.put("colors", np.concatenate([colors, some["colors"][3:]]), order)
     result.put("spread", some["spread"] + spread, order)
     most = np.maximum(some["overhang"], np.minimum(AT_BORDERS * some["overhang"], some["radii"]))
+    if "lines" in some:
+        # they end there
+        is_border &= ~some["lines"].any(axis=0)
     result.put("overhang", np.where(is_border, most, some["overhang"]), order)
     return result
 
@@ -117,6 +120,8 @@ class _Pairs:
         """(6, m) the values that a picture shows at the centres; their own if too many are crowded there to count."""
         distance = _dot(self.offsets, self.offsets) / self.radii**2
         weights = np.exp(_SHARPNESS * distance) * ((distance < _END) & (self.cosines > _SAME_SIDE))
+        if "lines" in self.nodes:
+            weights *= self._are_within_lines()
         total = self._sum(weights)
         means = self._sum(self.values * weights) / np.maximum(total, np.float32(1e-30))
         return np.where(total > 0, means, own)
@@ -128,6 +133,11 @@ class _Pairs:
         weights = np.maximum(1 - (x * x + y * y) / _AROUND**2, 0) ** 2 * (self.cosines > _NO_CREASE)
         x, y, total = self._sum(np.stack([x * weights, y * weights, weights]))
         return (np.hypot(x, y) > _ONE_SIDED * total) | (total < _FEW)
+
+    def _are_within_lines(self) -> np.ndarray:
+        """(n,) whether candidates are on the kept sides of the surfels' lines."""
+        lines = self._own("lines").reshape(-1, 4, len(self.radii))
+        return (np.einsum("kan,an->kn", lines[:, :3], self.offsets) + lines[:, 3] >= 0).all(axis=0)
 
     def _own(self, name: str) -> np.ndarray:
         return np.repeat(self.nodes[name][..., self.part], self.counts, axis=-1)

@@ -3,8 +3,9 @@
 
 import numpy as np
 
+from splat_addon.clip_lines import are_reflex, pack_lines
 from splat_addon.hierarchy.building import build_levels
-from splat_addon.surfels import Surfels, axes_quaternions
+from splat_addon.surfels import Surfels, axes_quaternions, quaternion_axes
 
 
 def make_surfels(positions, normals, half=0.05, **fields):
@@ -29,6 +30,25 @@ def sheet(count=40, height=0.0, normal=(0, 0, 1), spacing=0.04):
     x, y = np.meshgrid(np.arange(count) * spacing, np.arange(count) * spacing)
     positions = np.stack([x.ravel(), y.ravel(), np.full(x.size, height)], axis=1)
     return positions, np.tile(np.asarray(normal, float), (x.size, 1))
+
+
+def cut_sheet(lines, spacing=0.04):
+    """A sheet that ends at lines: each direction (an angle), and the distance from the middle at which it begins."""
+    positions, normals = sheet(count=40, spacing=spacing)
+    positions = positions - positions.mean(axis=0) + (spacing / 3, spacing / 7, 0)
+    way = np.array([(np.cos(angle), np.sin(angle), 0) for angle, _ in lines])
+    inside = positions @ way.T - [begin for _, begin in lines]
+    half = 1.25 * spacing
+    is_there = (inside > -0.9 * half).all(axis=1)
+    surfels = make_surfels(positions[is_there], normals[is_there], half)
+    x, y, _ = quaternion_axes(surfels.rotations)
+    packed = [
+        pack_lines(np.column_stack([x @ one, y @ one, own / half]))
+        for one, own in zip(way, inside[is_there].T, strict=True)
+    ]
+    swap = are_reflex(*packed)[:, None]
+    fields = {"clip_line": np.where(swap, packed[1], packed[0]), "clip_line_2": np.where(swap, packed[0], packed[1])}
+    return make_surfels(positions[is_there], normals[is_there], half, **fields)
 
 
 def ball(count=6000, seed=0):

@@ -10,7 +10,8 @@ from splat_addon.clip_lines import kept
 from splat_addon.hierarchy import surroundings
 from splat_addon.surfels import quaternion_axes
 
-from .conftest import ball, leaves_of, make_surfels, sheet
+from ..rendering.creased import clipped_iron
+from .conftest import ball, cut_sheet, leaves_of, make_surfels, sheet
 
 ROUNDING = 1e-4
 ANGLES = np.linspace(0, 2 * np.pi, 24, endpoint=False)
@@ -30,6 +31,8 @@ def check(surfels):
 def check_bounds(surfels, below, nodes, errors):
     x, y, z = (axis.astype(float) for axis in quaternion_axes(nodes.rotations))
     lines, reflex = surfels.clip_lines()
+    node_lines, are_reflex = nodes.clip_lines()
+    assert not are_reflex.any()
     disc = np.concatenate([CIRCLE * r for r in (0.25, 0.5, 0.75, 1)] + [[(0, 0)]])
     for k in range(len(nodes)):
         rows = below[len(surfels) + k]
@@ -42,17 +45,26 @@ def check_bounds(surfels, below, nodes, errors):
             1 - 1 / np.maximum(np.linalg.norm(flat, axis=-1), 1)
         )
         assert nearest_outside(flat, nodes.scales[k], beyond) <= extent
-        own = ellipse_points(nodes, np.array([k]), CIRCLE)[0] - nodes.positions[k]
+        own = ellipse_points(nodes, np.array([k]), disc)[0][kept_of(disc, node_lines[k])] - nodes.positions[k]
         covered = np.concatenate(
             [
-                points[kept(disc, np.repeat(lines[r : r + 1], len(disc), 0), np.repeat(reflex[r], len(disc)))]
+                points[kept_of(disc, lines[r], reflex[r])]
                 for r, points in zip(rows, ellipse_points(surfels, rows, disc), strict=True)
             ]
         )
         covered = covered - nodes.positions[k]
+        places = np.stack([covered @ x[k], covered @ y[k]], axis=-1) / nodes.scales[k]
+        for *way, distance in node_lines[k]:
+            past = -(places @ way + distance) / np.linalg.norm(way / nodes.scales[k])
+            assert past.max() <= extent + ROUNDING
         apart = np.stack([own @ x[k], own @ y[k]], -1)[:, None] - np.stack([covered @ x[k], covered @ y[k]], -1)
         # coverage is tested at places a quarter of a half-axis apart
         assert np.linalg.norm(apart, axis=-1).min(axis=1).max() <= extent + surfels.radius[rows].max() / 4
+
+
+def kept_of(places, lines, is_reflex=False):
+    """(n,) bool: which of (n, 2) places one surfel's (2, 3) lines keep."""
+    return kept(places, np.tile(lines, (len(places), 1, 1)), np.full(len(places), is_reflex))
 
 
 def nearest_outside(flat, scales, beyond):
@@ -136,3 +148,23 @@ def test_a_smooth_surface_is_known_to_a_share_of_its_cells():
     first = slice(0, int((levels[0].counts > 1).sum()))
     assert np.median(errors[first, 1] / nodes.radius[first]) < 0.4
     assert np.median(errors[first, 0] / nodes.radius[first]) < 0.2
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3, 1.2])
+@pytest.mark.parametrize("width", [0.01, 0.07, 0.4])
+def test_bounds_hold_where_merged_surfels_end_at_lines(turn, width):
+    """A strip, narrower or wider than the cells, cut from a sheet by two lines; a third line makes corners."""
+    surfels = cut_sheet([(turn, -width / 2), (turn + np.pi, -width / 2)])
+    below, nodes, errors, _ = leaves_of(surfels)
+    assert nodes.is_cut().mean() > 0.3
+    check_bounds(surfels, below, nodes, errors)
+    check(cut_sheet([(turn, -width / 2), (turn + 1.8, -width / 2)]))
+
+
+def test_bounds_hold_at_convex_and_reflex_corners():
+    """What one line of a reflex corner keeps beyond the other must not be cut away."""
+    surfels = clipped_iron((8, 8), 40)[0].surfels[0].surfels
+    assert surfels.clip_lines()[1].any()
+    below, nodes, errors, _ = leaves_of(surfels)
+    assert nodes.is_cut().mean() > 0.3
+    check_bounds(surfels, below, nodes, errors)

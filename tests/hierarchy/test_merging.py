@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from splat_addon.hierarchy import build_hierarchy
-from splat_addon.surfels import empty_surfels
+from splat_addon.surfels import empty_surfels, quaternion_axes
 
-from .conftest import ball, leaves_of, make_surfels, sheet
+from .conftest import ball, cut_sheet, leaves_of, make_surfels, sheet
 
 
 def test_nothing_is_merged_across_materials():
@@ -120,3 +120,22 @@ def test_sets_of_any_scale_and_offset_give_the_same_tree():
         other = build_hierarchy(make_surfels(positions * scale, normals, half * scale))
         assert (other.entries == plain.entries).all()
         assert np.allclose(other.nodes.positions, plain.nodes.positions * scale, rtol=1e-6)
+
+
+def test_merged_surfels_end_where_theirs_do():
+    """A strip whose borders run through the cells."""
+    surfels = cut_sheet([(0.3, -0.33), (0.3 + np.pi, -0.33)])
+    nodes = build_hierarchy(surfels).nodes
+    lines, _ = nodes.clip_lines()
+    x, y, _ = quaternion_axes(nodes.rotations)
+    way, checked = np.array([np.cos(0.3), np.sin(0.3), 0]), 0
+    for number in (0, 1):
+        for k in np.flatnonzero(lines[:, number, 2] < 1):
+            a, b, c = lines[k, number]
+            across = a / nodes.scales[k, 0] * x[k] + b / nodes.scales[k, 1] * y[k]
+            # distance from the middle of the sheet's centre line
+            border = c / np.linalg.norm(across) - (across @ nodes.positions[k]) / np.linalg.norm(across)
+            assert abs(abs(across @ way) / np.linalg.norm(across) - 1) < 1e-3
+            assert border == pytest.approx(0.33, abs=2e-3)
+            checked += 1
+    assert checked > 50

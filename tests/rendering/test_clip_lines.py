@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from splat_addon.clip_lines import pack_lines
+from splat_addon.hierarchy import build_hierarchy
 from splat_addon.reference import render_ewa, render_exact
 from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
@@ -16,7 +17,7 @@ from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan.executor import describe
 from splat_addon.rendering.upload.packing import pack_clip_lines
 from splat_addon.rendering.upload.storages import STORAGES
-from splat_addon.rendering.upload.stored_order import stored_order
+from splat_addon.rendering.upload.stored_order import clipped_places, stored_order
 from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Channel, Surface, TriangleMesh, VertexColors, sample_mesh
 from splat_addon.surfels import concatenate
 from tests.rendering.creased import angle_iron, clipped_iron
@@ -216,6 +217,18 @@ def test_a_clipped_surfel_takes_8_bytes_more_and_others_none():
     texels = pack_clip_lines(surfels, order[: surfels.clipped_count])
     assert texels.shape == (2, 512, 4) and texels[0].any(axis=1).all() and texels[1].any(axis=1).sum() == 8
     assert (texels * 65535 == np.rint(texels * 65535)).all()
+
+
+def test_lines_of_merged_surfels_follow_those_of_surfels():
+    surfels = clipped_iron(SIZE, 80)[0].surfels[0].surfels
+    levels = build_hierarchy(surfels)
+    order = stored_order(surfels, levels)
+    of_surfels, of_nodes = clipped_places(surfels, levels)
+    assert surfels.is_cut()[order[of_surfels]].all()
+    assert levels.nodes.clipped_count > 100 and levels.nodes.is_cut()[order[of_nodes] - len(surfels)].all()
+    ends = np.array([of_surfels.stop, of_nodes.stop])
+    assert (order[ends] < len(surfels)).tolist() == [True, False]
+    assert not surfels.is_cut()[order[ends[0]]] and not levels.nodes.is_cut()[order[ends[1]] - len(surfels)]
 
 
 def test_a_model_without_lines_has_no_line_of_them_in_its_shaders():

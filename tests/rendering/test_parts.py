@@ -13,6 +13,8 @@ from splat_addon.rendering.upload import parts
 from splat_addon.rendering.upload.packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT
 from splat_addon.surfels import Surfels
 
+from .creased import clipped_iron
+
 SUN = Light("sun", energy=3, direction=(-0.3, 0.4, -1), casts_shadow=True)
 SIZE = 48
 #: Splats of a texture here; the sheet has nine times as many.
@@ -81,6 +83,18 @@ def test_the_picture_of_several_textures_is_that_of_one(render, scene, sheet, mo
     assert apart(divided, whole) < 2e-5
     assert divided.stats["splats_drawn"] == whole.stats["splats_drawn"]
     assert whole.coverage.max() > 0.99
+
+
+@pytest.mark.parametrize("part", [512, 4096, 8192])
+def test_lines_of_merged_surfels_are_found_in_every_texture(render, scene, monkeypatch, part):
+    """Of 12,292 surfels 1,590 are clipped, and of 2,082 merged ones 783."""
+    surfels = clipped_iron((SIZE, SIZE), 80)[0].surfels[0].surfels
+    camera = clipped_iron((SIZE, SIZE), 16)[1]
+    settings = Settings(shading="flat", outputs=("color", "coverage"), detail_tolerance=0.7)
+    whole = render(scene(surfels), camera, settings)
+    monkeypatch.setattr(parts, "PART", part)
+    assert apart(render(scene(surfels), camera, settings), whole) < 2e-5
+    assert 100 < whole.stats["splats_drawn"] < 0.3 * len(surfels)
 
 
 def test_several_textures_are_cut_as_one_hierarchy(render, scene, sheet, monkeypatch):

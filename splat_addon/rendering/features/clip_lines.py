@@ -18,7 +18,11 @@ _MORE_VARYINGS = {
     "blurs_lines": (("flat", "vec3", "from_first"), ("flat", "vec3", "from_second")),
 }
 
-DRAWN = {"clip_lines": lambda tile, placed: tile.resources.clip_lines(placed.instance.surfels, placed.part)}
+DRAWN = {
+    "clip_lines": lambda tile, placed: tile.resources.clip_lines(
+        placed.instance.surfels, tile.levels(placed.instance), placed.part
+    )
+}
 ARRIVES = {"clip_lines": lambda instance: instance.surfels.clipped_count > 0}
 
 

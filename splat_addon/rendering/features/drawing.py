@@ -114,6 +114,7 @@ def draw_block(tile: TileContext, placed: DrawItem, epsilon: float) -> np.ndarra
         *tile.identities.slots(placed.instance),
         placed.split_distance,
         tile.first_merged(placed),
+        tile.rows_without_lines(placed),
     )
     return std140(DRAW, values)
 

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The size of merged surfels: they are drawn smaller where the pixel's filter blends them."""
+"""The size and weight of merged surfels: they are drawn smaller where the pixel's filter blends them, and count as much
+as the samples that they stand for."""
 
 from __future__ import annotations
 
+from ...hierarchy.nodes import MERGED_WEIGHT
 from ..plan.graph import Part
 from . import levels
 from .drawing import SPLAT_HOSTS
+
+CONSTANTS = {"MERGED_WEIGHT": MERGED_WEIGHT}
 
 
 def is_present(planning) -> bool:

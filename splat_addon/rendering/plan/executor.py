@@ -26,6 +26,7 @@ from ..upload.loading import NotYet
 from ..upload.parts import place_in_part
 from ..upload.resources import Resources, StoredSurfels, TextureKey
 from ..upload.storages import get_storage
+from ..upload.stored_order import SPLATS_PER_ROW, clipped_places
 from ..view import DrawItem, View, split_distances
 from .frame_plan import FramePlan
 from .graph import Loop, Pass, Pause, Step, Texture, of_pixels
@@ -140,6 +141,17 @@ class TileContext:
             return place_in_part(levels.surfels, placed.part)
         return 0.0 if placed.instance.is_merged else float(np.finfo(np.float32).max)
 
+    def rows_without_lines(self, placed: DrawItem) -> float:
+        """Rows of a part of the storage before its first merged splat that have no row in the texture of clip lines."""
+        levels = self.levels(placed.instance)
+        if levels is None:
+            return 0.0
+        surfels, clipped = (
+            max(place_in_part(count, placed.part), 0)
+            for count in (levels.surfels, placed.instance.surfels.clipped_count)
+        )
+        return float(-(-surfels // SPLATS_PER_ROW) - -(-clipped // SPLATS_PER_ROW))
+
     def check_arrived(self) -> None:
         """Request everything of the scene's surfels that passes read; raises `NotYet` for what is on its way."""
         read, late = {name for p in self.plan.passes for name in p.all("inputs")}, set()
@@ -195,7 +207,7 @@ class TileContext:
             (levels, rows.tobytes()),
             lambda: _stored(entries_of(levels, rows), places),
             levels.surfels,
-            instance.surfels.clipped_count,
+            clipped_places(instance.surfels, levels),
         )
 
     def shown_blocks_of(self, placed: DrawItem) -> np.ndarray:

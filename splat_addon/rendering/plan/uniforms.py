@@ -35,6 +35,7 @@ VIEW: Block = (
 #: moves splats back, in radii, or polygons, in view units. least_offset: of both, as a share of the distance; of an
 #: orthographic camera a length. first_slot, more_slots: number of its first material slot, and of those after it.
 #: split_distance: as of `DrawItem`. first_merged: index of the first stored splat that is a merged one.
+#: rows_without_lines: of the storage before that, which the texture of clip lines lacks.
 DRAW: Block = (
     "Draw",
     "draw",
@@ -50,6 +51,7 @@ DRAW: Block = (
         ("float", "more_slots"),
         ("float", "split_distance"),
         ("float", "first_merged"),
+        ("float", "rows_without_lines"),
     ),
 )
 

@@ -49,11 +49,12 @@ class Cuts:
             del self._kept[key]
         self._frame += 1
 
-    def get(self, key: object, numbers: Callable[[], np.ndarray | None], every: int, clipped: int) -> tuple[Cut, ...]:
+    def get(
+        self, key: object, numbers: Callable[[], np.ndarray | None], every: int, clipped: tuple[slice, ...]
+    ) -> tuple[Cut, ...]:
         """The cut of some blocks of an object, identified by the key, in the parts of its storage.
 
-        numbers: storage indices of what it draws; None: the first `every`. clipped: number of clipped surfels, which
-            are stored first.
+        numbers: storage indices of what it draws; None: the first `every`. clipped: of `clipped_places`.
         """
         return self.kept(key, lambda: self._made(numbers(), every, clipped))
 
@@ -64,21 +65,24 @@ class Cuts:
         self._kept[key] = self._frame, value
         return value
 
-    def _made(self, numbers: np.ndarray | None, every: int, clipped: int) -> tuple[Cut, ...]:
+    def _made(self, numbers: np.ndarray | None, every: int, clipped: tuple[slice, ...]) -> tuple[Cut, ...]:
         if numbers is None:
-            return whole_set(every, clipped)
+            return whole_set(every, clipped[0].stop)
+        is_clipped = np.logical_or.reduce([(numbers >= places.start) & (numbers < places.stop) for places in clipped])
+        count = int(is_clipped.sum())
+        if count:
+            numbers = np.concatenate([numbers[is_clipped], numbers[~is_clipped]])
         parts = list(places_in_parts(int(numbers.max(initial=-1)) + 1))
         if len(parts) == 1:
-            return (self._part(numbers, clipped),)
-        own = (numbers[(numbers >= places.start) & (numbers < places.stop)] - places.start for places in parts)
-        return tuple(self._part(some, clipped - places.start) for some, places in zip(own, parts, strict=True))
+            return (self._part(numbers, count),)
+        cuts = []
+        for places in parts:
+            is_own = (numbers >= places.start) & (numbers < places.stop)
+            cuts.append(self._part(numbers[is_own] - places.start, int(is_own[:count].sum())))
+        return tuple(cuts)
 
     def _part(self, numbers: np.ndarray, clipped: int) -> Cut:
-        """The cut of one part. clipped: which of its places have clipped surfels, those below this."""
-        is_clipped = numbers < clipped
-        clipped = int(is_clipped.sum())
-        if clipped:
-            numbers = np.concatenate([numbers[is_clipped], numbers[~is_clipped]])
+        """The cut of one part. clipped: how many of the numbers, the first, are of clipped ones."""
         rows = max(-(-len(numbers) // NUMBERS_PER_ROW), 1)
         texels = np.zeros((rows, NUMBERS_PER_ROW, 1), np.float32)
         texels.reshape(-1)[: len(numbers)] = numbers

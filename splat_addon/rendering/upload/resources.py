@@ -22,9 +22,9 @@ from .atlas import FORMAT, make_atlas
 from .cuts import Cuts
 from .loading import JobShare, Loading, Made, NotYet, Packed
 from .packing import pack_clip_lines, pack_lifts, pack_materials, pack_own_materials, pack_uvs
-from .parts import stored_parts
+from .parts import places_in_parts, stored_parts
 from .storages import Storage
-from .stored_order import places_of, stored_order
+from .stored_order import SPLATS_PER_ROW, clipped_places, places_of, stored_order
 
 Uploaded = TypeVar("Uploaded")
 
@@ -127,9 +127,9 @@ class Resources:
         """How high the smooth surface lies above one part of them, uploaded once."""
         return self._with_levels(surfels, "lifts", (), levels, _packed_lifts)[part]
 
-    def clip_lines(self, surfels: Surfels, part: int = 0) -> Texture:
-        """The lines of those in one part that are clipped, uploaded once; merged ones have none."""
-        return self._with_levels(surfels, "clip_lines", (), None, _packed_clip_lines)[part]
+    def clip_lines(self, surfels: Surfels, levels: Hierarchy | None = None, part: int = 0) -> Texture:
+        """The lines of those in one part that are clipped, uploaded once; merged ones' begin in a new row."""
+        return self._with_levels(surfels, "clip_lines", (), levels, _packed_clip_lines)[part]
 
     def load_some(self) -> None:
         """For a new picture, go on with what is on its way to the device."""
@@ -289,9 +289,15 @@ def _packed_lifts(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray)
     return _packed((pack_lifts(some, own) for some, own in stored_parts(surfels, levels, order)), "RGBA32F")
 
 
-def _packed_clip_lines(surfels: Surfels, _, order: np.ndarray) -> Packed:
-    parts = stored_parts(surfels, None, order[: surfels.clipped_count])
-    return _packed((pack_clip_lines(some, own) for some, own in parts), "RGBA16")
+def _packed_clip_lines(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray) -> Packed:
+    kinds = [(surfels, 0)] + ([(levels.nodes, len(surfels))] if levels else [])
+    clipped = list(zip(kinds, clipped_places(surfels, levels), strict=True))
+    parts = []
+    for part in places_in_parts(len(order)):
+        own = (order[max(of.start, part.start) : max(min(of.stop, part.stop), part.start)] for _, of in clipped)
+        lines = [pack_clip_lines(some, rows - first) for ((some, first), _), rows in zip(clipped, own, strict=True)]
+        parts.append(np.concatenate(lines))
+    return _packed((lines if len(lines) else np.zeros((1, SPLATS_PER_ROW, 4), np.float32) for lines in parts), "RGBA16")
 
 
 def _packed(parts: Iterable[np.ndarray], format: str) -> Packed:
