@@ -61,20 +61,26 @@ class Frame:
         along = [[dot(axis, half) for half in children.axes] for axis in (first, second)]
         return (dot(first, offsets), dot(second, offsets)), *along
 
-    def bare(self, children: Nodes, offsets: np.ndarray) -> np.ndarray:
+    def bare(self, children: Nodes, offsets: np.ndarray, lines: np.ndarray | None = None) -> np.ndarray:
         """(m,) a bound on the distance of each of `PLACES` on the parent's ellipse from the nearest of its children's.
 
         Outside a child's ellipse, at e times the way to its rim, the distance is at most e - 1 of its longer half-axes.
+        lines: (k, 4, m), where the parents end: places beyond a line move back to it.
         """
         (x, y), (a, b), (c, d) = self.flattened(children, offsets)
         area, radii = a * d - b * c, children["radii"]
         scale = np.where(area < 0, -radii, radii) / np.maximum(np.abs(area), np.float32(1e-12))
         # places in the child's longer half-axes: the inverse of its matrix, applied to their difference from its centre
-        across = (np.stack([b * y - d * x, d, -b]) * scale).reshape(3, -1)
-        along = (np.stack([c * x - a * y, -c, a]) * scale).reshape(3, -1)
+        across = np.stack([b * y - d * x, d, -b]) * scale
+        along = np.stack([c * x - a * y, -c, a]) * scale
+        moved = None if lines is None else self._within(lines)
         farthest = np.zeros(area.shape[-1], np.float32)
-        for some in np.split(PLACES, _PORTIONS):
-            squares, more = some @ across, some @ along
+        for some in np.split(np.arange(len(PLACES)), _PORTIONS):
+            if moved is None:
+                squares, more = (PLACES[some] @ inverse.reshape(3, -1) for inverse in (across, along))
+            else:
+                u, v = moved[:, some, None]
+                squares, more = (constant + u * first + v * second for constant, first, second in (across, along))
             squares *= squares
             more *= more
             squares += more
@@ -83,28 +89,37 @@ class Frame:
             np.maximum(farthest, beside.min(axis=1).max(axis=0), out=farthest)
         return farthest
 
-    def bare_within(self, lines: np.ndarray, children: Nodes, offsets: np.ndarray) -> np.ndarray:
-        """(m,) the same where parents end at lines, (k, 4, m): places beyond a line move back to it."""
-        (x, y), (a, b), (c, d) = self.flattened(children, offsets)
-        area, radii = a * d - b * c, children["radii"]
-        scale = np.where(area < 0, -radii, radii) / np.maximum(np.abs(area), np.float32(1e-12))
-        axes = np.stack([self.first * self.longest, self.second * self.shortest])
-        along, distance = np.einsum("kam,iam->ikm", lines[:, :3], axes), lines[:, 3]
-        farthest = np.zeros(area.shape[-1], np.float32)
-        for _, *place in PLACES:
-            place = np.array(place, np.float32)[:, None]
-            # twice, because the second line may lead back over the first
-            for to, at in (*zip(along.swapaxes(0, 1), distance, strict=True),) * 2:
-                past = np.minimum((to * place).sum(axis=0) + at, 0)
-                place = place - past * to / np.maximum((to * to).sum(axis=0), np.float32(1e-12))
-            u, v = place[0] - x, place[1] - y
-            beside = np.hypot((d * u - b * v) * scale, (a * v - c * u) * scale) - radii
-            np.maximum(farthest, beside.min(axis=0), out=farthest)
-        return farthest
+    def _within(self, lines: np.ndarray) -> np.ndarray:
+        """(2, 18, m) `PLACES`, in half-axes, moved back to the lines that they are beyond."""
+        places = np.repeat(PLACES[:, 1:].T[..., None], lines.shape[-1], axis=2)
+        halves = np.stack([self.first * self.longest, self.second * self.shortest])
+        planes = [(np.einsum("am,iam->im", plane[:3], halves), plane[3]) for plane in lines]
+        # twice, because the second line may lead back over the first
+        for (u, v), distance in planes + planes[: len(planes) - 1]:
+            past = np.minimum(u * places[0] + v * places[1] + distance, 0)
+            past /= np.maximum(u * u + v * v, np.float32(1e-12))
+            places -= past * np.stack([u, v])[:, None]
+        return places
 
     def some(self, rows: np.ndarray) -> Frame:
         """The ellipses of some parents."""
         return Frame(*(values[..., rows] for values in vars(self).values()))
+
+
+def _bare(frame: Frame, children: Nodes, offsets: np.ndarray, lines: Lines | None) -> np.ndarray:
+    """(m,) `Frame.bare`, within the lines of those parents that have any."""
+    has = np.zeros(offsets.shape[-1], bool) if lines is None else lines.planes.any(axis=(0, 1))
+    if not has.any():
+        return frame.bare(children, offsets)
+    bare = np.empty(len(has), np.float32)
+    for are_in in (has, ~has):
+        rows = np.flatnonzero(are_in)
+        if not len(rows):
+            continue
+        own = children.some(rows, ("first_axis", "second_axis", "radii"))
+        ends = np.take(lines.planes, rows, axis=-1) if are_in is has else None
+        bare[rows] = frame.some(rows).bare(own, np.take(offsets, rows, axis=-1), ends)
+    return bare + lines.bend
 
 
 def bounds(
@@ -125,15 +140,11 @@ def bounds(
     outside = np.maximum(frame.reach(children, offsets, np.float32(1)) - 1, 0) * frame.longest
     uncovered = largest(outside + children["uncovered"] + moved) + slack
 
-    bare, beside = frame.bare(children, offsets), children["overhang"] + moved
+    beside = children["overhang"] + moved
     if lines is not None:
         uncovered += lines.bend
         beside = beside + np.where(lines.are_kept, 0, children["cut_off"])
-        some = np.flatnonzero(lines.planes.any(axis=(0, 1)))
-        if len(some):
-            bare[some] = frame.some(some).bare_within(lines.planes[..., some], children.some(some), offsets[..., some])
-            bare += lines.bend
-    overhang = bare + largest(beside) + slack
+    overhang = _bare(frame, children, offsets, lines) + largest(beside) + slack
 
     turned = np.sqrt(np.maximum(2 - 2 * dot(for_children(shading), children["shading"]), 0)) / 2
     tinted = np.abs(for_children(colors) - children["colors"]).max(axis=0)

@@ -12,7 +12,8 @@ show. A family with a reflex corner, or with more lines than there are fields, h
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 
@@ -36,77 +37,98 @@ class Lines:
     are_kept: np.ndarray
 
 
+def as_planes(lines: np.ndarray) -> np.ndarray:
+    """(k, 4, ...) of (4 k, ...) lines."""
+    return lines.reshape(len(lines) // 4, 4, *lines.shape[1:])
+
+
 def merged_lines(children: Nodes, offsets: np.ndarray, normal: np.ndarray, cell: float) -> Lines:
     """offsets: (3, c, m) positions of the children relative to their parents. normal: (3, m) of the parents' planes."""
-    lines = children["lines"].reshape(-1, 4, *offsets.shape[1:])
-    kinds, count = len(lines), offsets.shape[-1]
-    planes, bend = np.zeros((kinds, 4, count), np.float32), np.zeros(count, np.float32)
+    lines = as_planes(children["lines"])
+    count, limit = offsets.shape[-1], np.float32(cell) * _APART
+    planes, bend = np.zeros((len(lines), 4, count), np.float32), np.zeros(count, np.float32)
     are_kept = np.ones(count, bool)
-    some = np.flatnonzero(lines.any(axis=(0, 1, 2)))
-    if len(some):
-        found = _found(
-            _across(lines[..., some], normal[:, some]),
-            offsets[..., some],
-            [axis[..., some] for axis in children.axes],
-            np.float32(cell) * _APART,
-        )
-        planes[..., some], bend[some], are_kept[some] = found.planes, found.bend, found.are_kept
-    return Lines(planes, bend, are_kept)
-
-
-def _found(lines: np.ndarray, offsets: np.ndarray, axes: list[np.ndarray], limit: np.float32) -> Lines:
-    """lines: (k, 4, c, m) of the children. limit: distance up to which they become one."""
-    planes, left = np.zeros((len(lines), 4, lines.shape[-1]), np.float32), lines.any(axis=1)
-    bend = np.zeros(lines.shape[-1], np.float32)
+    left = _Given.of(lines, children, offsets, normal)
     for plane in planes:
-        # the first that is left, then the mean of those that are like it
-        number = left.reshape(-1, left.shape[-1]).argmax(axis=0)
-        are_same = np.zeros_like(left)
-        are_same.reshape(-1, left.shape[-1])[number, np.arange(len(number))] = True
-        for _ in range(2):
-            are_same &= left
-            plane[...] = _mean(lines, are_same, offsets)
-            apart = _apart(plane, lines, offsets, axes)
-            are_same = left & (apart <= limit)
-        has = are_same.any(axis=(0, 1))
-        plane *= has
-        apart = np.where(are_same, apart, 0).max(axis=(0, 1))
-        lost = np.where(are_same.any(axis=0), 0, _beyond(plane, offsets, axes)).max(axis=0)
-        bend = np.maximum(bend, np.where(has, np.maximum(apart, lost), 0))
-        left &= ~are_same
-    are_kept = ~left.any(axis=(0, 1)) & (bend <= limit)
+        if not len(left.parents):
+            break
+        apart = left.apart_from(left.planes[:, left.starts])
+        mean = left.mean(apart <= limit)
+        apart = left.apart_from(mean)
+        are_same = apart <= limit
+        rows = left.parents[left.starts]
+        mean = mean * np.logical_or.reduceat(are_same, left.starts)
+        plane[:, rows] = mean
+        bend[rows] = np.maximum(bend[rows], np.maximum.reduceat(np.where(are_same, apart, 0), left.starts))
+        bend[rows] = np.maximum(bend[rows], _lost(mean, rows, children, offsets, left.some(are_same)))
+        left = left.some(~are_same)
+    are_kept[left.parents] = False
+    are_kept &= bend <= limit
     return Lines(planes * are_kept, bend * are_kept, are_kept)
 
 
-def _across(lines: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """(k, 4, c, m) lines of the children as lines in their parents' planes."""
-    height = np.einsum("iacm,am->icm", lines[:, :3], normal)
-    across = lines.copy()
-    across[:, :3] -= height[:, None] * normal[None, :, None]
-    return across / np.maximum(np.sqrt((across[:, :3] ** 2).sum(axis=1)), np.float32(1e-6))[:, None]
+@dataclass(frozen=True, eq=False)
+class _Given:
+    """n lines of children in the planes of their parents, those of a family one after another. parents, numbers: (n,)
+    of the families, and of the children in them. planes: (4, n), relative to the parents' positions. distances: (n,)
+    from the children's centres. offsets: (3, n) of these. radii: (n,) of their ellipses."""
+
+    parents: np.ndarray
+    numbers: np.ndarray
+    planes: np.ndarray
+    distances: np.ndarray
+    offsets: np.ndarray
+    radii: np.ndarray
+
+    @classmethod
+    def of(cls, lines: np.ndarray, children: Nodes, offsets: np.ndarray, normal: np.ndarray) -> _Given:
+        """lines: (k, 4, c, m) of the children."""
+        parents, numbers = np.nonzero(children["cut_off"].T)
+        own = lines[:, :, numbers, parents]
+        which, kinds = np.nonzero(own[:, :3].any(axis=1).T)
+        parents, numbers, own = parents[which], numbers[which], own[kinds, :, which].T
+        offsets, radii = offsets[:, numbers, parents], children["radii"][numbers, parents]
+        across = normal[:, parents]
+        own[:3] -= _dot(own[:3], across) * across
+        own /= np.maximum(np.sqrt(_dot(own[:3], own[:3])), np.float32(1e-6))
+        distances = own[3].copy()
+        own[3] -= _dot(own[:3], offsets)
+        return cls(parents, numbers, own, distances, offsets, radii)
+
+    @cached_property
+    def starts(self) -> np.ndarray:
+        """Where the lines of each family begin."""
+        return np.flatnonzero(np.diff(self.parents, prepend=-1))
+
+    def some(self, are_in: np.ndarray) -> _Given:
+        """The lines that are chosen."""
+        return _Given(*(getattr(self, field.name)[..., are_in] for field in fields(self)))
+
+    def apart_from(self, plane: np.ndarray) -> np.ndarray:
+        """(n,) the largest distances from a line of each family, (4, families), within the children's ellipses."""
+        plane = np.repeat(plane, np.diff(self.starts, append=len(self.parents)), axis=1)
+        turned = np.sqrt(np.maximum(2 - 2 * _dot(self.planes[:3], plane[:3]), 0))
+        apart = np.abs(self.distances - _dot(plane[:3], self.offsets) - plane[3]) + turned * self.radii
+        return np.where(turned < np.sqrt(2 - 2 * _ALIKE), apart, np.inf)
+
+    def mean(self, are_in: np.ndarray) -> np.ndarray:
+        """(4, families) the mean of the lines that are chosen."""
+        total = np.add.reduceat(self.planes * are_in, self.starts, axis=1)
+        return total / np.maximum(np.sqrt(_dot(total[:3], total[:3])), np.float32(1e-6))
 
 
-def _mean(lines: np.ndarray, are_in: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """(4, m) the mean of the lines that are chosen, (k, c, m) bool; zeros of none."""
-    at_parent = np.concatenate([lines[:, :3], (lines[:, 3] - (lines[:, :3] * offsets).sum(axis=1))[:, None]], axis=1)
-    total = (at_parent * are_in[:, None]).sum(axis=(0, 2))
-    return total / np.maximum(np.sqrt((total[:3] ** 2).sum(axis=0)), np.float32(1e-6))
-
-
-def _apart(plane: np.ndarray, lines: np.ndarray, offsets: np.ndarray, axes: list[np.ndarray]) -> np.ndarray:
-    """(k, c, m) the largest distance of a parent's line from those of its children, where these are."""
-    turned = np.sqrt(((lines[:, :3] - plane[None, :3, None]) ** 2).sum(axis=1))
-    turned = np.where(turned < np.sqrt(2 - 2 * _ALIKE), turned, np.inf)
-    radius = np.sqrt(np.maximum(*(dot(axis, axis) for axis in axes)))
-    here = dot(for_children(plane[:3]), offsets) + for_children(plane[3])
-    return np.abs(lines[:, 3] - here) + turned * radius
-
-
-def _beyond(plane: np.ndarray, offsets: np.ndarray, axes: list[np.ndarray]) -> np.ndarray:
-    """(c, m) how far the children's ellipses extend beyond a parent's line."""
+def _lost(plane: np.ndarray, rows: np.ndarray, children: Nodes, offsets: np.ndarray, whose: _Given) -> np.ndarray:
+    """(families,) how far children extend beyond a line of their parent, those excepted `whose` line it is."""
+    first, second = children.some(rows, ("first_axis", "second_axis")).axes
     along = for_children(plane[:3])
-    support = np.sqrt(dot(along, axes[0]) ** 2 + dot(along, axes[1]) ** 2)
-    return np.maximum(support - dot(along, offsets) - for_children(plane[3]), 0)
+    support = np.sqrt(dot(along, first) ** 2 + dot(along, second) ** 2)
+    beyond = np.maximum(support - dot(along, np.take(offsets, rows, axis=-1)) - for_children(plane[3]), 0)
+    beyond[whose.numbers, np.searchsorted(rows, whose.parents)] = 0
+    return beyond.max(axis=0)
+
+
+def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.einsum("kn,kn->n", a, b)
 
 
 def cut_off(planes: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -120,9 +142,8 @@ def cut_off(planes: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.nda
 
 def clip_fields(lines: np.ndarray, axes: np.ndarray) -> dict[str, np.ndarray]:
     """The clip fields of `Surfels` from (4 k, n) lines. axes: (2, 3, n) half-axis vectors."""
-    planes = lines.reshape(-1, 4, lines.shape[-1]).astype(np.float64)
     packed = []
-    for plane in planes:
+    for plane in as_planes(lines).astype(np.float64):
         in_half_axes = np.stack([*(np.einsum("an,an->n", plane[:3], axis) for axis in axes), plane[3]], axis=1)
         in_half_axes[~plane.any(axis=0)] = 1.0, 0.0, 1.0
         packed.append(pack_lines(in_half_axes))

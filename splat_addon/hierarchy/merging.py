@@ -54,7 +54,7 @@ def merged(children: Nodes, cell: float) -> Nodes:
     lines = None
     if "lines" in children:
         lines = merged_lines(children, offsets, normal, cell)
-        values["lines"] = lines.planes.reshape(-1, lines.planes.shape[-1])
+        values["lines"] = np.concatenate(lines.planes)
         values["cut_off"] = cut_off(lines.planes, frame.first * frame.longest, frame.second * frame.shortest)
     return Nodes(
         {

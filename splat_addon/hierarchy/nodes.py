@@ -61,9 +61,9 @@ class Nodes:
     def axes(self) -> tuple[np.ndarray, np.ndarray]:
         return self["first_axis"], self["second_axis"]
 
-    def some(self, rows: np.ndarray) -> Nodes:
-        """Some nodes, chosen along the last axis."""
-        return Nodes({name: array[..., rows] for name, array in self.arrays.items()})
+    def some(self, rows: np.ndarray, names: tuple[str, ...]) -> Nodes:
+        """Some nodes, chosen along the last axis, with some of their fields."""
+        return Nodes({name: np.take(self.arrays[name], rows, axis=-1) for name in names})
 
     def in_families(self, families: Families) -> Nodes:
         """The children of these families, one place of all of them after another; fillers have no area."""
@@ -214,13 +214,12 @@ def _lines(surfels: dict[str, np.ndarray], inverse: tuple[np.ndarray, np.ndarray
     """
     packed = [surfels[name] for name in CLIP_FIELDS if name in surfels]
     reflex = are_reflex(*packed) if len(packed) == 2 else np.zeros(len(radii), bool)
-    lines = []
-    for one in packed:
-        a, b, c = unpack_lines(one).T.astype(np.float32)
-        plane = np.concatenate([a * inverse[0] + b * inverse[1], c[None]])
-        plane /= np.sqrt(np.einsum("kn,kn->n", plane[:3], plane[:3]))
-        lines.append(np.where((one[:, 1] > 0) & ~reflex, plane, 0))
-    cut_off = _cut_off(packed, radii)
+    lines, cut_off = np.zeros((len(packed), 4, len(radii)), np.float32), _cut_off(packed, radii)
+    for plane, one in zip(lines, packed, strict=True):
+        rows = np.flatnonzero((one[:, 1] > 0) & ~reflex)
+        a, b, c = unpack_lines(one[rows]).T.astype(np.float32)
+        way = a * inverse[0][:, rows] + b * inverse[1][:, rows]
+        plane[:, rows] = np.concatenate([way, c[None]]) / np.sqrt(np.einsum("kn,kn->n", way, way))
     return {
         "lines": np.concatenate(lines),
         "cut_off": np.where(reflex, 0, cut_off),

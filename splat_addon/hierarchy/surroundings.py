@@ -16,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from .blocks import ranges
+from .merged_lines import as_planes
 from .nodes import Nodes, Table
 from .ordering import sorted_with_order
 
@@ -121,7 +122,7 @@ class _Pairs:
         distance = _dot(self.offsets, self.offsets) / self.radii**2
         weights = np.exp(_SHARPNESS * distance) * ((distance < _END) & (self.cosines > _SAME_SIDE))
         if "lines" in self.nodes:
-            weights *= self._are_within_lines()
+            weights[self._beyond_lines()] = 0
         total = self._sum(weights)
         means = self._sum(self.values * weights) / np.maximum(total, np.float32(1e-30))
         return np.where(total > 0, means, own)
@@ -134,10 +135,13 @@ class _Pairs:
         x, y, total = self._sum(np.stack([x * weights, y * weights, weights]))
         return (np.hypot(x, y) > _ONE_SIDED * total) | (total < _FEW)
 
-    def _are_within_lines(self) -> np.ndarray:
-        """(n,) whether candidates are on the kept sides of the surfels' lines."""
-        lines = self._own("lines").reshape(-1, 4, len(self.radii))
-        return (np.einsum("kan,an->kn", lines[:, :3], self.offsets) + lines[:, 3] >= 0).all(axis=0)
+    def _beyond_lines(self) -> np.ndarray:
+        """Numbers of the candidates that are beyond lines of their surfels."""
+        lines = as_planes(self.nodes["lines"][:, self.part])
+        owners = np.flatnonzero(lines.any(axis=(0, 1)))
+        pairs = ranges(self.starts[owners], self.counts[owners])
+        lines, place = np.repeat(lines[..., owners], self.counts[owners], axis=2), np.take(self.offsets, pairs, axis=1)
+        return pairs[(np.einsum("kan,an->kn", lines[:, :3], place) + lines[:, 3] < 0).any(axis=0)]
 
     def _own(self, name: str) -> np.ndarray:
         return np.repeat(self.nodes[name][..., self.part], self.counts, axis=-1)
