@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ..clip_lines import CLIP_FIELDS, CUT, are_reflex, unpack_lines
-from ..large_surfels import LARGE_SIZE, LARGE_WEIGHT, SAMPLE_SIZE, are_large
+from ..large_surfels import LARGE_SIZE, LARGE_WEIGHT, are_large
 from ..surfels import Surfels, axes_columns
 from .families import Families
 from .texture_places import gradients
@@ -20,9 +20,9 @@ MEANS = ("metallic", "emission", "hidden_back")
 #: Half-axis of a merged surfel relative to the edge of its cell. It is less than that of a sample, because these cells
 #: are rounder and overlap more at seams: less protrudes at silhouettes.
 MERGED_OVERLAP = 0.9
-#: Factor of its weights. It overlaps less than samples do; where both meet in a pixel, their shares are as if all were
-#: samples. 0.945: the half-axis of nine samples in a square, which also have extents of their own.
-MERGED_WEIGHT = (SAMPLE_SIZE / 0.945) ** 2
+#: Factor of its weights. It overlaps less than samples do, so that with 1.75 it would count as much where both meet in
+#: a pixel, at a crease. On smooth surfaces less is better: the finer of two levels shows where they meet.
+MERGED_WEIGHT = 1.5
 
 #: Nodes per batch, few enough for temporaries to stay in the processor's cache.
 PORTION = 1 << 14

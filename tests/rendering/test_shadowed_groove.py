@@ -2,7 +2,6 @@
 """Merged surfels in shadow maps close no narrow grooves: these would wear dashes of shadow."""
 
 import numpy as np
-import pytest
 import trimesh
 
 from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at
@@ -23,9 +22,15 @@ def grooved(width: float, depth: float) -> trimesh.Trimesh:
     return trimesh.Trimesh(places, faces, process=False)
 
 
-@pytest.mark.parametrize("texels", [2, 3])
-def test_a_groove_is_shadowed_as_without_merged_surfels(texels, render):
-    """Merged surfels in full size would make shadow missing or false by 0.045 in the wider groove."""
+def test_a_groove_is_shadowed_as_without_merged_surfels(render):
+    """The grooves have six widths. Merged surfels that do not end at their edges make shadow missing or false by
+    0.071."""
+    squares = [(off_by(render, texels) ** 2).mean() for texels in (1.5, 2, 2.5, 3, 3.5, 4)]
+    assert np.sqrt(np.mean(squares)) < 0.036
+
+
+def off_by(render, texels):
+    """The change of a shadow by merging in a groove of that many texels."""
     mesh = grooved(texels * TEXEL, texels * TEXEL)
     edges = {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True}
     surfels = sample_mesh(TriangleMesh(mesh.vertices, mesh.faces), resolution=512, **edges)
@@ -35,5 +40,4 @@ def test_a_groove_is_shadowed_as_without_merged_surfels(texels, render):
         settings = Settings(detail_tolerance=tolerance, shadow_resolution=TEXELS, outputs=("color", "shadow"))
         return render(scene, CAMERA, settings).shadow[:, 50:78, 0].astype(float)
 
-    off = shadow(Settings.detail_tolerance) - shadow(0.0)
-    assert np.sqrt((off**2).mean()) < 0.036
+    return shadow(Settings.detail_tolerance) - shadow(0.0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The size and weight of merged surfels: they are drawn smaller where the pixel's filter blends them, and count as much
-as the samples that they stand for."""
+"""The size and weight of merged surfels: they are drawn smaller where the pixel's filter blends them, and count about
+as much as the samples that they stand for."""
 
 from __future__ import annotations
 
