@@ -132,12 +132,15 @@ def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def cut_off(planes: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(m,) float32 as in `Nodes`. first, second: (3, m) half-axes."""
+    """(m,) float32 "cut_off" of nodes with these (k, 4, m) lines, as `nodes` computes it for surfels.
+
+    first, second: (3, m) half-axes.
+    """
     supports = np.sqrt(sum(np.einsum("kam,am->km", planes[:, :3], axis) ** 2 for axis in (first, second)))
     depths = np.where(supports > 0, np.maximum(supports - planes[:, 3], 0), 0)
     longest = np.sqrt(np.maximum(*((axis**2).sum(axis=0) for axis in (first, second))))
-    is_any = ((depths > 0).sum(axis=0) > 1) | (depths.max(axis=0) > longest)
-    return np.where(is_any, 2 * longest, depths.max(axis=0)).astype(np.float32)
+    is_anywhere = ((depths > 0).sum(axis=0) > 1) | (depths.max(axis=0) > longest)
+    return np.where(is_anywhere, 2 * longest, depths.max(axis=0)).astype(np.float32)
 
 
 def clip_fields(lines: np.ndarray, axes: np.ndarray) -> dict[str, np.ndarray]:

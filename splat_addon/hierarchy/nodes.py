@@ -203,23 +203,27 @@ def _leaves(surfels: dict[str, np.ndarray]) -> Nodes:
         **values,
     }
     if any(name in surfels for name in CLIP_FIELDS):
-        nodes |= _lines(surfels, (x / scales[0], y / scales[1]), radii)
+        nodes |= _lines(surfels, (x, y), surfels["scales"].T)
     return Nodes({name: np.ascontiguousarray(array) for name, array in nodes.items()})
 
 
-def _lines(surfels: dict[str, np.ndarray], inverse: tuple[np.ndarray, np.ndarray], radii: np.ndarray) -> dict:
-    """The lines, cut-off and overhang of surfels. inverse: two (3, n) axes divided by their half-axes.
+def _lines(surfels: dict[str, np.ndarray], axes: tuple[np.ndarray, np.ndarray], scales: np.ndarray) -> dict:
+    """The lines, cut-off and overhang of surfels. axes: two (3, n) unit vectors. scales: (2, n) half-axes.
 
     A reflex corner cannot be merged: what it cuts off counts as overhang at once.
     """
     packed = [surfels[name] for name in CLIP_FIELDS if name in surfels]
+    radii, least = scales.max(axis=0), scales.min(axis=0)
     reflex = are_reflex(*packed) if len(packed) == 2 else np.zeros(len(radii), bool)
     lines, cut_off = np.zeros((len(packed), 4, len(radii)), np.float32), _cut_off(packed, radii)
     for plane, one in zip(lines, packed, strict=True):
         rows = np.flatnonzero((one[:, 1] > 0) & ~reflex)
         a, b, c = unpack_lines(one[rows]).T.astype(np.float32)
-        way = a * inverse[0][:, rows] + b * inverse[1][:, rows]
-        plane[:, rows] = np.concatenate([way, c[None]]) / np.sqrt(np.einsum("kn,kn->n", way, way))
+        # from half-axes to object units, relative to the shorter one because squares of tiny ones would vanish
+        along = np.stack([a, b]) * (least / scales)[:, rows]
+        along, length = along / np.hypot(*along), np.hypot(*along)
+        plane[:3, rows] = along[0] * axes[0][:, rows] + along[1] * axes[1][:, rows]
+        plane[3, rows] = c * least[rows] / length
     return {
         "lines": np.concatenate(lines),
         "cut_off": np.where(reflex, 0, cut_off),
