@@ -28,7 +28,7 @@ from .edges.borders import DEFAULT_CREASE_ANGLE, survey_edges
 from .edges.clipping import clip_fields, clippings
 from .edges.gaps import BorderPlaces, barycentric, gap_surfels
 from .edges.meetings import by_facing
-from .ldc.depth_cube import depth_cube, in_bands, row_bands
+from .ldc.depth_cube import axes_of, depth_cube, in_bands, row_bands, rows_of
 from .ldc.grid import make_grid
 from .ldc.reductions import find_reduction
 from .ldc.scan_conversion import BATCH, Spans, batches
@@ -44,7 +44,7 @@ from .refine.flat_blocks import LARGEST, LEAST_AREA, RING, Large, divided
 from .refine.flat_faces import flat_faces
 from .refine.image_samples import inside_triangles
 from .refine.missed_components import SampledSurface, missed_components
-from .refine.two_sided import have_other_sides, runs_of
+from .refine.two_sided import cards_of, mostly
 from .workers import in_order
 
 #: Times of the steps that need neighbouring samples, relative to one another: clipping, fitting planes, merging.
@@ -196,23 +196,25 @@ class SamplingRun:
         total = len(arrays["positions"])
         clipping, fitting, merging = self._stages(report)
         if self._chosen.merge is not None:
-            arrays = self._chosen.merge(arrays, _axes_of(images), self.grid.spacing)
+            arrays = self._chosen.merge(arrays, axes_of(images), self.grid.spacing)
         of_large = {edge: self.filled(large[edge], lambda share: None, edge) for edge in sorted(large)}
-        cards = self._cards({1: images, **large}, {1: arrays, **of_large})
+        cards = {}
+        if self._may_have_cards:
+            cards = cards_of({1: images, **large}, {1: arrays, **of_large}, self.mesh, self.grid.spacing)
         gaps, gap_triangles = {}, np.empty(0, np.intp)
         if self.options.crease_angle is not None:
             arrays, gaps, gap_triangles = self._clipped(arrays, images, clipping)
         if self._fits_planes:
             about = inside_triangles(images), self.grid, self._edges.borders.are_closed()
-            arrays = arrays | fit_planes(arrays, _rows_of(images), *about, fitting)
+            arrays = arrays | fit_planes(arrays, rows_of(images), *about, fitting)
         for edge, are_cards in cards.items():
             of_large.get(edge, arrays)["hidden_back"] = are_cards.astype(np.float32)
         if gaps and cards:
-            gaps["hidden_back"] = self._mostly(cards[1], images)[gap_triangles].astype(np.float32)
+            gaps["hidden_back"] = mostly(cards[1], images, len(self.mesh))[gap_triangles].astype(np.float32)
         saved, error = 0, 0.0
         if self._merges_flat:
             about = self.grid.spacing, self.options.tolerance
-            arrays, error = merge_flat(arrays, _axes_of(images), *about, merging)
+            arrays, error = merge_flat(arrays, axes_of(images), *about, merging)
             saved = total - len(arrays["positions"])
         more, small_parts = [], int(missed[1].max(initial=-1)) + 1
         for edge, of_edge in of_large.items():
@@ -232,28 +234,10 @@ class SamplingRun:
         report(1.0)
         return Sampling(surfels, small_parts, keeps_both_sides, saved, error, gap_triangles)
 
-    def _cards(
-        self, images: dict[int, tuple[Spans, ...]], arrays: dict[int, dict[str, np.ndarray]]
-    ) -> dict[int, np.ndarray]:
-        """Edge of blocks -> `have_other_sides` of their samples, {} if none has. images, arrays: by the same edges.
-
-        Without blend depths, fronts hide backs. Of a solid, no back is seen.
-        """
-        if self._bends is None or self._chosen.merge is not None or is_solid(self.mesh):
-            return {}
-        runs, ends = ([], [], []), [0]
-        for edge, of_edge in images.items():
-            for axis, rows in _rows_of(of_edge):
-                values = {name: arrays[edge][name][rows] for name in ("positions", "rotations")}
-                runs[axis].append(runs_of(of_edge[axis], axis, edge, values, ends[-1] + rows.start, self.grid.spacing))
-            ends.append(ends[-1] + len(arrays[edge]["positions"]))
-        are_cards = have_other_sides(runs, self.mesh, ends[-1])
-        return dict(zip(images, np.split(are_cards, ends[1:-1]), strict=True)) if are_cards.any() else {}
-
-    def _mostly(self, chosen: np.ndarray, images: tuple[Spans, ...]) -> np.ndarray:
-        """(T,) bool: whether most of the samples of a triangle are chosen."""
-        triangles = np.concatenate([np.repeat(spans.triangles, spans.counts) for spans in images])
-        return np.bincount(triangles, chosen - 0.5, len(self.mesh)) > 0
+    @property
+    def _may_have_cards(self) -> bool:
+        """Without blend depths, fronts hide backs. Of a solid, no back is seen."""
+        return self._bends is not None and self._chosen.merge is None and not is_solid(self.mesh)
 
     @property
     def _fits_planes(self) -> bool:
@@ -275,7 +259,7 @@ class SamplingRun:
         leave bare.
         """
         borders, bends = self._edges.borders, self._bends
-        seen = _rows_of(images) if self.options.reduction == "normal" else by_facing(arrays)
+        seen = rows_of(images) if self.options.reduction == "normal" else by_facing(arrays)
         places = BorderPlaces(self.mesh, borders, self.grid)
 
         def parts():
@@ -294,17 +278,6 @@ class SamplingRun:
             gaps["lift"] = lifts(barycentric(self.mesh, triangles, places).T, self._bulges[:, triangles])
         report(1.0)
         return arrays | fields, gaps, triangles
-
-
-def _axes_of(images: tuple[Spans, ...]) -> np.ndarray:
-    """(N,) the axis along which each sample was taken."""
-    return np.repeat(np.arange(3), [int(spans.counts.sum(dtype=np.int64)) for spans in images])
-
-
-def _rows_of(images: tuple[Spans, ...]) -> list[tuple[int, slice]]:
-    """Slices of the samples of the image along each axis."""
-    ends = np.cumsum([int(spans.counts.sum(dtype=np.int64)) for spans in images]).tolist()
-    return [(axis, slice(start, end)) for axis, (start, end) in enumerate(zip((0, *ends), ends, strict=False))]
 
 
 def _joined(*sets: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -149,3 +149,18 @@ def _images_with_samples(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndar
     for row, (first, second) in zip(hits, ((y, z), (z, x), (x, y)), strict=True):
         np.logical_and(first, second, out=row)
     return hits
+
+
+def axes_of(images: tuple[Spans, ...]) -> np.ndarray:
+    """(N,) the axis along which each sample of the images was taken."""
+    return np.repeat(np.arange(3), _samples(images))
+
+
+def rows_of(images: tuple[Spans, ...]) -> list[tuple[int, slice]]:
+    """Each axis, and the slice of the samples of its image."""
+    ends = np.cumsum(_samples(images)).tolist()
+    return [(axis, slice(start, end)) for axis, (start, end) in enumerate(zip((0, *ends), ends, strict=False))]
+
+
+def _samples(images: tuple[Spans, ...]) -> list[int]:
+    return [int(spans.counts.sum(dtype=np.int64)) for spans in images]

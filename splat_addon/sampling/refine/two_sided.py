@@ -16,6 +16,7 @@ import numpy as np
 from ...surfels import axes_columns
 from ..attributes.ellipses import MAX_STRETCH
 from ..edges.ordering import order_of
+from ..ldc.depth_cube import rows_of
 from ..ldc.scan_conversion import Spans, batches, expand
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
 
@@ -33,7 +34,30 @@ _PARTS = 64
 _BATCH = 1 << 20
 
 
-class Runs(NamedTuple):
+def cards_of(
+    images: dict[int, tuple[Spans, ...]], arrays: dict[int, dict[str, np.ndarray]], mesh: TriangleMesh, spacing: float
+) -> dict[int, np.ndarray]:
+    """Edge of blocks -> (n,) bool, whether each of their samples is on a card; {} if none is.
+
+    images: by the edge of the blocks that samples cover, 1 for single ones. arrays: their fields of `Surfels`.
+    """
+    runs, ends = ([], [], []), [0]
+    for edge, of_edge in images.items():
+        for axis, rows in rows_of(of_edge):
+            values = {name: arrays[edge][name][rows] for name in ("positions", "rotations")}
+            runs[axis].append(_runs_of(of_edge[axis], axis, edge, values, ends[-1] + rows.start, spacing))
+        ends.append(ends[-1] + len(arrays[edge]["positions"]))
+    are_cards = _have_other_sides(runs, mesh, ends[-1])
+    return dict(zip(images, np.split(are_cards, ends[1:-1]), strict=True)) if are_cards.any() else {}
+
+
+def mostly(are_cards: np.ndarray, images: tuple[Spans, ...], triangles: int) -> np.ndarray:
+    """(triangles,) bool: whether most of the samples of a triangle are on a card."""
+    numbers = np.concatenate([np.repeat(spans.triangles, spans.counts) for spans in images])
+    return np.bincount(numbers, are_cards - 0.5, triangles) > 0
+
+
+class _Runs(NamedTuple):
     """n runs of samples, each in a row of an image and in one triangle.
 
     depths: (n,) of the first samples along the image's axis, in cells. slopes: (n,) their change from sample to sample.
@@ -46,11 +70,11 @@ class Runs(NamedTuple):
     numbers: np.ndarray
     strides: np.ndarray
 
-    def those(self, some) -> Runs:
-        return Runs(*(values[some] for values in self))
+    def those(self, some) -> _Runs:
+        return _Runs(*(values[some] for values in self))
 
 
-def runs_of(spans: Spans, axis: int, edge: int, arrays: dict[str, np.ndarray], first: int, spacing: float) -> Runs:
+def _runs_of(spans: Spans, axis: int, edge: int, arrays: dict[str, np.ndarray], first: int, spacing: float) -> _Runs:
     """The samples of an image; of blocks with this edge, all cells, each with the number of its block.
 
     arrays: field of `Surfels` -> values at the spans' samples. first: number of the first sample.
@@ -59,7 +83,7 @@ def runs_of(spans: Spans, axis: int, edge: int, arrays: dict[str, np.ndarray], f
     starts = np.cumsum(spans.counts, dtype=np.int64) - spans.counts
     if edge == 1:
         slopes = (depths[starts + spans.counts - 1] - depths[starts]) / np.maximum(spans.counts - 1, 1)
-        return Runs(spans, depths[starts], slopes, first + starts, np.ones(len(spans), np.int64))
+        return _Runs(spans, depths[starts], slopes, first + starts, np.ones(len(spans), np.int64))
     (normals,) = axes_columns(arrays["rotations"], 2)
     across, up = (-normals[(axis + k) % 3] / normals[axis] for k in (1, 2))
     step = np.arange(edge) - edge // 2
@@ -69,10 +93,10 @@ def runs_of(spans: Spans, axis: int, edge: int, arrays: dict[str, np.ndarray], f
     )
     rows = (spans.rows[:, None] + step).ravel()
     depths = (depths[:, None] + up[:, None] * step - (edge // 2) * across[:, None]).ravel()
-    return Runs(Spans(triangles, rows, columns, counts), depths, slopes, numbers, np.zeros(len(rows), np.int64))
+    return _Runs(Spans(triangles, rows, columns, counts), depths, slopes, numbers, np.zeros(len(rows), np.int64))
 
 
-def have_other_sides(images: list[list[Runs]], mesh: TriangleMesh, count: int) -> np.ndarray:
+def _have_other_sides(images: list[list[_Runs]], mesh: TriangleMesh, count: int) -> np.ndarray:
     """(count,) bool: whether the samples with these numbers are on a card.
 
     images: for each axis, the runs of all samples. Samples that follow each other on a ray are compared.
@@ -80,7 +104,7 @@ def have_other_sides(images: list[list[Runs]], mesh: TriangleMesh, count: int) -
     are_cards, components = np.zeros(count, bool), np.ascontiguousarray(mesh.positions.T)
     for axis, parts in enumerate(images):
         spans, *others = zip(*parts, strict=True)
-        runs = Runs(Spans.joined(list(spans)), *map(np.concatenate, others))
+        runs = _Runs(Spans.joined(list(spans)), *map(np.concatenate, others))
         runs = runs.those(order_of(runs.spans.rows - runs.spans.rows.min(initial=0)))
         for band in _bands(runs.spans):
             numbers, triangles, distances = _neighbours(runs.those(band))
@@ -106,7 +130,7 @@ def _bands(spans: Spans) -> Iterator[slice]:
         yield slice(int(ends[part.start - 1]) if part.start else 0, int(ends[part.stop - 1]))
 
 
-def _neighbours(runs: Runs) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _neighbours(runs: _Runs) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Of p pairs of samples that follow each other on a ray and are close: their numbers and triangles, (2, p) each,
     and their (p,) distances along the axis."""
     spans = runs.spans
