@@ -83,5 +83,5 @@ def largest(values: np.ndarray) -> np.ndarray:
 
 
 def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(c, m) products of (3, c, m) vectors, of which one may be (3, 1, m)."""
-    return np.einsum("kcm,kcm->cm", a, b)
+    """(n,) products of (3, n) vectors, or (c, m) of (3, c, m), of which one may be (3, 1, m)."""
+    return np.einsum("k...,k...->...", a, b)

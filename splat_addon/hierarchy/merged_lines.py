@@ -89,10 +89,10 @@ class _Given:
         parents, numbers, own = parents[which], numbers[which], own[kinds, :, which].T
         offsets, radii = offsets[:, numbers, parents], children["radii"][numbers, parents]
         across = normal[:, parents]
-        own[:3] -= _dot(own[:3], across) * across
-        own /= np.maximum(np.sqrt(_dot(own[:3], own[:3])), np.float32(1e-6))
+        own[:3] -= dot(own[:3], across) * across
+        own /= np.maximum(np.sqrt(dot(own[:3], own[:3])), np.float32(1e-6))
         distances = own[3].copy()
-        own[3] -= _dot(own[:3], offsets)
+        own[3] -= dot(own[:3], offsets)
         return cls(parents, numbers, own, distances, offsets, radii)
 
     @cached_property
@@ -107,14 +107,14 @@ class _Given:
     def apart_from(self, plane: np.ndarray) -> np.ndarray:
         """(n,) the largest distances from a line of each family, (4, families), within the children's ellipses."""
         plane = np.repeat(plane, np.diff(self.starts, append=len(self.parents)), axis=1)
-        turned = np.sqrt(np.maximum(2 - 2 * _dot(self.planes[:3], plane[:3]), 0))
-        apart = np.abs(self.distances - _dot(plane[:3], self.offsets) - plane[3]) + turned * self.radii
+        turned = np.sqrt(np.maximum(2 - 2 * dot(self.planes[:3], plane[:3]), 0))
+        apart = np.abs(self.distances - dot(plane[:3], self.offsets) - plane[3]) + turned * self.radii
         return np.where(turned < np.sqrt(2 - 2 * _ALIKE), apart, np.inf)
 
     def mean(self, are_in: np.ndarray) -> np.ndarray:
         """(4, families) the mean of the lines that are chosen."""
         total = np.add.reduceat(self.planes * are_in, self.starts, axis=1)
-        return total / np.maximum(np.sqrt(_dot(total[:3], total[:3])), np.float32(1e-6))
+        return total / np.maximum(np.sqrt(dot(total[:3], total[:3])), np.float32(1e-6))
 
 
 def _lost(plane: np.ndarray, rows: np.ndarray, children: Nodes, offsets: np.ndarray, whose: _Given) -> np.ndarray:
@@ -125,22 +125,6 @@ def _lost(plane: np.ndarray, rows: np.ndarray, children: Nodes, offsets: np.ndar
     beyond = np.maximum(support - dot(along, np.take(offsets, rows, axis=-1)) - for_children(plane[3]), 0)
     beyond[whose.numbers, np.searchsorted(rows, whose.parents)] = 0
     return beyond.max(axis=0)
-
-
-def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.einsum("kn,kn->n", a, b)
-
-
-def cut_off(planes: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(m,) float32 "cut_off" of nodes with these (k, 4, m) lines, as `nodes` computes it for surfels.
-
-    first, second: (3, m) half-axes.
-    """
-    supports = np.sqrt(sum(np.einsum("kam,am->km", planes[:, :3], axis) ** 2 for axis in (first, second)))
-    depths = np.where(supports > 0, np.maximum(supports - planes[:, 3], 0), 0)
-    longest = np.sqrt(np.maximum(*((axis**2).sum(axis=0) for axis in (first, second))))
-    is_anywhere = ((depths > 0).sum(axis=0) > 1) | (depths.max(axis=0) > longest)
-    return np.where(is_anywhere, 2 * longest, depths.max(axis=0)).astype(np.float32)
 
 
 def clip_fields(lines: np.ndarray, axes: np.ndarray) -> dict[str, np.ndarray]:

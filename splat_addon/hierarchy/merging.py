@@ -16,8 +16,8 @@ from ..large_surfels import BLEND_STEPS, STEPS_OF_SAMPLES
 from ..surfels import Surfels, axes_quaternions
 from .bounds import Frame, bounds
 from .families import for_children, largest, total
-from .merged_lines import clip_fields, cut_off, merged_lines
-from .nodes import MEANS, MERGED_OVERLAP, Nodes, Table
+from .merged_lines import clip_fields, merged_lines
+from .nodes import MEANS, MERGED_OVERLAP, Nodes, Table, cut_off
 from .texture_places import along_axes, merged_places
 
 #: Half-axis of the splat of a square cell, relative to its edge, as conversion makes it.

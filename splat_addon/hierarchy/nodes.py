@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..clip_lines import CLIP_FIELDS, CUT, are_reflex, unpack_lines
+from ..clip_lines import CLIP_FIELDS, are_reflex, unpack_lines
 from ..large_surfels import LARGE_SIZE, LARGE_WEIGHT, are_large
 from ..surfels import Surfels, axes_columns
 from .families import Families
@@ -212,31 +212,34 @@ def _lines(surfels: dict[str, np.ndarray], axes: tuple[np.ndarray, np.ndarray], 
 
     A reflex corner cannot be merged: what it cuts off counts as overhang at once.
     """
-    packed = [surfels[name] for name in CLIP_FIELDS if name in surfels]
-    radii, least = scales.max(axis=0), scales.min(axis=0)
-    reflex = are_reflex(*packed) if len(packed) == 2 else np.zeros(len(radii), bool)
-    lines, cut_off = np.zeros((len(packed), 4, len(radii)), np.float32), _cut_off(packed, radii)
+    packed, least = [surfels[name] for name in CLIP_FIELDS if name in surfels], scales.min(axis=0)
+    lines = np.zeros((len(packed), 4, len(least)), np.float32)
     for plane, one in zip(lines, packed, strict=True):
-        rows = np.flatnonzero((one[:, 1] > 0) & ~reflex)
+        rows = np.flatnonzero(one[:, 1] > 0)
         a, b, c = unpack_lines(one[rows]).T.astype(np.float32)
         # from half-axes to object units, relative to the shorter one because squares of tiny ones would vanish
         along = np.stack([a, b]) * (least / scales)[:, rows]
         along, length = along / np.hypot(*along), np.hypot(*along)
         plane[:3, rows] = along[0] * axes[0][:, rows] + along[1] * axes[1][:, rows]
         plane[3, rows] = c * least[rows] / length
+    cut = cut_off(lines, *(axis * scale for axis, scale in zip(axes, scales, strict=True)))
+    reflex = are_reflex(*packed) if len(packed) == 2 else np.zeros(len(least), bool)
     return {
-        "lines": np.concatenate(lines),
-        "cut_off": np.where(reflex, 0, cut_off),
-        "overhang": np.where(reflex, cut_off, 0),
+        "lines": np.concatenate(np.where(reflex, 0, lines)),
+        "cut_off": np.where(reflex, 0, cut),
+        "overhang": np.where(reflex, cut, 0),
     }
 
 
-def _cut_off(packed: list[np.ndarray], radii: np.ndarray) -> np.ndarray:
-    """(n,) float32 distance by which ellipses extend beyond what their clip lines keep, object units.
+def cut_off(lines: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(n,) float32 distance by which ellipses extend beyond what their lines, (k, 4, n), keep, object units. first,
+    second: (3, n) half-axes.
 
     A single line on the far side of the centre removes no more than its depth. With two lines, or a line that removes
     the centre, the kept part may be anywhere in the ellipse.
     """
-    cuts = [lines[:, 1] / CUT for lines in packed]
-    deepest, both = np.max(cuts, axis=0), np.sum([cut > 0 for cut in cuts], axis=0) > 1
-    return (np.where(both | (deepest > 1), 2.0, deepest) * radii).astype(np.float32)
+    supports = np.sqrt(sum(np.einsum("kan,an->kn", lines[:, :3], axis) ** 2 for axis in (first, second)))
+    depths = np.maximum(supports - lines[:, 3], 0)
+    longest = np.sqrt(np.maximum(*((axis**2).sum(axis=0) for axis in (first, second))))
+    is_anywhere = ((depths > 0).sum(axis=0) > 1) | ((depths > 0) & (lines[:, 3] < 0)).any(axis=0)
+    return np.where(is_anywhere, 2 * longest, depths.max(axis=0)).astype(np.float32)

@@ -16,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from .blocks import ranges
+from .families import dot
 from .merged_lines import as_planes
 from .nodes import Nodes, Table
 from .ordering import sorted_with_order
@@ -91,7 +92,7 @@ def _limited(changes: np.ndarray) -> np.ndarray:
 
 
 def _lengths(vectors: np.ndarray) -> np.ndarray:
-    return np.sqrt(_dot(vectors, vectors))
+    return np.sqrt(dot(vectors, vectors))
 
 
 def _voxels(positions: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray]:
@@ -114,12 +115,12 @@ class _Pairs:
         columns = np.ascontiguousarray(np.take(candidates, rows, axis=0).T)
         self.offsets, self.radii, self.values = columns[:3], columns[7], columns[8:]
         self.offsets -= self._own("positions")
-        self.cosines = _dot(columns[3:6], self._own("normals"))
+        self.cosines = dot(columns[3:6], self._own("normals"))
         self.cosines[columns[6] != self._own("materials")] = -1
 
     def blurred(self, own: np.ndarray) -> np.ndarray:
         """(6, m) the values that a picture shows at the centres; their own if too many are crowded there to count."""
-        distance = _dot(self.offsets, self.offsets) / self.radii**2
+        distance = dot(self.offsets, self.offsets) / self.radii**2
         weights = np.exp(_SHARPNESS * distance) * ((distance < _END) & (self.cosines > _SAME_SIDE))
         if "lines" in self.nodes:
             weights[self._beyond_lines()] = 0
@@ -130,7 +131,7 @@ class _Pairs:
     def are_at_borders(self) -> np.ndarray:
         """(m,) whether neighbours are on one side only, or few."""
         u, v = (axis[:, self.part] for axis in self.nodes.axes)
-        x, y = (_dot(self.offsets, np.repeat(axis / _dot(axis, axis), self.counts, axis=1)) for axis in (u, v))
+        x, y = (dot(self.offsets, np.repeat(axis / dot(axis, axis), self.counts, axis=1)) for axis in (u, v))
         weights = np.maximum(1 - (x * x + y * y) / _AROUND**2, 0) ** 2 * (self.cosines > _NO_CREASE)
         x, y, total = self._sum(np.stack([x * weights, y * weights, weights]))
         return (np.hypot(x, y) > _ONE_SIDED * total) | (total < _FEW)
@@ -168,7 +169,3 @@ class _Near:
         ends = self.ends[np.clip(left, 0, 2) * len(self.keys) + first]
         counts = np.minimum(ends - first, _MOST) * has_any
         return ranges(first.T.ravel(), counts.T.ravel()), counts.sum(axis=0)
-
-
-def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.einsum("kn,kn->n", a, b)

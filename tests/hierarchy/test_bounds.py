@@ -153,7 +153,7 @@ def test_a_smooth_surface_is_known_to_a_share_of_its_cells():
 @pytest.mark.parametrize("turn", [0.0, 0.3, 1.2])
 @pytest.mark.parametrize("width", [0.01, 0.07, 0.4])
 def test_bounds_hold_where_merged_surfels_end_at_lines(turn, width):
-    """A strip, narrower or wider than the cells, cut from a sheet by two lines; a third line makes corners."""
+    """A strip, narrower or wider than the cells, is cut from a sheet by two lines. Two others make a corner."""
     surfels = cut_sheet([(turn, -width / 2), (turn + np.pi, -width / 2)])
     below, nodes, errors, _ = leaves_of(surfels)
     assert nodes.is_cut().mean() > 0.3

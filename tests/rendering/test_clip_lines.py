@@ -12,7 +12,7 @@ from splat_addon.reference import render_ewa, render_exact
 from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
 from splat_addon.reference.triangles import render_triangles
-from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at, plan
+from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, levels, look_at, plan
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan.executor import describe
 from splat_addon.rendering.upload.packing import pack_clip_lines
@@ -221,14 +221,26 @@ def test_a_clipped_surfel_takes_8_bytes_more_and_others_none():
 
 def test_lines_of_merged_surfels_follow_those_of_surfels():
     surfels = clipped_iron(SIZE, 80)[0].surfels[0].surfels
-    levels = build_hierarchy(surfels)
-    order = stored_order(surfels, levels)
-    of_surfels, of_nodes = clipped_places(surfels, levels)
+    hierarchy = build_hierarchy(surfels)
+    order, nodes = stored_order(surfels, hierarchy), hierarchy.nodes
+    of_surfels, of_nodes = clipped_places(surfels, hierarchy)
     assert surfels.is_cut()[order[of_surfels]].all()
-    assert levels.nodes.clipped_count > 100 and levels.nodes.is_cut()[order[of_nodes] - len(surfels)].all()
+    assert nodes.clipped_count > 100 and nodes.is_cut()[order[of_nodes] - len(surfels)].all()
     ends = np.array([of_surfels.stop, of_nodes.stop])
     assert (order[ends] < len(surfels)).tolist() == [True, False]
-    assert not surfels.is_cut()[order[ends[0]]] and not levels.nodes.is_cut()[order[ends[1]] - len(surfels)]
+    assert not surfels.is_cut()[order[ends[0]]] and not nodes.is_cut()[order[ends[1]] - len(surfels)]
+
+
+def test_clipped_surfels_may_have_a_hierarchy_without_nodes(monkeypatch, render):
+    """Two discs far from each other do not merge."""
+    monkeypatch.setattr(levels, "LEAST_SURFELS", 1)
+    apart = [disc(clip_line=pack_lines(LINE), positions=np.array([[x, 0.0, -4]])) for x in (-0.6, 0.6)]
+    surfels = concatenate([apart[0], replace(apart[1], materials=np.array([1]))])
+    assert len(levels.hierarchy_of(surfels)) == 0
+    scene = Scene((Instance(surfels, materials=(Material(), Material())),))
+    some, every = (render(scene, STRAIGHT, replace(FLAT, detail_tolerance=t)) for t in (1, 0))
+    assert "levels" in some.stats["plan"].facts and every.coverage.max() > 0.9
+    assert (some.color == every.color).all()
 
 
 def test_a_model_without_lines_has_no_line_of_them_in_its_shaders():

@@ -24,9 +24,9 @@ def grooved(width: float, depth: float) -> trimesh.Trimesh:
 
 def test_a_groove_is_shadowed_as_without_merged_surfels(render):
     """The grooves have six widths. Merged surfels that do not end at their edges make shadow missing or false by
-    0.071."""
+    0.071, and by up to 0.12 in one of them."""
     squares = [(off_by(render, texels) ** 2).mean() for texels in (1.5, 2, 2.5, 3, 3.5, 4)]
-    assert np.sqrt(np.mean(squares)) < 0.036
+    assert np.sqrt(np.mean(squares)) < 0.036 and np.sqrt(np.max(squares)) < 0.039
 
 
 def off_by(render, texels):

@@ -146,11 +146,9 @@ class TileContext:
         levels = self.levels(placed.instance)
         if levels is None:
             return 0.0
-        surfels, clipped = (
-            max(place_in_part(count, placed.part), 0)
-            for count in (levels.surfels, placed.instance.surfels.clipped_count)
-        )
-        return float(-(-surfels // SPLATS_PER_ROW) - -(-clipped // SPLATS_PER_ROW))
+        of_surfels, of_nodes = clipped_places(placed.instance.surfels, levels)
+        lines, nodes = (max(place_in_part(at, placed.part), 0) for at in (of_surfels.stop, of_nodes.start))
+        return float(nodes // SPLATS_PER_ROW - -(-lines // SPLATS_PER_ROW))
 
     def check_arrived(self) -> None:
         """Request everything of the scene's surfels that passes read; raises `NotYet` for what is on its way."""

@@ -290,14 +290,18 @@ def _packed_lifts(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray)
 
 
 def _packed_clip_lines(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray) -> Packed:
-    kinds = [(surfels, 0)] + ([(levels.nodes, len(surfels))] if levels else [])
-    clipped = list(zip(kinds, clipped_places(surfels, levels), strict=True))
+    of_surfels, *of_nodes = clipped_places(surfels, levels)
     parts = []
     for part in places_in_parts(len(order)):
-        own = (order[max(of.start, part.start) : max(min(of.stop, part.stop), part.start)] for _, of in clipped)
-        lines = [pack_clip_lines(some, rows - first) for ((some, first), _), rows in zip(clipped, own, strict=True)]
-        parts.append(np.concatenate(lines))
-    return _packed((lines if len(lines) else np.zeros((1, SPLATS_PER_ROW, 4), np.float32) for lines in parts), "RGBA16")
+        lines = [pack_clip_lines(surfels, order[_overlap(of_surfels, part)])]
+        lines += [pack_clip_lines(levels.nodes, order[_overlap(of, part)] - len(surfels)) for of in of_nodes]
+        parts.append(np.concatenate(lines) if any(map(len, lines)) else np.zeros((1, SPLATS_PER_ROW, 4), np.float32))
+    return _packed(parts, "RGBA16")
+
+
+def _overlap(one: slice, other: slice) -> slice:
+    start = max(one.start, other.start)
+    return slice(start, max(min(one.stop, other.stop), start))
 
 
 def _packed(parts: Iterable[np.ndarray], format: str) -> Packed:
