@@ -15,12 +15,27 @@ void silhouettes_keep(inout Candidate c) {
 const float WITHIN_RIM = 0.75;    // pixels, so that a sample there sees the splat
 const float SEES_NOTHING = 1e38;  // nearer than what an empty sample sees
 
+// How far behind the visible surface a plane is at a sample.
+float behind_seen(Plane plane, ivec2 at) {
+  ivec2 last = textureSize(depth_bounds, 0) - 1;
+  return plane_depth(plane, place_at(plane, vec2(at) + 0.5)) - texelFetch(depth_bounds, clamp(at, ivec2(0), last), 0).z;
+}
+
+// A face seen steeply may be narrower than a pixel, so that the sample at its centre sees the face before it. It is seen
+// if that face, continued as from this sample to the next outward, meets it before its centre.
 bool is_seen_within_rim(Plane plane) {
   Place place = place_at(plane, gl_FragCoord.xy);
   float to_rim = inversesqrt(max(dot(place.uv, place.uv), 1.0));
   float share = max(to_rim - WITHIN_RIM * inversesqrt(max(dot(place.d, place.d), 1e-20)), 0.0);
   ivec2 at = clamp(ivec2(plane.center + place.d * share), ivec2(0), textureSize(depth_bounds, 0) - 1);
-  return plane_depth(plane, place_at(plane, vec2(at) + 0.5)) <= texelFetch(depth_bounds, at, 0).z;
+  float behind = behind_seen(plane, at);
+  if (behind <= 0.0) return true;
+  vec2 way = vec2(at) + 0.5 - plane.center;
+  float far = length(way);
+  vec2 outward = way / max(far, 1e-6);
+  ivec2 next = ivec2(vec2(at) + 0.5 + outward);
+  float step_out = max(dot(vec2(next - at), outward), 0.5);
+  return behind * step_out <= (behind_seen(plane, next) - behind) * far;
 }
 
 // Into an empty sample a splat reaches only if it is seen within its rim: the lining of a sheet, which is hidden there,

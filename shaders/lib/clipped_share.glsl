@@ -23,11 +23,16 @@ float share_before(float x) {
 
 // How dense the kernels of equally spaced splats lie where a pixel sees their kept sides, 1 far from a line. Their
 // centres are on that side alone, so at the line they are half as dense; without this, creases would be sharper than the
-// filter. The mean distance of what is kept of a Gaussian, and the density there, are fitted curves.
+// filter. The mean distance of what is kept of a Gaussian, and the density there, are fitted curves. Between two lines
+// that face each other, both mean distances add up to no more than the strip's width, and its rows are counted.
 // inside: distance from both lines, in deviations of kernel times pixel.
-vec2 kernel_density(vec2 inside, vec2 deviation) {
-  vec2 mean = min(0.5 * (inside + sqrt(inside * inside + 4.0 * TWO_OVER_PI)) * deviation, vec2(1.0));
-  return 0.5 + mean - 0.5 * mean * mean;
+float kernel_density(vec2 inside, vec2 deviation) {
+  vec2 mean = 0.5 * (inside + sqrt(inside * inside + 4.0 * TWO_OVER_PI)) * deviation;
+  mean = min(mean * mix(1.0, min(clip_strip.y / (mean.x + mean.y), 1.0), clip_strip.x), vec2(1.0));
+  vec2 one = 0.5 + mean - 0.5 * mean * mean;
+  float both = one.x * one.y;
+  if (clip_is_reflex > 0.5) return one.x + one.y - both;
+  return mix(both, (one.x + one.y - 1.0) * clip_strip.z, clip_strip.x);
 }
 
 // The method's weight ends at the rim, and what lies beyond a line may lie beyond the rim, too: how much a line keeps of
@@ -53,8 +58,6 @@ float clipped_share(Plane plane, Place place) {
   kept = share_within_rim(kept, q, middle, seen, deviation);
   float one = kept.x, other = kept.y;
   float both = both_keep(one, other, dot(clip_second.xy, across) / (deviation.x * deviation.y));
-  vec2 density = kernel_density(inside, deviation);
-  float share = clip_is_reflex > 0.5 ? one + other - both : both, all_density = density.x * density.y;
-  if (clip_is_reflex > 0.5) all_density = density.x + density.y - all_density;
-  return share > LEAST_SHARE ? share / all_density : 0.0;
+  float share = clip_is_reflex > 0.5 ? one + other - both : both;
+  return share > LEAST_SHARE ? share / kernel_density(inside, deviation) : 0.0;
 }

@@ -129,3 +129,39 @@ def test_of_a_ridge_lower_than_a_pixel_one_wall_shows(turn, render):
     mesh = sheets((grey, top), (red, left), (green, right), *((grey, floor) for floor in floors))
     camera = Camera.perspective(look_at((4 * np.cos(turn), 4 * np.sin(turn), 5), (0, 0, 0)), 0.9, (64, 64), 0.1, 100)
     assert np.count_nonzero(apart(mesh, camera, 0.1, render) > 0.05) <= 6
+
+
+def light_of_a_face(floor, face, render, turn, tilt=0.0):
+    """The light of a blue face between two halves of a yellow floor, over the same light of the triangles."""
+    left, right = floor
+    mesh = sheets(((0.5, 0.5, 0), left), ((0.5, 0.1, 0.6), face), ((0.5, 0.5, 0), right))
+    eye = np.array((np.sin(tilt), 0, np.cos(tilt))) * 5
+    up = np.cos(turn) * np.array((0, 1, 0)) + np.sin(turn) * np.cross((0, 1, 0), eye / 5)
+    camera = Camera.orthographic(look_at(eye, (0, 0, 0), up), 1.92, (96, 96), 0.1, 20)
+    surfels = sample_mesh(mesh, spacing=0.015, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True, fits_planes=True)
+    frame = render(Scene((surfels,)), camera, ONE_SAMPLE)
+    truth = render_triangles(mesh.positions[mesh.triangles], mesh.corner_colors[..., :3], camera)
+    return frame.color[10:-10, 10:-10, 2].sum() / truth.color[10:-10, 10:-10, 2].sum()
+
+
+@pytest.mark.parametrize("turn", [0.1, 0.5, 1.1])
+def test_a_steep_face_narrower_than_a_pixel_keeps_its_light(turn, render):
+    """A step as high as the spacing of samples is seen 0.3 pixels wide.
+
+    Measured: 0.92 to 0.98 of the light; it was 0.6 when samples hid the splats behind whose centres they are."""
+    high = 0.015
+    floor = (
+        [(-2, -2, 0), (0, -2, 0), (0, 2, 0), (-2, 2, 0)],
+        [(0, -2, -high), (2, -2, -high), (2, 2, -high), (0, 2, -high)],
+    )
+    face = [(0, -2, 0), (0, -2, -high), (0, 2, -high), (0, 2, 0)]
+    assert 0.88 < light_of_a_face(floor, face, render, turn, np.arcsin(0.3 * 0.02 / high)) < 1.08
+
+
+@pytest.mark.parametrize("widths", [1, 1.44, 2])
+def test_a_strip_of_few_samples_has_the_light_of_its_area(widths, render):
+    """Measured: 0.99, 1.13 and 0.99; it was 0.82, 1.20 and 0.98 when the strip's rows did not count."""
+    wide = 0.015 * widths
+    floor = [(-2, -2, 0), (0, -2, 0), (0, 2, 0), (-2, 2, 0)], [(wide, -2, 0), (2, -2, 0), (2, 2, 0), (wide, 2, 0)]
+    face = [(0, -2, 0), (wide, -2, 0), (wide, 2, 0), (0, 2, 0)]
+    assert 0.95 < light_of_a_face(floor, face, render, 0.5) < 1.16

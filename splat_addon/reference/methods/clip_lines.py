@@ -16,6 +16,12 @@ LEAST_SHARE = 0.006
 #: The least share within the rim that divides.
 LEAST_WITHIN = 0.05
 
+#: Half-axes between the samples of a surface.
+SPLAT_SPACING = 0.8
+
+#: Half-axes between two lines; narrower strips count as that wide.
+LEAST_WIDTH = 0.01
+
 #: Half-axes squared, beyond which the pixel is too large for float precision.
 LARGEST_PIXEL = 1e8
 
@@ -66,19 +72,27 @@ def clipped_share(place: np.ndarray, change: np.ndarray, lines: np.ndarray, refl
     correlation = np.einsum("ni,ni->n", across[:, 0], direction[:, 1]) / deviation.prod(axis=1)
     both = _both_keep(one, other, correlation)
     share = np.where(reflex, one + other - both, both)
-    density = _kernel_density(inside, deviation)
-    both_dense = density.prod(axis=1)
-    density = np.where(reflex, density.sum(axis=1) - both_dense, both_dense)
-    return np.where(share > LEAST_SHARE, share / density, 0.0)
+    return np.where(share > LEAST_SHARE, share / _kernel_density(inside, deviation, lines, reflex), 0.0)
 
 
-def _kernel_density(inside: np.ndarray, deviation: np.ndarray) -> np.ndarray:
-    """(M, 2) how dense the kernels of equally spaced splats lie where a pixel sees their kept sides; 1 far from lines.
+def _kernel_density(inside: np.ndarray, deviation: np.ndarray, lines: np.ndarray, reflex: np.ndarray) -> np.ndarray:
+    """(M,) how dense the kernels of equally spaced splats lie where a pixel sees their kept sides; 1 far from lines.
 
-    Their centres are on that side alone. inside: (M, 2) distance from the lines, in deviations of kernel times pixel.
+    Their centres are on that side alone, in as many rows as fit between two lines that face each other. inside: (M, 2)
+    distance from the lines, in deviations of kernel times pixel.
     """
-    mean = np.minimum(0.5 * (inside + np.sqrt(inside**2 + 8 / np.pi)) * deviation, 1.0)
-    return 0.5 + mean - 0.5 * mean**2
+    mean = 0.5 * (inside + np.sqrt(inside**2 + 8 / np.pi)) * deviation
+    opposite = np.clip(-np.einsum("ni,ni->n", lines[:, 0, :2], lines[:, 1, :2]), 0, 1)
+    strip = np.where(reflex, 0.0, np.arcsin(opposite) * 2 / np.pi)
+    width = np.maximum(lines[..., 2].sum(axis=1), LEAST_WIDTH)
+    limit = 1 + strip * (np.minimum(width / mean.sum(axis=1), 1) - 1)
+    mean = np.minimum(mean * limit[:, None], 1.0)
+    one = 0.5 + mean - 0.5 * mean**2
+    both = one.prod(axis=1)
+    beside = np.maximum(lines[..., 2], 0) / SPLAT_SPACING
+    beside = np.floor(beside) + np.maximum(beside % 1 * 10 - 9, 0)
+    rows = (1 + beside.sum(axis=1)) * SPLAT_SPACING / width
+    return np.where(reflex, one.sum(axis=1) - both, both + strip * ((one.sum(axis=1) - 1) * rows - both))
 
 
 def _share_within_rim(share, place, middle, across, seen, deviation) -> np.ndarray:

@@ -12,10 +12,10 @@ from .drawing import SPLAT_HOSTS
 _VARYINGS = (("flat", "vec3", "clip_first"), ("flat", "vec3", "clip_second"), ("flat", "float", "clip_is_reflex"))
 
 #: word -> what else vertices hand on: whether lines refer to positions in the ellipse or in the picture; where a method
-#: blurs lines, distances from them in the picture.
+#: blurs lines, distances from them in the picture and the strip between both.
 _MORE_VARYINGS = {
     "cuts_at_lines": (("flat", "float", "clip_in_space"),),
-    "blurs_lines": (("flat", "vec3", "from_first"), ("flat", "vec3", "from_second")),
+    "blurs_lines": (("flat", "vec3", "from_first"), ("flat", "vec3", "from_second"), ("flat", "vec3", "clip_strip")),
 }
 
 DRAWN = {
