@@ -3,7 +3,7 @@
 
 For a node and all surfels under it, in object units: off: no point of their ellipses is farther off its plane;
 uncovered: none, seen along its normal, is farther beside its ellipse; overhang: none of `PLACES` on its ellipse is
-farther from what all of them cover, seen along its normal.
+farther from what all of them cover, seen along its normal; the width of a narrow strip between two lines counts, too.
 And of what they show: spread, the largest difference of a colour's component, or half the length between normals.
 
 A child's bounds refer to its own normal. Seen along the parent's normal, which differs by an angle t, an offset from
@@ -145,6 +145,8 @@ def bounds(
         uncovered += lines.bend
         beside = beside + np.where(lines.are_kept, 0, children["cut_off"])
     overhang = _bare(frame, children, offsets, lines) + largest(beside) + slack
+    if lines is not None:
+        overhang += lines.narrow_strips(frame.longest)
 
     turned = np.sqrt(np.maximum(2 - 2 * dot(for_children(shading), children["shading"]), 0)) / 2
     tinted = np.abs(for_children(colors) - children["colors"]).max(axis=0)

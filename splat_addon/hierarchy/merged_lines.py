@@ -36,6 +36,17 @@ class Lines:
     bend: np.ndarray
     are_kept: np.ndarray
 
+    def narrow_strips(self, radii: np.ndarray) -> np.ndarray:
+        """(m,) the widths of strips between two lines that face each other, if narrower than the ellipses; else 0.
+
+        Their light depends on how many rows of surfels they have and where, which one merged row cannot say.
+        """
+        if len(self.planes) < 2:
+            return np.zeros_like(self.bend)
+        first, second = self.planes
+        width = first[3] + second[3]
+        return np.where((dot(first[:3], second[:3]) < 0) & (width < 2 * radii), width, 0)
+
 
 def as_planes(lines: np.ndarray) -> np.ndarray:
     """(k, 4, ...) of (4 k, ...) lines."""

@@ -23,10 +23,10 @@ def grooved(width: float, depth: float) -> trimesh.Trimesh:
 
 
 def test_a_groove_is_shadowed_as_without_merged_surfels(render):
-    """The grooves have six widths. Merged surfels that do not end at their edges make shadow missing or false by
-    0.071, and by up to 0.12 in one of them."""
+    """The grooves have six widths. Measured: 0.016 of the shadow, and 0.029 in one groove; it was 0.022 and 0.038 when
+    narrow strips were merged, and 0.071 and 0.12 when merged surfels did not end at edges."""
     squares = [(off_by(render, texels) ** 2).mean() for texels in (1.5, 2, 2.5, 3, 3.5, 4)]
-    assert np.sqrt(np.mean(squares)) < 0.036 and np.sqrt(np.max(squares)) < 0.039
+    assert np.sqrt(np.mean(squares)) < 0.02 and np.sqrt(np.max(squares)) < 0.034
 
 
 def off_by(render, texels):
