@@ -38,10 +38,16 @@ bool is_seen_within_rim(Plane plane) {
   return behind * step_out <= (behind_seen(plane, next) - behind) * far;
 }
 
+bool must_be_seen;  // within the rim
+
 // Into an empty sample a splat reaches only if it is seen within its rim: the lining of a sheet, which is hidden there,
 // does not show past the sheet.
 void silhouettes_bound(inout Candidate c) {
-  if (c.seen.z > SEES_NOTHING && !c.in_space && !is_seen_within_rim(c.plane)) discard;
+  must_be_seen = c.seen.z > SEES_NOTHING;
+}
+
+void silhouettes_opaque_keep(inout Candidate c) {
+  if (must_be_seen && !c.in_space && !is_seen_within_rim(c.plane)) discard;
 }
 
 #part screen_space.frag, opaque, blend_depth
@@ -49,8 +55,7 @@ const float IN_FRONT = 0.1;  // radii by which a plane is nearer than what is se
 
 // Nor does it show past the edge at which it joins the sheet, beyond which its plane is nearer than the sheet.
 void silhouettes_joined_bound(inout Candidate c) {
-  bool is_in_front = c.seen.z < SEES_NOTHING && c.seen.z - c.depth > IN_FRONT * c.plane.radius;
-  if (is_in_front && !c.in_space && !is_seen_within_rim(c.plane)) discard;
+  must_be_seen = must_be_seen || c.seen.z - c.depth > IN_FRONT * c.plane.radius;
 }
 
 #part depth_bounds.frag

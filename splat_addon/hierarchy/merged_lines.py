@@ -25,6 +25,8 @@ from .nodes import Nodes
 _APART = np.float32(0.1)
 #: Minimum cosine between lines that become one.
 _ALIKE = np.float32(0.95)
+#: Half-axes, the width of a strip that one row of merged surfels fills; their cells are 1.11 wide.
+_ONE_ROW = np.float32(1.2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,15 +39,15 @@ class Lines:
     are_kept: np.ndarray
 
     def narrow_strips(self, radii: np.ndarray) -> np.ndarray:
-        """(m,) the widths of strips between two lines that face each other, if narrower than the ellipses; else 0.
+        """(m,) the widths of strips between two lines that face each other and leave room for one surfel; else 0.
 
-        Their light depends on how many rows of surfels they have and where, which one merged row cannot say.
+        How bright a strip is depends on how many rows of surfels it had and where, which one cannot say.
         """
         if len(self.planes) < 2:
             return np.zeros_like(self.bend)
         first, second = self.planes
         width = first[3] + second[3]
-        return np.where((dot(first[:3], second[:3]) < 0) & (width < 2 * radii), width, 0)
+        return np.where((dot(first[:3], second[:3]) < 0) & (width < _ONE_ROW * radii), width, 0)
 
 
 def as_planes(lines: np.ndarray) -> np.ndarray:
