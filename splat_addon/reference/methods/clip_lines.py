@@ -17,7 +17,7 @@ LEAST_SHARE = 0.006
 LEAST_WITHIN = 0.05
 
 #: Half-axes between the samples of a surface.
-SPLAT_SPACING = 0.8
+SAMPLE_SPACING = 0.8
 
 #: Half-axes between two lines; narrower strips count as that wide.
 LEAST_WIDTH = 0.01
@@ -89,9 +89,9 @@ def _kernel_density(inside: np.ndarray, deviation: np.ndarray, lines: np.ndarray
     mean = np.minimum(mean * limit[:, None], 1.0)
     one = 0.5 + mean - 0.5 * mean**2
     both = one.prod(axis=1)
-    beside = np.maximum(lines[..., 2], 0) / SPLAT_SPACING
+    beside = np.maximum(lines[..., 2], 0) / SAMPLE_SPACING
     beside = np.floor(beside) + np.maximum(beside % 1 * 10 - 9, 0)
-    rows = (1 + beside.sum(axis=1)) * SPLAT_SPACING / width
+    rows = (1 + beside.sum(axis=1)) * SAMPLE_SPACING / width
     return np.where(reflex, one.sum(axis=1) - both, both + strip * ((one.sum(axis=1) - 1) * rows - both))
 
 
