@@ -36,23 +36,23 @@ void of_sprites_tell(Splat splat, int index) {
 
 #part splat_varyings, blurs_lines
 const float RIGHT_ANGLE = 1.57079633;
-const float SAMPLE_SPACING = 0.8;  // half-axes
-const float LEAST_WIDTH = 0.01;    // half-axes between two lines; narrower strips count as that wide
+const float LEAST_WIDTH = 0.01;  // half-axes between two lines; narrower strips count as that wide
 
-// Rows of samples on the kept side of a line. One that just fits counts in part, because positions are rounded.
+// Rows of samples between a splat's centre and a line, if samples have the default size. One that just fits counts in
+// part, because positions are rounded.
 float rows_before(float line) {
-  float rows = max(line, 0.0) / SAMPLE_SPACING;
+  float rows = max(line, 0.0) * SAMPLE_SIZE;
   return floor(rows) + max(10.0 * fract(rows) - 9.0, 0.0);
 }
 
 // A strip between two lines: how much they face each other, from 0 to 1, its width, and how many rows of samples it has,
-// relative to its width. Cells of merged splats cover a strip as they cover a plane.
+// relative to its width. Cells of merged splats have other sizes, and there are none where a strip has one row.
 void blurs_lines_tell(Splat splat, int index) {
   bool may_be = clip_is_reflex < 0.5 && float(index) < draw.first_merged;
   float faces = may_be ? asin(clamp(-dot(clip_first.xy, clip_second.xy), 0.0, 1.0)) / RIGHT_ANGLE : 0.0;
   float width = max(clip_first.z + clip_second.z, LEAST_WIDTH);
   float rows = 1.0 + rows_before(clip_first.z) + rows_before(clip_second.z);
-  clip_strip = vec3(faces, width, rows * SAMPLE_SPACING / width);
+  clip_strip = vec3(faces, width, rows / (SAMPLE_SIZE * width));
 }
 
 #part screen_space.vert, cuts_at_lines

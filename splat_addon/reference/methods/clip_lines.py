@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...large_surfels import SAMPLE_SIZE
 from ...rendering.methods import METHODS
 from . import TWINS
 from .mip import FILTER_SIGMA, KERNEL_VARIANCE, NORMAL, NORMAL_END
@@ -15,9 +16,6 @@ LEAST_SHARE = 0.006
 
 #: The least share within the rim that divides.
 LEAST_WITHIN = 0.05
-
-#: Half-axes between the samples of a surface.
-SAMPLE_SPACING = 0.8
 
 #: Half-axes between two lines; narrower strips count as that wide.
 LEAST_WIDTH = 0.01
@@ -78,8 +76,8 @@ def clipped_share(place: np.ndarray, change: np.ndarray, lines: np.ndarray, refl
 def _kernel_density(inside: np.ndarray, deviation: np.ndarray, lines: np.ndarray, reflex: np.ndarray) -> np.ndarray:
     """(M,) how dense the kernels of equally spaced splats lie where a pixel sees their kept sides; 1 far from lines.
 
-    Their centres are on that side alone, in as many rows as fit between two lines that face each other. inside: (M, 2)
-    distance from the lines, in deviations of kernel times pixel.
+    Their centres are on that side alone, in as many rows as fit between two lines that face each other; a row that
+    just fits counts in part. inside: (M, 2) distance from the lines, in deviations of kernel times pixel.
     """
     mean = 0.5 * (inside + np.sqrt(inside**2 + 8 / np.pi)) * deviation
     opposite = np.clip(-np.einsum("ni,ni->n", lines[:, 0, :2], lines[:, 1, :2]), 0, 1)
@@ -89,9 +87,9 @@ def _kernel_density(inside: np.ndarray, deviation: np.ndarray, lines: np.ndarray
     mean = np.minimum(mean * limit[:, None], 1.0)
     one = 0.5 + mean - 0.5 * mean**2
     both = one.prod(axis=1)
-    beside = np.maximum(lines[..., 2], 0) / SAMPLE_SPACING
+    beside = np.maximum(lines[..., 2], 0) * SAMPLE_SIZE
     beside = np.floor(beside) + np.maximum(beside % 1 * 10 - 9, 0)
-    rows = (1 + beside.sum(axis=1)) * SAMPLE_SPACING / width
+    rows = (1 + beside.sum(axis=1)) / (SAMPLE_SIZE * width)
     return np.where(reflex, one.sum(axis=1) - both, both + strip * ((one.sum(axis=1) - 1) * rows - both))
 
 

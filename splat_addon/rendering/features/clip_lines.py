@@ -6,8 +6,11 @@ They are a separate draw call, with the variant "clipped" of every program that 
 
 from __future__ import annotations
 
+from ...large_surfels import SAMPLE_SIZE
 from ..plan.graph import Part
 from .drawing import SPLAT_HOSTS
+
+CONSTANTS = {"SAMPLE_SIZE": SAMPLE_SIZE}
 
 _VARYINGS = (("flat", "vec3", "clip_first"), ("flat", "vec3", "clip_second"), ("flat", "float", "clip_is_reflex"))
 
