@@ -73,10 +73,10 @@ class Cover:
         return result
 
     def _windows(self, across: int, up: int) -> np.ndarray:
-        """The farthest that any cell sees of a window that begins at each cell, of 2^across columns and 2^up rows."""
+        """The farthest that any cell sees of each window of 2^across columns and 2^up rows, by its first ones."""
         cells = self.farthest
-        for axis, power in ((1, across), (0, up)):
-            for step in 1 << np.arange(power):
-                beside = np.arange(cells.shape[axis]) + step
-                cells = np.maximum(cells, np.take(cells, beside, axis, mode="clip"))
+        for step in 1 << np.arange(across):
+            cells = np.maximum(cells[:, :-step], cells[:, step:])
+        for step in 1 << np.arange(up):
+            cells = np.maximum(cells[:-step], cells[step:])
         return cells

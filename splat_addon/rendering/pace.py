@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from time import perf_counter
@@ -86,10 +87,19 @@ class Pace:
             return camera, settings
         tolerance = min(settings.detail_tolerance * self._tolerance, max(COARSEST, settings.detail_tolerance))
         size = tuple(max(round(edge / self._width), 1) for edge in camera.size)
+        coarse = {"detail_tolerance": tolerance, "shadow_resolution": self._shadow_texels(settings.shadow_resolution)}
+        is_same = all(getattr(settings, name) == value for name, value in coarse.items())
         return (
             camera if size == camera.size else replace(camera, size=size),
-            settings if tolerance == settings.detail_tolerance else replace(settings, detail_tolerance=tolerance),
+            settings if is_same else replace(settings, **coarse),
         )
+
+    def _shadow_texels(self, resolution: int) -> int:
+        """Texels along a shadow map: halved as often as the width of pixels was doubled, in multiples of 16."""
+        for _ in range(int(math.log2(self._width))):
+            if resolution % 32 == 0:
+                resolution //= 2
+        return resolution
 
     def end(self, settings: Settings, streamed: int = 0) -> None:
         """Learn from the time that the picture took. settings: those that it would have at rest. streamed: surfels that

@@ -140,6 +140,20 @@ def test_a_first_picture_that_others_follow_begins_with_few_pixels():
     assert widths == [WIDEST, 2, 1, 1]
 
 
+@pytest.mark.parametrize(
+    ("texels", "expected"), [(1024, [256, 512, 1024, 1024]), (96, [48, 48, 96, 96]), (50, [50] * 4), (0, [0] * 4)]
+)
+def test_shadow_maps_have_fewer_texels_where_pixels_are_wider(texels, expected):
+    clock, found = Clock(), []
+    clock.now, pace = 1.0, Pace(10.0, clock)
+    pace.begin_coarsely()
+    for _ in expected:
+        found.append(pace.begin(CAMERA, replace(SETTINGS, shadow_resolution=texels))[1].shadow_resolution)
+        clock.now += 0.001
+        pace.end(SETTINGS)
+    assert found == expected
+
+
 @pytest.mark.parametrize("edge", [4096, 50])
 def test_a_picture_of_fewer_pixels_fills_the_view(edge, on_device, monkeypatch):
     """In tiles too, each pixel of the view is shown once."""

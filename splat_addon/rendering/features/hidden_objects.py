@@ -132,7 +132,7 @@ def _objects_front_to_back(tile, p: Pass, waiting: list[DrawItem], viewport) -> 
             drawn += counts[group[-1]]
         yield group
         cover = _cover(tile, p.each, viewport)
-        hidden = [placed for placed in waiting if _is_hidden(placed, cover, tile)]
+        hidden = _hidden(waiting, cover, tile)
         if not hidden:
             break
         tile.hidden.update(hidden)
@@ -153,16 +153,19 @@ def _cover(tile, p: Pass, viewport) -> Cover:
     return Cover(cells, tile.camera, tile.view.scale, tile.plan.samples, begin)
 
 
-def _is_hidden(placed: DrawItem, cover: Cover, tile) -> bool:
-    """Whether an object's box is beyond what every cell under it sees."""
-    corners = placed.instance.corners(tile.camera)
+def _hidden(waiting: list[DrawItem], cover: Cover, tile) -> list[DrawItem]:
+    """The objects whose boxes are beyond what every cell under them sees."""
+    if not waiting:
+        return []
+    corners = np.stack([placed.instance.corners(tile.camera) for placed in waiting], axis=-1)
     low, high = corners.min(axis=0), corners.max(axis=0)
-    nearer = _NEARER * placed.instance.radius
-    if tile.levels(placed.instance) is not None:
-        # what merged surfels may be off by
-        off = tile.settings.detail_tolerance / tile.camera.pixels_per_unit()
-        nearer += off if tile.camera.is_orthographic else off * max(-high[2], 0.0)
-    return bool(cover.hides(((low + high) / 2)[:, None], ((high - low) / 2)[:, None], nearer, _BESIDE)[0])
+    # what merged surfels may be off by, at each object's farthest
+    off = tile.settings.detail_tolerance / tile.camera.pixels_per_unit()
+    off = off * (1.0 if tile.camera.is_orthographic else np.maximum(-low[2], 0.0))
+    merges = np.array([tile.levels(placed.instance) is not None for placed in waiting])
+    nearer = _NEARER * np.array([placed.instance.radius for placed in waiting]) + off * merges
+    are_hidden = cover.hides((low + high) / 2, (high - low) / 2, nearer, _BESIDE)
+    return [waiting[k] for k in np.flatnonzero(are_hidden)]
 
 
 def _is_large(tile, placed: DrawItem) -> bool:
