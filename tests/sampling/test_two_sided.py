@@ -67,11 +67,31 @@ def test_a_card_has_two_hidden_backs(angles, resolution, other_diagonal, bend):
         assert (hidden(mesh, resolution) == 1).all()
 
 
-@pytest.mark.parametrize(("apart", "is_card"), [(0.0, True), (0.1, True), (0.3, False), (-0.01, True), (-0.1, False)])
+@pytest.mark.parametrize(
+    ("apart", "is_card"), [(0.0, True), (0.3, True), (0.9, True), (1.1, False), (-0.01, True), (-0.1, False)]
+)
 def test_sheets_are_cards_if_one_is_close_behind_the_other(apart, is_card):
     """With a negative distance the sheets face each other across a gap."""
     backs = hidden(card(apart=apart / 40), 40)
     assert (backs == 1).all() if is_card else backs is None
+
+
+@pytest.mark.parametrize(("angle", "is_card"), [(20, True), (50, True), (70, False)])
+def test_a_wedge_is_a_card_where_it_is_thin(angle, is_card):
+    """Two squares that meet at this angle, in degrees."""
+    half = np.radians(angle) / 2
+    far = np.array([(np.cos(half), 0, 1), (np.cos(half), 1, 1)]) * (1, 1, np.sin(half))
+    places = np.concatenate([[(0, 0, 0), (0, 1, 0)], far, far * (1, 1, -1)])
+    front, back = [(0, 2, 3), (0, 3, 1)], [(0, 5, 4), (0, 1, 5)]
+    mesh = TriangleMesh(places, np.array(front + back))
+    surfels = sample_surface(mesh, spacing=1 / 40, **OPTIONS).surfels
+    if not is_card:
+        assert surfels.hidden_back is None
+        return
+    # from one to the other, along the axis that both face or across
+    thickness = 40 * 2 * np.sin(half) * (surfels.positions + surfels.origin)[:, 0]
+    assert (surfels.hidden_back == 1)[thickness < 0.5].mean() > 0.9
+    assert not surfels.hidden_back[thickness > 2].any()
 
 
 @pytest.mark.parametrize("name", ["cube", "sphere", "sheet"])

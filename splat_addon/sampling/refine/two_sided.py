@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds cards: two sheets in the same place that face opposite ways, as leaves, feathers and flags are often modelled.
+"""Finds cards: two sheets closer than a cell that face opposite ways, as leaves, feathers and flags are often modelled.
 
 A splat blends with what lies within its blend depth behind it, so both sides would be seen at once. Their surfels are
 marked (`Surfels.hidden_back`), and opaque ones are not drawn from behind. Transparent sides are one layer, because most
@@ -21,8 +21,8 @@ from ..ldc.scan_conversion import Spans, batches, expand
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
 
 #: Sheets are a card's sides if they are less than this far behind one another, in cells, and the cosine between their
-#: normals is below this.
-_REACH, _OPPOSITE = 0.2, -0.9
+#: normals is below this, as at the edge of a thick card: there, too, the view from behind is blocked by the other side.
+_REACH, _OPPOSITE = 1.0, -0.5
 
 #: Sides may be this far before one another, in cells: a bent card's may be divided into different triangles.
 _CROSSED = 0.02
