@@ -19,8 +19,8 @@ from .meetings import by_facing
 #: Distance of the places along a border that are looked at, and how far inside of it they lie, in spacings.
 _STEP, _INSIDE = 0.5, 0.08
 
-#: The first and the last of them on an edge, as a share of it.
-_ENDS = 0.02
+#: How far the first and the last of them are from the ends of an edge, at most: a share of it, and in spacings.
+_ENDS, _TO_END = 0.02, 0.25
 
 #: Edge of a cell of which one place is enough, in spacings.
 _CELL = 0.6
@@ -75,7 +75,8 @@ class BorderPlaces:
         corner = (corners[:, 0] + corners[:, 1] + corners[:, 2]).T - borders.start - borders.end
         height = np.einsum("ij,ij->i", corner - borders.start, borders.inward)
         part = np.minimum(_INSIDE * grid.spacing / np.maximum(height, 1e-300), _TO_CORNER)[:, None]
-        ends = (borders.start + along * share for share in (_ENDS, 1 - _ENDS))
+        share = np.minimum(_ENDS, _TO_END * grid.spacing / np.maximum(np.linalg.norm(along, axis=1), 1e-300))[:, None]
+        ends = (borders.start + along * share, borders.end - along * share)
         self._ends = [place + (corner - place) * part for place in ends]
         seen = ((end - grid.surfel_origin).T / grid.spacing for end in self._ends)
         self._seen = [np.ascontiguousarray(end, np.float32) for end in seen]
