@@ -159,11 +159,11 @@ def _hidden(waiting: list[DrawItem], cover: Cover, tile) -> list[DrawItem]:
         return []
     corners = np.stack([placed.instance.corners(tile.camera) for placed in waiting], axis=-1)
     low, high = corners.min(axis=0), corners.max(axis=0)
-    # what merged surfels may be off by, at each object's farthest
+    # what merged surfels may be off by
     off = tile.settings.detail_tolerance / tile.camera.pixels_per_unit()
-    off = off * (1.0 if tile.camera.is_orthographic else np.maximum(-low[2], 0.0))
-    merges = np.array([tile.levels(placed.instance) is not None for placed in waiting])
-    nearer = _NEARER * np.array([placed.instance.radius for placed in waiting]) + off * merges
+    off = off * (1.0 if tile.camera.is_orthographic else np.maximum(-high[2], 0.0))
+    are_merged = np.array([tile.levels(placed.instance) is not None for placed in waiting])
+    nearer = _NEARER * np.array([placed.instance.radius for placed in waiting]) + off * are_merged
     are_hidden = cover.hides((low + high) / 2, (high - low) / 2, nearer, _BESIDE)
     return [waiting[k] for k in np.flatnonzero(are_hidden)]
 

@@ -38,8 +38,8 @@ _MORE_ALIKE = 0.01
 #: The line that keeps the whole ellipse.
 _NO_LINE = np.array([[1], [0], [1]], np.float32)
 
-#: Splats go on past their lines by this, in half-axes: where a border turns a little, one follows the edge before the
-#: turn and its neighbour the one after it, and both together would leave pinholes.
+#: Splats go on past their lines by this, in half-axes. Lines of neighbours meet as the axis of their image sees them;
+#: where the surface bends, their planes differ, and other views would see pinholes between them.
 _OVERLAP = np.array([[0], [0], [0.004]], np.float32)
 
 #: Bits of what meetings of a surfel are ordered by: how near the edge is, and how far its line.
