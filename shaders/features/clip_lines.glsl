@@ -74,14 +74,23 @@ void clip_lines_axes(Splat splat, mat2 widened) {
 }
 
 #part fragment
-bool is_inside_lines(vec2 place) {
+// How far inside the lines a place is.
+float inside_lines(vec2 place) {
   float first = dot(clip_first.xy, place) + clip_first.z, second = dot(clip_second.xy, place) + clip_second.z;
-  return (clip_is_reflex > 0.5 ? max(first, second) : min(first, second)) >= 0.0;
+  return clip_is_reflex > 0.5 ? max(first, second) : min(first, second);
+}
+
+bool is_inside_lines(vec2 place) {
+  return inside_lines(place) >= 0.0;
 }
 
 #part visibility.frag, of_ellipses
+// Lines of neighbours meet as the axis of their image sees them. Where the surface bends, their planes differ, and other
+// views would see pinholes between them.
+const float SEAM = 0.006;  // half-axes past its lines in which a splat still occupies depth
+
 void clip_lines_keep() {
-  if (!is_inside_lines(place_depth.xy)) discard;
+  if (inside_lines(place_depth.xy) < -SEAM) discard;
 }
 
 #part visibility.frag, of_sprites

@@ -38,10 +38,6 @@ _MORE_ALIKE = 0.01
 #: The line that keeps the whole ellipse.
 _NO_LINE = np.array([[1], [0], [1]], np.float32)
 
-#: Splats go on past their lines by this, in half-axes. Lines of neighbours meet as the axis of their image sees them;
-#: where the surface bends, their planes differ, and other views would see pinholes between them.
-_OVERLAP = np.array([[0], [0], [0.004]], np.float32)
-
 #: Bits of what meetings of a surfel are ordered by: how near the edge is, and how far its line.
 _DISTANCE_BITS, _LINE_BITS = 18, 8
 
@@ -94,7 +90,7 @@ def _clipping(
         met = smaller_at_openings(met, starts, owner, off > _SAME_LINE, borders, arrays["scales"])
         ends, (_, starts, owner) = _ends_in_circle(met), _groups(met.surfel)
     lines = _lines(met, ends, starts, owner)
-    packed = np.stack([pack_lines((line + _OVERLAP).T) for line in lines])
+    packed = np.stack([pack_lines(line.T) for line in lines])
     packed[packed[..., 1] == 0] = 0
     return Clipping(met.surfel.take(starts), packed, met, lines.take(owner, axis=2), are_reflex(*packed).take(owner))
 
