@@ -58,8 +58,8 @@ def check_bounds(surfels, below, nodes, errors):
             past = -(places @ way + distance) / np.linalg.norm(way / nodes.scales[k])
             assert past.max() <= extent + ROUNDING
         apart = np.stack([own @ x[k], own @ y[k]], -1)[:, None] - np.stack([covered @ x[k], covered @ y[k]], -1)
-        # coverage is tested at places a quarter of a half-axis apart
-        assert np.linalg.norm(apart, axis=-1).min(axis=1).max() <= extent + surfels.radius[rows].max() / 4
+        # coverage is tested at places a quarter of a half-axis apart, of which lines may leave none
+        assert np.linalg.norm(apart, axis=-1).min(axis=1).max(initial=0) <= extent + surfels.radius[rows].max() / 4
 
 
 def kept_of(places, lines, is_reflex=False):
