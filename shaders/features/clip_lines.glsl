@@ -86,7 +86,7 @@ bool is_inside_lines(vec2 place) {
 
 #part visibility.frag, of_ellipses
 // Lines of neighbours meet as the axis of their image sees them. Where the surface bends, their planes differ, and other
-// views would see pinholes between them.
+// views would see pinholes between them. The reference ends splats at their lines, and has the pinholes.
 const float SEAM = 0.006;  // half-axes past its lines in which a splat still occupies depth
 
 void clip_lines_keep() {

@@ -87,11 +87,11 @@ class Pace:
             return camera, settings
         tolerance = min(settings.detail_tolerance * self._tolerance, max(COARSEST, settings.detail_tolerance))
         size = tuple(max(round(edge / self._width), 1) for edge in camera.size)
-        coarse = {"detail_tolerance": tolerance, "shadow_resolution": self._shadow_texels(settings.shadow_resolution)}
-        is_same = all(getattr(settings, name) == value for name, value in coarse.items())
+        texels = self._shadow_texels(settings.shadow_resolution)
+        drawn = replace(settings, detail_tolerance=tolerance, shadow_resolution=texels)
         return (
             camera if size == camera.size else replace(camera, size=size),
-            settings if is_same else replace(settings, **coarse),
+            settings if drawn == settings else drawn,
         )
 
     def _shadow_texels(self, resolution: int) -> int:

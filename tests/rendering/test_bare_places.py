@@ -44,7 +44,7 @@ def test_the_tip_of_a_cone_is_covered(height, render):
 
 
 def test_two_materials_on_a_bent_surface_meet_without_pinholes(render):
-    """Each surfel is 8 pixels wide. Measured: there is none; there were 21 when splats ended at their lines exactly."""
+    """Each surfel is 8 pixels wide. Measured: there is none; there were 9 when depth ended at their lines exactly."""
     ball = trimesh.creation.icosphere(subdivisions=2)
     middle = np.asarray(ball.vertices)[ball.faces].mean(axis=1)
     surfaces = Surface(Channel((1, 0, 0, 1))), Surface(Channel((0, 0, 1, 1)))

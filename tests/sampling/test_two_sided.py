@@ -88,7 +88,7 @@ def test_a_wedge_is_a_card_where_it_is_thin(angle, is_card):
     if not is_card:
         assert surfels.hidden_back is None
         return
-    # from one to the other, along the axis that both face or across
+    # in spacings, from one square straight to the other
     thickness = 40 * 2 * np.sin(half) * (surfels.positions + surfels.origin)[:, 0]
     assert (surfels.hidden_back == 1)[thickness < 0.5].mean() > 0.9
     assert not surfels.hidden_back[thickness > 2].any()

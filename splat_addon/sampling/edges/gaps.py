@@ -68,15 +68,16 @@ class BorderPlaces:
     def __init__(self, mesh: TriangleMesh, borders: Borders, grid: Grid):
         self._borders, self._grid = borders, grid
         along = borders.end - borders.start
-        self._counts = np.ceil(np.linalg.norm(along, axis=1) / (_STEP * grid.spacing)).astype(np.int64) + 1
+        length = np.linalg.norm(along, axis=1)
+        self._counts = np.ceil(length / (_STEP * grid.spacing)).astype(np.int64) + 1
         self._offsets = np.cumsum(self._counts) - self._counts
         # All are moved by the same share towards the opposite corner, so that a row stays as long as its triangle is.
         corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles.take(borders.triangles, axis=0)))
         corner = (corners[:, 0] + corners[:, 1] + corners[:, 2]).T - borders.start - borders.end
         height = np.einsum("ij,ij->i", corner - borders.start, borders.inward)
         part = np.minimum(_INSIDE * grid.spacing / np.maximum(height, 1e-300), _TO_CORNER)[:, None]
-        share = np.minimum(_ENDS, _TO_END * grid.spacing / np.maximum(np.linalg.norm(along, axis=1), 1e-300))[:, None]
-        ends = (borders.start + along * share, borders.end - along * share)
+        share = np.minimum(_ENDS, _TO_END * grid.spacing / np.maximum(length, 1e-300))[:, None]
+        ends = borders.start + along * share, borders.end - along * share
         self._ends = [place + (corner - place) * part for place in ends]
         seen = ((end - grid.surfel_origin).T / grid.spacing for end in self._ends)
         self._seen = [np.ascontiguousarray(end, np.float32) for end in seen]
