@@ -26,12 +26,14 @@ from .attributes.texture_seams import seam_edges
 from .density import spacing_of
 from .edges.borders import DEFAULT_CREASE_ANGLE, survey_edges
 from .edges.clipping import clip_fields, clippings
-from .edges.gaps import BorderPlaces, barycentric, gap_surfels
+from .edges.contacts import crossed_cells, find_contacts
+from .edges.gaps import BorderPlaces, gap_surfels
 from .edges.meetings import by_facing
 from .ldc.depth_cube import axes_of, depth_cube, in_bands, row_bands, rows_of
 from .ldc.grid import make_grid
 from .ldc.reductions import find_reduction
 from .ldc.scan_conversion import BATCH, Spans, batches
+from .mesh.barycentric import barycentric
 from .mesh.cleaning import drop_unusable
 from .mesh.solid import is_solid
 from .mesh.triangle_mesh import TriangleMesh
@@ -125,6 +127,7 @@ class SamplingRun:
         reach = options.splat_size * self.grid.spacing if clips else math.inf
         self._edges = survey_edges(mesh, angle, reach) if clips or options.fits_blending else None
         self._bends = (self._edges.bends, self._edges.sizes) if options.fits_blending else None
+        self._contacts = find_contacts(mesh, self._edges, self.grid.spacing) if clips else None
         self._bulges = edge_bulges(mesh, self.grid.spacing) if options.lifts else None
 
     @property
@@ -149,7 +152,7 @@ class SamplingRun:
             return depth_cube(*about, bands), {}
         # a block's outermost rows depend on those beside them
         around = None if bands is None else bands + np.array([[-RING], [RING]])
-        images, large = divided(depth_cube(*about, around), self._flat_faces())
+        images, large = divided(depth_cube(*about, around), self._flat_faces(), self._crossed_cells())
         if bands is not None:
             images, large = in_bands(images, bands), {edge: in_bands(of, bands) for edge, of in large.items()}
         return images, large
@@ -158,6 +161,9 @@ class SamplingRun:
         size = LEAST_AREA, self.grid.spacing
         how = {"is_mapped": bool(self._uv_fields), "deforms": self.options.deforms}
         return flat_faces(self.mesh, self._edges, *size, bulges=self._bulges, **how)
+
+    def _crossed_cells(self) -> list[np.ndarray] | None:
+        return crossed_cells(self._contacts, self.grid) if self._contacts is not None else None
 
     @property
     def _enlarges(self) -> bool:
@@ -258,9 +264,9 @@ class SamplingRun:
         """The samples with their clip lines; and the arrays and triangles of additional surfels on what these
         leave bare.
         """
-        borders, bends = self._edges.borders, self._bends
+        borders, bends = self._edges.borders.followed_by(self._contacts), self._bends
         seen = rows_of(images) if self.options.reduction == "normal" else by_facing(arrays)
-        places = BorderPlaces(self.mesh, borders, self.grid)
+        places = BorderPlaces(borders, self.grid)
 
         def parts():
             for part in clippings(arrays, seen, borders, self.grid):

@@ -17,7 +17,7 @@ from splat_addon.sampling import (
     sample_mesh,
     sample_surface,
 )
-from splat_addon.sampling.edges.openings import SMALLER
+from splat_addon.sampling.edges.overhang import SMALLER, TIMES
 
 ANGLE = np.radians(30)
 DISC = np.array([(r * np.cos(t), r * np.sin(t)) for r in (0.3, 0.7, 0.999) for t in np.arange(24) * np.pi / 12])
@@ -331,10 +331,28 @@ def test_splats_at_a_ragged_open_border_are_smaller_and_leave_nothing_bare():
     mesh = plate(outline, [t for k in range(80) for t in ((k + 1, k, k + 81), (k + 1, k + 81, k + 82))])
     surfels = sample_mesh(mesh, spacing=spacing, crease_angle=ANGLE)
     up, sizes = surfels.positions[:, 1] + surfels.origin[1], surfels.scales[:, 1] / (1.25 * spacing)
-    is_sample = sizes > 0.65  # and not an additional surfel at a gap
+    is_sample = sizes > 0.61  # and not an additional surfel at a gap
     at_top = sizes[is_sample & (up > 0.96)]
-    assert len(at_top) > 15 and np.allclose(at_top, SMALLER)
+    assert len(at_top) > 15 and np.allclose(at_top, SMALLER**TIMES)
     assert np.allclose(sizes[is_sample & (up < 0.8)], 1)
     points, _ = shown(surfels)
     assert points[:, 1].max() < 1.02 + 0.2 * spacing
+    assert bare_share(surfels, *on_surface(mesh)) < 1e-3
+
+
+def test_little_of_a_splat_sticks_out_of_a_spike_with_three_edges():
+    """A splat has two lines, and these spikes are narrower than a splat. Measured: 0.4 % of what is shown sticks out by
+    more than a quarter of a spacing; 4.8 % when all splats had the same size."""
+    spacing, random, spikes = 1 / 64, np.random.default_rng(2), []
+    corners = np.array([(0, 0, 0), (1.1, 0, 0), (0.5, 1.0, 0), (0.5, 0.3, 4)]) * spacing
+    for _ in range(60):
+        turn = np.linalg.qr(random.normal(size=(3, 3)))[0]
+        turn *= np.linalg.det(turn)
+        faces = np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
+        spikes.append(trimesh.Trimesh(corners @ turn + random.uniform(0, 0.9, 3), faces, process=False))
+    joined = trimesh.util.concatenate(spikes)
+    mesh = TriangleMesh(np.asarray(joined.vertices), np.asarray(joined.faces))
+    surfels = sample_mesh(mesh, spacing=spacing, crease_angle=ANGLE)
+    away = trimesh.proximity.ProximityQuery(joined).on_surface(shown(surfels)[0])[1]
+    assert (away > 0.25 * spacing).mean() < 0.006
     assert bare_share(surfels, *on_surface(mesh)) < 1e-3

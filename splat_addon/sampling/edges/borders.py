@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import partial
 
 import numpy as np
@@ -52,7 +52,8 @@ class Borders:
     start, end: (B, 3) float64, object units, with the face at the left. inward: (B, 3) unit, in the face's plane,
     across the edge. normals: (B, 3) unit, of the face. edges: (B,) number of the edge, ascending; sides of one edge
     share it. shading: (B, 3) unit mean of the face's shading normals at the edge. colors: (B, 4) mean corner colour,
-    0 where the mesh has none. materials: (B,). triangles: (B,) the face.
+    0 where the mesh has none. materials: (B,). triangles: (B,) the face. opposite: (B, 3) a point of the face across
+    from the edge, its third corner.
     """
 
     start: np.ndarray
@@ -64,6 +65,7 @@ class Borders:
     colors: np.ndarray
     materials: np.ndarray
     triangles: np.ndarray
+    opposite: np.ndarray
 
     def __len__(self) -> int:
         return len(self.start)
@@ -74,6 +76,11 @@ class Borders:
 
     def take(self, rows: np.ndarray) -> Borders:
         return Borders(*(getattr(self, f.name)[rows] for f in fields(self)))
+
+    def followed_by(self, other: Borders) -> Borders:
+        """Both together; the numbers of the others' edges are moved past these."""
+        moved = replace(other, edges=other.edges + int(self.edges.max(initial=-1)) + 1)
+        return Borders(*(np.concatenate([getattr(of, f.name) for of in (self, moved)]) for f in fields(self)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,25 +112,25 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE, reach:
     corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles.take(triangles, axis=0)))
     # In rows, of which some are taken later.
     by_corner, rows = np.ascontiguousarray(corners.transpose(1, 2, 0)), np.arange(len(triangles))
-    start, end = by_corner[numbers, rows], by_corner[(numbers + 1) % 3, rows]
+    start, end, opposite = (by_corner[(numbers + step) % 3, rows] for step in range(3))
     doubled = np.ascontiguousarray(doubled_areas(corners).T)
     if not (has_plane := _have_planes(corners, doubled)).all():
-        rows = triangles, numbers, edge, start, end, doubled
-        triangles, numbers, edge, start, end, doubled = (each[has_plane] for each in rows)
-    planes = _unit(doubled)
-    inward = _unit(np.cross(planes, end - start))
+        rows = triangles, numbers, edge, start, end, opposite, doubled
+        triangles, numbers, edge, start, end, opposite, doubled = (each[has_plane] for each in rows)
+    planes = unit_vectors(doubled)
+    inward = unit_vectors(np.cross(planes, end - start))
     ends = np.stack([numbers, (numbers + 1) % 3], axis=1)
     shading = planes
     if mesh.corner_normals is not None:
         rows = mesh.corner_normals.reshape(-1, 3)
-        given = _unit(sum(rows.take(3 * triangles + end, axis=0) for end in ends.T))
+        given = unit_vectors(sum(rows.take(3 * triangles + end, axis=0) for end in ends.T))
         shading = np.where((given != 0).any(axis=1)[:, None], given, shading)
     colors = np.zeros((len(triangles), 4))
     if mesh.corner_colors is not None:
         rows = mesh.corner_colors.reshape(3 * len(mesh), -1)
         colors = sum(rows.take(3 * triangles + end, axis=0)[:, :4] for end in ends.T) / 2
     materials = np.zeros(len(triangles), int) if mesh.materials is None else mesh.materials[triangles]
-    borders = Borders(start, end, inward, planes, edge, shading, colors, materials, triangles)
+    borders = Borders(start, end, inward, planes, edge, shading, colors, materials, triangles, opposite)
     return EdgeSurvey(borders, normals, bends, sizes)
 
 
@@ -259,7 +266,7 @@ def _dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]
 
 
-def _unit(vectors: np.ndarray) -> np.ndarray:
+def unit_vectors(vectors: np.ndarray) -> np.ndarray:
     """(n, 3) float64 unit vectors; 0 for vectors without length."""
     vectors = np.asarray(vectors, np.float64)
     with np.errstate(invalid="ignore", over="ignore"):

@@ -2,7 +2,7 @@
 """Cuts surfels at the borders of their surface: each gets the clip lines (`clip_lines`) that its mesh requires.
 
 Flow: `borders` -> which surfels meet which edges, as the ellipse sees them (`meetings`) -> one line, or the two that
-keep what lies within the border best.
+keep what lies within the border best. Where they keep more than that, the surfel becomes smaller (`overhang`).
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from ..ldc.grid import Grid
 from ..workers import in_order
 from .borders import Borders
 from .meetings import BEYOND, Images, Meetings, meetings
-from .openings import smaller_at_openings
 from .ordering import order_of
+from .overhang import TIMES, made_smaller
 from .ragged_borders import ALL, BOTH, EITHER, FIRST, two_lines
 
 #: A border that deviates from a line by less than this, in half-axes, is on the line.
@@ -57,42 +57,54 @@ class Clipping:
 
 
 def clippings(
-    arrays: dict[str, np.ndarray], images: Images, borders: Borders, grid: Grid, at_centres: bool = True
+    arrays: dict[str, np.ndarray],
+    images: Images,
+    borders: Borders,
+    grid: Grid,
+    at_centres: bool = True,
+    times: int = TIMES,
 ) -> Iterator[Clipping]:
     """Find the clip lines of surfels, of a few at a time.
 
     arrays: by field of `Surfels`, positions relative to the grid's middle. images: which of them each sees.
-    at_centres: whether they lie at the centres of cells, and may become smaller, in place (`openings`).
+    at_centres: whether they lie at the centres of cells. times: how often they may become smaller (`overhang`), in
+    place in `arrays`.
     """
-    about = arrays, borders, _across(borders), at_centres
-    jobs = (partial(_clipping, meet, *about) for meet in meetings(arrays, images, borders, grid, at_centres))
-    return (part for part in in_order(jobs) if part is not None)
+    about = arrays, borders, _across(borders), times
+    jobs = (partial(_clippings, meet, *about) for meet in meetings(arrays, images, borders, grid, at_centres))
+    return (part for parts in in_order(jobs) for part in parts)
 
 
-def _clipping(
-    meet: Callable[[], Meetings], arrays: dict[str, np.ndarray], borders: Borders, across: np.ndarray, at_centres: bool
-) -> Clipping | None:
-    """Run a job of `meetings` and find the lines of its surfels, if there are any. across: (B,), from `_across`."""
+def _clippings(
+    meet: Callable[[], Meetings], arrays: dict[str, np.ndarray], borders: Borders, across: np.ndarray, times: int
+) -> list[Clipping]:
+    """Run a job of `meetings` and find the lines of its surfels. across: (B,), from `_across`."""
     met = meet()
     if not len(met):
-        return None
+        return []
     rows = _nearest_first(met, _one_side_of_each(met, arrays, borders))
     rows, starts, owner = _of_own_surface(met, rows)
     met = met.take(rows)
     ends = _ends_in_circle(met)
     is_own = _on_this_side(met, ends, starts, owner, borders, across) & ~_out_of_sight(met, ends, starts, owner)
     if not is_own.all():
-        rows = np.flatnonzero(is_own)
-        met, ends = met.take(rows), ends.take(rows, axis=2)
-        _, starts, owner = _groups(met.surfel)
-    if at_centres and len(met):
-        off, _ = _off_line(ends, met.line.take(starts.take(owner), axis=1))
-        met = smaller_at_openings(met, starts, owner, off > _SAME_LINE, borders, arrays["scales"])
-        ends, (_, starts, owner) = _ends_in_circle(met), _groups(met.surfel)
-    lines = _lines(met, ends, starts, owner)
+        met = met.take(np.flatnonzero(is_own))
+    return _ended(met, arrays["scales"], times)
+
+
+def _ended(met: Meetings, scales: np.ndarray, times: int) -> list[Clipping]:
+    """The lines at which surfels end. Those that stick out become smaller in place, up to `times` times."""
+    if not len(met):
+        return []
+    ends, (_, starts, owner) = _ends_in_circle(met), _groups(met.surfel)
+    lines, sticks_out = _lines(met, ends, starts, owner)
+    if times and sticks_out.any():
+        parts = [met.take(np.flatnonzero(some)) for some in (~sticks_out.take(owner), sticks_out.take(owner))]
+        return [*_ended(parts[0], scales, 0), *_ended(made_smaller(parts[1], scales), scales, times - 1)]
     packed = np.stack([pack_lines(line.T) for line in lines])
     packed[packed[..., 1] == 0] = 0
-    return Clipping(met.surfel.take(starts), packed, met, lines.take(owner, axis=2), are_reflex(*packed).take(owner))
+    reflex = are_reflex(*packed)
+    return [Clipping(met.surfel.take(starts), packed, met, lines.take(owner, axis=2), reflex.take(owner))]
 
 
 def clip_fields(parts: Iterable[Clipping], count: int) -> dict[str, np.ndarray]:
@@ -230,8 +242,9 @@ def _groups(ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return is_first, np.flatnonzero(is_first), np.cumsum(is_first) - 1
 
 
-def _lines(met: Meetings, ends: np.ndarray, starts: np.ndarray, owner: np.ndarray) -> np.ndarray:
-    """(2, 3, n) lines of n surfels, in the order that says which corner they make; (1, 0, 1) for none.
+def _lines(met: Meetings, ends: np.ndarray, starts: np.ndarray, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(2, 3, n) lines of n surfels, in the order that says which corner they make; (1, 0, 1) for none. And (n,) bool,
+    whether they keep some of what lies beyond the border.
 
     The nearest border is the first. Where one other leaves it, that is the second: into what the first keeps, as it
     does at a convex corner, or out of it, as at a reflex one. Of several the best is looked for.
@@ -244,10 +257,12 @@ def _lines(met: Meetings, ends: np.ndarray, starts: np.ndarray, owner: np.ndarra
     single = others.compress(counts.take(owner.take(others)) == 1)
     kind = np.where(place.take(single) < 0, EITHER, BOTH)
     rank = np.arange(len(met)) - starts.take(owner)
+    sticks_out = np.zeros(len(starts), bool)
     several = np.flatnonzero((counts > 1).take(owner) & (rank < _MOST_EDGES))
     if len(several):
         few = met.take(several)
-        best, kinds = two_lines(few.start, few.end, few.line, (np.cumsum(counts > 1) - 1).take(owner.take(several)))
+        number = (np.cumsum(counts > 1) - 1).take(owner.take(several))
+        best, kinds, sticks_out[counts > 1] = two_lines(few.start, few.end, few.line, number)
         single, kind = np.append(single, several.take(best)), np.append(kind, kinds)
     owners = owner.take(single)
     one, other = first.take(owners, axis=1), met.line.take(single, axis=1)
@@ -258,7 +273,7 @@ def _lines(met: Meetings, ends: np.ndarray, starts: np.ndarray, owner: np.ndarra
         line[:, owners] = there
     alone = owners.compress(kind == FIRST)
     first[:, alone], second[:, alone] = one.compress(kind == FIRST, axis=1), _NO_LINE
-    return np.stack([first, second])
+    return np.stack([first, second]), sticks_out
 
 
 def _off_line(ends: np.ndarray, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

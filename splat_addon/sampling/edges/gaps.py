@@ -4,6 +4,8 @@ cells, and on faces so narrow that no ray hit them and only neighbouring splats 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...surfels import LAYOUT, OPTIONAL_LAYOUT
@@ -11,10 +13,12 @@ from ..attributes.ellipses import ellipse_rotations, ellipse_scales
 from ..attributes.material_sampler import MaterialSampler, Samples
 from ..ldc.grid import Grid
 from ..ldc.scan_conversion import expand
-from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at
+from ..mesh.barycentric import barycentric
+from ..mesh.triangle_mesh import TriangleMesh
 from .borders import Borders
 from .clipping import Clipping, clip_fields, clippings
 from .meetings import by_facing
+from .overhang import SMALLER, TIMES
 
 #: Distance of the places along a border that are looked at, and how far inside of it they lie, in spacings.
 _STEP, _INSIDE = 0.5, 0.08
@@ -33,6 +37,10 @@ _TO_CORNER = 0.3
 
 #: A place is covered this far into an ellipse, squared.
 _COVERED = 0.8
+
+#: Bare places are looked for twice. The surfels that fill them first may become smaller this often (`overhang`),
+#: which may leave some bare again; those that fill these are as small from the start.
+_ROUNDS = TIMES, 0
 
 #: One surfel covers about so many places in a row, and is of this share of the others' size: where these fail, the
 #: surface is small.
@@ -53,32 +61,40 @@ def gap_surfels(
 
     places: that all other surfels have been asked about. sampler, tangents: as in `SampleFiller`.
     """
-    side, at = places.bare()
-    if not len(side):
-        return {}, np.empty(0, np.intp)
-    triangles = borders.triangles[side]
-    made = _surfels(mesh, triangles, at, borders.normals[side], grid, splat_size, sampler, tangents)
-    parts = clippings(made, by_facing(made), borders, grid, at_centres=False)
-    return made | clip_fields(parts, len(side)), triangles
+    made, parts, triangles = [], [], [np.empty(0, np.intp)]
+    for times in _ROUNDS:
+        side, at = places.bare()
+        if not len(side):
+            break
+        before = sum(map(len, triangles))
+        triangles.append(borders.triangles[side])
+        about = grid, splat_size * float(SMALLER) ** (TIMES - times), sampler, tangents
+        made.append(_surfels(mesh, triangles[-1], at, borders.normals[side], *about))
+        for part in clippings(made[-1], by_facing(made[-1]), borders, grid, at_centres=False, times=times):
+            places.cover(part)
+            parts.append(replace(part, surfels=part.surfels + before))
+    triangles = np.concatenate(triangles)
+    if not made:
+        return {}, triangles
+    arrays = {name: np.concatenate([each[name] for each in made]) for name in made[0]}
+    return arrays | clip_fields(parts, len(triangles)), triangles
 
 
 class BorderPlaces:
     """Places in a straight row along each side of a border, and which of them surfels cover."""
 
-    def __init__(self, mesh: TriangleMesh, borders: Borders, grid: Grid):
+    def __init__(self, borders: Borders, grid: Grid):
         self._borders, self._grid = borders, grid
         along = borders.end - borders.start
         length = np.linalg.norm(along, axis=1)
         self._counts = np.ceil(length / (_STEP * grid.spacing)).astype(np.int64) + 1
         self._offsets = np.cumsum(self._counts) - self._counts
         # All are moved by the same share towards the opposite corner, so that a row stays as long as its triangle is.
-        corners = corners_at(mesh.positions.T, corner_indices(mesh.triangles.take(borders.triangles, axis=0)))
-        corner = (corners[:, 0] + corners[:, 1] + corners[:, 2]).T - borders.start - borders.end
-        height = np.einsum("ij,ij->i", corner - borders.start, borders.inward)
+        height = np.einsum("ij,ij->i", borders.opposite - borders.start, borders.inward)
         part = np.minimum(_INSIDE * grid.spacing / np.maximum(height, 1e-300), _TO_CORNER)[:, None]
         share = np.minimum(_ENDS, _TO_END * grid.spacing / np.maximum(length, 1e-300))[:, None]
         ends = borders.start + along * share, borders.end - along * share
-        self._ends = [place + (corner - place) * part for place in ends]
+        self._ends = [place + (borders.opposite - place) * part for place in ends]
         seen = ((end - grid.surfel_origin).T / grid.spacing for end in self._ends)
         self._seen = [np.ascontiguousarray(end, np.float32) for end in seen]
         self._changes = np.zeros(int(self._counts.sum()) + 1, np.int64)
@@ -167,18 +183,6 @@ def _surfels(mesh, triangles, places, normals, grid: Grid, splat_size, sampler: 
         arrays[name] = np.empty((count, columns) if columns > 1 else count, dtype)
     sampler.fill(arrays, _samples(mesh, sampler, tangents, triangles, shares, materials, grid.spacing))
     return {name: arrays[name] for name in (*LAYOUT, *sampler.optional)}
-
-
-def barycentric(mesh: TriangleMesh, triangles: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """(k, 3) barycentric coordinates of (k, 3) places in the planes of (k,) triangles, clamped to them."""
-    corners = mesh.positions[mesh.triangles[triangles]]
-    first, second, offset = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], places - corners[:, 0]
-    normal = np.cross(first, second)
-    square = np.maximum(np.einsum("ij,ij->i", normal, normal), 1e-300)
-    u = np.einsum("ij,ij->i", np.cross(offset, second), normal) / square
-    v = np.einsum("ij,ij->i", np.cross(first, offset), normal) / square
-    shares = np.clip(np.stack([1 - u - v, u, v], axis=1), 0, 1)
-    return shares / shares.sum(axis=1, keepdims=True)
 
 
 def _shading(mesh: TriangleMesh, triangles, shares: np.ndarray, normals: np.ndarray) -> np.ndarray:

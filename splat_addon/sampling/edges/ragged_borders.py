@@ -28,30 +28,29 @@ FIRST, BOTH, EITHER, ALL = range(4)
 
 
 def two_lines(start: np.ndarray, end: np.ndarray, line: np.ndarray, owner: np.ndarray):
-    """The best second line for each of n surfels: (n,) index of its edge among the m given ones, and (n,) what the
-    lines keep.
+    """The best second line for each of n surfels: (n,) index of its edge among the m given ones; (n,) what the lines
+    keep, one of `FIRST`, `BOTH`, `EITHER` and `ALL`; and (n,) bool, whether they keep a place beyond the border.
 
-    The latter is one of `FIRST`, `BOTH`, `EITHER` and `ALL`. start, end: (2, m) float32 in the circle. line: (3, m).
-    owner: (m,) ascending, 0 to n - 1; a surfel's first edge is its nearest.
+    start, end: (2, m) float32 in the circle. line: (3, m). owner: (m,) ascending, 0 to n - 1; a surfel's first edge is
+    its nearest.
     """
     starts = np.flatnonzero(np.append(True, owner[1:] != owner[:-1]))
     counts = np.diff(np.append(starts, len(owner)))
     edges = np.concatenate([start, end - start, line])
-    best, kind = np.empty(len(starts), np.intp), np.empty(len(starts), np.intp)
+    best, kind, beyond = (np.empty(len(starts), dtype) for dtype in (np.intp, np.intp, bool))
     # Surfels with equally many edges are judged together, because their edges then fill an array.
     for count in np.unique(counts):
         alike = np.flatnonzero(counts == count)
         step = max(_CHUNK // int(count), 1)
         for surfels in np.split(alike, range(step, len(alike), step)):
             rows = np.add.outer(np.arange(count), starts.take(surfels))
-            chosen, kind[surfels] = _judged(edges.take(rows, axis=1))
+            chosen, kind[surfels], beyond[surfels] = _judged(edges.take(rows, axis=1))
             best[surfels] = starts.take(surfels) + chosen
-    return best, kind
+    return best, kind, beyond
 
 
-def _judged(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """For each of n surfels, (n,) the best second edge among its k edges, and (n,) what the lines keep. edges:
-    (7, k, n).
+def _judged(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """For each of n surfels, as `two_lines` returns it, and the best second edge among its k edges. edges: (7, k, n).
 
     A set of places is held in the bits of an integer.
     """
@@ -65,7 +64,10 @@ def _judged(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     # One line if a second gains nothing.
     wrongs[0, 0] -= _LEAST_GAIN
     found = wrongs.reshape(-1, wrongs.shape[2]).argmin(axis=0)
-    return found // 2, np.where(found < 2, np.where(found == 0, FIRST, ALL), np.where(found % 2 == 0, BOTH, EITHER))
+    kept = np.stack([both, either], axis=1).reshape(wrongs.shape[0] * 2, -1)
+    beyond = (np.take_along_axis(kept, found[None], axis=0)[0] & ~belongs) != 0
+    kind = np.where(found < 2, np.where(found == 0, FIRST, ALL), np.where(found % 2 == 0, BOTH, EITHER))
+    return found // 2, kind, beyond
 
 
 def _bits(sets: np.ndarray) -> np.ndarray:

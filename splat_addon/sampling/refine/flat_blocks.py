@@ -30,12 +30,16 @@ LEAST_AREA = min(edge + 2 * ring for edge, ring in BLOCKS.items()) ** 2
 Large = dict[int, tuple[Spans, ...]]
 
 
-def divided(images: tuple[Spans, ...], faces: np.ndarray) -> tuple[tuple[Spans, ...], Large]:
+def divided(
+    images: tuple[Spans, ...], faces: np.ndarray, crossed: list[np.ndarray] | None = None
+) -> tuple[tuple[Spans, ...], Large]:
     """The samples that stay small, and the large ones that replace the others.
 
-    images: spans, ordered by triangle. faces: (T,) from `flat_faces`.
+    images: spans, ordered by triangle. faces: (T,) from `flat_faces`. crossed: for each image, (3, c) triangles, rows
+    and columns of cells at which faces end, too.
     """
-    parts = [_divided(spans, faces) for spans in images]
+    crossed = [np.empty((3, 0), np.int64)] * len(images) if crossed is None else crossed
+    parts = [_divided(spans, faces, cells) for spans, cells in zip(images, crossed, strict=True)]
     large = {edge: tuple(of_edge[edge] for _, of_edge in parts) for edge in BLOCKS}
     return tuple(small for small, _ in parts), large
 
@@ -52,9 +56,9 @@ class _Runs(NamedTuple):
         return _Runs(*(values[some] for values in self))
 
 
-def _divided(spans: Spans, faces: np.ndarray) -> tuple[Spans, dict[int, Spans]]:
+def _divided(spans: Spans, faces: np.ndarray, crossed: np.ndarray) -> tuple[Spans, dict[int, Spans]]:
     cells = _Cells(spans, faces.take(spans.triangles))
-    joined = cells.joined()
+    joined = _without(cells.joined(), np.stack([faces.take(crossed[0]), *crossed[1:]]))
     blocks = {edge: _blocks(joined, edge, ring) for edge, ring in sorted(BLOCKS.items())}
     if not any(len(runs.rows) for runs in blocks.values()):
         return spans, {edge: Spans.joined([]) for edge in BLOCKS}
@@ -133,6 +137,15 @@ def _outside(runs: _Runs, blocks: _Runs, edge: int) -> _Runs:
     rows = (edge * blocks.rows[:, None] + np.arange(edge)).ravel()
     faces, first, stop = (np.repeat(values, edge) for values in (blocks.faces, edge * blocks.first, edge * blocks.stop))
     both = _Runs(*map(np.concatenate, zip(runs, (faces, rows, first, stop), strict=True)))
+    return _where(both, np.repeat([1, -1], [len(runs.rows), len(rows)]), 1)
+
+
+def _without(runs: _Runs, cells: np.ndarray) -> _Runs:
+    """The parts of runs outside of cells. cells: (3, c) of face, row and column."""
+    faces, rows, columns = np.unique(cells[:, cells[0] >= 0], axis=1)
+    if not len(faces):
+        return runs
+    both = _Runs(*map(np.concatenate, zip(runs, (faces, rows, columns, columns + 1), strict=True)))
     return _where(both, np.repeat([1, -1], [len(runs.rows), len(rows)]), 1)
 
 
