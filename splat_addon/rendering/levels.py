@@ -108,19 +108,28 @@ def is_worth_preparing(instance: Instance) -> bool:
     return has_levels(instance) and (instance.surfels in _DRAWN or instance.surfels not in _BEFORE)
 
 
-def merging(scene: Scene, camera: Camera, tolerance: float, samples: int, is_only: bool = False) -> frozenset[Instance]:
+def merging(
+    scene: Scene, camera: Camera, tolerance: float, samples: int, is_repeatable: bool = False
+) -> frozenset[Instance]:
     """The instances that are drawn as merged surfels: those whose hierarchy is there, or spares so many surfels in the
     samples of this scene, which may be one moment of a frame, that making it pays.
 
     Making it also pays for sets that further pictures will show: those that were drawn before, or may be drawn again,
-    unless an object's surfels are others in each frame. is_only: no further picture follows. Shadow maps are not
-    counted.
+    unless an object's surfels are others in each frame. is_repeatable: what was drawn before does not count, and
+    hierarchies are built, not fitted. Shadow maps are not counted.
     """
     found = []
     if not tolerance:
         return frozenset()
     for surfels, instances in _by_set(filter(has_levels, scene.surfels)).items():
-        if surfels in _BUILT or _pays(surfels, instances, camera, tolerance, samples, is_only):
+        spared = [_spared(instance, camera, tolerance) for instance in instances]
+        if is_repeatable:
+            _BEFORE.pop(surfels, None)
+            is_kept = not any(instance.may_change for instance in instances)
+        else:
+            is_kept = surfels in _DRAWN or surfels not in _BEFORE
+        pays = max(spared) >= _LEAST_SPARED and (is_kept or samples * sum(spared) >= _work(surfels))
+        if pays or (surfels in _BUILT and not is_repeatable):
             found += instances
     return frozenset(found)
 
@@ -132,16 +141,9 @@ def _by_set(instances: Iterable[Instance]) -> dict[Surfels, list[Instance]]:
     return sets
 
 
-def _pays(
-    surfels: Surfels, instances: list[Instance], camera: Camera, tolerance: float, samples: int, is_only: bool
-) -> bool:
-    spared = [_spared(instance, camera, tolerance) for instance in instances]
-    if max(spared) < _LEAST_SPARED:
-        return False
-    if not is_only and (surfels in _DRAWN or surfels not in _BEFORE):
-        return True
-    work = _BUILDING if _BEFORE.get(surfels) is None else _REFITTING
-    return samples * sum(spared) >= work
+def _work(surfels: Surfels) -> float:
+    """What making their hierarchy costs, per surfel."""
+    return _BUILDING if _BEFORE.get(surfels) is None else _REFITTING
 
 
 def _spared(instance: Instance, camera: Camera, tolerance: float) -> float:

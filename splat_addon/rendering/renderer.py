@@ -71,16 +71,17 @@ class Renderer:
         settings: Settings | None = None,
         progress: Progress | None = None,
         part: Tile | None = None,
-        is_only: bool = False,
+        is_repeatable: bool = False,
     ) -> Frame:
         """The whole picture in numpy arrays, or a part of it.
 
         part: x, y, width, height in pixels. Values shared by the whole picture are computed as if it were drawn whole;
             if the part's tiles are also tiles of the whole picture, its pixels are bit-identical.
-        is_only: whether no further picture of the scene follows, so that little is prepared for such.
+        is_repeatable: whether the picture is the same whatever was drawn before it, as a farm's frames must be.
+            Otherwise it may show what was prepared for earlier ones.
         Raises ValueError for settings that do not fit, RuntimeError where the device fails, RenderCancelled.
         """
-        return self.render_moments([(scene, camera)], 1, settings, progress, part, is_only)
+        return self.render_moments([(scene, camera)], 1, settings, progress, part, is_repeatable)
 
     def render_moments(
         self,
@@ -89,12 +90,12 @@ class Renderer:
         settings: Settings | None = None,
         progress: Progress | None = None,
         part: Tile | None = None,
-        is_only: bool = False,
+        is_repeatable: bool = False,
     ) -> Frame:
         """The mean over the time of an open shutter: `count` scenes, each with its share of the samples.
 
         moments: each is requested when the previous one has been drawn; `accumulation.moment_places` gives their times.
-        part, is_only: as in `render`.
+        part, is_repeatable: as in `render`.
         Raises as `render`, and ValueError for more moments than samples.
         """
         settings = settings or Settings()
@@ -108,7 +109,7 @@ class Renderer:
         frames = (
             frame
             for block, (scene, camera) in zip(blocks, read, strict=True)
-            for frame in self._samples(scene, camera, settings, block, turns, part, is_only and count == 1)
+            for frame in self._samples(scene, camera, settings, block, turns, part, is_repeatable)
         )
         return mean_frame(frames) if settings.samples > 1 else next(frames)
 
@@ -122,12 +123,14 @@ class Renderer:
         return self.streamed.resolved(scene, camera, settings, told=told)
 
     def _samples(
-        self, scene, camera, settings, numbers: list[int], turns: Iterator, part: Tile | None, is_only: bool
+        self, scene, camera, settings, numbers: list[int], turns: Iterator, part: Tile | None, is_repeatable: bool
     ) -> Iterator[Frame]:
         """The pictures of these samples."""
 
         def draw(moved: Camera, of: Viewers, settings: Settings, told: Progress | None, part=None) -> Frame:
-            frame_plan = plan(scene, moved, settings, viewers=of, part=part, samples=len(numbers), is_only=is_only)
+            frame_plan = plan(
+                scene, moved, settings, viewers=of, part=part, samples=len(numbers), is_repeatable=is_repeatable
+            )
             return self._frame(scene, moved, settings, told, frame_plan, part)
 
         for number in numbers:

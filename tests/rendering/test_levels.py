@@ -25,7 +25,7 @@ from splat_addon.rendering import (
     look_at,
     plan,
 )
-from splat_addon.rendering.levels import LEAST_SURFELS, hierarchy_of, replaced
+from splat_addon.rendering.levels import LEAST_SURFELS, hierarchy_before, hierarchy_of, replaced, was_drawn
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.upload.storages import STORAGES
 from splat_addon.sampling import TriangleMesh, sample_mesh
@@ -355,12 +355,27 @@ def test_surfels_that_move_in_each_frame_are_merged_if_its_samples_pay_for_it(ha
     assert plan(bent, camera, replace(SOME, samples=3)).has("LEVELS") == has_hierarchy
 
 
-def test_the_only_picture_of_a_scene_has_levels_if_its_samples_pay_for_them():
+@pytest.mark.parametrize("may_change", [True, False])
+def test_what_was_drawn_before_does_not_count_in_repeatable_pictures(may_change):
+    """Frames of a farm must not depend on which machine drew the ones before."""
+
+    def of(scene):
+        return replace(scene, surfels=tuple(replace(each, may_change=may_change) for each in scene.surfels))
+
+    def are_merged(scene):
+        return [plan(scene, camera, replace(SOME, samples=n), is_repeatable=True).has("LEVELS") for n in (1, 16)]
+
     scene, camera = far_torus()
-    assert plan(scene, camera, SOME).has("LEVELS")
-    assert [plan(scene, camera, replace(SOME, samples=n), is_only=True).has("LEVELS") for n in (1, 16)] == [False, True]
+    near = replace(camera, window=tuple(edge / 20 for edge in camera.window))
+    expected = [not may_change, True]
+    assert are_merged(of(scene)) == expected
     built(scene)
-    assert plan(scene, camera, SOME, is_only=True).has("LEVELS")
+    bent = next_frame(scene)
+    was_drawn(bent)
+    assert are_merged(of(scene)) == are_merged(of(bent)) == expected
+    assert not plan(of(scene), near, SOME, is_repeatable=True).has("LEVELS")
+    # a hierarchy that was fitted to moved surfels merges others than one that is built for them
+    assert all(hierarchy_before(instance.surfels) is None for instance in bent.surfels)
 
 
 def test_surfels_that_have_come_to_rest_are_merged(on_device):

@@ -115,7 +115,7 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
             settings,
             progress=lambda *step: _progress(engine, turn, *step),
             part=rendered_part(scene.render),
-            is_only=_is_only_picture(engine, depsgraph, turn),
+            is_repeatable=True,
         )
     camera_object = engine.camera_override or scene.camera
     for sentence in depth_of_field_notes(camera_object, settings.samples):
@@ -219,12 +219,6 @@ def _is_last_of_render(engine, depsgraph) -> bool:
         return False
     layers = [layer.name for layer in scene.view_layers if layer.use]
     return scene.render.use_single_layer or depsgraph.view_layer.name in layers[-1:]
-
-
-def _is_only_picture(engine, depsgraph, turn: tuple[int, int]) -> bool:
-    """Whether no further picture will show what this one shows."""
-    is_kept = depsgraph.scene.render.use_persistent_data
-    return turn[0] + 1 == turn[1] and _is_last_of_render(engine, depsgraph) and not is_kept
 
 
 #: `blender --background -f 1,5` treats each of its frames as an animation, and none as the last.

@@ -21,7 +21,7 @@ from ..conversion.source_record import is_stood_in, sources_in
 from ..geometry.attributes import Points, has_surfels, has_surfels_beside_faces, have_same_values, read_stored
 from ..geometry.gaussian_clouds import is_gaussian_cloud
 from ..geometry.points_proxy import is_solid, shown_points, shows_as_points
-from ..geometry.sources import asked_of, owner_of
+from ..geometry.sources import asked_of, may_change, owner_of
 from ..materials.material_override import Overridden, override_of
 from ..materials.surface_textures import TextureStore
 from ..mesh_sampling_settings import Form, are_meshes_texture_mapped, density_of_meshes, form_of
@@ -143,6 +143,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                 fields = {
                     "light_set": light_sets.of_instance(entry),
                     "casts_shadow": object_.visible_shadow,
+                    "may_change": may_change(entry),
                     "name": object_.name,
                     "index": object_.pass_index,
                     "is_holdout": owner_of(entry).holdout_get(view_layer=depsgraph.view_layer),

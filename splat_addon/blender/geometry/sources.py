@@ -118,6 +118,13 @@ def owner_of(entry: bpy.types.DepsgraphObjectInstance) -> bpy.types.Object:
     return (entry.parent if entry.is_instance else entry.object).original
 
 
+def may_change(entry: bpy.types.DepsgraphObjectInstance) -> bool:
+    """Whether the geometry of an entry may be another in each frame: as far as this frame tells, because its object,
+    or the instancer, has modifiers or shape keys."""
+    objects = entry.object.original, owner_of(entry)
+    return any(len(each.modifiers) or getattr(each.data, "shape_keys", None) for each in objects)
+
+
 def asked_of(entry: bpy.types.DepsgraphObjectInstance) -> tuple[bpy.types.Object, ...]:
     """The objects in the file that determine how an entry is drawn: for a collection instance, also the object inside
     it."""

@@ -23,7 +23,7 @@ def merging(planning) -> frozenset:
     if planning.find(lit_splats.wanted):
         return frozenset()
     tolerance = planning.settings.detail_tolerance
-    return levels.merging(planning.scene, planning.camera, tolerance, planning.samples, planning.is_only)
+    return levels.merging(planning.scene, planning.camera, tolerance, planning.samples, planning.is_repeatable)
 
 
 def passes(planning):

@@ -29,14 +29,14 @@ def plan(
     is_added_up: bool = False,
     part: tuple[int, int, int, int] | None = None,
     samples: int | None = None,
-    is_only: bool = False,
+    is_repeatable: bool = False,
 ) -> FramePlan:
     """The passes that this picture needs.
 
     viewers: the cameras that shadow maps serve, if there are others, so that similar cameras can share maps.
         is_added_up: whether the picture is one sample of a refining view. part: x, y, width, height in pixels, if only
         a part of the picture is drawn. samples: number of samples that show this scene, if fewer than the picture's.
-        is_only: whether no further picture of it follows, for which something might be prepared.
+        is_repeatable: whether it is the same whatever was drawn before.
     """
     planning = Planning(
         scene,
@@ -45,7 +45,7 @@ def plan(
         viewers or Viewers(camera, (camera,)),
         is_added_up,
         samples or settings.samples,
-        is_only,
+        is_repeatable,
     )
     if settings.multisampling and planning.method.rasterizer != "object_space":
         raise ValueError(

@@ -18,7 +18,8 @@ Found = TypeVar("Found")
 
 class Planning:
     """viewers: the cameras that shadow maps serve. is_added_up: whether the picture is a sample of a refining view.
-    samples: number of samples that show the scene. is_only: whether no further picture shows it.
+    samples: number of samples that show the scene. is_repeatable: whether the picture is the same
+        whatever was drawn before.
 
     choices, facts: as in `FramePlan`; features add to both.
     """
@@ -31,11 +32,11 @@ class Planning:
         viewers: Viewers,
         is_added_up: bool,
         samples: int,
-        is_only: bool = False,
+        is_repeatable: bool = False,
     ):
         self.scene, self.camera, self.settings = scene, camera, settings
         self.viewers, self.is_added_up, self.samples = viewers, is_added_up, samples
-        self.is_only = is_only
+        self.is_repeatable = is_repeatable
         self.method, self.model = get_method(settings.method), get_shading_model(settings.shading)
         self.shown = scene.shown
         self.features: list[tuple[str, str]] = []

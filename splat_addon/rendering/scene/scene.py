@@ -49,6 +49,7 @@ class Placed:
     split_length: a length in world units, by which it is split instead: it is drawn as polygons where this length may
         cover more than a pixel, so that surfels never lie too far apart (Guennebaud et al. 2006, section 5.2).
     is_holdout: it hides everything behind it and shows nothing: the picture has an alpha of 0 there.
+    may_change: whether its shape may be another in each frame, so that little is prepared for it.
     """
 
     shape: Surfels | Polygons
@@ -62,6 +63,7 @@ class Placed:
     split_distance: float | None = None
     split_length: float | None = None
     is_holdout: bool = False
+    may_change: bool = False
     #: polygons never are
     is_merged: ClassVar[bool] = False
 
