@@ -42,7 +42,7 @@ from .automatic_density import automatic_spacing
 from .camera_density import without_camera
 from .gathering import gather
 from .shape_following import is_deformed
-from .surfel_objects import add_surfel_object, collections_of
+from .surfel_objects import add_surfel_object, collections_of, render_like
 
 #: How far the surface may be above or below its surfel, in spacings: because of curvature within the cell, or a move to
 #: a lattice.
@@ -296,7 +296,7 @@ def bake(conversion: Conversion, depsgraph: bpy.types.Depsgraph) -> None:
 
 
 def place(conversion: Conversion, fallback: bpy.types.Collection) -> bpy.types.Object:
-    """Add the new object "<name> surfels" over its sources, in the collections of the first and with its pass index,
+    """Add the new object "<name> surfels" over its sources, in the collections of the first, rendered as that, and
     with their materials.
 
     fallback: the collection to use if all collections of that source belong to a linked library.
@@ -304,5 +304,5 @@ def place(conversion: Conversion, fallback: bpy.types.Collection) -> bpy.types.O
     collections = collections_of(conversion.sources[0], fallback)
     name, matrix_world = f"{conversion.name} surfels", conversion.matrix_world
     made = add_surfel_object(name, conversion.surfels, matrix_world, collections, conversion.materials)
-    made.pass_index = conversion.sources[0].pass_index
+    render_like(made, conversion.sources[0])
     return made

@@ -20,7 +20,7 @@ from ..geometry.gaussian_clouds import is_gaussian_cloud, read_gaussians
 from ..geometry.points_extraction import ExtractedPoints, extract_points, materials_of, sheared
 from .batch import Batch
 from .placement import without_shear
-from .surfel_objects import add_surfel_object, collections_of
+from .surfel_objects import add_surfel_object, collections_of, render_like
 
 
 class _OfOneObject:
@@ -163,5 +163,5 @@ class PointsBatch(Batch):
         source = conversion.source
         collections, name = collections_of(source, context.collection), f"{source.name} surfels"
         made = add_surfel_object(name, conversion.surfels, conversion.matrix_world, collections, conversion.materials)
-        made.pass_index = source.pass_index
+        render_like(made, source)
         return made

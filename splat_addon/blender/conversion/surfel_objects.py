@@ -54,6 +54,24 @@ def collections_of(source: bpy.types.Object, fallback: bpy.types.Collection) -> 
     return [collection for collection in source.users_collection if collection.library is None] or [fallback]
 
 
+def render_like(made: bpy.types.Object, source: bpy.types.Object) -> None:
+    """Give a new object what renders of its source depend on besides the surface: pass index, ray visibility, Holdout
+    and light linking, in the collections that both are in too."""
+    for name in bpy.types.Object.bl_rna.properties.keys():
+        if name.startswith("visible_") or name in _OF_RENDERS:
+            setattr(made, name, getattr(source, name))
+    for name in ("receiver_collection", "blocker_collection"):
+        setattr(made.light_linking, name, getattr(source.light_linking, name))
+    for collection in made.users_collection:
+        members = dict(zip(collection.objects, collection.collection_objects, strict=True))
+        if source in members:
+            members[made].light_linking.link_state = members[source].light_linking.link_state
+
+
+#: What `render_like` copies besides ray visibility, whose names differ between Blender's versions.
+_OF_RENDERS = ("pass_index", "is_holdout", "is_shadow_catcher")
+
+
 def select_only(context: bpy.types.Context, made: list[bpy.types.Object]) -> None:
     """Select only the new objects; the last one becomes active."""
     # on a command line there is no window, and so no context

@@ -7,6 +7,7 @@ import pytest
 
 from splat_addon.blender.conversion.batch import ConversionBatch
 from splat_addon.blender.conversion.mesh_conversion import Choices
+from splat_addon.blender.export.light_linking import receivers_of
 
 
 @pytest.fixture
@@ -138,10 +139,35 @@ def test_the_result_is_in_the_collections_of_its_source(cube, convert):
     assert len(cube.users_collection) == 2
 
 
-def test_the_result_has_the_pass_index_of_its_source(cube, convert):
-    cube.pass_index = 7
-    (made,) = convert()
-    assert made.pass_index == 7
+@pytest.mark.parametrize("convert_to_surfels", [bpy.ops.object.surfels_from_mesh, bpy.ops.object.surfels_from_points])
+def test_the_result_is_rendered_like_its_source(cube, convert_to_surfels):
+    receivers = cube.light_linking.receiver_collection = bpy.data.collections.new("receivers")
+    cube.pass_index, cube.is_holdout = 7, True
+    cube.visible_shadow = cube.visible_camera = cube.visible_diffuse = False
+    convert_to_surfels()
+    made = bpy.context.object
+    assert made != cube and made.pass_index == 7 and made.is_holdout
+    assert not (made.visible_shadow or made.visible_camera or made.visible_diffuse) and made.visible_glossy
+    assert made.light_linking.receiver_collection == receivers
+
+
+@pytest.mark.parametrize("state", ["INCLUDE", "EXCLUDE"])
+def test_the_result_is_lit_by_the_lights_of_its_source(cube, convert, state):
+    receivers = bpy.data.collections.new("receivers")
+    lamp = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "SUN"))
+    lamp.light_linking.receiver_collection = receivers
+    receivers.objects.link(cube)
+    receivers.collection_objects[0].light_linking.link_state = state
+    (made,) = convert(resolution=4)
+    lit = receivers_of(lamp)
+    assert lit.has((made.name,)) == (state == "INCLUDE") and lit.has(("floor",)) == (state == "EXCLUDE")
+
+
+def test_an_update_leaves_how_the_result_is_rendered(cube, convert):
+    (made,) = convert(resolution=4)
+    made.is_holdout = True
+    bpy.ops.object.surfels_update()
+    assert made.is_holdout and not cube.is_holdout
 
 
 def test_the_result_has_the_material_slots_of_its_source(cube, convert):
