@@ -4,29 +4,35 @@
 from __future__ import annotations
 
 import bpy
+import numpy as np
 from bpy.app.handlers import persistent
 
 from .source_record import record_of, sources_in
 
-#: Number of objects in the file at the last check.
-_objects = 0
+#: session_uid of each object in the file at the last check.
+_objects = np.empty(0, np.int32)
 
 
 def hide_source(source: bpy.types.Object) -> None:
     """Hide an object in the viewport and in renders for as long as it has surfels."""
+    record = record_of(source)
+    if not record.is_hidden_source:
+        record.was_disabled_in_renders = source.hide_render
     source.hide_set(True)
-    source.hide_render = True
-    record_of(source).is_hidden_source = True
+    record.is_hidden_source = source.hide_render = True
 
 
 def bring_back() -> None:
-    """Show all hidden sources that have no surfels left."""
+    """Show all hidden sources that have no surfels left; those that were disabled in renders before stay so."""
     hidden = [owner for owner in bpy.data.objects if record_of(owner).is_hidden_source]
     needed = set().union(*map(sources_in, bpy.data.scenes)) if hidden else set()
     for source in hidden:
         if source in needed:
             continue
-        record_of(source).is_hidden_source = source.hide_render = False
+        record = record_of(source)
+        record.is_hidden_source = False
+        if not record.was_disabled_in_renders:
+            source.hide_render = False
         for scene in source.users_scene:
             for view_layer in scene.view_layers:
                 if source.name in view_layer.objects:
@@ -35,11 +41,12 @@ def bring_back() -> None:
 
 @persistent
 def _after_update(scene, depsgraph) -> None:
-    """Check the file when the number of objects has changed."""
+    """Check the file when other objects are in it."""
     global _objects
-    count = len(bpy.data.objects)
-    if count != _objects:
-        _objects = count
+    found = np.empty(len(bpy.data.objects), np.int32)
+    bpy.data.objects.foreach_get("session_uid", found)
+    if not np.array_equal(found, _objects):
+        _objects = found
         bring_back()
 
 

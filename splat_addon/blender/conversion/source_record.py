@@ -48,6 +48,10 @@ class SurfelRecord(bpy.types.PropertyGroup):
         name="Hidden for Surfels",
         description="This object was hidden when it was converted, and comes back when its surfels are deleted",
     )
+    was_disabled_in_renders: BoolProperty(
+        name="Disabled in Renders Before",
+        description="This object was already disabled in renders when it was converted, and stays so",
+    )
 
 
 #: kind -> the mix-in whose properties are kept

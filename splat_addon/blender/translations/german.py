@@ -173,6 +173,7 @@ GERMAN = {
         "Scheiben in Punktsprites, die nicht gemischt werden: Jedes Pixel zeigt die nächste; schneller als Quads "
         "(Botsch und Kobbelt 2003, Abschnitte 3.1 und 3.2)"
     ),
+    "Disabled in Renders Before": "Zuvor vom Rendern ausgeschlossen",
     "Discs in point sprites, with holes at grazing angles (Botsch and Kobbelt 2003, sections 3.1 to 3.4)": (
         "Scheiben in Punktsprites, mit Löchern bei flachen Winkeln (Botsch und Kobbelt 2003, Abschnitte 3.1 bis 3.4)"
     ),
@@ -771,6 +772,9 @@ GERMAN = {
     ),
     "Their points were taken": "Ihre Punkte wurden übernommen",
     "Their surfaces were sampled": "Ihre Flächen wurden abgetastet",
+    "This object was already disabled in renders when it was converted, and stays so": (
+        "Dieses Objekt war bei der Umwandlung schon vom Rendern ausgeschlossen und bleibt es"
+    ),
     "This object was hidden when it was converted, and comes back when its surfels are deleted": (
         "Dieses Objekt wurde bei der Umwandlung versteckt und kommt wieder, wenn seine Surfels gelöscht werden"
     ),

@@ -109,6 +109,27 @@ def test_deleted_surfels_bring_back_a_hidden_source(square, convert):
     assert not square.hide_get() and not square.hide_render
 
 
+def test_a_source_that_was_disabled_in_renders_stays_so(square, convert):
+    square.hide_render = True
+    made = convert(resolution=8, source="HIDE")
+    square.hide_set(False)
+    square.select_set(True)
+    made += convert(resolution=8, source="HIDE")
+    for each in made:
+        bpy.data.objects.remove(each)
+    bpy.context.view_layer.update()
+    assert not square.hide_get() and square.hide_render
+
+
+def test_surfels_that_are_swapped_for_another_object_bring_back_their_source(square, convert):
+    (made,) = convert(resolution=8, source="HIDE")
+    bpy.context.view_layer.update()
+    bpy.data.objects.remove(made)
+    bpy.context.collection.objects.link(bpy.data.objects.new("other", None))
+    bpy.context.view_layer.update()
+    assert not square.hide_get() and not square.hide_render
+
+
 def test_it_stays_hidden_while_others_of_its_surfels_are_there(square, convert):
     (first,) = convert(resolution=8)
     square.select_set(True)
