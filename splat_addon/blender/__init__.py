@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from . import commands, manual, mesh_sampling_settings, operators, preferences, properties, translations
 from .conversion import bring_back, mesh_settings, prediction, source_record
-from .engine import render_engine, render_passes
+from .engine import final_render, render_engine, render_passes
 from .geometry import surfel_files
 from .ui import (
     camera_panels,
@@ -25,6 +25,7 @@ from .ui import (
 MODULES = (
     properties,
     render_passes,
+    final_render,
     render_engine,
     preset_panels,
     render_panels,

@@ -9,11 +9,13 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import bpy
+from bpy.app.handlers import persistent
 
 from ...rendering import Frame, RenderCancelled, Renderer, open_device
 from ..export.camera import depth_of_field_notes, rendered_part, view_camera
 from ..export.live_meshes import LiveMeshes
 from ..export.scene import Notes, SurfelStore, export_scene
+from ..materials import matcap_images
 from ..preferences import most_bytes
 from ..properties import final_settings, stops_where_broken
 from .motion_blur import motion_blur_notes, moving_time, shutter_times
@@ -155,8 +157,11 @@ _FLATTENED = "Objects with a scale of 0 on some axis are left out; give every ax
 
 
 def _read(depsgraph, resources: _Resources):
-    resources.store.begin_frame()
+    resources.store.begin_frame(are_materials_edited=resources.are_images_edited)
     resources.live_meshes.begin_frame()
+    if resources.are_images_edited:
+        resources.live_meshes.forget_images()
+        resources.are_images_edited = False
     scene, notes = export_scene(depsgraph, resources.store, resources.live_meshes)
     resources.store.forget_unused()
     return scene, notes
@@ -187,15 +192,26 @@ class _Resources:
     without a graphics context. Freeing textures then aborts Blender 4.5 and spoils the next render on 5.2's OpenGL. So
     they are freed in `render` after the last picture, unless the scene's Persistent Data keeps them. A render that ends
     before the scene's last frame, because of Esc or a shorter range, also leaves them to the next render.
+
+    are_images_edited: whether images may have been edited since the last picture.
     """
 
     def __init__(self):
+        self.are_images_edited = False
         self.store = SurfelStore()
         self.live_meshes = LiveMeshes()
         self.renderer = Renderer(open_device("blender"))
 
 
 _resources: _Resources | None = None
+
+
+@persistent
+def _before_render(*_) -> None:
+    """Look again at all images: Blender does not tell what was edited since the last render."""
+    matcap_images.doubt()
+    if _resources:
+        _resources.are_images_edited = True
 
 
 def _acquire_resources() -> _Resources:
@@ -229,3 +245,11 @@ def _progress(engine, turn: tuple[int, int], done: float, step: str) -> bool:
     engine.update_progress((turn[0] + done) / turn[1])
     engine.update_stats("", step.title())
     return not engine.test_break()
+
+
+def register():
+    bpy.app.handlers.render_init.append(_before_render)
+
+
+def unregister():
+    bpy.app.handlers.render_init.remove(_before_render)

@@ -17,6 +17,7 @@ from ..export.camera import viewport_camera
 from ..export.live_meshes import LiveMeshes
 from ..export.scene import export_scene
 from ..export.sliced_store import SlicedStore
+from ..materials import matcap_images
 from ..preferences import most_bytes
 from ..properties import viewport_rate, viewport_settings
 from ..spoken import said
@@ -45,6 +46,7 @@ def update(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph
     # whatever changes with each picture would never be whole
     state.store.is_sliced = state.arrival.loading.is_in_background = not _is_playing(context)
     _read(state, depsgraph, changed, are_materials_edited)
+    matcap_images.doubt()
     # A multilayer matcap is read through a data-block, which Blender does not allow to be created while drawing.
     viewport_settings(depsgraph.scene)
     _say(engine, state)

@@ -108,7 +108,11 @@ class SurfelStore:
         return kept.surfels, kept.skipped, kept.strayed
 
     def begin_frame(self, changed: set[str] | None = None, are_materials_edited: bool = False) -> None:
-        """Start a frame: meshes named in `changed` (None: all) are read again when next requested."""
+        """Start a frame: meshes named in `changed` (None: all) are read again when next requested.
+
+        are_materials_edited: whether materials, worlds or images may have been edited.
+        """
+        self.world.begin_frame(are_materials_edited)
         self.overridden.begin_frame()
         self.streams.begin_frame()
         self.textures.begin_frame(are_materials_edited, is_told=changed is not None)

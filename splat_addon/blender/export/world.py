@@ -12,7 +12,7 @@ from mathutils import Euler
 from ...rendering import Environment
 from ...rendering.upload.atlas import MAX_EDGE
 from ..materials.node_trees import uses_nodes
-from ..materials.texture_images import UnreadableError, linear_pixels
+from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, settings_of
 from . import passed_over
 from .shading import MAX_RADIANCE, color_times_strength, finite_radiance, output_source
 
@@ -24,7 +24,12 @@ class WorldStore:
     """Keeps the `Environment` of a world between frames: the same object while image and rotation are unchanged."""
 
     def __init__(self):
-        self._kept: tuple[tuple, Environment] | None = None
+        self._kept: _Kept | None = None
+        self._is_doubted = False
+
+    def begin_frame(self, is_edited: bool) -> None:
+        """Start a frame. is_edited: the image's pixels may differ, as after it was reloaded or saved."""
+        self._is_doubted |= is_edited
 
     def read(self, world: bpy.types.World | None, notes) -> tuple[Color, Environment | None]:
         """The radiance of the background, and an image that is multiplied by it if there is one; black without a
@@ -47,28 +52,48 @@ class WorldStore:
         return even, self._environment(picture, notes)
 
     def _environment(self, picture: _Picture, notes) -> Environment | None:
-        image = picture.image
+        settings = *settings_of(picture.image), picture.rotation.tobytes()
         # Users cannot change pixels between two frames of one render without marking the image dirty.
-        key = image.session_uid, tuple(image.size), image.is_dirty, picture.rotation.tobytes()
-        if self._kept is None or self._kept[0] != key or image.is_dirty:
-            try:
-                pixels = linear_pixels(image, keep_alpha=False)[..., :3]
-            except UnreadableError as reason:
-                notes.add(f"The world's picture cannot be read and counts as white: {reason}")
-                return None
-            bad = ~(np.abs(pixels) <= MAX_RADIANCE)
-            if bad.any():
-                notes.add(f"The world's picture {image.name!r} has numbers that no picture holds; they count as 0")
-                pixels = np.where(bad, 0, pixels)
-            steps = [-(-edge // MAX_EDGE) for edge in pixels.shape[:2]]
-            if max(steps) > 1:
-                pixels = _reduced(pixels, *steps)
-                notes.add(
-                    f"The world's picture {image.name!r} is larger than {MAX_EDGE:,} pixels, which graphics devices "
-                    f"hold along an edge; it is shown at {pixels.shape[1]:,} x {pixels.shape[0]:,}"
-                )
-            self._kept = key, Environment(pixels, picture.rotation)
-        return self._kept[1]
+        is_doubted = self._is_doubted or picture.image.is_dirty
+        try:
+            if self._kept is None or self._kept.settings != settings or is_doubted:
+                key = settings, fingerprint(picture.image)
+                if self._kept is None or self._kept[:2] != key:
+                    self._kept = _Kept(*key, *_read(picture))
+        except UnreadableError as reason:
+            notes.add(f"The world's picture cannot be read and counts as white: {reason}")
+            return None
+        self._is_doubted = False
+        for note in self._kept.notes:
+            notes.add(note)
+        return self._kept.environment
+
+
+class _Kept(NamedTuple):
+    """notes: about the reading."""
+
+    settings: tuple
+    fingerprint: int
+    environment: Environment
+    notes: tuple[str, ...]
+
+
+def _read(picture: _Picture) -> tuple[Environment, tuple[str, ...]]:
+    """The environment, and notes on what it lacks. Raises UnreadableError."""
+    image, notes = picture.image, []
+    pixels = linear_pixels(image, keep_alpha=False)[..., :3]
+    bad = ~(np.abs(pixels) <= MAX_RADIANCE)
+    if bad.any():
+        notes.append(f"The world's picture {image.name!r} has numbers that no picture holds; they count as 0")
+        pixels = np.where(bad, 0, pixels)
+    steps = [-(-edge // MAX_EDGE) for edge in pixels.shape[:2]]
+    if max(steps) > 1:
+        pixels = _reduced(pixels, *steps)
+        notes.append(
+            f"The world's picture {image.name!r} is larger than {MAX_EDGE:,} pixels, which graphics devices "
+            f"hold along an edge; it is shown at {pixels.shape[1]:,} x {pixels.shape[0]:,}"
+        )
+    return Environment(pixels, picture.rotation), tuple(notes)
 
 
 def _reduced(pixels: np.ndarray, down: int, across: int) -> np.ndarray:

@@ -12,34 +12,49 @@ import numpy as np
 
 from ...rendering import Matcap
 from ...rendering.upload.atlas import MAX_EDGE
-from .texture_images import UnreadableError, linear_pixels
+from .texture_images import UnreadableError, fingerprint, linear_pixels, settings_of
 
 #: Places along each side that a multilayer file is read at: 0.7 s, once. Blender's own have 512 pixels, of which a
 #: place is then the mean of two by two.
 LAYER_SIDE = 256
 
 _kept: tuple[tuple, Matcap] | None = None
+_is_doubted = False
+
+
+def doubt() -> None:
+    """Look at the pixels again when next asked, because Blender does not tell that an image was reloaded or saved. Of a
+    multilayer file they are read again only if its settings change, because that takes so long."""
+    global _is_doubted
+    _is_doubted = True
 
 
 def matcap_of(image: bpy.types.Image) -> Matcap:
-    """Its pixels, read again only if it changed. Raises ValueError if it has no readable pixels."""
-    global _kept
-    key = image.session_uid, tuple(image.size), image.filepath
-    if _kept is None or _kept[0] != key or image.is_dirty:
+    """Its pixels, read again only if they changed. Raises ValueError if it has no readable pixels."""
+    global _kept, _is_doubted
+    # Asking for its size has read the file, which says of what type it is.
+    settings, is_layered = settings_of(image), image.type == "MULTILAYER"
+    if _kept is None or _kept[0][0] != settings or image.is_dirty or (_is_doubted and not is_layered):
         try:
-            # Asking for its size has read the file, which says of what type it is.
-            pixels = _first_layer(image) if image.type == "MULTILAYER" else linear_pixels(image, keep_alpha=False)
+            # The same pixels are the same matcap, with which a view refines.
+            key = settings, None if is_layered else fingerprint(image)
+            if _kept is None or _kept[0] != key:
+                pixels = _first_layer(image) if is_layered else linear_pixels(image, keep_alpha=False)
+                _kept = key, _matcap(pixels, image)
         except UnreadableError as reason:
             raise ValueError(f"Matcap shading cannot read its picture: it comes from {reason}.") from None
-        if max(pixels.shape[:2]) > MAX_EDGE:
-            raise ValueError(
-                f"The matcap {image.name!r} has {image.size[0]:,} x {image.size[1]:,} pixels, and {MAX_EDGE:,} along "
-                "an edge are the most; scale it down."
-            )
-        # A painted image stays dirty until it is saved: the same pixels are the same matcap, with which a view refines.
-        if _kept is None or _kept[0] != key or not np.array_equal(_kept[1].pixels, pixels[..., :3]):
-            _kept = key, Matcap(pixels[..., :3])
+    _is_doubted = False
     return _kept[1]
+
+
+def _matcap(pixels: np.ndarray, image: bpy.types.Image) -> Matcap:
+    """Raises ValueError for a picture that is too large."""
+    if max(pixels.shape[:2]) > MAX_EDGE:
+        raise ValueError(
+            f"The matcap {image.name!r} has {image.size[0]:,} x {image.size[1]:,} pixels, and {MAX_EDGE:,} along an "
+            "edge are the most; scale it down."
+        )
+    return Matcap(pixels[..., :3])
 
 
 def _first_layer(image: bpy.types.Image) -> np.ndarray:

@@ -107,6 +107,21 @@ def add_sheet(add_surfels):
 
 
 @pytest.fixture
+def saved_image(tmp_path):
+    """saved_image(name, color) -> the path of a PNG file of 4 x 2 pixels of that colour, as encoded."""
+
+    def save(name, color) -> str:
+        image = bpy.data.images.new(name, 4, 2, alpha=True)
+        image.pixels.foreach_set(np.tile(np.float32(color), 8))
+        image.filepath_raw, image.file_format = str(tmp_path / name), "PNG"
+        image.save()
+        bpy.data.images.remove(image)
+        return str(tmp_path / name)
+
+    return save
+
+
+@pytest.fixture
 def read_picture():
     """read_picture(path) -> (h, w, 4) float32 from a file with a single picture, row 0 at the bottom."""
 

@@ -5,6 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.export.scene import Notes, SurfelStore
+
 
 @pytest.fixture
 def add_world(scene):
@@ -103,3 +105,69 @@ def test_a_textured_world_is_said_to_be_used_plainly(scene, add_camera, add_worl
     tree.links.new(sky.outputs["Color"], tree.nodes["Background"].inputs["Color"])
     picture()
     assert "The world 'world' is textured; its Background node's plain colour and strength are used" in said()
+
+
+@pytest.fixture
+def add_picture(add_world, saved_image):
+    """add_picture(color) -> the image of a file of 4 x 2 pixels, which is the world's picture."""
+
+    def add(color) -> bpy.types.Image:
+        tree = add_world((0, 0, 0)).node_tree
+        node = tree.nodes.new("ShaderNodeTexEnvironment")
+        node.image = bpy.data.images.load(saved_image("sky.png", color))
+        tree.links.new(node.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+        return node.image
+
+    return add
+
+
+@pytest.fixture
+def read_world(scene):
+    """read_world(is_edited) -> what a view has read of the world in its next picture, and what it says."""
+    store = SurfelStore()
+
+    def read(is_edited=False):
+        notes = Notes()
+        store.begin_frame(set(), are_materials_edited=is_edited)
+        return store.world.read(scene.world, notes)[1], notes.sentences()
+
+    return read
+
+
+def test_a_world_s_picture_that_stays_is_kept(add_picture, read_world):
+    add_picture((1, 0, 0, 1))
+    first, _ = read_world()
+    assert read_world()[0] is first and read_world(is_edited=True)[0] is first
+
+
+def test_a_reloaded_picture_of_the_world_is_read_again(add_picture, saved_image, read_world):
+    image = add_picture((1, 0, 0, 1))
+    read_world()
+    saved_image("sky.png", (0, 1, 0, 1))
+    image.reload()
+    assert np.array_equal(read_world(is_edited=True)[0].pixels[0, 0], (0, 1, 0))
+
+
+@pytest.mark.parametrize(("edit", "expected"), [("file", 1.0), ("colour space", 0.6), ("alpha mode", 0.318)])
+def test_another_reading_of_the_world_s_picture_is_seen(edit, expected, add_picture, saved_image, read_world):
+    image = add_picture((0.6, 0.6, 0.6, 0.4))
+    before = read_world()[0].pixels[0, 0, 0]
+    if edit == "file":
+        image.filepath = saved_image("other.png", (1, 1, 1, 1))
+    elif edit == "colour space":
+        image.colorspace_settings.name = "Non-Color"
+    else:
+        image.alpha_mode = "NONE"
+    after = read_world()[0].pixels[0, 0, 0]
+    assert before == pytest.approx(0.318 * 0.4, abs=2e-3) and after == pytest.approx(expected, abs=2e-3)
+
+
+def test_what_a_world_s_picture_lacks_is_said_in_each_frame(add_picture, read_world, tmp_path):
+    add_picture((1, 0, 0, 1))
+    node = bpy.context.scene.world.node_tree.nodes["Environment Texture"]
+    image = node.image = bpy.data.images.new("broken", 4, 2, float_buffer=True)
+    image.pixels[0] = np.inf
+    image.filepath_raw, image.file_format = str(tmp_path / "broken.exr"), "OPEN_EXR"
+    image.save()
+    first, second = read_world()[1], read_world()[1]
+    assert "The world's picture 'broken' has numbers that no picture holds; they count as 0" in first == second

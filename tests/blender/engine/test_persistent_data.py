@@ -48,6 +48,30 @@ def test_what_changed_is_seen(persistent, add_camera, add_surfels, picture, uplo
     assert np.abs(moved - first).max() > 0.5 and np.abs(edited - moved).max() > 0.5
 
 
+def test_reloaded_images_are_seen(persistent, add_camera, add_square, convert, picture, saved_image):
+    """Blender tells an engine of no edit between two renders."""
+    image = bpy.data.images.load(saved_image("image.png", (1, 0, 0, 1)))
+    add_camera(location=(0.5, 0.5, 1), type="ORTHO", ortho_scale=3)
+    square, persistent.world = add_square(), bpy.data.worlds.new("world")
+    square.data.materials.append(bpy.data.materials.new("material"))
+    for owner, kind in ((square.active_material, "Image"), (persistent.world, "Environment")):
+        owner.use_nodes = True
+        nodes, links = owner.node_tree.nodes, owner.node_tree.links
+        nodes.new(f"ShaderNodeTex{kind}").image = image
+        shader = nodes["Background"].inputs["Color"] if kind == "Environment" else nodes["Principled BSDF"].inputs[0]
+        links.new(nodes[f"{kind} Texture"].outputs["Color"], shader)
+    persistent.render.film_transparent = False
+    convert(resolution=4, texture_mapped=True)
+    beside = add_square("Beside")
+    beside.location.x = -1
+    beside.data.materials.append(square.active_material)
+    surfels_polygons_sky = [16, 16, 1], [16, 5, 1]
+    assert np.allclose(picture()[surfels_polygons_sky][:, :3], (1, 0, 0), atol=2e-3)
+    saved_image("image.png", (0, 1, 0, 1))
+    image.reload()
+    assert np.allclose(picture()[surfels_polygons_sky][:, :3], (0, 1, 0), atol=2e-3)
+
+
 def test_live_meshes_are_sampled_once(persistent, add_camera, picture):
     bpy.ops.mesh.primitive_uv_sphere_add()
     add_camera()

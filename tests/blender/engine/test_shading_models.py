@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.materials.matcap_images import matcap_of
+from splat_addon.blender.materials.matcap_images import doubt, matcap_of
 from splat_addon.blender.materials.ramps import ramp_of
 from splat_addon.blender.properties import viewport_settings
 from splat_addon.rendering.shading_models import SHADING_MODELS
@@ -86,6 +86,21 @@ def test_a_painted_matcap_is_another_one_only_where_its_pixels_are():
     assert matcap_of(image) is first
     image.pixels[0] = 0.25
     assert matcap_of(image) is not first
+
+
+def test_a_matcap_of_another_colour_space_and_a_reloaded_one_are_other_ones(saved_image):
+    image = bpy.data.images.load(saved_image("ball.png", (0.6, 0, 0, 1)))
+    first = matcap_of(image)
+    image.colorspace_settings.name = "Non-Color"
+    second = matcap_of(image)
+    saved_image("ball.png", (0, 0, 0, 1))
+    image.reload()
+    doubt()
+    third = matcap_of(image)
+    doubt()
+    assert matcap_of(image) is third
+    reds = [matcap.pixels[0, 0, 0] for matcap in (first, second, third)]
+    assert reds == pytest.approx([0.319, 0.6, 0], abs=1e-3)
 
 
 def workbench(scene, light):
