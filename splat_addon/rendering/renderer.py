@@ -257,6 +257,7 @@ class Renderer:
             "short_of_memory": self.streamed.short,
             "layers": 0,
             "culled": frame_plan.facts.get("culled", 0),
+            "culled_of": frame_plan.facts.get("culled_of", 0),
             "passes": {},
         }
 

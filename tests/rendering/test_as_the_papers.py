@@ -89,7 +89,8 @@ def test_backs_that_are_left_out_are_counted(render):
     frame = render(scene, camera, replace(QUADS, culls_backs=True))
     exact = sum(instance.backs(camera) for instance in scene.surfels)
     assert frame.stats["culled"] == exact
-    assert 0.3 < exact / sum(len(i.surfels) for i in scene.surfels) < 0.7
+    assert frame.stats["culled_of"] == sum(len(i.surfels) for i in scene.surfels)
+    assert 0.3 < exact / frame.stats["culled_of"] < 0.7
     assert "BACK_CULLING" in str(plan(scene, camera, replace(QUADS, culls_backs=True)))
 
 

@@ -147,7 +147,8 @@ def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
         engine.report({"WARNING"}, sentence)
     last_frame_stats.clear()
     last_frame_stats.update(frame.stats, notes=notes.sentences(), live_meshes=dict(resources.live_meshes.counts))
-    drawn = " and ".join(f"{frame.stats[name]:,} {name}" for name in ("splats", "polygons") if frame.stats[name])
+    counts = {"splats": frame.stats["splats_drawn"], "polygons": frame.stats["polygons"]}
+    drawn = " and ".join(f"{count:,} {name}" for name, count in counts.items() if count)
     engine.update_stats("", f"{drawn or 'Nothing'} in {frame.stats['milliseconds']:.0f} ms")
 
 

@@ -892,9 +892,11 @@ GERMAN = {
     "Converting to surfels: {percent:.0f}%   Esc cancels": "Umwandlung in Surfels: {percent:.0f}%   Esc bricht ab",
     "Counting …": "Wird gezählt …",
     "Device: {device}, {backend}": "Gerät: {device}, {backend}",
-    "Drawn: {splats:,} splats and {polygons:,} polygons": "Gezeichnet: {splats:,} Splats und {polygons:,} Polygone",
-    "Left out as backs: {culled:,} splats, {percent:.0f}% of them": (
-        "Als Rückseiten weggelassen: {culled:,} Splats, {percent:.0f}% von ihnen"
+    "Drawn: {splats_drawn:,} of {splats:,} splats, and {polygons:,} polygons": (
+        "Gezeichnet: {splats_drawn:,} von {splats:,} Splats und {polygons:,} Polygone"
+    ),
+    "Back-facing splats left out: {culled:,} ({percent:.0f}%)": (
+        "Weggelassene abgewandte Splats: {culled:,} ({percent:.0f}%)"
     ),
     "No selected object is surfels; convert one first, or choose others": (
         "Kein ausgewähltes Objekt besteht aus Surfels; zuerst eines umwandeln oder andere auswählen"

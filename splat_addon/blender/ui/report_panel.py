@@ -21,7 +21,7 @@ class RENDER_PT_surfel_report(EnginePanel, bpy.types.Panel):
     def draw(self, context):
         stats = final_render.last_frame_stats
         for line in measured(stats):
-            self.layout.label(text=line)
+            write(self.layout, line, context)
         for title, sentences in (("Render", stats.get("notes", [])), ("3D View", viewport.last_notes)):
             if sentences:
                 box = self.layout.box()
@@ -66,10 +66,10 @@ def measured(stats: dict) -> Iterator[str]:
     if not stats:
         yield said("Nothing has been rendered yet")
         return
-    yield said("Drawn: {splats:,} splats and {polygons:,} polygons", **stats)
+    yield said("Drawn: {splats_drawn:,} of {splats:,} splats, and {polygons:,} polygons", **stats)
     if stats.get("culled"):
-        percent = 100 * stats["culled"] / stats["splats"]
-        yield said("Left out as backs: {culled:,} splats, {percent:.0f}% of them", percent=percent, **stats)
+        percent = 100 * stats["culled"] / stats["culled_of"]
+        yield said("Back-facing splats left out: {culled:,} ({percent:.0f}%)", percent=percent, **stats)
     yield said("Time: {milliseconds:,.0f} ms", **stats)
     if (samples := stats.get("samples", 1)) > 1:
         yield said("Samples: {samples}", samples=samples)

@@ -47,8 +47,20 @@ def test_the_panel_tells_what_was_drawn(scene, blurred, picture):
     blurred.data.dof.use_dof = False
     picture()
     lines = list(report_panel.measured(final_render.last_frame_stats))
-    assert lines[0] == "Drawn: 1 splats and 0 polygons" and lines[1].startswith("Time: ")
+    assert lines[0] == "Drawn: 1 of 1 splats, and 0 polygons" and lines[1].startswith("Time: ")
     megabytes = final_render.last_frame_stats["texture_bytes"] / 1e6
     assert 0.05 < megabytes < 20 and lines[2] == f"Textures on the device: {megabytes:,.1f} MB"
     assert list(report_panel.measured({})) == ["Nothing has been rendered yet"]
     assert hasattr(bpy.types, "RENDER_PT_surfel_report_plan")
+
+
+def test_the_panel_tells_what_was_left_out(scene, add_camera, add_surfels, picture):
+    """One of four splats is in view, and two others of the four face away."""
+    add_camera()
+    away = np.array([(50, 0, 0), (0, 50, 0), (0, -50, 0)])
+    for place, normal in zip([(0, 0, 0), *away], [(0, 0, 1), (0, 0, 1), (0, 0, -1), (0, 0, -1)], strict=True):
+        add_surfels([place], normal, name=str(place))
+    scene.surfel_splatting.culls_backs = True
+    picture()
+    lines = list(report_panel.measured(final_render.last_frame_stats))
+    assert lines[:2] == ["Drawn: 1 of 1 splats, and 0 polygons", "Back-facing splats left out: 2 (50%)"]
