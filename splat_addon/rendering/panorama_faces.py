@@ -215,12 +215,20 @@ def _distance(depth: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarra
     return np.where(deep < EMPTY_DEPTH, deep * np.sqrt(1 + across**2 + up**2), EMPTY_DEPTH).astype(np.float32)
 
 
+#: Statistics of the faces that are added up, and those of which the greatest is taken.
+_SUMS = ("milliseconds", "splats", "splats_drawn", "polygons", "instances")
+_MAXIMA = (
+    *("instances_outside", "instances_degenerate", "instances_hidden", "surfels_coarse", "layers", "culled"),
+    *("culled_of", "texture_bytes"),
+)
+
+
 def _added(stats: dict, more: dict) -> dict:
-    """Statistics combined: times and numbers of splats added up, the maximum of other counts."""
+    """Statistics combined: the sum of times and of what is in view and drawn, the maximum of other counts."""
     if not stats:
         return dict(more)
-    sums = {name: stats[name] + more[name] for name in ("milliseconds", "splats", "instances")}
-    most = {name: max(stats[name], more[name]) for name in ("instances_degenerate", "surfels_coarse")}
+    sums = {name: stats[name] + more[name] for name in _SUMS}
+    most = {name: max(stats[name], more[name]) for name in _MAXIMA}
     names = stats["passes"] | more["passes"]
     passes = {name: stats["passes"].get(name, 0.0) + more["passes"].get(name, 0.0) for name in names}
     return {**more, **sums, **most, "passes": passes}

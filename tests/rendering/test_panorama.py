@@ -17,10 +17,12 @@ from splat_addon.rendering import (
     Light,
     Lines,
     Panorama,
+    PolygonInstance,
     RenderCancelled,
     Scene,
     Settings,
     look_at,
+    make_polygons,
 )
 from splat_addon.rendering.plan import executor
 from splat_addon.rendering.settings import OUTPUTS
@@ -174,6 +176,18 @@ def test_only_faces_that_are_seen_are_drawn(render):
     ahead = Panorama(MATRIX, Equirectangular((-0.5, 0.5), (-0.4, 0.4)), (32, 24))
     assert render(ball(smooth), ahead, FLAT).stats["faces"] == 1
     assert render(ball(smooth), Panorama(MATRIX, Equirectangular(), (32, 16)), FLAT).stats["faces"] == 6
+
+
+def test_statistics_are_of_all_faces(render):
+    """The last face, which looks down, shows neither the ball ahead nor the board behind."""
+    corners = np.array([(-1, -1, 3), (1, -1, 3), (0, 1, 3)], np.float64)
+    board = PolygonInstance(make_polygons(corners, [(0, 1, 2)]), MATRIX)
+    small, around = np.diag([0.1, 0.1, 0.1, 1]), Panorama(MATRIX, Equirectangular(), (32, 16))
+    small[2, 3] = -3
+    instance = Instance(ball(smooth, 4000).surfels[0].surfels, MATRIX @ small)
+    stats = render(Scene((instance,), polygons=(board,)), around, replace(FLAT, culls_backs=True)).stats
+    assert (stats["splats"], stats["splats_drawn"], stats["polygons"], stats["instances"]) == (4000, 4000, 1, 2)
+    assert stats["instances_outside"] == 2 and stats["culled_of"] == 4000 and 0 < stats["culled"] < 4000
 
 
 def test_an_empty_scene_is_its_background(render):
