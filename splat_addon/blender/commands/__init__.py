@@ -27,6 +27,9 @@ _COMMANDS = {
     "template": template,
 }
 
+#: command -> its argument that stands in for the opened .blend
+_INSTEAD = {"store": "ply", "info": "file", "template": "file"}
+
 
 def run(arguments: list[str]) -> int:
     """Run the command line after the command's name; returns the exit code."""
@@ -35,6 +38,7 @@ def run(arguments: list[str]) -> int:
     except SystemExit as leaving:  # argparse exits after --help and after wrong arguments
         return int(leaving.code or 0)
     try:
+        _check_opened(options)
         for path in _COMMANDS[options.command].run(options):
             print(f"wrote {path}", flush=True)
     except Exception as error:
@@ -42,6 +46,13 @@ def run(arguments: list[str]) -> int:
         print(f"surfels {options.command}: error: {sentence.strip()}", file=sys.stderr, flush=True)
         return 1
     return 0
+
+
+def _check_opened(options: argparse.Namespace) -> None:
+    """Raise ValueError if the command needs a .blend and none is open: Blender goes on with its startup file after it
+    could not read the one that was given."""
+    if not bpy.data.filepath and not getattr(options, _INSTEAD.get(options.command, ""), None):
+        raise ValueError("No .blend is open; before --command, give the path of one that this Blender can read.")
 
 
 def _parser() -> argparse.ArgumentParser:

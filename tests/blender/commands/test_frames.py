@@ -67,6 +67,14 @@ def test_a_film_is_refused(animation, surfels_command):
     assert code == 1 and "Several machines cannot write one video file" in said
 
 
+@pytest.mark.parametrize("command", ["convert", "points", "render", "merge", "info", "store --objects Cube"])
+def test_the_startup_file_is_not_taken_for_a_file_that_could_not_be_opened(command, surfels_command, tmp_path):
+    out = () if command == "info" else ("--out", tmp_path / "x.surfelblocks")
+    code, said = surfels_command(*command.split(), *out)
+    assert code == 1 and "error: No .blend is open; before --command, give the path" in said
+    assert not list(tmp_path.iterdir())
+
+
 def test_help_and_wrong_arguments_have_their_exit_codes(surfels_command):
     code, said = surfels_command("--help")
     assert code == 0 and all(name in said for name in ("convert", "render", "merge", "info"))

@@ -48,9 +48,10 @@ def test_objects_are_stored_in_world_space_and_converted_if_they_are_no_surfels(
     assert "there already" in surfels_command("store", "--objects", name, "--out", out)[1]
 
 
-def test_a_ply_file_is_stored_and_told_of(animation, surfels_command, surfels_of, tmp_path):
+def test_a_ply_file_is_stored_and_told_of_without_a_blend(animation, surfels_command, surfels_of, tmp_path):
     surfels = surfels_of(bpy.data.objects["Sphere surfels"])
     write_ply(tmp_path / "scan.ply", surfels)
+    bpy.ops.wm.read_factory_settings(use_empty=True)
     out = tmp_path / "scan.surfelblocks"
     assert surfels_command("store", "--ply", tmp_path / "scan.ply", "--out", out)[0] == 0
     code, said = surfels_command("info", out, "--json")

@@ -124,6 +124,14 @@ def test_the_surfels_command_tells_by_its_exit_code(user_folder, scene, surfels,
     assert blender(user_folder, "--command", "surfels", "render", "--nonsense").returncode == 2
 
 
+def test_the_surfels_command_fails_if_blender_cannot_read_the_file(user_folder, tmp_path):
+    path = tmp_path / "damaged.blend"
+    path.write_bytes(b"BLENDER")
+    done = blender(user_folder, path, "--command", "surfels", "render", "--frames", "1", "--out", tmp_path / "x_#")
+    assert done.returncode == 1 and "surfels render: error: No .blend is open" in done.stdout, done.stdout
+    assert list(tmp_path.iterdir()) == [path]
+
+
 def test_the_surfels_command_converts_without_a_window(user_folder, add_square, tmp_path):
     add_square()
     path, out = tmp_path / "scene.blend", tmp_path / "out.blend"
