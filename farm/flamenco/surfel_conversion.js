@@ -36,7 +36,8 @@ function compileJob(job) {
     }
     const merge = surfelsTask("merge", settings, ["merge"]);
     for (let block = 1; block <= settings.blocks; block++) {
-        const convert = surfelsTask("convert-" + block, settings, ["convert", "--block", String(block)]);
+        const which = ["--block", String(block), "--objects", settings.object_name];
+        const convert = surfelsTask("convert-" + block, settings, ["convert"].concat(which));
         job.addTask(convert);
         merge.addDependency(convert);
     }
@@ -46,7 +47,7 @@ function compileJob(job) {
 // A task of one command of the extension.
 function surfelsTask(name, settings, commandLine) {
     const task = author.Task(name, "blender");
-    const about = ["--blocks", String(settings.blocks), "--objects", settings.object_name, "--out", settings.result];
+    const about = ["--blocks", String(settings.blocks), "--out", settings.result];
     task.addCommand(author.Command("blender-render", {
         exe: "{blender}",
         exeArgs: "{blenderArgs}",

@@ -10,9 +10,11 @@ triangle. Steps that look at neighbours (merged samples, clip lines, parts that 
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import zipfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -136,9 +138,12 @@ def _digest(run: SamplingRun) -> str:
     return digest.hexdigest()
 
 
-def write_blocks(path: str | os.PathLike, blocks: list[Block]) -> None:
-    """Write the blocks of several meshes to one numpy .npz file. Raises OSError."""
-    arrays = {}
+def write_blocks(path: str | os.PathLike, blocks: list[Block], request: dict | None = None) -> None:
+    """Write the blocks of several meshes to one numpy .npz file. Raises OSError.
+
+    request: what was asked for, as values of JSON, for those who join the blocks.
+    """
+    arrays = {"request": np.frombuffer(json.dumps(request or {}).encode("utf-8"), np.uint8)}
     for turn, block in enumerate(blocks):
         arrays[f"{turn}.about"] = np.array([block.number, block.count])
         arrays[f"{turn}.made_from"] = np.frombuffer(bytes.fromhex(block.made_from), np.uint8)
@@ -152,9 +157,22 @@ def write_blocks(path: str | os.PathLike, blocks: list[Block]) -> None:
 
 def read_blocks(path: str | os.PathLike) -> list[Block]:
     """Read a file that `write_blocks` made. Raises ValueError with one sentence for a damaged file."""
+    with _opened(path) as arrays:
+        return [_read(arrays, turn) for turn in range(sum(name.endswith(".about") for name in arrays.files))]
+
+
+def read_request(path: str | os.PathLike) -> dict:
+    """Read only the request of such a file. Raises ValueError as `read_blocks` does."""
+    with _opened(path) as arrays:
+        return json.loads(bytes(arrays["request"]))
+
+
+@contextmanager
+def _opened(path: str | os.PathLike) -> Iterator[np.lib.npyio.NpzFile]:
+    """The arrays of a file of blocks. Whatever is wrong with them becomes a ValueError with one sentence."""
     try:
         with np.load(path, allow_pickle=False) as arrays:
-            return [_read(arrays, turn) for turn in range(sum(name.endswith(".about") for name in arrays.files))]
+            yield arrays
     except (KeyError, OSError, EOFError, TypeError, zipfile.BadZipFile) as error:
         raise ValueError(f"{path} holds no blocks: {error}; convert it again.") from error
 

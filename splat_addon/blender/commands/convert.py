@@ -5,6 +5,7 @@ merge`."""
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -30,22 +31,32 @@ DESCRIPTION = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", required=True, help="the new .blend")
-    add_conversion_arguments(parser)
+    parser.add_argument("--objects", nargs="+", help="names; without them everything visible that has surfaces")
+    add_density_arguments(parser)
+    add_blocks_argument(parser)
     parser.add_argument("--block", type=int, help="the one block to convert, from 1; it waits beside --out")
     parser.add_argument("--again", action="store_true", help="convert even where the file is there already")
 
 
-def add_conversion_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments that `merge` needs too."""
-    parser.add_argument("--objects", nargs="+", help="names; without them everything visible that has surfaces")
-    parser.add_argument("--blocks", type=int, help="how many blocks of the sampling grid machines share")
-    add_density_arguments(parser)
+def add_blocks_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the argument that `merge` needs too."""
+    parser.add_argument("--blocks", type=_block_count, help="how many blocks of the sampling grid machines share")
+
+
+def _block_count(text: str) -> int:
+    if not re.fullmatch("0*[1-9][0-9]*", text):
+        raise argparse.ArgumentTypeError(f"the number of blocks is 1 or more, not {text!r}")
+    return int(text)
+
+
+#: argument that overrides the sidebar's density -> its type
+_DENSITIES = {"resolution": int, "spacing": float, "count": int}
 
 
 def add_density_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments that override the sidebar's density."""
     density = parser.add_mutually_exclusive_group()
-    for name, kind in (("resolution", int), ("spacing", float), ("count", int)):
+    for name, kind in _DENSITIES.items():
         density.add_argument(f"--{name}", type=kind, help=DENSITIES[name.upper()].description)
 
 
@@ -59,25 +70,32 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
     if not options.again and (file.is_file() or out.is_file()):
         print(f"there already: {file if file.is_file() else out}", flush=True)
         return
-    batch = new_batch(options)
+    sources = sources_of(options.objects)
+    batch = batch_of(sources, options)
     if options.block is None:
         for conversion in batch.prepared(bpy.context):
             batch.sample(conversion)
         place(batch, settings_of(options))
         save(out)
     else:
-        _write_block(batch, file, options.block, options.blocks)
+        _write_block(batch, file, options, request_of(sources, options))
     yield file
 
 
-def _write_block(batch: ConversionBatch, file: Path, number: int, count: int) -> None:
+def _write_block(batch: ConversionBatch, file: Path, options: argparse.Namespace, request: dict) -> None:
     blocks = [
-        sample_block(conversion.mesh, number - 1, count, **sampling_options(conversion))
+        sample_block(conversion.mesh, options.block - 1, options.blocks, **sampling_options(conversion))
         for conversion in batch.prepared(bpy.context)
     ]
     refuse(batch)
     with unfinished(file) as folder:
-        write_blocks(folder / file.name, blocks)
+        write_blocks(folder / file.name, blocks, request)
+
+
+def request_of(sources: list[bpy.types.Object], options: argparse.Namespace) -> dict:
+    """What `merge` needs to know of a conversion in blocks: its options, and in `names` the objects that they meant."""
+    given = {name: getattr(options, name) for name in ("objects", *_DENSITIES)}
+    return {**given, "names": [each.name for each in sources]}
 
 
 def result(options: argparse.Namespace) -> Path:
@@ -93,22 +111,18 @@ def block_file(out: Path, number: int, count: int) -> Path:
     return out.with_name(f"{out.name}.block-{number}-of-{count}.npz")
 
 
-def new_batch(options: argparse.Namespace, sampler: Callable[..., Sampling] = sample_surface) -> ConversionBatch:
-    """A batch with the chosen settings. sampler: replaces `sample_surface`, with the same arguments."""
-    return batch_of(sources_of(options.objects), options, sampler)
-
-
 def batch_of(
     sources: list[bpy.types.Object], options: argparse.Namespace, sampler: Callable[..., Sampling] = sample_surface
 ) -> ConversionBatch:
-    """A batch of these sources. sampler: as in `new_batch`."""
+    """A batch of these sources with the chosen settings. sampler: replaces `sample_surface`, with the same
+    arguments."""
     return ConversionBatch(sources, choices(settings_of(options)), bpy.context.view_layer.objects.active, sampler)
 
 
 def settings_of(options: argparse.Namespace):
     """The settings stored in the file, overridden by the command's arguments."""
     settings = getattr(bpy.context.scene, CONVERSION_SETTINGS)
-    for name in ("resolution", "spacing", "count"):
+    for name in _DENSITIES:
         if getattr(options, name) is not None:
             settings.density = name.upper()
             setattr(settings, name, getattr(options, name))
@@ -140,7 +154,7 @@ def named(names: list[str], can: Callable[[bpy.types.Object], bool], lacks: str)
 def refuse(batch: Batch) -> None:
     """Raise ValueError if any object cannot be converted."""
     if batch.refused:
-        raise ValueError("; ".join(f"{name}: {sentence}" for name, sentence in batch.refused))
+        raise ValueError(" ".join(f"{name}: {sentence}" for name, sentence in batch.refused))
 
 
 def place(batch: Batch, settings, kind: str = "MESH") -> None:

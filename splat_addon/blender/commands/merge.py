@@ -11,10 +11,21 @@ from pathlib import Path
 import bpy
 
 from ...rendering.frame_parts import joined_parts
-from ...sampling import Block, joined_blocks, read_blocks
+from ...sampling import joined_blocks, read_blocks, read_request
 from ..engine import final_render
 from ..export.camera import picture_size
-from .convert import add_conversion_arguments, block_file, new_batch, place, result, save, settings_of
+from .convert import (
+    add_blocks_argument,
+    batch_of,
+    block_file,
+    place,
+    refuse,
+    request_of,
+    result,
+    save,
+    settings_of,
+    sources_of,
+)
 from .pictures import (
     add_picture_arguments,
     files_of,
@@ -39,7 +50,7 @@ DESCRIPTION = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_picture_arguments(parser)
-    add_conversion_arguments(parser)
+    add_blocks_argument(parser)
 
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
@@ -98,11 +109,7 @@ def _blocks(options: argparse.Namespace) -> Iterator[Path]:
     else:
         if missing := [file for file in files if not file.is_file()]:
             raise ValueError(f"{len(missing)} of {len(files)} blocks are missing, first {missing[0]}; convert them.")
-        turns = count()
-        batch = new_batch(options, lambda mesh, **how: joined_blocks(mesh, _blocks_of(files, next(turns)), **how))
-        for conversion in batch.prepared(bpy.context):
-            batch.sample(conversion)
-        place(batch, settings_of(options))
+        _join(files)
         save(out)
         yield out
     for file in files:
@@ -110,14 +117,39 @@ def _blocks(options: argparse.Namespace) -> Iterator[Path]:
         remove_leftovers(file)
 
 
-def _blocks_of(files: list[Path], turn: int) -> Iterator[Block]:
-    """The blocks of one object, the `turn`th that is converted."""
+def _join(files: list[Path]) -> None:
+    """Join the blocks of each object and add the surfel objects. Raises ValueError."""
+    options, sources = _converted(files)
+    turns = count()
+
+    def joined(mesh, **how):
+        turn = next(turns)
+        return joined_blocks(mesh, (read_blocks(file)[turn] for file in files), **how)
+
+    batch = batch_of(sources, options, joined)
+    for conversion in batch.prepared(bpy.context):
+        refuse(batch)
+        batch.sample(conversion)
+    place(batch, settings_of(options))
+
+
+def _converted(files: list[Path]) -> tuple[argparse.Namespace, list[bpy.types.Object]]:
+    """The options with which all blocks were converted, and the objects. Raises ValueError if these differ."""
+    request = read_request(files[0])
     for file in files:
-        blocks = read_blocks(file)
-        if turn >= len(blocks):
-            raise ValueError(f"{file.name} has other objects than the file; convert it again.")
-        yield blocks[turn]
+        if read_request(file) != request:
+            raise ValueError(
+                f"{file.name} was not converted with the options of {files[0].name}; convert one of them again."
+            )
+    options = argparse.Namespace(**request)
+    sources = sources_of(options.objects)
+    if (now := request_of(sources, options)["names"]) != options.names:
+        raise ValueError(
+            f"The blocks were made from {_shortened(options.names)}, but what is visible now is {_shortened(now)}; "
+            "convert them again."
+        )
+    return options, sources
 
 
-def _shortened(frames: list[int]) -> str:
+def _shortened(frames: list) -> str:
     return ", ".join(map(str, frames[:10])) + (" ..." if len(frames) > 10 else "")

@@ -81,19 +81,21 @@ def test_a_file_is_told_of(animation, surfels_command):
 
 
 def test_blocks_are_the_file_that_one_machine_makes(animation, surfels_command, surfels_of, tmp_path):
-    """Two objects are converted in blocks and merged: the file is equal bit by bit, and a missing block is named."""
+    """Two objects are converted in blocks and merged without their options: the file is equal bit by bit. A missing
+    block is named."""
     bpy.data.objects["ball"].hide_set(False)
     bpy.ops.wm.save_mainfile()
     made_from, objects = str(tmp_path / "anim.blend"), ("--objects", "ball", "floor", "--resolution", 40)
     assert surfels_command("convert", *objects, "--out", tmp_path / "whole.blend")[0] == 0
-    shared = (*objects, "--blocks", 3, "--out", tmp_path / "shared.blend")
+    shared = ("--blocks", 3, "--out", tmp_path / "shared.blend")
     for block in (3, 1, 2):
         bpy.ops.wm.open_mainfile(filepath=made_from)
         if block == 2:
             code, said = surfels_command("merge", *shared)
             assert code == 1 and "1 of 3 blocks are missing, first" in said and "block-2-of-3" in said
-        code, said = surfels_command("convert", *shared, "--block", block)
+        code, said = surfels_command("convert", *objects, *shared, "--block", block)
         assert code == 0 and f"block-{block}-of-3.npz" in said
+    bpy.ops.wm.open_mainfile(filepath=made_from)
     assert surfels_command("merge", *shared)[0] == 0
     assert sorted(path.name for path in tmp_path.glob("*[!1]")) == ["anim.blend", "shared.blend", "whole.blend"]
     stored = []
@@ -103,3 +105,44 @@ def test_blocks_are_the_file_that_one_machine_makes(animation, surfels_command, 
     for whole, joined in zip(*stored, strict=True):
         assert len(whole["positions"]) > 500 and whole.keys() == joined.keys()
         assert all(whole[field].tobytes() == joined[field].tobytes() for field in whole)
+
+
+@pytest.fixture
+def blocks(animation, surfels_command, tmp_path):
+    """blocks(*options) converts the floor and a second plane in two blocks; options: of the first block alone."""
+    bpy.ops.mesh.primitive_plane_add(location=(0, 0, 3))
+
+    def convert(*options) -> tuple:
+        about = ("--blocks", 2, "--out", tmp_path / "out.blend")
+        for block in (1, 2):
+            given = options if block == 1 else ()
+            assert surfels_command("convert", "--resolution", 20, *given, *about, "--block", block)[0] == 0
+        return about
+
+    return convert
+
+
+def test_blocks_with_different_options_are_refused(blocks, surfels_command):
+    code, said = surfels_command("merge", *blocks("--objects", "floor"))
+    assert code == 1 and "block-2-of-2.npz was not converted with the options of out.blend.block-1-of-2.npz" in said
+
+
+def test_blocks_of_objects_that_are_hidden_by_now_are_refused(blocks, surfels_command):
+    about = blocks()
+    bpy.data.objects["Plane"].hide_set(True)
+    code, said = surfels_command("merge", *about)
+    assert code == 1 and "made from floor, Plane, but what is visible now is floor; convert them again" in said
+
+
+def test_an_object_edited_between_conversion_and_merge_is_named_once(blocks, surfels_command, tmp_path):
+    about = blocks()
+    for name in ("floor", "Plane"):
+        bpy.data.objects[name].data.vertices[0].co.x -= 1
+    code, said = surfels_command("merge", *about)
+    assert code == 1 and "error: floor: Block 1 was made from another mesh" in said and said.count("Block") == 1
+    assert len(list(tmp_path.glob("*.npz"))) == 2
+
+
+def test_no_blocks_are_refused(animation, surfels_command, tmp_path):
+    code, said = surfels_command("merge", "--blocks", 0, "--out", tmp_path / "out.blend")
+    assert code == 2 and "the number of blocks is 1 or more, not '0'" in said

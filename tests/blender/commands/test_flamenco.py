@@ -103,7 +103,8 @@ def test_tiles_are_merged_frame_by_frame():
 
 def test_blocks_are_converted_and_joined():
     tasks = compiled("surfel_conversion", blocks=3, object_name="Suzanne", result="/o/s.blend", blendfile="/a.blend")
-    assert lines(tasks)[1] == ("--command surfels convert --block 2 --blocks 3 --objects Suzanne --out /o/s.blend")
+    assert lines(tasks)[1] == "--command surfels convert --block 2 --objects Suzanne --blocks 3 --out /o/s.blend"
+    assert lines(tasks)[3] == "--command surfels merge --blocks 3 --out /o/s.blend"
     assert tasks[3]["dependencies"] == ["convert-1", "convert-2", "convert-3"]
 
 

@@ -136,12 +136,12 @@ def test_the_surfels_command_converts_without_a_window(user_folder, add_square, 
     add_square()
     path, out = tmp_path / "scene.blend", tmp_path / "out.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    about = ("--command", "surfels", "convert", "--resolution", 10, "--out", out)
+    about = ("--out", out, "--blocks", 2)
     for block in (1, 2):
-        done = blender(user_folder, path, *about, "--blocks", 2, "--block", block)
+        convert = ("convert", "--resolution", 10, "--block", block)
+        done = blender(user_folder, path, "--command", "surfels", *convert, *about)
         assert done.returncode == 0, done.stdout
-    merge = ["merge" if word == "convert" else word for word in about]
-    done = blender(user_folder, path, *merge, "--blocks", 2)
+    done = blender(user_folder, path, "--command", "surfels", "merge", *about)
     assert done.returncode == 0 and f"wrote {out}" in done.stdout, done.stdout
     bpy.ops.wm.open_mainfile(filepath=str(out))
     # one large surfel replaces 9
