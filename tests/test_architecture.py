@@ -12,13 +12,14 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 
 #: layer -> the layers that it may import
 MAY_IMPORT = {
+    "array_files": set(),
     "clip_lines": set(),
     "large_surfels": set(),
     "surfels": {"clip_lines", "large_surfels"},
     "images": set(),
-    "sampling": {"clip_lines", "large_surfels", "surfels", "images"},
+    "sampling": {"array_files", "clip_lines", "large_surfels", "surfels", "images"},
     "hierarchy": {"clip_lines", "large_surfels", "surfels"},
-    "rendering": {"clip_lines", "large_surfels", "surfels", "images", "hierarchy", "streaming"},
+    "rendering": {"array_files", "clip_lines", "large_surfels", "surfels", "images", "hierarchy", "streaming"},
     "interchange": {"clip_lines", "surfels"},
     "streaming": {"clip_lines", "surfels", "hierarchy", "interchange"},
     "reference": {"clip_lines", "large_surfels", "surfels", "images", "rendering"},

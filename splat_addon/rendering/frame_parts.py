@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import json
 import os
-import zipfile
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..array_files import opened_arrays
 from .cryptomatte import Cryptomatte
 from .frame import Frame
 from .settings import OUTPUTS
@@ -58,37 +58,42 @@ def write_part(path: str | os.PathLike, part: Part, frames: dict[tuple[str, str]
 
 
 def joined_parts(paths: Iterable[str | os.PathLike], size: tuple[int, int], number: int) -> dict[tuple, Frame]:
-    """The whole picture, by the names of view layer and view."""
+    """The whole picture, by the names of view layer and view.
+
+    Raises OSError, and ValueError with one sentence for a file that is damaged or does not belong to this picture.
+    """
     covered = np.zeros(size[::-1], np.uint8)
     wholes: dict[tuple[str, str], dict] = {}
     for path in paths:
-        try:
-            with np.load(path, allow_pickle=False) as arrays:
-                about = json.loads(bytes(arrays["about"]))
-                _check(path, about, size, number, wholes)
+        with opened_arrays(path, "a part of a picture", "draw it again") as arrays:
+            about = json.loads(bytes(arrays["about"]))
+            objection = _objection(about, size, number, wholes)
+            if not objection:
                 x, y, width, height = about["place"]
                 covered[y : y + height, x : x + width] += 1
                 for turn, (name, names) in enumerate(zip(about["frames"], about["names"], strict=True)):
                     _put(wholes.setdefault(tuple(name), {}), arrays, turn, about["place"], size, names)
-        except (KeyError, OSError, EOFError, TypeError, zipfile.BadZipFile) as error:
-            raise ValueError(f"{path} is no part of a picture: {error}; draw it again.") from error
+        if objection:
+            raise ValueError(f"{path} {objection}")
     if not (covered == 1).all():
         missing, twice = np.count_nonzero(covered == 0), np.count_nonzero(covered > 1)
         raise ValueError(f"The parts leave {missing:,} pixels empty and cover {twice:,} twice; draw them again.")
     return {name: Frame(**{output: whole.get(output) for output in OUTPUTS}) for name, whole in wholes.items()}
 
 
-def _check(path, about: dict, size, number: int, wholes: dict) -> None:
+def _objection(about: dict, size, number: int, wholes: dict) -> str | None:
+    """What to say of a part that does not belong to the picture, after its path."""
     if about["version"] != _VERSION:
-        raise ValueError(f"{path} has version {about['version']}, not {_VERSION}; draw it with this extension.")
+        return f"has version {about['version']}, not {_VERSION}; draw it with this extension."
     if (tuple(about["size"]), about["number"]) != (tuple(size), number):
         (width, height), (own_width, own_height) = size, about["size"]
-        raise ValueError(
-            f"{path} is a part of picture {about['number']} of {own_width} x {own_height} pixels, not of {number} of "
+        return (
+            f"is a part of picture {about['number']} of {own_width} x {own_height} pixels, not of {number} of "
             f"{width} x {height}; draw it again."
         )
     if wholes and [tuple(name) for name in about["frames"]] != list(wholes):
-        raise ValueError(f"{path} has other view layers or views than the parts before it; draw it again.")
+        return "has other view layers or views than the parts before it; draw it again."
+    return None
 
 
 def _put(whole: dict, arrays, turn: int, place, size: tuple[int, int], names: dict[str, int]) -> None:

@@ -12,13 +12,12 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import zipfile
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 
 import numpy as np
 
+from ..array_files import opened_arrays
 from ..surfels import empty_surfels
 from .ldc.depth_cube import surface_of
 from .ldc.scan_conversion import Spans, expand
@@ -156,25 +155,19 @@ def write_blocks(path: str | os.PathLike, blocks: list[Block], request: dict | N
 
 
 def read_blocks(path: str | os.PathLike) -> list[Block]:
-    """Read a file that `write_blocks` made. Raises ValueError with one sentence for a damaged file."""
-    with _opened(path) as arrays:
+    """Read a file that `write_blocks` made. Raises OSError, and ValueError with one sentence for a damaged file."""
+    with opened_arrays(path, *_KIND) as arrays:
         return [_read(arrays, turn) for turn in range(sum(name.endswith(".about") for name in arrays.files))]
 
 
 def read_request(path: str | os.PathLike) -> dict:
-    """Read only the request of such a file. Raises ValueError as `read_blocks` does."""
-    with _opened(path) as arrays:
+    """Read only the request of such a file. Raises the exceptions of `read_blocks`."""
+    with opened_arrays(path, *_KIND) as arrays:
         return json.loads(bytes(arrays["request"]))
 
 
-@contextmanager
-def _opened(path: str | os.PathLike) -> Iterator[np.lib.npyio.NpzFile]:
-    """The arrays of a file of blocks. Whatever is wrong with them becomes a ValueError with one sentence."""
-    try:
-        with np.load(path, allow_pickle=False) as arrays:
-            yield arrays
-    except (KeyError, OSError, EOFError, TypeError, zipfile.BadZipFile) as error:
-        raise ValueError(f"{path} holds no blocks: {error}; convert it again.") from error
+#: what the file should be, and what to do if it is not
+_KIND = "a file of blocks", "convert the block again"
 
 
 def _read(arrays, turn: int) -> Block:

@@ -7,8 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from splat_addon.sampling import Tolerance, TriangleMesh, joined_blocks, read_blocks, sample_block, sample_surface
-from splat_addon.sampling.blocks import write_blocks
+from splat_addon.sampling import (
+    Tolerance,
+    TriangleMesh,
+    joined_blocks,
+    read_blocks,
+    read_request,
+    sample_block,
+    sample_surface,
+    write_blocks,
+)
 
 
 @pytest.fixture(scope="module")
@@ -72,3 +80,43 @@ def test_blocks_that_do_not_belong_together_are_refused(rubble):
         joined_blocks(replace(rubble, positions=rubble.positions + 1), [first, second], resolution=20)
     with pytest.raises(ValueError, match="no block 3 of 2"):
         sample_block(rubble, 2, 2, resolution=20)
+
+
+def test_a_request_goes_with_the_blocks(tmp_path):
+    request = {"objects": ["K\u00e4fer"], "spacing": 0.1}
+    write_blocks(tmp_path / "block", [], request)
+    assert read_request(tmp_path / "block") == request and read_blocks(tmp_path / "block") == []
+
+
+def _text(file):
+    file.write_text("no archive at all")
+
+
+def _cut(file):
+    file.write_bytes(file.read_bytes()[:-100])
+
+
+def _one_array(file):
+    with open(file, "wb") as stream:
+        np.save(stream, np.arange(3))
+
+
+def _no_json(file):
+    with open(file, "wb") as stream:
+        np.savez(stream, **{"request": np.frombuffer(b"{", np.uint8), "0.about": np.arange(3)})
+
+
+@pytest.mark.parametrize("damage", [_text, _cut, _one_array, _no_json])
+@pytest.mark.parametrize("read", [read_blocks, read_request])
+def test_a_damaged_file_is_named(damage, read, rubble, tmp_path):
+    file = tmp_path / "block"
+    write_blocks(file, [sample_block(rubble, 0, 2, resolution=5)])
+    damage(file)
+    with pytest.raises(ValueError) as refused:
+        read(file)
+    assert str(refused.value) == f"{file} is damaged or is not a file of blocks; convert the block again."
+
+
+def test_a_file_that_is_not_there_is_an_error_of_the_system(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        read_blocks(tmp_path / "nowhere")

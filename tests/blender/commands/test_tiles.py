@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A frame that several workers draw in tiles is the frame that one machine draws, including all work after drawing."""
 
+import json
 from importlib import import_module
 
 import numpy as np
@@ -54,6 +55,18 @@ def test_a_tile_of_another_size_is_refused(animation, surfels_command, tmp_path)
     code, said = surfels_command("merge", "--frames", 1, "--tiles", "2x1")
     assert code == 1 and "of 48 x 32 pixels, not of 1 of 50 x 32" in said
     assert not (tmp_path / "frame_0001.exr").exists() and len(list(tmp_path.glob("*.npz"))) == 2
+
+
+def test_a_damaged_tile_is_named(animation, surfels_command, tmp_path):
+    tile = tmp_path / "frame_0001.exr.tile-1-1-of-1x1.npz"
+    about = {"version": 1, "size": (48, 32), "place": (0, 0, 48, 32), "number": 1, "frames": [("a", "")], "names": [{}]}
+    for text, values in (("{", np.zeros((32, 48))), (json.dumps(about), np.zeros((31, 47)))):
+        np.savez(tile, about=np.frombuffer(text.encode(), np.uint8), **{"0.depth": values})
+        code, said = surfels_command("merge", "--frames", 1, "--tiles", "1x1")
+        assert code == 1 and f"error: {tile} is damaged or is not a part of a picture; draw it again." in said
+    tile.write_text("no archive at all")
+    code, said = surfels_command("merge", "--frames", 1, "--tiles", "1x1")
+    assert code == 1 and f"error: {tile} is damaged or is not a part of a picture; draw it again." in said
 
 
 @pytest.mark.parametrize("size", [(48, 32), (16384, 16384), (101, 67), (1920, 1081)])
