@@ -27,9 +27,11 @@ def frame_list(text: str) -> list[int]:
         if not match:
             raise argparse.ArgumentTypeError(f"frames are like 1-10,15,20..30, not {text!r}")
         first, last, step = match.groups()
-        frames |= dict.fromkeys(range(int(first), int(last or first) + 1, int(step or 1) or 1))
-    if not frames:
-        raise argparse.ArgumentTypeError(f"{text!r} names no frame")
+        if not int(step or 1):
+            raise argparse.ArgumentTypeError(f"a step between frames is 1 or more, not 0 as in {part.strip()!r}")
+        if int(last or first) < int(first):
+            raise argparse.ArgumentTypeError(f"frames go up, not down as in {part.strip()!r}")
+        frames |= dict.fromkeys(range(int(first), int(last or first) + 1, int(step or 1)))
     return list(frames)
 
 

@@ -53,9 +53,16 @@ def test_frames_are_written_as_farms_write_them(text, frames):
     assert pictures.frame_list(text) == frames
 
 
-@pytest.mark.parametrize("text", ["", "1-", "a", "5-1", "1;2"])
-def test_other_lists_of_frames_are_refused(text):
-    with pytest.raises(argparse.ArgumentTypeError):
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        *((text, "frames are like 1-10,15,20..30, not") for text in ("", "1-", "a", "1;2")),
+        ("1-5, 9-3", "frames go up, not down as in '9-3'"),
+        ("1-9:0", "a step between frames is 1 or more, not 0 as in '1-9:0'"),
+    ],
+)
+def test_other_lists_of_frames_are_refused(text, sentence):
+    with pytest.raises(argparse.ArgumentTypeError, match=sentence):
         pictures.frame_list(text)
 
 
