@@ -69,10 +69,11 @@ def _render_preview(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgra
     settings = replace(settings, samples=min(settings.samples, _PREVIEW_SAMPLES))
     resources = _Resources()
     try:
-        for number, view in enumerate(engine.get_result().views):
-            engine.active_view_set(view.name)
-            frame, _ = _picture(engine, depsgraph, resources, settings, (number, 1))
-            hand_over(engine, depsgraph.view_layer, view.name, frame)
+        views = [view.name for view in engine.get_result().views]
+        for number, view in enumerate(views):
+            engine.active_view_set(view)
+            frame, _ = _picture(engine, depsgraph, resources, settings, (number, len(views)))
+            hand_over(engine, depsgraph.view_layer, view, frame)
     except RenderCancelled:
         pass
     finally:

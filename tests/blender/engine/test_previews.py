@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """This engine draws previews of materials, and they do not disturb a final render."""
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 import pytest
@@ -44,3 +46,15 @@ def test_a_preview_leaves_the_last_picture_as_it_was(scene, add_camera, add_surf
     assert np.array_equal(picture(), before)
     scene.render.use_persistent_data = False
     picture()
+
+
+def test_the_progress_of_several_views_ends_at_1(scene, monkeypatch):
+    """Blender's own previews have one view, so the engine here is a stand-in with two."""
+    turns, views = [], [SimpleNamespace(name="left"), SimpleNamespace(name="right")]
+    monkeypatch.setattr(final_render, "_picture", lambda *about: (turns.append(about[-1]), None))
+    monkeypatch.setattr(final_render, "hand_over", lambda *about: None)
+    engine = SimpleNamespace(
+        is_preview=True, get_result=lambda: SimpleNamespace(views=views), active_view_set=lambda view: None
+    )
+    final_render.render(engine, bpy.context.evaluated_depsgraph_get())
+    assert turns == [(0, 2), (1, 2)]
