@@ -13,7 +13,7 @@ import hashlib
 import json
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 
 import numpy as np
 
@@ -28,15 +28,15 @@ from .refine.flat_blocks import Large
 from .refine.missed_components import SampledSurface, missed_components
 from .sample import Sampling, SamplingRun
 
-_VERSION = 5
+_VERSION = 6
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
     """The samples of block `number` of `count`, from 0.
 
-    made_from: hex digest of mesh and options. images: the spans in each of the three images. large: those of large
-    samples. arrays: field of `Surfels` -> values of the images' samples, in span order.
+    made_from: hex digest of mesh, materials and options. images: the spans in each of the three images. large: those of
+    large samples. arrays: field of `Surfels` -> values of the images' samples, in span order.
     """
 
     number: int
@@ -72,7 +72,8 @@ def joined_blocks(mesh: TriangleMesh, blocks: Iterable[Block], progress: Progres
     for block in blocks:
         if block.made_from != digest:
             raise ValueError(
-                f"Block {block.number + 1} was made from another mesh or with other settings; convert it again."
+                f"Block {block.number + 1} was made from another mesh or other materials, or with other settings; "
+                "convert it again."
             )
     numbers, count = [block.number for block in blocks], blocks[0].count if blocks else 1
     if numbers != list(range(count)) or any(block.count != count for block in blocks):
@@ -121,20 +122,27 @@ def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], np.ndarray]:
 
 
 def _digest(run: SamplingRun) -> str:
-    """Digest of the usable mesh and the sampling options. It covers which triangles use which material, but not
-    material values."""
-    digest = hashlib.sha256(repr((_VERSION, run.options)).encode("utf-8"))
+    """Digest of the usable mesh, its materials with their images, and the sampling options; the same in every
+    process."""
     mesh = run.mesh
-    for values in (
-        mesh.positions,
-        mesh.triangles,
-        mesh.corner_normals,
-        mesh.corner_colors,
-        mesh.corner_uvs,
-        mesh.materials,
-    ):
-        digest.update(b"-" if values is None else np.ascontiguousarray(values).tobytes())
-    return digest.hexdigest()
+    values = _VERSION, run.options, mesh.positions, tuple(mesh.per_triangle().items()), mesh.surfaces
+    return _hex(repr(_plain(values, {})).encode("utf-8"))
+
+
+def _plain(value, known: dict[int, str]):
+    """A value in which arrays are replaced by their digests, and dataclasses by tuples. known: id -> digest of arrays,
+    because materials share images."""
+    if isinstance(value, np.ndarray):
+        if id(value) not in known:
+            known[id(value)] = _hex(np.ascontiguousarray(value))
+        return value.dtype.str, value.shape, known[id(value)]
+    if is_dataclass(value):
+        return type(value).__name__, *(_plain(getattr(value, f.name), known) for f in fields(value))
+    return tuple(_plain(of, known) for of in value) if isinstance(value, tuple) else value
+
+
+def _hex(data) -> str:
+    return hashlib.sha256(data).hexdigest()
 
 
 def write_blocks(path: str | os.PathLike, blocks: list[Block], request: dict | None = None) -> None:

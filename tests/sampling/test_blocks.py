@@ -8,6 +8,10 @@ import numpy as np
 import pytest
 
 from splat_addon.sampling import (
+    Channel,
+    Image,
+    Surface,
+    Texture,
     Tolerance,
     TriangleMesh,
     joined_blocks,
@@ -80,6 +84,20 @@ def test_blocks_that_do_not_belong_together_are_refused(rubble):
         joined_blocks(replace(rubble, positions=rubble.positions + 1), [first, second], resolution=20)
     with pytest.raises(ValueError, match="no block 3 of 2"):
         sample_block(rubble, 2, 2, resolution=20)
+
+
+def test_blocks_of_other_materials_are_refused(rubble):
+    def painted(color=0.5, pixel=0.5, extension="REPEAT"):
+        image = Image(np.full((2, 2, 4), pixel, np.float32), extension)
+        channel = Channel((color, 0.5, 0.5, 1.0), Texture(image))
+        uvs = np.zeros((len(rubble), 3, 2))
+        return replace(rubble, corner_uvs=uvs, surfaces=(Surface(channel), Surface(roughness=Channel((0.1,)))))
+
+    blocks = [sample_block(painted(), number, 2, resolution=20) for number in range(2)]
+    assert len(joined_blocks(painted(), blocks, resolution=20).surfels) > 1000
+    for edited in (painted(color=0.4), painted(pixel=0.4), painted(extension="CLIP")):
+        with pytest.raises(ValueError, match="other materials"):
+            joined_blocks(edited, blocks, resolution=20)
 
 
 def test_a_request_goes_with_the_blocks(tmp_path):
