@@ -24,8 +24,8 @@ from .whole_results import unfinished
 HELP = "make surfels of objects, in a new file"
 DESCRIPTION = (
     "Converts objects with the settings of the file's sidebar, or those that are given here, and saves the result as a "
-    "new file. The sources are left out of its renders. With --block, leaves that block alone beside the new file's "
-    "place for `merge`."
+    "new file. The sources are left out of its renders. With --block, converts only that block and writes it beside "
+    "the new file, for `merge`."
 )
 
 

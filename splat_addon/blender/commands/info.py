@@ -17,10 +17,10 @@ from ..geometry.attributes import has_surfels
 from ..geometry.sources import has_surfaces
 from ..ids import ENGINE
 
-HELP = "tell what the file holds"
+HELP = "show what the file contains"
 DESCRIPTION = (
-    "Tells what the .blend holds: its engine, frames, size, surfel objects, and what could be converted; or what a "
-    f"{SUFFIX} file holds."
+    "Shows what the .blend contains: its engine, frames, size, surfel objects, and what could be converted; or what a "
+    f"{SUFFIX} file contains."
 )
 
 

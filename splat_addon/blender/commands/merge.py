@@ -39,12 +39,11 @@ from .pictures import (
 from .render import write_picture
 from .whole_results import remove_leftovers
 
-HELP = "put tiles or blocks together; or see that all frames are there"
+HELP = "join tiles or blocks, or check that all frames exist"
 DESCRIPTION = (
     "With --tiles, puts the tiles of each frame together, lets the compositor and the file format have the whole "
     "picture, and removes the tiles. With --blocks, joins the blocks of converted objects in a new file, and removes "
-    "them. With neither, sees that all frames are there, names those that are not, and removes what killed workers "
-    "left."
+    "them. With neither, checks that all frames exist, lists the missing ones, and removes what killed workers left."
 )
 
 

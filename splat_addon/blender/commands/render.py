@@ -29,8 +29,8 @@ from .whole_results import unfinished
 
 HELP = "draw frames, or a tile of each"
 DESCRIPTION = (
-    "Draws the frames whose pictures are not there yet, with this engine. With --tile, draws that tile alone and "
-    "leaves it beside the picture's place for `merge`."
+    "Draws the frames whose pictures are not there yet, with this engine. With --tile, draws only that tile and "
+    "writes it beside the picture, for `merge`."
 )
 
 
