@@ -101,6 +101,8 @@ def _merge(scene: bpy.types.Scene, frame: int, parts: list[Path]) -> None:
 
 
 def _blocks(options: argparse.Namespace) -> Iterator[Path]:
+    if not options.out:
+        raise ValueError("Blocks are joined in a new file; give its path with --out, as for convert.")
     out = result(options)
     files = [block_file(out, number, options.blocks) for number in range(1, options.blocks + 1)]
     if out.is_file():

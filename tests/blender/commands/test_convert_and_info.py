@@ -146,3 +146,8 @@ def test_an_object_edited_between_conversion_and_merge_is_named_once(blocks, sur
 def test_no_blocks_are_refused(animation, surfels_command, tmp_path):
     code, said = surfels_command("merge", "--blocks", 0, "--out", tmp_path / "out.blend")
     assert code == 2 and "the number of blocks is 1 or more, not '0'" in said
+
+
+def test_blocks_are_joined_only_in_a_named_file(animation, surfels_command):
+    code, said = surfels_command("merge", "--blocks", 2)
+    assert code == 1 and "error: Blocks are joined in a new file; give its path with --out" in said
