@@ -17,7 +17,7 @@ import bpy
 import numpy as np
 
 from .attributes import has_surfels
-from .points_proxy import shows_as_points
+from .points_proxy import is_points_modifier, shows_as_points
 
 #: Types whose evaluated geometry is, or may be, a mesh; the latter only with modifiers that could make one.
 _SURFACES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
@@ -119,10 +119,12 @@ def owner_of(entry: bpy.types.DepsgraphObjectInstance) -> bpy.types.Object:
 
 
 def may_change(entry: bpy.types.DepsgraphObjectInstance) -> bool:
-    """Whether the geometry of an entry may be another in each frame: as far as this frame tells, because its object,
-    or the instancer, has modifiers or shape keys."""
-    objects = entry.object.original, owner_of(entry)
-    return any(len(each.modifiers) or getattr(each.data, "shape_keys", None) for each in objects)
+    """Whether the geometry of an entry may be another in each frame, as far as this frame tells: its object or the
+    instancer has shape keys, or other modifiers than the one that shows surfels as points."""
+    for each in (entry.object.original, owner_of(entry)):
+        if not all(map(is_points_modifier, each.modifiers)) or getattr(each.data, "shape_keys", None):
+            return True
+    return False
 
 
 def asked_of(entry: bpy.types.DepsgraphObjectInstance) -> tuple[bpy.types.Object, ...]:

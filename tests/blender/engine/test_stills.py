@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A still merges small surfels only if its samples save more time than making levels of detail takes; an animation
-does from its first frame on."""
+"""A final picture merges small surfels, whatever was drawn before it. Surfels that may be others in the next frame are
+merged only if the picture's samples save more time than making levels of detail takes."""
 
 import bpy
 import numpy as np
@@ -14,7 +14,7 @@ def crowd(scene, add_camera, add_surfels):
     """10,000 surfels on 100 pixels."""
     add_camera()
     x, y = np.mgrid[:100, :100].reshape(2, -1) / 100 - 0.5
-    add_surfels(np.stack([x, y, 0 * x], axis=1), size=0.01)
+    scene["crowd"] = add_surfels(np.stack([x, y, 0 * x], axis=1), size=0.01)
     scene.surfel_splatting.detail_tolerance = 1.0
     return scene
 
@@ -23,25 +23,40 @@ def drawn():
     return final_render.last_frame_stats["splats_drawn"]
 
 
-def test_one_sample_does_not_pay_for_levels_and_many_do(crowd, picture):
-    picture()
-    assert drawn() == 10_000
-    crowd.surfel_splatting.samples = 16
-    picture()
-    assert drawn() < 5000
+@pytest.mark.parametrize("persists", [False, True])
+def test_surfels_that_stay_are_merged_whatever_the_number_of_samples(persists, crowd, picture):
+    crowd.render.use_persistent_data = persists
+    for samples in (1, 16):
+        crowd.surfel_splatting.samples = samples
+        picture()
+        assert drawn() < 5000
 
 
-def test_data_that_persists_is_made_for_further_renders(crowd, picture):
-    crowd.render.use_persistent_data = True
-    picture()
-    assert drawn() < 5000
+@pytest.mark.parametrize("persists", [False, True])
+def test_surfels_that_may_change_are_merged_if_the_samples_pay_for_it(persists, crowd, picture):
+    crowd.render.use_persistent_data = persists
+    crowd["crowd"].modifiers.new("Wave", "WAVE")
+    found = []
+    for samples in (1, 16, 1):
+        crowd.surfel_splatting.samples = samples
+        picture()
+        found.append(drawn() < 5000)
+    assert found == [False, True, False]
 
 
-def test_an_animation_has_levels_in_each_frame(crowd):
-    crowd.frame_start, crowd.frame_end, found = 1, 2, []
+@pytest.mark.parametrize("has_wave", [False, True])
+def test_frames_of_an_animation_are_those_that_are_drawn_alone(has_wave, crowd, picture):
+    crowd.frame_start, crowd.frame_end, found, alone = 1, 2, [], []
+    if has_wave:
+        crowd["crowd"].modifiers.new("Wave", "WAVE")
+        crowd.surfel_splatting.samples = 4
     bpy.app.handlers.render_post.append(lambda *_: found.append(drawn()))
     try:
         bpy.ops.render.render(animation=True)
     finally:
         bpy.app.handlers.render_post.pop()
-    assert len(found) == 2 and max(found) < 5000
+    for frame in (1, 2):
+        crowd.frame_set(frame)
+        picture()
+        alone.append(drawn())
+    assert found == alone and max(found) < 5000
