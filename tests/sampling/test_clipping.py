@@ -17,6 +17,7 @@ from splat_addon.sampling import (
     sample_mesh,
     sample_surface,
 )
+from splat_addon.sampling.edges.borders import survey_edges
 from splat_addon.sampling.edges.overhang import SMALLER, TIMES
 
 ANGLE = np.radians(30)
@@ -356,3 +357,28 @@ def test_little_of_a_splat_sticks_out_of_a_spike_with_three_edges():
     away = trimesh.proximity.ProximityQuery(joined).on_surface(shown(surfels)[0])[1]
     assert (away > 0.25 * spacing).mean() < 0.006
     assert bare_share(surfels, *on_surface(mesh)) < 1e-3
+
+
+@pytest.mark.parametrize("share", [1e-3, 1e-2, 0.04])
+def test_a_plate_as_thin_as_rounding_ends_at_its_outline(share):
+    """Its sides are narrower than a line tells apart, and splats that fill them must not stick out."""
+    spacing = 0.02
+    mesh = trimesh.creation.box(extents=(1, 1, share * spacing))
+    surfels = sample_mesh(TriangleMesh(mesh.vertices, mesh.faces), spacing=spacing, crease_angle=ANGLE)
+    points, row = shown(surfels)
+    beyond = np.abs(points) - np.array(mesh.extents) / 2
+    assert beyond[:, 2].max() < 0.02 * spacing
+    assert beyond[np.abs(surfels.geometric_normals()[row, 2]) > 0.9].max() < 0.02 * spacing
+
+
+def test_many_faces_on_one_edge_end_there_in_moderate_time():
+    """Leaves of a book. 400 took 40 times as many comparisons as now, and 2,000 all of a machine's memory."""
+    angles = np.linspace(0.1, 3, 400)
+    corners = np.array([(0, 0, 0), (0, 0, 1), *((np.cos(a), np.sin(a), z) for a in angles for z in (0, 1))])
+    leaves = [t for k in range(400) for t in ((0, 2 + 2 * k, 3 + 2 * k), (0, 3 + 2 * k, 1))]
+    mesh = TriangleMesh(corners, np.array(leaves))
+    borders = survey_edges(mesh).borders
+    on_axis = np.abs((borders.start + borders.end)[:, :2]).max(axis=1) < 1e-9
+    assert on_axis.sum() <= 32
+    points, _ = shown(sample_mesh(mesh, spacing=0.05, crease_angle=ANGLE))
+    assert points[:, 1].min() > -1e-3

@@ -41,6 +41,9 @@ _ROUNDING = 1e-6
 _BEND = 2
 
 
+#: Directions around an edge in which more sides than this are told apart.
+_DIRECTIONS = 32
+
 #: Minimum height of a triangle relative to its longest edge; below it, height is rounding error of float32 coordinates.
 _LEAST_HEIGHT = 1e-6
 
@@ -131,7 +134,28 @@ def survey_edges(mesh: TriangleMesh, angle: float = DEFAULT_CREASE_ANGLE, reach:
         colors = sum(rows.take(3 * triangles + end, axis=0)[:, :4] for end in ends.T) / 2
     materials = np.zeros(len(triangles), int) if mesh.materials is None else mesh.materials[triangles]
     borders = Borders(start, end, inward, planes, edge, shading, colors, materials, triangles, opposite)
-    return EdgeSurvey(borders, normals, bends, sizes)
+    return EdgeSurvey(_in_different_directions(borders), normals, bends, sizes)
+
+
+def _in_different_directions(borders: Borders) -> Borders:
+    """The sides without those of edges that have very many, as a book's spine has, in nearly the same direction.
+
+    A surfel near such an edge would be compared with all of them, and ends at the same line for each.
+    """
+    counts = np.bincount(borders.edges)
+    rows = np.flatnonzero((counts > _DIRECTIONS).take(borders.edges))
+    if not len(rows):
+        return borders
+    first = np.searchsorted(borders.edges, borders.edges.take(rows))
+    across = borders.inward.take(first, axis=0)
+    upward = np.cross(unit_vectors((borders.end - borders.start).take(first, axis=0)), across)
+    inward = borders.inward.take(rows, axis=0)
+    angle = np.arctan2(_dots(inward, upward), _dots(inward, across))
+    direction = np.floor((angle / (2 * np.pi) + 0.5) * _DIRECTIONS).astype(np.int64)
+    _, kept = np.unique(borders.edges.take(rows) * (_DIRECTIONS + 1) + direction, return_index=True)
+    is_left = (counts <= _DIRECTIONS).take(borders.edges)
+    is_left[rows.take(kept)] = True
+    return borders.take(np.flatnonzero(is_left))
 
 
 def _have_planes(corners: np.ndarray, doubled: np.ndarray) -> np.ndarray:

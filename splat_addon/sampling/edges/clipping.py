@@ -251,11 +251,15 @@ def _lines(met: Meetings, ends: np.ndarray, starts: np.ndarray, owner: np.ndarra
     """
     first = met.line.take(starts, axis=1)
     second = np.repeat(_NO_LINE, len(starts), axis=1)
-    off, place = _off_line(ends, first.take(owner, axis=1))
-    others = np.flatnonzero(off > _SAME_LINE)
+    nearest = first.take(owner, axis=1)
+    off, place = _off_line(ends, nearest)
+    # Two edges that face each other on one line bound a narrow face if the centre is between them. At a seam of two
+    # sheets it is not.
+    is_opposite = (off <= _SAME_LINE) & (nearest[0] * met.line[0] + nearest[1] * met.line[1] < 0) & (met.line[2] > 0)
+    others = np.flatnonzero((off > _SAME_LINE) | is_opposite)
     counts = np.bincount(owner.take(others), minlength=len(starts))
     single = others.compress(counts.take(owner.take(others)) == 1)
-    kind = np.where(place.take(single) < 0, EITHER, BOTH)
+    kind = np.where((place < 0).take(single) & ~is_opposite.take(single), EITHER, BOTH)
     rank = np.arange(len(met)) - starts.take(owner)
     sticks_out = np.zeros(len(starts), bool)
     several = np.flatnonzero((counts > 1).take(owner) & (rank < _MOST_EDGES))
