@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..mesh.cleaning import MAX_COORDINATE
+from .normals import thicknesses
 
 #: A point is isolated if its neighbours are this many times as far from it as they are from theirs. In scans of even
 #: density the ratio stays below 2; at a step to a quarter of the density it is 2.
@@ -14,6 +15,18 @@ ISOLATED_RATIO = 3.0
 #: A small group of stray points is isolated too, if its neighbours are this many times as far as those of the median
 #: point. A scanner's spacing grows with distance, to several times its median at most.
 ISOLATED_FROM_ALL_RATIO = 20.0
+
+#: From this many times on, a point is isolated if it lies on no surface: its neighbours fill space, or it belongs to a
+#: small group far from all others. Sparse parts of a scan are flat and have no such gaps.
+SPARSE_RATIO = 6.0
+
+#: Neighbours fill space if their variance across the plane that fits them best is more than this share of the whole. It
+#: is 0 on a plane, 0.09 with noise of half the spacing, and 0.17 for random points in space.
+_THICK = 0.1
+
+#: A gap separates a group of at least this many points from its next neighbour, which is this many times as far as the
+#: one before. One of 4,000 random points on a surface has such a gap.
+_FEWEST_IN_GROUP, _GAP = 4, 4.0
 
 
 def finite_points(positions: np.ndarray) -> np.ndarray:
@@ -36,12 +49,19 @@ def first_of_each(positions: np.ndarray) -> np.ndarray:
     return np.flatnonzero(keep)
 
 
-def isolated_points(neighbours: np.ndarray, distances: np.ndarray) -> np.ndarray:
-    """(N,) bool: points that are far from their neighbours while these are close to others; (N, k) indices and
-    distances.
+def isolated_points(positions: np.ndarray, neighbours: np.ndarray, distances: np.ndarray) -> np.ndarray:
+    """(N,) bool: points that are far from their neighbours while these are close to others, sparse points off any
+    surface, and points most of whose neighbours are such points.
 
-    Only ratios are compared, so a sparse region of a scan does not count as isolated.
+    positions: (N, 3). neighbours, distances: (N, k) indices and distances, nearest first. Only ratios are compared, so
+    a sparse region of a scan does not count as isolated.
     """
     mean = distances.mean(axis=1, dtype=np.float64)
-    away_from_neighbours = mean > ISOLATED_RATIO * np.median(mean[neighbours], axis=1)
-    return away_from_neighbours | (mean > ISOLATED_FROM_ALL_RATIO * np.median(mean))
+    typical = np.median(mean)
+    isolated = mean > ISOLATED_RATIO * np.median(mean[neighbours], axis=1)
+    isolated |= mean > ISOLATED_FROM_ALL_RATIO * typical
+    sparse = np.flatnonzero((mean > SPARSE_RATIO * typical) & ~isolated)
+    own = distances[sparse]
+    has_gap = (own[:, _FEWEST_IN_GROUP - 1 :] > _GAP * own[:, _FEWEST_IN_GROUP - 2 : -1]).any(axis=1)
+    isolated[sparse] = has_gap | (thicknesses(positions, neighbours, sparse) > _THICK)
+    return isolated | (isolated[neighbours].mean(axis=1) > 0.5)

@@ -120,7 +120,7 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, 
         wanted = neighbours if crease_angle is None else max(neighbours, CREASE_NEIGHBOURS)
         told = stage(progress, *_STAGES["neighbours"])
         nearest, distances = nearest_neighbours(positions, min(wanted, len(positions) - 1), told)
-        alone = isolated_points(nearest[:, :neighbours], distances[:, :neighbours])
+        alone = isolated_points(positions, nearest[:, :neighbours], distances[:, :neighbours])
     normals, parts = _normals(given, positions, missing_normals, nearest[:, :neighbours], viewpoint, progress)
     planes, creases = normals, None
     if crease_angle is not None and nearest.shape[1]:

@@ -36,7 +36,21 @@ def plane_normals(
     return normals
 
 
-def _covariances(columns: np.ndarray, neighbours: np.ndarray, part: slice) -> np.ndarray:
+def thicknesses(positions: np.ndarray, neighbours: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """(n,) share of the variance of a point and its neighbours that is across their best plane: 0 to 1/3.
+
+    positions: (N, 3) float64. neighbours: (N, k) indices. rows: (n,) the points.
+    """
+    columns, shares = np.ascontiguousarray(positions.T), np.empty(len(rows))
+    for start in range(0, len(rows), CHUNK):
+        part = rows[start : start + CHUNK]
+        moments = _covariances(columns, neighbours[part], part)
+        x, y, z = least_directions(moments).T
+        shares[start : start + CHUNK] = sum(moments * (x * x, y * y, z * z, 2 * y * z, 2 * x * z, 2 * x * y))
+    return shares
+
+
+def _covariances(columns: np.ndarray, neighbours: np.ndarray, part: slice | np.ndarray) -> np.ndarray:
     """(6, n) covariances xx, yy, zz, yz, xz, xy of each point with its neighbours, scaled to a trace of about 1."""
     away = [column[neighbours] - column[part, None] for column in columns]
     members = neighbours.shape[1] + 1

@@ -34,6 +34,28 @@ def test_points_that_stand_alone_are_counted_and_left_out_or_kept(grid_points, c
     assert report.skipped() == ({"that stand alone": 2} if choice == "drop" else {})
 
 
+@pytest.mark.parametrize("group", [1, 6])
+def test_many_sparse_strays_do_not_become_large_discs(sphere_points, group):
+    """Each stray's neighbours are strays at similar distances. Groups of six that happen to meet stay."""
+    points, _ = sphere_points(20_000)
+    random = np.random.default_rng(2)
+    places = np.repeat(random.uniform(-3, 3, (402 // group, 3)), group, axis=0)
+    strays = places + 0.02 * random.normal(size=places.shape)
+    surfels, _ = surfels_from_points(np.concatenate([points, strays]))
+    is_off = np.abs(np.linalg.norm(surfels.origin + surfels.positions, axis=1) - 1) > 0.1
+    assert is_off.sum() <= 0.05 * len(strays)
+    assert surfels.radius.max() < 12 * np.median(surfels.radius)
+    assert len(points) - (~is_off).sum() <= 20
+
+
+def test_a_sparse_surface_beside_a_dense_one_stays(sphere_points, grid_points):
+    """A statue on a ground of 8 times its spacing: only where both meet do neighbours fill space."""
+    statue, _ = sphere_points(20_000)
+    ground = grid_points(60, 60, 0.2, 0.2) - (6, 6, 1.2)
+    _, report = surfels_from_points(np.concatenate([statue, ground]))
+    assert report.isolated < 0.02 * len(ground)
+
+
 @pytest.mark.parametrize("choice", ["drop", "keep"])
 def test_a_point_at_the_end_of_the_range_costs_the_others_neither_time_nor_digits(sphere_points, choice):
     """With cells counted from end to end, all other points would share one cell: 1.6 billion distances."""
