@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-#: 8 and 16 bit colours are display values; numpy type code -> the value of white.
-_WHITES = {"u1": 255, "u2": 65535}
+#: White in a file of integer colours: 255, unless a value needs more.
+_WHITES = (255, 65535)
 
 POSITION = ("x", "y", "z")
 NORMAL = ("nx", "ny", "nz")
@@ -35,17 +35,19 @@ def as_columns(names: tuple[str, ...], values: np.ndarray) -> dict[str, np.ndarr
 def display_color(columns: dict[str, np.ndarray]) -> np.ndarray | None:
     """(N, 4) float32 scene-linear colours from red, green, blue and optionally alpha; None if the columns are missing.
 
-    Integers are sRGB display values, as every program writes them; floats are taken as scene-linear.
+    Integers are sRGB display values, as every program writes them; floats are taken as scene-linear. White is 255 in
+    integers of any type, or what the largest value needs, up to the type's limit.
     """
     names = next((group for group in _CHANNELS if has(columns, group)), None)
     if names is None:
         return None
-    values = np.stack([_fraction(columns[name]) for name in names], axis=1)
-    if columns[names[0]].dtype.kind != "f":
-        values = srgb_to_linear(values)
-    alpha = next((_fraction(columns[name]) for name in _ALPHAS if name in columns), np.ones(len(values)))
+    channels = [columns[name] for name in names]
+    alphas = [columns[name] for name in _ALPHAS if name in columns][:1]
+    values = [_fraction(column, channels + alphas) for column in channels]
+    values = [v if column.dtype.kind == "f" else srgb_to_linear(v) for v, column in zip(values, channels, strict=True)]
+    alpha = [_fraction(column, channels + alphas) for column in alphas] or [np.ones(len(values[0]))]
     with np.errstate(over="ignore"):
-        return np.column_stack([values, alpha]).astype(np.float32)
+        return np.column_stack(values + alpha).astype(np.float32)
 
 
 def linear_to_srgb(linear: np.ndarray) -> np.ndarray:
@@ -60,5 +62,16 @@ def srgb_to_linear(encoded: np.ndarray) -> np.ndarray:
     return np.copysign(np.where(size <= 0.04045, size / 12.92, ((size + 0.055) / 1.055) ** 2.4), encoded)
 
 
-def _fraction(column: np.ndarray) -> np.ndarray:
-    return column / np.float64(_WHITES.get(column.dtype.str[1:], 1))
+def _fraction(column: np.ndarray, colors: list[np.ndarray]) -> np.ndarray:
+    """A column of `colors`, integers as fractions of white, which is the same for all columns of their type."""
+    if column.dtype.kind == "f":
+        return column.astype(np.float64)
+    largest = max(_not_negative(other).max(initial=0) for other in colors if other.dtype == column.dtype)
+    values = _not_negative(column)
+    limit = np.iinfo(values.dtype).max
+    return values / np.float64(min(next((white for white in _WHITES if largest <= white), limit), limit))
+
+
+def _not_negative(column: np.ndarray) -> np.ndarray:
+    """Integers, negative ones as 0, but signed bytes as the unsigned ones that programs mean by them."""
+    return column.view(np.uint8) if column.dtype == np.int8 else np.maximum(column, 0)

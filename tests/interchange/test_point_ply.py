@@ -38,6 +38,30 @@ def test_float_colours_are_scene_linear(ply):
     assert np.allclose(read_contents(ply(head, b"0 0 0 0.25 2 0 0.5\n")).colors, (0.25, 2, 0, 0.5))
 
 
+@pytest.mark.parametrize("kind", ["uchar", "ushort", "short", "uint", "int"])
+def test_white_is_255_in_integers_of_any_type(ply, kind):
+    head = ["format ascii 1.0", "element vertex 2", *(f"property float {n}" for n in "xyz")]
+    head += [f"property {kind} {n}" for n in ("red", "green", "blue", "alpha")]
+    colors = read_contents(ply(head, b"0 0 0 0 188 255 255\n0 0 0 0 0 0 51\n")).colors
+    assert np.allclose(colors, [(0, 0.5028865, 1, 1), (0, 0, 0, 0.2)])
+
+
+@pytest.mark.parametrize(("kind", "white"), [("ushort", 65535), ("int", 65535), ("short", 32767), ("uint", 2**32 - 1)])
+def test_integers_above_255_need_a_larger_white(ply, kind, white):
+    """All channels share it: the darker ones too, and the alpha."""
+    head = ["format ascii 1.0", "element vertex 1", *(f"property float {n}" for n in "xyz")]
+    head += [f"property {kind} {n}" for n in ("red", "green", "blue", "alpha")]
+    colors = read_contents(ply(head, f"0 0 0 {white} 0 -5 {white // 5}\n".encode())).colors
+    assert np.allclose(colors, (1, 0, 0, 0.2), atol=1e-4)
+
+
+def test_signed_bytes_are_read_as_the_unsigned_ones_that_were_meant(ply):
+    head = ["format binary_little_endian 1.0", "element vertex 1", *(f"property float {n}" for n in "xyz")]
+    head += [f"property char {n}" for n in ("red", "green", "blue")]
+    body = np.zeros(3, "<f4").tobytes() + bytes((255, 188, 0))
+    assert np.allclose(read_contents(ply(head, body)).colors, (1, 0.5028865, 0, 1))
+
+
 def test_points_after_other_elements_are_found(models, tmp_path):
     """A camera comes before them in the file, and faces with lists after them."""
     (tmp_path / "map.ply").write_bytes(gzip.decompress((models / "rangemap_lato315.ply.gz").read_bytes()))
