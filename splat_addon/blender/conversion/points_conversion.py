@@ -61,8 +61,8 @@ class PointsConversion(_OfOneObject):
         return list(self.report.notes())
 
     def is_warning(self, note: str) -> bool:
-        """Whether anything was left out."""
-        return note.startswith("Skipped")
+        """Whether anything was left out or is doubtful."""
+        return not note.startswith("Estimated")
 
     def summary(self) -> str:
         """A one-line summary of what was made."""

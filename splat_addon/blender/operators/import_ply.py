@@ -93,7 +93,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
         select_only(context, [made])
         self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=len(surfels)))
         for note in notes:
-            self.report({"WARNING" if note.startswith("Skipped") else "INFO"}, note)
+            self.report({"INFO" if note.startswith("Estimated") else "WARNING"}, note)
         return {"FINISHED"}
 
     def _begin(self, context):

@@ -20,7 +20,7 @@ from .footprints import tangent_ellipses
 from .neighbours import nearest_neighbours
 from .normals import plane_normals, tangent_frames
 from .orientation import consistent_signs, facing_outward, facing_viewpoint
-from .report import PointsReport
+from .report import BRIGHT_COLOR, PointsReport
 
 #: Neighbours per point: enough to average out noise, few enough to follow the surface; on a grid these are a little
 #: more than the two rings around a point.
@@ -63,7 +63,7 @@ def surfels_from_points(
     """Surfels of N points in the order of the points, and a report of what was left out and what was estimated.
 
     positions: (N, 3), object units. normals: (N, 3) of any length, used where they are finite and not zero.
-    radii: (N,) object units, used as both half-axes where they are finite and above 0. colors: (N, 3) or (N, 4)
+    radii: (N,) object units, used as both half-axes where they are finite and above 0. colors: (N, 3) or (N, 4) floats,
         scene-linear, used where they are finite. neighbours: number of neighbours from which missing values are
         estimated.
     splat_size: half-axis of an estimated splat, in spacings. isolated: a name in `ISOLATED_CHOICES`.
@@ -149,6 +149,7 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, 
         estimated_normals=int(missing_normals[keep].sum()),
         estimated_radii=int(missing_radii[keep].sum()),
         default_colors=int(default_colors[keep].sum()),
+        bright_colors=int((colors[keep, :3].max(axis=1) > BRIGHT_COLOR).sum()),
         parts=parts,
         creases=_number_clipped(fields, keep),
     )  # fmt: skip
@@ -235,7 +236,7 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
 
 
 def _checked(positions, normals, radii, colors) -> dict[str, np.ndarray | None]:
-    """The arrays as float64, colours as float32. Raises ValueError for a wrong shape."""
+    """The arrays as float64, colours as float32. Raises ValueError for a wrong shape or integer colours."""
     count = len(positions)
     shapes = {
         "positions": (positions, [(count, 3)], np.float64),
@@ -245,10 +246,15 @@ def _checked(positions, normals, radii, colors) -> dict[str, np.ndarray | None]:
     }
     arrays = {}
     for name, (values, allowed, dtype) in shapes.items():
+        wanted = " or ".join(map(str, allowed))
+        if name == "colors" and values is not None and not np.issubdtype(np.asarray(values).dtype, np.floating):
+            raise ValueError(
+                f"The points' colors must be floating of shape {wanted}, not {np.asarray(values).dtype}; "
+                f"convert them to scene-linear ones."
+            )
         with np.errstate(over="ignore", invalid="ignore"):
             array = None if values is None else np.asarray(values, dtype)
         if array is not None and array.shape not in allowed:
-            wanted = " or ".join(map(str, allowed))
             raise ValueError(f"The points' {name} must have shape {wanted}, not {array.shape}.")
         arrays[name] = array
     return arrays

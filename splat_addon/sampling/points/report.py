@@ -5,6 +5,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+#: Colours above this are reported: no surface reflects them, but floats from 0 to 255 are common.
+BRIGHT_COLOR = 10.0
+
 
 @dataclass(frozen=True)
 class PointsReport:
@@ -12,6 +15,7 @@ class PointsReport:
     non_finite, duplicates: left out.
     isolated: found, and left out unless `kept_isolated`.
     estimated_normals, estimated_radii, default_colors: surfels whose own value was missing or unusable.
+    bright_colors: surfels whose colour is far above white.
     parts: connected parts, each oriented as a whole; 0 if no normal was estimated.
     creases: surfels that end at an edge between planes through their neighbours.
     """
@@ -25,6 +29,7 @@ class PointsReport:
     estimated_normals: int = 0
     estimated_radii: int = 0
     default_colors: int = 0
+    bright_colors: int = 0
     parts: int = 0
     creases: int = 0
 
@@ -38,7 +43,7 @@ class PointsReport:
         return {reason: count for reason, count in reasons.items() if count}
 
     def notes(self) -> tuple[str, ...]:
-        """One sentence about what was left out, and one about each kind of estimate."""
+        """One sentence about what was left out, one about colours that are doubtful, and one about the estimates."""
         skipped = ", ".join(f"{count:,} points {reason}" for reason, count in self.skipped().items())
         made_up = {
             f"normals of {self.estimated_normals:,} points from their neighbours, in {self.parts:,} connected parts": (
@@ -49,4 +54,8 @@ class PointsReport:
             f"the colour of {self.default_colors:,} points, which have none": self.default_colors,
         }
         estimated = "; ".join(what for what, count in made_up.items() if count)
-        return tuple(f"{verb} {what}" for verb, what in (("Skipped", skipped), ("Estimated", estimated)) if what)
+        bright = (
+            f"colours above {BRIGHT_COLOR:g} of {self.bright_colors:,} points; they are scene-linear and white is 1"
+        )
+        said = {"Skipped": skipped, "Kept": bright if self.bright_colors else "", "Estimated": estimated}
+        return tuple(f"{verb} {what}" for verb, what in said.items() if what)

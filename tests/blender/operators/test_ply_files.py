@@ -104,6 +104,14 @@ def test_bare_points_become_surfels(import_ply, surfels_of, tmp_path):
     assert len(surfels) == 500 and ((surfels.normals * points).sum(axis=1) > 0.8).all()
 
 
+def test_float_colours_far_above_white_are_a_warning(import_ply, tmp_path, capfd):
+    names = "x y z nx ny nz radius red green blue"
+    head = ["ply", "format ascii 1.0", "element vertex 1", *(f"property float {n}" for n in names.split())]
+    (tmp_path / "c.ply").write_text("\n".join([*head, "end_header", "0 0 0 0 0 1 1 200 10 10", ""]))
+    import_ply(tmp_path / "c.ply")
+    assert "Warning: Kept colours above 10 of 1 points" in capfd.readouterr().out
+
+
 def test_thick_gaussians_are_counted_and_left_out(import_ply, surfels_of, tmp_path, capfd):
     names = ["x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "f_rest_0",
              "rot_0", "rot_1", "rot_2", "rot_3"]  # fmt: skip

@@ -133,6 +133,14 @@ def test_colours_are_used_and_unusable_ones_are_counted(grid_points):
     assert report.default_colors == 1
 
 
+def test_colours_far_above_white_are_counted_and_said(grid_points):
+    colors = np.full((400, 3), 0.5)
+    colors[:7, 1] = 100.0
+    surfels, report = surfels_from_points(grid_points(20, 20), colors=colors)
+    assert report.bright_colors == 7 and surfels.colors.max() == 100
+    assert "Kept colours above 10 of 7 points; they are scene-linear and white is 1" in report.notes()
+
+
 def test_one_point_with_everything_given_is_enough():
     surfels, report = surfels_from_points([(1, 2, 3)], [(0, 0, 2)], [0.5])
     assert len(surfels) == 1 and report.notes() == ()
@@ -160,6 +168,7 @@ def test_the_notes_name_every_number(grid_points):
         (np.zeros((4, 2)), {}, r"positions must have shape \(4, 3\), not \(4, 2\)"),
         (np.eye(3), {"normals": np.eye(2)}, r"normals must have shape \(3, 3\)"),
         (np.eye(3), {"colors": np.ones((3, 2))}, r"colors must have shape \(3, 3\) or \(3, 4\)"),
+        (np.eye(3), {"colors": np.full((3, 3), 200, np.uint8)}, "colors must be floating of shape .*, not uint8"),
         (np.eye(3), {}, "3 usable points are too few"),
         (np.ones((9, 3)), {}, "1 usable points are too few"),
         (np.full((9, 3), np.nan), {}, "None of the 9 points has finite coordinates"),
