@@ -101,9 +101,7 @@ def _let_through(tree: Tree, end: Node) -> Given:
 
 
 def _emission(tree: Tree, end: Node) -> Given:
-    names = {"EMISSION": ("Color", "Strength"), "BSDF_PRINCIPLED": ("Emission Color", "Emission Strength")}.get(
-        end.type
-    )
+    names = _EMISSION_SOCKETS.get(end.type)
     if names is None:
         return _BLACK
     return _mixed(tree, "MULTIPLY", *(_given(end.inputs[name]) for name in names))

@@ -22,10 +22,6 @@ FORMATS = {"RGBA32F": 4, "RGBA16F": 4, "RGBA16": 4, "RG32F": 2, "R32F": 1, "DEPT
 #: Programs that a device keeps: about twenty make a picture, but an animated setting may need new ones each frame.
 PROGRAMS = 512
 
-#: blend mode -> its effect on a fragment
-BLENDS = ("none", "add")
-
-
 #: format -> bytes per channel, if not 4
 _CHANNEL_BYTES = {"RGBA16F": 2, "RGBA16": 2}
 

@@ -352,9 +352,3 @@ class Execution:
         for p in loop.last:
             yield from self._pass(p, tile)
         self.turns = max(self.turns, loop.times + bool(loop.last))
-
-
-def drawn_tiles(plan: FramePlan) -> Iterator[tuple[int, int, int, int]]:
-    """The tiles including their margins."""
-    for x, y, width, height in plan.tiles:
-        yield x - plan.margin, y - plan.margin, width + 2 * plan.margin, height + 2 * plan.margin

@@ -21,7 +21,7 @@ class Planning:
     samples: number of samples that show the scene. is_repeatable: whether the picture is the same
         whatever was drawn before.
 
-    choices, facts: as in `FramePlan`; features add to both.
+    facts: as in `FramePlan`; features add to them.
     """
 
     def __init__(
@@ -41,7 +41,6 @@ class Planning:
         self.shown = scene.shown
         self.features: list[tuple[str, str]] = []
         self.skipped: list[tuple[str, str]] = []
-        self.choices: dict[str, str] = {}
         self.facts: dict[str, object] = {}
         self._found: dict[Callable, object] = {}
 
