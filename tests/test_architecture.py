@@ -27,7 +27,7 @@ MAY_IMPORT = {
 }
 #: `reference` reads rendering's data, never its passes.
 RENDERING_DATA = {"scene", "shadow", "settings", "frame", "view", "depth_range", "methods", "shading_models"}
-RENDERING_DATA |= {"upload"}  # only the table of GGX
+RENDERING_DATA |= {"upload"}  # only the table of GGX and the atlas of textures
 #: foreign module -> where it may be imported
 HOMES = {
     "bpy": ("blender/",),

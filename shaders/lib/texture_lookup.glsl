@@ -4,7 +4,7 @@
 // Summary: a texture's colour under a footprint given by its variances. If the footprint is wider than a texel, this is
 //          the average of the texels in an ellipse, on the level where it is about a texel wide across; for
 //          magnification, bilinear probes. It uses no sampler state and no hardware derivatives, so all devices agree.
-//          The twin of rendering/upload/texture_lookup.py. Layout of atlas and table: rendering/upload/atlas.py.
+//          The twin of reference/texture_lookup.py. Layout of atlas and table: rendering/upload/atlas.py.
 
 const float MAGNIFIED = 0.2;     // variance across, in texels, below which bilinear lookups are needed
 const float NARROWEST = 0.6;     // variance across, in texels of the level, of the texels' weights

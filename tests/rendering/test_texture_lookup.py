@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 
 from splat_addon.images import EXTENSIONS, Image
+from splat_addon.reference.texture_lookup import texture_colors
 from splat_addon.rendering.device.interface import PipelineDescription
 from splat_addon.rendering.plan.composition import FOLDER, compose
 from splat_addon.rendering.scene import SurfaceTexture
 from splat_addon.rendering.upload.atlas import make_atlas
-from splat_addon.rendering.upload.texture_lookup import texture_colors
 
 #: The variance of a pixel's Gaussian of sigma 0.7071, in pixels squared.
 PIXEL_VARIANCE = 0.5

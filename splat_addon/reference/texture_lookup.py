@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .atlas import CUT_OUT, Atlas
+from ..rendering.upload.atlas import CUT_OUT, Atlas
 
 MAGNIFIED = 0.2
 NARROWEST = 0.6
@@ -29,12 +29,6 @@ def texture_colors(atlas: Atlas, slot: int, uvs: np.ndarray, variances: np.ndarr
     factor = atlas.table[slot, 0, :3].astype(np.float64)
     sums = [_sum(atlas, slot, uv, variance) for uv, variance in zip(uvs, variances, strict=True)]
     return np.array([factor * total[:3] / (total[3] if total[3] > 0 else weights) for total, weights in sums])
-
-
-def texture_alphas(atlas: Atlas, slot: int, uvs: np.ndarray, variances: np.ndarray) -> np.ndarray:
-    """(n,) mean alpha of a slot's texture under footprints, which are given as for `texture_colors`."""
-    sums = [_sum(atlas, slot, uv, variance) for uv, variance in zip(uvs, variances, strict=True)]
-    return np.array([total[3] / weights for total, weights in sums])
 
 
 def _sum(atlas: Atlas, slot: int, uv: np.ndarray, variance: np.ndarray) -> tuple[np.ndarray, float]:
