@@ -158,9 +158,7 @@ def _face(whole: Camera, pixels: np.ndarray, looks: np.ndarray) -> _Face:
 
 def _bilinear(values: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
     """(n, ...) bilinear samples of an array of a face's frame. looks: (n, 2) in pixels of `camera`."""
-    return sum(
-        along * up * pixels for along, up, pixels in _around(values, camera, looks, lambda t: (1 - t, t), first=0)
-    )
+    return sum(along * up * pixels for along, up, pixels in _around(values, looks, lambda t: (1 - t, t), first=0))
 
 
 def _cubic(values: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
@@ -168,8 +166,8 @@ def _cubic(values: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarray:
 
     They are clamped to the range of the four nearest pixels, so that edges do not ring.
     """
-    inner = [pixels for _, _, pixels in _around(values, camera, looks, lambda t: (1 - t, t), first=0)]
-    mixed = sum(along * up * pixels for along, up, pixels in _around(values, camera, looks, _keys, first=-1))
+    inner = [pixels for _, _, pixels in _around(values, looks, lambda t: (1 - t, t), first=0)]
+    mixed = sum(along * up * pixels for along, up, pixels in _around(values, looks, _keys, first=-1))
     return np.clip(mixed, np.minimum.reduce(inner), np.maximum.reduce(inner))
 
 
@@ -183,7 +181,7 @@ def _keys(t: np.ndarray) -> tuple[np.ndarray, ...]:
     )
 
 
-def _around(values: np.ndarray, camera: Camera, looks: np.ndarray, weights, first: int) -> Iterator:
+def _around(values: np.ndarray, looks: np.ndarray, weights, first: int) -> Iterator:
     """(weight across, weight up, values (n, ...)) of each of the pixels around the lookups, `first` being the
     lowest."""
     corner = np.floor(looks - 0.5).astype(int)

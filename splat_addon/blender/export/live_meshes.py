@@ -177,7 +177,6 @@ class LiveMeshes:
         evaluated: bpy.types.Object,
         owner: bpy.types.Object,
         place: Place,
-        notes,
         override: bpy.types.Material | None = None,
     ) -> None:
         """Add an entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry is valid.

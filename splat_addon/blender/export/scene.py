@@ -167,7 +167,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                     surfels += _instances(object_, kept, depsgraph, matrix, fields, store, notes, override)
                 owner, form = owner_of(entry), form_of(entry, bpy_scene) if "faces" in what else _NO_FORM
                 if form.kind != "HIDDEN" and not any(is_stood_in(each, stood_in) for each in asked_of(entry)):
-                    live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), notes, override)
+                    live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), override)
                 if "points" in what:
                     notes.add(_BARE_POINTS)
             elif object_.type in _NOT_DRAWN and not shows_as_points(object_.original):

@@ -74,7 +74,7 @@ def layer_pixels(planning, depth: Texture, writes: tuple[Texture, ...]) -> Pass:
 def passes(planning):
     if not planning.shown:
         return
-    once, pixels = f"{planning.model.name}, once a sample", outputs.pixel_textures(planning)
+    once, pixels = f"{planning.model.name}, once a sample", outputs.ALWAYS_WRITTEN
     if planning.method.filters_silhouettes:
         yield deferred(planning, once)
         yield _filtered(planning, "silhouettes are filtered", visibility.nearest_depth(planning), pixels)

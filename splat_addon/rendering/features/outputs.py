@@ -19,6 +19,8 @@ PIXELS = {
     name: Texture(name, "R32F" if name == "depth" else "RGBA32F", of_pixels)
     for name in dict.fromkeys(texture for texture, _ in HELD_BY.values())
 }
+#: The textures that the last pass always writes.
+ALWAYS_WRITTEN = PIXELS["combined"], PIXELS["depth"]
 #: Textures for outputs of lit samples; the feature of the same name fills each.
 _HANDED_ON = tuple(name for name in PIXELS if name not in ("combined", "depth", "normal_coverage"))
 SAMPLES = {name: Texture(f"sample_{name}") for name in _HANDED_ON}
@@ -33,18 +35,13 @@ _HOSTS = (*LIT_HOSTS, *SPLAT_HOSTS, "lit_splats.frag", "resolve.frag", "layer.fr
 CALLED = tuple((kind[name], f"out_{name}") for kind in (PIXELS, SAMPLES, LAYERS) for name in _HANDED_ON)
 
 
-def pixel_textures(planning) -> tuple[Texture, ...]:
-    """The textures that the last pass always writes."""
-    return PIXELS["combined"], PIXELS["depth"]
-
-
 def wanted(planning) -> tuple[str, ...]:
     """Names of all pixel textures."""
     asked_for = {HELD_BY[name][0] for name in planning.settings.outputs if name in HELD_BY}
     return tuple(name for name in PIXELS if name in {"combined", "depth"} | asked_for)
 
 
-def _handed_on(planning, by_layers: bool = False) -> tuple[str, ...]:
+def handed_on(planning, by_layers: bool = False) -> tuple[str, ...]:
     """The textures that samples pass on. Layers do not pass on overdraw, which counts opaque splats only."""
     names = [name for name in planning.find(wanted) if name in _HANDED_ON]
     if by_layers and "shadow" not in planning.settings.outputs:
@@ -96,7 +93,7 @@ def _count(planning, p):
 
 def _found(planning):
     """The textures requested, passed on by samples, and passed on by layers."""
-    return planning.find(wanted), _handed_on(planning), _handed_on(planning, True)
+    return planning.find(wanted), handed_on(planning), handed_on(planning, True)
 
 
 def parts(planning, p):

@@ -62,7 +62,7 @@ def passes(planning):
         return
     cleared = PEELED, COLOR, COLOR_DEPTH
     more = (outputs.LAYERS_NORMAL,) if "normal_coverage" in outputs.wanted(planning) else ()
-    more += tuple(outputs.LAYERS[name] for name in outputs._handed_on(planning, True))
+    more += tuple(outputs.LAYERS[name] for name in outputs.handed_on(planning, True))
     yield Pass("start_layers", "nothing is peeled yet", "", start, (Part("transparency", writes=(*cleared, *more)),))
     peeled = count - planning.settings.blends_rest
     last = oit.passes_of_rest(planning, PEELED, COLOR) if planning.settings.blends_rest else ()

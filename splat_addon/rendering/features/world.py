@@ -35,7 +35,7 @@ def passes(planning):
         planning.skip("all other passes", "the scene has neither surfels nor polygons: the picture is its background")
         if is_shown(planning):
             samples = ("SAMPLES", planning.settings.supersampling)
-            own = Part("world", writes=outputs.pixel_textures(planning), constants=(samples,), called=outputs.CALLED)
+            own = Part("world", writes=outputs.ALWAYS_WRITTEN, constants=(samples,), called=outputs.CALLED)
             yield Pass("background", "the world is a picture", "background.frag", fill_all, (own,))
     elif not planning.scene.environment:
         planning.skip("environment", "the world is even")
