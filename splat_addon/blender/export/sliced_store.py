@@ -22,6 +22,7 @@ from ...rendering.background import in_background
 from ...rendering.stand_in import LEFT_OUT, STAND_IN, spread, standing_in, widened
 from ...surfels import Surfels, prepared, valid_surfels
 from ..geometry.attributes import (
+    REST_FIELD,
     SOLID,
     Points,
     Stored,
@@ -181,7 +182,7 @@ class _Reading:
 
     def _first(self, points: Points) -> Surfels | None:
         """The set to show before the attributes have been read."""
-        rows, seen = spread(self.count, FIRST), self._fields.keys() - {"rest", *LEFT_OUT}
+        rows, seen = spread(self.count, FIRST), self._fields.keys() - {REST_FIELD, *LEFT_OUT}
         arrays = {field: read_rows(points, self._fields[field], self.name, rows) for field in seen}
         return _few(arrays, self.count, self._is_solid)
 
@@ -195,7 +196,7 @@ def _room(layout, count: int) -> np.ndarray:
 
 def _few(arrays: dict[str, np.ndarray], count: int, is_solid: bool) -> Surfels | None:
     """The stand-in of `count` surfels, made of some that have not been checked, if any of them are usable."""
-    known = {field: values for field, values in arrays.items() if field != "rest"}
+    known = {field: values for field, values in arrays.items() if field != REST_FIELD}
     surfels, _, _ = stored_of(known, is_solid, {}, "")
     wide = widened(surfels.arrays(), count / max(len(surfels), 1))
     return standing_in(valid_surfels(is_solid=is_solid, **wide)[0]) if len(surfels) else None

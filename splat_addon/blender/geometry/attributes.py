@@ -121,7 +121,7 @@ def read_stored(
 
 
 #: The name in `stored_fields` of the centres as they were written.
-_REST = "rest"
+REST_FIELD = "rest"
 
 
 def stored_fields(mesh: Points, name: str) -> dict[str, PointAttribute]:
@@ -137,7 +137,7 @@ def stored_fields(mesh: Points, name: str) -> dict[str, PointAttribute]:
             _find(mesh, layout, name)
     rest = mesh.attributes.get(REST.name)
     if rest is not None and (rest.data_type, rest.domain) == (REST.data_type, "POINT"):
-        fields[_REST] = REST
+        fields[REST_FIELD] = REST
     return fields
 
 
@@ -168,7 +168,7 @@ def stored_of(arrays: dict[str, np.ndarray], is_solid: bool, known: dict, name: 
     """The surfels of arrays that were read by `stored_fields`; no Blender data is touched. known, name: as in
     `read_stored`."""
     arrays = dict(arrays)
-    rest = arrays.pop(_REST, None)
+    rest = arrays.pop(REST_FIELD, None)
     arrays["scales"] = arrays["scales"][:, :2]
     surfels, skipped = valid_surfels(is_solid=is_solid, **arrays)
     if rest is None:
