@@ -14,7 +14,7 @@ import numpy as np
 from mathutils.bvhtree import BVHTree
 
 from ...surfels import Surfels
-from ..geometry.node_groups import known_group, new_modifier_group
+from ..geometry.node_groups import known_group, new_modifier_group, uses_group
 from ..geometry.node_maths import Maths, enabled
 from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP
 
@@ -60,7 +60,7 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
         return "its surfels are even in the world, or it is sheared or far from its origin"
     _bind(made.data, surfels, np.asarray(mesh.positions, np.float64), mesh.triangles)
     modifier = made.modifiers.new(SHAPE_GROUP, "NODES")
-    modifier.node_group, modifier.show_expanded = _group(), False
+    modifier.node_group, modifier.show_expanded = known_group(_MAKE, _VERSION) or _new_group(), False
     made.modifiers.move(len(made.modifiers) - 1 - _pinned(made), 0)
     turns = not (surfels.has_uvs or surfels.clip_line is not None)
     for name, value in (("Source", source), ("Vertices", len(mesh.positions)), ("Turns", float(turns))):
@@ -70,15 +70,11 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
 
 def is_bent(made: bpy.types.Object) -> bool:
     """Whether the surfels of an object follow the deformation of a source."""
-    return any(map(_is_ours, made.modifiers))
-
-
-def _is_ours(modifier: bpy.types.Modifier) -> bool:
-    return modifier.type == "NODES" and modifier.node_group is not None and _MAKE in modifier.node_group
+    return any(uses_group(modifier, _MAKE) for modifier in made.modifiers)
 
 
 def _unbind(made: bpy.types.Object) -> None:
-    for modifier in list(filter(_is_ours, made.modifiers)):
+    for modifier in [m for m in made.modifiers if uses_group(m, _MAKE)]:
         made.modifiers.remove(modifier)
 
 
@@ -130,10 +126,6 @@ def _bind(mesh: bpy.types.Mesh, surfels: Surfels, vertices: np.ndarray, triangle
         mesh.attributes.new(name, "FLOAT_VECTOR", "POINT").data.foreach_set("vector", np.float32(values).ravel())
     for name, values in zip(_VERTICES, corners.T, strict=True):
         mesh.attributes.new(name, "INT", "POINT").data.foreach_set("value", np.ascontiguousarray(values, np.int32))
-
-
-def _group() -> bpy.types.NodeTree:
-    return known_group(_MAKE, _VERSION) or _new_group()
 
 
 def _new_group() -> bpy.types.NodeTree:

@@ -15,6 +15,11 @@ def known_group(make: str, version: int) -> bpy.types.NodeTree | None:
     return next(known, None)
 
 
+def uses_group(modifier: bpy.types.Modifier, make: str) -> bool:
+    """Whether a modifier has a group of a kind, of any version."""
+    return modifier.type == "NODES" and modifier.node_group is not None and make in modifier.node_group
+
+
 def new_modifier_group(name: str, make: str, version: int) -> bpy.types.NodeTree:
     """A new group with a geometry input and a geometry output."""
     group = bpy.data.node_groups.new(name, "GeometryNodeTree")

@@ -14,7 +14,8 @@ from contextlib import contextmanager
 import bpy
 
 from ..ids import POINT_ATTRIBUTES, POINTS_GROUP, POINTS_MATERIAL, SOLID
-from .node_groups import known_group, new_modifier_group
+from .node_groups import known_group, new_modifier_group, uses_group
+from .node_maths import enabled
 
 #: Custom property of the node group, which distinguishes our groups from others of the same name.
 _MAKE, _VERSION = "surfels_points", 1
@@ -23,7 +24,7 @@ _MAKE, _VERSION = "surfels_points", 1
 def show_as_points(made: bpy.types.Object) -> bpy.types.Modifier:
     """Give a surfel object the modifier, which stays behind all modifiers added later."""
     modifier = made.modifiers.new(POINTS_GROUP, "NODES")
-    modifier.node_group = _group()
+    modifier.node_group = known_group(_MAKE, _VERSION) or _new_group()
     # In edit mode the vertices themselves must be visible.
     modifier.show_in_editmode = False
     modifier.use_pin_to_last = True
@@ -72,11 +73,7 @@ def is_solid(owner: bpy.types.Object) -> bool:
 
 def is_points_modifier(modifier: bpy.types.Modifier) -> bool:
     """Whether a modifier was added by `show_as_points`."""
-    return modifier.type == "NODES" and modifier.node_group is not None and _MAKE in modifier.node_group
-
-
-def _group() -> bpy.types.NodeTree:
-    return known_group(_MAKE, _VERSION) or _new_group()
+    return uses_group(modifier, _MAKE)
 
 
 def _new_group() -> bpy.types.NodeTree:
@@ -90,15 +87,15 @@ def _new_group() -> bpy.types.NodeTree:
 
     neighbours, is_loose = new("GeometryNodeInputMeshVertexNeighbors"), new("FunctionNodeCompare")
     is_loose.data_type, is_loose.operation = "INT", "EQUAL"
-    link(neighbours.outputs["Face Count"], _enabled(is_loose.inputs, "A"))
-    _enabled(is_loose.inputs, "B").default_value = 0
+    link(neighbours.outputs["Face Count"], enabled(is_loose.inputs, "A"))
+    enabled(is_loose.inputs, "B").default_value = 0
 
     radius, points = new("GeometryNodeInputNamedAttribute"), new("GeometryNodeMeshToPoints")
     radius.data_type = "FLOAT"
     radius.inputs["Name"].default_value = POINT_ATTRIBUTES["radius"].name
     link(kinds.outputs["Mesh"], points.inputs["Mesh"])
     link(is_loose.outputs[0], points.inputs["Selection"])
-    link(_enabled(radius.outputs, "Attribute"), points.inputs["Radius"])
+    link(enabled(radius.outputs, "Attribute"), points.inputs["Radius"])
     painted = new("GeometryNodeSetMaterial")
     link(points.outputs[0], painted.inputs["Geometry"])
     link(given.outputs["Material"], painted.inputs["Material"])
@@ -113,11 +110,6 @@ def _new_group() -> bpy.types.NodeTree:
         link(output, everything.inputs[0])
     link(everything.outputs[0], result.inputs[0])
     return group
-
-
-def _enabled(sockets, name: str) -> bpy.types.NodeSocket:
-    """The active one among sockets that share a name, one for each data type."""
-    return next(socket for socket in sockets if socket.enabled and socket.name == name)
 
 
 def _material() -> bpy.types.Material:
