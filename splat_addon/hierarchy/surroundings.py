@@ -20,6 +20,7 @@ from .families import dot
 from .merged_lines import as_planes
 from .nodes import Nodes, Table
 from .ordering import sorted_with_order
+from .runs import Runs
 
 #: Minimum cosine between the normals of surfels that mix in a picture, and of those without a crease between them.
 _SAME_SIDE = 0.3
@@ -110,8 +111,8 @@ class _Pairs:
     """
 
     def __init__(self, nodes: Nodes, part: slice, candidates: np.ndarray, rows: np.ndarray, counts: np.ndarray):
-        self.nodes, self.part, self.counts = nodes, part, counts
-        self.starts = np.cumsum(counts) - counts
+        self.nodes, self.part = nodes, part
+        self.runs = Runs(np.cumsum(counts) - counts, counts)
         columns = np.ascontiguousarray(np.take(candidates, rows, axis=0).T)
         self.offsets, self.radii, self.values = columns[:3], columns[7], columns[8:]
         self.offsets -= self._own("positions")
@@ -124,31 +125,29 @@ class _Pairs:
         weights = np.exp(_SHARPNESS * distance) * ((distance < _END) & (self.cosines > _SAME_SIDE))
         if "lines" in self.nodes:
             weights[self._beyond_lines()] = 0
-        total = self._sum(weights)
-        means = self._sum(self.values * weights) / np.maximum(total, np.float32(1e-30))
+        total = self.runs.sum(weights)
+        means = self.runs.sum(self.values * weights) / np.maximum(total, np.float32(1e-30))
         return np.where(total > 0, means, own)
 
     def are_at_borders(self) -> np.ndarray:
         """(m,) whether neighbours are on one side only, or few."""
         u, v = (axis[:, self.part] for axis in self.nodes.axes)
-        x, y = (dot(self.offsets, np.repeat(axis / dot(axis, axis), self.counts, axis=1)) for axis in (u, v))
+        x, y = (dot(self.offsets, self.runs.spread(axis / dot(axis, axis))) for axis in (u, v))
         weights = np.maximum(1 - (x * x + y * y) / _AROUND**2, 0) ** 2 * (self.cosines > _NO_CREASE)
-        x, y, total = self._sum(np.stack([x * weights, y * weights, weights]))
+        x, y, total = self.runs.sum(np.stack([x * weights, y * weights, weights]))
         return (np.hypot(x, y) > _ONE_SIDED * total) | (total < _FEW)
 
     def _beyond_lines(self) -> np.ndarray:
         """Numbers of the candidates that are beyond lines of their surfels."""
         lines = as_planes(self.nodes["lines"][:, self.part])
         owners = np.flatnonzero(lines.any(axis=(0, 1)))
-        pairs = ranges(self.starts[owners], self.counts[owners])
-        lines, place = np.repeat(lines[..., owners], self.counts[owners], axis=2), np.take(self.offsets, pairs, axis=1)
+        counts = self.runs.counts[owners]
+        pairs = ranges(self.runs.starts[owners], counts)
+        lines, place = np.repeat(lines[..., owners], counts, axis=2), np.take(self.offsets, pairs, axis=1)
         return pairs[(np.einsum("kan,an->kn", lines[:, :3], place) + lines[:, 3] < 0).any(axis=0)]
 
     def _own(self, name: str) -> np.ndarray:
-        return np.repeat(self.nodes[name][..., self.part], self.counts, axis=-1)
-
-    def _sum(self, columns: np.ndarray) -> np.ndarray:
-        return np.add.reduceat(columns, self.starts, axis=-1)
+        return self.runs.spread(self.nodes[name][..., self.part])
 
 
 class _Near:

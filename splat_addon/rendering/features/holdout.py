@@ -20,10 +20,6 @@ def _count(planning) -> int:
     return sum(instance.is_holdout for instance in planning.shown)
 
 
-def _depth(planning) -> Texture:
-    return ROW_DEPTH if planning.find(silhouettes.have_rows) else DEPTH
-
-
 def passes(planning):
     cutting = sum(instance.is_holdout for instance in planning.shown)
     if cutting and not _count(planning):
@@ -31,7 +27,7 @@ def passes(planning):
     elif cutting:
         planning.has("HOLDOUT", f"{cutting} of {len(planning.shown)} instances cut holes")
     if cutting and planning.method.rasterizer == "screen_space":
-        own = visibility.own_parts(planning, _depth(planning))
+        own = visibility.own_parts(planning, visibility.nearest_depth(planning, DEPTH, ROW_DEPTH))
         why = "a filter brings what lies behind a hole before it"
         yield visibility.drawn("holdouts", why, own, planning, "holes")._replace(run=run)
 
@@ -44,7 +40,8 @@ def parts(planning, p):
     if p.kind != "opaque":
         return
     if p.host == "depth_bounds.frag":
-        yield Part("holdout", reads=(_depth(planning),), called=((_depth(planning), "holes"),))
+        depth = visibility.nearest_depth(planning, DEPTH, ROW_DEPTH)
+        yield Part("holdout", reads=(depth,), called=((depth, "holes"),))
     if p.host in LIT_HOSTS:
         yield Part("holdout", reads=(visibility.DEPTH,))
     if p.host in ("screen_space.frag", "resolve.frag"):

@@ -17,9 +17,9 @@ NAMES = ("visibility", "sprite_visibility")
 _OF_POLYGONS = Part("visibility", ("of_polygons",), inputs=("polygon_corners",), only="polygons")
 
 
-def nearest_depth(planning) -> Texture:
-    """The texture that visibility writes, which may have more rows than there are samples."""
-    return ROW_DEPTH if planning.find(silhouettes.have_rows) else DEPTH
+def nearest_depth(planning, depth: Texture = DEPTH, row_depth: Texture = ROW_DEPTH) -> Texture:
+    """The one of two textures that visibility writes: the second where there are more rows than samples."""
+    return row_depth if planning.find(silhouettes.have_rows) else depth
 
 
 def own_parts(planning, depth: Texture, has_polygons: bool = True) -> tuple[Part, ...]:

@@ -7,18 +7,19 @@ Right-handed, looking down its local -Z. Pixel centres are at +0.5, and row 0 is
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from .lens import Lens
+from .window import Windowed
 
 #: Variance of the Gaussian that filters a pixel, in square pixels.
 PIXEL_VARIANCE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Camera:
+class Camera(Windowed):
     """matrix_world: (4, 4) float64, camera to world, rigid (a scale in it is taken out).
     window: left, right, bottom, top of the picture; for a perspective camera on the plane at distance 1, for an
         orthographic one in world units.
@@ -86,13 +87,6 @@ class Camera:
         width, height = size
         window = (-cx / fx, (width - cx) / fx, (cy - height) / fy, cy / fy)
         return cls(matrix_world, window, size, near, far)
-
-    def cropped(self, x: int, y: int, width: int, height: int) -> Camera:
-        """The same camera looking only through the pixels x..x+width, y..y+height (from the bottom left)."""
-        left, right, bottom, top = self.window
-        step_x, step_y = (right - left) / self.size[0], (top - bottom) / self.size[1]
-        window = (left + x * step_x, left + (x + width) * step_x, bottom + y * step_y, bottom + (y + height) * step_y)
-        return replace(self, window=window, size=(width, height))
 
     def whole_pixels(self) -> tuple[float, float, float, float]:
         """The window moved by less than a pixel, so that all samples of a picture, and all its parts, have one."""

@@ -12,6 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
+from .texels import opaque_texels
+
 #: Roughness of each blurred level; below the first, the image itself is mixed in. The last level is for matt surfaces.
 LEVELS = (0.25, 0.4, 0.6, 0.8, 1.0)
 #: Texels along the side of a level's octahedral map, without the border of one texel for interpolation.
@@ -44,7 +46,7 @@ class Environment:
 
     def image_texels(self) -> np.ndarray:
         """(h, w, 4) float32: the image in the layout of a texture."""
-        return np.concatenate([self.pixels, np.ones((*self.pixels.shape[:2], 1), np.float32)], axis=2)
+        return opaque_texels(self.pixels)
 
     def level_texels(self) -> np.ndarray:
         """(6 * 34, 34, 4) float32: the levels, stacked vertically; the last is the irradiance of a matt surface over

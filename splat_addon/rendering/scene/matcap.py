@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .texels import opaque_texels
+
 
 @dataclass(frozen=True, eq=False)
 class Matcap:
@@ -24,4 +26,4 @@ class Matcap:
 
     def texels(self) -> np.ndarray:
         """(h, w, 4) in the layout of the device."""
-        return np.concatenate([self.pixels, np.ones((*self.pixels.shape[:2], 1), np.float32)], axis=2)
+        return opaque_texels(self.pixels)

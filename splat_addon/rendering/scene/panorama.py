@@ -7,10 +7,12 @@ In the camera's space: right-handed, looking down -Z.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+
+from .window import Windowed
 
 
 class Projection(Protocol):
@@ -107,7 +109,7 @@ def _around_axis(x, y, radius, angle) -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False)
-class Panorama:
+class Panorama(Windowed):
     """A camera that looks all around. matrix_world: (4, 4) float64, rigid. size: width, height in pixels.
     near, far: clip distances along the axes of the six views that it is made from, world units.
     window: left, right, bottom, top of the visible part, from 0 to 1 of the whole picture.
@@ -119,13 +121,6 @@ class Panorama:
     near: float = 0.1
     far: float = 1000.0
     window: tuple[float, float, float, float] = (0.0, 1.0, 0.0, 1.0)
-
-    def cropped(self, x: int, y: int, width: int, height: int) -> Panorama:
-        """The same camera showing only the pixels x..x+width, y..y+height (from the bottom left)."""
-        left, right, bottom, top = self.window
-        step_x, step_y = (right - left) / self.size[0], (top - bottom) / self.size[1]
-        window = (left + x * step_x, left + (x + width) * step_x, bottom + y * step_y, bottom + (y + height) * step_y)
-        return replace(self, window=window, size=(width, height))
 
     def directions(self, rows: slice, place=(0.5, 0.5)) -> np.ndarray:
         """(n, w, 3) float64 in the camera's space, for these rows of pixels, through a point in each pixel (0 to 1)."""

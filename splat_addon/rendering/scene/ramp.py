@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .texels import opaque_texels
+
 
 @dataclass(frozen=True, eq=False)
 class Ramp:
@@ -32,4 +34,4 @@ class Ramp:
 
     def texels(self) -> np.ndarray:
         """The ramp as (1, n, 4) texels for the device."""
-        return np.concatenate([self.colors, np.ones((len(self.colors), 1), np.float32)], axis=1)[None]
+        return opaque_texels(self.colors)[None]

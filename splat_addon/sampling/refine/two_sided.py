@@ -70,7 +70,7 @@ class _Runs(NamedTuple):
     numbers: np.ndarray
     strides: np.ndarray
 
-    def those(self, some) -> _Runs:
+    def take(self, some) -> _Runs:
         return _Runs(*(values[some] for values in self))
 
 
@@ -105,9 +105,9 @@ def _have_other_sides(images: list[list[_Runs]], mesh: TriangleMesh, count: int)
     for axis, parts in enumerate(images):
         spans, *others = zip(*parts, strict=True)
         runs = _Runs(Spans.joined(list(spans)), *map(np.concatenate, others))
-        runs = runs.those(order_of(runs.spans.rows - runs.spans.rows.min(initial=0)))
+        runs = runs.take(order_of(runs.spans.rows - runs.spans.rows.min(initial=0)))
         for band in _bands(runs.spans):
-            numbers, triangles, distances = _neighbours(runs.those(band))
+            numbers, triangles, distances = _neighbours(runs.take(band))
             corners = (gather_corners(components, mesh.triangles[of]) for of in triangles)
             below, above = (_unit(doubled_areas(of)) for of in corners)
             behind = -distances * below[axis]
