@@ -35,7 +35,7 @@ def background(scene: Scene, size, settings: Settings) -> dict[str, np.ndarray]:
 
 
 def read_arrays(outputs: tuple[str, ...]) -> tuple[str, ...]:
-    """Read the arrays that the device stores directly."""
+    """The names of the arrays that the device stores as they are, without conversion."""
     return tuple(name for name in held_arrays(outputs) if name in HELD_BY)
 
 

@@ -209,7 +209,7 @@ def texel_of(camera: Camera) -> float:
 
 
 def pack_shadow_maps(maps, views: tuple[View, ...], camera: Camera, scale: float) -> np.ndarray:
-    """(M, 18, 4) float32. views: of `view.look`, for each map. camera, scale: of the picture that is shaded.
+    """(M, 18, 4) float32. views: of `view.build_view`, one for each map. camera, scale: of the picture that is shaded.
 
     Rows of the map from its view space to the light's (3 texels) | window's left, bottom, 1 / width, 1 / height |
     place in the atlas, resolution, 1 for a parallel camera | depth = x stored + y, texel's size (at depth 1 of a

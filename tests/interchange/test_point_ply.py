@@ -48,7 +48,7 @@ def test_white_is_255_in_integers_of_any_type(ply, kind):
 
 @pytest.mark.parametrize(("kind", "white"), [("ushort", 65535), ("int", 65535), ("short", 32767), ("uint", 2**32 - 1)])
 def test_integers_above_255_need_a_larger_white(ply, kind, white):
-    """All channels share it: the darker ones too, and the alpha."""
+    """It is the same for all channels: the darker ones too, and the alpha."""
     head = ["format ascii 1.0", "element vertex 1", *(f"property float {n}" for n in "xyz")]
     head += [f"property {kind} {n}" for n in ("red", "green", "blue", "alpha")]
     colors = read_contents(ply(head, f"0 0 0 {white} 0 -5 {white // 5}\n".encode())).colors

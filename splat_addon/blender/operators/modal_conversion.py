@@ -41,7 +41,7 @@ class ModalConversion:
     follow: follow_property()
 
     def _new_batch(self, context: bpy.types.Context) -> Batch:
-        """A batch for the selection, according to the properties. Raises ValueError with a sentence."""
+        """A batch for the selection, according to the properties."""
         raise NotImplementedError
 
     #: The kind under which the record stores the conversion.

@@ -159,7 +159,7 @@ class Device(Protocol):
         viewport=None,
         first=0,
     ) -> None:
-        """Draw `count` triangles from number `first` on, in order: vertex 3 t + c is corner c of triangle t.
+        """Draw this many triangles from number `first` on, in order: vertex 3 t + c is corner c of triangle t.
 
         blocks: float32 values of each uniform block in std140 layout. The same array is not uploaded twice before
             `restore`.

@@ -34,9 +34,10 @@ def plan(
     """The passes that this picture needs.
 
     viewers: the cameras that shadow maps serve, if there are others, so that similar cameras can share maps.
-        is_added_up: whether the picture is one sample of a refining view. part: x, y, width, height in pixels, if only
-        a part of the picture is drawn. samples: number of samples that show this scene, if fewer than the picture's.
-        is_repeatable: whether it is the same whatever was drawn before.
+    is_added_up: whether the picture is one sample of a refining view.
+    part: x, y, width, height in pixels, if only a part of the picture is drawn.
+    samples: number of samples that show this scene, if fewer than the picture's.
+    is_repeatable: whether the picture is the same whatever was drawn before it.
     """
     planning = Planning(
         scene,

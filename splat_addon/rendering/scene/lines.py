@@ -8,8 +8,7 @@ from dataclasses import dataclass
 
 MAX_WIDTH = 16.0
 
-#: A crease must turn the normal within this many pixels beside a line; shaders/hosts/lines.frag.glsl has the same
-#: value.
+#: A crease must turn the normal within this many pixels beside a line.
 CREASE_REACH = 3.0
 
 

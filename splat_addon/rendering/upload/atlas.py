@@ -28,7 +28,7 @@ MAX_TEXELS = 1 << 26
 FORMAT = "RGBA16F"
 LARGEST = 65504.0
 
-#: The index is the number by which the shader knows an extension.
+#: extension -> the number by which the shader knows it
 EXTENSION_NUMBERS = {name: number for number, name in enumerate(("REPEAT", "EXTEND", "CLIP", "MIRROR"))}
 assert EXTENSION_NUMBERS.keys() == EXTENSIONS.keys()
 #: Added to the extension's number if the alpha makes holes.

@@ -103,8 +103,7 @@ def merge_flat(
     tolerance: Tolerance,
     report: Callable[[float], None] = lambda share: None,
 ) -> tuple[dict[str, np.ndarray], float]:
-    """Merge flat regions; returns the remaining surfels, the mask of those that were not merged first, and the largest
-    error in object units.
+    """Merge flat regions. Returns the surfels, those that were not merged first, and the largest error in object units.
 
     arrays: by field of `Surfels`, positions relative to a corner of a cell. axes: (N,) the image of each sample.
     report: called between steps with the finished share, 0 to 1.
