@@ -117,8 +117,8 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
     render_as: EnumProperty(
         name="Render as",
         description=(
-            "How this object and its instances are drawn. Conversion sets it to Nothing, because the surfels "
-            "replace the object"
+            "How this object and its instances are drawn. From Scene draws its surfels instead of the object for as "
+            "long as they exist"
         ),
         items=[
             ("SCENE", "From Scene", "Follow the setting Render Meshes as in the render properties"),

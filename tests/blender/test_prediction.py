@@ -146,11 +146,11 @@ def test_the_text_says_less_where_flat_only_if_a_tolerance_may_merge_what_is_not
         setattr(settings, name, before)
     sidebar_text(bpy.context, [cube], choices(settings))
     prediction._measure_wanted()
-    assert "less where flat" not in sidebar_text(bpy.context, [cube], choices(settings))
+    assert "fewer where flat" not in sidebar_text(bpy.context, [cube], choices(settings))
     settings.tolerance = 0.01
-    assert "less where flat" in sidebar_text(bpy.context, [cube], choices(settings))
+    assert "fewer where flat" in sidebar_text(bpy.context, [cube], choices(settings))
     settings.use_adaptive = False
-    assert "less where flat" not in sidebar_text(bpy.context, [cube], choices(settings))
+    assert "fewer where flat" not in sidebar_text(bpy.context, [cube], choices(settings))
 
 
 @pytest.mark.parametrize("has_image", [False, True])

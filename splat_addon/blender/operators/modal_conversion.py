@@ -64,7 +64,7 @@ class ModalConversion:
     def _report_already(self):
         self.report(
             {"ERROR"},
-            said("What is selected is surfels already; use Update from Source to convert its source again"),
+            said("The selected objects are surfels already; use Update from Source to convert their sources again"),
         )
 
     def invoke(self, context, event):

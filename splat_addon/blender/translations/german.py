@@ -20,7 +20,7 @@ GERMAN = {
         "Licht rechts. Ohne Textur werden drei gleichmäßige Graustufen verwendet. Dauert so lange wie Toon"
     ),
     "As Printed": "Wie gedruckt",
-    "As the Papers": "Wie die Veröffentlichungen",
+    "As in the Papers": "Wie in den Veröffentlichungen",
     "Color Ramp": "Farbverlauf",
     ("Also draw a line where a surface is seen at less than this angle; 0 draws none. It takes no extra time"): (
         "Auch dort eine Linie zeichnen, wo eine Fläche flacher als unter diesem Winkel gesehen wird; 0 zeichnet "
@@ -374,11 +374,11 @@ GERMAN = {
         "eine Scheibe zu dick sind. 1 lässt keine weg"
     ),
     (
-        "How this object and its instances are drawn. Conversion sets it to Nothing, because the surfels "
-        "replace the object"
+        "How this object and its instances are drawn. From Scene draws its surfels instead of the object for as "
+        "long as they exist"
     ): (
-        "Wie dieses Objekt und seine Instanzen gezeichnet werden. Die Umwandlung setzt es auf Nichts, weil "
-        "die Surfels das Objekt ersetzen"
+        "Wie dieses Objekt und seine Instanzen gezeichnet werden. Aus Szene zeichnet statt des Objekts seine "
+        "Surfels, solange es sie gibt"
     ),
     "Import": "Importieren",
     "Import Surfels": "Surfels importieren",
@@ -928,6 +928,9 @@ GERMAN = {
         "Surfels auswählen, die aus einem Objekt dieser Datei umgewandelt wurden"
     ),
     "Skipped {count:,} unusable surfels": "{count:,} unbrauchbare Surfels ausgelassen",
+    "The selected objects are surfels already; use Update from Source to convert their sources again": (
+        "Die ausgewählten Objekte sind schon Surfels; „Surfels aus Quelle aktualisieren“ wandelt ihre Quellen erneut um"
+    ),
     "The surfels of {names} are in files of their own; only the coarsest were written": (
         "Die Surfels von {names} liegen in eigenen Dateien; nur die gröbsten wurden geschrieben"
     ),
@@ -940,12 +943,9 @@ GERMAN = {
     ),
     "Time: {milliseconds:,.0f} ms": "Zeit: {milliseconds:,.0f} ms",
     "Update from {names}": "Aus {names} aktualisieren",
-    "What is selected is surfels already; use Update from Source to convert its source again": (
-        "Die Auswahl besteht schon aus Surfels; „Surfels aus Quelle aktualisieren“ wandelt ihre Quelle erneut um"
-    ),
     "{blur} needs more samples": "{blur} braucht mehr Samples",
     "{count:,} surfels of {objects} objects -> {path}": "{count:,} Surfels von {objects} Objekten -> {path}",
-    "{count}, less where flat": "{count}, weniger wo eben",
+    "{count}, fewer where flat": "{count}, weniger wo eben",
     "{name}: {count:,} surfels": "{name}: {count:,} Surfels",
     "{path} cannot be written: {why}": "{path} kann nicht geschrieben werden: {why}",
     "≈ {count:,} surfels, spacing {low} to {high}": "≈ {count:,} Surfels, Abstand {low} bis {high}",

@@ -144,7 +144,7 @@ class RENDER_PT_surfel_motion_blur(_RenderPanel, bpy.types.Panel):
 
 
 class RENDER_PT_surfel_papers(_RenderPanel, bpy.types.Panel):
-    bl_label = "As the Papers"
+    bl_label = "As in the Papers"
     bl_options = frozenset({"DEFAULT_CLOSED"})
     properties = ("lights_splats", "culls_backs", "as_printed")
 

@@ -99,7 +99,7 @@ def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], aske
         return str(error)
     text = prediction_text([extent.predict(f) for extent, (f, _) in zip(extents, found, strict=True)])
     if asked.tolerance or any(extent.flat is UNKNOWN_FLAT_EXTENTS for extent in extents):
-        text = said("{count}, less where flat", count=text)
+        text = said("{count}, fewer where flat", count=text)
     return "\n".join([text, *dict.fromkeys(reason for _, reason in found if reason)])
 
 
